@@ -1,0 +1,85 @@
+//! Gymnasium's quick start in Rust: random actions, and a reset at each end.
+//!
+//! ```text
+//! cargo run --release --example random_agent -- --seed 42 --steps 1000
+//! ```
+//!
+//! With the same seed these are the episodes of
+//!
+//! ```python
+//! env = gymnasium.make("Acrobot-v1")
+//! env.reset(seed=42)
+//! env.action_space.seed(42)
+//! for _ in range(1000):
+//!     _, _, terminated, truncated, _ = env.step(env.action_space.sample())
+//!     if terminated or truncated:
+//!         env.reset()
+//! ```
+
+use std::io::{self, Write};
+
+use acrobot::{Acrobot, Action, Host, Pcg64, SeedSequence, TimeLimit};
+use clap::Parser;
+
+/// Plays Acrobot-v1 at random and prints a line an episode.
+#[derive(Parser)]
+#[command(allow_negative_numbers = true)]
+struct Options {
+    /// Seed of the starts and of the actions: a decimal integer of any size.
+    #[arg(long, default_value = "42")]
+    seed: SeedSequence,
+    /// How many steps to take.
+    #[arg(long, default_value_t = 1000)]
+    steps: u64,
+}
+
+fn main() -> io::Result<()> {
+    let options = Options::parse();
+    match play(&options, &mut io::stdout().lock()) {
+        // Whoever reads has read enough.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
+fn play(options: &Options, out: &mut impl Write) -> io::Result<()> {
+    let mut acrobot = TimeLimit::v1(Acrobot::<Host>::new(options.seed));
+    let mut action_space = Pcg64::new(options.seed);
+
+    let (mut episodes, mut goals, mut sum) = (0_u64, 0_u64, 0.0);
+    let mut episode_return = 0.0;
+    for _ in 0..options.steps {
+        let step = acrobot.step(Action::sample(&mut action_space));
+        episode_return += f64::from(step.reward);
+        if step.ended() {
+            episodes += 1;
+            goals += u64::from(step.terminated);
+            sum += episode_return;
+            let length = acrobot.elapsed();
+            let end = if step.terminated {
+                "terminated"
+            } else {
+                "truncated"
+            };
+            writeln!(
+                out,
+                "episode {episodes}: {length} steps, return {episode_return}, {end}"
+            )?;
+            acrobot.reset();
+            episode_return = 0.0;
+        }
+    }
+
+    write!(
+        out,
+        "{} steps, {episodes} episodes, {goals} at the goal",
+        options.steps
+    )?;
+    if episodes > 0 {
+        write!(out, ", mean return {:.1}", sum / episodes as f64)?;
+    }
+    match acrobot.elapsed() {
+        0 => writeln!(out),
+        unfinished => writeln!(out, "; {unfinished} steps into the next"),
+    }
+}

@@ -1,0 +1,152 @@
+//! The parity tool: replays actions and prints every bit.
+//!
+//! ```text
+//! echo 0 1 2 2 2 | cargo run --release --features std --example trace -- --seed 42
+//! ```
+//!
+//! The first line is the start and each other one a step: the bits of θ1, θ2, θ̇1 and θ̇2 as f64, then
+//! the reward and whether the state is in the goal. Stepping goes on past it.
+
+use std::error::Error;
+use std::io::{self, BufWriter, Read, Write};
+use std::process::ExitCode;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Dynamics, Fast, Host, Micro, Params, Portable, SeedSequence,
+    StartBounds, State,
+};
+use clap::{Parser, ValueEnum};
+
+/// Reads actions (digits 0, 1 and 2; white space is ignored) from standard input and prints the
+/// bits of each state.
+#[derive(Parser)]
+#[command(allow_negative_numbers = true)]
+struct Options {
+    /// Seed of the start and of the torque noise: a decimal integer of any size.
+    #[arg(long)]
+    seed: SeedSequence,
+    /// Lower bound of the start, rad and rad/s.
+    #[arg(long, default_value_t = StartBounds::DEFAULT.low())]
+    low: f64,
+    /// Upper bound of the start, rad and rad/s.
+    #[arg(long, default_value_t = StartBounds::DEFAULT.high())]
+    high: f64,
+    /// Equations of motion.
+    #[arg(long, value_enum, default_value = "book")]
+    dynamics: DynamicsName,
+    /// Torque noise, N m.
+    #[arg(long, default_value_t = Params::DEFAULT.torque_noise)]
+    noise: f64,
+    /// Time of a step, s.
+    #[arg(long, default_value_t = Params::DEFAULT.dt)]
+    dt: f64,
+    /// What to compute in.
+    #[arg(long, value_enum, default_value = "host")]
+    arithmetic: ArithmeticName,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum DynamicsName {
+    Book,
+    Nips,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ArithmeticName {
+    Host,
+    Portable,
+    Fast,
+    Micro,
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let result = match options.arithmetic {
+        ArithmeticName::Host => trace::<Host>(&options),
+        ArithmeticName::Portable => trace::<Portable>(&options),
+        ArithmeticName::Fast => trace::<Fast>(&options),
+        ArithmeticName::Micro => trace::<Micro>(&options),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Everything is read and checked before the first line is printed.
+fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
+    let bounds = StartBounds::new(options.low, options.high)?;
+    let params = Params {
+        dt: options.dt,
+        torque_noise: options.noise,
+        dynamics: match options.dynamics {
+            DynamicsName::Book => Dynamics::Book,
+            DynamicsName::Nips => Dynamics::Nips,
+        },
+        ..Params::DEFAULT
+    };
+    params.validate()?;
+    let mut acrobot = Acrobot::<A>::new(options.seed);
+    // Once more, because a small number may be 0 in the arithmetic's scalar.
+    acrobot.set_params(params.cast())?;
+    let mut input = Vec::new();
+    io::stdin().read_to_end(&mut input)?;
+    let actions = parse_actions(&input)?;
+
+    acrobot.reseed(options.seed);
+    acrobot.reset_within(bounds);
+    match print(&mut acrobot, &actions, BufWriter::new(io::stdout().lock())) {
+        // Whoever reads has read enough.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => Ok(result?),
+    }
+}
+
+fn parse_actions(input: &[u8]) -> Result<Vec<Action>, String> {
+    let bytes = input
+        .iter()
+        .zip(1..)
+        .filter(|(byte, _)| !byte.is_ascii_whitespace());
+    bytes
+        .map(|(&byte, position)| {
+            let action = Action::try_from(byte.wrapping_sub(b'0'));
+            action.map_err(|_| {
+                let found = byte.escape_ascii();
+                format!("'{found}' at byte {position} of the input; allowed are the actions 0, 1 and 2, and white space")
+            })
+        })
+        .collect()
+}
+
+fn print<A: Arithmetic>(
+    acrobot: &mut Acrobot<A>,
+    actions: &[Action],
+    mut out: impl Write,
+) -> io::Result<()> {
+    writeln!(out, "{}", words(acrobot.state()))?;
+    for &action in actions {
+        let step = acrobot.step(action);
+        let terminated = u8::from(step.terminated);
+        writeln!(
+            out,
+            "{} {} {terminated}",
+            words(acrobot.state()),
+            step.reward
+        )?;
+    }
+    out.flush()
+}
+
+fn words<S: acrobot::Real>(state: State<S>) -> String {
+    let State {
+        theta1,
+        theta2,
+        dtheta1,
+        dtheta2,
+    } = state.cast::<f64>();
+    let [a, b, c, d] = [theta1, theta2, dtheta1, dtheta2].map(f64::to_bits);
+    format!("{a:016x} {b:016x} {c:016x} {d:016x}")
+}

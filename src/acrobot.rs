@@ -1,0 +1,299 @@
+//! The environment: parameters, a state, a generator, and what a step does to them.
+
+use rand_core::Rng;
+
+use crate::action::Action;
+use crate::arithmetic::{Arithmetic, Portable, Real};
+use crate::bounds::{bound, wrap};
+use crate::dynamics::{self, Model, SinCos};
+use crate::error::{Allowed, Error};
+use crate::observation::Observation;
+use crate::params::Params;
+use crate::rk4::rk4_from;
+use crate::rng::{Pcg64, uniform};
+use crate::seed::SeedSequence;
+use crate::state::{StartBounds, State};
+
+/// The mean return of 100 episodes from which on Gymnasium calls `Acrobot-v1` solved.
+pub const REWARD_THRESHOLD: f32 = -100.0;
+
+/// What a step returns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Step {
+    /// What the agent sees of the new state.
+    pub observation: Observation,
+    /// −1, or 0 for the step that reaches the goal.
+    pub reward: f32,
+    /// Whether the new state is in the goal: −cos θ1 − cos(θ1 + θ2) > 1.
+    pub terminated: bool,
+}
+
+/// One Acrobot: Gymnasium's environment without its wrappers.
+///
+/// `A` fixes the bits, see [`Arithmetic`]; name it always, since a default does not drive
+/// inference. `R` is the generator that starts and torque noise are drawn from.
+///
+/// It always has a valid state. Stepping on past the goal goes on, as in Gymnasium;
+/// [`TimeLimit`](crate::TimeLimit) adds truncation.
+///
+/// ```
+/// use acrobot::{Acrobot, Action, Fast};
+///
+/// let mut acrobot = Acrobot::<Fast>::new(42); // the start of Gymnasium's reset(seed=42)
+/// let mut steps = 0;
+/// while !acrobot.step(Action::Positive).terminated && steps < 500 {
+///     steps += 1;
+/// }
+/// acrobot.reset(); // the next start of the same stream
+/// ```
+///
+/// # What cannot be represented
+///
+/// Extreme but valid parameters, starts and torques can take a step's result out of the range of
+/// the scalar. A step whose result is not finite keeps the angles and sets both velocities to 0.
+/// Starts far outside of ±π are valid: the first step wraps the angles and bounds the velocities.
+/// Nothing here hangs, panics or turns into NaN.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
+    model: Model<A::Scalar>,
+    state: State<A::Scalar>,
+    /// Of the state's θ1 and θ2: the observation needs them, and so does the next step.
+    sin_cos: [SinCos<A::Scalar>; 2],
+    rng: R,
+}
+
+impl<A: Arithmetic> Acrobot<A> {
+    /// An acrobot with the default parameters, at the start of Gymnasium's `reset(seed=seed)`.
+    #[must_use]
+    pub fn new(seed: impl Into<SeedSequence>) -> Self {
+        Self::with_rng(Pcg64::new(seed))
+    }
+
+    /// Seeds the generator anew and changes nothing else; a [`reset`](Self::reset) after it is
+    /// Gymnasium's `reset(seed=seed)`.
+    pub fn reseed(&mut self, seed: impl Into<SeedSequence>) {
+        self.rng = Pcg64::new(seed);
+    }
+}
+
+impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
+    /// An acrobot with the default parameters, at a start drawn from `rng`.
+    #[must_use]
+    pub fn with_rng(rng: R) -> Self {
+        let mut acrobot = Self::assemble(Params::default(), State::default(), rng);
+        acrobot.reset();
+        acrobot
+    }
+
+    /// Draws a new start from [`StartBounds::DEFAULT`] and returns what the agent sees of it.
+    pub fn reset(&mut self) -> Observation {
+        self.reset_within(StartBounds::DEFAULT)
+    }
+
+    /// Draws a new start from `bounds`, as Gymnasium's
+    /// `reset(options={"low": low, "high": high})`.
+    pub fn reset_within(&mut self, bounds: StartBounds) -> Observation {
+        // Gymnasium keeps a start in f32, whatever it computes in afterwards.
+        let start = [(); 4].map(|()| uniform(&mut self.rng, bounds.low(), bounds.high()) as f32);
+        self.place(State::from(start).cast());
+        self.observation()
+    }
+
+    /// Applies the torque of `action` for one `dt`.
+    #[inline]
+    pub fn step(&mut self, action: Action) -> Step {
+        self.advance(self.model.params.torque(action))
+    }
+
+    /// Applies a torque in N m, of any size, for one `dt`: for controllers.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a torque that is not finite; nothing is stepped then.
+    #[inline]
+    pub fn step_torque(&mut self, torque: A::Scalar) -> Result<Step, Error> {
+        Allowed::Finite.check("torque", torque, "N m")?;
+        Ok(self.advance(torque))
+    }
+
+    #[inline]
+    fn advance(&mut self, torque: A::Scalar) -> Step {
+        let params = self.model.params;
+        let torque = if params.torque_noise > A::Scalar::ZERO {
+            let noise = params.torque_noise.to_f64();
+            torque + A::Scalar::from_f64(uniform(&mut self.rng, -noise, noise))
+        } else {
+            torque
+        };
+
+        let y: [A::Scalar; 4] = self.state.into();
+        let k1 = self.model.derivative_from::<A>(y, self.sin_cos, torque);
+        let next = rk4_from(y, k1, params.dt, |y| self.model.derivative::<A>(y, torque));
+        let [theta1, theta2, dtheta1, dtheta2] = if next.iter().all(|x| x.is_finite()) {
+            next
+        } else {
+            [y[0], y[1], A::Scalar::ZERO, A::Scalar::ZERO]
+        };
+        self.place(State {
+            theta1: wrap::<A>(theta1),
+            theta2: wrap::<A>(theta2),
+            dtheta1: bound(dtheta1, params.max_velocity1),
+            dtheta2: bound(dtheta2, params.max_velocity2),
+        });
+
+        let terminated = dynamics::reaches_goal::<A>(&self.state, self.sin_cos);
+        Step {
+            observation: self.observation(),
+            reward: if terminated { 0.0 } else { -1.0 },
+            terminated,
+        }
+    }
+}
+
+impl<A: Arithmetic, R> Acrobot<A, R> {
+    /// What the agent sees of the state.
+    #[must_use]
+    #[inline]
+    pub fn observation(&self) -> Observation {
+        let [(sin1, cos1), (sin2, cos2)] = self.sin_cos;
+        let f32 = |x: A::Scalar| x.to_f64() as f32;
+        Observation {
+            cos_theta1: f32(cos1),
+            sin_theta1: f32(sin1),
+            cos_theta2: f32(cos2),
+            sin_theta2: f32(sin2),
+            dtheta1: f32(self.state.dtheta1),
+            dtheta2: f32(self.state.dtheta2),
+        }
+    }
+
+    /// The state.
+    #[must_use]
+    #[inline]
+    pub fn state(&self) -> State<A::Scalar> {
+        self.state
+    }
+
+    /// Sets the state; angles and velocities may lie outside of their bounds until the next step.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a number that is not finite; the state stays as it was.
+    pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
+        state.validate()?;
+        self.place(state);
+        Ok(())
+    }
+
+    /// The parameters.
+    #[must_use]
+    #[inline]
+    pub fn params(&self) -> &Params<A::Scalar> {
+        &self.model.params
+    }
+
+    /// Sets the parameters, from the next step on; the state and the generator stay.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] with the first field that [`Params::validate`] refuses; the parameters
+    /// stay as they were.
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        self.model = Model::new::<A>(params);
+        Ok(())
+    }
+
+    /// The generator.
+    #[must_use]
+    #[inline]
+    pub fn rng(&self) -> &R {
+        &self.rng
+    }
+
+    /// The generator, to draw from it or to replace it.
+    #[must_use]
+    #[inline]
+    pub fn rng_mut(&mut self) -> &mut R {
+        &mut self.rng
+    }
+
+    /// The mass matrix at the state, kg m²; see [`mass_matrix`](crate::mass_matrix).
+    #[must_use]
+    pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
+        dynamics::mass_matrix::<A>(self.params(), &self.state)
+    }
+
+    /// The total energy of the state, J; see [`energy`](crate::energy).
+    #[must_use]
+    pub fn energy(&self) -> A::Scalar {
+        dynamics::energy::<A>(self.params(), &self.state)
+    }
+
+    /// The height of the tip above the fixed joint, m; see [`tip_height`](crate::tip_height).
+    #[must_use]
+    pub fn tip_height(&self) -> A::Scalar {
+        dynamics::tip_height::<A>(self.params(), &self.state)
+    }
+
+    /// Of valid parts.
+    fn assemble(params: Params<A::Scalar>, state: State<A::Scalar>, rng: R) -> Self {
+        let mut acrobot = Self {
+            model: Model::new::<A>(params),
+            state,
+            sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2],
+            rng,
+        };
+        acrobot.place(state);
+        acrobot
+    }
+
+    #[inline]
+    fn place(&mut self, state: State<A::Scalar>) {
+        self.state = state;
+        self.sin_cos = [A::sin_cos(state.theta1), A::sin_cos(state.theta2)];
+    }
+}
+
+#[cfg(feature = "serde")]
+mod snapshot {
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::{Serialize, Serializer};
+
+    use super::{Acrobot, Arithmetic, Params, State};
+
+    /// What of an acrobot cannot be derived.
+    #[derive(serde::Serialize, serde::Deserialize)]
+    #[serde(rename = "Acrobot")]
+    struct Snapshot<S, R> {
+        params: Params<S>,
+        state: State<S>,
+        rng: R,
+    }
+
+    impl<A: Arithmetic<Scalar: Serialize>, R: Serialize> Serialize for Acrobot<A, R> {
+        fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
+            Snapshot {
+                params: *self.params(),
+                state: self.state,
+                rng: &self.rng,
+            }
+            .serialize(serializer)
+        }
+    }
+
+    impl<'de, A, R> Deserialize<'de> for Acrobot<A, R>
+    where
+        A: Arithmetic<Scalar: Deserialize<'de>>,
+        R: Deserialize<'de>,
+    {
+        /// Refuses what `set_params` and `set_state` refuse.
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let Snapshot { params, state, rng } = Snapshot::deserialize(deserializer)?;
+            params.validate().map_err(D::Error::custom)?;
+            state.validate().map_err(D::Error::custom)?;
+            Ok(Self::assemble(params, state, rng))
+        }
+    }
+}

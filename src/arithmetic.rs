@@ -1,0 +1,178 @@
+//! What an acrobot computes in: scalar, trigonometry and form of the equations, as one type.
+
+mod fast;
+#[cfg(feature = "std")]
+mod host;
+mod micro;
+mod portable;
+
+use core::fmt;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+pub use fast::Fast;
+#[cfg(feature = "std")]
+pub use host::Host;
+pub use micro::Micro;
+pub use portable::Portable;
+
+/// In which order the equations of motion are evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Form {
+    /// As Gymnasium's source writes them: four divisions and four trigonometric calls a stage.
+    Gymnasium,
+    /// Solved by Cramer's rule: one division and the sines and cosines of θ1 and θ2.
+    Lean,
+}
+
+/// A scalar, its trigonometry, and the [`Form`] of the equations: everything that decides an
+/// acrobot's bits.
+///
+/// It is a type parameter and no feature flag, because features are unified over a build: a flag
+/// that changed numbers would change them for a stranger. The crate has [`Portable`], [`Fast`],
+/// [`Micro`] and, with `std`, `Host`; implement it for a trigonometric unit of your chip.
+///
+/// ```
+/// use acrobot::{Acrobot, Action, Arithmetic, Form};
+///
+/// /// Sines from a table of the chip's.
+/// #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// struct Table;
+///
+/// impl Arithmetic for Table {
+///     type Scalar = f32;
+///     const FORM: Form = Form::Lean;
+///     fn sin_cos(x: f32) -> (f32, f32) {
+/// #       fn look_up(x: f32) -> f32 { libm::sinf(x) }
+///         (look_up(x), look_up(x + core::f32::consts::FRAC_PI_2))
+///     }
+/// }
+///
+/// let step = Acrobot::<Table>::new(42).step(Action::Positive);
+/// assert_eq!(step.reward, -1.0);
+/// ```
+pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
+    /// The type of angles, velocities, torques and parameters.
+    type Scalar: Real;
+
+    /// The order in which the equations of motion are evaluated.
+    const FORM: Form;
+
+    /// Sine and cosine of `x` rad; both within \[−1, 1\] for every finite `x`.
+    fn sin_cos(x: Self::Scalar) -> (Self::Scalar, Self::Scalar);
+
+    /// Cosine of `x` rad: the second of [`sin_cos`](Self::sin_cos), to the bit.
+    #[inline]
+    fn cos(x: Self::Scalar) -> Self::Scalar {
+        Self::sin_cos(x).1
+    }
+
+    /// The square of `x`.
+    #[inline]
+    fn square(x: Self::Scalar) -> Self::Scalar {
+        x * x
+    }
+}
+
+/// A scalar that the physics can be computed in: `f32` or `f64`.
+///
+/// Only what IEEE 754 rounds correctly, and no fused multiply-add, so that every machine agrees.
+pub trait Real:
+    Copy
+    + fmt::Debug
+    + fmt::Display
+    + Default
+    + PartialOrd
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + sealed::Sealed
+{
+    /// 0.
+    const ZERO: Self;
+    /// π, rounded to the scalar.
+    const PI: Self;
+    /// 2π, rounded to the scalar.
+    const TAU: Self;
+    /// π/2, rounded to the scalar.
+    const FRAC_PI_2: Self;
+
+    /// The scalar nearest to `x`.
+    fn from_f64(x: f64) -> Self;
+
+    /// The same number, exactly.
+    fn to_f64(self) -> f64;
+
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+
+    /// The nearest whole number, of two equally near ones the even; exact for |self|
+    /// up to 2²² in `f32` and 2⁵¹ in `f64`, finite beyond.
+    ///
+    /// Two additions, because a Cortex-M4F has no instruction for it.
+    fn round_small(self) -> Self;
+
+    /// The remainder of the division by `divisor`, exact, with the sign of `self`.
+    fn remainder(self, divisor: Self) -> Self;
+}
+
+macro_rules! impl_real {
+    ($scalar:ident) => {
+        impl sealed::Sealed for $scalar {}
+
+        impl Real for $scalar {
+            const ZERO: Self = 0.0;
+            const PI: Self = core::$scalar::consts::PI;
+            const TAU: Self = core::$scalar::consts::TAU;
+            const FRAC_PI_2: Self = core::$scalar::consts::FRAC_PI_2;
+
+            #[inline]
+            fn from_f64(x: f64) -> Self {
+                x as Self
+            }
+
+            #[inline]
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
+
+            #[inline]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+
+            #[inline]
+            fn round_small(self) -> Self {
+                // 1.5 / ε: the sum's last place is 1, so that the addition itself rounds.
+                const MAGIC: $scalar = 1.5 / $scalar::EPSILON;
+                (self + MAGIC) - MAGIC
+            }
+
+            #[inline]
+            fn remainder(self, divisor: Self) -> Self {
+                self % divisor
+            }
+        }
+    };
+}
+
+impl_real!(f32);
+impl_real!(f64);
+
+mod sealed {
+    pub trait Sealed {}
+}
+
+/// An angle beyond ±64 rad brought within a turn, in f64: at most 3e-16 of the angle is lost.
+///
+/// For the `f32` kernels, whose own reductions end there. Cold: after a step angles are within ±π,
+/// and only a start or a state that was set far outside comes here.
+#[cold]
+fn reduce(x: f32) -> f32 {
+    (f64::from(x) % core::f64::consts::TAU) as f32
+}

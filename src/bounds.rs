@@ -1,0 +1,75 @@
+//! Keeping a state in its bounds: angles wrap around, velocities stop.
+
+use crate::arithmetic::{Arithmetic, Form, Real};
+
+/// How many turns Gymnasium's `wrap` is followed before its remainder is taken at once.
+const MAX_TURNS: u32 = 64;
+
+/// The angle `x` rad brought to \[−π, π\] by whole turns.
+///
+/// In Gymnasium's form it subtracts turn by turn, as Gymnasium does, up to 64 of them; beyond, where
+/// Gymnasium's would take ever longer or never return, it takes the remainder. The lean
+/// form subtracts one rounded quotient. An angle that is infinite or NaN gives NaN.
+///
+/// ```
+/// use acrobot::{Fast, Portable, wrap};
+///
+/// assert_eq!(wrap::<Portable>(4.0), 4.0 - core::f64::consts::TAU);
+/// assert_eq!(wrap::<Fast>(4.0), 4.0 - core::f32::consts::TAU);
+/// assert!(wrap::<Fast>(1e30).abs() <= core::f32::consts::PI);
+/// ```
+#[must_use]
+#[inline]
+pub fn wrap<A: Arithmetic>(x: A::Scalar) -> A::Scalar {
+    match A::FORM {
+        Form::Gymnasium => wrap_by_turns(x),
+        Form::Lean => wrap_by_quotient(x),
+    }
+}
+
+#[inline]
+fn wrap_by_turns<S: Real>(mut x: S) -> S {
+    for _ in 0..MAX_TURNS {
+        if x > S::PI {
+            x = x - S::TAU;
+        } else if x < -S::PI {
+            x = x + S::TAU;
+        } else {
+            return x;
+        }
+    }
+    wrap_by_remainder(x)
+}
+
+#[cold]
+fn wrap_by_remainder<S: Real>(x: S) -> S {
+    let x = x.remainder(S::TAU);
+    let turn = if x > S::PI {
+        -S::TAU
+    } else if x < -S::PI {
+        S::TAU
+    } else {
+        S::ZERO
+    };
+    bound(x + turn, S::PI)
+}
+
+#[inline]
+fn wrap_by_quotient<S: Real>(x: S) -> S {
+    let turns = (x * S::from_f64(1.0 / core::f64::consts::TAU)).round_small();
+    // The bound is for angles so large that their spacing exceeds a turn.
+    bound(x - turns * S::TAU, S::PI)
+}
+
+/// `x` brought to \[−`limit`, `limit`\].
+#[must_use]
+#[inline]
+pub fn bound<S: Real>(x: S, limit: S) -> S {
+    if x > limit {
+        limit
+    } else if x < -limit {
+        -limit
+    } else {
+        x
+    }
+}

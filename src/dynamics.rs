@@ -1,0 +1,262 @@
+//! The equations of motion of the double pendulum with a motor in its middle joint.
+//!
+//! M(θ2) θ̈ = f(θ, θ̇, torque), with the mass matrix M = \[\[d1, d2\], \[d2, m2 lc2² + I2\]\] and the
+//! names of Sutton & Barto, *Reinforcement Learning: An Introduction* (1998), section 11.3: d1, d2,
+//! phi1 and phi2. The same equations stand here in two orders of evaluation, one below the other.
+
+use crate::arithmetic::{Arithmetic, Form, Real};
+use crate::params::{Dynamics, Params};
+use crate::state::State;
+
+/// Sine and cosine of one angle.
+pub(crate) type SinCos<S> = (S, S);
+
+/// The parameters, and every part of the equations that depends on them alone, computed once when
+/// they are set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Model<S> {
+    pub(crate) params: Params<S>,
+    /// m1 lc1², kg m².
+    link1: S,
+    /// l1² + lc2², m².
+    arms: S,
+    /// l1 lc2, m².
+    arm: S,
+    /// lc2², m².
+    lc2_squared: S,
+    /// m2 l1 lc2, kg m²: how strongly the links turn each other.
+    coupling: S,
+    /// m2 lc2² + I2, kg m²: link 2 about its joint.
+    link2: S,
+    /// The part of d1 that no angle changes, kg m².
+    total: S,
+    /// The part of M's determinant that no angle changes, kg² m⁴.
+    determinant: S,
+    /// (m1 lc1 + m2 l1) g, N m.
+    gravity1: S,
+    /// m2 lc2 g, N m.
+    gravity2: S,
+}
+
+impl<S: Real> Model<S> {
+    pub(crate) fn new<A: Arithmetic<Scalar = S>>(params: Params<S>) -> Self {
+        let Params {
+            length1: l1,
+            mass1: m1,
+            mass2: m2,
+            center_of_mass1: lc1,
+            center_of_mass2: lc2,
+            inertia1,
+            inertia2,
+            gravity,
+            ..
+        } = params;
+        let link1 = m1 * A::square(lc1);
+        let lc2_squared = A::square(lc2);
+        let arms = A::square(l1) + lc2_squared;
+        let link2 = m2 * lc2_squared + inertia2;
+        Self {
+            params,
+            link1,
+            arms,
+            arm: l1 * lc2,
+            lc2_squared,
+            coupling: m2 * l1 * lc2,
+            link2,
+            total: link1 + m2 * arms + inertia1 + inertia2,
+            determinant: (link1 + inertia1) * link2 + m2 * A::square(l1) * inertia2,
+            gravity1: (m1 * lc1 + m2 * l1) * gravity,
+            gravity2: m2 * lc2 * gravity,
+        }
+    }
+
+    /// \[θ̇1, θ̇2, θ̈1, θ̈2\] at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque in N m.
+    #[inline]
+    pub(crate) fn derivative<A: Arithmetic<Scalar = S>>(&self, y: [S; 4], torque: S) -> [S; 4] {
+        let second = A::sin_cos(y[1]);
+        match A::FORM {
+            Form::Gymnasium => self.gymnasium::<A>(y, second, torque),
+            Form::Lean => self.lean(y, [A::sin_cos(y[0]), second], torque),
+        }
+    }
+
+    /// The same where the sines and cosines of θ1 and θ2 are known already.
+    #[inline]
+    pub(crate) fn derivative_from<A: Arithmetic<Scalar = S>>(
+        &self,
+        y: [S; 4],
+        sin_cos: [SinCos<S>; 2],
+        torque: S,
+    ) -> [S; 4] {
+        match A::FORM {
+            Form::Gymnasium => self.gymnasium::<A>(y, sin_cos[1], torque),
+            Form::Lean => self.lean(y, sin_cos, torque),
+        }
+    }
+
+    /// As `AcrobotEnv._dsdt` evaluates them, operation by operation: `2 * x` excepted, which is
+    /// exact wherever it stands.
+    #[inline]
+    fn gymnasium<A: Arithmetic<Scalar = S>>(
+        &self,
+        [theta1, theta2, dtheta1, dtheta2]: [S; 4],
+        (sin2, cos2): SinCos<S>,
+        torque: S,
+    ) -> [S; 4] {
+        let Params {
+            mass2: m2,
+            inertia1,
+            inertia2,
+            dynamics,
+            ..
+        } = self.params;
+        let two = S::from_f64(2.0);
+        let coupling = self.coupling;
+
+        let arm = self.arm * cos2;
+        let d1 = self.link1 + m2 * (self.arms + two * arm) + inertia1 + inertia2;
+        let d2 = m2 * (self.lc2_squared + arm) + inertia2;
+        let phi2 = self.gravity2 * A::cos(theta1 + theta2 - S::FRAC_PI_2);
+        let phi1 = -coupling * A::square(dtheta2) * sin2
+            - two * coupling * dtheta2 * dtheta1 * sin2
+            + self.gravity1 * A::cos(theta1 - S::FRAC_PI_2)
+            + phi2;
+        let driven = torque + d2 / d1 * phi1;
+        let driven = match dynamics {
+            Dynamics::Book => driven - coupling * A::square(dtheta1) * sin2,
+            Dynamics::Nips => driven,
+        };
+        let ddtheta2 = (driven - phi2) / (self.link2 - A::square(d2) / d1);
+        let ddtheta1 = -(d2 * ddtheta2 + phi1) / d1;
+        [dtheta1, dtheta2, ddtheta1, ddtheta2]
+    }
+
+    /// Cramer's rule on M. Its determinant is a sum of squares and positive constants, so that
+    /// nothing cancels; the angles θ1 + θ2 − π/2 and θ1 − π/2 go by the addition theorem.
+    #[inline]
+    fn lean(
+        &self,
+        [_, _, dtheta1, dtheta2]: [S; 4],
+        [(sin1, cos1), (sin2, cos2)]: [SinCos<S>; 2],
+        torque: S,
+    ) -> [S; 4] {
+        let coupling_cos = self.coupling * cos2;
+        let coupling_sin = self.coupling * sin2;
+
+        let d1 = self.total + (coupling_cos + coupling_cos);
+        let d2 = self.link2 + coupling_cos;
+        let phi2 = self.gravity2 * (sin1 * cos2 + cos1 * sin2);
+        let phi1 = self.gravity1 * sin1 + phi2
+            - coupling_sin * (dtheta2 * (dtheta2 + (dtheta1 + dtheta1)));
+        let driven = match self.params.dynamics {
+            Dynamics::Book => torque - coupling_sin * (dtheta1 * dtheta1) - phi2,
+            Dynamics::Nips => torque - phi2,
+        };
+        let inverse = S::from_f64(1.0) / (self.determinant + coupling_sin * coupling_sin);
+        let ddtheta1 = -(self.link2 * phi1 + d2 * driven) * inverse;
+        let ddtheta2 = (d1 * driven + d2 * phi1) * inverse;
+        [dtheta1, dtheta2, ddtheta1, ddtheta2]
+    }
+
+    /// The mass matrix at θ2 of this cosine, kg m².
+    fn mass_matrix(&self, cos2: S) -> [[S; 2]; 2] {
+        let coupling = self.coupling * cos2;
+        let d2 = self.link2 + coupling;
+        [[self.total + coupling + coupling, d2], [d2, self.link2]]
+    }
+}
+
+/// Whether −cos θ1 − cos(θ1 + θ2) > 1: the goal of Gymnasium, whatever the lengths of the links.
+#[inline]
+pub(crate) fn reaches_goal<A: Arithmetic>(
+    state: &State<A::Scalar>,
+    [(sin1, cos1), (sin2, cos2)]: [SinCos<A::Scalar>; 2],
+) -> bool {
+    let cos_sum = match A::FORM {
+        Form::Gymnasium => A::cos(state.theta2 + state.theta1),
+        Form::Lean => cos1 * cos2 - sin1 * sin2,
+    };
+    -cos1 - cos_sum > A::Scalar::from_f64(1.0)
+}
+
+/// The equations of motion: \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², at a state and under a torque
+/// between the links in N m.
+///
+/// The arithmetic's [`Form`] decides the order of evaluation, and `params.dynamics` between the
+/// equations of the book and those of the paper. Nothing is checked: values out of range give what
+/// IEEE 754 gives.
+///
+/// ```
+/// use acrobot::{Params, Portable, State, derivative};
+///
+/// let hanging = derivative::<Portable>(&Params::DEFAULT, &State::default(), 0.0);
+/// assert!(hanging.iter().all(|rate| rate.abs() < 1e-15));
+/// ```
+#[must_use]
+pub fn derivative<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: &State<A::Scalar>,
+    torque: A::Scalar,
+) -> [A::Scalar; 4] {
+    Model::new::<A>(*params).derivative::<A>((*state).into(), torque)
+}
+
+/// The mass matrix M at a state, kg m²: the kinetic energy is θ̇ᵀ M θ̇ / 2, and M is symmetric and
+/// positive definite.
+///
+/// ```
+/// use acrobot::{Params, Portable, State, mass_matrix};
+///
+/// let stretched = mass_matrix::<Portable>(&Params::DEFAULT, &State::default());
+/// assert_eq!(stretched, [[4.5, 1.75], [1.75, 1.25]]);
+/// ```
+#[must_use]
+pub fn mass_matrix<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: &State<A::Scalar>,
+) -> [[A::Scalar; 2]; 2] {
+    Model::new::<A>(*params).mass_matrix(A::cos(state.theta2))
+}
+
+/// The total mechanical energy of a state, J; the potential energy is 0 at the height of the fixed
+/// joint, so that hanging at rest has the least.
+///
+/// The book's equations conserve it where the torque is 0; those of the paper do not.
+///
+/// ```
+/// use acrobot::{Params, Portable, State, energy};
+///
+/// let hanging = energy::<Portable>(&Params::DEFAULT, &State::default());
+/// assert!((hanging + 9.8 * (0.5 + 1.5)).abs() < 1e-12);
+/// ```
+#[must_use]
+pub fn energy<A: Arithmetic>(params: &Params<A::Scalar>, state: &State<A::Scalar>) -> A::Scalar {
+    let model = Model::new::<A>(*params);
+    let State {
+        theta1,
+        theta2,
+        dtheta1,
+        dtheta2,
+    } = *state;
+    let [[m11, m12], [_, m22]] = model.mass_matrix(A::cos(theta2));
+    let momentum1 = m11 * dtheta1 + m12 * dtheta2;
+    let momentum2 = m12 * dtheta1 + m22 * dtheta2;
+    let kinetic = A::Scalar::from_f64(0.5) * (momentum1 * dtheta1 + momentum2 * dtheta2);
+    kinetic - model.gravity1 * A::cos(theta1) - model.gravity2 * A::cos(theta1 + theta2)
+}
+
+/// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from
+/// −(l1 + l2) hanging to l1 + l2 upright.
+///
+/// ```
+/// use acrobot::{Params, Portable, State, tip_height};
+///
+/// assert_eq!(tip_height::<Portable>(&Params::DEFAULT, &State::default()), -2.0);
+/// ```
+#[must_use]
+pub fn tip_height<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: &State<A::Scalar>,
+) -> A::Scalar {
+    -params.length1 * A::cos(state.theta1) - params.length2 * A::cos(state.theta1 + state.theta2)
+}

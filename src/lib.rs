@@ -1,0 +1,50 @@
+#![doc = include_str!("../README.md")]
+#![no_std]
+#![cfg_attr(docsrs, feature(doc_cfg))]
+// No panic by construction: what could panic is refused here, outside of unit tests.
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::expect_used,
+        clippy::indexing_slicing,
+        clippy::panic,
+        clippy::unreachable,
+        clippy::unwrap_used
+    )
+)]
+
+#[cfg(feature = "std")]
+extern crate std;
+
+mod acrobot;
+mod action;
+mod arithmetic;
+mod bounds;
+mod dynamics;
+mod error;
+mod observation;
+mod params;
+mod rk4;
+mod rng;
+mod seed;
+mod state;
+mod time_limit;
+mod trajectory;
+
+#[cfg(feature = "std")]
+pub use arithmetic::Host;
+
+pub use acrobot::{Acrobot, REWARD_THRESHOLD, Step};
+pub use action::Action;
+pub use arithmetic::{Arithmetic, Fast, Form, Micro, Portable, Real};
+pub use bounds::{bound, wrap};
+pub use dynamics::{derivative, energy, mass_matrix, tip_height};
+pub use error::Error;
+pub use observation::Observation;
+pub use params::{Dynamics, Params};
+pub use rk4::rk4;
+pub use rng::{Pcg64, integers, uniform};
+pub use seed::SeedSequence;
+pub use state::{StartBounds, State};
+pub use time_limit::{LimitedStep, TimeLimit};
+pub use trajectory::{Trajectory, Transition};

@@ -1,0 +1,157 @@
+//! The state of an acrobot, and the bounds that a start is drawn from.
+
+use core::f32::consts::PI;
+
+use crate::arithmetic::Real;
+use crate::error::{Allowed, Error};
+
+/// Two angles and their velocities.
+///
+/// After a step the angles lie in \[−π, π\] and the velocities within their bounds. A start and a
+/// state that was set may lie outside, as Gymnasium's may.
+///
+/// The observation of `Acrobot-v0` is the state itself, in `f32`:
+///
+/// ```
+/// use acrobot::{Acrobot, Portable, State};
+///
+/// let acrobot = Acrobot::<Portable>::new(42);
+/// let reading: State<f32> = acrobot.state().cast();
+/// let [theta1, ..] = <[f32; 4]>::from(reading);
+/// assert!((State::LOW[0]..=State::HIGH[0]).contains(&theta1));
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct State<S = f64> {
+    /// Angle of link 1, rad; 0 = hanging straight down, counter-clockwise positive.
+    pub theta1: S,
+    /// Angle of link 2 relative to link 1, rad; 0 = in line with it.
+    pub theta2: S,
+    /// Angular velocity of link 1, rad/s.
+    pub dtheta1: S,
+    /// Angular velocity of link 2 relative to link 1, rad/s.
+    pub dtheta2: S,
+}
+
+impl<S> From<[S; 4]> for State<S> {
+    /// From \[θ1, θ2, θ̇1, θ̇2\], Gymnasium's order.
+    #[inline]
+    fn from([theta1, theta2, dtheta1, dtheta2]: [S; 4]) -> Self {
+        Self {
+            theta1,
+            theta2,
+            dtheta1,
+            dtheta2,
+        }
+    }
+}
+
+impl<S> From<State<S>> for [S; 4] {
+    /// To \[θ1, θ2, θ̇1, θ̇2\], Gymnasium's order.
+    #[inline]
+    fn from(state: State<S>) -> Self {
+        [state.theta1, state.theta2, state.dtheta1, state.dtheta2]
+    }
+}
+
+impl<S: Real> State<S> {
+    /// The same state in another scalar, each number rounded to the nearest.
+    #[must_use]
+    #[inline]
+    pub fn cast<T: Real>(self) -> State<T> {
+        <[S; 4]>::from(self).map(|x| T::from_f64(x.to_f64())).into()
+    }
+
+    /// Checks that all four numbers are finite.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] with the first that is not.
+    pub fn validate(&self) -> Result<(), Error> {
+        Allowed::Finite.check("theta1", self.theta1, "rad")?;
+        Allowed::Finite.check("theta2", self.theta2, "rad")?;
+        Allowed::Finite.check("dtheta1", self.dtheta1, "rad/s")?;
+        Allowed::Finite.check("dtheta2", self.dtheta2, "rad/s")
+    }
+}
+
+impl State<f32> {
+    /// The upper bounds of `Acrobot-v0`'s observation space: π, π rad, 4π, 9π rad/s.
+    pub const HIGH: [f32; 4] = [PI, PI, 4.0 * PI, 9.0 * PI];
+    /// The lower bounds: `-HIGH`.
+    pub const LOW: [f32; 4] = [-PI, -PI, -4.0 * PI, -9.0 * PI];
+}
+
+/// The bounds within which a reset draws all four numbers of the state, rad and rad/s.
+///
+/// The two are private so that they are always finite, in order, and within the range of `f32`,
+/// in which starts are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct StartBounds {
+    low: f64,
+    high: f64,
+}
+
+impl StartBounds {
+    /// Gymnasium's bounds: from −0.1 to 0.1.
+    pub const DEFAULT: Self = Self {
+        low: -0.1,
+        high: 0.1,
+    };
+
+    /// Bounds from `low` to `high`, rad and rad/s; equal ones fix the start.
+    ///
+    /// Bounds beyond ±π, or beyond the velocity bounds, give starts beyond them; the first step
+    /// wraps and bounds them.
+    ///
+    /// ```
+    /// use acrobot::StartBounds;
+    ///
+    /// assert!(StartBounds::new(-0.2, 0.2).is_ok());
+    /// assert!(StartBounds::new(0.2, -0.2).is_err());
+    /// assert!(StartBounds::new(f64::NAN, 0.2).is_err());
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a bound that `f32` cannot hold as a finite number, and
+    /// [`Error::ReversedBounds`] for a `low` above `high`.
+    pub fn new(low: f64, high: f64) -> Result<Self, Error> {
+        for (name, value) in [("low", low), ("high", high)] {
+            if !(value as f32).is_finite() {
+                return Err(Error::OutOfRange {
+                    name,
+                    value,
+                    unit: "rad and rad/s",
+                    allowed: "a number that f32 holds, from -3.4e38 to 3.4e38",
+                });
+            }
+        }
+        if low > high {
+            return Err(Error::ReversedBounds { low, high });
+        }
+        Ok(Self { low, high })
+    }
+
+    /// The lower bound, rad and rad/s.
+    #[must_use]
+    #[inline]
+    pub fn low(&self) -> f64 {
+        self.low
+    }
+
+    /// The upper bound, rad and rad/s.
+    #[must_use]
+    #[inline]
+    pub fn high(&self) -> f64 {
+        self.high
+    }
+}
+
+impl Default for StartBounds {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}

@@ -1,0 +1,165 @@
+//! Truncation: an episode that has lasted long enough is over.
+
+use core::num::NonZeroU32;
+
+use rand_core::Rng;
+
+use crate::acrobot::{Acrobot, Step};
+use crate::action::Action;
+use crate::arithmetic::Arithmetic;
+use crate::error::Error;
+use crate::observation::Observation;
+use crate::state::StartBounds;
+
+/// What a step under a [`TimeLimit`] returns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct LimitedStep {
+    /// What the agent sees of the new state.
+    pub observation: Observation,
+    /// −1, or 0 for the step that reaches the goal.
+    pub reward: f32,
+    /// Whether the new state is in the goal.
+    pub terminated: bool,
+    /// Whether the episode has had its steps, whatever the last of them reached.
+    pub truncated: bool,
+}
+
+impl LimitedStep {
+    /// Whether the episode is over, for either reason.
+    #[must_use]
+    #[inline]
+    pub fn ended(&self) -> bool {
+        self.terminated || self.truncated
+    }
+}
+
+/// Gymnasium's `TimeLimit`: counts the steps since the last reset and reports truncation from the
+/// limit on, apart from termination.
+///
+/// ```
+/// use acrobot::{Acrobot, Action, Fast, TimeLimit};
+///
+/// let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42));
+/// let mut length = 1;
+/// while !acrobot.step(Action::Zero).ended() {
+///     length += 1;
+/// }
+/// assert_eq!(length, 500);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TimeLimit<E = Acrobot> {
+    inner: E,
+    limit: NonZeroU32,
+    elapsed: u32,
+}
+
+impl<E> TimeLimit<E> {
+    /// The limit of `Acrobot-v1`, in steps.
+    pub const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
+    /// The limit of `Acrobot-v0`, in steps.
+    pub const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
+
+    /// Truncates after `limit` steps.
+    #[must_use]
+    pub fn new(inner: E, limit: NonZeroU32) -> Self {
+        Self {
+            inner,
+            limit,
+            elapsed: 0,
+        }
+    }
+
+    /// Truncates after 500 steps, as `Acrobot-v1`.
+    #[must_use]
+    pub fn v1(inner: E) -> Self {
+        Self::new(inner, Self::V1)
+    }
+
+    /// Truncates after 200 steps, as `Acrobot-v0`.
+    #[must_use]
+    pub fn v0(inner: E) -> Self {
+        Self::new(inner, Self::V0)
+    }
+
+    /// The steps after which it truncates.
+    #[must_use]
+    pub fn limit(&self) -> NonZeroU32 {
+        self.limit
+    }
+
+    /// The steps since the last reset.
+    #[must_use]
+    #[inline]
+    pub fn elapsed(&self) -> u32 {
+        self.elapsed
+    }
+
+    /// What it wraps.
+    #[must_use]
+    #[inline]
+    pub fn inner(&self) -> &E {
+        &self.inner
+    }
+
+    /// What it wraps, for live changes; a reset there does not reset the count here.
+    #[must_use]
+    #[inline]
+    pub fn inner_mut(&mut self) -> &mut E {
+        &mut self.inner
+    }
+
+    /// What it wraps, without it.
+    #[must_use]
+    pub fn into_inner(self) -> E {
+        self.inner
+    }
+}
+
+impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
+    /// [`Acrobot::reset`], and the count starts anew.
+    pub fn reset(&mut self) -> Observation {
+        self.reset_within(StartBounds::DEFAULT)
+    }
+
+    /// [`Acrobot::reset_within`], and the count starts anew.
+    pub fn reset_within(&mut self, bounds: StartBounds) -> Observation {
+        self.elapsed = 0;
+        self.inner.reset_within(bounds)
+    }
+
+    /// [`Acrobot::step`], counted.
+    #[inline]
+    pub fn step(&mut self, action: Action) -> LimitedStep {
+        let step = self.inner.step(action);
+        self.count(step)
+    }
+
+    /// [`Acrobot::step_torque`], counted.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a torque that is not finite; nothing is stepped or counted then.
+    #[inline]
+    pub fn step_torque(&mut self, torque: A::Scalar) -> Result<LimitedStep, Error> {
+        let step = self.inner.step_torque(torque)?;
+        Ok(self.count(step))
+    }
+
+    #[inline]
+    fn count(&mut self, step: Step) -> LimitedStep {
+        self.elapsed = self.elapsed.saturating_add(1);
+        let Step {
+            observation,
+            reward,
+            terminated,
+        } = step;
+        LimitedStep {
+            observation,
+            reward,
+            terminated,
+            truncated: self.elapsed >= self.limit.get(),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Promise 1, Gymnasium's numbers: how close `Portable`, `Fast` and `Micro` come to them.
+
+mod common;
+
+use acrobot::{Acrobot, Arithmetic, Fast, Micro, Portable, State};
+use common::{RECORDING, assert_readme_says, distance, recorded_steps};
+
+/// Upper ends of the bands of max(|θ̇1|, |θ̇2|) before a step, rad/s. The last holds all the rest:
+/// up to the velocity bounds, and the few starts beyond.
+const BANDS: [f64; 5] = [3.0, 6.0, 12.0, 20.0, f64::INFINITY];
+
+/// What is promised of a step in the slowest band: some ten roundings of numbers about 3, in f64
+/// and in f32.
+const PORTABLE_SLOW: f64 = 4e-15;
+const FAST_SLOW: f64 = 4e-6;
+
+/// The errors of single steps, each from Gymnasium's state, by band and sorted.
+fn step_errors<A: Arithmetic>() -> [Vec<f64>; 5] {
+    let mut errors = [const { Vec::new() }; 5];
+    let mut take = |acrobot: &mut Acrobot<A>, state: State, action, next| {
+        acrobot.set_state(state.cast()).unwrap();
+        acrobot.step(action);
+        let speed = state.dtheta1.abs().max(state.dtheta2.abs());
+        let band = BANDS.iter().position(|&end| speed <= end).unwrap();
+        errors[band].push(distance(acrobot.state().cast(), next));
+    };
+    for episode in &RECORDING.episodes {
+        let mut acrobot = episode.start();
+        for (i, &action) in episode.actions.iter().enumerate() {
+            take(
+                &mut acrobot,
+                episode.states[i],
+                action,
+                episode.states[i + 1],
+            );
+        }
+    }
+    for step in recorded_steps() {
+        let mut acrobot = Acrobot::new(0);
+        acrobot.set_params(step.params.cast()).unwrap();
+        take(&mut acrobot, step.state, step.action, step.next);
+    }
+    for band in &mut errors {
+        band.sort_by(f64::total_cmp);
+    }
+    errors
+}
+
+fn maximum(sorted: &[f64]) -> f64 {
+    sorted[sorted.len() - 1]
+}
+
+fn percentile_99_9(sorted: &[f64]) -> f64 {
+    sorted[sorted.len() * 999 / 1000]
+}
+
+/// The README's table is what is measured here; its bits are the same on every machine.
+#[test]
+fn single_steps_are_as_close_as_the_readme_says() {
+    let errors = [
+        step_errors::<Portable>(),
+        step_errors::<Fast>(),
+        step_errors::<Micro>(),
+    ];
+    assert!(maximum(&errors[0][0]) <= PORTABLE_SLOW);
+    assert!(maximum(&errors[1][0]) <= FAST_SLOW);
+
+    let names = ["up to 3", "3 to 6", "6 to 12", "12 to 20", "beyond"];
+    let rows = names.iter().enumerate().map(|(band, name)| {
+        let cells = errors.each_ref().map(|arithmetic| {
+            let sorted = &arithmetic[band];
+            format!("{:.1e}, {:.1e}", percentile_99_9(sorted), maximum(sorted))
+        });
+        format!(
+            "| {name} | {} | {} |",
+            errors[0][band].len(),
+            cells.join(" | ")
+        )
+    });
+    let table = rows.collect::<Vec<_>>().join("\n");
+    println!("{table}");
+    assert_readme_says(&table);
+}
+
+#[test]
+fn whole_episodes_stay_as_long_as_the_readme_says() {
+    let after = [100, 200, 500];
+    let mut close = [0; 3];
+    for episode in &RECORDING.episodes {
+        let mut acrobot = episode.start::<Portable>();
+        let mut worst = 0.0_f64;
+        for (i, &action) in episode.actions.iter().enumerate() {
+            acrobot.step(action);
+            worst = worst.max(distance(acrobot.state(), episode.states[i + 1]));
+            for (n, close) in after.into_iter().zip(&mut close) {
+                *close += u32::from(i + 1 == n && worst <= 1e-6);
+            }
+        }
+    }
+    let all = RECORDING.episodes.len();
+    assert_eq!(close[0], all as u32);
+    assert_readme_says(&format!(
+        "all {all} after 100 steps, {} after 200 and {} after 500",
+        close[1], close[2]
+    ));
+}

@@ -1,0 +1,216 @@
+//! What several tests share: the recorded episodes of Gymnasium, and a digest.
+
+#![allow(dead_code, reason = "each test uses a part")]
+
+use std::hint::black_box;
+use std::io::Write;
+use std::sync::LazyLock;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Dynamics, Host, Params, Pcg64, SeedSequence, StartBounds, State,
+    uniform,
+};
+
+/// FNV-1a over 64-bit words instead of bytes, as in `data/record.py`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Digest(pub u64);
+
+impl Digest {
+    pub fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    pub fn add(&mut self, word: u64) {
+        self.0 = (self.0 ^ word).wrapping_mul(0x100_0000_01b3);
+    }
+}
+
+pub const STEPS: usize = 500;
+
+/// One of the episodes that `data/record.py` recorded.
+pub struct Episode {
+    pub seed: SeedSequence,
+    pub bounds: StartBounds,
+    pub params: Params,
+    pub actions: Vec<Action>,
+    /// One more than there are actions.
+    pub states: Vec<State>,
+    pub rewards: Vec<f32>,
+    pub terminated: Vec<bool>,
+    pub start_observation: [f32; 6],
+    pub observations: Digest,
+}
+
+impl Episode {
+    /// An acrobot at the episode's start.
+    pub fn start<A: Arithmetic>(&self) -> Acrobot<A> {
+        let mut acrobot = Acrobot::<A>::new(self.seed);
+        acrobot.set_params(self.params.cast()).unwrap();
+        acrobot.reseed(self.seed);
+        acrobot.reset_within(self.bounds);
+        acrobot
+    }
+}
+
+/// Versions, a digest of the C library's functions, and the episodes.
+pub struct Recording {
+    pub versions: String,
+    pub library: Digest,
+    pub episodes: Vec<Episode>,
+}
+
+pub static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
+    let text = include_str!("../data/episodes.txt");
+    let mut bytes = include_bytes!("../data/episodes.bin").as_slice();
+    let mut lines = text.lines();
+    let versions = lines.next().unwrap().trim_start_matches("# ").to_owned();
+    let mut lines = lines.filter(|line| !line.starts_with('#'));
+    let library = lines.next().unwrap().strip_prefix("library ").unwrap();
+    let library = Digest(u64::from_str_radix(library, 16).unwrap());
+    let episodes = lines.map(|line| read_episode(line, &mut bytes)).collect();
+    assert!(
+        bytes.is_empty(),
+        "episodes.bin and episodes.txt do not belong together"
+    );
+    Recording {
+        versions,
+        library,
+        episodes,
+    }
+});
+
+/// Whether this platform's sin, cos and pow are those that the episodes were recorded with, on which
+/// `Host`'s bits hang. Where not it says so past the test harness, which would keep it to itself.
+pub fn is_recorded_library() -> bool {
+    let mut rng = Pcg64::new(0);
+    let mut digest = Digest::new();
+    for _ in 0..100_000 {
+        let x = black_box(uniform(&mut rng, -30.0, 30.0));
+        let (sin, cos) = Host::sin_cos(x);
+        for y in [sin, cos, Host::square(x)] {
+            digest.add(y.to_bits());
+        }
+    }
+    let same = digest == RECORDING.library;
+    if !same {
+        let versions = &RECORDING.versions;
+        let _ = writeln!(
+            std::io::stderr(),
+            "NO BIT PARITY IS TESTED: sin, cos or pow differ here from those of {versions}"
+        );
+    }
+    same
+}
+
+fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
+    let fields: Vec<&str> = line.split(' ').collect();
+    let [decimal, low, high, dynamics, noise, dt] = fields[..] else {
+        panic!("not six fields: {line}")
+    };
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let mut take = |n| {
+        let (head, tail) = bytes.split_at(n);
+        *bytes = tail;
+        head
+    };
+    let f64s = |bytes: &[u8]| -> Vec<f64> {
+        bytes
+            .chunks_exact(8)
+            .map(|x| f64::from_le_bytes(x.try_into().unwrap()))
+            .collect()
+    };
+    let f32s = |bytes: &[u8]| -> Vec<f32> {
+        bytes
+            .chunks_exact(4)
+            .map(|x| f32::from_le_bytes(x.try_into().unwrap()))
+            .collect()
+    };
+    Episode {
+        seed: decimal.parse().unwrap(),
+        bounds: StartBounds::new(number(low), number(high)).unwrap(),
+        params: Params {
+            dynamics: match dynamics {
+                "book" => Dynamics::Book,
+                "nips" => Dynamics::Nips,
+                _ => panic!("unknown dynamics {dynamics}"),
+            },
+            torque_noise: number(noise),
+            dt: number(dt),
+            ..Params::DEFAULT
+        },
+        actions: take(STEPS)
+            .iter()
+            .map(|&n| Action::try_from(n).unwrap())
+            .collect(),
+        states: f64s(take((STEPS + 1) * 32))
+            .chunks_exact(4)
+            .map(|y| State::from(<[f64; 4]>::try_from(y).unwrap()))
+            .collect(),
+        rewards: take(STEPS).iter().map(|&x| f32::from(x as i8)).collect(),
+        terminated: take(STEPS).iter().map(|&x| x == 1).collect(),
+        start_observation: f32s(take(24)).try_into().unwrap(),
+        observations: Digest(u64::from_le_bytes(take(8).try_into().unwrap())),
+    }
+}
+
+/// A single recorded step from a state anywhere within the bounds.
+pub struct RecordedStep {
+    pub params: Params,
+    pub state: State,
+    pub action: Action,
+    pub next: State,
+}
+
+pub fn recorded_steps() -> Vec<RecordedStep> {
+    let numbers: Vec<f64> = include_bytes!("../data/steps.bin")
+        .chunks_exact(8)
+        .map(|x| f64::from_le_bytes(x.try_into().unwrap()))
+        .collect();
+    let records = numbers.chunks_exact(18);
+    assert!(records.remainder().is_empty());
+    records.map(read_step).collect()
+}
+
+fn read_step(record: &[f64]) -> RecordedStep {
+    let state = |y: &[f64]| State::from(<[f64; 4]>::try_from(y).unwrap());
+    RecordedStep {
+        params: Params {
+            length1: record[0],
+            length2: record[1],
+            mass1: record[2],
+            mass2: record[3],
+            center_of_mass1: record[4],
+            center_of_mass2: record[5],
+            inertia1: record[6],
+            inertia2: record[6],
+            dt: record[7],
+            dynamics: [Dynamics::Book, Dynamics::Nips][record[8] as usize],
+            ..Params::DEFAULT
+        },
+        state: state(&record[9..13]),
+        action: Action::try_from(record[13] as u8).unwrap(),
+        next: state(&record[14..18]),
+    }
+}
+
+/// The largest difference of the four numbers; angles that differ by a whole turn are equal.
+pub fn distance(x: State, y: State) -> f64 {
+    let angle = |x: f64, y: f64| {
+        let difference = (x - y).abs();
+        difference.min((difference - std::f64::consts::TAU).abs())
+    };
+    angle(x.theta1, y.theta1)
+        .max(angle(x.theta2, y.theta2))
+        .max((x.dtheta1 - y.dtheta1).abs())
+        .max((x.dtheta2 - y.dtheta2).abs())
+}
+
+/// Fails with what the README should say; line breaks do not count.
+pub fn assert_readme_says(text: &str) {
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let readme = words(include_str!("../../README.md"));
+    assert!(
+        readme.contains(&words(text)),
+        "measured, and not what the README says: {text}"
+    );
+}

@@ -1,0 +1,177 @@
+"""Records what Gymnasium's Acrobot does: writes episodes.txt, episodes.bin, steps.bin and seeds.txt beside itself.
+
+    pip install gymnasium==1.4.0 numpy==2.4.6
+    python tests/data/record.py
+
+The files hold the bits of one C library's sin, cos and pow: those were recorded with glibc 2.36 on
+x86-64 with FMA. On a CPU with AVX-512 NumPy would take other sines of its own, so it is told not to.
+"""
+
+import os
+import platform
+from itertools import product
+from pathlib import Path
+
+if "avx512f" in Path("/proc/cpuinfo").read_text():
+    os.environ["NPY_DISABLE_CPU_FEATURES"] = "X86_V4 AVX512_ICL AVX512_SPR"
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Discrete
+
+HERE = Path(__file__).parent
+STEPS = 500
+VERSIONS = (
+    f"gymnasium {gymnasium.__version__}, numpy {np.__version__}, Python {platform.python_version()}, "
+    f"{' '.join(platform.libc_ver())}, {platform.machine()}"
+)
+FNV_OFFSET, FNV_PRIME = 0xCBF29CE484222325, 0x100000001B3
+
+
+def digest(words):
+    """FNV-1a over 64-bit words instead of bytes."""
+    value = FNV_OFFSET
+    for word in words:
+        value = (value ^ int(word)) * FNV_PRIME % 2**64
+    return value
+
+
+def bits(numbers):
+    return np.asarray(numbers, dtype="<f8").view("<u8")
+
+
+def library():
+    """A digest of the functions that the episodes depend on, to know this C library again."""
+    x = np.random.default_rng(0).uniform(-30.0, 30.0, 100_000)
+    return digest(bits([f(v) for v in x for f in (np.sin, np.cos, lambda v: v**2)]))
+
+
+def pump(state, rng):
+    """Torque against the first link's velocity, with one action in ten at random."""
+    return rng.integers(3) if rng.random() < 0.1 else (0 if state[2] > 0 else 2)
+
+
+def episode(seed, low, high, dynamics, noise, dt, policy):
+    """The start, and 500 steps whatever they reach."""
+    env = gymnasium.make("Acrobot-v1").unwrapped
+    env.book_or_nips, env.torque_noise_max, env.dt = dynamics, noise, dt
+    env.action_space.seed(seed)
+    rng = np.random.default_rng(seed)
+    start_observation, _ = env.reset(seed=seed, options={"low": low, "high": high})
+    actions, states, rewards, ends, observations = [], [env.state.astype("<f8")], [], [], []
+    for _ in range(STEPS):
+        action = env.action_space.sample() if policy == "random" else pump(env.state, rng)
+        observation, reward, terminated, truncated, _ = env.step(action)
+        assert not truncated
+        actions.append(action)
+        states.append(env.state)
+        rewards.append(reward)
+        ends.append(terminated)
+        observations.append(observation)
+    seen = np.asarray(observations, dtype="<f4").view("<u4").ravel()
+    return b"".join(
+        [
+            np.asarray(actions, dtype="u1").tobytes(),
+            np.asarray(states, dtype="<f8").tobytes(),
+            np.asarray(rewards, dtype="i1").tobytes(),
+            np.asarray(ends, dtype="u1").tobytes(),
+            start_observation.astype("<f4").tobytes(),
+            np.asarray(digest(seen), dtype="<u8").tobytes(),
+        ]
+    )
+
+
+def write_episodes():
+    bounds = [(-0.1, 0.1), (-0.5, 1.0), (-1.5, -0.5), (-3.0, 3.0)]
+    kinds = list(product(["book", "nips"], bounds, [0.0, 0.3], [0.2, 0.05]))
+    # Each kind with a seed of up to 64 bits and one beyond.
+    rows = [(7 + 1000003 * i, *kind, "random") for i, kind in enumerate(kinds)]
+    rows += [(2**64 + 3**i * 5**60, *kind, "pump") for i, kind in enumerate(kinds)]
+    # And eight that start beyond all bounds and go on near them.
+    wild = product(["book", "nips"], [(-30.0, 30.0)], [0.0, 0.3], [0.2, 0.05])
+    rows += [(2**32 + i, *kind, "random") for i, kind in enumerate(wild)]
+    lines = [
+        f"# {VERSIONS}",
+        "# Each row stands for a record in episodes.bin: 500 actions (u8), 501 states of 4 (f64), 500 rewards",
+        "# (i8), 500 terminated (u8), the start's observation (6 f32), a digest of the steps' observations (u64).",
+        f"library {library():016x}",
+        "# seed low high dynamics noise dt",
+    ]
+    with open(HERE / "episodes.bin", "wb") as file:
+        for seed, dynamics, (low, high), noise, dt, policy in rows:
+            file.write(episode(seed, low, high, dynamics, noise, dt, policy))
+            lines.append(f"{seed} {low} {high} {dynamics} {noise} {dt}")
+    (HERE / "episodes.txt").write_text("\n".join(lines) + "\n")
+
+
+def write_steps():
+    """Single steps from states all over the bounds: two thousand with the default parameters, four hundred with
+    others. A record is l1, l2, m1, m2, lc1, lc2, I1 = I2, dt, NIPS (0 or 1), state, action, next state, in f64."""
+    env = gymnasium.make("Acrobot-v1").unwrapped
+    default = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 0.2]
+    rng = np.random.default_rng(1)
+    records = []
+    for i in range(2400):
+        params = default if i < 2000 else rng.uniform(0.3, 2.0, 7).tolist() + [rng.uniform(0.01, 0.2)]
+        (env.LINK_LENGTH_1, env.LINK_LENGTH_2, env.LINK_MASS_1, env.LINK_MASS_2) = params[:4]
+        (env.LINK_COM_POS_1, env.LINK_COM_POS_2, env.LINK_MOI, env.dt) = params[4:]
+        env.book_or_nips = ["book", "nips"][i % 2]
+        # Four speeds alike, up to the bounds.
+        bounds = np.array([np.pi, np.pi, *(np.array([4 * np.pi, 9 * np.pi]) * (i // 2 % 4 + 1) / 4)])
+        state = rng.uniform(-bounds, bounds)
+        action = int(rng.integers(3))
+        env.state = state
+        env.step(action)
+        records.append([*params, i % 2, *state, action, *env.state])
+    (HERE / "steps.bin").write_bytes(np.asarray(records, dtype="<f8").tobytes())
+
+
+def hexes(words, digits):
+    return " ".join(f"{int(word):0{digits}x}" for word in words)
+
+
+def write_seeds():
+    seeds = [0, 1, 2, 3, 7, 42, 123, 2**31, 2**32 - 1, 2**32, 2**32 + 1, 10**15, 2**63, 2**64 - 1, 2**64]
+    seeds += [2**96 - 1, 2**96, 2**127 + 9, 2**128 - 1, 2**128, 2**160 + 5, 10**60, 2**1000 + 7]
+    lines = [f"# {VERSIONS}", "# reset SEED: the start's four numbers (bits of f32)"]
+    env = gymnasium.make("Acrobot-v1").unwrapped
+    for seed in seeds:
+        env.reset(seed=seed)
+        lines.append(f"reset {seed} {hexes(env.state.view('<u4'), 8)}")
+    lines.append("# agent SEED: the episodes of 3000 random steps, a reset at each end: length, goal (1) or limit (0)")
+    limited = gymnasium.make("Acrobot-v1")
+    for seed in seeds:
+        limited.reset(seed=seed)
+        limited.action_space.seed(seed)
+        episodes, length = [], 0
+        for _ in range(3000):
+            _, _, terminated, truncated, _ = limited.step(limited.action_space.sample())
+            length += 1
+            if terminated or truncated:
+                episodes.append(f"{length} {int(terminated)}")
+                length = 0
+                limited.reset()
+        lines.append(f"agent {seed} {' '.join(episodes)}")
+    lines.append("# sample SEED N: twenty draws of Discrete(N).sample() after seed(SEED)")
+    for seed, n in product(seeds, [3, 1, 2, 1000, 3 * 2**30, 2**32 - 1]):
+        space = Discrete(n)
+        space.seed(seed)
+        lines.append(f"sample {seed} {n} {' '.join(str(space.sample()) for _ in range(20))}")
+    lines.append("# mixed SEED: integers(3), uniform(-1, 2) (bits of f64), integers(5), four times over")
+    for seed in seeds:
+        rng = np.random.default_rng(seed)
+        words = [f"{rng.integers(3)} {hexes(bits([rng.uniform(-1, 2)]), 16)} {rng.integers(5)}" for _ in range(4)]
+        lines.append(f"mixed {seed} {' '.join(words)}")
+    lines.append("# spawn SEED PATH: generate_state(4, uint64) of the descendant with that spawn_key")
+    paths = [(), (0,), (1,), (7,), (0, 0), (3, 2, 1), (2**32 - 1,), (2**32,), (2**40 + 1, 5)]
+    for seed, path in product(seeds, paths):
+        words = np.random.SeedSequence(seed, spawn_key=path).generate_state(4, np.uint64)
+        lines.append(f"spawn {seed} {'/'.join(map(str, path)) or '-'} {hexes(words, 16)}")
+    (HERE / "seeds.txt").write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    write_episodes()
+    write_steps()
+    write_seeds()
+    print(VERSIONS)

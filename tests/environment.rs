@@ -1,0 +1,168 @@
+//! The environment's contract beyond its numbers: ends, time limits, live changes, sizes and
+//! auto-traits.
+
+use acrobot::{
+    Acrobot, Action, Dynamics, Error, Fast, Host, Micro, Observation, Params, Pcg64, Portable,
+    REWARD_THRESHOLD, SeedSequence, State, TimeLimit, Trajectory, Transition, bound, wrap,
+};
+
+const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
+
+/// What firmware counts on; it need not run to be checked.
+const _: () = {
+    assert!(size_of::<Acrobot<Fast>>() <= 192);
+    assert!(size_of::<Acrobot<Micro>>() == size_of::<Acrobot<Fast>>());
+    assert!(size_of::<Acrobot<Portable>>() <= 352);
+    assert!(size_of::<State<f32>>() == 16);
+    assert!(size_of::<Observation>() == 24);
+    assert!(size_of::<Action>() == 1);
+    assert!(size_of::<Fast>() == 0);
+    assert!(size_of::<SeedSequence>() == 32);
+    assert!(size_of::<Transition<f32>>() <= 44);
+    is_send_sync_clone::<Acrobot<Fast>>();
+    is_send_sync_clone::<Acrobot<Host>>();
+    is_send_sync_clone::<TimeLimit<Acrobot<Micro>>>();
+    is_send_sync_clone::<Trajectory<f32, 10>>();
+    is_send_sync_clone::<Pcg64>();
+    is_send_sync_clone::<Error>();
+};
+
+#[test]
+fn the_goal_ends_with_a_reward_of_zero_and_stepping_goes_on() {
+    let mut acrobot = Acrobot::<Portable>::new(0);
+    let upright = State {
+        theta1: std::f64::consts::PI,
+        ..State::default()
+    };
+    acrobot.set_state(upright).unwrap();
+    for _ in 0..2 {
+        let step = acrobot.step(Action::Zero);
+        assert!(step.terminated);
+        assert_eq!(step.reward, 0.0);
+    }
+    acrobot.set_state(State::default()).unwrap();
+    let step = acrobot.step(Action::Zero);
+    assert!(!step.terminated);
+    assert_eq!(step.reward, -1.0);
+    assert_eq!(REWARD_THRESHOLD, -100.0);
+}
+
+#[test]
+fn time_limits_truncate_apart_from_termination() {
+    for (mut acrobot, limit) in [
+        (TimeLimit::v1(Acrobot::<Fast>::new(1)), 500),
+        (TimeLimit::v0(Acrobot::<Fast>::new(1)), 200),
+    ] {
+        assert_eq!(acrobot.limit().get(), limit);
+        for n in 1..limit {
+            assert!(!acrobot.step(Action::Zero).truncated, "step {n}");
+        }
+        let upright = State {
+            theta1: core::f32::consts::PI,
+            ..State::default()
+        };
+        acrobot.inner_mut().set_state(upright).unwrap();
+        let last = acrobot.step(Action::Zero);
+        assert!(last.terminated && last.truncated, "both on the last step");
+        assert_eq!(acrobot.elapsed(), limit);
+        assert!(
+            acrobot.step(Action::Zero).truncated,
+            "and beyond, as in Gymnasium"
+        );
+        acrobot.reset();
+        assert_eq!(acrobot.elapsed(), 0);
+        assert!(!acrobot.step(Action::Zero).ended());
+    }
+}
+
+#[test]
+fn parameters_change_on_a_running_acrobot() {
+    let mut acrobot = Acrobot::<Portable>::new(9);
+    acrobot
+        .set_state(State::from([1.0, 1.0, 2.0, -1.0]))
+        .unwrap();
+    let mut nips = acrobot.clone();
+    nips.set_params(Params {
+        dynamics: Dynamics::Nips,
+        ..*nips.params()
+    })
+    .unwrap();
+    assert_eq!(nips.state(), acrobot.state());
+    let mut short = acrobot.clone();
+    short
+        .set_params(Params {
+            dt: 0.05,
+            ..*short.params()
+        })
+        .unwrap();
+    let mut noisy = acrobot.clone();
+    noisy
+        .set_params(Params {
+            torque_noise: 0.5,
+            ..*noisy.params()
+        })
+        .unwrap();
+
+    let plain = acrobot.step(Action::Positive);
+    assert_ne!(nips.step(Action::Positive), plain);
+    assert_ne!(short.step(Action::Positive), plain);
+    assert_ne!(noisy.step(Action::Positive), plain);
+    // Noise draws from the generator, and nothing else of a step does.
+    assert_ne!(noisy.rng(), acrobot.rng());
+    assert_eq!(nips.rng(), acrobot.rng());
+}
+
+#[test]
+fn observations_lie_within_their_bounds() {
+    let mut acrobot = Acrobot::<Fast>::new(2);
+    let mut actions = Pcg64::new(2);
+    acrobot
+        .set_state(State::from([0.0, 0.0, 12.0, -28.0]))
+        .unwrap();
+    for _ in 0..1000 {
+        let seen = <[f32; 6]>::from(acrobot.step(Action::sample(&mut actions)).observation);
+        for (x, (low, high)) in seen
+            .into_iter()
+            .zip(Observation::LOW.into_iter().zip(Observation::HIGH))
+        {
+            assert!((low..=high).contains(&x), "{seen:?}");
+        }
+    }
+    assert_eq!(
+        State::HIGH,
+        [
+            wrap::<Fast>(core::f32::consts::PI),
+            core::f32::consts::PI,
+            4.0 * core::f32::consts::PI,
+            9.0 * core::f32::consts::PI
+        ]
+    );
+    assert_eq!(State::LOW, State::HIGH.map(|x| -x));
+}
+
+#[test]
+fn angles_wrap_and_velocities_stop() {
+    use std::f64::consts::{PI, TAU};
+    for (x, wrapped) in [
+        (0.5, 0.5),
+        (PI, PI),
+        (-PI, -PI),
+        (4.0, 4.0 - TAU),
+        (-4.0, TAU - 4.0),
+    ] {
+        assert_eq!(wrap::<Portable>(x), wrapped);
+    }
+    // Beyond 64 turns, where the remainder takes over: seamlessly but for rounding.
+    for turns in [60.0, 63.0, 64.0, 65.0, 70.0, 1e6] {
+        for x in [-3.0, -1.0, 0.25, 3.0] {
+            let wrapped = wrap::<Portable>(x + turns * TAU);
+            assert!(
+                (wrapped - x).abs() <= 1e-9 * turns.max(1.0),
+                "{x} + {turns} turns: {wrapped}"
+            );
+        }
+    }
+    assert_eq!(bound(5.0, 4.0), 4.0);
+    assert_eq!(bound(-5.0, 4.0), -4.0);
+    assert_eq!(bound(3.0, 4.0), 3.0);
+}

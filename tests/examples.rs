@@ -1,0 +1,220 @@
+//! The examples do what they say, as a user starts them.
+
+mod common;
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+use acrobot::{Acrobot, Arithmetic, Fast, Host, Micro, Params, Portable, Real, State};
+use common::{RECORDING, is_recorded_library};
+
+fn run(example: &str, arguments: &[&str], input: &str) -> Output {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["run", "--quiet", "--example", example]);
+    if !cfg!(debug_assertions) {
+        cargo.arg("--release");
+    }
+    cargo
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .arg("--")
+        .args(arguments);
+    let pipes = cargo
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let mut child = pipes.spawn().unwrap();
+    // One that refuses its arguments does not read.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    child.wait_with_output().unwrap()
+}
+
+fn printed(output: Output) -> String {
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{}: {errors}", output.status);
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn refused(example: &str, arguments: &[&str], input: &str) -> String {
+    let output = run(example, arguments, input);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    assert!(
+        output.stdout.is_empty(),
+        "nothing is printed before a refusal"
+    );
+    String::from_utf8(output.stderr).unwrap()
+}
+
+fn words<S: Real>(state: State<S>) -> String {
+    <[S; 4]>::from(state)
+        .map(|x| format!("{:016x}", x.to_f64().to_bits()))
+        .join(" ")
+}
+
+#[test]
+fn trace_prints_gymnasiums_episodes() {
+    if !is_recorded_library() {
+        return;
+    }
+    let text = include_str!("data/episodes.txt");
+    let rows = text.lines().filter(|line| !line.starts_with(['#', 'l']));
+    for (row, episode) in rows.zip(&RECORDING.episodes).step_by(7) {
+        let [seed, low, high, dynamics, noise, dt] = row.split(' ').collect::<Vec<_>>()[..] else {
+            panic!("{row}")
+        };
+        let arguments = [
+            "--seed",
+            seed,
+            "--low",
+            low,
+            "--high",
+            high,
+            "--dynamics",
+            dynamics,
+            "--noise",
+            noise,
+            "--dt",
+            dt,
+        ];
+        let actions: Vec<String> = episode
+            .actions
+            .iter()
+            .map(|&action| u8::from(action).to_string())
+            .collect();
+        let mut expected = words(episode.states[0]) + "\n";
+        for (i, &state) in episode.states[1..].iter().enumerate() {
+            let terminated = u8::from(episode.terminated[i]);
+            expected += &format!("{} {} {terminated}\n", words(state), episode.rewards[i]);
+        }
+        assert_eq!(
+            printed(run("trace", &arguments, &actions.join(" \n"))),
+            expected,
+            "{row}"
+        );
+    }
+}
+
+#[test]
+fn trace_takes_every_arithmetic() {
+    fn expected<A: Arithmetic>() -> String {
+        let mut acrobot = Acrobot::<A>::new(7);
+        acrobot
+            .set_params(
+                Params {
+                    dt: 0.1,
+                    ..Params::DEFAULT
+                }
+                .cast(),
+            )
+            .unwrap();
+        let mut lines = words(acrobot.state()) + "\n";
+        for action in [0, 1, 2, 2] {
+            let step = acrobot.step(action.try_into().unwrap());
+            lines += &format!(
+                "{} -1 {}\n",
+                words(acrobot.state()),
+                u8::from(step.terminated)
+            );
+        }
+        lines
+    }
+    for (name, expected) in [
+        ("host", expected::<Host>()),
+        ("portable", expected::<Portable>()),
+        ("fast", expected::<Fast>()),
+        ("micro", expected::<Micro>()),
+    ] {
+        let arguments = ["--seed", "7", "--dt", "0.1", "--arithmetic", name];
+        assert_eq!(printed(run("trace", &arguments, "01\t2\n2")), expected);
+    }
+}
+
+#[test]
+fn trace_refuses_with_a_reason() {
+    for (arguments, reason) in [
+        (
+            "--seed -5",
+            "seed has '-' as character 1; allowed is a decimal integer",
+        ),
+        ("--seed 12_000", "seed has '_' as character 3"),
+        ("--seed=", "seed is empty"),
+        ("--seed 1 --low nan", "low is NaN"),
+        ("--seed 1 --high inf", "high is inf"),
+        ("--seed 1 --low 0.2", "low is 0.2 and high is 0.1"),
+        (
+            "--seed 1 --dt 0",
+            "dt is 0 s; allowed is a finite number above 0",
+        ),
+        ("--seed 1 --noise nan", "torque_noise is NaN N m"),
+        ("--seed 1 --dynamics film", "possible values: book, nips"),
+        (
+            "--seed 1 --arithmetic slow",
+            "possible values: host, portable, fast, micro",
+        ),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let errors = refused("trace", &arguments, "012");
+        assert!(errors.contains(reason), "{errors}");
+    }
+    let errors = refused("trace", &["--seed", "1"], "0 1\n3 2");
+    assert!(
+        errors.contains("'3' at byte 5 of the input; allowed are the actions 0, 1 and 2"),
+        "{errors}"
+    );
+}
+
+#[test]
+fn the_random_agent_takes_gymnasiums_episodes() {
+    if !is_recorded_library() {
+        return;
+    }
+    let rows = include_str!("data/seeds.txt")
+        .lines()
+        .filter_map(|line| line.strip_prefix("agent "));
+    let mut goals = 0;
+    for row in rows.step_by(4) {
+        let row: Vec<&str> = row.split(' ').collect();
+        let output = printed(run(
+            "random_agent",
+            &["--seed", row[0], "--steps", "3000"],
+            "",
+        ));
+        let mut lines = output.lines();
+        let mut sum = 0;
+        for (episode, number) in row[1..].chunks(2).zip(1..) {
+            let length: i32 = episode[0].parse().unwrap();
+            let (goal, end) = if episode[1] == "1" {
+                (1, "terminated")
+            } else {
+                (0, "truncated")
+            };
+            goals += goal;
+            sum += goal - length;
+            let expected = format!(
+                "episode {number}: {length} steps, return {}, {end}",
+                goal - length
+            );
+            assert_eq!(lines.next(), Some(&*expected), "seed {}", row[0]);
+        }
+        let summary = lines.next().unwrap();
+        let mean = f64::from(sum) / (row.len() / 2) as f64;
+        assert!(
+            summary.starts_with("3000 steps, ")
+                && summary.contains(&format!("mean return {mean:.1}")),
+            "{summary}"
+        );
+    }
+    assert!(goals > 0, "one of the episodes should reach the goal");
+}
+
+#[test]
+fn the_random_agent_helps_and_refuses() {
+    let help = printed(run("random_agent", &["--help"], ""));
+    assert!(
+        help.contains("--seed") && help.contains("--steps"),
+        "{help}"
+    );
+    assert!(printed(run("random_agent", &["--steps", "0"], "")).starts_with("0 steps, 0 episodes"));
+    let errors = refused("random_agent", &["--seed", "4x2"], "");
+    assert!(errors.contains("seed has 'x' as character 2"), "{errors}");
+    refused("random_agent", &["--steps", "-1"], "");
+}

@@ -1,0 +1,102 @@
+//! Promise 1, Gymnasium's numbers: `Host` replays recorded episodes bit for bit.
+
+mod common;
+
+use acrobot::{Acrobot, Host, State};
+use common::{Digest, RECORDING, distance, is_recorded_library, recorded_steps};
+
+/// Where the C library is another one, each step from Gymnasium's state stays this close: a
+/// rounding error, amplified at the velocity bounds.
+const OTHER_LIBRARY: f64 = 1e-12;
+
+fn bits(state: State) -> [u64; 4] {
+    <[f64; 4]>::from(state).map(f64::to_bits)
+}
+
+#[test]
+fn host_replays_gymnasium() {
+    if !is_recorded_library() {
+        return;
+    }
+    assert_eq!(RECORDING.episodes.len(), 72);
+    let mut goals = 0;
+    for (number, episode) in RECORDING.episodes.iter().enumerate() {
+        let mut acrobot = episode.start::<Host>();
+        let mut observations = Digest::new();
+        assert_eq!(
+            bits(acrobot.state()),
+            bits(episode.states[0]),
+            "start of episode {number}"
+        );
+        for (i, &action) in episode.actions.iter().enumerate() {
+            let step = acrobot.step(action);
+            let context = format!("step {} of episode {number}", i + 1);
+            assert_eq!(
+                bits(acrobot.state()),
+                bits(episode.states[i + 1]),
+                "{context}"
+            );
+            assert_eq!(step.reward, episode.rewards[i], "{context}");
+            assert_eq!(step.terminated, episode.terminated[i], "{context}");
+            goals += usize::from(step.terminated);
+            for x in <[f32; 6]>::from(step.observation) {
+                observations.add(x.to_bits().into());
+            }
+        }
+        assert_eq!(
+            observations, episode.observations,
+            "observations of episode {number}"
+        );
+    }
+    assert!(
+        goals > 1000,
+        "the recording should reach the goal often, and did {goals} times"
+    );
+}
+
+/// From states all over the bounds and with other parameters; close by even where the library is
+/// another one.
+#[test]
+fn host_takes_gymnasiums_single_steps() {
+    let same = is_recorded_library();
+    let check = |acrobot: &Acrobot<Host>, next: State, context: &str| {
+        if same {
+            assert_eq!(bits(acrobot.state()), bits(next), "{context}");
+        }
+        let error = distance(acrobot.state(), next);
+        assert!(error <= OTHER_LIBRARY, "{context}: {error:e}");
+    };
+    let steps = recorded_steps();
+    assert_eq!(steps.len(), 2400);
+    for (number, step) in steps.into_iter().enumerate() {
+        let mut acrobot = Acrobot::<Host>::new(0);
+        acrobot.set_params(step.params).unwrap();
+        acrobot.set_state(step.state).unwrap();
+        acrobot.step(step.action);
+        check(&acrobot, step.next, &format!("single step {number}"));
+    }
+    for (number, episode) in RECORDING.episodes.iter().enumerate() {
+        let mut acrobot = episode.start::<Host>();
+        for (i, &action) in episode.actions.iter().enumerate() {
+            acrobot.set_state(episode.states[i]).unwrap();
+            acrobot.step(action);
+            check(
+                &acrobot,
+                episode.states[i + 1],
+                &format!("step {} of episode {number}", i + 1),
+            );
+        }
+    }
+}
+
+/// NumPy takes the sines of a start by f32 code of its own, which is not that of a later step.
+#[test]
+fn start_observations_are_within_one_ulp() {
+    for (number, episode) in RECORDING.episodes.iter().enumerate() {
+        let ours = <[f32; 6]>::from(episode.start::<Host>().observation());
+        for (x, y) in ours.into_iter().zip(episode.start_observation) {
+            let ulps = (i64::from(x.to_bits()) - i64::from(y.to_bits())).abs();
+            assert!(ulps <= 1, "episode {number}: {x} and {y} are {ulps} apart");
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! The equations are those of the pendulum: against Lagrange's, against each other, and by their
+//! symmetries and their order of convergence.
+
+mod common;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Dynamics, Fast, Form, Host, Micro, Params, Pcg64, Portable, Real,
+    State, derivative, energy, mass_matrix, rk4, uniform,
+};
+use common::distance;
+
+/// `Portable`'s scalar and trigonometry with the lean form of the equations.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct LeanF64;
+
+impl Arithmetic for LeanF64 {
+    type Scalar = f64;
+    const FORM: Form = Form::Lean;
+
+    fn sin_cos(x: f64) -> (f64, f64) {
+        Portable::sin_cos(x)
+    }
+}
+
+/// Parameters, states and torques of every kind.
+fn random_cases() -> impl Iterator<Item = (Params, State, f64)> {
+    let mut rng = Pcg64::new(1);
+    let mut draw = move |low, high| uniform(&mut rng, low, high);
+    (0..10_000).map(move |_| {
+        let params = Params {
+            length1: draw(0.2, 3.0),
+            length2: draw(0.2, 3.0),
+            mass1: draw(0.2, 5.0),
+            mass2: draw(0.2, 5.0),
+            center_of_mass1: draw(0.0, 2.0),
+            center_of_mass2: draw(0.0, 2.0),
+            inertia1: draw(0.1, 3.0),
+            inertia2: draw(0.1, 3.0),
+            gravity: draw(-20.0, 20.0),
+            ..Params::DEFAULT
+        };
+        params.validate().unwrap();
+        let state = State::from([
+            draw(-4.0, 4.0),
+            draw(-4.0, 4.0),
+            draw(-12.0, 12.0),
+            draw(-28.0, 28.0),
+        ]);
+        (params, state, draw(-5.0, 5.0))
+    })
+}
+
+/// |x − y| in units of the largest number that went into them.
+fn relative(x: [f64; 2], y: [f64; 2]) -> f64 {
+    let scale = x
+        .into_iter()
+        .chain(y)
+        .fold(1.0, |scale: f64, z| scale.max(z.abs()));
+    (x[0] - y[0]).abs().max((x[1] - y[1]).abs()) / scale
+}
+
+fn accelerations<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: &State<A::Scalar>,
+    torque: A::Scalar,
+) -> [A::Scalar; 2] {
+    let [_, _, ddtheta1, ddtheta2] = derivative::<A>(params, state, torque);
+    [ddtheta1, ddtheta2]
+}
+
+/// Some hundred roundings of terms up to a thousand times the result.
+const ROUNDING: f64 = 1e-11;
+
+#[test]
+fn both_forms_agree() {
+    for (params, state, torque) in random_cases() {
+        for dynamics in [Dynamics::Book, Dynamics::Nips] {
+            let params = Params { dynamics, ..params };
+            let gymnasium = accelerations::<Portable>(&params, &state, torque);
+            let lean = accelerations::<LeanF64>(&params, &state, torque);
+            let error = relative(gymnasium, lean);
+            assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
+        }
+    }
+}
+
+/// A number with its derivatives in two directions and the mixed second one: automatic
+/// differentiation for the Lagrangian below, which knows nothing of the crate's equations.
+#[derive(Clone, Copy)]
+struct HyperDual([f64; 4]);
+
+impl HyperDual {
+    fn constant(x: f64) -> Self {
+        Self([x, 0.0, 0.0, 0.0])
+    }
+
+    /// f of it, from the value and the first two derivatives of f.
+    fn map(self, f: f64, first: f64, second: f64) -> Self {
+        let [_, a, b, ab] = self.0;
+        Self([f, first * a, first * b, first * ab + second * a * b])
+    }
+
+    fn sin(self) -> Self {
+        let (sin, cos) = Portable::sin_cos(self.0[0]);
+        self.map(sin, cos, -sin)
+    }
+
+    fn cos(self) -> Self {
+        let (sin, cos) = Portable::sin_cos(self.0[0]);
+        self.map(cos, -sin, -cos)
+    }
+}
+
+impl std::ops::Add for HyperDual {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl std::ops::Mul for HyperDual {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let ([x, xa, xb, xab], [y, ya, yb, yab]) = (self.0, other.0);
+        Self([
+            x * y,
+            xa * y + x * ya,
+            xb * y + x * yb,
+            xab * y + xa * yb + xb * ya + x * yab,
+        ])
+    }
+}
+
+/// Kinetic minus potential energy, from where the two centres of mass are and how they move.
+fn lagrangian(p: &Params, [theta1, theta2, dtheta1, dtheta2]: [HyperDual; 4]) -> HyperDual {
+    let number = HyperDual::constant;
+    let (absolute, turning) = (theta1 + theta2, dtheta1 + dtheta2);
+    // Velocities of the centres of mass: across and up.
+    let speed1 = number(p.center_of_mass1) * dtheta1;
+    let across = number(p.length1) * theta1.cos() * dtheta1
+        + number(p.center_of_mass2) * absolute.cos() * turning;
+    let up = number(p.length1) * theta1.sin() * dtheta1
+        + number(p.center_of_mass2) * absolute.sin() * turning;
+    let twice_kinetic = number(p.mass1) * speed1 * speed1
+        + number(p.mass2) * (across * across + up * up)
+        + number(p.inertia1) * dtheta1 * dtheta1
+        + number(p.inertia2) * turning * turning;
+    let height1 = number(-p.center_of_mass1) * theta1.cos();
+    let height2 = number(-p.length1) * theta1.cos() + number(-p.center_of_mass2) * absolute.cos();
+    let potential = number(p.gravity) * (number(p.mass1) * height1 + number(p.mass2) * height2);
+    number(0.5) * twice_kinetic + number(-1.0) * potential
+}
+
+/// The Lagrangian's value, derivatives along the i-th and the j-th of (θ1, θ2, θ̇1, θ̇2), and second
+/// derivative along both.
+fn differentiate(p: &Params, y: [f64; 4], i: usize, j: usize) -> [f64; 4] {
+    let along = |k, axis| f64::from(u8::from(k == axis));
+    lagrangian(
+        p,
+        std::array::from_fn(|k| HyperDual([y[k], along(k, i), along(k, j), 0.0])),
+    )
+    .0
+}
+
+/// Lagrange's equations: d/dt ∂L/∂θ̇ − ∂L/∂θ = (0, torque), that is
+/// (∂²L/∂θ̇∂θ̇) θ̈ = (0, torque) + ∂L/∂θ − (∂²L/∂θ̇∂θ) θ̇.
+#[test]
+fn the_books_equations_are_lagranges() {
+    for (params, state, torque) in random_cases() {
+        let y = <[f64; 4]>::from(state);
+        let mixed = |i, j| differentiate(&params, y, i, j)[3];
+        let force = |i: usize| {
+            [0.0, torque][i] + differentiate(&params, y, i, i)[1]
+                - mixed(i + 2, 0) * y[2]
+                - mixed(i + 2, 1) * y[3]
+        };
+        let mass = [[mixed(2, 2), mixed(2, 3)], [mixed(3, 2), mixed(3, 3)]];
+        let determinant = mass[0][0] * mass[1][1] - mass[0][1] * mass[1][0];
+        let expected = [
+            (mass[1][1] * force(0) - mass[0][1] * force(1)) / determinant,
+            (mass[0][0] * force(1) - mass[1][0] * force(0)) / determinant,
+        ];
+        for (name, found) in [
+            (
+                "Gymnasium's",
+                accelerations::<Portable>(&params, &state, torque),
+            ),
+            ("lean", accelerations::<LeanF64>(&params, &state, torque)),
+        ] {
+            let error = relative(found, expected);
+            assert!(error <= ROUNDING, "{name}: {error:e}: {params:?} {state:?}");
+        }
+
+        let ours = mass_matrix::<Portable>(&params, &state);
+        assert!(relative(ours[0], mass[0]).max(relative(ours[1], mass[1])) <= ROUNDING);
+        // The energy is θ̇ ∂L/∂θ̇ − L.
+        let [value, momentum1, momentum2, _] = differentiate(&params, y, 2, 3);
+        let expected = momentum1 * y[2] + momentum2 * y[3] - value;
+        assert!(relative([energy::<Portable>(&params, &state), 0.0], [expected, 0.0]) <= ROUNDING);
+    }
+}
+
+/// M (θ̈ of the paper − θ̈ of the book) = (0, m2 l1 lc2 θ̇1² sin θ2), and nothing else.
+#[test]
+fn the_papers_equations_lack_one_term() {
+    fn check<A: Arithmetic<Scalar = f64>>(params: Params, state: State, torque: f64) {
+        let of = |dynamics| accelerations::<A>(&Params { dynamics, ..params }, &state, torque);
+        let (book, nips) = (of(Dynamics::Book), of(Dynamics::Nips));
+        let term = params.mass2
+            * params.length1
+            * params.center_of_mass2
+            * state.dtheta1
+            * state.dtheta1
+            * A::sin_cos(state.theta2).0;
+        let [[m11, m12], [m21, m22]] = mass_matrix::<A>(&params, &state);
+        let forces = |[a, b]: [f64; 2]| [m11 * a + m12 * b, m21 * a + m22 * b];
+        let (book, nips) = (forces(book), forces(nips));
+        let error = relative([nips[0], nips[1]], [book[0], book[1] + term]);
+        assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
+    }
+    for (params, state, torque) in random_cases() {
+        check::<Portable>(params, state, torque);
+        check::<LeanF64>(params, state, torque);
+    }
+}
+
+/// Swinging without torque for `time` s in steps of `dt`.
+fn swing(dt: f64, time: f64) -> State {
+    let params = Params::DEFAULT;
+    let mut y = [1.2, -0.7, 0.4, 1.1];
+    for _ in 0..(time / dt).round() as u32 {
+        y = rk4(y, dt, |y| derivative::<Portable>(&params, &y.into(), 0.0));
+    }
+    y.into()
+}
+
+#[test]
+fn rk4_converges_with_the_fourth_order() {
+    let truth = swing(0.1 / 64.0, 2.0);
+    let error = |dt| distance(swing(dt, 2.0), truth);
+    let [coarse, middle, fine] = [0.1, 0.05, 0.025].map(error);
+    for order in [(coarse / middle).log2(), (middle / fine).log2()] {
+        assert!((3.8..4.3).contains(&order), "order {order}");
+    }
+}
+
+#[test]
+fn energy_drifts_no_faster_than_the_fourth_power_of_dt() {
+    let drift = |dt| {
+        let at = |time| energy::<Portable>(&Params::DEFAULT, &swing(dt, time));
+        (at(10.0) - at(0.0)).abs()
+    };
+    let [coarse, middle, fine] = [0.1, 0.05, 0.025].map(drift);
+    assert!(
+        coarse / middle >= 16.0 && middle / fine >= 16.0,
+        "{coarse:e} {middle:e} {fine:e}"
+    );
+    assert!(coarse <= 1e-2, "{coarse:e}");
+}
+
+/// The largest difference between a run and the mirror image of the mirrored run, step by step
+/// from the same states.
+fn asymmetry<A: Arithmetic>() -> f64 {
+    let mirror = |state: State<A::Scalar>| State::from(<[A::Scalar; 4]>::from(state).map(|x| -x));
+    let mut rng = Pcg64::new(3);
+    let mut worst = 0.0_f64;
+    for seed in 0..50 {
+        let (mut left, mut right) = (Acrobot::<A>::new(seed), Acrobot::<A>::new(seed));
+        for _ in 0..400 {
+            right.set_state(mirror(left.state())).unwrap();
+            let action = Action::sample(&mut rng);
+            let torque = left.params().torque(action) * A::Scalar::from_f64(3.0);
+            left.step_torque(torque).unwrap();
+            right.step_torque(-torque).unwrap();
+            worst = worst.max(distance(left.state().cast(), mirror(right.state()).cast()));
+        }
+    }
+    worst
+}
+
+#[test]
+fn left_is_the_mirror_image_of_right() {
+    assert_eq!(asymmetry::<Fast>(), 0.0);
+    // cos(θ1 − π/2) is not symmetric to the bit, and a step at high speed amplifies it.
+    for worst in [asymmetry::<Portable>(), asymmetry::<Host>()] {
+        println!("{worst:e}");
+        assert!(worst <= 1e-14, "{worst:e}");
+    }
+    // Nor is micromath's sine.
+    let worst = asymmetry::<Micro>();
+    println!("{worst:e}");
+    assert!(worst <= 1e-5, "{worst:e}");
+}
+
+/// A step with a torque is the step of the action that stands for it.
+#[test]
+fn actions_are_torques() {
+    let mut by_action = Acrobot::<Portable>::new(5);
+    let mut by_torque = by_action.clone();
+    for (action, torque) in Action::ALL.into_iter().zip([-1.0, 0.0, 1.0]) {
+        assert_eq!(
+            by_torque.step_torque(torque).unwrap(),
+            by_action.step(action)
+        );
+    }
+    assert_eq!(by_action, by_torque);
+}

@@ -1,0 +1,51 @@
+//! Promise 2, the same bits everywhere: digests of long runs. A changed one is a breaking release.
+
+mod common;
+
+use acrobot::{Acrobot, Action, Arithmetic, Fast, Micro, Pcg64, Portable, TimeLimit};
+use common::Digest;
+
+/// Every bit of the states, rewards and ends of 64 seeds' random episodes: 100,000 steps or so.
+fn digest<A: Arithmetic>() -> u64 {
+    let mut digest = Digest::new();
+    for seed in 0..64 {
+        let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(seed));
+        let mut actions = Pcg64::new(seed);
+        for _ in 0..3 {
+            loop {
+                let step = acrobot.step(Action::sample(&mut actions));
+                for x in <[A::Scalar; 4]>::from(acrobot.inner().state()) {
+                    digest.add(acrobot::Real::to_f64(x).to_bits());
+                }
+                for x in <[f32; 6]>::from(step.observation) {
+                    digest.add(x.to_bits().into());
+                }
+                digest.add(
+                    u64::from(step.reward.to_bits()) << 2
+                        | u64::from(step.terminated) << 1
+                        | u64::from(step.truncated),
+                );
+                if step.ended() {
+                    break;
+                }
+            }
+            acrobot.reset();
+        }
+    }
+    digest.0
+}
+
+#[test]
+fn portable_is_stable() {
+    assert_eq!(format!("{:016x}", digest::<Portable>()), "feef7e5f31292db3");
+}
+
+#[test]
+fn fast_is_stable() {
+    assert_eq!(format!("{:016x}", digest::<Fast>()), "b0042de7e7107d80");
+}
+
+#[test]
+fn micro_is_stable() {
+    assert_eq!(format!("{:016x}", digest::<Micro>()), "a0091a2a1bf59922");
+}
