@@ -3,15 +3,20 @@
 use core::convert::Infallible;
 use core::num::NonZeroU32;
 
+use rand_core::utils::{fill_bytes_via_next_word, read_words};
 use rand_core::{Rng, SeedableRng, TryRng};
 
 use crate::seed::SeedSequence;
 
-/// NumPy's `PCG64`, the generator of every Gymnasium environment and space: `rand_pcg`'s, seeded
-/// through a [`SeedSequence`], and with NumPy's way of making two 32-bit draws of one of 64 bits.
+/// NumPy's `PCG64`, the generator of every Gymnasium environment and space: PCG XSL-RR 128/64,
+/// seeded through a [`SeedSequence`], with NumPy's way of making two 32-bit draws of one of 64 bits.
 ///
 /// It is `Clone`, so that it can be saved and resumed, and never `Copy`, so that no stream is
 /// drawn from twice by accident. With the `serde` feature it can be stored.
+///
+/// `rand_pcg` has the same generator, but shows its state to nobody but its own `serde` feature,
+/// which needs std. Source: M. E. O'Neill, *PCG: A Family of Simple Fast Space-Efficient
+/// Statistically Good Algorithms for Random Number Generation* (2014).
 ///
 /// ```
 /// use acrobot::{Pcg64, uniform};
@@ -20,8 +25,12 @@ use crate::seed::SeedSequence;
 /// assert_eq!(uniform(&mut np_random, 0.0, 1.0), 0.7739560485559633);
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Pcg64 {
-    generator: rand_pcg::Pcg64,
+    state: u128,
+    /// Odd, or the period would be short.
+    increment: u128,
     /// The high half of a 64-bit draw of which only the low half was used.
     half: Option<u32>,
 }
@@ -31,10 +40,24 @@ impl Pcg64 {
     #[must_use]
     pub fn new(seed: impl Into<SeedSequence>) -> Self {
         let [state1, state0, stream1, stream0] = seed.into().generate_state().map(u128::from);
-        Self {
-            generator: rand_pcg::Pcg64::new((state1 << 64) | state0, (stream1 << 64) | stream0),
+        let increment = (((stream1 << 64) | stream0) << 1) | 1;
+        let mut pcg = Self {
+            state: increment.wrapping_add((state1 << 64) | state0),
+            increment,
             half: None,
-        }
+        };
+        pcg.advance();
+        pcg
+    }
+
+    /// One step of the linear congruential generator underneath.
+    #[inline]
+    fn advance(&mut self) {
+        const MULTIPLIER: u128 = 0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645;
+        self.state = self
+            .state
+            .wrapping_mul(MULTIPLIER)
+            .wrapping_add(self.increment);
     }
 }
 
@@ -47,31 +70,30 @@ impl TryRng for Pcg64 {
         if let Some(high) = self.half.take() {
             return Ok(high);
         }
-        let both = self.generator.next_u64();
+        let both = self.next_u64();
         self.half = Some((both >> 32) as u32);
         Ok(both as u32)
     }
 
     #[inline]
     fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        self.generator.try_next_u64()
+        self.advance();
+        let folded = (self.state >> 64) as u64 ^ self.state as u64;
+        Ok(folded.rotate_right((self.state >> 122) as u32))
     }
 
-    #[inline]
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        self.generator.try_fill_bytes(bytes)
+        fill_bytes_via_next_word(bytes, || self.try_next_u64())
     }
 }
 
 impl SeedableRng for Pcg64 {
     type Seed = [u8; 32];
 
-    /// State and stream themselves, as `rand_pcg` takes them; NumPy has no such seed.
+    /// [`Pcg64::new`] of the integer that these bytes are, the lowest first.
     fn from_seed(seed: Self::Seed) -> Self {
-        Self {
-            generator: rand_pcg::Pcg64::from_seed(seed),
-            half: None,
-        }
+        let words: [u32; 8] = read_words(&seed);
+        Self::new(SeedSequence::from_words(&words))
     }
 
     /// [`Pcg64::new`]: NumPy's stream of that seed, and not the one that `rand_core` would expand
@@ -109,64 +131,31 @@ pub fn integers<R: Rng + ?Sized>(rng: &mut R, n: NonZeroU32) -> u32 {
     (product >> 32) as u32
 }
 
-#[cfg(feature = "defmt")]
-impl defmt::Format for Pcg64 {
-    /// Its name alone: `rand_pcg` shows its state to nobody but `serde`.
-    fn format(&self, f: defmt::Formatter<'_>) {
-        defmt::write!(f, "Pcg64");
-    }
-}
-
 #[cfg(feature = "serde")]
-mod snapshot {
-    use serde::de::value::{Error as ValueError, SeqDeserializer};
-    use serde::de::{Deserialize, Deserializer, Error};
-    use serde::ser::{Serialize, Serializer};
-
-    use super::Pcg64;
-
-    /// What `rand_pcg` writes of its generator, and the half that is kept beside it.
-    #[derive(serde::Deserialize)]
-    struct Stored {
-        generator: Generator,
-        half: Option<u32>,
-    }
-
-    #[derive(serde::Deserialize)]
-    struct Generator {
-        state: u128,
-        increment: u128,
-    }
-
-    impl Serialize for Pcg64 {
-        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            #[derive(serde::Serialize)]
-            struct Stored<'a> {
-                generator: &'a rand_pcg::Pcg64,
-                half: Option<u32>,
-            }
-            let Self { generator, half } = self;
-            Stored {
-                generator,
-                half: *half,
-            }
-            .serialize(serializer)
+impl<'de> serde::Deserialize<'de> for Pcg64 {
+    /// Refuses an even increment.
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(serde::Deserialize)]
+        #[serde(rename = "Pcg64")]
+        struct Snapshot {
+            state: u128,
+            increment: u128,
+            half: Option<u32>,
         }
-    }
 
-    impl<'de> Deserialize<'de> for Pcg64 {
-        /// Refuses an even increment, which would cut the generator's period short.
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Stored { generator, half } = Stored::deserialize(deserializer)?;
-            let Generator { state, increment } = generator;
-            if increment % 2 == 0 {
-                return Err(D::Error::custom(format_args!(
-                    "increment is {increment}; allowed is an odd number"
-                )));
-            }
-            let fields = SeqDeserializer::<_, ValueError>::new([state, increment].into_iter());
-            let generator = rand_pcg::Pcg64::deserialize(fields).map_err(D::Error::custom)?;
-            Ok(Self { generator, half })
+        let Snapshot {
+            state,
+            increment,
+            half,
+        } = Snapshot::deserialize(deserializer)?;
+        if increment % 2 == 0 {
+            let reason = format_args!("increment is {increment}; allowed is an odd number");
+            return Err(serde::de::Error::custom(reason));
         }
+        Ok(Self {
+            state,
+            increment,
+            half,
+        })
     }
 }

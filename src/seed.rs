@@ -34,8 +34,8 @@ pub struct SeedSequence {
 const SHIFT: u32 = 16;
 
 impl SeedSequence {
-    /// The sequence of the integer whose 32-bit digits are `words`, the lowest first and without
-    /// zeros at the high end; none are 0.
+    /// The sequence of the integer whose 32-bit digits are `words`, the lowest first; none are 0, and
+    /// zeros at the high end do not count.
     ///
     /// For seeds beyond 64 bits: `from` takes a `u64`, and with `std` a text of decimal digits can be
     /// parsed.
@@ -57,7 +57,11 @@ impl SeedSequence {
             hash_multiplier: 0x43b0_d7e5,
             spawned: 0,
         };
-        let mut words = words.iter().copied();
+        let end = words
+            .iter()
+            .rposition(|&word| word != 0)
+            .map_or(0, |last| last + 1);
+        let mut words = words.iter().copied().take(end);
         for i in 0..4 {
             sequence.pool[i] = sequence.hash(words.next().unwrap_or(0));
         }

@@ -112,7 +112,17 @@ fn spawn_goes_on_where_it_stopped() {
 fn integers_of_every_kind_are_seeds() {
     assert_eq!(SeedSequence::from(5), SeedSequence::from_words(&[5]));
     assert_eq!(SeedSequence::from(u64::MAX), seed("18446744073709551615"));
+    assert_eq!(
+        SeedSequence::from_words(&[5, 0, 0, 0, 0, 0]),
+        SeedSequence::from(5)
+    );
     assert_eq!(Pcg64::seed_from_u64(42), Pcg64::new(42));
+    let mut bytes = [0; 32];
+    bytes[16] = 1;
+    assert_eq!(
+        Pcg64::from_seed(bytes),
+        Pcg64::new(seed("340282366920938463463374607431768211456"))
+    );
 }
 
 #[test]
@@ -154,8 +164,28 @@ fn another_generator_serves_too() {
     assert_eq!(<[f64; 4]>::from(lowest), [f64::from(-0.1_f32); 4]);
     // Every draw of 0 must be rejected for n = 3, and still there is an end.
     assert_eq!(integers(&mut Constant(0), NonZeroU32::new(3).unwrap()), 0);
+}
 
-    let mut seeded = Pcg64::from_seed([7; 32]);
-    let by_pcg = rand_pcg::Pcg64::from_seed([7; 32]).next_u64();
-    assert_eq!(seeded.next_u64(), by_pcg);
+/// Against another implementation of the generator underneath, over draws of every width.
+#[test]
+fn the_generator_is_rand_pcgs() {
+    for seed in 0..100 {
+        let [state1, state0, stream1, stream0] =
+            SeedSequence::from(seed).generate_state().map(u128::from);
+        let mut theirs = rand_pcg::Pcg64::new(state1 << 64 | state0, stream1 << 64 | stream0);
+        let mut ours = Pcg64::new(seed);
+        for _ in 0..100 {
+            let next = theirs.next_u64();
+            let mut again = ours.clone();
+            assert_eq!(
+                [again.next_u32(), again.next_u32()],
+                [next as u32, (next >> 32) as u32]
+            );
+            assert_eq!(ours.next_u64(), next);
+        }
+        let mut bytes = [[0; 13]; 2];
+        theirs.fill_bytes(&mut bytes[0]);
+        ours.fill_bytes(&mut bytes[1]);
+        assert_eq!(bytes[0], bytes[1]);
+    }
 }

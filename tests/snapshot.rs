@@ -63,7 +63,7 @@ fn snapshots_that_are_not_valid_are_refused() {
     refuse("\"limit\":500", "\"limit\":0", "nonzero");
     refuse("\"dynamics\":\"Book\"", "\"dynamics\":\"Film\"", "Film");
     let start = text.find("\"increment\":").unwrap() + "\"increment\":".len();
-    let increment: u128 = text[start..].split('}').next().unwrap().parse().unwrap();
+    let increment: u128 = text[start..].split(',').next().unwrap().parse().unwrap();
     let (odd, even) = (increment.to_string(), (increment - 1).to_string());
     refuse(&odd, &even, "allowed is an odd number");
 
