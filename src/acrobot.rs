@@ -256,6 +256,21 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     }
 }
 
+#[cfg(feature = "defmt")]
+impl<A: Arithmetic<Scalar: defmt::Format>, R: defmt::Format> defmt::Format for Acrobot<A, R> {
+    /// Parameters, state and generator; the rest is derived from them.
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (params, state, rng) = (self.params(), self.state, &self.rng);
+        defmt::write!(
+            f,
+            "Acrobot {{ params: {}, state: {}, rng: {} }}",
+            params,
+            state,
+            rng
+        );
+    }
+}
+
 #[cfg(feature = "serde")]
 mod snapshot {
     use serde::de::{Deserialize, Deserializer, Error};

@@ -11,6 +11,9 @@ use crate::error::Error;
 use crate::observation::Observation;
 use crate::state::StartBounds;
 
+const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
+const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
+
 /// What a step under a [`TimeLimit`] returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -48,6 +51,7 @@ impl LimitedStep {
 /// assert_eq!(length, 500);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TimeLimit<E = Acrobot> {
     inner: E,
@@ -56,11 +60,6 @@ pub struct TimeLimit<E = Acrobot> {
 }
 
 impl<E> TimeLimit<E> {
-    /// The limit of `Acrobot-v1`, in steps.
-    pub const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
-    /// The limit of `Acrobot-v0`, in steps.
-    pub const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
-
     /// Truncates after `limit` steps.
     #[must_use]
     pub fn new(inner: E, limit: NonZeroU32) -> Self {
@@ -74,13 +73,13 @@ impl<E> TimeLimit<E> {
     /// Truncates after 500 steps, as `Acrobot-v1`.
     #[must_use]
     pub fn v1(inner: E) -> Self {
-        Self::new(inner, Self::V1)
+        Self::new(inner, V1)
     }
 
     /// Truncates after 200 steps, as `Acrobot-v0`.
     #[must_use]
     pub fn v0(inner: E) -> Self {
-        Self::new(inner, Self::V0)
+        Self::new(inner, V0)
     }
 
     /// The steps after which it truncates.
