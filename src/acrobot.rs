@@ -158,14 +158,10 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     pub fn observation(&self) -> Observation {
         let [(sin1, cos1), (sin2, cos2)] = self.sin_cos;
         let f32 = |x: A::Scalar| x.to_f64() as f32;
-        Observation {
-            cos_theta1: f32(cos1),
-            sin_theta1: f32(sin1),
-            cos_theta2: f32(cos2),
-            sin_theta2: f32(sin2),
-            dtheta1: f32(self.state.dtheta1),
-            dtheta2: f32(self.state.dtheta2),
-        }
+        let State {
+            dtheta1, dtheta2, ..
+        } = self.state;
+        Observation([cos1, sin1, cos2, sin2, dtheta1, dtheta2].map(f32))
     }
 
     /// The state.

@@ -1,45 +1,71 @@
-//! What an agent sees. The reading of `Acrobot-v0` is [`State<f32>`](crate::State) itself.
+//! What an agent sees: the six numbers of `Acrobot-v1`, or the four of `Acrobot-v0`.
 
 use core::f32::consts::PI;
+use core::ops::Deref;
 
-/// The observation of `Acrobot-v1`: the state with its angles as points on the unit circle.
+use crate::arithmetic::Real;
+use crate::state::State;
+
+/// An observation: the `N` numbers of Gymnasium's, in its order.
 ///
-/// As an array it is \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\].
+/// `Observation`, that is `Observation<6>`, is that of `Acrobot-v1`, the state with its angles as
+/// points on the unit circle: \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\]. Hanging at rest is
+/// \[1, 0, 1, 0, 0, 0\].
+///
+/// `Observation<4>` is that of `Acrobot-v0`, the state itself: \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
+///
+/// ```
+/// use acrobot::{Acrobot, Observation, Portable};
+///
+/// let acrobot = Acrobot::<Portable>::new(42);
+/// let [cos1, sin1, ..] = *acrobot.observation();
+/// let angles = Observation::<4>::from(acrobot.state());
+/// assert_eq!(angles[0], f32::atan2(sin1, cos1));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Observation {
-    /// cos θ1, from −1 to 1; 1 = link 1 hangs straight down.
-    pub cos_theta1: f32,
-    /// sin θ1, from −1 to 1.
-    pub sin_theta1: f32,
-    /// cos θ2, from −1 to 1; 1 = the links are in line.
-    pub cos_theta2: f32,
-    /// sin θ2, from −1 to 1.
-    pub sin_theta2: f32,
-    /// θ̇1, rad/s, within ±4π by default.
-    pub dtheta1: f32,
-    /// θ̇2, rad/s, within ±9π by default.
-    pub dtheta2: f32,
-}
+pub struct Observation<const N: usize = 6>(pub [f32; N]);
 
-impl Observation {
-    /// The upper bounds of `Acrobot-v1`'s observation space.
-    pub const HIGH: [f32; 6] = [1.0, 1.0, 1.0, 1.0, 4.0 * PI, 9.0 * PI];
+impl Observation<6> {
+    /// The upper bounds of `Acrobot-v1`'s observation space: 1, and 4π and 9π rad/s.
+    pub const HIGH: Self = Self([1.0, 1.0, 1.0, 1.0, 4.0 * PI, 9.0 * PI]);
     /// The lower bounds: `-HIGH`.
-    pub const LOW: [f32; 6] = [-1.0, -1.0, -1.0, -1.0, -4.0 * PI, -9.0 * PI];
+    pub const LOW: Self = Self([-1.0, -1.0, -1.0, -1.0, -4.0 * PI, -9.0 * PI]);
 }
 
-impl From<Observation> for [f32; 6] {
+impl Observation<4> {
+    /// The upper bounds of `Acrobot-v0`'s observation space: π rad, and 4π and 9π rad/s.
+    pub const HIGH: Self = Self([PI, PI, 4.0 * PI, 9.0 * PI]);
+    /// The lower bounds: `-HIGH`.
+    pub const LOW: Self = Self([-PI, -PI, -4.0 * PI, -9.0 * PI]);
+}
+
+impl<S: Real> From<State<S>> for Observation<4> {
     #[inline]
-    fn from(observation: Observation) -> Self {
-        [
-            observation.cos_theta1,
-            observation.sin_theta1,
-            observation.cos_theta2,
-            observation.sin_theta2,
-            observation.dtheta1,
-            observation.dtheta2,
-        ]
+    fn from(state: State<S>) -> Self {
+        Self(state.cast().into())
+    }
+}
+
+impl<const N: usize> Deref for Observation<N> {
+    type Target = [f32; N];
+
+    #[inline]
+    fn deref(&self) -> &[f32; N] {
+        &self.0
+    }
+}
+
+impl<const N: usize> AsRef<[f32]> for Observation<N> {
+    #[inline]
+    fn as_ref(&self) -> &[f32] {
+        &self.0
+    }
+}
+
+impl<const N: usize> From<Observation<N>> for [f32; N] {
+    #[inline]
+    fn from(observation: Observation<N>) -> Self {
+        observation.0
     }
 }

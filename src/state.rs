@@ -1,7 +1,5 @@
 //! The state of an acrobot, and the bounds that a start is drawn from.
 
-use core::f32::consts::PI;
-
 use crate::arithmetic::Real;
 use crate::error::{Allowed, Error};
 
@@ -9,17 +7,6 @@ use crate::error::{Allowed, Error};
 ///
 /// After a step the angles lie in \[−π, π\] and the velocities within their bounds. A start and a
 /// state that was set may lie outside, as Gymnasium's may.
-///
-/// The observation of `Acrobot-v0` is the state itself, in `f32`:
-///
-/// ```
-/// use acrobot::{Acrobot, Portable, State};
-///
-/// let acrobot = Acrobot::<Portable>::new(42);
-/// let reading: State<f32> = acrobot.state().cast();
-/// let [theta1, ..] = <[f32; 4]>::from(reading);
-/// assert!((State::LOW[0]..=State::HIGH[0]).contains(&theta1));
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -74,13 +61,6 @@ impl<S: Real> State<S> {
         Allowed::Finite.check("dtheta1", self.dtheta1, "rad/s")?;
         Allowed::Finite.check("dtheta2", self.dtheta2, "rad/s")
     }
-}
-
-impl State<f32> {
-    /// The upper bounds of `Acrobot-v0`'s observation space: π, π rad, 4π, 9π rad/s.
-    pub const HIGH: [f32; 4] = [PI, PI, 4.0 * PI, 9.0 * PI];
-    /// The lower bounds: `-HIGH`.
-    pub const LOW: [f32; 4] = [-PI, -PI, -4.0 * PI, -9.0 * PI];
 }
 
 /// The bounds within which a reset draws all four numbers of the state, rad and rad/s.

@@ -2,8 +2,9 @@
 //! auto-traits.
 
 use acrobot::{
-    Acrobot, Action, Dynamics, Error, Fast, Host, Micro, Observation, Params, Pcg64, Portable,
-    REWARD_THRESHOLD, SeedSequence, State, TimeLimit, Trajectory, Transition, bound, wrap,
+    Acrobot, Action, Arithmetic, Dynamics, Error, Fast, Host, Micro, Observation, Params, Pcg64,
+    Portable, REWARD_THRESHOLD, SeedSequence, State, TimeLimit, Trajectory, Transition, bound,
+    energy, mass_matrix, tip_height, wrap,
 };
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
@@ -120,24 +121,61 @@ fn observations_lie_within_their_bounds() {
         .set_state(State::from([0.0, 0.0, 12.0, -28.0]))
         .unwrap();
     for _ in 0..1000 {
-        let seen = <[f32; 6]>::from(acrobot.step(Action::sample(&mut actions)).observation);
-        for (x, (low, high)) in seen
-            .into_iter()
-            .zip(Observation::LOW.into_iter().zip(Observation::HIGH))
-        {
-            assert!((low..=high).contains(&x), "{seen:?}");
+        let seen = acrobot.step(Action::sample(&mut actions)).observation;
+        for i in 0..6 {
+            assert!(
+                Observation::<6>::LOW[i] <= seen[i] && seen[i] <= Observation::<6>::HIGH[i],
+                "{seen:?}"
+            );
+        }
+        let seen = Observation::<4>::from(acrobot.state());
+        for i in 0..4 {
+            assert!(
+                Observation::<4>::LOW[i] <= seen[i] && seen[i] <= Observation::<4>::HIGH[i],
+                "{seen:?}"
+            );
         }
     }
+}
+
+#[test]
+fn both_readings_show_the_state() {
+    let mut acrobot = Acrobot::<Portable>::new(0);
+    acrobot
+        .set_state(State::from([0.5, -2.0, 3.0, -4.0]))
+        .unwrap();
+    let (sin1, cos1) = Portable::sin_cos(0.5);
+    let (sin2, cos2) = Portable::sin_cos(-2.0);
     assert_eq!(
-        State::HIGH,
-        [
-            wrap::<Fast>(core::f32::consts::PI),
-            core::f32::consts::PI,
-            4.0 * core::f32::consts::PI,
-            9.0 * core::f32::consts::PI
-        ]
+        *acrobot.observation(),
+        [cos1, sin1, cos2, sin2, 3.0, -4.0].map(|x| x as f32)
     );
-    assert_eq!(State::LOW, State::HIGH.map(|x| -x));
+    assert_eq!(
+        *Observation::<4>::from(acrobot.state()),
+        [0.5, -2.0, 3.0, -4.0]
+    );
+}
+
+#[test]
+fn the_methods_of_an_acrobot_are_of_its_state_and_parameters() {
+    let mut acrobot = Acrobot::<Portable>::new(0);
+    let params = Params {
+        mass1: 2.0,
+        length1: 1.5,
+        length2: 0.5,
+        ..Params::DEFAULT
+    };
+    let state = State::from([0.5, -2.0, 3.0, -4.0]);
+    acrobot.set_params(params).unwrap();
+    acrobot.set_state(state).unwrap();
+    assert_eq!(acrobot.energy(), energy::<Portable>(&params, &state));
+    assert_eq!(
+        acrobot.mass_matrix(),
+        mass_matrix::<Portable>(&params, &state)
+    );
+    let height = -1.5 * Portable::cos(0.5) - 0.5 * Portable::cos(-1.5);
+    assert_eq!(acrobot.tip_height(), height);
+    assert_eq!(tip_height::<Portable>(&params, &state), height);
 }
 
 #[test]
@@ -155,11 +193,14 @@ fn angles_wrap_and_velocities_stop() {
     // Beyond 64 turns, where the remainder takes over: seamlessly but for rounding.
     for turns in [60.0, 63.0, 64.0, 65.0, 70.0, 1e6] {
         for x in [-3.0, -1.0, 0.25, 3.0] {
-            let wrapped = wrap::<Portable>(x + turns * TAU);
-            assert!(
-                (wrapped - x).abs() <= 1e-9 * turns.max(1.0),
-                "{x} + {turns} turns: {wrapped}"
-            );
+            for turns in [-turns, turns] {
+                let wrapped = wrap::<Portable>(x + turns * TAU);
+                let error = (wrapped - x).abs();
+                assert!(
+                    error <= 1e-15 * turns * turns,
+                    "{x} + {turns} turns: {wrapped}"
+                );
+            }
         }
     }
     assert_eq!(bound(5.0, 4.0), 4.0);

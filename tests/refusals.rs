@@ -181,7 +181,7 @@ fn assert_bounded<A: Arithmetic>(acrobot: &Acrobot<A>) {
     {
         assert!(-limit <= x && x <= limit, "{:?}", acrobot.state());
     }
-    let [cos1, sin1, cos2, sin2, _, _] = <[f32; 6]>::from(acrobot.observation());
+    let [cos1, sin1, cos2, sin2, _, _] = *acrobot.observation();
     assert!(
         [cos1, sin1, cos2, sin2]
             .into_iter()
@@ -197,7 +197,7 @@ fn starts_far_outside_come_back_with_the_first_step() {
             let mut acrobot = Acrobot::<A>::new(3);
             for _ in 0..20 {
                 let start = acrobot.reset_within(bounds);
-                assert!(<[f32; 6]>::from(start).into_iter().all(f32::is_finite));
+                assert!(start.into_iter().all(f32::is_finite));
                 for action in Action::ALL {
                     acrobot.step(action);
                     assert_bounded(&acrobot);

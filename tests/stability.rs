@@ -17,7 +17,7 @@ fn digest<A: Arithmetic>() -> u64 {
                 for x in <[A::Scalar; 4]>::from(acrobot.inner().state()) {
                     digest.add(acrobot::Real::to_f64(x).to_bits());
                 }
-                for x in <[f32; 6]>::from(step.observation) {
+                for x in *step.observation {
                     digest.add(x.to_bits().into());
                 }
                 digest.add(
