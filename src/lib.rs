@@ -21,9 +21,13 @@ mod action;
 mod arithmetic;
 mod bounds;
 mod dynamics;
+#[cfg(feature = "std")]
+pub mod env;
 mod error;
 mod observation;
 mod params;
+#[cfg(feature = "graphics")]
+mod render;
 mod rk4;
 mod rng;
 mod seed;
@@ -42,6 +46,8 @@ pub use dynamics::{derivative, energy, mass_matrix, tip_height};
 pub use error::Error;
 pub use observation::Observation;
 pub use params::{Dynamics, Params};
+#[cfg(feature = "graphics")]
+pub use render::{Figure, Theme};
 pub use rk4::rk4;
 pub use rng::{Pcg64, integers, uniform};
 pub use seed::SeedSequence;

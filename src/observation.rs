@@ -63,6 +63,13 @@ impl<const N: usize> AsRef<[f32]> for Observation<N> {
     }
 }
 
+impl<const N: usize> AsMut<[f32]> for Observation<N> {
+    #[inline]
+    fn as_mut(&mut self) -> &mut [f32] {
+        &mut self.0
+    }
+}
+
 impl<const N: usize> From<Observation<N>> for [f32; N] {
     #[inline]
     fn from(observation: Observation<N>) -> Self {

@@ -109,6 +109,19 @@ impl<E> TimeLimit<E> {
         &mut self.inner
     }
 
+    /// An episode begins.
+    #[inline]
+    pub(crate) fn restart(&mut self) {
+        self.elapsed = 0;
+    }
+
+    /// A step was taken; whether it was the last.
+    #[inline]
+    pub(crate) fn count(&mut self) -> bool {
+        self.elapsed = self.elapsed.saturating_add(1);
+        self.elapsed >= self.limit.get()
+    }
+
     /// What it wraps, without it.
     #[must_use]
     pub fn into_inner(self) -> E {
@@ -124,7 +137,7 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
 
     /// [`Acrobot::reset_within`], and the count starts anew.
     pub fn reset_within(&mut self, bounds: StartBounds) -> Observation {
-        self.elapsed = 0;
+        self.restart();
         self.inner.reset_within(bounds)
     }
 
@@ -132,7 +145,7 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
     #[inline]
     pub fn step(&mut self, action: Action) -> LimitedStep {
         let step = self.inner.step(action);
-        self.count(step)
+        self.limited(step)
     }
 
     /// [`Acrobot::step_torque`], counted.
@@ -143,12 +156,11 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
     #[inline]
     pub fn step_torque(&mut self, torque: A::Scalar) -> Result<LimitedStep, Error> {
         let step = self.inner.step_torque(torque)?;
-        Ok(self.count(step))
+        Ok(self.limited(step))
     }
 
     #[inline]
-    fn count(&mut self, step: Step) -> LimitedStep {
-        self.elapsed = self.elapsed.saturating_add(1);
+    fn limited(&mut self, step: Step) -> LimitedStep {
         let Step {
             observation,
             reward,
@@ -158,7 +170,7 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
             observation,
             reward,
             terminated,
-            truncated: self.elapsed >= self.limit.get(),
+            truncated: self.count(),
         }
     }
 }

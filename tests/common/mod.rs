@@ -214,3 +214,15 @@ pub fn assert_readme_says(text: &str) {
         "measured, and not what the README says: {text}"
     );
 }
+
+/// Compares with a file of `data/`, and writes it anew where the environment says `UPDATE_SNAPSHOTS`.
+pub fn assert_snapshot(name: &str, expected: &str, found: &str) {
+    if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/data")
+            .join(name);
+        std::fs::write(path, found).unwrap();
+    } else {
+        assert!(found == expected, "{name} is not what is drawn:\n{found}");
+    }
+}

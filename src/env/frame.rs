@@ -1,0 +1,150 @@
+//! Pictures in memory: RGB bytes, and text.
+
+use core::convert::Infallible;
+use std::string::String;
+use std::vec::Vec;
+
+use embedded_graphics_core::Pixel;
+use embedded_graphics_core::draw_target::DrawTarget;
+use embedded_graphics_core::geometry::{Dimensions, OriginDimensions, Size};
+use embedded_graphics_core::pixelcolor::{BinaryColor, Rgb888, RgbColor};
+
+use crate::render::{Figure, Theme};
+
+/// A picture of RGB bytes, Gymnasium's `rgb_array`; it can be drawn on as any embedded-graphics
+/// target.
+///
+/// ```
+/// use acrobot::env::Frame;
+/// use acrobot::{Acrobot, Figure, Portable};
+///
+/// let frame = Frame::of(&Figure::new(&Acrobot::<Portable>::new(42)));
+/// assert_eq!(frame.bytes().len(), 500 * 500 * 3);
+///
+/// // As a PNG file, with the png crate.
+/// let mut file = Vec::new();
+/// let mut encoder = png::Encoder::new(&mut file, frame.width(), frame.height());
+/// encoder.set_color(png::ColorType::Rgb);
+/// encoder.write_header()?.write_image_data(frame.bytes())?;
+/// # assert!(file.starts_with(b"\x89PNG"));
+/// # Ok::<(), png::EncodingError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    width: u32,
+    bytes: Vec<u8>,
+}
+
+/// Gymnasium's frames are squares of so many pixels.
+const SIZE: u32 = 500;
+
+impl Frame {
+    /// The figure in Gymnasium's size and colours: 500 × 500 pixels.
+    #[must_use]
+    pub fn of(figure: &Figure) -> Self {
+        let mut frame = Self::new(SIZE, SIZE);
+        let Ok(()) = figure.draw(&mut frame, &Theme::GYMNASIUM);
+        frame
+    }
+
+    /// A black frame of that many pixels.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        let bytes = std::vec![0; width as usize * height as usize * 3];
+        Self { width, bytes }
+    }
+
+    /// In pixels.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// In pixels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        let pixels = self.bytes.len() / 3;
+        pixels.checked_div(self.width as usize).unwrap_or(0) as u32
+    }
+
+    /// Red, green and blue of each pixel, row by row from the top left: `height` × `width` × 3.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
+impl OriginDimensions for Frame {
+    fn size(&self) -> Size {
+        Size::new(self.width, self.height())
+    }
+}
+
+impl DrawTarget for Frame {
+    type Color = Rgb888;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb888>>>(
+        &mut self,
+        pixels: I,
+    ) -> Result<(), Infallible> {
+        let area = self.bounding_box();
+        for Pixel(point, color) in pixels {
+            if area.contains(point) {
+                let start = (point.y as usize * self.width as usize + point.x as usize) * 3;
+                if let Some(pixel) = self.bytes.get_mut(start..start + 3) {
+                    pixel.copy_from_slice(&[color.r(), color.g(), color.b()]);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The figure in 20 lines of 40 braille characters, each of 2 × 4 dots.
+pub(super) fn text(figure: &Figure) -> String {
+    const COLUMNS: usize = 40;
+    const LINES: usize = 20;
+
+    /// The dots of the characters, as the low bits of their code points.
+    struct Dots([[u8; COLUMNS]; LINES]);
+
+    impl OriginDimensions for Dots {
+        fn size(&self) -> Size {
+            Size::new(2 * COLUMNS as u32, 4 * LINES as u32)
+        }
+    }
+
+    impl DrawTarget for Dots {
+        type Color = BinaryColor;
+        type Error = Infallible;
+
+        fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
+            &mut self,
+            pixels: I,
+        ) -> Result<(), Infallible> {
+            /// The bit of each dot, by row and column within a character.
+            const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+            for Pixel(point, color) in pixels {
+                let (x, y) = (point.x as usize, point.y as usize);
+                let character = self.0.get_mut(y / 4).and_then(|line| line.get_mut(x / 2));
+                let bit = BITS.get(y % 4).and_then(|row| row.get(x % 2));
+                if let (Some(character), Some(bit)) = (character, bit)
+                    && color.is_on()
+                {
+                    *character |= bit;
+                }
+            }
+            Ok(())
+        }
+    }
+
+    let mut dots = Dots([[0; COLUMNS]; LINES]);
+    let Ok(()) = figure.draw(&mut dots, &Theme::MONOCHROME);
+    let line = |line: [u8; COLUMNS]| -> String {
+        line.into_iter()
+            .filter_map(|bits| char::from_u32(0x2800 + u32::from(bits)))
+            .collect()
+    };
+    dots.0.map(line).join("\n")
+}

@@ -1,0 +1,150 @@
+//! Records how long episodes last and what they return.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use super::{Env, EnvStep, Error, Info, Rendering};
+use crate::seed::SeedSequence;
+use crate::state::StartBounds;
+
+/// How one episode went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EpisodeStatistics {
+    /// The sum of its rewards.
+    pub episode_return: f32,
+    /// Its steps.
+    pub length: u32,
+    /// The time from its reset to its end.
+    pub elapsed: Duration,
+}
+
+/// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode tells of it in its
+/// [`Info`], and the last hundred are kept.
+///
+/// ```
+/// use acrobot::env::{Env, RecordEpisodeStatistics, acrobot_v1};
+/// use acrobot::{Action, Fast};
+///
+/// let mut env = RecordEpisodeStatistics::new(acrobot_v1::<Fast>(Default::default())?);
+/// env.reset(Some(42.into()), None);
+/// let episode = loop {
+///     if let Some(episode) = env.step(Action::Zero).info.episode {
+///         break episode;
+///     }
+/// };
+/// assert_eq!((episode.length, episode.episode_return), (500, -500.0));
+/// assert_eq!(env.mean_return(), Some(-500.0));
+/// # Ok::<(), acrobot::env::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RecordEpisodeStatistics<E> {
+    inner: E,
+    started: Instant,
+    episode_return: f32,
+    length: u32,
+    episodes: VecDeque<EpisodeStatistics>,
+}
+
+/// How many episodes are kept.
+const KEPT: usize = 100;
+
+impl<E> RecordEpisodeStatistics<E> {
+    /// Records the episodes of `inner`.
+    #[must_use]
+    pub fn new(inner: E) -> Self {
+        Self {
+            inner,
+            started: Instant::now(),
+            episode_return: 0.0,
+            length: 0,
+            episodes: VecDeque::with_capacity(KEPT),
+        }
+    }
+
+    /// The last hundred episodes, oldest first.
+    pub fn episodes(&self) -> impl Iterator<Item = &EpisodeStatistics> {
+        self.episodes.iter()
+    }
+
+    /// The mean return of these, to compare with [`REWARD_THRESHOLD`](crate::REWARD_THRESHOLD); none
+    /// before the first has ended.
+    #[must_use]
+    pub fn mean_return(&self) -> Option<f32> {
+        let sum: f32 = self.episodes().map(|episode| episode.episode_return).sum();
+        (!self.episodes.is_empty()).then(|| sum / self.episodes.len() as f32)
+    }
+
+    /// What it wraps.
+    #[must_use]
+    pub fn inner(&self) -> &E {
+        &self.inner
+    }
+
+    /// What it wraps, for live changes; what is done there is not recorded here.
+    #[must_use]
+    pub fn inner_mut(&mut self) -> &mut E {
+        &mut self.inner
+    }
+}
+
+impl<E: Env> Env for RecordEpisodeStatistics<E> {
+    type Observation = E::Observation;
+    type Action = E::Action;
+    type ObservationSpace = E::ObservationSpace;
+    type ActionSpace = E::ActionSpace;
+    type Unwrapped = E::Unwrapped;
+
+    fn reset(
+        &mut self,
+        seed: Option<SeedSequence>,
+        bounds: Option<StartBounds>,
+    ) -> (E::Observation, Info) {
+        self.started = Instant::now();
+        self.episode_return = 0.0;
+        self.length = 0;
+        self.inner.reset(seed, bounds)
+    }
+
+    fn step(&mut self, action: E::Action) -> EnvStep<E::Observation> {
+        let mut step = self.inner.step(action);
+        self.episode_return += step.reward;
+        self.length = self.length.saturating_add(1);
+        if step.ended() {
+            let episode = EpisodeStatistics {
+                episode_return: self.episode_return,
+                length: self.length,
+                elapsed: self.started.elapsed(),
+            };
+            if self.episodes.len() == KEPT {
+                self.episodes.pop_front();
+            }
+            self.episodes.push_back(episode);
+            step.info.episode = Some(episode);
+        }
+        step
+    }
+
+    fn action_space(&self) -> E::ActionSpace {
+        self.inner.action_space()
+    }
+
+    fn observation_space(&self) -> E::ObservationSpace {
+        self.inner.observation_space()
+    }
+
+    fn render(&mut self) -> Result<Rendering, Error> {
+        self.inner.render()
+    }
+
+    fn close(&mut self) {
+        self.inner.close();
+    }
+
+    fn unwrapped(&self) -> &E::Unwrapped {
+        self.inner.unwrapped()
+    }
+
+    fn unwrapped_mut(&mut self) -> &mut E::Unwrapped {
+        self.inner.unwrapped_mut()
+    }
+}

@@ -1,0 +1,33 @@
+"""Records 64 frames of Gymnasium's rgb_array rendering: writes frames.png, eight rows of eight, and frames.txt, the
+states, beside itself.
+
+    pip install gymnasium==1.4.0 numpy==2.4.6 pygame==2.6.1
+    python tests/data/frames.py
+"""
+
+import os
+from pathlib import Path
+
+os.environ["SDL_VIDEODRIVER"] = "dummy"
+
+import gymnasium
+import numpy as np
+import pygame
+
+HERE = Path(__file__).parent
+
+env = gymnasium.make("Acrobot-v1", render_mode="rgb_array").unwrapped
+env.reset(seed=0)
+states = np.zeros((64, 4))
+# Hanging, upright, and level; then anywhere.
+states[:4, 0] = [0.0, np.pi, np.pi / 2, -np.pi / 2]
+states[4:, :2] = np.random.default_rng(2).uniform(-np.pi, np.pi, (60, 2))
+frames = []
+for state in states:
+    env.state = state
+    frames.append(env.render())
+grid = np.asarray(frames).reshape(8, 8, 500, 500, 3).transpose(0, 2, 1, 3, 4).reshape(4000, 4000, 3)
+pygame.image.save(pygame.surfarray.make_surface(grid.transpose(1, 0, 2)), HERE / "frames.png")
+lines = [f"# gymnasium {gymnasium.__version__}, numpy {np.__version__}, pygame {pygame.version.ver}", "# theta1 theta2"]
+lines += [f"{theta1!r} {theta2!r}" for theta1, theta2, _, _ in states.tolist()]
+(HERE / "frames.txt").write_text("\n".join(lines) + "\n")

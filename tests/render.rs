@@ -1,0 +1,276 @@
+//! Drawings are Gymnasium's, stay on their target, and write no pixel that does not change.
+
+mod common;
+
+use std::convert::Infallible;
+
+use acrobot::env::Frame;
+use acrobot::{Acrobot, Arithmetic, Figure, Params, Pcg64, Portable, State, Theme, uniform};
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{Dimensions, Point, Size};
+use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::primitives::Rectangle;
+
+fn figure(theta1: f64, theta2: f64) -> Figure {
+    let mut acrobot = Acrobot::<Portable>::new(0);
+    acrobot
+        .set_state(State::from([theta1, theta2, 0.0, 0.0]))
+        .unwrap();
+    Figure::new(&acrobot)
+}
+
+const SIDE: usize = 500;
+
+/// The states of `data/frames.txt`, and each's frame of `data/frames.png`.
+fn recorded_frames() -> Vec<(f64, f64, Vec<u8>)> {
+    let file = std::io::Cursor::new(include_bytes!("data/frames.png"));
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut grid = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut grid).unwrap();
+    assert_eq!((info.width, info.height), (4000, 4000));
+    let channels = grid.len() / (4000 * 4000);
+    let states = include_str!("data/frames.txt")
+        .lines()
+        .filter(|line| !line.starts_with('#'));
+    let frames = states.enumerate().map(|(number, line)| {
+        let (theta1, theta2) = line.split_once(' ').unwrap();
+        let (row, column) = (number / 8 * SIDE, number % 8 * SIDE);
+        let pixels = (0..SIDE * SIDE).flat_map(|i| {
+            let start = ((row + i / SIDE) * 4000 + column + i % SIDE) * channels;
+            grid[start..start + 3].to_vec()
+        });
+        (
+            theta1.parse().unwrap(),
+            theta2.parse().unwrap(),
+            pixels.collect(),
+        )
+    });
+    frames.collect()
+}
+
+/// The mean column and row of the pixels of a joint's colour around a place, and how many there are.
+fn joint(frame: &[u8], (column, row): (f64, f64)) -> (f64, f64, usize) {
+    let places = (0..SIDE * SIDE).map(|i| ((i % SIDE) as f64, (i / SIDE) as f64));
+    let pixels = frame.chunks_exact(3).zip(places);
+    let near = |x: f64, y: f64| (x - column).abs() <= 14.0 && (y - row).abs() <= 14.0;
+    let pixels: Vec<_> = pixels
+        .filter(|(pixel, (x, y))| *pixel == [204, 204, 0] && near(*x, *y))
+        .collect();
+    let mean = |sum: f64| sum / pixels.len() as f64;
+    (
+        mean(pixels.iter().map(|(_, (x, _))| x).sum()),
+        mean(pixels.iter().map(|(_, (_, y))| y).sum()),
+        pixels.len(),
+    )
+}
+
+#[test]
+fn frames_are_gymnasiums() {
+    let frames = recorded_frames();
+    assert_eq!(frames.len(), 64);
+    let (mut worst, mut sum, mut farthest) = (1.0_f64, 0.0, 0.0_f64);
+    let mut joints = 0;
+    for (theta1, theta2, theirs) in &frames {
+        let ours = Frame::of(&figure(*theta1, *theta2));
+        let close = ours.bytes().chunks_exact(3).zip(theirs.chunks_exact(3));
+        let close = close
+            .filter(|(x, y)| x.iter().zip(*y).all(|(x, y)| x.abs_diff(*y) <= 32))
+            .count();
+        let share = close as f64 / (SIDE * SIDE) as f64;
+        worst = worst.min(share);
+        sum += share;
+        let (sin1, cos1) = Portable::sin_cos(*theta1);
+        for place in [(250.0, 249.0), (250.0 + sin1 * 113.6, 249.0 + cos1 * 113.6)] {
+            let ((x, y, n), (their_x, their_y, their_n)) =
+                (joint(ours.bytes(), place), joint(theirs, place));
+            // Link 2 may cover the upper joint. A whole one has some 400 pixels.
+            if n > 370 && their_n > 370 {
+                joints += 1;
+                farthest = farthest.max((x - their_x).abs()).max((y - their_y).abs());
+            }
+        }
+    }
+    assert!(joints >= 100, "{joints} joints are in sight");
+    let mean = sum / frames.len() as f64;
+    println!("worst {worst}, mean {mean}, joints {farthest} pixels apart");
+    assert!(worst >= 0.992 && mean >= 0.995, "{worst} {mean}");
+    assert!(farthest <= 1.0, "{farthest}");
+}
+
+/// A target of any place and size that counts what is written to it, and knows nothing else.
+struct Canvas {
+    area: Rectangle,
+    pixels: Vec<Option<BinaryColor>>,
+    written: usize,
+}
+
+impl Canvas {
+    fn new(top_left: Point, size: Size) -> Self {
+        let pixels = vec![None; (size.width * size.height) as usize];
+        Self {
+            area: Rectangle::new(top_left, size),
+            pixels,
+            written: 0,
+        }
+    }
+}
+
+impl Dimensions for Canvas {
+    fn bounding_box(&self) -> Rectangle {
+        self.area
+    }
+}
+
+impl DrawTarget for Canvas {
+    type Color = BinaryColor;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
+        &mut self,
+        pixels: I,
+    ) -> Result<(), Infallible> {
+        for Pixel(point, color) in pixels {
+            assert!(
+                self.area.contains(point),
+                "{point} is outside of {:?}",
+                self.area
+            );
+            let Point { x, y } = point - self.area.top_left;
+            self.pixels[y as usize * self.area.size.width as usize + x as usize] = Some(color);
+            self.written += 1;
+        }
+        Ok(())
+    }
+}
+
+const THEME: Theme<BinaryColor> = Theme::MONOCHROME;
+
+/// The drawing on a 128×64 display, a character a pixel.
+fn oled(figure: Figure) -> String {
+    let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
+    figure.draw(&mut canvas, &THEME).unwrap();
+    let rows = canvas.pixels.chunks(128).map(|row| {
+        let row: String = row
+            .iter()
+            .map(|pixel| {
+                if *pixel == Some(BinaryColor::On) {
+                    '#'
+                } else {
+                    '.'
+                }
+            })
+            .collect();
+        row + "\n"
+    });
+    rows.collect()
+}
+
+#[test]
+fn the_monochrome_drawing_is_its_snapshot() {
+    let drawing =
+        oled(figure(0.6, -1.5).with_torque(1.0)) + "\n" + &oled(figure(2.5, 0.4).with_torque(-1.0));
+    common::assert_snapshot("oled.txt", include_str!("data/oled.txt"), &drawing);
+}
+
+#[test]
+fn nothing_is_drawn_outside_of_any_target() {
+    let mut rng = Pcg64::new(0);
+    let mut draw = move |low, high| uniform(&mut rng, low, high);
+    let mut sizes = vec![
+        (0, 0),
+        (0, 7),
+        (7, 0),
+        (1, 1),
+        (2, 2),
+        (3, 1000),
+        (1000, 3),
+        (128, 64),
+        (1000, 1000),
+    ];
+    sizes.extend((0..60).map(|_| (draw(0.0, 100.0) as u32, draw(0.0, 100.0) as u32)));
+    for (width, height) in sizes {
+        let corner = Point::new(draw(-500.0, 500.0) as i32, draw(-500.0, 500.0) as i32);
+        let mut canvas = Canvas::new(corner, Size::new(width, height));
+        let mut acrobot = Acrobot::<Portable>::new(0);
+        for length in [1.0, 1e-300, 1e300, f64::MAX] {
+            acrobot
+                .set_params(Params {
+                    length1: length,
+                    length2: 1.5 * draw(0.0, 1.0) + 0.1,
+                    ..Params::DEFAULT
+                })
+                .unwrap();
+            let size = 10_f64.powf(draw(0.0, 300.0));
+            acrobot
+                .set_state(State::from([(); 4].map(|()| draw(-size, size))))
+                .unwrap();
+            let figure = Figure::new(&acrobot).with_torque(draw(-1.0, 1.0) as f32);
+            canvas.written = 0;
+            figure.draw(&mut canvas, &THEME).unwrap();
+            assert_eq!(canvas.written, (width * height) as usize, "each pixel once");
+        }
+    }
+}
+
+#[test]
+fn a_redraw_writes_what_changed_and_no_more() {
+    let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
+    let mut shown = figure(0.0, 0.0);
+    shown.draw(&mut canvas, &THEME).unwrap();
+    for i in 0..50 {
+        let angle = f64::from(i) * 0.3;
+        let next = figure(angle / 2.0, angle).with_torque((i % 3 - 1) as f32);
+        let before = canvas.pixels.clone();
+        canvas.written = 0;
+        next.redraw(&shown, &mut canvas, &THEME).unwrap();
+        let changed = canvas
+            .pixels
+            .iter()
+            .zip(&before)
+            .filter(|(now, before)| now != before)
+            .count();
+        assert_eq!(canvas.written, changed);
+        assert!(changed < 128 * 64 / 4, "{changed} pixels");
+
+        let mut whole = Canvas::new(Point::zero(), Size::new(128, 64));
+        next.draw(&mut whole, &THEME).unwrap();
+        assert_eq!(canvas.pixels, whole.pixels);
+
+        canvas.written = 0;
+        next.redraw(&next, &mut canvas, &THEME).unwrap();
+        assert_eq!(canvas.written, 0);
+        shown = next;
+    }
+}
+
+#[test]
+fn the_arrow_shows_the_torques_direction_where_there_is_room() {
+    let still = oled(figure(0.6, -1.5));
+    let positive = oled(figure(0.6, -1.5).with_torque(0.5));
+    assert_ne!(positive, still);
+    assert_ne!(positive, oled(figure(0.6, -1.5).with_torque(-0.5)));
+    assert_eq!(oled(figure(0.6, -1.5).with_torque(0.0)), still);
+    assert_eq!(oled(figure(0.6, -1.5).with_torque(f32::NAN)), still);
+    // Hanging, the two directions are mirror images.
+    let mirrored = |drawing: String| {
+        drawing
+            .lines()
+            .map(|row| row.chars().rev().collect::<String>() + "\n")
+            .collect::<String>()
+    };
+    assert_eq!(
+        mirrored(oled(figure(0.0, 0.0).with_torque(1.0))),
+        oled(figure(0.0, 0.0).with_torque(-1.0))
+    );
+
+    let tiny = |figure: Figure| {
+        let mut canvas = Canvas::new(Point::zero(), Size::new(200, 47));
+        figure.draw(&mut canvas, &THEME).unwrap();
+        canvas.pixels
+    };
+    assert_eq!(
+        tiny(figure(0.6, -1.5).with_torque(1.0)),
+        tiny(figure(0.6, -1.5))
+    );
+}
