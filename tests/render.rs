@@ -201,7 +201,7 @@ fn nothing_is_drawn_outside_of_any_target() {
                     ..Params::DEFAULT
                 })
                 .unwrap();
-            let size = 10_f64.powf(draw(0.0, 300.0));
+            let size = 10_f64.powi(draw(0.0, 300.0) as i32);
             acrobot
                 .set_state(State::from([(); 4].map(|()| draw(-size, size))))
                 .unwrap();

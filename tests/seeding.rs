@@ -4,6 +4,7 @@ use std::fmt::Debug;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
+use acrobot::env::{Env, Space};
 use acrobot::{Acrobot, Fast, Pcg64, Portable, SeedSequence, integers, uniform};
 use rand_core::{Rng, SeedableRng};
 
@@ -52,6 +53,20 @@ fn samples_are_gymnasiums() {
         let n: NonZeroU32 = row[1].parse().unwrap();
         let drawn: Vec<u32> = (0..20).map(|_| integers(&mut space, n)).collect();
         assert_eq!(drawn, numbers::<u32>(&row[2..]), "seed {}, n {n}", row[0]);
+    }
+}
+
+#[test]
+fn box_samples_are_gymnasiums() {
+    let acrobot = Acrobot::<Fast>::new(0);
+    for row in rows("box") {
+        let space = acrobot.observation_space();
+        let mut rng = Pcg64::new(seed(row[0]));
+        let drawn: Vec<u64> = (0..3)
+            .flat_map(|_| *space.sample(&mut rng))
+            .map(|x: f32| x.to_bits().into())
+            .collect();
+        assert_eq!(drawn, hexes(&row[1..]), "seed {}", row[0]);
     }
 }
 

@@ -61,7 +61,9 @@ where
 
     let mut played = env.clone();
     let first = play(&mut played, seed, &actions)?;
-    let again = play(&mut env.clone(), seed, &actions)?;
+    let mut otherwise_seeded = env.clone();
+    otherwise_seeded.reset(Some(seed.wrapping_add(1).into()), None);
+    let again = play(&mut otherwise_seeded, seed, &actions)?;
     same(SEED, &first, &again)?;
     // The one that has just come to an end, without help from a clone.
     let second = play(&mut played, seed, &actions)?;

@@ -157,6 +157,28 @@ def write_seeds():
         space = Discrete(n)
         space.seed(seed)
         lines.append(f"sample {seed} {n} {' '.join(str(space.sample()) for _ in range(20))}")
+    lines.append("# box SEED: three samples of Acrobot-v1's observation space after seed(SEED) (bits of f32)")
+    for seed in seeds:
+        space = gymnasium.make("Acrobot-v1").observation_space
+        space.seed(seed)
+        samples = np.concatenate([space.sample() for _ in range(3)])
+        lines.append(f"box {seed} {hexes(samples.view('<u4'), 8)}")
+    lines.append("# play ID SEED: 1000 random steps, a reset at each end: a digest of every step's observation (f32; for v0")
+    lines.append("# the state), reward and ends, and the number of episodes")
+    for version, seed in product([0, 1], range(10)):
+        # Gymnasium has no Acrobot-v0 any more; it was this.
+        played = gymnasium.make("Acrobot-v1", max_episode_steps=[200, 500][version])
+        played.reset(seed=seed)
+        played.action_space.seed(seed)
+        words, episodes = [], 0
+        for _ in range(1000):
+            observation, reward, terminated, truncated, _ = played.step(played.action_space.sample())
+            seen = [played.unwrapped.state, observation][version].astype("<f4").view("<u4")
+            words += [*seen, reward == 0.0, terminated, truncated]
+            if terminated or truncated:
+                episodes += 1
+                played.reset()
+        lines.append(f"play Acrobot-v{version} {seed} {digest(words):016x} {episodes}")
     lines.append("# mixed SEED: integers(3), uniform(-1, 2) (bits of f64), integers(5), four times over")
     for seed in seeds:
         rng = np.random.default_rng(seed)

@@ -1,0 +1,486 @@
+//! The host's environments: Gymnasium's runs through `make`, the contract and who breaks it,
+//! pictures, live changes, and what is refused.
+
+mod common;
+
+use std::cell::Cell;
+use std::rc::Rc;
+use std::sync::{Arc, Mutex};
+
+use acrobot::env::{
+    ArithmeticKind, BoxSpace, Classic, Discrete, Display, Env, EnvStep, Error, Frame, Info,
+    Options, RecordEpisodeStatistics, RenderMode, Rendering, Space, Violation, acrobot_v0,
+    acrobot_v1, check_env, make, make_with,
+};
+use acrobot::{
+    Acrobot, Action, Dynamics, Fast, Figure, Host, Micro, Observation, Params, Pcg64, Portable,
+    SeedSequence, StartBounds, State, TimeLimit,
+};
+use common::{Digest, is_recorded_library};
+
+#[test]
+fn make_plays_gymnasiums_runs() {
+    if !is_recorded_library() {
+        return;
+    }
+    let rows = include_str!("data/seeds.txt")
+        .lines()
+        .filter_map(|line| line.strip_prefix("play "));
+    let mut played = 0;
+    for row in rows {
+        let [id, seed, digest, episodes] = row.split(' ').collect::<Vec<_>>()[..] else {
+            panic!("{row}")
+        };
+        let mut env = make(id).unwrap();
+        let mut actions = Pcg64::new(seed.parse::<SeedSequence>().unwrap());
+        env.reset(Some(seed.parse().unwrap()), None);
+        let (mut found, mut ends) = (Digest::new(), 0);
+        for _ in 0..1000 {
+            let step = env.step(env.action_space().sample(&mut actions));
+            step.observation
+                .iter()
+                .for_each(|x| found.add(x.to_bits().into()));
+            found.add((step.reward == 0.0).into());
+            found.add(step.terminated.into());
+            found.add(step.truncated.into());
+            if step.ended() {
+                ends += 1;
+                env.reset(None, None);
+            }
+        }
+        assert_eq!(format!("{:016x}", found.0), digest, "{id}, seed {seed}");
+        assert_eq!(ends.to_string(), episodes, "{id}, seed {seed}");
+        played += 1;
+    }
+    assert_eq!(played, 20);
+}
+
+#[test]
+fn our_environments_keep_the_contract() {
+    fn check<E>(env: E)
+    where
+        E: Env<Observation: Clone + std::fmt::Debug + PartialEq, Action: Clone> + Clone,
+    {
+        for seed in 0..3 {
+            check_env(&env, seed).unwrap();
+        }
+    }
+    let options = || Options {
+        render_mode: RenderMode::RgbArray,
+        ..Options::default()
+    };
+    check(Acrobot::<Host>::new(0));
+    check(Acrobot::<Micro>::new(0));
+    check(TimeLimit::v1(Acrobot::<Portable>::new(0)));
+    check(acrobot_v0::<Fast>(options()).unwrap());
+    check(acrobot_v1::<Host>(options()).unwrap());
+    check(RecordEpisodeStatistics::new(
+        acrobot_v1::<Fast>(options()).unwrap(),
+    ));
+    let noisy = Params {
+        torque_noise: 0.5,
+        max_velocity1: 1.0,
+        max_velocity2: 1.0,
+        ..Params::DEFAULT
+    };
+    check(
+        acrobot_v1::<Portable>(Options {
+            params: noisy,
+            ..options()
+        })
+        .unwrap(),
+    );
+}
+
+/// How an environment can break the contract.
+#[derive(Clone)]
+enum Flaw {
+    /// None: to see that the wrapper itself passes.
+    None,
+    /// Observations leave their space.
+    Outside,
+    /// A reward is NaN.
+    Reward,
+    /// The seed is ignored.
+    Seed,
+    /// The time limit's count goes on over a reset: truncation is reported again.
+    Count(Cell<u32>),
+    /// Clones share what they should own.
+    Shared(Rc<Cell<u32>>),
+    /// Rendering moves the acrobot.
+    Render,
+}
+
+#[derive(Clone)]
+struct Broken {
+    env: TimeLimit<Acrobot<Fast>>,
+    flaw: Flaw,
+}
+
+impl Env for Broken {
+    type Observation = Observation;
+    type Action = Action;
+    type ObservationSpace = BoxSpace<Observation>;
+    type ActionSpace = Discrete<Action>;
+    type Unwrapped = Acrobot<Fast>;
+
+    fn reset(
+        &mut self,
+        seed: Option<SeedSequence>,
+        bounds: Option<StartBounds>,
+    ) -> (Observation, Info) {
+        let seed = if matches!(self.flaw, Flaw::Seed) {
+            None
+        } else {
+            seed
+        };
+        Env::reset(&mut self.env, seed, bounds)
+    }
+
+    fn step(&mut self, action: Action) -> EnvStep<Observation> {
+        let mut step = Env::step(&mut self.env, action);
+        match &self.flaw {
+            Flaw::Outside => step.observation.0[0] += 1.0,
+            Flaw::Reward => step.reward = f32::NAN,
+            Flaw::Count(count) => {
+                count.set(count.get() + 1);
+                step.truncated = count.get() >= 500;
+            }
+            Flaw::Shared(count) => {
+                count.set(count.get() + 1);
+                step.reward -= (count.get() % 7) as f32;
+            }
+            Flaw::None | Flaw::Seed | Flaw::Render => {}
+        }
+        step
+    }
+
+    fn action_space(&self) -> Discrete<Action> {
+        self.env.action_space()
+    }
+
+    fn observation_space(&self) -> BoxSpace<Observation> {
+        self.env.observation_space()
+    }
+
+    fn render(&mut self) -> Result<Rendering, Error> {
+        if matches!(self.flaw, Flaw::Render) {
+            self.unwrapped_mut().step(Action::Zero);
+        }
+        Err(Error::NoRenderMode)
+    }
+
+    fn unwrapped(&self) -> &Acrobot<Fast> {
+        self.env.unwrapped()
+    }
+
+    fn unwrapped_mut(&mut self) -> &mut Acrobot<Fast> {
+        self.env.unwrapped_mut()
+    }
+}
+
+#[test]
+fn the_contracts_check_finds_who_breaks_it() {
+    let check = |flaw| {
+        check_env(
+            &Broken {
+                env: TimeLimit::v1(Acrobot::new(0)),
+                flaw,
+            },
+            1,
+        )
+    };
+    assert_eq!(check(Flaw::None), Ok(()));
+    for (flaw, rule) in [
+        (Flaw::Outside, "an observation is in the observation space"),
+        (Flaw::Reward, "a reward is finite"),
+        (
+            Flaw::Seed,
+            "the same seed and the same actions give the same episode",
+        ),
+        (
+            Flaw::Count(Cell::new(0)),
+            "a reset after an end starts a whole new episode",
+        ),
+        (
+            Flaw::Shared(Rc::new(Cell::new(0))),
+            "the same seed and the same actions give the same episode",
+        ),
+        (Flaw::Render, "rendering changes nothing"),
+    ] {
+        let Err(Violation {
+            rule: broken,
+            found,
+        }) = check(flaw)
+        else {
+            panic!("{rule} is not checked")
+        };
+        assert_eq!(broken, rule, "{found}");
+        assert!(!found.is_empty());
+    }
+}
+
+#[test]
+fn versions_differ_in_limit_and_observation() {
+    let (mut v0, mut v1) = (make("Acrobot-v0").unwrap(), make("Acrobot-v1").unwrap());
+    let (angles, _) = v0.reset(Some(5.into()), None);
+    let (sines, _) = v1.reset(Some(5.into()), None);
+    assert_eq!((angles.len(), sines.len()), (4, 6));
+    let state = v1.unwrapped().state();
+    assert_eq!(f64::from(angles[2]), state.dtheta1);
+    assert_eq!(sines[4..], angles[2..]);
+    for n in 1..=500 {
+        assert_eq!(v0.step(Action::Zero).truncated, n >= 200);
+        assert_eq!(v1.step(Action::Zero).truncated, n >= 500);
+    }
+    assert_eq!(**v0.observation_space().high(), *Observation::<4>::HIGH);
+    assert_eq!(**v1.observation_space().high(), *Observation::<6>::HIGH);
+    assert_eq!(**v1.observation_space().low(), *Observation::<6>::LOW);
+    assert_eq!(v1.action_space().n().get(), 3);
+
+    let bounds = StartBounds::new(0.3, 0.3).unwrap();
+    let (start, _) = v0.reset(None, Some(bounds));
+    assert_eq!(*start, [0.3; 4]);
+}
+
+#[test]
+fn live_changes_reach_through_every_wrapper() {
+    let params = Params {
+        dynamics: Dynamics::Nips,
+        dt: 0.05,
+        ..Params::DEFAULT
+    };
+    let mut typed = RecordEpisodeStatistics::new(acrobot_v1::<Host>(Options::default()).unwrap());
+    let mut erased = make("Acrobot-v1").unwrap();
+    let mut made_so = make_with(
+        "Acrobot-v1",
+        Options {
+            params,
+            ..Options::default()
+        },
+    )
+    .unwrap();
+    typed.reset(Some(3.into()), None);
+    erased.reset(Some(3.into()), None);
+    made_so.reset(Some(3.into()), None);
+    typed.unwrapped_mut().set_params(params).unwrap();
+    erased.unwrapped_mut().set_params(params).unwrap();
+    assert_eq!(erased.unwrapped().params(), params);
+    let far = State::from([1.0, 1.0, 2.0, 2.0]);
+    typed.inner_mut().unwrapped_mut().set_state(far).unwrap();
+    erased.unwrapped_mut().set_state(far).unwrap();
+    made_so.unwrapped_mut().set_state(far).unwrap();
+    let expected = typed.step(Action::Positive);
+    assert_eq!(
+        *erased.step(Action::Positive).observation,
+        *expected.observation
+    );
+    assert_eq!(
+        *made_so.step(Action::Positive).observation,
+        *expected.observation
+    );
+
+    let faster = Params {
+        max_velocity1: 1.0,
+        ..params
+    };
+    erased.unwrapped_mut().set_params(faster).unwrap();
+    assert_eq!(erased.observation_space().high()[4], 1.0);
+}
+
+#[test]
+fn every_arithmetic_can_be_made() {
+    fn start<A: acrobot::Arithmetic>() -> State {
+        let mut acrobot = Acrobot::<A>::new(1);
+        acrobot.step(Action::Positive);
+        acrobot.state().cast()
+    }
+    for (arithmetic, expected) in [
+        (ArithmeticKind::Host, start::<Host>()),
+        (ArithmeticKind::Portable, start::<Portable>()),
+        (ArithmeticKind::Fast, start::<Fast>()),
+        (ArithmeticKind::Micro, start::<Micro>()),
+    ] {
+        let mut env = make_with(
+            "Acrobot-v1",
+            Options {
+                arithmetic,
+                ..Options::default()
+            },
+        )
+        .unwrap();
+        env.reset(Some(1.into()), None);
+        env.step(Action::Positive);
+        assert_eq!(env.unwrapped().state(), expected, "{arithmetic:?}");
+    }
+}
+
+fn with_mode(render_mode: RenderMode) -> TimeLimit<Classic<Portable, Observation>> {
+    let mut env = acrobot_v1::<Portable>(Options {
+        render_mode,
+        ..Options::default()
+    })
+    .unwrap();
+    env.reset(Some(1.into()), None);
+    env.unwrapped_mut()
+        .set_state(State::from([0.6, -1.5, 1.0, -2.0]))
+        .unwrap();
+    env
+}
+
+#[test]
+fn each_render_mode_returns_its_kind() {
+    let mut rgb = with_mode(RenderMode::RgbArray);
+    let Ok(Rendering::Frame(frame)) = rgb.render() else {
+        panic!("no frame")
+    };
+    assert_eq!((frame.width(), frame.height()), (500, 500));
+    assert_eq!(frame, Frame::of(&Figure::new(rgb.unwrapped())));
+
+    let Ok(Rendering::Text(text)) = with_mode(RenderMode::Ansi).render() else {
+        panic!("no text")
+    };
+    common::assert_snapshot("ansi.txt", include_str!("data/ansi.txt"), &text);
+
+    let shown = Arc::new(Mutex::new(Vec::new()));
+    let sink = Arc::clone(&shown);
+    let display = Display::new(move |frame| sink.lock().unwrap().push(frame.clone()));
+    let mut human = with_mode(RenderMode::Human(display));
+    human.step(Action::Zero);
+    assert_eq!(human.render(), Ok(Rendering::Shown));
+    let shown = shown.lock().unwrap();
+    assert_eq!(shown.len(), 3, "the reset, the step and the call");
+    assert_eq!(shown[1], shown[2]);
+    assert_eq!(shown[2], Frame::of(&Figure::new(human.unwrapped())));
+    human.close();
+}
+
+#[test]
+fn statistics_are_of_each_episode() {
+    let mut env = RecordEpisodeStatistics::new(TimeLimit::new(
+        Acrobot::<Fast>::new(0),
+        5.try_into().unwrap(),
+    ));
+    assert_eq!(env.mean_return(), None);
+    for episode in 1..=120 {
+        env.reset(None, None);
+        if episode == 120 {
+            let upright = State {
+                theta1: 3.0,
+                ..State::default()
+            };
+            env.unwrapped_mut().set_state(upright).unwrap();
+        }
+        let last = loop {
+            let step = env.step(Action::Zero);
+            assert_eq!(step.info.episode.is_some(), step.ended());
+            if let Some(last) = step.info.episode {
+                break last;
+            }
+        };
+        let expected = if episode == 120 { (1, 0.0) } else { (5, -5.0) };
+        assert_eq!((last.length, last.episode_return), expected);
+    }
+    assert_eq!(env.episodes().count(), 100);
+    assert_eq!(env.mean_return(), Some(-99.0 * 5.0 / 100.0));
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_what_to_do() {
+    for (id, nearest) in [
+        ("Acrobot-v2", "Acrobot-v1"),
+        ("acrobot-v0", "Acrobot-v0"),
+        ("", "Acrobot-v1"),
+        ("CartPole-v1", "Acrobot-v1"),
+    ] {
+        let text = make(id).err().unwrap().to_string();
+        let expected = format!(
+            "there is no environment {id:?}; did you mean {nearest:?}? Known are Acrobot-v0 and Acrobot-v1"
+        );
+        assert_eq!(text, expected);
+    }
+    let refused = |params, arithmetic| {
+        let options = Options {
+            params,
+            arithmetic,
+            ..Options::default()
+        };
+        make_with("Acrobot-v1", options).err().unwrap().to_string()
+    };
+    let text = refused(
+        Params {
+            dt: -1.0,
+            ..Params::DEFAULT
+        },
+        ArithmeticKind::Host,
+    );
+    assert_eq!(text, "dt is -1 s; allowed is a finite number above 0");
+    let text = refused(
+        Params {
+            mass1: 1e-60,
+            ..Params::DEFAULT
+        },
+        ArithmeticKind::Fast,
+    );
+    assert_eq!(text, "mass1 is 0 kg; allowed is a finite number above 0");
+
+    let mut mute = make("Acrobot-v1").unwrap();
+    let error = mute.render().unwrap_err();
+    assert_eq!(error, Error::NoRenderMode);
+    assert!(
+        error
+            .to_string()
+            .contains("make the environment with the render mode RgbArray, Ansi or Human")
+    );
+    assert_eq!(Acrobot::<Fast>::new(0).render(), Err(Error::NoRenderMode));
+
+    let before = mute.unwrapped().state();
+    assert!(
+        mute.unwrapped_mut()
+            .set_state(State {
+                theta1: f64::NAN,
+                ..before
+            })
+            .is_err()
+    );
+    assert!(
+        mute.unwrapped_mut()
+            .set_params(Params {
+                mass1: 0.0,
+                ..Params::DEFAULT
+            })
+            .is_err()
+    );
+    assert_eq!(mute.unwrapped().state(), before);
+    assert_eq!(mute.unwrapped().params(), Params::DEFAULT);
+}
+
+#[test]
+fn spaces_know_their_elements() {
+    let space = acrobot_v1::<Fast>(Options::default())
+        .unwrap()
+        .observation_space();
+    assert!(space.contains(space.low()) && space.contains(space.high()));
+    for i in 0..6 {
+        let mut outside = *space.high();
+        outside.0[i] = outside.0[i].next_up();
+        assert!(!space.contains(&outside));
+        outside.0[i] = space.low()[i].next_down();
+        assert!(!space.contains(&outside));
+        outside.0[i] = f32::NAN;
+        assert!(!space.contains(&outside));
+    }
+    assert!(
+        !BoxSpace::new(vec![0.0], vec![1.0])
+            .unwrap()
+            .contains(&vec![0.5, 0.5])
+    );
+    assert!(BoxSpace::new(vec![0.0], vec![1.0, 2.0]).is_none());
+    assert!(BoxSpace::new([f32::NEG_INFINITY], [0.0]).is_none());
+    assert!(BoxSpace::new([0.0], [f32::NAN]).is_none());
+    assert!(
+        Action::ALL
+            .iter()
+            .all(|action| Discrete::ACTIONS.contains(action))
+    );
+}
