@@ -249,8 +249,9 @@ fn arrow(center: Vector, radius: f32, direction: f32) -> [Bar; 8] {
         ((0.0, -1.0), (-DIAGONAL, -DIAGONAL)),
         ((-DIAGONAL, -DIAGONAL), (-1.0, 0.0)),
         ((-1.0, 0.0), END),
-        (END, (END.0 - 0.5, END.1)),
-        (END, (END.0, END.1 - 0.5)),
+        // Back along the last piece of the arc, 40° to either side.
+        (END, (END.0 - 0.49, END.1 - 0.25)),
+        (END, (END.0 + 0.17, END.1 - 0.52)),
     ]
     .map(|(from, to)| {
         let at = |(x, y)| center.plus(direction * radius * x, radius * y);

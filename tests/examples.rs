@@ -2,10 +2,13 @@
 
 mod common;
 
+use std::fs;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
-use acrobot::{Acrobot, Arithmetic, Fast, Host, Micro, Params, Portable, Real, State};
+use acrobot::env::Frame;
+use acrobot::{Acrobot, Arithmetic, Fast, Figure, Host, Micro, Params, Portable, Real, State};
 use common::{RECORDING, is_recorded_library};
 
 fn run(example: &str, arguments: &[&str], input: &str) -> Output {
@@ -217,4 +220,154 @@ fn the_random_agent_helps_and_refuses() {
     let errors = refused("random_agent", &["--seed", "4x2"], "");
     assert!(errors.contains("seed has 'x' as character 2"), "{errors}");
     refused("random_agent", &["--steps", "-1"], "");
+}
+
+/// An empty folder of one test, gone when it ends.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("acrobot-{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        Self(folder)
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn png(path: &str) -> (u32, u32, Vec<u8>) {
+    let file = std::io::Cursor::new(fs::read(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    (info.width, info.height, bytes)
+}
+
+#[test]
+fn a_state_is_rendered_as_its_frame() {
+    let folder = Folder::new("state");
+    let out = folder.file("frame.png");
+    printed(run(
+        "render_episode",
+        &["--state", "-0.6,1.5", "--out", &out],
+        "",
+    ));
+    let mut acrobot = Acrobot::<Portable>::new(0);
+    acrobot
+        .set_state(State {
+            theta1: -0.6,
+            theta2: 1.5,
+            ..State::default()
+        })
+        .unwrap();
+    let expected = Frame::of(&Figure::new(&acrobot));
+    assert_eq!(png(&out), (500, 500, expected.bytes().to_vec()));
+}
+
+/// The README's first picture is what the example draws.
+#[test]
+fn the_episode_is_the_readmes_picture() {
+    let folder = Folder::new("episode");
+    let (gif, strip) = (folder.file("episode.gif"), folder.file("episode.png"));
+    printed(run("render_episode", &["--out", &gif], ""));
+    assert!(
+        fs::read(&gif).unwrap() == include_bytes!("../examples/episode.gif"),
+        "examples/episode.gif is another"
+    );
+    let (width, height, pixels) = png(&strip);
+    assert_eq!((width, height), (8 * 150, 150));
+    assert!(pixels.chunks(3).any(|pixel| pixel == [0, 204, 204]));
+
+    let mut frames = gif::DecodeOptions::new()
+        .read_info(fs::File::open(&gif).unwrap())
+        .unwrap();
+    let mut count = 0;
+    while frames.read_next_frame().unwrap().is_some() {
+        count += 1;
+    }
+    assert_eq!(count, 95);
+}
+
+#[test]
+fn the_portrait_has_its_four_panels() {
+    let folder = Folder::new("portrait");
+    let out = folder.file("portrait.svg");
+    assert!(printed(run("phase_portrait", &["--out", &out], "")).contains("94 steps"));
+    let svg = fs::read_to_string(&out).unwrap();
+    for title in [
+        "angles",
+        "velocities",
+        "energy",
+        "phase portrait",
+        "rad/s",
+        "time (s)",
+    ] {
+        assert!(svg.contains(title), "{title}");
+    }
+    assert!(svg.matches("<polyline").count() >= 6);
+}
+
+#[test]
+fn the_energy_controller_catches_the_upright() {
+    let output = printed(run("energy_control", &["--episodes", "20"], ""));
+    let row = |policy: &str, limit: &str| {
+        let row = output
+            .lines()
+            .find(|line| line.starts_with(policy) && line.contains(limit));
+        row.unwrap_or_else(|| panic!("{output}")).to_owned()
+    };
+    assert!(
+        row("energy", "10 N m").matches("20 of 20 at").count() == 2,
+        "{output}"
+    );
+    assert!(
+        row("bang-bang", "1 N m").contains("20 of 20 at"),
+        "{output}"
+    );
+    assert!(row("random", "1 N m").ends_with("0 of 20"), "{output}");
+}
+
+#[test]
+fn drawing_examples_refuse_with_a_reason() {
+    for (example, arguments, reason) in [
+        (
+            "render_episode",
+            "--state 1",
+            "allowed are two numbers in rad",
+        ),
+        ("render_episode", "--state nan,1", "theta1 is NaN rad"),
+        (
+            "render_episode",
+            "--out picture.png",
+            "picture.png, where the strip goes; allowed is a GIF",
+        ),
+        (
+            "render_episode",
+            "--out no/such/folder.gif",
+            "cannot write no/such/folder.gif",
+        ),
+        (
+            "phase_portrait",
+            "--out no/such/folder.svg",
+            "cannot write no/such/folder.svg",
+        ),
+        (
+            "energy_control",
+            "--limit 0",
+            "allowed is a finite number of N m above 0",
+        ),
+        ("energy_control", "--episodes 0", "0 is not in 1.."),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let errors = refused(example, &arguments, "");
+        assert!(errors.contains(reason), "{errors}");
+    }
 }
