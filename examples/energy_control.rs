@@ -50,7 +50,7 @@ fn main() {
     let options = Options::parse();
     let regulator = Regulator::new();
     println!("policy                torque limit  steps to the goal      caught upright");
-    let mut actions = Pcg64::new(options.seed);
+    let mut actions = Pcg64::new(options.seed.clone());
     report(&options, "random", 1.0, |_| {
         f64::from(u8::from(Action::sample(&mut actions))) - 1.0
     });
@@ -66,7 +66,7 @@ fn main() {
 
 /// Plays the episodes of one policy and prints how they went.
 fn report(options: &Options, name: &str, limit: f64, mut policy: impl FnMut(&Acrobot) -> f64) {
-    let mut parent = options.seed;
+    let mut parent = options.seed.clone();
     let (mut goals, mut catches) = (Vec::new(), Vec::new());
     for seed in parent.spawn(options.episodes) {
         let (goal, catch) = play(Acrobot::new(seed), &mut policy);

@@ -37,7 +37,7 @@ struct Sample {
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    let samples = record(options.seed);
+    let samples = record(&options.seed);
     match plot(&options, &samples) {
         Ok(()) => {
             println!("{}: {} steps", options.out.display(), samples.len() - 1);
@@ -50,8 +50,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn record(seed: SeedSequence) -> Vec<Sample> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(seed));
+fn record(seed: &SeedSequence) -> Vec<Sample> {
+    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(seed.clone()));
     let sample = |acrobot: &TimeLimit<Acrobot>| Sample {
         time: f64::from(acrobot.elapsed()) * acrobot.inner().params().dt,
         state: acrobot.inner().state(),

@@ -17,6 +17,7 @@
 //! ```
 
 use std::io::{self, Write};
+use std::process::ExitCode;
 
 use acrobot::{Acrobot, Action, Host, Pcg64, SeedSequence, TimeLimit};
 use clap::Parser;
@@ -33,18 +34,21 @@ struct Options {
     steps: u64,
 }
 
-fn main() -> io::Result<()> {
+fn main() -> ExitCode {
     let options = Options::parse();
     match play(&options, &mut io::stdout().lock()) {
         // Whoever reads has read enough.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => result,
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            eprintln!("error: cannot print: {error}");
+            ExitCode::from(2)
+        }
+        _ => ExitCode::SUCCESS,
     }
 }
 
 fn play(options: &Options, out: &mut impl Write) -> io::Result<()> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Host>::new(options.seed));
-    let mut action_space = Pcg64::new(options.seed);
+    let mut acrobot = TimeLimit::v1(Acrobot::<Host>::new(options.seed.clone()));
+    let mut action_space = Pcg64::new(options.seed.clone());
 
     let (mut episodes, mut goals, mut sum) = (0_u64, 0_u64, 0.0);
     let mut episode_return = 0.0;

@@ -26,19 +26,19 @@ struct Options {
     #[arg(long)]
     seed: SeedSequence,
     /// Lower bound of the start, rad and rad/s.
-    #[arg(long, default_value_t = StartBounds::DEFAULT.low())]
+    #[arg(long, default_value_t = StartBounds::DEFAULT.low(), allow_hyphen_values = true)]
     low: f64,
     /// Upper bound of the start, rad and rad/s.
-    #[arg(long, default_value_t = StartBounds::DEFAULT.high())]
+    #[arg(long, default_value_t = StartBounds::DEFAULT.high(), allow_hyphen_values = true)]
     high: f64,
     /// Equations of motion.
     #[arg(long, value_enum, default_value = "book")]
     dynamics: DynamicsName,
     /// Torque noise, N m.
-    #[arg(long, default_value_t = Params::DEFAULT.torque_noise)]
+    #[arg(long, default_value_t = Params::DEFAULT.torque_noise, allow_hyphen_values = true)]
     noise: f64,
     /// Time of a step, s.
-    #[arg(long, default_value_t = Params::DEFAULT.dt)]
+    #[arg(long, default_value_t = Params::DEFAULT.dt, allow_hyphen_values = true)]
     dt: f64,
     /// What to compute in.
     #[arg(long, value_enum, default_value = "host")]
@@ -89,14 +89,15 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
         ..Params::DEFAULT
     };
     params.validate()?;
-    let mut acrobot = Acrobot::<A>::new(options.seed);
-    // Once more, because a small number may be 0 in the arithmetic's scalar.
-    acrobot.set_params(params.cast())?;
+    let mut acrobot = Acrobot::<A>::new(options.seed.clone());
+    // Once more, because f32 may hold a valid number as 0 or as infinite.
+    let rounded = acrobot.set_params(params.cast());
+    rounded.map_err(|error| format!("rounded to the arithmetic's f32, {error}"))?;
     let mut input = Vec::new();
     io::stdin().read_to_end(&mut input)?;
     let actions = parse_actions(&input)?;
 
-    acrobot.reseed(options.seed);
+    acrobot.reseed(options.seed.clone());
     acrobot.reset_within(bounds);
     match print(&mut acrobot, &actions, BufWriter::new(io::stdout().lock())) {
         // Whoever reads has read enough.
@@ -105,11 +106,14 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
     }
 }
 
+/// White space to Python, and not to Rust.
+const VERTICAL_TAB: u8 = 0x0b;
+
 fn parse_actions(input: &[u8]) -> Result<Vec<Action>, String> {
     let bytes = input
         .iter()
         .zip(1..)
-        .filter(|(byte, _)| !byte.is_ascii_whitespace());
+        .filter(|(byte, _)| !(byte.is_ascii_whitespace() || **byte == VERTICAL_TAB));
     bytes
         .map(|(&byte, position)| {
             let action = Action::try_from(byte.wrapping_sub(b'0'));

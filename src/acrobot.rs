@@ -53,7 +53,7 @@ pub struct Step {
 /// Extreme but valid parameters, starts and torques can take a step's result out of the range of
 /// the scalar. A step whose result is not finite keeps the angles and sets both velocities to 0.
 /// Starts far outside of ±π are valid: the first step wraps the angles and bounds the velocities.
-/// Nothing here hangs, panics or turns into NaN.
+/// No step, reset or observation hangs, panics or turns into NaN.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
     model: Model<A::Scalar>,
@@ -63,6 +63,9 @@ pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
     rng: R,
 }
 
+/// What firmware counts on, checked wherever the crate is built.
+const _: () = assert!(size_of::<Acrobot<crate::Fast>>() <= 192);
+
 impl<A: Arithmetic> Acrobot<A> {
     /// An acrobot with the default parameters, at the start of Gymnasium's `reset(seed=seed)`.
     #[must_use]
@@ -70,8 +73,13 @@ impl<A: Arithmetic> Acrobot<A> {
         Self::with_rng(Pcg64::new(seed))
     }
 
-    /// Seeds the generator anew and changes nothing else; a [`reset`](Self::reset) after it is
-    /// Gymnasium's `reset(seed=seed)`.
+    /// Gymnasium's `reset(seed=seed)`: seeds the generator anew and draws a start from it.
+    pub fn reset_seeded(&mut self, seed: impl Into<SeedSequence>) -> Observation {
+        self.reseed(seed);
+        self.reset()
+    }
+
+    /// Seeds the generator anew and changes nothing else: for a seeded reset within other bounds.
     pub fn reseed(&mut self, seed: impl Into<SeedSequence>) {
         self.rng = Pcg64::new(seed);
     }
@@ -218,19 +226,19 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     /// The mass matrix at the state, kg m²; see [`mass_matrix`](crate::mass_matrix).
     #[must_use]
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
-        dynamics::mass_matrix::<A>(self.params(), &self.state)
+        self.model.mass_matrix::<A>(&self.state)
     }
 
     /// The total energy of the state, J; see [`energy`](crate::energy).
     #[must_use]
     pub fn energy(&self) -> A::Scalar {
-        dynamics::energy::<A>(self.params(), &self.state)
+        self.model.energy::<A>(&self.state)
     }
 
     /// The height of the tip above the fixed joint, m; see [`tip_height`](crate::tip_height).
     #[must_use]
     pub fn tip_height(&self) -> A::Scalar {
-        dynamics::tip_height::<A>(self.params(), &self.state)
+        self.model.tip_height::<A>(&self.state)
     }
 
     /// Of valid parts.

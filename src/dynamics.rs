@@ -5,6 +5,7 @@
 //! phi1 and phi2. The same equations stand here in two orders of evaluation, one below the other.
 
 use crate::arithmetic::{Arithmetic, Form, Real};
+use crate::bounds::wrap;
 use crate::params::{Dynamics, Params};
 use crate::state::State;
 
@@ -158,12 +159,35 @@ impl<S: Real> Model<S> {
         [dtheta1, dtheta2, ddtheta1, ddtheta2]
     }
 
-    /// The mass matrix at θ2 of this cosine, kg m².
-    fn mass_matrix(&self, cos2: S) -> [[S; 2]; 2] {
-        let coupling = self.coupling * cos2;
+    pub(crate) fn mass_matrix<A: Arithmetic<Scalar = S>>(&self, state: &State<S>) -> [[S; 2]; 2] {
+        let coupling = self.coupling * A::cos(state.theta2);
         let d2 = self.link2 + coupling;
         [[self.total + coupling + coupling, d2], [d2, self.link2]]
     }
+
+    pub(crate) fn energy<A: Arithmetic<Scalar = S>>(&self, state: &State<S>) -> S {
+        let State {
+            dtheta1, dtheta2, ..
+        } = *state;
+        let [[m11, m12], [_, m22]] = self.mass_matrix::<A>(state);
+        let momentum1 = m11 * dtheta1 + m12 * dtheta2;
+        let momentum2 = m12 * dtheta1 + m22 * dtheta2;
+        let kinetic = S::from_f64(0.5) * (momentum1 * dtheta1 + momentum2 * dtheta2);
+        let [cos1, cos_sum] = absolute_cosines::<A>(state);
+        kinetic - self.gravity1 * cos1 - self.gravity2 * cos_sum
+    }
+
+    pub(crate) fn tip_height<A: Arithmetic<Scalar = S>>(&self, state: &State<S>) -> S {
+        let [cos1, cos_sum] = absolute_cosines::<A>(state);
+        -self.params.length1 * cos1 - self.params.length2 * cos_sum
+    }
+}
+
+/// The cosines of both links' angles against the vertical; wrapped, because the sum of two large
+/// angles may not be finite.
+fn absolute_cosines<A: Arithmetic>(state: &State<A::Scalar>) -> [A::Scalar; 2] {
+    let theta1 = wrap::<A>(state.theta1);
+    [A::cos(theta1), A::cos(theta1 + wrap::<A>(state.theta2))]
 }
 
 /// Whether −cos θ1 − cos(θ1 + θ2) > 1: the goal of Gymnasium, whatever the lengths of the links.
@@ -184,7 +208,8 @@ pub(crate) fn reaches_goal<A: Arithmetic>(
 ///
 /// The arithmetic's [`Form`] decides the order of evaluation, and `params.dynamics` between the
 /// equations of the book and those of the paper. Nothing is checked: values out of range give what
-/// IEEE 754 gives.
+/// IEEE 754 gives. What depends on the parameters alone is computed anew with each call; an
+/// [`Acrobot`](crate::Acrobot) keeps it.
 ///
 /// ```
 /// use acrobot::{Params, Portable, State, derivative};
@@ -215,13 +240,14 @@ pub fn mass_matrix<A: Arithmetic>(
     params: &Params<A::Scalar>,
     state: &State<A::Scalar>,
 ) -> [[A::Scalar; 2]; 2] {
-    Model::new::<A>(*params).mass_matrix(A::cos(state.theta2))
+    Model::new::<A>(*params).mass_matrix::<A>(state)
 }
 
 /// The total mechanical energy of a state, J; the potential energy is 0 at the height of the fixed
 /// joint, so that hanging at rest has the least.
 ///
-/// The book's equations conserve it where the torque is 0; those of the paper do not.
+/// The book's equations conserve it where the torque is 0; those of the paper do not. It may be
+/// infinite where velocities or parameters are extreme.
 ///
 /// ```
 /// use acrobot::{Params, Portable, State, energy};
@@ -231,18 +257,7 @@ pub fn mass_matrix<A: Arithmetic>(
 /// ```
 #[must_use]
 pub fn energy<A: Arithmetic>(params: &Params<A::Scalar>, state: &State<A::Scalar>) -> A::Scalar {
-    let model = Model::new::<A>(*params);
-    let State {
-        theta1,
-        theta2,
-        dtheta1,
-        dtheta2,
-    } = *state;
-    let [[m11, m12], [_, m22]] = model.mass_matrix(A::cos(theta2));
-    let momentum1 = m11 * dtheta1 + m12 * dtheta2;
-    let momentum2 = m12 * dtheta1 + m22 * dtheta2;
-    let kinetic = A::Scalar::from_f64(0.5) * (momentum1 * dtheta1 + momentum2 * dtheta2);
-    kinetic - model.gravity1 * A::cos(theta1) - model.gravity2 * A::cos(theta1 + theta2)
+    Model::new::<A>(*params).energy::<A>(state)
 }
 
 /// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from
@@ -258,5 +273,5 @@ pub fn tip_height<A: Arithmetic>(
     params: &Params<A::Scalar>,
     state: &State<A::Scalar>,
 ) -> A::Scalar {
-    -params.length1 * A::cos(state.theta1) - params.length2 * A::cos(state.theta1 + state.theta2)
+    Model::new::<A>(*params).tip_height::<A>(state)
 }

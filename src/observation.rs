@@ -35,9 +35,9 @@ impl Observation<6> {
 
 impl Observation<4> {
     /// The upper bounds of `Acrobot-v0`'s observation space: π rad, and 4π and 9π rad/s.
-    pub const HIGH: Self = Self([PI, PI, 4.0 * PI, 9.0 * PI]);
-    /// The lower bounds: `-HIGH`.
-    pub const LOW: Self = Self([-PI, -PI, -4.0 * PI, -9.0 * PI]);
+    pub const V0_HIGH: Self = Self([PI, PI, 4.0 * PI, 9.0 * PI]);
+    /// The lower bounds: `-V0_HIGH`.
+    pub const V0_LOW: Self = Self([-PI, -PI, -4.0 * PI, -9.0 * PI]);
 }
 
 impl<S: Real> From<State<S>> for Observation<4> {

@@ -173,7 +173,12 @@ impl<S: Real> Params<S> {
             ("inertia2", self.inertia2, self.mass2, self.center_of_mass2),
         ] {
             if inertia + mass * center * center <= S::ZERO {
-                AboveZero.check(name, inertia, "kg m²")?;
+                return Err(Error::OutOfRange {
+                    name,
+                    value: inertia.to_f64(),
+                    unit: "kg m²",
+                    allowed: "a finite number above 0 where the centre of mass lies on the joint",
+                });
             }
         }
         Ok(())

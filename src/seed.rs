@@ -7,22 +7,21 @@
 /// A seed, mixed: NumPy's `SeedSequence` for any non-negative integer, and its children.
 ///
 /// NumPy keeps the seed itself and mixes it anew for every child. Mixing is sequential, so that
-/// the mixed pool can be kept in its place: a seed of any size takes 32 bytes.
+/// the mixed pool can be kept in its place: a seed of any size takes 32 bytes. It is `Clone`, and
+/// never `Copy`, so that no two copies spawn the same children by accident.
 ///
 /// ```
 /// use acrobot::SeedSequence;
 ///
-/// let seed = SeedSequence::from(42);
+/// let mut seed = SeedSequence::from(42);
 /// assert_eq!(seed.generate_state::<2>(), [0x9f1e_2e6d_cd54_0ab7, 0xd578_73dc_79fb_94b6]);
 ///
 /// // One stream for each of a thousand workers, none like another.
-/// let mut seed = seed;
 /// let workers: Vec<SeedSequence> = seed.spawn(1000).collect();
 /// assert_eq!(workers[7], seed.child(7));
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeedSequence {
     pool: [u32; 4],
     /// The multiplier of the next `hash`; it moves on with each.
@@ -78,9 +77,9 @@ impl SeedSequence {
     }
 
     /// NumPy's `spawn(n)`: the next `n` children, each with a stream of its own. The children of
-    /// a later call are others.
+    /// a later call are others. There are 2⁶⁴ − 1 of them in all.
     pub fn spawn(&mut self, n: u64) -> impl Iterator<Item = Self> + use<> {
-        let parent = *self;
+        let parent = self.clone();
         self.spawned = parent.spawned.saturating_add(n);
         (parent.spawned..self.spawned).map(move |index| parent.child(index))
     }
@@ -91,7 +90,7 @@ impl SeedSequence {
     pub fn child(&self, index: u64) -> Self {
         let mut child = Self {
             spawned: 0,
-            ..*self
+            ..self.clone()
         };
         let [low, high] = [index as u32, (index >> 32) as u32];
         child.absorb(low);

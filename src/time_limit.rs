@@ -9,6 +9,7 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::observation::Observation;
+use crate::seed::SeedSequence;
 use crate::state::StartBounds;
 
 const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
@@ -126,6 +127,14 @@ impl<E> TimeLimit<E> {
     #[must_use]
     pub fn into_inner(self) -> E {
         self.inner
+    }
+}
+
+impl<A: Arithmetic> TimeLimit<Acrobot<A>> {
+    /// [`Acrobot::reset_seeded`], and the count starts anew.
+    pub fn reset_seeded(&mut self, seed: impl Into<SeedSequence>) -> Observation {
+        self.restart();
+        self.inner.reset_seeded(seed)
     }
 }
 

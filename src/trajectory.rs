@@ -3,9 +3,13 @@
 use core::fmt;
 
 use heapless::HistoryBuf;
+use rand_core::Rng;
 
-use crate::arithmetic::Real;
+use crate::acrobot::Acrobot;
+use crate::action::Action;
+use crate::arithmetic::{Arithmetic, Real};
 use crate::state::State;
+use crate::time_limit::{LimitedStep, TimeLimit};
 
 /// One step as it happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,21 +34,13 @@ pub struct Transition<S = f64> {
 /// It holds some 44 `N` bytes for `f32`, and no heap.
 ///
 /// ```
-/// use acrobot::{Acrobot, Action, Fast, Trajectory, Transition};
+/// use acrobot::{Acrobot, Action, Fast, TimeLimit, Trajectory};
 ///
-/// let mut acrobot = Acrobot::<Fast>::new(42);
+/// let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42));
 /// let mut trajectory = Trajectory::<f32, 100>::new();
 /// for action in Action::ALL {
-///     let (state, torque) = (acrobot.state(), acrobot.params().torque(action));
-///     let step = acrobot.step(action);
-///     trajectory.push(Transition {
-///         state,
-///         torque,
-///         reward: step.reward,
-///         next: acrobot.state(),
-///         terminated: step.terminated,
-///         truncated: false,
-///     });
+///     let step = trajectory.step(&mut acrobot, action); // acrobot.step(action), recorded
+/// #   assert!(!step.ended());
 /// }
 ///
 /// let mut csv = String::new();
@@ -68,6 +64,39 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
             transitions: HistoryBuf::new(),
             pushed: 0,
         }
+    }
+
+    /// Steps `acrobot` with `action` and adds the transition.
+    pub fn step<A, R>(
+        &mut self,
+        acrobot: &mut TimeLimit<Acrobot<A, R>>,
+        action: Action,
+    ) -> LimitedStep
+    where
+        A: Arithmetic<Scalar = S>,
+        R: Rng,
+    {
+        let (state, torque) = (
+            acrobot.inner().state(),
+            acrobot.inner().params().torque(action),
+        );
+        let step = acrobot.step(action);
+        let LimitedStep {
+            reward,
+            terminated,
+            truncated,
+            ..
+        } = step;
+        let next = acrobot.inner().state();
+        self.push(Transition {
+            state,
+            torque,
+            reward,
+            next,
+            terminated,
+            truncated,
+        });
+        step
     }
 
     /// Adds the newest, in place of the oldest where all `N` are taken.
@@ -103,7 +132,8 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
     /// Writes them as CSV, oldest first, below a line of column names with units.
     ///
     /// `step` counts from 1 at the first push, forgotten ones included. Numbers are the shortest
-    /// that read back to the same bits.
+    /// that read back to the same bits. To format them is the one thing in the crate that a linker
+    /// cannot prove free of panics: core's own code for it has checked slices.
     ///
     /// # Errors
     ///

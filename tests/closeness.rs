@@ -3,7 +3,9 @@
 mod common;
 
 use acrobot::{Acrobot, Arithmetic, Fast, Micro, Portable, State};
-use common::{RECORDING, assert_readme_says, distance, recorded_steps};
+use std::f64::consts::PI;
+
+use common::{RECORDING, RecordedStep, assert_readme_says, distance, recorded_steps};
 
 /// Upper ends of the bands of max(|θ̇1|, |θ̇2|) before a step, rad/s. The last holds all the rest:
 /// up to the velocity bounds, and the few starts beyond.
@@ -35,7 +37,10 @@ fn step_errors<A: Arithmetic>() -> [Vec<f64>; 5] {
             );
         }
     }
-    for step in recorded_steps() {
+    // Those from angles of many turns are for `wrap` alone: f32 does not hold such a state.
+    let within_a_turn =
+        |step: &RecordedStep| step.state.theta1.abs().max(step.state.theta2.abs()) <= PI;
+    for step in recorded_steps().into_iter().filter(within_a_turn) {
         let mut acrobot = Acrobot::new(0);
         acrobot.set_params(step.params.cast()).unwrap();
         take(&mut acrobot, step.state, step.action, step.next);

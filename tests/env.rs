@@ -233,9 +233,9 @@ fn versions_differ_in_limit_and_observation() {
         assert_eq!(v0.step(Action::Zero).truncated, n >= 200);
         assert_eq!(v1.step(Action::Zero).truncated, n >= 500);
     }
-    assert_eq!(**v0.observation_space().high(), *Observation::<4>::HIGH);
-    assert_eq!(**v1.observation_space().high(), *Observation::<6>::HIGH);
-    assert_eq!(**v1.observation_space().low(), *Observation::<6>::LOW);
+    assert_eq!(**v0.observation_space().high(), *Observation::V0_HIGH);
+    assert_eq!(**v1.observation_space().high(), *Observation::HIGH);
+    assert_eq!(**v1.observation_space().low(), *Observation::LOW);
     assert_eq!(v1.action_space().n().get(), 3);
 
     let bounds = StartBounds::new(0.3, 0.3).unwrap();

@@ -2,16 +2,15 @@
 //! auto-traits.
 
 use acrobot::{
-    Acrobot, Action, Arithmetic, Dynamics, Error, Fast, Host, Micro, Observation, Params, Pcg64,
-    Portable, REWARD_THRESHOLD, SeedSequence, State, TimeLimit, Trajectory, Transition, bound,
-    energy, mass_matrix, tip_height, wrap,
+    Acrobot, Action, Arithmetic, Dynamics, Error, Fast, Form, Host, Micro, Observation, Params,
+    Pcg64, Portable, REWARD_THRESHOLD, SeedSequence, State, TimeLimit, Trajectory, Transition,
+    bound, energy, mass_matrix, tip_height, wrap,
 };
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
 
 /// What firmware counts on; it need not run to be checked.
 const _: () = {
-    assert!(size_of::<Acrobot<Fast>>() <= 192);
     assert!(size_of::<Acrobot<Micro>>() == size_of::<Acrobot<Fast>>());
     assert!(size_of::<Acrobot<Portable>>() <= 352);
     assert!(size_of::<State<f32>>() == 16);
@@ -46,6 +45,26 @@ fn the_goal_ends_with_a_reward_of_zero_and_stepping_goes_on() {
     assert!(!step.terminated);
     assert_eq!(step.reward, -1.0);
     assert_eq!(REWARD_THRESHOLD, -100.0);
+}
+
+/// Cosines that put the tip at exactly the goal's height, for whatever angles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct AtTheLine;
+
+impl Arithmetic for AtTheLine {
+    type Scalar = f64;
+    const FORM: Form = Form::Gymnasium;
+
+    fn sin_cos(_: f64) -> (f64, f64) {
+        (0.0, -0.5)
+    }
+}
+
+#[test]
+fn the_goal_is_above_the_line_and_not_on_it() {
+    let step = Acrobot::<AtTheLine>::new(0).step(Action::Zero);
+    assert!(!step.terminated);
+    assert_eq!(step.reward, -1.0);
 }
 
 #[test]
@@ -124,18 +143,26 @@ fn observations_lie_within_their_bounds() {
         let seen = acrobot.step(Action::sample(&mut actions)).observation;
         for i in 0..6 {
             assert!(
-                Observation::<6>::LOW[i] <= seen[i] && seen[i] <= Observation::<6>::HIGH[i],
+                Observation::LOW[i] <= seen[i] && seen[i] <= Observation::HIGH[i],
                 "{seen:?}"
             );
         }
         let seen = Observation::<4>::from(acrobot.state());
         for i in 0..4 {
             assert!(
-                Observation::<4>::LOW[i] <= seen[i] && seen[i] <= Observation::<4>::HIGH[i],
+                Observation::V0_LOW[i] <= seen[i] && seen[i] <= Observation::V0_HIGH[i],
                 "{seen:?}"
             );
         }
     }
+}
+
+#[test]
+fn a_seeded_reset_is_a_new_acrobot() {
+    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(0));
+    acrobot.step(Action::Zero);
+    acrobot.reset_seeded(7);
+    assert_eq!(acrobot, TimeLimit::v1(Acrobot::new(7)));
 }
 
 #[test]
@@ -159,6 +186,10 @@ fn both_readings_show_the_state() {
 #[test]
 fn the_methods_of_an_acrobot_are_of_its_state_and_parameters() {
     let mut acrobot = Acrobot::<Portable>::new(0);
+    acrobot
+        .set_state(State::from([1.7e308, 1.7e308, 0.0, 0.0]))
+        .unwrap();
+    assert!(acrobot.energy().is_finite() && acrobot.tip_height().is_finite());
     let params = Params {
         mass1: 2.0,
         length1: 1.5,
@@ -202,6 +233,13 @@ fn angles_wrap_and_velocities_stop() {
                 );
             }
         }
+    }
+    // The lean form: to half of f32's spacing.
+    for x in [3.0_f32, 4.0, -50.0, 123.4, 1e3, -1e5, 1e6] {
+        let wrapped = f64::from(wrap::<Fast>(x));
+        let turns = (f64::from(x) - wrapped) / TAU;
+        let error = (turns - turns.round()).abs() * TAU;
+        assert!(error <= 2e-7 + 6e-8 * f64::from(x.abs()), "{x}: {error:e}");
     }
     assert_eq!(bound(5.0, 4.0), 4.0);
     assert_eq!(bound(-5.0, 4.0), -4.0);

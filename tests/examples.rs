@@ -127,7 +127,7 @@ fn trace_takes_every_arithmetic() {
         ("micro", expected::<Micro>()),
     ] {
         let arguments = ["--seed", "7", "--dt", "0.1", "--arithmetic", name];
-        assert_eq!(printed(run("trace", &arguments, "01\t2\n2")), expected);
+        assert_eq!(printed(run("trace", &arguments, "01\t2\u{b}\n2")), expected);
     }
 }
 
@@ -141,6 +141,11 @@ fn trace_refuses_with_a_reason() {
         ("--seed 12_000", "seed has '_' as character 3"),
         ("--seed=", "seed is empty"),
         ("--seed 1 --low nan", "low is NaN"),
+        ("--seed 1 --low -inf", "low is -inf"),
+        (
+            "--seed 1 --dt 1e-60 --arithmetic fast",
+            "rounded to the arithmetic's f32, dt is 0 s",
+        ),
         ("--seed 1 --high inf", "high is inf"),
         ("--seed 1 --low 0.2", "low is 0.2 and high is 0.1"),
         (

@@ -67,7 +67,7 @@ fn host_takes_gymnasiums_single_steps() {
         assert!(error <= OTHER_LIBRARY, "{context}: {error:e}");
     };
     let steps = recorded_steps();
-    assert_eq!(steps.len(), 2400);
+    assert_eq!(steps.len(), 2600);
     for (number, step) in steps.into_iter().enumerate() {
         let mut acrobot = Acrobot::<Host>::new(0);
         acrobot.set_params(step.params).unwrap();

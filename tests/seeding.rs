@@ -111,7 +111,7 @@ fn descendants_are_numpys() {
 #[test]
 fn spawn_goes_on_where_it_stopped() {
     let mut seed = SeedSequence::from(42);
-    let parent = seed;
+    let parent = seed.clone();
     let first: Vec<_> = seed.spawn(3).collect();
     let second: Vec<_> = seed.spawn(2).collect();
     assert_eq!(first, [0, 1, 2].map(|i| parent.child(i)));

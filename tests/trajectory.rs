@@ -1,34 +1,33 @@
 //! Nothing recorded is lost: the last transitions, in order, and in CSV to the bit.
 
+use std::num::NonZeroU32;
+
 use acrobot::{Acrobot, Action, Fast, LimitedStep, State, TimeLimit, Trajectory, Transition};
 
 fn record<const N: usize>(steps: usize) -> (Trajectory<f32, N>, Vec<Transition<f32>>) {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(4));
+    let limit = NonZeroU32::new(20).unwrap();
+    let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(4), limit);
     let mut trajectory = Trajectory::new();
     let mut all = Vec::new();
     for i in 0..steps {
         let action = Action::ALL[i % 3];
-        let (state, torque) = (
-            acrobot.inner().state(),
-            acrobot.inner().params().torque(action),
-        );
+        let mut twin = acrobot.clone();
         let LimitedStep {
             reward,
             terminated,
             truncated,
             ..
-        } = acrobot.step(action);
-        let next = acrobot.inner().state();
-        let transition = Transition {
-            state,
-            torque,
+        } = twin.step(action);
+        all.push(Transition {
+            state: acrobot.inner().state(),
+            torque: [-1.0, 0.0, 1.0][i % 3],
             reward,
-            next,
+            next: twin.inner().state(),
             terminated,
             truncated,
-        };
-        trajectory.push(transition);
-        all.push(transition);
+        });
+        trajectory.step(&mut acrobot, action);
+        assert_eq!(acrobot, twin);
     }
     (trajectory, all)
 }

@@ -43,7 +43,7 @@ impl View for Observation<4> {
     }
 
     fn space(params: &Params<f32>) -> BoxSpace<Self> {
-        let mut high = Self::HIGH;
+        let mut high = Self::V0_HIGH;
         [high.0[2], high.0[3]] = [params.max_velocity1, params.max_velocity2];
         BoxSpace::symmetric(high)
     }

@@ -84,7 +84,7 @@ impl<T: Clone + PartialEq> Space for Discrete<T> {
 /// use acrobot::env::{BoxSpace, Space};
 /// use acrobot::{Observation, Pcg64};
 ///
-/// let space = BoxSpace::new(Observation::<6>::LOW, Observation::<6>::HIGH).unwrap();
+/// let space = BoxSpace::new(Observation::LOW, Observation::HIGH).unwrap();
 /// let sample = space.sample(&mut Pcg64::new(42));
 /// assert!(space.contains(&sample));
 /// assert!(BoxSpace::new([1.0], [0.0]).is_none());

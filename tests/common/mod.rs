@@ -44,9 +44,9 @@ pub struct Episode {
 impl Episode {
     /// An acrobot at the episode's start.
     pub fn start<A: Arithmetic>(&self) -> Acrobot<A> {
-        let mut acrobot = Acrobot::<A>::new(self.seed);
+        let mut acrobot = Acrobot::<A>::new(self.seed.clone());
         acrobot.set_params(self.params.cast()).unwrap();
-        acrobot.reseed(self.seed);
+        acrobot.reseed(self.seed.clone());
         acrobot.reset_within(self.bounds);
         acrobot
     }
@@ -166,7 +166,7 @@ pub fn recorded_steps() -> Vec<RecordedStep> {
         .chunks_exact(8)
         .map(|x| f64::from_le_bytes(x.try_into().unwrap()))
         .collect();
-    let records = numbers.chunks_exact(18);
+    let records = numbers.chunks_exact(23);
     assert!(records.remainder().is_empty());
     records.map(read_step).collect()
 }
@@ -184,12 +184,15 @@ fn read_step(record: &[f64]) -> RecordedStep {
             inertia1: record[6],
             inertia2: record[6],
             dt: record[7],
-            dynamics: [Dynamics::Book, Dynamics::Nips][record[8] as usize],
+            max_velocity1: record[8],
+            max_velocity2: record[9],
+            torques: [record[10], record[11], record[12]],
+            dynamics: [Dynamics::Book, Dynamics::Nips][record[13] as usize],
             ..Params::DEFAULT
         },
-        state: state(&record[9..13]),
-        action: Action::try_from(record[13] as u8).unwrap(),
-        next: state(&record[14..18]),
+        state: state(&record[14..18]),
+        action: Action::try_from(record[18] as u8).unwrap(),
+        next: state(&record[19..23]),
     }
 }
 

@@ -106,18 +106,27 @@ def write_episodes():
 
 def write_steps():
     """Single steps from states all over the bounds: two thousand with the default parameters, four hundred with
-    others. A record is l1, l2, m1, m2, lc1, lc2, I1 = I2, dt, NIPS (0 or 1), state, action, next state, in f64."""
+    others, and two hundred from angles that take up to 64 turns to wrap, which rounds differently from one remainder.
+    A record is l1, l2, m1, m2, lc1, lc2, I1 = I2, dt, the velocity bounds, the torques, NIPS (0 or 1), state, action,
+    next state, in f64."""
     env = gymnasium.make("Acrobot-v1").unwrapped
-    default = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 0.2]
+    default = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 0.2, 4 * np.pi, 9 * np.pi, -1.0, 0.0, 1.0]
     rng = np.random.default_rng(1)
     records = []
-    for i in range(2400):
-        params = default if i < 2000 else rng.uniform(0.3, 2.0, 7).tolist() + [rng.uniform(0.01, 0.2)]
+    for i in range(2600):
+        params = default
+        if 2000 <= i < 2400:
+            params = rng.uniform([0.3] * 7 + [0.01, 2.0, 5.0] + [-5.0] * 3, [2.0] * 7 + [0.2, 20.0, 40.0] + [5.0] * 3)
+            params = params.tolist()
         (env.LINK_LENGTH_1, env.LINK_LENGTH_2, env.LINK_MASS_1, env.LINK_MASS_2) = params[:4]
-        (env.LINK_COM_POS_1, env.LINK_COM_POS_2, env.LINK_MOI, env.dt) = params[4:]
+        (env.LINK_COM_POS_1, env.LINK_COM_POS_2, env.LINK_MOI, env.dt) = params[4:8]
+        (env.MAX_VEL_1, env.MAX_VEL_2) = params[8:10]
+        env.AVAIL_TORQUE = params[10:]
         env.book_or_nips = ["book", "nips"][i % 2]
         # Four speeds alike, up to the bounds.
         bounds = np.array([np.pi, np.pi, *(np.array([4 * np.pi, 9 * np.pi]) * (i // 2 % 4 + 1) / 4)])
+        if i >= 2400:
+            bounds[:2] = 390.0
         state = rng.uniform(-bounds, bounds)
         action = int(rng.integers(3))
         env.state = state
