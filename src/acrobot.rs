@@ -63,8 +63,11 @@ pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
     rng: R,
 }
 
-/// What firmware counts on, checked wherever the crate is built.
-const _: () = assert!(size_of::<Acrobot<crate::Fast>>() <= 192);
+/// What firmware counts on, checked wherever the crate is built. `u128` is aligned to 8 bytes on ARM.
+const _: () = {
+    let limit = if cfg!(target_arch = "arm") { 184 } else { 192 };
+    assert!(size_of::<Acrobot<crate::Fast>>() <= limit);
+};
 
 impl<A: Arithmetic> Acrobot<A> {
     /// An acrobot with the default parameters, at the start of Gymnasium's `reset(seed=seed)`.
