@@ -17,8 +17,8 @@
 //! # Ok::<(), acrobot::env::Error>(())
 //! ```
 
+mod acrobot_env;
 mod check;
-mod classic;
 mod error;
 mod frame;
 mod make;
@@ -27,8 +27,8 @@ mod statistics;
 
 use std::string::String;
 
+pub use acrobot_env::{AcrobotEnv, Display, LiveAcrobot, RenderMode, View};
 pub use check::{Violation, check_env};
-pub use classic::{Classic, Display, LiveAcrobot, RenderMode, View};
 pub use error::Error;
 pub use frame::Frame;
 pub use make::{ArithmeticKind, DynEnv, Options, Reading, acrobot_v0, acrobot_v1, make, make_with};

@@ -3,14 +3,11 @@
 
 mod common;
 
-use std::cell::Cell;
-use std::rc::Rc;
 use std::sync::{Arc, Mutex};
 
 use acrobot::env::{
-    ArithmeticKind, BoxSpace, Classic, Discrete, Display, Env, EnvStep, Error, Frame, Info,
-    Options, RecordEpisodeStatistics, RenderMode, Rendering, Space, Violation, acrobot_v0,
-    acrobot_v1, check_env, make, make_with,
+    AcrobotEnv, ArithmeticKind, BoxSpace, Discrete, Display, Env, Error, Frame, Options,
+    RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make, make_with,
 };
 use acrobot::{
     Acrobot, Action, Dynamics, Fast, Figure, Host, Micro, Observation, Params, Pcg64, Portable,
@@ -53,171 +50,6 @@ fn make_plays_gymnasiums_runs() {
         played += 1;
     }
     assert_eq!(played, 20);
-}
-
-#[test]
-fn our_environments_keep_the_contract() {
-    fn check<E>(env: E)
-    where
-        E: Env<Observation: Clone + std::fmt::Debug + PartialEq, Action: Clone> + Clone,
-    {
-        for seed in 0..3 {
-            check_env(&env, seed).unwrap();
-        }
-    }
-    let options = || Options {
-        render_mode: RenderMode::RgbArray,
-        ..Options::default()
-    };
-    check(Acrobot::<Host>::new(0));
-    check(Acrobot::<Micro>::new(0));
-    check(TimeLimit::v1(Acrobot::<Portable>::new(0)));
-    check(acrobot_v0::<Fast>(options()).unwrap());
-    check(acrobot_v1::<Host>(options()).unwrap());
-    check(RecordEpisodeStatistics::new(
-        acrobot_v1::<Fast>(options()).unwrap(),
-    ));
-    let noisy = Params {
-        torque_noise: 0.5,
-        max_velocity1: 1.0,
-        max_velocity2: 1.0,
-        ..Params::DEFAULT
-    };
-    check(
-        acrobot_v1::<Portable>(Options {
-            params: noisy,
-            ..options()
-        })
-        .unwrap(),
-    );
-}
-
-/// How an environment can break the contract.
-#[derive(Clone)]
-enum Flaw {
-    /// None: to see that the wrapper itself passes.
-    None,
-    /// Observations leave their space.
-    Outside,
-    /// A reward is NaN.
-    Reward,
-    /// The seed is ignored.
-    Seed,
-    /// The time limit's count goes on over a reset: truncation is reported again.
-    Count(Cell<u32>),
-    /// Clones share what they should own.
-    Shared(Rc<Cell<u32>>),
-    /// Rendering moves the acrobot.
-    Render,
-}
-
-#[derive(Clone)]
-struct Broken {
-    env: TimeLimit<Acrobot<Fast>>,
-    flaw: Flaw,
-}
-
-impl Env for Broken {
-    type Observation = Observation;
-    type Action = Action;
-    type ObservationSpace = BoxSpace<Observation>;
-    type ActionSpace = Discrete<Action>;
-    type Unwrapped = Acrobot<Fast>;
-
-    fn reset(
-        &mut self,
-        seed: Option<SeedSequence>,
-        bounds: Option<StartBounds>,
-    ) -> (Observation, Info) {
-        let seed = if matches!(self.flaw, Flaw::Seed) {
-            None
-        } else {
-            seed
-        };
-        Env::reset(&mut self.env, seed, bounds)
-    }
-
-    fn step(&mut self, action: Action) -> EnvStep<Observation> {
-        let mut step = Env::step(&mut self.env, action);
-        match &self.flaw {
-            Flaw::Outside => step.observation.0[0] += 1.0,
-            Flaw::Reward => step.reward = f32::NAN,
-            Flaw::Count(count) => {
-                count.set(count.get() + 1);
-                step.truncated = count.get() >= 500;
-            }
-            Flaw::Shared(count) => {
-                count.set(count.get() + 1);
-                step.reward -= (count.get() % 7) as f32;
-            }
-            Flaw::None | Flaw::Seed | Flaw::Render => {}
-        }
-        step
-    }
-
-    fn action_space(&self) -> Discrete<Action> {
-        self.env.action_space()
-    }
-
-    fn observation_space(&self) -> BoxSpace<Observation> {
-        self.env.observation_space()
-    }
-
-    fn render(&mut self) -> Result<Rendering, Error> {
-        if matches!(self.flaw, Flaw::Render) {
-            self.unwrapped_mut().step(Action::Zero);
-        }
-        Err(Error::NoRenderMode)
-    }
-
-    fn unwrapped(&self) -> &Acrobot<Fast> {
-        self.env.unwrapped()
-    }
-
-    fn unwrapped_mut(&mut self) -> &mut Acrobot<Fast> {
-        self.env.unwrapped_mut()
-    }
-}
-
-#[test]
-fn the_contracts_check_finds_who_breaks_it() {
-    let check = |flaw| {
-        check_env(
-            &Broken {
-                env: TimeLimit::v1(Acrobot::new(0)),
-                flaw,
-            },
-            1,
-        )
-    };
-    assert_eq!(check(Flaw::None), Ok(()));
-    for (flaw, rule) in [
-        (Flaw::Outside, "an observation is in the observation space"),
-        (Flaw::Reward, "a reward is finite"),
-        (
-            Flaw::Seed,
-            "the same seed and the same actions give the same episode",
-        ),
-        (
-            Flaw::Count(Cell::new(0)),
-            "a reset after an end starts a whole new episode",
-        ),
-        (
-            Flaw::Shared(Rc::new(Cell::new(0))),
-            "the same seed and the same actions give the same episode",
-        ),
-        (Flaw::Render, "rendering changes nothing"),
-    ] {
-        let Err(Violation {
-            rule: broken,
-            found,
-        }) = check(flaw)
-        else {
-            panic!("{rule} is not checked")
-        };
-        assert_eq!(broken, rule, "{found}");
-        assert!(!found.is_empty());
-    }
 }
 
 #[test]
@@ -315,7 +147,7 @@ fn every_arithmetic_can_be_made() {
     }
 }
 
-fn with_mode(render_mode: RenderMode) -> TimeLimit<Classic<Portable, Observation>> {
+fn with_mode(render_mode: RenderMode) -> TimeLimit<AcrobotEnv<Portable, Observation>> {
     let mut env = acrobot_v1::<Portable>(Options {
         render_mode,
         ..Options::default()

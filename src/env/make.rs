@@ -5,7 +5,7 @@ use std::borrow::ToOwned;
 use std::boxed::Box;
 
 use super::{
-    BoxSpace, Classic, Discrete, Env, EnvStep, Error, Info, LiveAcrobot, RenderMode, Rendering,
+    AcrobotEnv, BoxSpace, Discrete, Env, EnvStep, Error, Info, LiveAcrobot, RenderMode, Rendering,
 };
 use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable};
 use crate::params::Params;
@@ -65,8 +65,8 @@ pub type DynEnv = dyn Env<
 /// [`Error::Invalid`] for parameters that are refused.
 pub fn acrobot_v1<A: Arithmetic>(
     options: Options,
-) -> Result<TimeLimit<Classic<A, Observation<6>>>, Error> {
-    Ok(TimeLimit::v1(Classic::new(
+) -> Result<TimeLimit<AcrobotEnv<A, Observation<6>>>, Error> {
+    Ok(TimeLimit::v1(AcrobotEnv::new(
         options.params,
         options.render_mode,
     )?))
@@ -79,8 +79,8 @@ pub fn acrobot_v1<A: Arithmetic>(
 /// [`Error::Invalid`] for parameters that are refused.
 pub fn acrobot_v0<A: Arithmetic>(
     options: Options,
-) -> Result<TimeLimit<Classic<A, Observation<4>>>, Error> {
-    Ok(TimeLimit::v0(Classic::new(
+) -> Result<TimeLimit<AcrobotEnv<A, Observation<4>>>, Error> {
+    Ok(TimeLimit::v0(AcrobotEnv::new(
         options.params,
         options.render_mode,
     )?))

@@ -90,13 +90,13 @@ pub enum RenderMode {
 
 /// An acrobot as an environment of Gymnasium's: seen as `O`, computed in `A`, rendered by mode.
 #[derive(Clone, Debug)]
-pub struct Classic<A: Arithmetic, O> {
+pub struct AcrobotEnv<A: Arithmetic, O> {
     acrobot: Acrobot<A>,
     render_mode: RenderMode,
     view: PhantomData<O>,
 }
 
-impl<A: Arithmetic, O: View> Classic<A, O> {
+impl<A: Arithmetic, O: View> AcrobotEnv<A, O> {
     /// One at the start of seed 0.
     ///
     /// # Errors
@@ -125,7 +125,7 @@ impl<A: Arithmetic, O: View> Classic<A, O> {
     }
 }
 
-impl<A: Arithmetic, O: View> Env for Classic<A, O> {
+impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
     type Observation = O;
     type Action = Action;
     type ObservationSpace = BoxSpace<O>;
