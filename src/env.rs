@@ -18,6 +18,55 @@
 //! ```
 
 mod acrobot_env;
+/// The parts of [`Env`] that a wrapper hands on: its types, its episodes, and all the rest.
+macro_rules! forward {
+    (types $inner:ident) => {
+        type Observation = $inner::Observation;
+        type Action = $inner::Action;
+        type ObservationSpace = $inner::ObservationSpace;
+        type ActionSpace = $inner::ActionSpace;
+        type Unwrapped = $inner::Unwrapped;
+    };
+    (episode $self:ident, $inner:expr) => {
+        fn reset(
+            &mut $self,
+            seed: Option<SeedSequence>,
+            bounds: Option<StartBounds>,
+        ) -> (Self::Observation, Info) {
+            $inner.reset(seed, bounds)
+        }
+
+        fn step(&mut $self, action: Self::Action) -> EnvStep<Self::Observation> {
+            $inner.step(action)
+        }
+    };
+    ($self:ident, $inner:expr) => {
+        fn action_space(&$self) -> Self::ActionSpace {
+            $inner.action_space()
+        }
+
+        fn observation_space(&$self) -> Self::ObservationSpace {
+            $inner.observation_space()
+        }
+
+        fn render(&mut $self) -> Result<Rendering, Error> {
+            $inner.render()
+        }
+
+        fn close(&mut $self) {
+            $inner.close();
+        }
+
+        fn unwrapped(&$self) -> &Self::Unwrapped {
+            $inner.unwrapped()
+        }
+
+        fn unwrapped_mut(&mut $self) -> &mut Self::Unwrapped {
+            $inner.unwrapped_mut()
+        }
+    };
+}
+
 mod check;
 mod error;
 mod frame;
@@ -25,6 +74,7 @@ mod make;
 mod space;
 mod statistics;
 
+use std::boxed::Box;
 use std::string::String;
 
 pub use acrobot_env::{AcrobotEnv, Display, LiveAcrobot, RenderMode, View};
@@ -112,7 +162,8 @@ pub struct EnvStep<O> {
 }
 
 impl<O> EnvStep<O> {
-    /// Whether the episode is over, for either reason.
+    /// Whether the episode is over, for either reason. To be called before the observation is moved
+    /// out.
     #[must_use]
     pub fn ended(&self) -> bool {
         self.terminated || self.truncated
@@ -200,11 +251,7 @@ impl<A: Arithmetic> Env for Acrobot<A> {
 
 /// Truncates whatever it wraps, and reports it beside what that reports.
 impl<E: Env> Env for TimeLimit<E> {
-    type Observation = E::Observation;
-    type Action = E::Action;
-    type ObservationSpace = E::ObservationSpace;
-    type ActionSpace = E::ActionSpace;
-    type Unwrapped = E::Unwrapped;
+    forward!(types E);
 
     fn reset(
         &mut self,
@@ -212,36 +259,28 @@ impl<E: Env> Env for TimeLimit<E> {
         bounds: Option<StartBounds>,
     ) -> (E::Observation, Info) {
         self.restart();
-        self.inner_mut().reset(seed, bounds)
+        self.inner.reset(seed, bounds)
     }
 
     fn step(&mut self, action: E::Action) -> EnvStep<E::Observation> {
-        let mut step = self.inner_mut().step(action);
+        let mut step = self.inner.step(action);
         step.truncated |= self.count();
         step
     }
 
-    fn action_space(&self) -> E::ActionSpace {
-        self.inner().action_space()
-    }
+    forward!(self, self.inner);
+}
 
-    fn observation_space(&self) -> E::ObservationSpace {
-        self.inner().observation_space()
-    }
+/// A borrowed environment.
+impl<E: Env + ?Sized> Env for &mut E {
+    forward!(types E);
+    forward!(episode self, (**self));
+    forward!(self, (**self));
+}
 
-    fn render(&mut self) -> Result<Rendering, Error> {
-        self.inner_mut().render()
-    }
-
-    fn close(&mut self) {
-        self.inner_mut().close();
-    }
-
-    fn unwrapped(&self) -> &E::Unwrapped {
-        self.inner().unwrapped()
-    }
-
-    fn unwrapped_mut(&mut self) -> &mut E::Unwrapped {
-        self.inner_mut().unwrapped_mut()
-    }
+/// A boxed environment, so that what [`make`] returns can be wrapped and handed to generic code.
+impl<E: Env + ?Sized> Env for Box<E> {
+    forward!(types E);
+    forward!(episode self, (**self));
+    forward!(self, (**self));
 }

@@ -55,7 +55,7 @@ impl LimitedStep {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TimeLimit<E = Acrobot> {
-    inner: E,
+    pub(crate) inner: E,
     limit: NonZeroU32,
     elapsed: u32,
 }

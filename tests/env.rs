@@ -120,6 +120,29 @@ fn live_changes_reach_through_every_wrapper() {
     assert_eq!(erased.observation_space().high()[4], 1.0);
 }
 
+/// What `make` returns goes where any environment goes.
+#[test]
+fn boxed_and_borrowed_environments_are_environments() {
+    let limit = 3.try_into().unwrap();
+    let mut env = RecordEpisodeStatistics::new(TimeLimit::new(make("Acrobot-v0").unwrap(), limit));
+    env.reset(Some(1.into()), None);
+    let mut borrowed = RecordEpisodeStatistics::new(&mut env);
+    borrowed.step(Action::Zero);
+    borrowed.step(Action::Zero);
+    assert_eq!(borrowed.step(Action::Zero).info.episode.unwrap().length, 3);
+    assert_eq!(borrowed.observation_space().high().len(), 4);
+    assert_eq!(borrowed.action_space().n().get(), 3);
+    assert_eq!(borrowed.render(), Err(Error::NoRenderMode));
+    borrowed
+        .unwrapped_mut()
+        .set_state(State::default())
+        .unwrap();
+    assert_eq!(borrowed.unwrapped().state(), State::default());
+    let (start, _) = borrowed.reset(None, Some(StartBounds::new(0.5, 0.5).unwrap()));
+    assert_eq!(*start, [0.5; 4]);
+    borrowed.close();
+}
+
 #[test]
 fn every_arithmetic_can_be_made() {
     fn start<A: acrobot::Arithmetic>() -> State {

@@ -104,23 +104,29 @@ impl<A: Arithmetic, O: View> AcrobotEnv<A, O> {
     /// The first parameter that is refused, also where it is so only as rounded to `A`'s scalar.
     pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, Refusal> {
         params.validate()?;
-        let mut acrobot = Acrobot::new(0);
-        acrobot.set_params(params.cast())?;
-        Ok(Self {
-            acrobot,
+        let mut env = Self {
             render_mode,
-            view: PhantomData,
-        })
-    }
-
-    fn figure(&self) -> Figure {
-        Figure::new(&self.acrobot)
+            ..Self::default()
+        };
+        env.acrobot.set_params(params.cast())?;
+        Ok(env)
     }
 
     /// In mode human every reset and every step is shown, as in Gymnasium.
     fn show(&self) {
         if let RenderMode::Human(display) = &self.render_mode {
-            display.show(&Frame::of(&self.figure()));
+            display.show(&Frame::of(&Figure::new(&self.acrobot)));
+        }
+    }
+}
+
+impl<A: Arithmetic, O> Default for AcrobotEnv<A, O> {
+    /// Gymnasium's parameters, and nothing to render.
+    fn default() -> Self {
+        Self {
+            acrobot: Acrobot::new(0),
+            render_mode: RenderMode::None,
+            view: PhantomData,
         }
     }
 }
@@ -155,7 +161,7 @@ impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
     fn render(&mut self) -> Result<Rendering, Error> {
         match &self.render_mode {
             RenderMode::None => Err(Error::NoRenderMode),
-            RenderMode::RgbArray => Ok(Rendering::Frame(Frame::of(&self.figure()))),
+            RenderMode::RgbArray => Ok(Rendering::Frame(Frame::of(&Figure::new(&self.acrobot)))),
             RenderMode::Ansi => {
                 let State {
                     theta1,
@@ -163,7 +169,7 @@ impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
                     dtheta1,
                     dtheta2,
                 } = self.acrobot.state().cast::<f64>();
-                let drawing = frame::text(&self.figure());
+                let drawing = frame::text(&Figure::new(&self.acrobot));
                 Ok(Rendering::Text(std::format!(
                     "{drawing}\nθ1 {theta1:+.2}  θ2 {theta2:+.2} rad  θ̇1 {dtheta1:+.2}  θ̇2 {dtheta2:+.2} rad/s\n"
                 )))

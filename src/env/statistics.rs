@@ -88,11 +88,7 @@ impl<E> RecordEpisodeStatistics<E> {
 }
 
 impl<E: Env> Env for RecordEpisodeStatistics<E> {
-    type Observation = E::Observation;
-    type Action = E::Action;
-    type ObservationSpace = E::ObservationSpace;
-    type ActionSpace = E::ActionSpace;
-    type Unwrapped = E::Unwrapped;
+    forward!(types E);
 
     fn reset(
         &mut self,
@@ -124,27 +120,5 @@ impl<E: Env> Env for RecordEpisodeStatistics<E> {
         step
     }
 
-    fn action_space(&self) -> E::ActionSpace {
-        self.inner.action_space()
-    }
-
-    fn observation_space(&self) -> E::ObservationSpace {
-        self.inner.observation_space()
-    }
-
-    fn render(&mut self) -> Result<Rendering, Error> {
-        self.inner.render()
-    }
-
-    fn close(&mut self) {
-        self.inner.close();
-    }
-
-    fn unwrapped(&self) -> &E::Unwrapped {
-        self.inner.unwrapped()
-    }
-
-    fn unwrapped_mut(&mut self) -> &mut E::Unwrapped {
-        self.inner.unwrapped_mut()
-    }
+    forward!(self, self.inner);
 }

@@ -1,0 +1,46 @@
+//! The program trains, says the same again for the same seed, and refuses what it cannot do.
+
+use std::process::{Command, Output};
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_acrobot-border"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+/// The numbers at the ends of the lines: of random, of untrained and of trained.
+fn scores(output: &Output) -> Vec<f32> {
+    let text = String::from_utf8_lossy(&output.stdout);
+    let lines = text.lines().skip(1);
+    lines
+        .map(|line| line.rsplit(' ').next().unwrap().parse().unwrap())
+        .collect()
+}
+
+#[test]
+fn learns_and_repeats_itself() {
+    let arguments = ["--seed", "7", "--steps", "5000"];
+    let output = run(&arguments);
+    assert!(output.status.success());
+    let [random, _, trained] = scores(&output)[..] else {
+        panic!("{output:?}");
+    };
+    assert!(trained > random + 200.0, "{random} {trained}");
+    assert_eq!(run(&arguments), output);
+}
+
+#[test]
+fn refuses_with_status_2() {
+    for arguments in [
+        ["--steps", "0"],
+        ["--steps", "many"],
+        ["--seed", "-1"],
+        ["--episodes", "3"],
+    ] {
+        let output = run(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(output.stdout.is_empty());
+        assert!(String::from_utf8_lossy(&output.stderr).starts_with("error: "));
+    }
+}
