@@ -1,8 +1,8 @@
 //! Q-learning with tile coding, as Sutton & Barto solve Acrobot, behind border's traits: border-core
 //! has the loop, the replay buffer and the evaluation, and leaves the learning to others.
 
-use acrobot::env::{AcrobotEnv, BoxSpace, Discrete, RenderMode, Space};
-use acrobot::{Action, Observation, Params, Pcg64, Portable, TimeLimit, uniform};
+use acrobot::env::{AcrobotEnv, BoxSpace, Discrete, Space};
+use acrobot::{Action, Observation, Pcg64, Portable, TimeLimit, uniform};
 use acrobot_border::{Adapter, One};
 use border_core::generic_replay_buffer::{BatchBase, SimpleReplayBuffer, SimpleStepProcessor};
 use border_core::record::Record;
@@ -15,11 +15,8 @@ pub type Env = Adapter<Acrobot>;
 pub type Buffer = SimpleReplayBuffer<Rows<Observation<4>>, Rows<Action>>;
 pub type Steps = SimpleStepProcessor<Env, Rows<Observation<4>>, Rows<Action>>;
 
-pub fn acrobot() -> Result<Acrobot, acrobot::Error> {
-    Ok(TimeLimit::v1(AcrobotEnv::new(
-        Params::DEFAULT,
-        RenderMode::None,
-    )?))
+pub fn acrobot() -> Acrobot {
+    TimeLimit::v1(AcrobotEnv::default())
 }
 
 /// A column of border's replay buffer.

@@ -58,7 +58,7 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
 }
 
 fn run(options: &Options) -> anyhow::Result<()> {
-    let acrobot = agent::acrobot()?;
+    let acrobot = agent::acrobot();
     let steps = usize::try_from(options.steps)?;
     let seed = SeedSequence::from(u64::try_from(options.seed)?);
     // The evaluation's episodes have the first children of the seed.
