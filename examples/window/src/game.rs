@@ -1,0 +1,153 @@
+//! The game: Acrobot-v1 in its human mode, and the overlay over what that shows.
+
+use std::sync::mpsc::{self, Receiver};
+
+use acrobot::env::{AcrobotEnv, Display, Env, Error, Frame, Options, RenderMode, acrobot_v1};
+use acrobot::{
+    Action, Dynamics, Figure, Host, Observation, Params, SeedSequence, Theme, TimeLimit,
+};
+use embedded_graphics::Drawable;
+use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_9X18_BOLD};
+use embedded_graphics::pixelcolor::Rgb888;
+use embedded_graphics::prelude::Point;
+use embedded_graphics::text::{Baseline, Text};
+
+/// The overlay's colour, which nothing else in the picture has.
+const INK: Rgb888 = Rgb888::new(68, 68, 68);
+
+/// For how many ticks an episode that has ended stays on the screen: two seconds.
+const PAUSE: u32 = 30;
+
+pub struct Game {
+    env: TimeLimit<AcrobotEnv<Host, Observation<6>>>,
+    /// What the environment has shown.
+    shown: Receiver<Frame>,
+    picture: Frame,
+    episode_return: f32,
+    end: Option<End>,
+}
+
+/// How the episode ended, and how many ticks of its pause are left.
+struct End {
+    text: &'static str,
+    pause: u32,
+}
+
+impl Game {
+    pub fn new(seed: SeedSequence, dynamics: Dynamics) -> Result<Self, Error> {
+        let (sender, shown) = mpsc::channel();
+        let display = Display::new(move |frame| {
+            // Nobody receives only where the game is gone, and then nobody steps either.
+            let _ = sender.send(frame.clone());
+        });
+        let mut game = Self {
+            env: acrobot_v1(Options {
+                render_mode: RenderMode::Human(display),
+                params: Params {
+                    dynamics,
+                    ..Params::DEFAULT
+                },
+                ..Options::default()
+            })?,
+            shown,
+            picture: Frame::new(0, 0),
+            episode_return: 0.0,
+            end: None,
+        };
+        game.start(Some(seed));
+        Ok(game)
+    }
+
+    /// Starts the next episode of the same stream.
+    pub fn reset(&mut self) {
+        self.start(None);
+    }
+
+    fn start(&mut self, seed: Option<SeedSequence>) {
+        self.env.reset(seed, None);
+        self.episode_return = 0.0;
+        self.end = None;
+        self.draw(Action::Zero);
+    }
+
+    /// One step of the environment or, after an episode's end, of the pause until the next.
+    pub fn tick(&mut self, action: Action) {
+        match &mut self.end {
+            Some(End { pause: 0, .. }) => self.reset(),
+            Some(end) => end.pause -= 1,
+            None => {
+                let step = self.env.step(action);
+                self.episode_return += step.reward;
+                self.end = step.ended().then_some(End {
+                    text: if step.terminated {
+                        "Goal! R: again"
+                    } else {
+                        "Out of time. R: again"
+                    },
+                    pause: PAUSE,
+                });
+                self.draw(action);
+            }
+        }
+    }
+
+    /// The environment's last frame with the overlay on it.
+    pub fn picture(&self) -> &Frame {
+        &self.picture
+    }
+
+    fn draw(&mut self, action: Action) {
+        if let Some(frame) = self.shown.try_iter().last() {
+            self.picture = frame;
+        }
+
+        // Human mode shows Gymnasium's picture, without the torque: only its arrow is missing.
+        let figure = Figure::new(self.env.unwrapped());
+        let torque = f32::from(u8::from(action)) - 1.0;
+        let Ok(()) =
+            figure
+                .with_torque(torque)
+                .redraw(&figure, &mut self.picture, &Theme::GYMNASIUM);
+
+        let step = self.env.elapsed();
+        let time = f64::from(step) * self.env.unwrapped().params().dt;
+        let numbers = format!(
+            "step {step:3}   return {:4}   time {time:5.1} s",
+            self.episode_return
+        );
+        self.write(10, &numbers);
+        if let Some(End { text, .. }) = self.end {
+            self.write(34, text);
+        }
+        self.write(480, "left, right: torque   R: reset   Esc: quit");
+    }
+
+    fn write(&mut self, top: i32, text: &str) {
+        let style = MonoTextStyle::new(&FONT_9X18_BOLD, INK);
+        let text = Text::with_baseline(text, Point::new(10, top), style, Baseline::Top);
+        let Ok(_) = text.draw(&mut self.picture);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_episode_that_has_ended_pauses_and_starts_anew() {
+        let mut game = Game::new(42.into(), Dynamics::Book).unwrap();
+        for _ in 0..500 {
+            assert!(game.end.is_none());
+            game.tick(Action::Zero);
+        }
+        assert!(game.end.is_some());
+
+        for _ in 0..PAUSE {
+            game.tick(Action::Zero);
+            assert_eq!((game.env.elapsed(), game.episode_return), (500, -500.0));
+        }
+        game.tick(Action::Zero);
+        assert!(game.end.is_none());
+        assert_eq!((game.env.elapsed(), game.episode_return), (0, 0.0));
+    }
+}

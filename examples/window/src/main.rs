@@ -1,0 +1,224 @@
+//! Acrobot in a window, played with the arrow keys: the README beside it says how.
+
+mod game;
+mod screen;
+
+use std::error::Error;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::panic;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use acrobot::env::Frame;
+use acrobot::{Action, Dynamics, SeedSequence};
+use clap::Parser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use winit::application::ApplicationHandler;
+use winit::event::{ElementState, KeyEvent, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::keyboard::{Key, NamedKey};
+use winit::window::WindowId;
+
+use game::Game;
+use screen::Screen;
+
+/// Gymnasium shows 15 frames a second, each a step.
+const FRAME_TIME: Duration = Duration::from_nanos(1_000_000_000 / 15);
+
+/// Plays Acrobot-v1 in a window: left and right apply torque, R resets, Escape or Q quits.
+#[derive(Parser)]
+#[command(allow_negative_numbers = true)]
+struct Options {
+    /// Seed of the starts: a decimal integer of any size.
+    #[arg(long, default_value = "42")]
+    seed: SeedSequence,
+    /// Equations of motion: those of the book or those of the NIPS paper.
+    #[arg(long, default_value = "book", value_parser = dynamics())]
+    dynamics: Dynamics,
+    /// Quit after that many frames instead of when the window is closed.
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    frames: Option<u64>,
+    /// On quitting, write the last picture to this PNG file.
+    #[arg(long, value_name = "FILE.png")]
+    screenshot: Option<PathBuf>,
+}
+
+fn dynamics() -> impl TypedValueParser<Value = Dynamics> {
+    PossibleValuesParser::new(["book", "nips"]).map(|name| match name.as_str() {
+        "nips" => Dynamics::Nips,
+        _ => Dynamics::Book,
+    })
+}
+
+fn main() -> ExitCode {
+    match run(Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(options: Options) -> Result<(), String> {
+    let game = Game::new(options.seed, options.dynamics).map_err(|error| error.to_string())?;
+    let event_loop = event_loop().map_err(no_window)?;
+
+    // Opened before the game, so that nobody plays for a file that cannot be written.
+    let screenshot = match options.screenshot.as_deref() {
+        Some(path) => Some((path, File::create(path).map_err(|e| unwritable(path, e))?)),
+        None => None,
+    };
+
+    let mut app = App {
+        game,
+        screen: None,
+        left: false,
+        right: false,
+        next_tick: Instant::now(),
+        frames: options.frames,
+        failure: None,
+    };
+    let result = event_loop.run_app(&mut app);
+    if let Some(message) = app.failure {
+        return Err(message);
+    }
+    result.map_err(|error| format!("the window has failed: {error}"))?;
+
+    match screenshot {
+        Some((path, file)) => {
+            write_png(file, app.game.picture()).map_err(|error| unwritable(path, error))
+        }
+        None => Ok(()),
+    }
+}
+
+/// winit's event loop; winit panics where it finds no libxkbcommon.
+fn event_loop() -> Result<EventLoop<()>, Box<dyn Error>> {
+    panic::set_hook(Box::new(|_| ()));
+    let made = panic::catch_unwind(EventLoop::new);
+    let _ = panic::take_hook();
+    let made = made.map_err(|panic| match panic.downcast::<String>() {
+        Ok(message) => *message,
+        Err(_) => "winit has panicked".to_string(),
+    })?;
+    Ok(made?)
+}
+
+fn no_window(cause: impl Display) -> String {
+    format!(
+        "cannot open a window. It needs a running X11 or Wayland session, DISPLAY or \
+         WAYLAND_DISPLAY set, and the libraries that the README names ({cause})"
+    )
+}
+
+fn unwritable(path: &Path, error: io::Error) -> String {
+    let path = path.display();
+    format!("cannot write {path}: {error}. Name a PNG file that can be written for --screenshot")
+}
+
+fn write_png(file: File, picture: &Frame) -> io::Result<()> {
+    let mut file = BufWriter::new(file);
+    let mut encoder = png::Encoder::new(&mut file, picture.width(), picture.height());
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(picture.bytes())?;
+    writer.finish()?;
+    file.flush()
+}
+
+struct App {
+    game: Game,
+    screen: Option<Screen>,
+    /// Whether the arrow keys are held down.
+    left: bool,
+    right: bool,
+    next_tick: Instant,
+    /// How many frames are left to show.
+    frames: Option<u64>,
+    /// Why the window had to close.
+    failure: Option<String>,
+}
+
+impl App {
+    fn action(&self) -> Action {
+        match (self.left, self.right) {
+            (true, false) => Action::Negative,
+            (false, true) => Action::Positive,
+            _ => Action::Zero,
+        }
+    }
+
+    fn key(&mut self, event_loop: &ActiveEventLoop, event: &KeyEvent) {
+        let pressed = event.state == ElementState::Pressed;
+        match event.logical_key.as_ref() {
+            Key::Named(NamedKey::ArrowLeft) => self.left = pressed,
+            Key::Named(NamedKey::ArrowRight) => self.right = pressed,
+            Key::Character("r" | "R") if pressed && !event.repeat => {
+                self.game.reset();
+                self.redraw();
+            }
+            Key::Named(NamedKey::Escape) | Key::Character("q" | "Q") if pressed => {
+                event_loop.exit();
+            }
+            _ => (),
+        }
+    }
+
+    fn redraw(&self) {
+        if let Some(screen) = &self.screen {
+            screen.request_redraw();
+        }
+    }
+}
+
+impl ApplicationHandler for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        match Screen::open(event_loop) {
+            Ok(screen) => self.screen = Some(screen),
+            Err(error) => {
+                self.failure = Some(no_window(error));
+                event_loop.exit();
+            }
+        }
+        self.next_tick = Instant::now() + FRAME_TIME;
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::KeyboardInput { event, .. } => self.key(event_loop, &event),
+            // Whoever has the keyboard now is told of the keys that are released.
+            WindowEvent::Focused(false) => (self.left, self.right) = (false, false),
+            WindowEvent::Resized(_) => self.redraw(),
+            WindowEvent::RedrawRequested => {
+                if let Some(screen) = &mut self.screen
+                    && let Err(error) = screen.show(self.game.picture())
+                {
+                    self.failure = Some(format!("cannot draw in the window: {error}"));
+                    event_loop.exit();
+                }
+            }
+            _ => (),
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let now = Instant::now();
+        if now >= self.next_tick {
+            self.next_tick = now.max(self.next_tick + FRAME_TIME);
+            self.game.tick(self.action());
+            self.redraw();
+            if let Some(frames) = &mut self.frames {
+                *frames -= 1;
+                if *frames == 0 {
+                    event_loop.exit();
+                }
+            }
+        }
+        event_loop.set_control_flow(ControlFlow::WaitUntil(self.next_tick));
+    }
+}
