@@ -166,6 +166,17 @@ fn a_seeded_reset_is_a_new_acrobot() {
 }
 
 #[test]
+fn the_bounds_are_gymnasiums() {
+    // As its observation space prints them: 4π and 9π in f32.
+    let (four_pi, nine_pi) = (12.566_371, 28.274_334);
+    assert_eq!(*Observation::HIGH, [1.0, 1.0, 1.0, 1.0, four_pi, nine_pi]);
+    assert_eq!(*Observation::LOW, Observation::HIGH.map(|x| -x));
+    let pi = core::f32::consts::PI;
+    assert_eq!(*Observation::V0_HIGH, [pi, pi, four_pi, nine_pi]);
+    assert_eq!(*Observation::V0_LOW, Observation::V0_HIGH.map(|x| -x));
+}
+
+#[test]
 fn both_readings_show_the_state() {
     let mut acrobot = Acrobot::<Portable>::new(0);
     acrobot

@@ -50,6 +50,19 @@ impl View for Observation<4> {
 }
 
 /// Who shows the frames of mode [`RenderMode::Human`]: a window, a web socket, a test.
+///
+/// ```
+/// use acrobot::Fast;
+/// use acrobot::env::{Display, Env, Options, RenderMode, acrobot_v1};
+///
+/// let (sender, frames) = std::sync::mpsc::channel();
+/// let display = Display::new(move |frame| sender.send(frame.clone()).unwrap_or(()));
+/// let options = Options { render_mode: RenderMode::Human(display), ..Options::default() };
+/// let mut env = acrobot_v1::<Fast>(options)?;
+/// env.reset(Some(42.into()), None);
+/// assert_eq!(frames.try_iter().count(), 1);
+/// # Ok::<(), acrobot::env::Error>(())
+/// ```
 #[derive(Clone)]
 pub struct Display(Arc<Mutex<Show>>);
 
