@@ -15,6 +15,8 @@
 
 use std::array::from_fn;
 use std::f64::consts::PI;
+use std::io::{self, Write};
+use std::process::ExitCode;
 
 use acrobot::{Acrobot, Action, Params, Pcg64, Portable, SeedSequence, State, energy, wrap};
 use clap::Parser;
@@ -46,26 +48,42 @@ const STEPS: u32 = 1000;
 /// Held for so many steps in a row is caught.
 const HELD: u32 = 50;
 
-fn main() {
-    let options = Options::parse();
-    let regulator = Regulator::new();
-    println!("policy                torque limit  steps to the goal      caught upright");
-    let mut actions = Pcg64::new(options.seed.clone());
-    report(&options, "random", 1.0, |_| {
-        f64::from(u8::from(Action::sample(&mut actions))) - 1.0
-    });
-    report(&options, "bang-bang", 1.0, |acrobot| {
-        -acrobot.state().dtheta1.signum()
-    });
-    for limit in [1.0, options.limit] {
-        report(&options, "energy", limit, |acrobot| {
-            regulator.control(acrobot, limit)
-        });
+fn main() -> ExitCode {
+    match compare(&Options::parse(), &mut io::stdout().lock()) {
+        // Whoever reads has read enough.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            eprintln!("error: cannot print: {error}");
+            ExitCode::from(2)
+        }
+        _ => ExitCode::SUCCESS,
     }
 }
 
-/// Plays the episodes of one policy and prints how they went.
-fn report(options: &Options, name: &str, limit: f64, mut policy: impl FnMut(&Acrobot) -> f64) {
+fn compare(options: &Options, out: &mut impl Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "policy                torque limit  steps to the goal      caught upright"
+    )?;
+    let mut actions = Pcg64::new(options.seed.clone());
+    let random = |_: &Acrobot| f64::from(u8::from(Action::sample(&mut actions))) - 1.0;
+    writeln!(out, "{}", report(options, "random", 1.0, random))?;
+    let bang_bang = |acrobot: &Acrobot| -acrobot.state().dtheta1.signum();
+    writeln!(out, "{}", report(options, "bang-bang", 1.0, bang_bang))?;
+    let regulator = Regulator::new();
+    for limit in [1.0, options.limit] {
+        let energy = |acrobot: &Acrobot| regulator.control(acrobot, limit);
+        writeln!(out, "{}", report(options, "energy", limit, energy))?;
+    }
+    Ok(())
+}
+
+/// Plays the episodes of one policy and says in a line how they went.
+fn report(
+    options: &Options,
+    name: &str,
+    limit: f64,
+    mut policy: impl FnMut(&Acrobot) -> f64,
+) -> String {
     let mut parent = options.seed.clone();
     let (mut goals, mut catches) = (Vec::new(), Vec::new());
     for seed in parent.spawn(options.episodes) {
@@ -82,11 +100,11 @@ fn report(options: &Options, name: &str, limit: f64, mut policy: impl FnMut(&Acr
             format!("{share} at {mean:.1}")
         }
     };
-    println!(
+    format!(
         "{name:<20}  {limit:>8} N m  {:<21}  {}",
         of(&goals),
         of(&catches)
-    );
+    )
 }
 
 /// The steps to the goal, and to when the acrobot stood still upright.

@@ -6,6 +6,7 @@
 //! ```
 
 use std::error::Error;
+use std::io::{self, Write};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -36,18 +37,28 @@ struct Sample {
 }
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    let samples = record(&options.seed);
-    match plot(&options, &samples) {
-        Ok(()) => {
-            println!("{}: {} steps", options.out.display(), samples.len() - 1);
-            ExitCode::SUCCESS
-        }
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: cannot write {}: {error}", options.out.display());
+            eprintln!("error: {error}");
             ExitCode::from(2)
         }
     }
+}
+
+fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let out = options.out.display();
+    if options
+        .out
+        .extension()
+        .is_none_or(|extension| extension != "svg")
+    {
+        return Err(format!("--out is {out}; allowed is a name that ends in .svg").into());
+    }
+    let samples = record(&options.seed);
+    plot(options, &samples).map_err(|error| format!("cannot write {out}: {error}"))?;
+    writeln!(io::stdout(), "{out}: {} steps", samples.len() - 1)?;
+    Ok(())
 }
 
 fn record(seed: &SeedSequence) -> Vec<Sample> {

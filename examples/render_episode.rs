@@ -7,8 +7,9 @@
 //! ```
 
 use std::error::Error;
+use std::fmt::Display;
 use std::fs::File;
-use std::io::BufWriter;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -65,10 +66,11 @@ fn main() -> ExitCode {
 }
 
 fn draw_state(state: State, out: &Path) -> Result<(), Box<dyn Error>> {
+    expect_extension(out, "png")?;
     let mut acrobot = Acrobot::<Portable>::new(0);
     acrobot.set_state(state)?;
     write_png(out, &Frame::of(&Figure::new(&acrobot)))?;
-    println!("{}: the frame", out.display());
+    writeln!(io::stdout(), "{}: the frame", out.display())?;
     Ok(())
 }
 
@@ -80,19 +82,13 @@ const STRIP_FRAMES: usize = 8;
 const DELAY: u16 = 7;
 
 fn draw_episode(seed: SeedSequence, out: &Path) -> Result<(), Box<dyn Error>> {
+    expect_extension(out, "gif")?;
     let strip = out.with_extension("png");
-    if strip == out {
-        return Err(format!(
-            "--out is {}, where the strip goes; allowed is a GIF",
-            out.display()
-        )
-        .into());
-    }
     let figures = figures(seed);
-    write_gif(out, &figures)?;
+    write_gif(create(out)?, &figures).map_err(|error| cannot_write(out, error))?;
     write_png(&strip, &draw_strip(&figures))?;
-    println!("{}: {} frames", out.display(), figures.len());
-    println!("{}: {STRIP_FRAMES} of them", strip.display());
+    writeln!(io::stdout(), "{}: {} frames", out.display(), figures.len())?;
+    writeln!(io::stdout(), "{}: {STRIP_FRAMES} of them", strip.display())?;
     Ok(())
 }
 
@@ -122,9 +118,9 @@ fn draw(figure: &Figure, side: u32) -> Frame {
     frame
 }
 
-fn write_gif(out: &Path, figures: &[Figure]) -> Result<(), Box<dyn Error>> {
+fn write_gif(file: BufWriter<File>, figures: &[Figure]) -> Result<(), gif::EncodingError> {
     let side = SIDE as u16;
-    let mut encoder = gif::Encoder::new(create(out)?, side, side, &[])?;
+    let mut encoder = gif::Encoder::new(file, side, side, &[])?;
     encoder.set_repeat(gif::Repeat::Infinite)?;
     let progress = ProgressBar::new(figures.len() as u64);
     for (i, figure) in figures.iter().enumerate() {
@@ -135,7 +131,7 @@ fn write_gif(out: &Path, figures: &[Figure]) -> Result<(), Box<dyn Error>> {
         progress.inc(1);
     }
     progress.finish_and_clear();
-    Ok(())
+    Ok(encoder.into_inner()?.flush()?)
 }
 
 /// Frames at equal distances, side by side.
@@ -155,14 +151,32 @@ fn draw_strip(figures: &[Figure]) -> Frame {
 }
 
 fn write_png(out: &Path, frame: &Frame) -> Result<(), Box<dyn Error>> {
-    let mut encoder = png::Encoder::new(create(out)?, frame.width(), frame.height());
+    let mut file = create(out)?;
+    let mut encoder = png::Encoder::new(&mut file, frame.width(), frame.height());
     encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header()?.write_image_data(frame.bytes())?;
-    Ok(())
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(frame.bytes())?;
+        writer.finish()
+    });
+    written.map_err(|error| cannot_write(out, error))?;
+    Ok(file.flush().map_err(|error| cannot_write(out, error))?)
+}
+
+fn expect_extension(out: &Path, extension: &str) -> Result<(), String> {
+    if out.extension().is_some_and(|found| found == extension) {
+        return Ok(());
+    }
+    Err(format!(
+        "--out is {}; allowed is a name that ends in .{extension}",
+        out.display()
+    ))
 }
 
 fn create(path: &Path) -> Result<BufWriter<File>, String> {
-    let file =
-        File::create(path).map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+    let file = File::create(path).map_err(|error| cannot_write(path, error))?;
     Ok(BufWriter::new(file))
+}
+
+fn cannot_write(path: &Path, error: impl Display) -> String {
+    format!("cannot write {}: {error}", path.display())
 }

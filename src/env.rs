@@ -111,6 +111,8 @@ pub trait Env {
     /// Starts an episode and returns what the agent sees of its start.
     ///
     /// A `seed` seeds the generator anew; without one the next start of the same stream is drawn.
+    /// One that was never seeded is at seed 0: where Gymnasium asks the system for entropy, nothing
+    /// here differs from run to run.
     /// The start is drawn from `bounds`, or from the environment's own where there are none.
     fn reset(
         &mut self,
@@ -136,7 +138,7 @@ pub trait Env {
         Err(Error::NoRenderMode)
     }
 
-    /// Lets go of what is held for rendering; a later `render` takes it up again.
+    /// Lets go of what is held for rendering, such as a display; nothing is rendered afterwards.
     fn close(&mut self) {}
 
     /// What all wrappers wrap.
@@ -199,7 +201,8 @@ pub enum Rendering {
     Shown,
 }
 
-/// Gymnasium's `Acrobot-v1` without its wrappers, and with nothing to render.
+/// Gymnasium's `Acrobot-v1` without its wrappers, and with nothing to render. Its own methods of the
+/// same names come first: this one is `Env::reset(&mut acrobot, seed, bounds)`.
 impl<A: Arithmetic> Env for Acrobot<A> {
     type Observation = Observation;
     type Action = Action;
@@ -249,7 +252,8 @@ impl<A: Arithmetic> Env for Acrobot<A> {
     }
 }
 
-/// Truncates whatever it wraps, and reports it beside what that reports.
+/// Truncates whatever it wraps, and reports it beside what that reports. Around a bare `Acrobot` its
+/// own methods of the same names come first.
 impl<E: Env> Env for TimeLimit<E> {
     forward!(types E);
 

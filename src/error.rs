@@ -86,6 +86,8 @@ pub(crate) enum Allowed {
     Finite,
     ZeroOrMore,
     AboveZero,
+    /// And not beyond what an observation can show.
+    AboveZeroInF32,
 }
 
 impl Allowed {
@@ -100,6 +102,10 @@ impl Allowed {
             Self::Finite => (true, "any finite number"),
             Self::ZeroOrMore => (value >= S::ZERO, "a finite number, 0 or more"),
             Self::AboveZero => (value > S::ZERO, "a finite number above 0"),
+            Self::AboveZeroInF32 => (
+                value > S::ZERO && value.to_f64() <= f64::from(f32::MAX),
+                "a number above 0 that f32 holds, up to 3.4e38",
+            ),
         };
         if holds && value.is_finite() {
             return Ok(());

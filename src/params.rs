@@ -55,9 +55,9 @@ pub struct Params<S = f64> {
     pub gravity: S,
     /// Time that one step lasts, s; above 0.
     pub dt: S,
-    /// Bound of |θ̇1| after a step, rad/s; above 0.
+    /// Bound of |θ̇1| after a step, rad/s; above 0, and within `f32` as observations are.
     pub max_velocity1: S,
-    /// Bound of |θ̇2| after a step, rad/s; above 0.
+    /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
     /// Torques of the three actions, N m, in the order of their numbers; finite.
     pub torques: [S; 3],
@@ -143,7 +143,7 @@ impl<S: Real> Params<S> {
     ///
     /// [`Error::OutOfRange`] with the first field that is out of its range.
     pub fn validate(&self) -> Result<(), Error> {
-        use Allowed::{AboveZero, Finite, ZeroOrMore};
+        use Allowed::{AboveZero, AboveZeroInF32, Finite, ZeroOrMore};
 
         let [negative, zero, positive] = self.torques;
         for (name, value, unit, allowed) in [
@@ -157,8 +157,8 @@ impl<S: Real> Params<S> {
             ("inertia2", self.inertia2, "kg m²", ZeroOrMore),
             ("gravity", self.gravity, "m/s²", Finite),
             ("dt", self.dt, "s", AboveZero),
-            ("max_velocity1", self.max_velocity1, "rad/s", AboveZero),
-            ("max_velocity2", self.max_velocity2, "rad/s", AboveZero),
+            ("max_velocity1", self.max_velocity1, "rad/s", AboveZeroInF32),
+            ("max_velocity2", self.max_velocity2, "rad/s", AboveZeroInF32),
             ("torques[0]", negative, "N m", Finite),
             ("torques[1]", zero, "N m", Finite),
             ("torques[2]", positive, "N m", Finite),

@@ -15,6 +15,7 @@ use crate::arithmetic::{Arithmetic, Real};
 
 /// The colours of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Theme<C> {
     /// Behind everything.
     pub ground: C,

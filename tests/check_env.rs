@@ -57,14 +57,22 @@ enum Flaw {
     None,
     /// Observations leave their space.
     Outside,
+    /// The start is out of its space.
+    OutsideAtStart,
     /// A reward is NaN.
     Reward,
+    /// What is seen of the start hangs on how often it was reset.
+    Start(Cell<u32>),
     /// The seed is ignored.
     Seed,
     /// The time limit's count goes on over a reset: truncation is reported again.
     Count(Cell<u32>),
+    /// The same, with a count that only a seed restarts.
+    Unseeded(Cell<u32>),
     /// Clones share what they should own.
     Shared(Rc<Cell<u32>>),
+    /// Clones share it, and nobody notices from one reset to the next.
+    SharedInEpisode(Rc<Cell<u32>>),
     /// Rendering moves the acrobot.
     Render,
 }
@@ -92,7 +100,21 @@ impl Env for Broken {
         } else {
             seed
         };
-        Env::reset(&mut self.env, seed, bounds)
+        match &self.flaw {
+            Flaw::Unseeded(count) if seed.is_some() => count.set(0),
+            Flaw::SharedInEpisode(count) => count.set(0),
+            _ => {}
+        }
+        let (mut start, info) = Env::reset(&mut self.env, seed, bounds);
+        match &self.flaw {
+            Flaw::OutsideAtStart => start.0[1] = -1.5,
+            Flaw::Start(count) => {
+                count.set(count.get() + 1);
+                start.0[4] = count.get() as f32;
+            }
+            _ => {}
+        }
+        (start, info)
     }
 
     fn step(&mut self, action: Action) -> EnvStep<Observation> {
@@ -100,15 +122,15 @@ impl Env for Broken {
         match &self.flaw {
             Flaw::Outside => step.observation.0[0] += 1.0,
             Flaw::Reward => step.reward = f32::NAN,
-            Flaw::Count(count) => {
+            Flaw::Count(count) | Flaw::Unseeded(count) => {
                 count.set(count.get() + 1);
                 step.truncated = count.get() >= 500;
             }
-            Flaw::Shared(count) => {
+            Flaw::Shared(count) | Flaw::SharedInEpisode(count) => {
                 count.set(count.get() + 1);
                 step.reward -= (count.get() % 7) as f32;
             }
-            Flaw::None | Flaw::Seed | Flaw::Render => {}
+            _ => {}
         }
         step
     }
@@ -151,9 +173,17 @@ fn the_contracts_check_finds_who_breaks_it() {
     assert_eq!(check(Flaw::None), Ok(()));
     for (flaw, rule) in [
         (Flaw::Outside, "an observation is in the observation space"),
+        (
+            Flaw::OutsideAtStart,
+            "an observation is in the observation space",
+        ),
         (Flaw::Reward, "a reward is finite"),
         (
             Flaw::Seed,
+            "the same seed and the same actions give the same episode",
+        ),
+        (
+            Flaw::Start(Cell::new(0)),
             "the same seed and the same actions give the same episode",
         ),
         (
@@ -161,8 +191,16 @@ fn the_contracts_check_finds_who_breaks_it() {
             "a reset after an end starts a whole new episode",
         ),
         (
+            Flaw::Unseeded(Cell::new(0)),
+            "a reset after an end starts a whole new episode",
+        ),
+        (
             Flaw::Shared(Rc::new(Cell::new(0))),
             "the same seed and the same actions give the same episode",
+        ),
+        (
+            Flaw::SharedInEpisode(Rc::new(Cell::new(0))),
+            "a clone does what its original would have done",
         ),
         (Flaw::Render, "rendering changes nothing"),
     ] {

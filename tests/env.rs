@@ -112,12 +112,17 @@ fn live_changes_reach_through_every_wrapper() {
         *expected.observation
     );
 
-    let faster = Params {
+    let slower = Params {
         max_velocity1: 1.0,
+        max_velocity2: 2.0,
         ..params
     };
-    erased.unwrapped_mut().set_params(faster).unwrap();
-    assert_eq!(erased.observation_space().high()[4], 1.0);
+    let mut angles = make("Acrobot-v0").unwrap();
+    angles.unwrapped_mut().set_params(slower).unwrap();
+    erased.unwrapped_mut().set_params(slower).unwrap();
+    assert_eq!(erased.observation_space().high()[4..], [1.0, 2.0]);
+    assert_eq!(angles.observation_space().high()[2..], [1.0, 2.0]);
+    assert_eq!(erased.unwrapped().figure(), Figure::new(typed.unwrapped()));
 }
 
 /// What `make` returns goes where any environment goes.
@@ -141,6 +146,29 @@ fn boxed_and_borrowed_environments_are_environments() {
     let (start, _) = borrowed.reset(None, Some(StartBounds::new(0.5, 0.5).unwrap()));
     assert_eq!(*start, [0.5; 4]);
     borrowed.close();
+
+    // The shorter of two limits, and whoever shows is let go of through all of them.
+    let (sender, frames) = std::sync::mpsc::channel();
+    let display = Display::new(move |frame| sender.send(frame.width()).unwrap());
+    let options = Options {
+        render_mode: RenderMode::Human(display),
+        ..Options::default()
+    };
+    let mut env = TimeLimit::v1(RecordEpisodeStatistics::new(
+        make_with("Acrobot-v0", options).unwrap(),
+    ));
+    env.reset(None, None);
+    let length = (1..).find(|_| Env::step(&mut env, Action::Zero).truncated);
+    assert_eq!(length, Some(200));
+    assert!(
+        env.inner()
+            .episodes()
+            .all(|episode| !episode.elapsed.is_zero())
+    );
+    assert_eq!(frames.try_iter().count(), 201);
+    RecordEpisodeStatistics::new(&mut env).close();
+    assert!(frames.recv().is_err(), "nobody is left to send");
+    assert_eq!(env.render(), Err(Error::NoRenderMode));
 }
 
 #[test]
@@ -207,7 +235,6 @@ fn each_render_mode_returns_its_kind() {
     assert_eq!(shown.len(), 3, "the reset, the step and the call");
     assert_eq!(shown[1], shown[2]);
     assert_eq!(shown[2], Frame::of(&Figure::new(human.unwrapped())));
-    human.close();
 }
 
 #[test]
@@ -248,7 +275,7 @@ fn what_does_not_fit_is_refused_with_what_to_do() {
         ("", "Acrobot-v1"),
         ("CartPole-v1", "Acrobot-v1"),
     ] {
-        let text = make(id).err().unwrap().to_string();
+        let text = make(id).unwrap_err().to_string();
         let expected = format!(
             "there is no environment {id:?}; did you mean {nearest:?}? Known are Acrobot-v0 and Acrobot-v1"
         );
@@ -260,7 +287,7 @@ fn what_does_not_fit_is_refused_with_what_to_do() {
             arithmetic,
             ..Options::default()
         };
-        make_with("Acrobot-v1", options).err().unwrap().to_string()
+        make_with("Acrobot-v1", options).unwrap_err().to_string()
     };
     let text = refused(
         Params {

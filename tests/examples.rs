@@ -352,7 +352,7 @@ fn drawing_examples_refuse_with_a_reason() {
         (
             "render_episode",
             "--out picture.png",
-            "picture.png, where the strip goes; allowed is a GIF",
+            "--out is picture.png; allowed is a name that ends in .gif",
         ),
         (
             "render_episode",
@@ -365,6 +365,16 @@ fn drawing_examples_refuse_with_a_reason() {
             "cannot write no/such/folder.svg",
         ),
         (
+            "render_episode",
+            "--state 1,1 --out frame.gif",
+            "allowed is a name that ends in .png",
+        ),
+        (
+            "phase_portrait",
+            "--out portrait.png",
+            "allowed is a name that ends in .svg",
+        ),
+        (
             "energy_control",
             "--limit 0",
             "allowed is a finite number of N m above 0",
@@ -374,5 +384,26 @@ fn drawing_examples_refuse_with_a_reason() {
         let arguments: Vec<&str> = arguments.split(' ').collect();
         let errors = refused(example, &arguments, "");
         assert!(errors.contains(reason), "{errors}");
+    }
+}
+
+/// What cannot be written is no success, also where it is little enough to wait in a buffer.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_an_error() {
+    let folder = Folder::new("full");
+    for name in ["frame.png", "episode.gif"] {
+        std::os::unix::fs::symlink("/dev/full", folder.file(name)).unwrap();
+    }
+    let (frame, episode) = (folder.file("frame.png"), folder.file("episode.gif"));
+    for arguments in [
+        ["--state", "1,2", "--out", &frame],
+        ["--seed", "42", "--out", &episode],
+    ] {
+        let errors = refused("render_episode", &arguments, "");
+        assert!(
+            errors.contains("cannot write") && errors.contains("No space left"),
+            "{errors}"
+        );
     }
 }

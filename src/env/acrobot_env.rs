@@ -194,6 +194,10 @@ impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
         }
     }
 
+    fn close(&mut self) {
+        self.render_mode = RenderMode::None;
+    }
+
     fn unwrapped(&self) -> &Acrobot<A> {
         &self.acrobot
     }

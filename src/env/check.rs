@@ -26,6 +26,7 @@ impl fmt::Display for Violation {
 impl core::error::Error for Violation {}
 
 const IN_SPACE: &str = "an observation is in the observation space";
+const ACTIONS: &str = "the action space contains its samples";
 const REWARD: &str = "a reward is finite";
 const SEED: &str = "the same seed and the same actions give the same episode";
 const AFTER_END: &str = "a reset after an end starts a whole new episode";
@@ -35,8 +36,8 @@ const RENDER: &str = "rendering changes nothing";
 /// Episodes are followed for so many steps at the most.
 const STEPS: usize = 2000;
 
-/// Plays random episodes and checks the contract: observations lie in their space, rewards are
-/// finite, seeds reproduce, a reset after an end starts anew (so that truncation is reported at the
+/// Plays random episodes and checks the contract: observations and samples lie in their space, rewards are
+/// finite, seeds reproduce, a reset after an end starts anew, seeded or not (so that truncation is reported at the
 /// end of an episode and not again at the start of the next), clones differ only by the
 /// actions they are given, and rendering changes nothing.
 ///
@@ -58,16 +59,37 @@ where
     let mut rng = Pcg64::new(seed);
     let space = env.action_space();
     let actions: Vec<E::Action> = (0..STEPS).map(|_| space.sample(&mut rng)).collect();
+    in_space(env, &env.observation_space().sample(&mut rng))?;
+    if !actions.iter().all(|action| space.contains(action)) {
+        return Err(Violation {
+            rule: ACTIONS,
+            found: "a sample outside of it".into(),
+        });
+    }
 
     let mut played = env.clone();
-    let first = play(&mut played, seed, &actions)?;
     let mut otherwise_seeded = env.clone();
     otherwise_seeded.reset(Some(seed.wrapping_add(1).into()), None);
-    let again = play(&mut otherwise_seeded, seed, &actions)?;
+    let first = play(&mut played, Some(seed), &actions)?;
+    let again = play(&mut otherwise_seeded, Some(seed), &actions)?;
     same(SEED, &first, &again)?;
-    // The one that has just come to an end, without help from a clone.
-    let second = play(&mut played, seed, &actions)?;
-    same(AFTER_END, &first, &second)?;
+
+    // The two have come to the same end, and go on in the same stream.
+    let next = play(&mut played, None, &actions)?;
+    same(SEED, &next, &play(&mut otherwise_seeded, None, &actions)?)?;
+    let truncated = |episode: &Episode<_>| episode.steps.last().is_some_and(|step| step.truncated);
+    if truncated(&first) && truncated(&next) && next.steps.len() < first.steps.len() {
+        let found = format!(
+            "truncated after {} and then {} steps",
+            first.steps.len(),
+            next.steps.len()
+        );
+        return Err(Violation {
+            rule: AFTER_END,
+            found,
+        });
+    }
+    same(AFTER_END, &first, &play(&mut played, Some(seed), &actions)?)?;
 
     let (before, after) = actions.split_at(first.steps.len() / 2);
     let mut original = env.clone();
@@ -85,7 +107,8 @@ where
     same_steps(RENDER, &expected, &follow(&mut rendered, after)?)
 }
 
-/// An episode, up to its end.
+/// An episode, up to its end: two with the same steps have the same length, since only an end or
+/// the end of the actions stops one.
 struct Episode<O> {
     start: O,
     steps: Vec<EnvStep<O>>,
@@ -93,13 +116,13 @@ struct Episode<O> {
 
 fn play<E>(
     env: &mut E,
-    seed: u64,
+    seed: Option<u64>,
     actions: &[E::Action],
 ) -> Result<Episode<E::Observation>, Violation>
 where
     E: Env<Observation: Clone + fmt::Debug, Action: Clone>,
 {
-    let (start, _) = env.reset(Some(seed.into()), None);
+    let (start, _) = env.reset(seed.map(Into::into), None);
     in_space(env, &start)?;
     let steps = follow(env, actions)?;
     Ok(Episode { start, steps })
@@ -170,10 +193,6 @@ fn same_steps<O: fmt::Debug + PartialEq>(
                 found: format!("step {} is {x:?} and {y:?}", i + 1),
             });
         }
-    }
-    if x.len() != y.len() {
-        let found = format!("{} and {} steps", x.len(), y.len());
-        return Err(Violation { rule, found });
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Environments by their names.
 
+use core::fmt;
 use core::ops::Deref;
 use std::borrow::ToOwned;
 use std::boxed::Box;
@@ -86,7 +87,15 @@ pub fn acrobot_v0<A: Arithmetic>(
     )?))
 }
 
-/// Gymnasium's `make(id)`: `"Acrobot-v1"` or `"Acrobot-v0"`.
+impl fmt::Debug for DynEnv {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DynEnv")
+            .field("state", &self.unwrapped().state())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Gymnasium's `make(id)`: `"Acrobot-v1"` or `"Acrobot-v0"`. Until it is seeded it is at seed 0.
 ///
 /// # Errors
 ///
@@ -95,7 +104,7 @@ pub fn acrobot_v0<A: Arithmetic>(
 /// ```
 /// use acrobot::env::make;
 ///
-/// let error = make("Acrobat-v1").err().unwrap();
+/// let error = make("Acrobat-v1").unwrap_err();
 /// assert_eq!(
 ///     error.to_string(),
 ///     r#"there is no environment "Acrobat-v1"; did you mean "Acrobot-v1"? Known are Acrobot-v0 and Acrobot-v1"#
@@ -203,6 +212,7 @@ impl AsMut<[f32]> for Reading {
 }
 
 /// An environment with its types erased to those of [`DynEnv`].
+#[derive(Clone)]
 struct Erased<E>(E);
 
 impl<E, O> Env for Erased<E>
@@ -257,5 +267,21 @@ where
 
     fn unwrapped_mut(&mut self) -> &mut (dyn LiveAcrobot + 'static) {
         self.0.unwrapped_mut()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::env::check_env;
+
+    #[test]
+    fn erased_environments_keep_the_contract() {
+        check_env(&Erased(acrobot_v0::<Fast>(Options::default()).unwrap()), 1).unwrap();
+        check_env(
+            &Erased(acrobot_v1::<Portable>(Options::default()).unwrap()),
+            1,
+        )
+        .unwrap();
     }
 }
