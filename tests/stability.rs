@@ -3,7 +3,7 @@
 mod common;
 
 use acrobot::{Acrobot, Action, Arithmetic, Fast, Micro, Pcg64, Portable, TimeLimit};
-use common::Digest;
+use common::{Digest, episodes};
 
 /// Every bit of the states, rewards and ends of 64 seeds' random episodes: 100,000 steps or so.
 fn digest<A: Arithmetic>() -> u64 {
@@ -48,4 +48,16 @@ fn fast_is_stable() {
 #[test]
 fn micro_is_stable() {
     assert_eq!(format!("{:016x}", digest::<Micro>()), "a0091a2a1bf59922");
+}
+
+/// The episodes that other targets play too.
+#[test]
+fn the_shared_episodes_are_stable() {
+    fn check<A: Arithmetic>(name: &str, expected: [u64; 16]) {
+        let found = std::array::from_fn(|episode| episodes::digest::<A>(episode as u64));
+        assert!(found == expected, "{name}: {found:#018x?}");
+    }
+    check::<Portable>("portable", episodes::PORTABLE);
+    check::<Fast>("fast", episodes::FAST);
+    check::<Micro>("micro", episodes::MICRO);
 }

@@ -2,28 +2,18 @@
 
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod episodes;
+
 use std::hint::black_box;
 use std::io::Write;
 use std::sync::LazyLock;
+
+pub use episodes::Digest;
 
 use acrobot::{
     Acrobot, Action, Arithmetic, Dynamics, Host, Params, Pcg64, SeedSequence, StartBounds, State,
     uniform,
 };
-
-/// FNV-1a over 64-bit words instead of bytes, as in `data/record.py`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Digest(pub u64);
-
-impl Digest {
-    pub fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    pub fn add(&mut self, word: u64) {
-        self.0 = (self.0 ^ word).wrapping_mul(0x100_0000_01b3);
-    }
-}
 
 pub const STEPS: usize = 500;
 

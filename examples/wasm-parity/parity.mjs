@@ -1,0 +1,19 @@
+// Compares every digest in Node, and ends with a failing status where one differs.
+import { readFile } from "node:fs/promises";
+
+const file = new URL("target/wasm32-unknown-unknown/release/acrobot_wasm_parity.wasm", import.meta.url);
+const { instance } = await WebAssembly.instantiate(await readFile(file));
+const { found, expected } = instance.exports;
+
+for (const [arithmetic, name] of ["portable", "fast", "micro"].entries()) {
+  let equal = 0;
+  for (let episode = 0; episode < 16; episode++) {
+    if (found(arithmetic, episode) === expected(arithmetic, episode)) {
+      equal++;
+    } else {
+      console.error(`${name} differs in episode ${episode}`);
+      process.exitCode = 1;
+    }
+  }
+  console.log(`${name}: ${equal} of 16 episodes are equal to the bit`);
+}

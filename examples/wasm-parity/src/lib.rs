@@ -1,0 +1,36 @@
+//! Plays the sixteen episodes that the host's tests play; `parity.mjs` beside it compares the
+//! digests.
+
+#![no_std]
+
+#[path = "../../../tests/common/episodes.rs"]
+mod episodes;
+
+use acrobot::{Fast, Micro, Portable};
+
+/// The digest of an episode in `portable` (0), `fast` (1) or `micro` (2).
+#[unsafe(no_mangle)]
+pub extern "C" fn found(arithmetic: u32, episode: u32) -> u64 {
+    let digest = match arithmetic {
+        0 => episodes::digest::<Portable>,
+        1 => episodes::digest::<Fast>,
+        _ => episodes::digest::<Micro>,
+    };
+    digest(episode.into())
+}
+
+/// What the host's tests assert it to be.
+#[unsafe(no_mangle)]
+pub extern "C" fn expected(arithmetic: u32, episode: u32) -> u64 {
+    let digests = match arithmetic {
+        0 => episodes::PORTABLE,
+        1 => episodes::FAST,
+        _ => episodes::MICRO,
+    };
+    digests[episode as usize]
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    core::arch::wasm32::unreachable()
+}
