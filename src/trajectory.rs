@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use heapless::HistoryBuf;
+use heapless::Deque;
 use rand_core::Rng;
 
 use crate::acrobot::Acrobot;
@@ -50,7 +50,8 @@ pub struct Transition<S = f64> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Trajectory<S, const N: usize> {
-    transitions: HistoryBuf<Transition<S>, N>,
+    /// A deque and not heapless's history buffer, which indexes with a checked branch.
+    transitions: Deque<Transition<S>, N>,
     /// How many were pushed since the last `clear`, kept or not.
     pushed: u32,
 }
@@ -61,7 +62,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
     pub const fn new() -> Self {
         const { assert!(N > 0, "a trajectory needs room for at least one transition") };
         Self {
-            transitions: HistoryBuf::new(),
+            transitions: Deque::new(),
             pushed: 0,
         }
     }
@@ -102,7 +103,11 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
     /// Adds the newest, in place of the oldest where all `N` are taken.
     #[inline]
     pub fn push(&mut self, transition: Transition<S>) {
-        self.transitions.write(transition);
+        if self.transitions.is_full() {
+            self.transitions.pop_front();
+        }
+        // There is room for one now.
+        let _ = self.transitions.push_back(transition);
         self.pushed = self.pushed.saturating_add(1);
     }
 
@@ -126,7 +131,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
 
     /// All that there are, oldest first.
     pub fn iter(&self) -> impl Iterator<Item = &Transition<S>> {
-        self.transitions.oldest_ordered()
+        self.transitions.iter()
     }
 
     /// Writes them as CSV, oldest first, below a line of column names with units.

@@ -1,0 +1,117 @@
+//! Links only if no panicking branch is left: the panic handler calls a function that does not exist.
+//! `cargo build --release --bin no_panic` is the whole test; there is nothing to run.
+//!
+//! `Trajectory::write_csv` is left out, for core's formatting of floats has branches that panic.
+
+#![no_std]
+#![no_main]
+
+use core::convert::Infallible;
+use core::hint::black_box;
+use core::panic::PanicInfo;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Fast, Figure, Micro, Params, Portable, Real, SeedSequence,
+    StartBounds, State, Theme, TimeLimit, Trajectory,
+};
+use cortex_m_rt::entry;
+use embedded_graphics_core::Pixel;
+use embedded_graphics_core::draw_target::DrawTarget;
+use embedded_graphics_core::geometry::{OriginDimensions, Size};
+use embedded_graphics_core::pixelcolor::BinaryColor;
+
+unsafe extern "C" {
+    fn a_panicking_branch_is_left() -> !;
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo) -> ! {
+    unsafe { a_panicking_branch_is_left() }
+}
+
+#[entry]
+fn main() -> ! {
+    loop {
+        everything::<Fast>();
+        everything::<Micro>();
+        everything::<Portable>();
+    }
+}
+
+/// What firmware can call, with arguments that the compiler cannot know.
+fn everything<A: Arithmetic>() {
+    let number = || A::Scalar::from_f64(black_box(0.5));
+    let mut seeds = SeedSequence::from(black_box(42));
+    for seed in seeds.spawn(black_box(2)) {
+        let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(seed));
+        let mut trajectory = Trajectory::<A::Scalar, 8>::new();
+        let inner = acrobot.inner_mut();
+        let params = Params {
+            torque_noise: number(),
+            mass1: number(),
+            ..Params::default()
+        };
+        let _ = black_box(inner.set_params(params));
+        let _ = black_box(inner.set_state(State::from([(); 4].map(|()| number()))));
+        if let Ok(bounds) = StartBounds::new(black_box(-0.2), black_box(0.2)) {
+            black_box(acrobot.reset_within(bounds));
+        }
+        black_box(acrobot.reset_seeded(black_box(7)));
+        let mut shown = Figure::new(acrobot.inner());
+        let _ = shown.draw(&mut Display([0; 1024]), &Theme::MONOCHROME);
+        for _ in 0..black_box(10) {
+            let action = Action::sample(acrobot.inner_mut().rng_mut());
+            black_box(trajectory.step(&mut acrobot, action));
+            let _ = black_box(Action::try_from(black_box(3)));
+            let _ = black_box(acrobot.step_torque(number()));
+            let inner = acrobot.inner();
+            black_box((
+                inner.observation(),
+                inner.energy(),
+                inner.tip_height(),
+                inner.mass_matrix(),
+            ));
+            let figure = Figure::new(inner).with_torque(black_box(1.0));
+            let _ = figure.redraw(&shown, &mut Display([0; 1024]), &Theme::MONOCHROME);
+            shown = figure;
+        }
+        trajectory.iter().for_each(|transition| {
+            black_box(transition);
+        });
+    }
+}
+
+/// 128 × 64 pixels of one bit.
+struct Display([u8; 1024]);
+
+impl OriginDimensions for Display {
+    fn size(&self) -> Size {
+        Size::new(128, 64)
+    }
+}
+
+impl DrawTarget for Display {
+    type Color = BinaryColor;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
+        &mut self,
+        pixels: I,
+    ) -> Result<(), Infallible> {
+        for Pixel(point, color) in pixels {
+            if let Some(byte) = self
+                .0
+                .get_mut(point.y as usize / 8 * 128 + point.x as usize)
+            {
+                let bit = 1 << (point.y & 7);
+                *byte = if color.is_on() {
+                    *byte | bit
+                } else {
+                    *byte & !bit
+                };
+            }
+        }
+        black_box(&self.0);
+        Ok(())
+    }
+}
