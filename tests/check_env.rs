@@ -6,12 +6,13 @@ use std::rc::Rc;
 
 use acrobot::env::{
     BoxSpace, Discrete, Env, EnvStep, Error, Info, Options, RecordEpisodeStatistics, RenderMode,
-    Rendering, Violation, acrobot_v0, acrobot_v1, check_env,
+    Rendering, Space, Violation, acrobot_v0, acrobot_v1, check_env,
 };
 use acrobot::{
     Acrobot, Action, Fast, Host, Micro, Observation, Params, Portable, SeedSequence, StartBounds,
     TimeLimit,
 };
+use rand_core::Rng;
 
 #[test]
 fn our_environments_keep_the_contract() {
@@ -75,6 +76,27 @@ enum Flaw {
     SharedInEpisode(Rc<Cell<u32>>),
     /// Rendering moves the acrobot.
     Render,
+    /// A space does not contain what it samples.
+    ObservationSamples,
+    ActionSamples,
+}
+
+/// A space that samples something else than what it is asked for.
+struct Altered<S: Space> {
+    space: S,
+    alter: fn(S::Element) -> S::Element,
+}
+
+impl<S: Space> Space for Altered<S> {
+    type Element = S::Element;
+
+    fn contains(&self, element: &S::Element) -> bool {
+        self.space.contains(element)
+    }
+
+    fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> S::Element {
+        (self.alter)(self.space.sample(rng))
+    }
 }
 
 #[derive(Clone)]
@@ -86,8 +108,8 @@ struct Broken {
 impl Env for Broken {
     type Observation = Observation;
     type Action = Action;
-    type ObservationSpace = BoxSpace<Observation>;
-    type ActionSpace = Discrete<Action>;
+    type ObservationSpace = Altered<BoxSpace<Observation>>;
+    type ActionSpace = Altered<Discrete<Action>>;
     type Unwrapped = Acrobot<Fast>;
 
     fn reset(
@@ -135,12 +157,31 @@ impl Env for Broken {
         step
     }
 
-    fn action_space(&self) -> Discrete<Action> {
-        self.env.action_space()
+    fn action_space(&self) -> Altered<Discrete<Action>> {
+        match self.flaw {
+            Flaw::ActionSamples => Altered {
+                space: Discrete::new(&[Action::Negative, Action::Zero]).unwrap(),
+                alter: |_| Action::Positive,
+            },
+            _ => Altered {
+                space: self.env.action_space(),
+                alter: |action| action,
+            },
+        }
     }
 
-    fn observation_space(&self) -> BoxSpace<Observation> {
-        self.env.observation_space()
+    fn observation_space(&self) -> Altered<BoxSpace<Observation>> {
+        let space = self.env.observation_space();
+        match self.flaw {
+            Flaw::ObservationSamples => Altered {
+                space,
+                alter: |seen| Observation(seen.map(|x| x + 60.0)),
+            },
+            _ => Altered {
+                space,
+                alter: |seen| seen,
+            },
+        }
     }
 
     fn render(&mut self) -> Result<Rendering, Error> {
@@ -202,6 +243,11 @@ fn the_contracts_check_finds_who_breaks_it() {
             Flaw::SharedInEpisode(Rc::new(Cell::new(0))),
             "a clone does what its original would have done",
         ),
+        (
+            Flaw::ObservationSamples,
+            "an observation is in the observation space",
+        ),
+        (Flaw::ActionSamples, "the action space contains its samples"),
         (Flaw::Render, "rendering changes nothing"),
     ] {
         let Err(Violation {
