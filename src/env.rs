@@ -17,7 +17,6 @@
 //! # Ok::<(), acrobot::env::Error>(())
 //! ```
 
-mod acrobot_env;
 /// The parts of [`Env`] that a wrapper hands on: its types, its episodes, and all the rest.
 macro_rules! forward {
     (types $inner:ident) => {
@@ -67,6 +66,7 @@ macro_rules! forward {
     };
 }
 
+mod acrobot_env;
 mod check;
 mod error;
 mod frame;

@@ -122,12 +122,6 @@ impl<E> TimeLimit<E> {
         self.elapsed = self.elapsed.saturating_add(1);
         self.elapsed >= self.limit.get()
     }
-
-    /// What it wraps, without it.
-    #[must_use]
-    pub fn into_inner(self) -> E {
-        self.inner
-    }
 }
 
 impl<A: Arithmetic> TimeLimit<Acrobot<A>> {
