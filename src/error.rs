@@ -88,6 +88,8 @@ pub(crate) enum Allowed {
     AboveZero,
     /// And not beyond what an observation can show.
     AboveZeroInF32,
+    /// What a start is drawn in.
+    InF32,
 }
 
 impl Allowed {
@@ -98,14 +100,16 @@ impl Allowed {
         value: S,
         unit: &'static str,
     ) -> Result<(), Error> {
+        let in_f32 = value.to_f64().abs() <= f64::from(f32::MAX);
         let (holds, allowed) = match self {
             Self::Finite => (true, "any finite number"),
             Self::ZeroOrMore => (value >= S::ZERO, "a finite number, 0 or more"),
             Self::AboveZero => (value > S::ZERO, "a finite number above 0"),
             Self::AboveZeroInF32 => (
-                value > S::ZERO && value.to_f64() <= f64::from(f32::MAX),
+                value > S::ZERO && in_f32,
                 "a number above 0 that f32 holds, up to 3.4e38",
             ),
+            Self::InF32 => (in_f32, "a number that f32 holds, from -3.4e38 to 3.4e38"),
         };
         if holds && value.is_finite() {
             return Ok(());

@@ -99,16 +99,8 @@ impl StartBounds {
     /// [`Error::OutOfRange`] for a bound that `f32` cannot hold as a finite number, and
     /// [`Error::ReversedBounds`] for a `low` above `high`.
     pub fn new(low: f64, high: f64) -> Result<Self, Error> {
-        for (name, value) in [("low", low), ("high", high)] {
-            if !(value as f32).is_finite() {
-                return Err(Error::OutOfRange {
-                    name,
-                    value,
-                    unit: "rad and rad/s",
-                    allowed: "a number that f32 holds, from -3.4e38 to 3.4e38",
-                });
-            }
-        }
+        Allowed::InF32.check("low", low, "rad and rad/s")?;
+        Allowed::InF32.check("high", high, "rad and rad/s")?;
         if low > high {
             return Err(Error::ReversedBounds { low, high });
         }
