@@ -65,7 +65,7 @@ fn compare(options: &Options, out: &mut impl Write) -> io::Result<()> {
         "policy                torque limit  steps to the goal      caught upright"
     )?;
     let mut actions = Pcg64::new(options.seed.clone());
-    let random = |_: &Acrobot| f64::from(u8::from(Action::sample(&mut actions))) - 1.0;
+    let random = |acrobot: &Acrobot| acrobot.params().torque(Action::sample(&mut actions));
     writeln!(out, "{}", report(options, "random", 1.0, random))?;
     let bang_bang = |acrobot: &Acrobot| -acrobot.state().dtheta1.signum();
     writeln!(out, "{}", report(options, "bang-bang", 1.0, bang_bang))?;

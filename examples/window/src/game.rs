@@ -103,7 +103,7 @@ impl Game {
 
         // Human mode shows Gymnasium's picture, without the torque: only its arrow is missing.
         let figure = Figure::new(self.env.unwrapped());
-        let torque = f32::from(u8::from(action)) - 1.0;
+        let torque = self.env.unwrapped().params().torque(action) as f32;
         let Ok(()) =
             figure
                 .with_torque(torque)
