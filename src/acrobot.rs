@@ -4,8 +4,8 @@ use rand_core::Rng;
 
 use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Portable, Real};
-use crate::bounds::{bound, wrap};
-use crate::dynamics::{self, Model, SinCos};
+use crate::bounds::{is_settled, settle};
+use crate::dynamics::{self, Driven, Model, SinCos};
 use crate::error::{Allowed, Error};
 use crate::observation::Observation;
 use crate::params::Params;
@@ -91,10 +91,9 @@ impl<A: Arithmetic> Acrobot<A> {
 impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
     /// An acrobot with the default parameters, at a start drawn from `rng`.
     #[must_use]
-    pub fn with_rng(rng: R) -> Self {
-        let mut acrobot = Self::assemble(Params::default(), State::default(), rng);
-        acrobot.reset();
-        acrobot
+    pub fn with_rng(mut rng: R) -> Self {
+        let start = StartBounds::DEFAULT.draw(&mut rng).cast();
+        Self::assemble(Params::default(), start, rng)
     }
 
     /// Draws a new start from [`StartBounds::DEFAULT`] and returns what the agent sees of it.
@@ -105,9 +104,8 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
     /// Draws a new start from `bounds`, as Gymnasium's
     /// `reset(options={"low": low, "high": high})`.
     pub fn reset_within(&mut self, bounds: StartBounds) -> Observation {
-        // Gymnasium keeps a start in f32, whatever it computes in afterwards.
-        let start = [(); 4].map(|()| uniform(&mut self.rng, bounds.low(), bounds.high()) as f32);
-        self.place(State::from(start).cast());
+        let start = bounds.draw(&mut self.rng).cast();
+        self.place(start);
         self.observation()
     }
 
@@ -130,28 +128,24 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
 
     #[inline]
     fn advance(&mut self, torque: A::Scalar) -> Step {
-        let params = self.model.params;
-        let torque = if params.torque_noise > A::Scalar::ZERO {
-            let noise = params.torque_noise.to_f64();
+        let torque = if self.model.params.torque_noise > A::Scalar::ZERO {
+            let noise = self.model.params.torque_noise.to_f64();
             torque + A::Scalar::from_f64(uniform(&mut self.rng, -noise, noise))
         } else {
             torque
         };
-
+        let model = &self.model;
+        let driven = Driven { model, torque };
         let y: [A::Scalar; 4] = self.state.into();
-        let k1 = self.model.derivative_from::<A>(y, self.sin_cos, torque);
-        let next = rk4_from(y, k1, params.dt, |y| self.model.derivative::<A>(y, torque));
-        let [theta1, theta2, dtheta1, dtheta2] = if next.iter().all(|x| x.is_finite()) {
-            next
-        } else {
-            [y[0], y[1], A::Scalar::ZERO, A::Scalar::ZERO]
-        };
-        self.place(State {
-            theta1: wrap::<A>(theta1),
-            theta2: wrap::<A>(theta2),
-            dtheta1: bound(dtheta1, params.max_velocity1),
-            dtheta2: bound(dtheta2, params.max_velocity2),
-        });
+        let k1 = driven.derivative_from::<A>(y, self.sin_cos);
+        let next = rk4_from(A::FORM, y, k1, model.dts, &driven, Driven::derivative::<A>);
+
+        self.state = next.into();
+        if !is_settled(&self.state, &model.params) {
+            settle::<A>(&mut self.state, [y[0], y[1]], &model.params);
+        }
+        let State { theta1, theta2, .. } = self.state;
+        self.sin_cos = [A::sin_cos_near(theta1), A::sin_cos_near(theta2)];
 
         let terminated = dynamics::reaches_goal::<A>(&self.state, self.sin_cos);
         Step {
@@ -246,21 +240,28 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
 
     /// Of valid parts.
     fn assemble(params: Params<A::Scalar>, state: State<A::Scalar>, rng: R) -> Self {
-        let mut acrobot = Self {
+        Self {
             model: Model::new::<A>(params),
             state,
-            sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2],
+            sin_cos: sin_cos::<A>(&state),
             rng,
-        };
-        acrobot.place(state);
-        acrobot
+        }
     }
 
-    #[inline]
     fn place(&mut self, state: State<A::Scalar>) {
         self.state = state;
-        self.sin_cos = [A::sin_cos(state.theta1), A::sin_cos(state.theta2)];
+        self.sin_cos = sin_cos::<A>(&state);
     }
+}
+
+/// Of θ1 and θ2, wherever they are.
+fn sin_cos<A: Arithmetic>(state: &State<A::Scalar>) -> [SinCos<A::Scalar>; 2] {
+    /// Apart, for flash: starts are few.
+    #[inline(never)]
+    fn apart<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
+        A::sin_cos(x)
+    }
+    [apart::<A>(state.theta1), apart::<A>(state.theta2)]
 }
 
 #[cfg(feature = "defmt")]

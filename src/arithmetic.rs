@@ -61,6 +61,14 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// Sine and cosine of `x` rad; both within \[−1, 1\] for every finite `x`.
     fn sin_cos(x: Self::Scalar) -> (Self::Scalar, Self::Scalar);
 
+    /// The same for an angle near the origin, as a step passes through them: to the bit for |x| up to
+    /// 2¹⁹ rad. Beyond, where a step has no meaning left in its scalar, it may return anything, and
+    /// NaN too; so it is the place to leave out what [`sin_cos`](Self::sin_cos) does for the rest.
+    #[inline]
+    fn sin_cos_near(x: Self::Scalar) -> (Self::Scalar, Self::Scalar) {
+        Self::sin_cos(x)
+    }
+
     /// Cosine of `x` rad: the second of [`sin_cos`](Self::sin_cos), to the bit.
     #[inline]
     fn cos(x: Self::Scalar) -> Self::Scalar {
@@ -108,6 +116,9 @@ pub trait Real:
     /// The same number, exactly.
     fn to_f64(self) -> f64;
 
+    /// The absolute value.
+    fn abs(self) -> Self;
+
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
@@ -142,6 +153,11 @@ macro_rules! impl_real {
             }
 
             #[inline]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+
+            #[inline]
             fn is_finite(self) -> bool {
                 self.is_finite()
             }
@@ -168,11 +184,6 @@ mod sealed {
     pub trait Sealed {}
 }
 
-/// An angle beyond ±64 rad brought within a turn, in f64: at most 3e-16 of the angle is lost.
-///
-/// For the `f32` kernels, whose own reductions end there. Cold: after a step angles are within ±π,
-/// and only a start or a state that was set far outside comes here.
-#[cold]
-fn reduce(x: f32) -> f32 {
-    (f64::from(x) % core::f64::consts::TAU) as f32
-}
+/// The largest angle that the `f32` kernels take, rad: 2¹⁹, where neighbouring `f32` are 1/16 rad
+/// apart. It stands for all that lies beyond.
+const FARTHEST: f32 = 524_288.0;

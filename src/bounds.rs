@@ -1,6 +1,8 @@
 //! Keeping a state in its bounds: angles wrap around, velocities stop.
 
 use crate::arithmetic::{Arithmetic, Form, Real};
+use crate::params::Params;
+use crate::state::State;
 
 /// How many turns Gymnasium's `wrap` is followed before its remainder is taken at once.
 const MAX_TURNS: u32 = 64;
@@ -60,6 +62,38 @@ fn wrap_by_quotient<S: Real>(x: S) -> S {
     let turns = (x * S::from_f64(1.0 / core::f64::consts::TAU)).round_small();
     // The bound is for angles so large that their spacing exceeds a turn.
     bound(x - turns * S::TAU, S::PI)
+}
+
+/// Whether a state is as a step leaves it: finite, angles within ±π, velocities within their bounds.
+#[inline]
+pub(crate) fn is_settled<S: Real>(state: &State<S>, params: &Params<S>) -> bool {
+    state.theta1.abs() <= S::PI
+        && state.theta2.abs() <= S::PI
+        && state.dtheta1.abs() <= params.max_velocity1
+        && state.dtheta2.abs() <= params.max_velocity2
+}
+
+/// Brings a step's result there: wraps the angles and bounds the velocities. One that is not finite
+/// becomes the angles before the step, at rest.
+///
+/// Apart from the step because few results need it.
+#[inline(never)]
+pub(crate) fn settle<A: Arithmetic>(
+    state: &mut State<A::Scalar>,
+    [theta1, theta2]: [A::Scalar; 2],
+    params: &Params<A::Scalar>,
+) {
+    if state.validate().is_err() {
+        *state = State {
+            theta1,
+            theta2,
+            ..State::default()
+        };
+    }
+    state.theta1 = wrap::<A>(state.theta1);
+    state.theta2 = wrap::<A>(state.theta2);
+    state.dtheta1 = bound(state.dtheta1, params.max_velocity1);
+    state.dtheta2 = bound(state.dtheta2, params.max_velocity2);
 }
 
 /// `x` brought to \[−`limit`, `limit`\], for a `limit` of 0 or more; NaN stays NaN.

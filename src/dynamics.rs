@@ -17,26 +17,18 @@ pub(crate) type SinCos<S> = (S, S);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Model<S> {
     pub(crate) params: Params<S>,
-    /// m1 lc1², kg m².
-    link1: S,
-    /// l1² + lc2², m².
-    arms: S,
-    /// l1 lc2, m².
-    arm: S,
-    /// lc2², m².
-    lc2_squared: S,
     /// m2 l1 lc2, kg m²: how strongly the links turn each other.
     coupling: S,
     /// m2 lc2² + I2, kg m²: link 2 about its joint.
     link2: S,
-    /// The part of d1 that no angle changes, kg m².
-    total: S,
-    /// The part of M's determinant that no angle changes, kg² m⁴.
-    determinant: S,
     /// (m1 lc1 + m2 l1) g, N m.
     gravity1: S,
     /// m2 lc2 g, N m.
     gravity2: S,
+    /// What else the form of the equations needs; the form alone knows the names.
+    own: [S; 4],
+    /// dt/2, dt and dt/6, s.
+    pub(crate) dts: [S; 3],
 }
 
 impl<S: Real> Model<S> {
@@ -54,44 +46,35 @@ impl<S: Real> Model<S> {
         } = params;
         let link1 = m1 * A::square(lc1);
         let lc2_squared = A::square(lc2);
-        let arms = A::square(l1) + lc2_squared;
         let link2 = m2 * lc2_squared + inertia2;
+        let own = match A::FORM {
+            Form::Gymnasium => [link1, A::square(l1) + lc2_squared, l1 * lc2, lc2_squared],
+            Form::Lean => {
+                let m2_l1_squared = m2 * A::square(l1);
+                let [book, nips] = match params.dynamics {
+                    Dynamics::Book => [S::from_f64(1.0), S::ZERO],
+                    Dynamics::Nips => [S::ZERO, S::from_f64(1.0)],
+                };
+                [
+                    link1 + inertia1 + m2_l1_squared,
+                    (link1 + inertia1) * link2 + m2_l1_squared * inertia2,
+                    book,
+                    nips,
+                ]
+            }
+        };
         Self {
             params,
-            link1,
-            arms,
-            arm: l1 * lc2,
-            lc2_squared,
             coupling: m2 * l1 * lc2,
             link2,
-            total: link1 + m2 * arms + inertia1 + inertia2,
-            determinant: (link1 + inertia1) * link2 + m2 * A::square(l1) * inertia2,
             gravity1: (m1 * lc1 + m2 * l1) * gravity,
             gravity2: m2 * lc2 * gravity,
-        }
-    }
-
-    /// \[θ̇1, θ̇2, θ̈1, θ̈2\] at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque in N m.
-    #[inline]
-    pub(crate) fn derivative<A: Arithmetic<Scalar = S>>(&self, y: [S; 4], torque: S) -> [S; 4] {
-        let second = A::sin_cos(y[1]);
-        match A::FORM {
-            Form::Gymnasium => self.gymnasium::<A>(y, second, torque),
-            Form::Lean => self.lean(y, [A::sin_cos(y[0]), second], torque),
-        }
-    }
-
-    /// The same where the sines and cosines of θ1 and θ2 are known already.
-    #[inline]
-    pub(crate) fn derivative_from<A: Arithmetic<Scalar = S>>(
-        &self,
-        y: [S; 4],
-        sin_cos: [SinCos<S>; 2],
-        torque: S,
-    ) -> [S; 4] {
-        match A::FORM {
-            Form::Gymnasium => self.gymnasium::<A>(y, sin_cos[1], torque),
-            Form::Lean => self.lean(y, sin_cos, torque),
+            own,
+            dts: [
+                params.dt * S::from_f64(0.5),
+                params.dt,
+                params.dt / S::from_f64(6.0),
+            ],
         }
     }
 
@@ -111,12 +94,14 @@ impl<S: Real> Model<S> {
             dynamics,
             ..
         } = self.params;
+        // m1 lc1², l1² + lc2², l1 lc2, lc2².
+        let [link1, arms, arm, lc2_squared] = self.own;
         let two = S::from_f64(2.0);
         let coupling = self.coupling;
 
-        let arm = self.arm * cos2;
-        let d1 = self.link1 + m2 * (self.arms + two * arm) + inertia1 + inertia2;
-        let d2 = m2 * (self.lc2_squared + arm) + inertia2;
+        let arm = arm * cos2;
+        let d1 = link1 + m2 * (arms + two * arm) + inertia1 + inertia2;
+        let d2 = m2 * (lc2_squared + arm) + inertia2;
         let phi2 = self.gravity2 * A::cos(theta1 + theta2 - S::FRAC_PI_2);
         let phi1 = -coupling * A::square(dtheta2) * sin2
             - two * coupling * dtheta2 * dtheta1 * sin2
@@ -132,37 +117,50 @@ impl<S: Real> Model<S> {
         [dtheta1, dtheta2, ddtheta1, ddtheta2]
     }
 
-    /// Cramer's rule on M. Its determinant is a sum of squares and positive constants, so that
-    /// nothing cancels; the angles θ1 + θ2 − π/2 and θ1 − π/2 go by the addition theorem.
-    #[inline]
+    /// Cramer's rule on the equations for the absolute angles θ1 and θ1 + θ2, whose mass matrix is
+    /// \[\[upper, c\], \[c, link2\]\] with c = coupling cos θ2. Its determinant is a sum of squares
+    /// and positive constants, so that nothing cancels. The angles θ1 + θ2 − π/2 and θ1 − π/2 go by
+    /// the addition theorem.
+    #[inline(always)]
     fn lean(
         &self,
         [_, _, dtheta1, dtheta2]: [S; 4],
         [(sin1, cos1), (sin2, cos2)]: [SinCos<S>; 2],
         torque: S,
     ) -> [S; 4] {
+        // m1 lc1² + I1 + m2 l1², the determinant at a right angle, and which equations, as 1 and 0.
+        let [upper, determinant, book, nips] = self.own;
         let coupling_cos = self.coupling * cos2;
         let coupling_sin = self.coupling * sin2;
+        let sin_sum = sin1 * cos2 + cos1 * sin2;
+        let dtheta_sum = dtheta1 + dtheta2;
+        let square = dtheta1 * dtheta1;
 
-        let d1 = self.total + (coupling_cos + coupling_cos);
-        let d2 = self.link2 + coupling_cos;
-        let phi2 = self.gravity2 * (sin1 * cos2 + cos1 * sin2);
-        let phi1 = self.gravity1 * sin1 + phi2
-            - coupling_sin * (dtheta2 * (dtheta2 + (dtheta1 + dtheta1)));
-        let driven = match self.params.dynamics {
-            Dynamics::Book => torque - coupling_sin * (dtheta1 * dtheta1) - phi2,
-            Dynamics::Nips => torque - phi2,
-        };
-        let inverse = S::from_f64(1.0) / (self.determinant + coupling_sin * coupling_sin);
-        let ddtheta1 = -(self.link2 * phi1 + d2 * driven) * inverse;
-        let ddtheta2 = (d1 * driven + d2 * phi1) * inverse;
+        // The force on θ1 with its sign changed, and that on θ1 + θ2.
+        let force1 = (self.gravity1 * sin1
+            - coupling_sin * (dtheta_sum * dtheta_sum - nips * square))
+            + torque;
+        let force2 = torque - self.gravity2 * sin_sum - coupling_sin * (book * square);
+        let inverse = S::from_f64(1.0) / (determinant + coupling_sin * coupling_sin);
+        let common = self.link2 * force1 + coupling_cos * force2;
+        let ddtheta1 = -(common * inverse);
+        let ddtheta2 = (common + upper * force2 + coupling_cos * force1) * inverse;
         [dtheta1, dtheta2, ddtheta1, ddtheta2]
     }
 
     pub(crate) fn mass_matrix<A: Arithmetic<Scalar = S>>(&self, state: &State<S>) -> [[S; 2]; 2] {
+        let Params {
+            length1: l1,
+            mass1: m1,
+            mass2: m2,
+            center_of_mass1: lc1,
+            inertia1,
+            ..
+        } = self.params;
+        let upper = m1 * A::square(lc1) + inertia1 + m2 * A::square(l1);
         let coupling = self.coupling * A::cos(state.theta2);
         let d2 = self.link2 + coupling;
-        [[self.total + coupling + coupling, d2], [d2, self.link2]]
+        [[upper + coupling + d2, d2], [d2, self.link2]]
     }
 
     pub(crate) fn energy<A: Arithmetic<Scalar = S>>(&self, state: &State<S>) -> S {
@@ -183,6 +181,39 @@ impl<S: Real> Model<S> {
     }
 }
 
+/// A model under a torque in N m that stays for a step.
+pub(crate) struct Driven<'a, S> {
+    pub(crate) model: &'a Model<S>,
+    pub(crate) torque: S,
+}
+
+impl<S: Real> Driven<'_, S> {
+    /// \[θ̇1, θ̇2, θ̈1, θ̈2\] at `y` = \[θ1, θ2, θ̇1, θ̇2\].
+    #[inline(always)]
+    pub(crate) fn derivative<A: Arithmetic<Scalar = S>>(&self, y: [S; 4]) -> [S; 4] {
+        let second = A::sin_cos_near(y[1]);
+        match A::FORM {
+            Form::Gymnasium => self.model.gymnasium::<A>(y, second, self.torque),
+            Form::Lean => self
+                .model
+                .lean(y, [A::sin_cos_near(y[0]), second], self.torque),
+        }
+    }
+
+    /// The same where the sines and cosines of θ1 and θ2 are known already.
+    #[inline(always)]
+    pub(crate) fn derivative_from<A: Arithmetic<Scalar = S>>(
+        &self,
+        y: [S; 4],
+        sin_cos: [SinCos<S>; 2],
+    ) -> [S; 4] {
+        match A::FORM {
+            Form::Gymnasium => self.model.gymnasium::<A>(y, sin_cos[1], self.torque),
+            Form::Lean => self.model.lean(y, sin_cos, self.torque),
+        }
+    }
+}
+
 /// The cosines of both links' angles against the vertical; wrapped, because the sum of two large
 /// angles may not be finite.
 fn absolute_cosines<A: Arithmetic>(state: &State<A::Scalar>) -> [A::Scalar; 2] {
@@ -197,6 +228,8 @@ pub(crate) fn reaches_goal<A: Arithmetic>(
     [(sin1, cos1), (sin2, cos2)]: [SinCos<A::Scalar>; 2],
 ) -> bool {
     let cos_sum = match A::FORM {
+        // Below the joint link 2 cannot reach: its cosine, at most 1, need not be computed.
+        Form::Gymnasium if cos1 >= A::Scalar::ZERO => return false,
         Form::Gymnasium => A::cos(state.theta2 + state.theta1),
         Form::Lean => cos1 * cos2 - sin1 * sin2,
     };
@@ -223,7 +256,10 @@ pub fn derivative<A: Arithmetic>(
     state: &State<A::Scalar>,
     torque: A::Scalar,
 ) -> [A::Scalar; 4] {
-    Model::new::<A>(*params).derivative::<A>((*state).into(), torque)
+    let model = &Model::new::<A>(*params);
+    let y: [A::Scalar; 4] = (*state).into();
+    let sin_cos = [A::sin_cos(state.theta1), A::sin_cos(state.theta2)];
+    Driven { model, torque }.derivative_from::<A>(y, sin_cos)
 }
 
 /// The mass matrix M at a state, kg m²: the kinetic energy is θ̇ᵀ M θ̇ / 2, and M is symmetric and

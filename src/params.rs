@@ -125,13 +125,12 @@ impl<S: Real> Params<S> {
     /// The torque of an action, N m.
     #[must_use]
     #[inline]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "there is a torque for every action"
+    )]
     pub fn torque(&self, action: Action) -> S {
-        let [negative, zero, positive] = self.torques;
-        match action {
-            Action::Negative => negative,
-            Action::Zero => zero,
-            Action::Positive => positive,
-        }
+        self.torques[action as usize]
     }
 
     /// Checks every field against the range that its documentation gives.

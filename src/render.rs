@@ -161,7 +161,13 @@ impl Figure {
         }
         let area = target.bounding_box();
         let (old, new) = (Scene::new(previous, area), Scene::new(self, area));
-        let moved = area.points().filter_map(|point| {
+        // Where the line moved, it did so across the whole area.
+        let changed = if old.line == new.line {
+            old.bounds_with(&new).intersection(&area)
+        } else {
+            area
+        };
+        let moved = changed.points().filter_map(|point| {
             let color = new.color(point, theme);
             (color != old.color(point, theme)).then_some(Pixel(point, color))
         });
@@ -172,6 +178,8 @@ impl Figure {
 /// A figure in the pixels of one target. The parts overlap in the order of Gymnasium's, the lower
 /// link over the upper.
 struct Scene {
+    /// Around all parts but the line: beyond it no part need be asked.
+    bounds: Rectangle,
     /// The row of the line to reach.
     line: i32,
     links: [Bar; 2],
@@ -205,7 +213,15 @@ impl Scene {
         let tip = elbow.plus(length2 * sin2, length2 * cos2);
 
         let room = width.min(height) >= ROOM_FOR_ARROW && figure.torque != 0;
+        // An arrow reaches 0.4 m from the elbow; a link's corner √2 of its half width.
+        let margin = if room { 0.5 * metre } else { 1.5 * thickness } + 2.0;
+        let corner = |pick: fn(f32, f32) -> f32, margin| {
+            let x = pick(pick(center.x, elbow.x), tip.x) + margin;
+            let y = pick(pick(center.y, elbow.y), tip.y) + margin;
+            Point::new(x as i32, y as i32)
+        };
         Self {
+            bounds: Rectangle::with_corners(corner(f32::min, -margin), corner(f32::max, margin)),
             // Gymnasium counts its rows upwards and truncates: between two rows it is the upper.
             line: libm::ceilf(center.y - metre) as i32 - 1,
             links: [
@@ -217,10 +233,26 @@ impl Scene {
         }
     }
 
+    /// Around the parts of both scenes.
+    fn bounds_with(&self, other: &Self) -> Rectangle {
+        let end = |scene: &Self| scene.bounds.top_left + scene.bounds.size;
+        Rectangle::with_corners(
+            self.bounds.top_left.component_min(other.bounds.top_left),
+            end(self).component_max(end(other)),
+        )
+    }
+
     fn color<C: PixelColor>(&self, point: Point, theme: &Theme<C>) -> C {
         let [link1, link2] = &self.links;
         let [joint1, joint2] = &self.joints;
-        if self.arrow.iter().flatten().any(|bar| bar.covers(point)) {
+        let line_or_ground = if point.y == self.line {
+            theme.line
+        } else {
+            theme.ground
+        };
+        if !self.bounds.contains(point) {
+            line_or_ground
+        } else if self.arrow.iter().flatten().any(|bar| bar.covers(point)) {
             theme.torque
         } else if joint2.covers(point) {
             theme.joint
@@ -230,10 +262,8 @@ impl Scene {
             theme.joint
         } else if link1.covers(point) {
             theme.link
-        } else if point.y == self.line {
-            theme.line
         } else {
-            theme.ground
+            line_or_ground
         }
     }
 }

@@ -50,6 +50,7 @@ impl SeedSequence {
         clippy::indexing_slicing,
         reason = "the pool has four words, and 0..4 is below"
     )]
+    #[inline(never)]
     pub fn from_words(words: &[u32]) -> Self {
         let mut sequence = Self {
             pool: [0; 4],
@@ -120,6 +121,7 @@ impl SeedSequence {
         self.pool = pool.map(|target| mix(target, self.hash(word)));
     }
 
+    #[inline(never)]
     fn hash(&mut self, word: u32) -> u32 {
         let word = word ^ self.hash_multiplier;
         self.hash_multiplier = self.hash_multiplier.wrapping_mul(0x931e_8875);

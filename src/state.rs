@@ -1,7 +1,10 @@
 //! The state of an acrobot, and the bounds that a start is drawn from.
 
+use rand_core::Rng;
+
 use crate::arithmetic::Real;
 use crate::error::{Allowed, Error};
+use crate::rng::uniform;
 
 /// Two angles and their velocities.
 ///
@@ -105,6 +108,14 @@ impl StartBounds {
             return Err(Error::ReversedBounds { low, high });
         }
         Ok(Self { low, high })
+    }
+
+    /// Draws a start. Gymnasium keeps it in f32, whatever it computes in afterwards.
+    #[inline(never)]
+    pub(crate) fn draw<R: Rng>(&self, rng: &mut R) -> State<f32> {
+        [(); 4]
+            .map(|()| uniform(rng, self.low, self.high) as f32)
+            .into()
     }
 
     /// The lower bound, rad and rad/s.

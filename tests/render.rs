@@ -6,6 +6,7 @@ use std::convert::Infallible;
 
 use acrobot::env::Frame;
 use acrobot::{Acrobot, Arithmetic, Figure, Params, Pcg64, Portable, State, Theme, uniform};
+use common::{Digest, oled};
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Dimensions, Point, Size};
@@ -166,7 +167,7 @@ impl DrawTarget for Canvas {
 const THEME: Theme<BinaryColor> = Theme::MONOCHROME;
 
 /// The drawing on a 128×64 display, a character a pixel.
-fn oled(figure: Figure) -> String {
+fn ascii(figure: Figure) -> String {
     let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
     figure.draw(&mut canvas, &THEME).unwrap();
     let rows = canvas.pixels.chunks(128).map(|row| {
@@ -187,9 +188,35 @@ fn oled(figure: Figure) -> String {
 
 #[test]
 fn the_monochrome_drawing_is_its_snapshot() {
-    let drawing =
-        oled(figure(0.6, -1.5).with_torque(1.0)) + "\n" + &oled(figure(2.5, 0.4).with_torque(-1.0));
+    let drawing = ascii(figure(0.6, -1.5).with_torque(1.0))
+        + "\n"
+        + &ascii(figure(2.5, 0.4).with_torque(-1.0));
     common::assert_snapshot("oled.txt", include_str!("data/oled.txt"), &drawing);
+}
+
+/// Promise 2 for pictures: the firmware `oled` draws the same on a display's driver.
+#[test]
+fn the_oled_episode_is_its_snapshot() {
+    let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
+    let (mut digest, mut frames) = (Digest::new(), 0);
+    let drawn = oled::play(&mut canvas, |canvas| {
+        frames += 1;
+        let lit =
+            |x: usize, y: usize| u64::from(canvas.pixels[y * 128 + x] == Some(BinaryColor::On));
+        for word in 0..128 {
+            // Eight columns of eight rows.
+            let (left, top) = (word % 16 * 8, word / 16 * 8);
+            let bits = (0..64).map(|bit| lit(left + bit / 8, top + bit % 8) << bit);
+            digest.add(bits.sum());
+        }
+    });
+    assert_eq!(drawn, Ok(()));
+    let expected = (oled::FRAMES, oled::DIGEST);
+    assert!(
+        (frames, digest.0) == expected,
+        "{frames}, {:#018x}",
+        digest.0
+    );
 }
 
 #[test]
@@ -239,7 +266,9 @@ fn a_redraw_writes_what_changed_and_no_more() {
     shown.draw(&mut canvas, &THEME).unwrap();
     for i in 0..50 {
         let angle = f64::from(i) * 0.3;
-        let next = figure(angle / 2.0, angle).with_torque((i % 3 - 1) as f32);
+        // Other lengths, every tenth time, move the line too.
+        let length = 1.0 + f64::from(i / 10) * 0.1;
+        let next = figure_of([angle / 2.0, angle, length, 1.0]).with_torque((i % 3 - 1) as f32);
         let before = canvas.pixels.clone();
         canvas.written = 0;
         next.redraw(&shown, &mut canvas, &THEME).unwrap();
@@ -265,12 +294,12 @@ fn a_redraw_writes_what_changed_and_no_more() {
 
 #[test]
 fn the_arrow_shows_the_torques_direction_where_there_is_room() {
-    let still = oled(figure(0.6, -1.5));
-    let positive = oled(figure(0.6, -1.5).with_torque(0.5));
+    let still = ascii(figure(0.6, -1.5));
+    let positive = ascii(figure(0.6, -1.5).with_torque(0.5));
     assert_ne!(positive, still);
-    assert_ne!(positive, oled(figure(0.6, -1.5).with_torque(-0.5)));
-    assert_eq!(oled(figure(0.6, -1.5).with_torque(0.0)), still);
-    assert_eq!(oled(figure(0.6, -1.5).with_torque(f32::NAN)), still);
+    assert_ne!(positive, ascii(figure(0.6, -1.5).with_torque(-0.5)));
+    assert_eq!(ascii(figure(0.6, -1.5).with_torque(0.0)), still);
+    assert_eq!(ascii(figure(0.6, -1.5).with_torque(f32::NAN)), still);
     // Hanging, the two directions are mirror images.
     let mirrored = |drawing: String| {
         drawing
@@ -279,8 +308,8 @@ fn the_arrow_shows_the_torques_direction_where_there_is_room() {
             .collect::<String>()
     };
     assert_eq!(
-        mirrored(oled(figure(0.0, 0.0).with_torque(1.0))),
-        oled(figure(0.0, 0.0).with_torque(-1.0))
+        mirrored(ascii(figure(0.0, 0.0).with_torque(1.0))),
+        ascii(figure(0.0, 0.0).with_torque(-1.0))
     );
 
     let drawn = |figure: Figure, height| {

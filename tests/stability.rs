@@ -42,12 +42,12 @@ fn portable_is_stable() {
 
 #[test]
 fn fast_is_stable() {
-    assert_eq!(format!("{:016x}", digest::<Fast>()), "b0042de7e7107d80");
+    assert_eq!(format!("{:016x}", digest::<Fast>()), "365b8ce26c2b114a");
 }
 
 #[test]
 fn micro_is_stable() {
-    assert_eq!(format!("{:016x}", digest::<Micro>()), "a0091a2a1bf59922");
+    assert_eq!(format!("{:016x}", digest::<Micro>()), "2b5713d875b4e5db");
 }
 
 /// The episodes that other targets play too.

@@ -1,7 +1,7 @@
 //! f32 with a polynomial kernel of its own, in the lean form: for FPUs of single precision, WASM
 //! and SIMD.
 
-use super::{Arithmetic, Form, reduce};
+use super::{Arithmetic, FARTHEST, Form};
 
 /// `f32` and polynomial trigonometry, in the lean form: the same bits on every target, from a
 /// single-precision FPU without a fused multiply-add.
@@ -15,18 +15,23 @@ impl Arithmetic for Fast {
 
     /// Sine and cosine, each within 1.2e-7 (two units in the last place of 1) of the true value for
     /// |x| ≤ 64 rad: 1.17e-7 is the worst over all those `f32`
-    /// (`cargo test --release --test trigonometry`). Farther out `x` is first brought within a turn
-    /// in `f64`, which makes it 2.6e-7 up to 1e6 rad.
+    /// (`cargo test --release --test trigonometry`). Farther out the error is that of an angle in
+    /// `f32`, 1.2e-7 |x|, up to 2¹⁹ rad, whose value stands for all beyond.
     #[inline]
     fn sin_cos(x: f32) -> (f32, f32) {
-        kernel(if x.abs() > 64.0 { reduce(x) } else { x })
+        kernel(x.clamp(-FARTHEST, FARTHEST))
+    }
+
+    #[inline(always)]
+    fn sin_cos_near(x: f32) -> (f32, f32) {
+        kernel(x)
     }
 }
 
 /// Cody-Waite reduction to a quarter turn about the nearest multiple of π/2, and two polynomials
 /// there. It needs no more than two constants: `quadrant` has at most 6 bits for |x| ≤ 64 and
 /// `PI_2_HIGH` 18, so that their product is exact.
-#[inline]
+#[inline(always)]
 fn kernel(x: f32) -> (f32, f32) {
     /// The leading 18 bits of π/2, and the rest.
     const PI_2_HIGH: f32 = f32::from_bits(0x3fc9_0fc0);
@@ -56,16 +61,21 @@ fn kernel(x: f32) -> (f32, f32) {
     let sin = r + (r * z) * (S[0] + z * (S[1] + z * S[2]));
     let cos = 1.0 + z * (C[0] + z * (C[1] + z * C[2]));
 
-    // Each quarter turn takes (sin, cos) to (cos, −sin).
-    let (sin, cos) = if quadrant & 1 == 0 {
-        (sin, cos)
-    } else {
-        (cos, sin)
-    };
-    let sin_sign = (quadrant & 2) << 30;
-    let cos_sign = (quadrant.wrapping_add(1) & 2) << 30;
+    // Each quarter turn takes (sin, cos) to (cos, −sin): a rotation by the sine and the cosine of
+    // the multiple, exact because they are 0 and ±1, and cheaper on a Cortex-M than picking, swapping
+    // and negating. No −0 is lost: `sin` is never −0 and `cos` never 0.
+    let (multiple_sin, multiple_cos) = quarter_turns(quadrant);
     (
-        f32::from_bits(sin.to_bits() ^ sin_sign),
-        f32::from_bits(cos.to_bits() ^ cos_sign),
+        sin * multiple_cos + cos * multiple_sin,
+        cos * multiple_cos - sin * multiple_sin,
     )
+}
+
+/// Sine and cosine of that many quarter turns.
+#[inline(always)]
+#[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
+fn quarter_turns(quadrant: u32) -> (f32, f32) {
+    const SINES: [f32; 5] = [0.0, 1.0, 0.0, -1.0, 0.0];
+    let i = (quadrant & 3) as usize;
+    (SINES[i], SINES[i + 1])
 }

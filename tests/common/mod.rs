@@ -2,13 +2,15 @@
 
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod digest;
 pub mod episodes;
+pub mod oled;
 
 use std::hint::black_box;
 use std::io::Write;
 use std::sync::LazyLock;
 
-pub use episodes::Digest;
+pub use digest::Digest;
 
 use acrobot::{
     Acrobot, Action, Arithmetic, Dynamics, Host, Params, Pcg64, SeedSequence, StartBounds, State,

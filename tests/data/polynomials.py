@@ -1,24 +1,23 @@
-"""Prints the coefficients of src/arithmetic/fast.rs, as bits of f32, and the error of each polynomial.
+"""Prints the constants of src/arithmetic/fast.rs and src/arithmetic/micro.rs, as bits of f32, and the error of
+each polynomial.
 
     pip install numpy==2.4.6 scipy
     python tests/data/polynomials.py
 
-Minimax over |r| <= pi/4 by linear programming. Each coefficient is rounded to f32 in turn, the one of the
-lowest power first, and the rest are fitted again to make up for it.
+Minimax by linear programming. Each coefficient is rounded to f32 in turn, the one of the lowest power first, and
+the rest are fitted again to make up for it.
 """
 
 import numpy as np
 from scipy.optimize import linprog
 
-R = np.linspace(1e-4, np.pi / 4 + 1e-6, 3000)
 
-
-def fit(target, powers):
+def fit(r, target, powers):
     coefficients = []
     for i in range(len(powers)):
-        basis = np.stack([R**power for power in powers[i:]], axis=1)
+        basis = np.stack([r**power for power in powers[i:]], axis=1)
         # The largest error is the last unknown, counted in 1e-7 so that all are of one size.
-        bound = np.full((len(R), 1), 1e-7)
+        bound = np.full((len(r), 1), 1e-7)
         constraints = np.block([[basis, -bound], [-basis, -bound]]) * 1e6
         limits = np.concatenate([target, -target]) * 1e6
         cost = [0.0] * basis.shape[1] + [1.0]
@@ -29,6 +28,17 @@ def fit(target, powers):
     return coefficients, np.abs(target).max()
 
 
-for name, target, powers in [("S", np.sin(R) - R, (3, 5, 7)), ("C", np.cos(R) - 1, (2, 4, 6))]:
-    coefficients, error = fit(target, powers)
-    print(name, *(f"0x{c.view(np.uint32):08x}" for c in coefficients), f"within {error:.1e}")
+def bits(values):
+    return " ".join(f"0x{np.float32(value).view(np.uint32):08x}" for value in values)
+
+
+for name, end, sin_powers, cos_powers in [
+    ("fast", np.pi / 4, (3, 5, 7), (2, 4, 6)),
+    ("micro", np.pi / 32, (3,), (2,)),
+]:
+    r = np.linspace(1e-4, end + 1e-6, 3000)
+    for function, target, powers in [("S", np.sin(r) - r, sin_powers), ("C", np.cos(r) - 1, cos_powers)]:
+        coefficients, error = fit(r, target, powers)
+        print(name, function, bits(coefficients), f"within {error:.1e}")
+print("micro sines", bits(np.sin(np.arange(9) * np.pi / 16)))
+print("micro pi/16", bits([np.pi / 16]), "16/pi", bits([16 / np.pi]))

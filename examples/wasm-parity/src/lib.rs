@@ -3,6 +3,8 @@
 
 #![no_std]
 
+#[path = "../../../tests/common/digest.rs"]
+mod digest;
 #[path = "../../../tests/common/episodes.rs"]
 mod episodes;
 

@@ -1,28 +1,53 @@
-//! Counts instructions: under QEMU's `-icount shift=0` one instruction is one virtual nanosecond,
-//! and SysTick, at 25 MHz, ticks once in 40. Prints one figure a line, `arithmetic figure value`.
+//! Counts instructions and bytes of stack, one figure a line: `arithmetic figure value`.
+//!
+//! Under QEMU's `-icount shift=0` one instruction is one virtual nanosecond, and SysTick, at 25 MHz,
+//! ticks once in 40. Two runs print the same.
 
 #![no_std]
 #![no_main]
 
 use core::hint::black_box;
 
-use acrobot::{Acrobot, Action, Arithmetic, Fast, Micro, Pcg64, Portable, Real, TimeLimit};
-use acrobot_cortex_m::end;
+use acrobot::{
+    Acrobot, Action, Arithmetic, Fast, Figure, Form, LimitedStep, Micro, Pcg64, Portable, Real,
+    Theme, TimeLimit,
+};
+use cortex_m::Peripherals;
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m::register::msp;
 use cortex_m_rt::entry;
-use cortex_m_semihosting::hprintln;
+use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
+use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
+use micromath::F32Ext;
+use semihosting::{println, process};
+
+/// For comparison: the sines of the library of that name, 1.1e-3 off.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Micromath;
+
+impl Arithmetic for Micromath {
+    type Scalar = f32;
+    const FORM: Form = Form::Lean;
+
+    fn sin_cos(x: f32) -> (f32, f32) {
+        // By path, for `x.sin()` would be the platform's wherever std is linked.
+        (F32Ext::sin(x), F32Ext::cos(x))
+    }
+}
 
 #[entry]
 fn main() -> ! {
-    let Some(peripherals) = cortex_m::Peripherals::take() else {
-        end(false)
+    let Some(peripherals) = Peripherals::take() else {
+        process::exit(1)
     };
     let mut counter = Counter::start(peripherals.SYST);
     measure::<Fast>("fast", &mut counter);
     measure::<Micro>("micro", &mut counter);
+    measure::<Micromath>("micromath", &mut counter);
     measure::<Portable>("portable", &mut counter);
-    end(true)
+    process::exit(0)
 }
 
 /// SysTick runs down from 2²⁴ − 1, which is 671 million instructions: longer than any figure takes.
@@ -48,30 +73,93 @@ impl Counter {
     }
 }
 
+type Display =
+    Framebuffer<BinaryColor, RawU1, BigEndian, 128, 64, { buffer_size::<BinaryColor>(128, 64) }>;
+
 fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
-    const STEPS: u32 = 4000;
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(42));
     let mut action_space = Pcg64::new(42);
     let actions = [(); 64].map(|()| Action::sample(&mut action_space));
-    let mut taken = 0;
-    let step = counter.count(STEPS, || {
-        taken = (taken + 1) % actions.len();
-        if black_box(acrobot.step(black_box(actions[taken]))).ended() {
+    let mut actions = actions.iter().copied().cycle();
+    let mut action = || actions.next().unwrap_or(Action::Zero);
+
+    let count = counter.count(4000, || {
+        if black_box(&step(&mut acrobot, action())).ended() {
             black_box(acrobot.reset());
         }
     });
-    hprintln!("{} step {}", name, step);
+    println!("{name} step {count}");
 
     let mut angle = A::Scalar::ZERO;
     let delta = A::Scalar::from_f64(0.001);
-    let sin_cos = counter.count(10_000, || {
+    let count = counter.count(10_000, || {
         angle = angle + delta;
         black_box(A::sin_cos(black_box(angle)));
     });
-    hprintln!("{} sin_cos {}", name, sin_cos);
+    println!("{name} sin_cos {count}");
 
-    let reset = counter.count(1000, || {
+    let count = counter.count(1000, || {
         black_box(acrobot.reset());
     });
-    hprintln!("{} reset {}", name, reset);
+    println!("{name} reset {count}");
+
+    let mut display = Display::new();
+    let count = counter.count(20, || {
+        step(&mut acrobot, action());
+        let _ = Figure::new(acrobot.inner()).draw(&mut display, &Theme::MONOCHROME);
+    });
+    println!("{name} draw {count}");
+
+    let mut shown = Figure::new(acrobot.inner());
+    let count = counter.count(20, || {
+        step(&mut acrobot, action());
+        let figure = Figure::new(acrobot.inner());
+        let _ = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);
+        shown = figure;
+    });
+    println!("{name} redraw {count}");
+
+    // Through every branch: the noise's, the bounds', the goal's.
+    let params = *acrobot.inner().params();
+    let noise = A::Scalar::from_f64(20.0);
+    let changed = acrobot.inner_mut().set_params(acrobot::Params {
+        torque_noise: noise,
+        ..params
+    });
+    let mut deepest = 0;
+    for _ in 0..1000 {
+        let action = action();
+        deepest = deepest.max(stack(|| {
+            black_box(step(&mut acrobot, action));
+        }));
+    }
+    println!("{name} stack {deepest}");
+    println!("{name} size {}", size_of::<Acrobot<A>>());
+    if changed.is_err() {
+        process::exit(1);
+    }
+}
+
+#[inline(never)]
+fn step<A: Arithmetic>(acrobot: &mut TimeLimit<Acrobot<A>>, action: Action) -> LimitedStep {
+    acrobot.step(action)
+}
+
+/// How many bytes of stack `run` takes: paints those below, runs, and looks which are left.
+#[inline(never)]
+fn stack(run: impl FnOnce()) -> usize {
+    const PAINT: u32 = 0xa5c3_9617;
+    const WORDS: usize = 512;
+    // What is painted ends below this function's own frame, whose size the compiler decides.
+    let end = msp::read() as usize as *mut u32;
+    for i in 1..=WORDS {
+        // SAFETY: the 2 KiB below the stack pointer are stack, and nobody's: no interrupt is on.
+        unsafe { end.sub(i).write_volatile(PAINT) };
+    }
+    run();
+    (1..=WORDS)
+        .rev()
+        // SAFETY: as above.
+        .find(|&i| unsafe { end.sub(i).read_volatile() } != PAINT)
+        .map_or(0, |deepest| deepest * size_of::<u32>())
 }

@@ -15,10 +15,10 @@ use acrobot::{
     StartBounds, State, Theme, TimeLimit, Trajectory,
 };
 use cortex_m_rt::entry;
-use embedded_graphics_core::Pixel;
-use embedded_graphics_core::draw_target::DrawTarget;
-use embedded_graphics_core::geometry::{OriginDimensions, Size};
-use embedded_graphics_core::pixelcolor::BinaryColor;
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{OriginDimensions, Size};
+use embedded_graphics::pixelcolor::BinaryColor;
 
 unsafe extern "C" {
     fn a_panicking_branch_is_left() -> !;

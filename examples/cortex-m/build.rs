@@ -1,0 +1,35 @@
+//! Tells the linker about the memory, defmt's sections and, where asked for, libgcc.
+
+use std::process::Command;
+use std::{env, error::Error, path::Path};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    println!("cargo:rerun-if-changed=memory.x");
+    println!(
+        "cargo:rustc-link-search={}",
+        env::var("CARGO_MANIFEST_DIR")?
+    );
+    println!("cargo:rustc-link-arg=-Tlink.x");
+    println!("cargo:rustc-link-arg-bin=logger=-Tdefmt.x");
+    if env::var_os("CARGO_FEATURE_LIBGCC").is_some() {
+        let float = match env::var("TARGET")?.ends_with("hf") {
+            true => ["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"].as_slice(),
+            false => &["-mfloat-abi=soft"],
+        };
+        let libgcc = Command::new("arm-none-eabi-gcc")
+            .args(["-mcpu=cortex-m4", "-mthumb", "-print-libgcc-file-name"])
+            .args(float)
+            .output()
+            .map_err(|error| {
+                format!("arm-none-eabi-gcc: {error}; this installs it: sudo apt-get install gcc-arm-none-eabi")
+            })?;
+        let path = String::from_utf8(libgcc.stdout)?;
+        let folder = Path::new(path.trim())
+            .parent()
+            .ok_or("arm-none-eabi-gcc names no libgcc")?;
+        println!("cargo:rustc-link-search={}", folder.display());
+        // A library that is linked by name comes before Rust's own routines.
+        println!("cargo:rustc-link-lib=static:-bundle=gcc");
+    }
+    Ok(())
+}

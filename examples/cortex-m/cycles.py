@@ -1,0 +1,74 @@
+"""Estimates how many cycles an instruction takes on a Cortex-M4F, by the timings in its Technical Reference Manual
+(ARM DDI 0439, 3.3.1 and 7.2.3), over every instruction that QEMU executes in the loop of a firmware such as
+`minimal_fast`; for `figures.py`.
+
+The memory is taken to have no wait states, a taken branch to refill the pipeline in two cycles.
+"""
+
+import re
+import subprocess
+
+STEPS = 200
+COSTS = {"vdiv": 14, "vsqrt": 14, "vmla": 3, "vmls": 3, "vnmla": 3, "vnmls": 3, "udiv": 7, "sdiv": 7}
+REGISTERS = re.compile(r"[rsd](\d+)(?:-[rsd](\d+))?|lr|pc|ip|fp|sl|sb")
+
+
+def registers(operands):
+    """How many registers a list of them, such as {r4-r6, lr}, names."""
+    names = REGISTERS.finditer(operands[operands.index("{") :])
+    return sum(int(m[2]) - int(m[1]) + 1 if m[2] else 1 for m in names)
+
+
+def cost(mnemonic, operands, taken, after_load):
+    stem = mnemonic.split(".")[0]
+    branch = 2 if taken else 0
+    if stem[:4] in COSTS:
+        return COSTS[stem[:4]]
+    if stem in ("push", "pop", "vpush", "vpop") or re.match(r"v?(ldm|stm)", stem):
+        return 1 + registers(operands) + branch
+    if re.match(r"ldrd|strd", stem):
+        return 3
+    if re.match(r"v?(ldr|str)", stem):
+        # One that follows another is pipelined.
+        return (1 if after_load else 2) + branch
+    return 1 + branch
+
+
+def per_instruction(image):
+    """The mean over some steps of the firmware in the file `image`."""
+    listing = subprocess.run(
+        ["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image], check=True, capture_output=True, text=True
+    ).stdout
+    code = {}
+    for line in listing.splitlines():
+        match = re.match(r"\s*([0-9a-f]+):\s+(\S+)\s*(.*)", line)
+        if match:
+            code[int(match[1], 16)] = (match[2], match[3])
+
+    qemu = subprocess.Popen(
+        "qemu-system-arm -machine mps2-an386 -nographic -singlestep -d exec,nochain -D /dev/stdout -kernel".split() + [image],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    cycles = instructions = steps = 0
+    previous, after_load = None, False
+    for line in qemu.stdout:
+        match = re.search(r"\[[0-9a-f]+/([0-9a-f]+)/", line)
+        if not match:
+            continue
+        address = int(match[1], 16)
+        # The loop marks each step by a `nop`; before the first of them is the seeding.
+        if code[address][0] == "nop":
+            steps += 1
+            if steps > STEPS:
+                break
+        if steps > 0 and previous is not None:
+            mnemonic, operands = code[previous]
+            taken = address not in (previous + 2, previous + 4)
+            instructions += 1
+            cycles += cost(mnemonic, operands, taken, after_load)
+            after_load = re.match(r"v?(ldr|str)", mnemonic) is not None
+        previous = address
+    qemu.kill()
+    return cycles / instructions
+

@@ -1,0 +1,150 @@
+"""Measures what the crate costs on a Cortex-M4F, and compares it with the table in the crate's README.
+
+    python3 figures.py             fails where a figure has grown by more than 5 %, and names both
+    python3 figures.py --update    writes the table anew, and what follows from it
+
+`bench` counts instructions and stack; flash is what `minimal_fast` and the others have above
+`minimal_without`; `cycles.py` says how many cycles an instruction takes.
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+import cycles
+
+README = pathlib.Path("../../README.md")
+TOLERANCE = 1.05
+COLUMNS = {
+    "fast": "`Fast`",
+    "micro": "`Micro`",
+    "portable": "`Portable`",
+    "portable_libgcc": "`Portable`, libgcc",
+    "micromath": "by `micromath`",
+}
+ROWS = {
+    "step": "instructions a step, with observation, end test and resets",
+    "cycles": "cycles a step, estimated",
+    "tuned": "the same with `-C target-cpu=cortex-m4`",
+    "sin_cos": "instructions a sine and cosine",
+    "reset": "instructions a reset",
+    "draw": "instructions a frame of 128×64 pixels",
+    "redraw": "instructions a frame of which only what moved is drawn",
+    "flash": "flash of the crate, bytes, seeding included",
+    "size": "RAM of an `Acrobot`, bytes",
+    "stack": "stack of a step, bytes",
+}
+CLOCKS = {
+    "STM32F4 (Cortex-M4F)": 168,
+    "nRF52840 (Cortex-M4F)": 64,
+    "RP2350 (Cortex-M33, taken to have the same timings)": 150,
+}
+PAPER_HEAD = "| steps a second, on paper | clock | `Fast` | `Micro` | `Portable` |"
+HEAD = "| on a Cortex-M4F | " + " | ".join(COLUMNS.values()) + " |"
+
+
+def run(*command, rustflags=""):
+    environment = os.environ | {"RUSTFLAGS": rustflags}
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=environment).stdout
+
+
+def bench(features="", rustflags=""):
+    """Its lines: arithmetic, figure and value."""
+    options = ["--quiet", "--locked", "--release", "--features", features, "--bin", "bench"]
+    for line in run("cargo", "run", *options, rustflags=rustflags).splitlines():
+        arithmetic, figure, value = line.split()
+        yield arithmetic, figure, int(value)
+
+
+def minimal(name, rustflags=""):
+    """The path of that firmware."""
+    run("cargo", "build", "--quiet", "--locked", "--release", "--bin", f"minimal_{name}", rustflags=rustflags)
+    return f"target/thumbv7em-none-eabihf/release/minimal_{name}"
+
+
+def flash(name):
+    """Bytes of code, constants and initial values."""
+    sections = run("size", "-A", minimal(name))
+    return sum(int(size) for size in re.findall(r"^\.(?:text|rodata|data)\s+(\d+)", sections, re.MULTILINE))
+
+
+def measure():
+    figures = {(arithmetic, figure): value for arithmetic, figure, value in bench()}
+    figures |= {("portable_libgcc", figure): value for arithmetic, figure, value in bench("libgcc") if arithmetic == "portable"}
+    without = flash("without")
+    tuned = "-C target-cpu=cortex-m4"
+    for arithmetic in ["fast", "micro", "portable"]:
+        figures[arithmetic, "flash"] = flash(arithmetic) - without
+        figures[arithmetic, "cycles"] = round(figures[arithmetic, "step"] * cycles.per_instruction(minimal(arithmetic)))
+    for arithmetic, figure, value in bench(rustflags=tuned):
+        if figure == "step" and arithmetic != "micromath":
+            figures[arithmetic, "tuned"] = round(value * cycles.per_instruction(minimal(arithmetic, tuned)))
+    return {key: value for key, value in figures.items() if key[0] in COLUMNS and key[1] in ROWS}
+
+
+def table(figures):
+    def cell(column, row):
+        return f"{figures[column, row]:,}" if (column, row) in figures else ""
+
+    yield HEAD
+    yield "|---|" + "---|" * len(COLUMNS)
+    for row, words in ROWS.items():
+        yield f"| {words} | " + " | ".join(cell(column, row) for column in COLUMNS) + " |"
+
+
+def paper(figures):
+    """What the cycles mean on named parts, to three digits."""
+    yield PAPER_HEAD
+    yield "|---|---|---|---|---|"
+    for part, megahertz in CLOCKS.items():
+        rates = [megahertz * 1e6 / figures[arithmetic, "tuned"] for arithmetic in ("fast", "micro", "portable")]
+        cells = [f"{int(float(f'{rate:.3g}')):,}" for rate in rates]
+        yield f"| {part} | {megahertz} MHz | {' | '.join(cells)} |"
+
+
+def find(head, lines):
+    """Where the table with that head begins and ends."""
+    start = lines.index(head)
+    return start, next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
+
+
+def documented(lines):
+    """The table's figures as the README has them."""
+    names = {words: row for row, words in ROWS.items()}
+    start, end = find(HEAD, lines)
+    for line in lines[start + 2 : end]:
+        words, *cells = [cell.strip() for cell in line.strip("|").split("|")]
+        for column, cell in zip(COLUMNS, cells):
+            if cell and words in names:
+                yield (column, names[words]), int(cell.replace(",", ""))
+
+
+def main():
+    figures = measure()
+    lines = README.read_text().splitlines()
+    if sys.argv[1:] == ["--update"]:
+        for head, rows in [(HEAD, table), (PAPER_HEAD, paper)]:
+            start, end = find(head, lines)
+            lines[start:end] = rows(figures)
+        README.write_text("\n".join(lines) + "\n")
+        return
+    old = dict(documented(lines))
+    grown = []
+    for key, value in figures.items():
+        print(*key, value)
+        if key not in old:
+            grown.append(f"{' '.join(key)} is {value}; the README has no such figure")
+        elif value > old[key] * TOLERANCE:
+            grown.append(f"{' '.join(key)} was {old[key]} and is {value}")
+    start, end = find(PAPER_HEAD, lines)
+    if lines[start:end] != list(paper(old)):
+        grown.append("the table of steps a second does not follow from that of cycles")
+    for key in old.keys() - figures.keys():
+        grown.append(f"{' '.join(key)} was {old[key]} and is not measured")
+    if grown:
+        sys.exit("\n".join(grown) + "\nIf that is on purpose: python3 figures.py --update")
+
+
+main()

@@ -1,0 +1,50 @@
+//! Logs an episode of five steps through defmt: `./logger` decodes it.
+
+#![no_std]
+#![no_main]
+
+use core::num::NonZeroU32;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use acrobot::{Acrobot, Action, Fast, Params, StartBounds, TimeLimit};
+use cortex_m_rt::entry;
+use semihosting::process;
+// The transport, and the critical section that it needs.
+use {cortex_m as _, defmt_semihosting as _};
+
+const STEPS: NonZeroU32 = NonZeroU32::new(5).unwrap();
+
+/// The log's clock: the steps taken.
+static CLOCK: AtomicU32 = AtomicU32::new(0);
+defmt::timestamp!("{=u32}", CLOCK.load(Ordering::Relaxed));
+
+#[entry]
+fn main() -> ! {
+    let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(42), STEPS);
+    defmt::info!("start {}", acrobot.inner().state());
+
+    let refused = Params {
+        dt: 0.0,
+        ..*acrobot.inner().params()
+    };
+    if let Err(error) = acrobot.inner_mut().set_params(refused) {
+        defmt::warn!("{}", error);
+    }
+    if let Err(error) = StartBounds::new(0.1, -0.1) {
+        defmt::warn!("{}", error);
+    }
+
+    loop {
+        let action = match acrobot.inner().state().dtheta1 > 0.0 {
+            true => Action::Negative,
+            false => Action::Positive,
+        };
+        let step = acrobot.step(action);
+        CLOCK.store(acrobot.elapsed(), Ordering::Relaxed);
+        defmt::debug!("{} {}", action, step);
+        if step.ended() {
+            defmt::info!("end {}", acrobot.inner());
+            process::exit(0)
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! The firmware of the others called `minimal` without an acrobot.
+
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use acrobot::Action;
+use panic_halt as _;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    loop {
+        // Where `cycles.py` counts a step.
+        cortex_m::asm::nop();
+        black_box(black_box(Action::Zero));
+    }
+}

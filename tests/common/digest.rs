@@ -1,0 +1,15 @@
+//! A digest of many bits, shared by the host's tests and the crates for other targets.
+
+/// FNV-1a over 64-bit words instead of bytes, as in `data/record.py`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Digest(pub u64);
+
+impl Digest {
+    pub fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    pub fn add(&mut self, word: u64) {
+        self.0 = (self.0 ^ word).wrapping_mul(0x100_0000_01b3);
+    }
+}

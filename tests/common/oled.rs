@@ -1,0 +1,40 @@
+//! An episode on a 128×64 display of one colour, and a digest of all its frames. The host's tests
+//! and the firmware `oled` in `examples/cortex-m` share this file.
+
+use acrobot::{Acrobot, Action, Fast, Figure, Theme, TimeLimit};
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::pixelcolor::BinaryColor;
+
+/// Draws an episode of torque against θ̇1 and calls `shown` after each frame.
+pub fn play<D: DrawTarget<Color = BinaryColor>>(
+    display: &mut D,
+    mut shown: impl FnMut(&mut D),
+) -> Result<(), D::Error> {
+    let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42));
+    let mut last = Figure::new(acrobot.inner());
+    last.draw(display, &Theme::MONOCHROME)?;
+    shown(display);
+    loop {
+        let action = if acrobot.inner().state().dtheta1 > 0.0 {
+            Action::Negative
+        } else {
+            Action::Positive
+        };
+        let step = acrobot.step(action);
+        let torque = acrobot.inner().params().torque(action);
+        let figure = Figure::new(acrobot.inner()).with_torque(torque);
+        figure.redraw(&last, display, &Theme::MONOCHROME)?;
+        shown(display);
+        last = figure;
+        if step.ended() {
+            return Ok(());
+        }
+    }
+}
+
+/// How many frames that are.
+pub const FRAMES: u32 = 95;
+
+/// The digest of all frames, each as the 1024 bytes in the memory of an SSD1306: eight rows at a time
+/// from the left, the upper row in the lowest bit.
+pub const DIGEST: u64 = 0x1f54_b503_27e0_b4f1;
