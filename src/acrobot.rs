@@ -1,5 +1,7 @@
 //! The environment: parameters, a state, a generator, and what a step does to them.
 
+use core::marker::PhantomData;
+
 use rand_core::Rng;
 
 use crate::action::Action;
@@ -134,20 +136,7 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         } else {
             torque
         };
-        let model = &self.model;
-        let driven = Driven { model, torque };
-        let y: [A::Scalar; 4] = self.state.into();
-        let k1 = driven.derivative_from::<A>(y, self.sin_cos);
-        let next = rk4_from(A::FORM, y, k1, model.dts, &driven, Driven::derivative::<A>);
-
-        self.state = next.into();
-        if !is_settled(&self.state, &model.params) {
-            settle::<A>(&mut self.state, [y[0], y[1]], &model.params);
-        }
-        let State { theta1, theta2, .. } = self.state;
-        self.sin_cos = [A::sin_cos_near(theta1), A::sin_cos_near(theta2)];
-
-        let terminated = dynamics::reaches_goal::<A>(&self.state, self.sin_cos);
+        let terminated = transition::<A>(&self.model, &mut self.state, &mut self.sin_cos, torque);
         Step {
             observation: self.observation(),
             reward: if terminated { 0.0 } else { -1.0 },
@@ -254,8 +243,34 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     }
 }
 
+/// A state after one `dt` under a torque, the sines and cosines of its angles, and whether it is in
+/// the goal.
+#[inline(always)]
+pub(crate) fn transition<A: Arithmetic>(
+    model: &Model<A::Scalar>,
+    state: &mut State<A::Scalar>,
+    sin_cos: &mut [SinCos<A::Scalar>; 2],
+    torque: A::Scalar,
+) -> bool {
+    let driven = Driven {
+        arithmetic: PhantomData::<A>,
+        model,
+        torque,
+    };
+    let y: [A::Scalar; 4] = (*state).into();
+    let k1 = driven.with_sin_cos(y, *sin_cos);
+    let next = rk4_from(A::FORM, y, k1, model.dts, &driven);
+
+    *state = next.into();
+    if !is_settled(state, &model.params) {
+        settle::<A>(state, [y[0], y[1]], &model.params);
+    }
+    *sin_cos = [A::sin_cos_near(state.theta1), A::sin_cos_near(state.theta2)];
+    dynamics::reaches_goal::<A>(state, *sin_cos)
+}
+
 /// Of θ1 and θ2, wherever they are.
-fn sin_cos<A: Arithmetic>(state: &State<A::Scalar>) -> [SinCos<A::Scalar>; 2] {
+pub(crate) fn sin_cos<A: Arithmetic>(state: &State<A::Scalar>) -> [SinCos<A::Scalar>; 2] {
     /// Apart, for flash: starts are few.
     #[inline(never)]
     fn apart<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {

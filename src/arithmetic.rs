@@ -10,6 +10,7 @@ use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 pub use fast::Fast;
+pub(crate) use fast::{QuarterTurns, kernel};
 #[cfg(feature = "std")]
 pub use host::Host;
 pub use micro::Micro;
@@ -119,6 +120,9 @@ pub trait Real:
     /// The absolute value.
     fn abs(self) -> Self;
 
+    /// The one of three at an index of 0 to 2, without a branch or an address that depends on it.
+    fn pick(three: [Self; 3], index: u8) -> Self;
+
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
@@ -132,8 +136,29 @@ pub trait Real:
     fn remainder(self, divisor: Self) -> Self;
 }
 
+/// One scalar, or as many as are computed at once: what the lean form and its integration are
+/// written in.
+pub(crate) trait Numbers<S>:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// `x`, as often as there are numbers.
+    fn splat(x: S) -> Self;
+}
+
+impl<S: Real> Numbers<S> for S {
+    #[inline(always)]
+    fn splat(x: S) -> Self {
+        x
+    }
+}
+
 macro_rules! impl_real {
-    ($scalar:ident) => {
+    ($scalar:ident, $bits:ident) => {
         impl sealed::Sealed for $scalar {}
 
         impl Real for $scalar {
@@ -150,6 +175,16 @@ macro_rules! impl_real {
             #[inline]
             fn to_f64(self) -> f64 {
                 self.into()
+            }
+
+            #[inline]
+            fn pick([first, second, third]: [Self; 3], index: u8) -> Self {
+                let mask = |i| u64::from(index == i).wrapping_neg() as $bits;
+                $scalar::from_bits(
+                    (first.to_bits() & mask(0))
+                        | (second.to_bits() & mask(1))
+                        | (third.to_bits() & mask(2)),
+                )
             }
 
             #[inline]
@@ -177,8 +212,8 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32);
-impl_real!(f64);
+impl_real!(f32, u32);
+impl_real!(f64, u64);
 
 mod sealed {
     pub trait Sealed {}

@@ -58,7 +58,11 @@ fn wrap_by_remainder<S: Real>(x: S) -> S {
 }
 
 #[inline]
-fn wrap_by_quotient<S: Real>(x: S) -> S {
+pub(crate) fn wrap_by_quotient<S: Real>(x: S) -> S {
+    // An angle within bounds is left alone, also one next to ±π.
+    if x.abs() <= S::PI {
+        return x;
+    }
     let turns = (x * S::from_f64(1.0 / core::f64::consts::TAU)).round_small();
     // The bound is for angles so large that their spacing exceeds a turn.
     bound(x - turns * S::TAU, S::PI)

@@ -4,9 +4,13 @@
 //! names of Sutton & Barto, *Reinforcement Learning: An Introduction* (1998), section 11.3: d1, d2,
 //! phi1 and phi2. The same equations stand here in two orders of evaluation, one below the other.
 
-use crate::arithmetic::{Arithmetic, Form, Real};
+use core::marker::PhantomData;
+
+use crate::arithmetic::{Arithmetic, Fast, Form, Numbers, Real, kernel};
 use crate::bounds::wrap;
+use crate::lanes::Lanes;
 use crate::params::{Dynamics, Params};
+use crate::rk4::Derivative;
 use crate::state::State;
 
 /// Sine and cosine of one angle.
@@ -122,27 +126,30 @@ impl<S: Real> Model<S> {
     /// and positive constants, so that nothing cancels. The angles θ1 + θ2 − π/2 and θ1 − π/2 go by
     /// the addition theorem.
     #[inline(always)]
-    fn lean(
+    pub(crate) fn lean<V: Numbers<S>>(
         &self,
-        [_, _, dtheta1, dtheta2]: [S; 4],
-        [(sin1, cos1), (sin2, cos2)]: [SinCos<S>; 2],
-        torque: S,
-    ) -> [S; 4] {
+        [_, _, dtheta1, dtheta2]: [V; 4],
+        [(sin1, cos1), (sin2, cos2)]: [SinCos<V>; 2],
+        torque: V,
+    ) -> [V; 4] {
         // m1 lc1² + I1 + m2 l1², the determinant at a right angle, and which equations, as 1 and 0.
         let [upper, determinant, book, nips] = self.own;
-        let coupling_cos = self.coupling * cos2;
-        let coupling_sin = self.coupling * sin2;
+        let (upper, determinant) = (V::splat(upper), V::splat(determinant));
+        let (book, nips) = (V::splat(book), V::splat(nips));
+        let (coupling, link2) = (V::splat(self.coupling), V::splat(self.link2));
+        let (gravity1, gravity2) = (V::splat(self.gravity1), V::splat(self.gravity2));
+        let coupling_cos = coupling * cos2;
+        let coupling_sin = coupling * sin2;
         let sin_sum = sin1 * cos2 + cos1 * sin2;
         let dtheta_sum = dtheta1 + dtheta2;
         let square = dtheta1 * dtheta1;
 
         // The force on θ1 with its sign changed, and that on θ1 + θ2.
-        let force1 = (self.gravity1 * sin1
-            - coupling_sin * (dtheta_sum * dtheta_sum - nips * square))
-            + torque;
-        let force2 = torque - self.gravity2 * sin_sum - coupling_sin * (book * square);
-        let inverse = S::from_f64(1.0) / (determinant + coupling_sin * coupling_sin);
-        let common = self.link2 * force1 + coupling_cos * force2;
+        let force1 =
+            (gravity1 * sin1 - coupling_sin * (dtheta_sum * dtheta_sum - nips * square)) + torque;
+        let force2 = torque - gravity2 * sin_sum - coupling_sin * (book * square);
+        let inverse = V::splat(S::from_f64(1.0)) / (determinant + coupling_sin * coupling_sin);
+        let common = link2 * force1 + coupling_cos * force2;
         let ddtheta1 = -(common * inverse);
         let ddtheta2 = (common + upper * force2 + coupling_cos * force1) * inverse;
         [dtheta1, dtheta2, ddtheta1, ddtheta2]
@@ -181,16 +188,17 @@ impl<S: Real> Model<S> {
     }
 }
 
-/// A model under a torque in N m that stays for a step.
-pub(crate) struct Driven<'a, S> {
-    pub(crate) model: &'a Model<S>,
-    pub(crate) torque: S,
+/// A model under a torque in N m that stays for a step, of one acrobot or of many.
+pub(crate) struct Driven<'a, A: Arithmetic, V> {
+    pub(crate) arithmetic: PhantomData<A>,
+    pub(crate) model: &'a Model<A::Scalar>,
+    pub(crate) torque: V,
 }
 
-impl<S: Real> Driven<'_, S> {
+impl<A: Arithmetic> Derivative<A::Scalar, 4> for Driven<'_, A, A::Scalar> {
     /// \[θ̇1, θ̇2, θ̈1, θ̈2\] at `y` = \[θ1, θ2, θ̇1, θ̇2\].
     #[inline(always)]
-    pub(crate) fn derivative<A: Arithmetic<Scalar = S>>(&self, y: [S; 4]) -> [S; 4] {
+    fn at(&self, y: [A::Scalar; 4]) -> [A::Scalar; 4] {
         let second = A::sin_cos_near(y[1]);
         match A::FORM {
             Form::Gymnasium => self.model.gymnasium::<A>(y, second, self.torque),
@@ -199,18 +207,28 @@ impl<S: Real> Driven<'_, S> {
                 .lean(y, [A::sin_cos_near(y[0]), second], self.torque),
         }
     }
+}
 
+impl<A: Arithmetic> Driven<'_, A, A::Scalar> {
     /// The same where the sines and cosines of θ1 and θ2 are known already.
     #[inline(always)]
-    pub(crate) fn derivative_from<A: Arithmetic<Scalar = S>>(
+    pub(crate) fn with_sin_cos(
         &self,
-        y: [S; 4],
-        sin_cos: [SinCos<S>; 2],
-    ) -> [S; 4] {
+        y: [A::Scalar; 4],
+        sin_cos: [SinCos<A::Scalar>; 2],
+    ) -> [A::Scalar; 4] {
         match A::FORM {
             Form::Gymnasium => self.model.gymnasium::<A>(y, sin_cos[1], self.torque),
             Form::Lean => self.model.lean(y, sin_cos, self.torque),
         }
+    }
+}
+
+impl Derivative<Lanes, 4> for Driven<'_, Fast, Lanes> {
+    #[inline(always)]
+    fn at(&self, y: [Lanes; 4]) -> [Lanes; 4] {
+        self.model
+            .lean(y, [kernel(y[0]), kernel(y[1])], self.torque)
     }
 }
 
@@ -259,7 +277,12 @@ pub fn derivative<A: Arithmetic>(
     let model = &Model::new::<A>(*params);
     let y: [A::Scalar; 4] = (*state).into();
     let sin_cos = [A::sin_cos(state.theta1), A::sin_cos(state.theta2)];
-    Driven { model, torque }.derivative_from::<A>(y, sin_cos)
+    let driven = Driven {
+        arithmetic: PhantomData::<A>,
+        model,
+        torque,
+    };
+    driven.with_sin_cos(y, sin_cos)
 }
 
 /// The mass matrix M at a state, kg m²: the kinetic energy is θ̇ᵀ M θ̇ / 2, and M is symmetric and

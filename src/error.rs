@@ -37,6 +37,15 @@ pub enum Error {
         /// The upper bound that was given, in rad and rad/s.
         high: f64,
     },
+    /// A slice that has not one element for each acrobot of a batch.
+    WrongLength {
+        /// Which slice.
+        name: &'static str,
+        /// How many elements it has.
+        found: usize,
+        /// How many it has to have.
+        expected: usize,
+    },
     /// An action number other than 0, 1 and 2.
     UnknownAction(u8),
     /// A text that is no seed.
@@ -62,6 +71,11 @@ impl fmt::Display for Error {
                 f,
                 "low is {low} and high is {high} (rad and rad/s); allowed is a low that is not above high"
             ),
+            Self::WrongLength {
+                name,
+                found,
+                expected,
+            } => write!(f, "{name} has {found} elements; allowed is {expected}"),
             Self::UnknownAction(number) => write!(
                 f,
                 "action is {number}; allowed is 0 (negative torque), 1 (none) or 2 (positive)"

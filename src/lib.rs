@@ -20,11 +20,13 @@ extern crate std;
 mod acrobot;
 mod action;
 mod arithmetic;
+mod batch;
 mod bounds;
 mod dynamics;
 #[cfg(feature = "std")]
 pub mod env;
 mod error;
+mod lanes;
 mod observation;
 mod params;
 #[cfg(feature = "graphics")]
@@ -42,6 +44,7 @@ pub use arithmetic::Host;
 pub use acrobot::{Acrobot, REWARD_THRESHOLD, Step};
 pub use action::Action;
 pub use arithmetic::{Arithmetic, Fast, Form, Micro, Portable, Real};
+pub use batch::{Autoreset, Batch, Block, Observations, Output, Vectors};
 pub use bounds::{bound, wrap};
 pub use dynamics::{derivative, energy, mass_matrix, tip_height};
 pub use error::Error;

@@ -1,8 +1,6 @@
 //! The classical Runge-Kutta method of fourth order. No physics.
 
-use core::array::from_fn;
-
-use crate::arithmetic::{Form, Real};
+use crate::arithmetic::{Form, Numbers, Real};
 
 /// One step of the classical Runge-Kutta method: the solution of `y' = derivative(y)` after the
 /// time `dt`, in Gymnasium's order of operations.
@@ -18,52 +16,60 @@ pub fn rk4<S: Real, const N: usize>(
     dt: S,
     derivative: impl Fn([S; N]) -> [S; N],
 ) -> [S; N] {
-    rk4_from(
-        Form::Gymnasium,
-        y,
-        derivative(y),
-        [dt * S::from_f64(0.5), dt, dt / S::from_f64(6.0)],
-        &derivative,
-        |derivative, y| derivative(y),
-    )
+    let dts = [dt * S::from_f64(0.5), dt, dt / S::from_f64(6.0)];
+    let k1 = derivative(y);
+    rk4_from(Form::Gymnasium, y, k1, dts, &Closure(derivative))
 }
 
-/// The same, where `k1`, the derivative at `y`, is known already, and dt/2, dt and dt/6 too.
+struct Closure<F>(F);
+
+impl<V, const N: usize, F: Fn([V; N]) -> [V; N]> Derivative<V, N> for Closure<F> {
+    #[inline(always)]
+    fn at(&self, y: [V; N]) -> [V; N] {
+        (self.0)(y)
+    }
+}
+
+/// The right side of `y' = f(y)`. A closure would do, if it could be marked for inlining: LLVM keeps
+/// a large one apart, and does so without the vectors that its caller may use.
+pub(crate) trait Derivative<V, const N: usize> {
+    fn at(&self, y: [V; N]) -> [V; N];
+}
+
+/// The same as [`rk4`] where `k1`, the derivative at `y`, is known already, and dt/2, dt and dt/6 too.
 ///
 /// The lean form adds each stage to the result at once, in a loop: it keeps few numbers alive and the
-/// derivative, inlined once, is small in flash. What `derivative` needs is in `context`, so that it
-/// can be a function marked for inlining; LLVM keeps a closure apart.
+/// derivative, inlined once, is small in flash.
 #[inline(always)]
-#[expect(clippy::indexing_slicing, reason = "from_fn counts up to N")]
-pub(crate) fn rk4_from<S: Real, C, const N: usize>(
+pub(crate) fn rk4_from<S: Real, V: Numbers<S>, const N: usize>(
     form: Form,
-    y: [S; N],
-    k1: [S; N],
-    [half, dt, sixth]: [S; 3],
-    context: &C,
-    derivative: impl Fn(&C, [S; N]) -> [S; N],
-) -> [S; N] {
-    let along = |h: S, k: [S; N]| from_fn(|i| y[i] + h * k[i]);
+    y: [V; N],
+    k1: [V; N],
+    dts: [S; 3],
+    derivative: &impl Derivative<V, N>,
+) -> [V; N] {
+    let [half, dt, sixth] = dts;
+    let (half, dt, sixth) = (V::splat(half), V::splat(dt), V::splat(sixth));
     match form {
         Form::Gymnasium => {
-            let two = S::from_f64(2.0);
-            let k2 = derivative(context, along(half, k1));
-            let k3 = derivative(context, along(half, k2));
-            let k4 = derivative(context, along(dt, k3));
-            from_fn(|i| y[i] + sixth * (((k1[i] + two * k2[i]) + two * k3[i]) + k4[i]))
+            let k2 = derivative.at(along(y, half, k1));
+            let k3 = derivative.at(along(y, half, k2));
+            let k4 = derivative.at(along(y, dt, k3));
+            let two = V::splat(S::from_f64(2.0));
+            along(y, sixth, sum(along(along(k1, two, k2), two, k3), k4))
         }
         Form::Lean => {
             let third = sixth + sixth;
-            let mut next: [S; N] = along(sixth, k1);
+            let mut next = along(y, sixth, k1);
             let mut k = k1;
             let mut h = half;
             let mut stage = 2;
             loop {
-                k = derivative(context, along(h, k));
+                k = derivative.at(along(y, h, k));
                 if stage == 4 {
-                    return from_fn(|i| next[i] + sixth * k[i]);
+                    return along(next, sixth, k);
                 }
-                next = from_fn(|i| next[i] + third * k[i]);
+                next = along(next, third, k);
                 if stage == 3 {
                     h = dt;
                 }
@@ -71,4 +77,22 @@ pub(crate) fn rk4_from<S: Real, C, const N: usize>(
             }
         }
     }
+}
+
+/// y + h k.
+#[inline(always)]
+fn along<S, V: Numbers<S>, const N: usize>(mut y: [V; N], h: V, k: [V; N]) -> [V; N] {
+    for (y, k) in y.iter_mut().zip(k) {
+        *y = *y + h * k;
+    }
+    y
+}
+
+/// x + y.
+#[inline(always)]
+fn sum<S, V: Numbers<S>, const N: usize>(mut x: [V; N], y: [V; N]) -> [V; N] {
+    for (x, y) in x.iter_mut().zip(y) {
+        *x = *x + y;
+    }
+    x
 }

@@ -36,6 +36,13 @@ pub struct Pcg64 {
 }
 
 impl Pcg64 {
+    /// Memory for a generator, not yet seeded.
+    pub(crate) const UNSEEDED: Self = Self {
+        state: 0,
+        increment: 1,
+        half: None,
+    };
+
     /// The generator that NumPy's `default_rng(seed)` is, from an integer or a [`SeedSequence`].
     #[must_use]
     pub fn new(seed: impl Into<SeedSequence>) -> Self {

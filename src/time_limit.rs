@@ -12,7 +12,7 @@ use crate::observation::Observation;
 use crate::seed::SeedSequence;
 use crate::state::StartBounds;
 
-const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
+pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
 const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
 
 /// What a step under a [`TimeLimit`] returns.

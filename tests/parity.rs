@@ -106,3 +106,25 @@ fn start_observations_are_within_one_ulp() {
         }
     }
 }
+
+/// `Host` calls C's `pow` only where it can differ from `x * x`; where it is not called it does not.
+#[test]
+#[expect(clippy::disallowed_methods, reason = "the platform's own function")]
+fn hosts_square_is_the_platforms_power() {
+    let two = std::hint::black_box(2.0);
+    let mut rng = acrobot::Pcg64::new(5);
+    let mut differs = 0;
+    for i in 0..3_000_000 {
+        let size = if i % 10 == 0 { 300.0 } else { 3.0 };
+        let x = acrobot::uniform(&mut rng, -1.0, 1.0)
+            * 10_f64.powf(acrobot::uniform(&mut rng, -size, size));
+        let power = x.powf(two);
+        assert_eq!(Host::square(x).to_bits(), power.to_bits(), "{x:e}");
+        differs += u32::from(power != x * x);
+    }
+    println!("{differs} of 3,000,000 powers are no product");
+    for x in [0.0, -0.0, 1e-160, 5e-324, 1e160, f64::MAX, f64::INFINITY] {
+        assert_eq!(Host::square(x).to_bits(), x.powf(two).to_bits(), "{x:e}");
+    }
+    assert!(Host::square(f64::NAN).is_nan());
+}

@@ -1,7 +1,7 @@
 //! f32 with a polynomial kernel of its own, in the lean form: for FPUs of single precision, WASM
 //! and SIMD.
 
-use super::{Arithmetic, FARTHEST, Form};
+use super::{Arithmetic, FARTHEST, Form, Numbers};
 
 /// `f32` and polynomial trigonometry, in the lean form: the same bits on every target, from a
 /// single-precision FPU without a fused multiply-add.
@@ -32,7 +32,7 @@ impl Arithmetic for Fast {
 /// there. It needs no more than two constants: `quadrant` has at most 6 bits for |x| ≤ 64 and
 /// `PI_2_HIGH` 18, so that their product is exact.
 #[inline(always)]
-fn kernel(x: f32) -> (f32, f32) {
+pub(crate) fn kernel<V: QuarterTurns>(x: V) -> (V, V) {
     /// The leading 18 bits of π/2, and the rest.
     const PI_2_HIGH: f32 = f32::from_bits(0x3fc9_0fc0);
     const PI_2_LOW: f32 = (core::f64::consts::FRAC_PI_2 - PI_2_HIGH as f64) as f32;
@@ -52,30 +52,36 @@ fn kernel(x: f32) -> (f32, f32) {
         f32::from_bits(0xbab2_3c11),
     ];
 
-    let shifted = x * core::f32::consts::FRAC_2_PI + MAGIC;
-    let quadrant = shifted.to_bits();
-    let multiple = shifted - MAGIC;
-    let r = (x - multiple * PI_2_HIGH) - multiple * PI_2_LOW;
+    let c = V::splat;
+    let shifted = x * c(core::f32::consts::FRAC_2_PI) + c(MAGIC);
+    let multiple = shifted - c(MAGIC);
+    let r = (x - multiple * c(PI_2_HIGH)) - multiple * c(PI_2_LOW);
 
     let z = r * r;
-    let sin = r + (r * z) * (S[0] + z * (S[1] + z * S[2]));
-    let cos = 1.0 + z * (C[0] + z * (C[1] + z * C[2]));
-
-    // Each quarter turn takes (sin, cos) to (cos, −sin): a rotation by the sine and the cosine of
-    // the multiple, exact because they are 0 and ±1, and cheaper on a Cortex-M than picking, swapping
-    // and negating. No −0 is lost: `sin` is never −0 and `cos` never 0.
-    let (multiple_sin, multiple_cos) = quarter_turns(quadrant);
-    (
-        sin * multiple_cos + cos * multiple_sin,
-        cos * multiple_cos - sin * multiple_sin,
-    )
+    let sin = r + (r * z) * (c(S[0]) + z * (c(S[1]) + z * c(S[2])));
+    let cos = c(1.0) + z * (c(C[0]) + z * (c(C[1]) + z * c(C[2])));
+    V::rotate(shifted, sin, cos)
 }
 
-/// Sine and cosine of that many quarter turns.
-#[inline(always)]
-#[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
-fn quarter_turns(quadrant: u32) -> (f32, f32) {
-    const SINES: [f32; 5] = [0.0, 1.0, 0.0, -1.0, 0.0];
-    let i = (quadrant & 3) as usize;
-    (SINES[i], SINES[i + 1])
+/// Numbers that can be turned by quarters.
+pub(crate) trait QuarterTurns: Numbers<f32> {
+    /// The sine and cosine of an angle, after so many quarter turns more as the lowest bits of
+    /// `turns` say: each takes (sin, cos) to (cos, −sin).
+    fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self);
+}
+
+impl QuarterTurns for f32 {
+    /// By the sine and the cosine of the quarter turns: exact because they are 0 and ±1, and cheaper
+    /// on a Cortex-M than to pick, swap and negate. No −0 is lost: `sin` is never −0, `cos` never 0.
+    #[inline(always)]
+    #[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
+    fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self) {
+        const SINES: [f32; 5] = [0.0, 1.0, 0.0, -1.0, 0.0];
+        let i = (turns.to_bits() & 3) as usize;
+        let (turned_sin, turned_cos) = (SINES[i], SINES[i + 1]);
+        (
+            sin * turned_cos + cos * turned_sin,
+            cos * turned_cos - sin * turned_sin,
+        )
+    }
 }

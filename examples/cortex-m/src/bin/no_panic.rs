@@ -11,8 +11,8 @@ use core::hint::black_box;
 use core::panic::PanicInfo;
 
 use acrobot::{
-    Acrobot, Action, Arithmetic, Fast, Figure, Micro, Params, Portable, Real, SeedSequence,
-    StartBounds, State, Theme, TimeLimit, Trajectory,
+    Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Fast, Figure, Micro, Observations,
+    Output, Params, Portable, Real, SeedSequence, StartBounds, State, Theme, TimeLimit, Trajectory,
 };
 use cortex_m_rt::entry;
 use embedded_graphics::Pixel;
@@ -35,6 +35,8 @@ fn main() -> ! {
         everything::<Fast>();
         everything::<Micro>();
         everything::<Portable>();
+        batch::<Fast>();
+        batch::<Portable>();
     }
 }
 
@@ -78,6 +80,28 @@ fn everything<A: Arithmetic>() {
         trajectory.iter().for_each(|transition| {
             black_box(transition);
         });
+    }
+}
+
+/// A batch whose last block is not full.
+fn batch<A: Arithmetic>() {
+    let blocks = [const { Block::EMPTY }; 2];
+    let Ok(mut batch) = Batch::<A, _>::new(black_box(42), black_box(20), blocks) else {
+        return;
+    };
+    batch.set_autoreset(Autoreset::SameStep);
+    let actions = black_box([1_u8; 20]);
+    let mut rows = [[0.0; 6]; 20];
+    let mut column = [0.0; 20];
+    for _ in 0..black_box(10) {
+        let output = Output {
+            rewards: &mut column,
+            terminated: &mut [false; 20],
+            truncated: &mut [false; 20],
+            observations: Observations::Rows(&mut rows),
+        };
+        let _ = black_box(batch.step(&actions, output));
+        black_box((&rows, &column, batch.state(black_box(3))));
     }
 }
 

@@ -1,0 +1,272 @@
+//! Many acrobots at once: the bits of each are those of one alone.
+
+mod block;
+mod vectors;
+
+use core::num::NonZeroU32;
+
+pub use block::Block;
+pub use vectors::Vectors;
+
+use crate::arithmetic::Arithmetic;
+use crate::dynamics::Model;
+use crate::error::Error;
+use crate::lanes::LANES;
+use crate::params::Params;
+use crate::seed::SeedSequence;
+use crate::state::{StartBounds, State};
+use crate::time_limit::V1;
+
+/// When an acrobot of a batch whose episode has ended is reset: Gymnasium's `AutoresetMode`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Autoreset {
+    /// By the next step, which ignores its action and returns the start, with a reward of 0.
+    #[default]
+    NextStep,
+    /// By the step that ends it, which returns the start in place of the last observation.
+    SameStep,
+}
+
+/// Where a step of a [`Batch`] writes, an element for each acrobot.
+#[derive(Debug)]
+pub struct Output<'a> {
+    /// −1, or 0 for the step that reaches the goal and for one that only resets.
+    pub rewards: &'a mut [f32],
+    /// Whether the goal was reached.
+    pub terminated: &'a mut [bool],
+    /// Whether the time limit was reached.
+    pub truncated: &'a mut [bool],
+    /// What the agents see of the new states.
+    pub observations: Observations<'a>,
+}
+
+/// Where the observations go. What they are: [`Observation`](crate::Observation).
+#[derive(Debug)]
+pub enum Observations<'a> {
+    /// Nowhere: they are not computed.
+    None,
+    /// Six numbers for each acrobot.
+    Rows(&'a mut [[f32; 6]]),
+    /// Six slices with a number for each acrobot.
+    Columns([&'a mut [f32]; 6]),
+}
+
+/// Many acrobots, each with the parameters of all and a stream of its own.
+///
+/// Acrobot `i` is [`Acrobot::<A>`](crate::Acrobot) of the `i`-th child of the seed under a
+/// [`TimeLimit`](crate::TimeLimit), to the bit. In [`Fast`](crate::Fast) sixteen are stepped side by side, with
+/// the widest vectors that the machine has where the `std` feature is on; in the other arithmetics
+/// one after another.
+///
+/// It lives in memory that it is given: an array, a slice or a `Vec` of [`Block`]s.
+///
+/// ```
+/// use acrobot::{Batch, Block, Fast, Observations, Output};
+///
+/// let mut batch = Batch::<Fast, _>::new(42, 50, [const { Block::EMPTY }; 4])?;
+/// let (mut rewards, mut terminated, mut truncated) = ([0.0; 50], [false; 50], [false; 50]);
+/// let mut observations = [[0.0; 6]; 50];
+/// batch.step(
+///     &[2_u8; 50],
+///     Output {
+///         rewards: &mut rewards,
+///         terminated: &mut terminated,
+///         truncated: &mut truncated,
+///         observations: Observations::Rows(&mut observations),
+///     },
+/// )?;
+/// assert_eq!(rewards, [-1.0; 50]);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Batch<A: Arithmetic, B> {
+    shared: Shared<A::Scalar>,
+    vectors: Vectors,
+    len: usize,
+    blocks: B,
+}
+
+/// What all acrobots of a batch have in common.
+#[derive(Clone, Debug)]
+struct Shared<S> {
+    model: Model<S>,
+    bounds: StartBounds,
+    limit: NonZeroU32,
+    autoreset: Autoreset,
+}
+
+impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Batch<A, B> {
+    /// `len` acrobots with the default parameters in `blocks`, each at its first start; a limit of
+    /// 500 steps, and the reset by the next step.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for no acrobots, and [`Error::WrongLength`] where `blocks` are not as many
+    /// as they need: one for each sixteen, the last of which may be in part.
+    pub fn new(seed: impl Into<SeedSequence>, len: usize, blocks: B) -> Result<Self, Error> {
+        if len == 0 {
+            return Err(Error::OutOfRange {
+                name: "len",
+                value: 0.0,
+                unit: "acrobots",
+                allowed: "1 or more",
+            });
+        }
+        check_length("blocks", blocks.as_ref().len(), len.div_ceil(LANES))?;
+        let shared = Shared {
+            model: Model::new::<A>(Params::default()),
+            bounds: StartBounds::DEFAULT,
+            limit: V1,
+            autoreset: Autoreset::default(),
+        };
+        let mut batch = Self {
+            shared,
+            vectors: Vectors::widest(),
+            len,
+            blocks,
+        };
+        batch.reset_seeded(seed);
+        Ok(batch)
+    }
+
+    /// How many acrobots.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "there is no batch of none")]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Resets all, each within its own stream.
+    pub fn reset(&mut self) {
+        for block in self.blocks.as_mut() {
+            block.reset_all::<A>(self.shared.bounds);
+        }
+    }
+
+    /// Seeds acrobot `i` with the `i`-th child of `seed`, and resets all.
+    pub fn reset_seeded(&mut self, seed: impl Into<SeedSequence>) {
+        let mut children = seed.into().spawn(u64::MAX);
+        for block in self.blocks.as_mut() {
+            block.seed(&mut children);
+        }
+        self.reset();
+    }
+
+    /// Applies an action to each for one `dt`: the numbers 0, 1 and 2, or [`Action`](crate::Action)s.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::WrongLength`] for a slice that has not an element for each acrobot, and
+    /// [`Error::UnknownAction`] for a number above 2; nothing is stepped then.
+    pub fn step(
+        &mut self,
+        actions: &[impl Copy + Into<u8> + Sync],
+        output: Output<'_>,
+    ) -> Result<(), Error> {
+        check_length("actions", actions.len(), self.len)?;
+        output.check(self.len)?;
+        let highest = actions
+            .iter()
+            .fold(0, |highest, &action| highest.max(action.into()));
+        if highest > 2 {
+            return Err(Error::UnknownAction(highest));
+        }
+        self.vectors
+            .step::<A>(&self.shared, self.blocks.as_mut(), actions, output);
+        Ok(())
+    }
+
+    /// Writes what the agents see of the states.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::WrongLength`] for a slice that has not an element for each acrobot.
+    pub fn observe(&self, mut observations: Observations<'_>) -> Result<(), Error> {
+        observations.check(self.len)?;
+        for (number, block) in self.blocks.as_ref().iter().enumerate() {
+            block.observe(number, &mut observations);
+        }
+        Ok(())
+    }
+
+    /// The state of the acrobot of that index, if there is one.
+    #[must_use]
+    pub fn state(&self, index: usize) -> Option<State<A::Scalar>> {
+        if index >= self.len {
+            return None;
+        }
+        let block = self.blocks.as_ref().get(index / LANES)?;
+        Some(block.state(index % LANES))
+    }
+
+    /// The parameters of all.
+    #[must_use]
+    pub fn params(&self) -> &Params<A::Scalar> {
+        &self.shared.model.params
+    }
+
+    /// Sets the parameters of all, from the next step on.
+    ///
+    /// # Errors
+    ///
+    /// As [`Acrobot::set_params`](crate::Acrobot::set_params); the parameters stay as they were then.
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        self.shared.model = Model::new::<A>(params);
+        Ok(())
+    }
+
+    /// Sets the vectors to step with; those that the machine has not are as the baseline.
+    pub fn set_vectors(&mut self, vectors: Vectors) {
+        self.vectors = vectors;
+    }
+
+    /// Sets the bounds of the starts to come.
+    pub fn set_start_bounds(&mut self, bounds: StartBounds) {
+        self.shared.bounds = bounds;
+    }
+
+    /// Sets the steps after which episodes are truncated.
+    pub fn set_limit(&mut self, limit: NonZeroU32) {
+        self.shared.limit = limit;
+    }
+
+    /// Sets when ended episodes are reset.
+    pub fn set_autoreset(&mut self, autoreset: Autoreset) {
+        self.shared.autoreset = autoreset;
+    }
+}
+
+fn check_length(name: &'static str, found: usize, expected: usize) -> Result<(), Error> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(Error::WrongLength {
+            name,
+            found,
+            expected,
+        })
+    }
+}
+
+impl Output<'_> {
+    fn check(&self, len: usize) -> Result<(), Error> {
+        check_length("rewards", self.rewards.len(), len)?;
+        check_length("terminated", self.terminated.len(), len)?;
+        check_length("truncated", self.truncated.len(), len)?;
+        self.observations.check(len)
+    }
+}
+
+impl Observations<'_> {
+    fn check(&self, len: usize) -> Result<(), Error> {
+        match self {
+            Self::None => Ok(()),
+            Self::Rows(rows) => check_length("observations", rows.len(), len),
+            Self::Columns(columns) => columns
+                .iter()
+                .try_for_each(|column| check_length("observations", column.len(), len)),
+        }
+    }
+}

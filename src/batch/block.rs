@@ -1,0 +1,318 @@
+//! Sixteen acrobots side by side, and one step of them.
+
+use core::any::{Any, TypeId};
+use core::array::from_fn;
+use core::marker::PhantomData;
+
+use super::{Autoreset, Observations, Output, Shared};
+use crate::acrobot::{sin_cos, transition};
+use crate::arithmetic::{Arithmetic, Fast, Form, Numbers, Real, kernel};
+use crate::dynamics::{Driven, Model};
+use crate::lanes::{LANES, Lanes};
+use crate::params::Params;
+use crate::rk4::rk4_from;
+use crate::rng::{Pcg64, uniform};
+use crate::seed::SeedSequence;
+use crate::state::{StartBounds, State};
+
+/// The memory of sixteen acrobots: what a [`Batch`](crate::Batch) lives in.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct Block<S = f32> {
+    /// θ1, θ2, θ̇1 and θ̇2.
+    state: [[S; LANES]; 4],
+    /// cos θ1, sin θ1, cos θ2 and sin θ2: the order of an observation.
+    cos_sin: [[S; LANES]; 4],
+    elapsed: [u32; LANES],
+    /// Whether the next step resets.
+    ended: [bool; LANES],
+    rng: [Pcg64; LANES],
+}
+
+impl<S: Real> Block<S> {
+    /// How many acrobots a block holds.
+    pub const LANES: usize = LANES;
+
+    /// Memory in which no acrobot lives yet.
+    pub const EMPTY: Self = Self {
+        state: [[S::ZERO; LANES]; 4],
+        cos_sin: [[S::ZERO; LANES]; 4],
+        elapsed: [0; LANES],
+        ended: [false; LANES],
+        rng: [const { Pcg64::UNSEEDED }; LANES],
+    };
+}
+
+#[expect(
+    clippy::indexing_slicing,
+    reason = "lanes count up to LANES, and a batch has checked its slices"
+)]
+impl<S: Real> Block<S> {
+    #[inline(always)]
+    pub(super) fn state(&self, lane: usize) -> State<S> {
+        State::from(self.state.map(|numbers| numbers[lane]))
+    }
+
+    #[inline(always)]
+    fn place(&mut self, lane: usize, state: State<S>, [(sin1, cos1), (sin2, cos2)]: [(S, S); 2]) {
+        for (numbers, number) in self.state.iter_mut().zip(<[S; 4]>::from(state)) {
+            numbers[lane] = number;
+        }
+        for (numbers, number) in self.cos_sin.iter_mut().zip([cos1, sin1, cos2, sin2]) {
+            numbers[lane] = number;
+        }
+    }
+
+    pub(super) fn seed(&mut self, seeds: &mut impl Iterator<Item = SeedSequence>) {
+        for (rng, seed) in self.rng.iter_mut().zip(seeds) {
+            *rng = Pcg64::new(seed);
+        }
+    }
+
+    pub(super) fn reset_all<A: Arithmetic<Scalar = S>>(&mut self, bounds: StartBounds) {
+        for lane in 0..LANES {
+            self.reset::<A>(lane, bounds);
+        }
+    }
+
+    #[cold]
+    fn reset<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, bounds: StartBounds) {
+        // It is below LANES, which LLVM cannot see here.
+        let lane = lane % LANES;
+        let start = bounds.draw(&mut self.rng[lane]).cast();
+        self.place(lane, start, sin_cos::<A>(&start));
+        self.elapsed[lane] = 0;
+        self.ended[lane] = false;
+    }
+
+    /// What is seen of the block of that number, written where it belongs.
+    #[inline(always)]
+    pub(super) fn observe(&self, number: usize, observations: &mut Observations<'_>) {
+        let [cos1, sin1, cos2, sin2] = &self.cos_sin;
+        let [_, _, dtheta1, dtheta2] = &self.state;
+        let seen = [cos1, sin1, cos2, sin2, dtheta1, dtheta2];
+        let start = number * LANES;
+        match observations {
+            Observations::None => {}
+            Observations::Rows(rows) => {
+                let rows = rows.iter_mut().skip(start).take(LANES);
+                for (lane, row) in rows.enumerate() {
+                    *row = seen.map(|numbers| numbers[lane].to_f64() as f32);
+                }
+            }
+            Observations::Columns(columns) => {
+                for (column, numbers) in columns.iter_mut().zip(seen) {
+                    for (cell, x) in column.iter_mut().skip(start).zip(numbers) {
+                        *cell = x.to_f64() as f32;
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn step<A: Arithmetic<Scalar = S>>(
+        &mut self,
+        shared: &Shared<S>,
+        actions: &[u8; LANES],
+    ) -> Stepped {
+        let params = &shared.model.params;
+        let terminated = if params.torque_noise > S::ZERO {
+            let torques = self.noisy_torques(params, actions);
+            self.advance::<A>(&shared.model, |lane| torques[lane])
+        } else {
+            let torques = params.torques;
+            self.advance::<A>(&shared.model, |lane| S::pick(torques, actions[lane]))
+        };
+        let mut stepped = Stepped {
+            terminated,
+            ..Stepped::default()
+        };
+        for lane in 0..LANES {
+            self.elapsed[lane] = self.elapsed[lane].saturating_add(1);
+            stepped.truncated[lane] = self.elapsed[lane] >= shared.limit.get();
+            stepped.rewards[lane] = if stepped.terminated[lane] { 0.0 } else { -1.0 };
+            stepped.ended[lane] = stepped.terminated[lane] | stepped.truncated[lane];
+        }
+
+        let resets = match shared.autoreset {
+            Autoreset::NextStep => core::mem::replace(&mut self.ended, stepped.ended),
+            Autoreset::SameStep => stepped.ended,
+        };
+        if resets.iter().fold(false, |any, &reset| any | reset) {
+            self.reset_some::<A>(shared, &resets, &mut stepped);
+        }
+        stepped
+    }
+
+    /// Applies a torque to each for one `dt`, and says which are in the goal.
+    #[inline(always)]
+    fn advance<A: Arithmetic<Scalar = S>>(
+        &mut self,
+        model: &Model<S>,
+        torque: impl Fn(usize) -> S,
+    ) -> [bool; LANES] {
+        if TypeId::of::<A>() == TypeId::of::<Fast>() {
+            let all: (&mut dyn Any, &dyn Any) = (self, model);
+            if let (Some(block), Some(model)) = (all.0.downcast_mut(), all.1.downcast_ref()) {
+                let torque = |lane| torque(lane).to_f64() as f32;
+                return advance_lanes(block, model, torque);
+            }
+        }
+        from_fn(|lane| {
+            let mut state = self.state(lane);
+            let [cos1, sin1, cos2, sin2] = self.cos_sin.map(|numbers| numbers[lane]);
+            let mut sin_cos = [(sin1, cos1), (sin2, cos2)];
+            let terminated = transition::<A>(model, &mut state, &mut sin_cos, torque(lane));
+            self.place(lane, state, sin_cos);
+            terminated
+        })
+    }
+
+    #[cold]
+    fn reset_some<A: Arithmetic<Scalar = S>>(
+        &mut self,
+        shared: &Shared<S>,
+        resets: &[bool; LANES],
+        stepped: &mut Stepped,
+    ) {
+        for lane in (0..LANES).filter(|&lane| resets[lane]) {
+            self.reset::<A>(lane, shared.bounds);
+            if shared.autoreset == Autoreset::NextStep {
+                stepped.rewards[lane] = 0.0;
+                stepped.terminated[lane] = false;
+                stepped.truncated[lane] = false;
+            }
+        }
+    }
+
+    /// With a draw of the noise for each that is not to be reset.
+    #[cold]
+    fn noisy_torques(&mut self, params: &Params<S>, actions: &[u8; LANES]) -> [S; LANES] {
+        let noise = params.torque_noise.to_f64();
+        from_fn(|lane| {
+            let torque = S::pick(params.torques, actions[lane]);
+            if self.ended[lane] {
+                return torque;
+            }
+            torque + S::from_f64(uniform(&mut self.rng[lane], -noise, noise))
+        })
+    }
+}
+
+/// What a step of one block returns.
+#[derive(Default)]
+struct Stepped {
+    rewards: [f32; LANES],
+    terminated: [bool; LANES],
+    truncated: [bool; LANES],
+    ended: [bool; LANES],
+}
+
+/// [`transition`] of sixteen at once, without a branch but for results that are not finite.
+#[inline(always)]
+fn advance_lanes(
+    block: &mut Block<f32>,
+    model: &Model<f32>,
+    torque: impl Fn(usize) -> f32,
+) -> [bool; LANES] {
+    let torque = Lanes(from_fn(torque));
+    let [theta1, theta2, dtheta1, dtheta2] = block.state;
+    let y = [Lanes(theta1), Lanes(theta2), Lanes(dtheta1), Lanes(dtheta2)];
+    let [cos1, sin1, cos2, sin2] = block.cos_sin;
+    let sin_cos = [(Lanes(sin1), Lanes(cos1)), (Lanes(sin2), Lanes(cos2))];
+    let k1 = model.lean(y, sin_cos, torque);
+    let driven = Driven {
+        arithmetic: PhantomData::<Fast>,
+        model,
+        torque,
+    };
+    let next = rk4_from(Form::Lean, y, k1, model.dts, &driven);
+
+    // 0 times what is not finite is NaN.
+    let zero = Lanes::splat(0.0);
+    let [theta1, theta2, dtheta1, dtheta2] = next;
+    let zeros = ((theta1 * zero + theta2 * zero) + dtheta1 * zero) + dtheta2 * zero;
+    let next = if zeros.0.iter().fold(true, |all, &x| all & (x == 0.0)) {
+        next
+    } else {
+        at_rest(next, zeros, y)
+    };
+
+    let [theta1, theta2, dtheta1, dtheta2] = next;
+    let (theta1, theta2) = (theta1.wrap(), theta2.wrap());
+    let dtheta1 = dtheta1.bound(model.params.max_velocity1);
+    let dtheta2 = dtheta2.bound(model.params.max_velocity2);
+    let (sin1, cos1) = kernel(theta1);
+    let (sin2, cos2) = kernel(theta2);
+    block.state = [theta1.0, theta2.0, dtheta1.0, dtheta2.0];
+    block.cos_sin = [cos1.0, sin1.0, cos2.0, sin2.0];
+
+    let cos_sum = cos1 * cos2 - sin1 * sin2;
+    let height = -cos1 - cos_sum;
+    let mut terminated = [false; LANES];
+    for (terminated, height) in terminated.iter_mut().zip(height.0) {
+        *terminated = height > 1.0;
+    }
+    terminated
+}
+
+/// Lanes that are not finite keep their angles and stop.
+#[cold]
+#[expect(clippy::indexing_slicing, reason = "from_fn counts up to LANES")]
+fn at_rest(next: [Lanes; 4], zeros: Lanes, [theta1, theta2, ..]: [Lanes; 4]) -> [Lanes; 4] {
+    let zero = Lanes::splat(0.0);
+    let kept = [theta1, theta2, zero, zero];
+    from_fn(|number| {
+        Lanes(from_fn(|lane| {
+            let from = if zeros.0[lane] == 0.0 { &next } else { &kept };
+            from[number].0[lane]
+        }))
+    })
+}
+
+#[inline(always)]
+pub(super) fn step_blocks<A: Arithmetic>(
+    shared: &Shared<A::Scalar>,
+    blocks: &mut [Block<A::Scalar>],
+    actions: &[impl Copy + Into<u8>],
+    mut output: Output<'_>,
+) {
+    let each = actions
+        .chunks(LANES)
+        .zip(output.rewards.chunks_mut(LANES))
+        .zip(output.terminated.chunks_mut(LANES))
+        .zip(output.truncated.chunks_mut(LANES));
+    for ((number, block), (((actions, rewards), terminated), truncated)) in
+        blocks.iter_mut().enumerate().zip(each)
+    {
+        // What is left of the last block does nothing that is seen.
+        let mut given = [1; LANES];
+        match actions.first_chunk::<LANES>() {
+            Some(all) => read(&mut given, all),
+            None => read(&mut given, actions),
+        }
+        let stepped = block.step::<A>(shared, &given);
+        write(rewards, &stepped.rewards);
+        write(terminated, &stepped.terminated);
+        write(truncated, &stepped.truncated);
+        block.observe(number, &mut output.observations);
+    }
+}
+
+/// As many as there are.
+#[inline(always)]
+fn read(to: &mut [u8; LANES], from: &[impl Copy + Into<u8>]) {
+    for (to, &from) in to.iter_mut().zip(from) {
+        *to = from.into();
+    }
+}
+
+/// As many as there is room for.
+#[inline(always)]
+fn write<T: Copy>(to: &mut [T], from: &[T; LANES]) {
+    match to.first_chunk_mut() {
+        Some(to) => *to = *from,
+        None => to.iter_mut().zip(from).for_each(|(to, &from)| *to = from),
+    }
+}

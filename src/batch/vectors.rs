@@ -1,0 +1,95 @@
+//! Which vectors a batch is stepped with.
+
+use super::Output;
+use super::Shared;
+use super::block::{Block, step_blocks};
+use crate::arithmetic::Arithmetic;
+
+/// The vectors that a [`Batch`](crate::Batch) of [`Fast`](crate::Fast) is stepped with. They change
+/// no bit.
+///
+/// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there is
+/// the baseline: what the crate is compiled for, such as WASM's simd128 or NEON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Vectors {
+    /// What the crate is compiled for.
+    Baseline,
+    /// AVX2, of eight numbers.
+    Avx2,
+    /// AVX-512 with its extensions F, BW, DQ and VL, of sixteen numbers.
+    Avx512,
+}
+
+impl Vectors {
+    /// The widest that this machine has.
+    #[must_use]
+    pub fn widest() -> Self {
+        [Self::Avx512, Self::Avx2]
+            .into_iter()
+            .find(|vectors| vectors.is_available())
+            .unwrap_or(Self::Baseline)
+    }
+
+    /// Whether this machine has them, and the crate was compiled to find out.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
+            Self::Avx2 => std::arch::is_x86_feature_detected!("avx2"),
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
+            Self::Avx512 => {
+                std::arch::is_x86_feature_detected!("avx512f")
+                    && std::arch::is_x86_feature_detected!("avx512bw")
+                    && std::arch::is_x86_feature_detected!("avx512dq")
+                    && std::arch::is_x86_feature_detected!("avx512vl")
+            }
+            #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
+            Self::Avx2 | Self::Avx512 => false,
+        }
+    }
+
+    /// Steps all blocks; with vectors that the machine has not, as with the baseline.
+    #[allow(unsafe_code)]
+    pub(super) fn step<A: Arithmetic>(
+        self,
+        shared: &Shared<A::Scalar>,
+        blocks: &mut [Block<A::Scalar>],
+        actions: &[impl Copy + Into<u8>],
+        output: Output<'_>,
+    ) {
+        #[cfg(all(feature = "std", target_arch = "x86_64"))]
+        {
+            macro_rules! compiled_for {
+                ($name:ident, $features:literal) => {
+                    #[target_feature(enable = $features)]
+                    fn $name<A: Arithmetic>(
+                        shared: &Shared<A::Scalar>,
+                        blocks: &mut [Block<A::Scalar>],
+                        actions: &[impl Copy + Into<u8>],
+                        output: Output<'_>,
+                    ) {
+                        step_blocks::<A>(shared, blocks, actions, output);
+                    }
+                };
+            }
+            compiled_for!(with_avx2, "avx2");
+            compiled_for!(with_avx512, "avx512f,avx512bw,avx512dq,avx512vl");
+            // SAFETY: the machine has the features that the function was compiled for.
+            unsafe {
+                match self {
+                    Self::Avx2 if self.is_available() => {
+                        return with_avx2::<A>(shared, blocks, actions, output);
+                    }
+                    Self::Avx512 if self.is_available() => {
+                        return with_avx512::<A>(shared, blocks, actions, output);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        step_blocks::<A>(shared, blocks, actions, output);
+    }
+}

@@ -1,0 +1,286 @@
+//! Promise 2 for batches: acrobot i of a batch is one alone with the i-th child of the seed, to the bit.
+
+use std::num::NonZeroU32;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Dynamics, Error, Fast, Host, Micro,
+    Observations, Output, Params, Pcg64, Portable, Real, SeedSequence, StartBounds, State,
+    TimeLimit, Vectors,
+};
+
+type Blocks<A> = Vec<Block<<A as Arithmetic>::Scalar>>;
+
+/// A batch and its scalar twins, and the memory for what a step returns.
+struct Twins<A: Arithmetic> {
+    batch: Batch<A, Blocks<A>>,
+    alone: Vec<TimeLimit<Acrobot<A>>>,
+    /// Whether each of `alone` is reset by the next step.
+    ended: Vec<bool>,
+    autoreset: Autoreset,
+    bounds: StartBounds,
+}
+
+impl<A: Arithmetic> Twins<A> {
+    fn new(len: usize, autoreset: Autoreset) -> Self {
+        Self::with_vectors(len, autoreset, Vectors::widest())
+    }
+
+    fn with_vectors(len: usize, autoreset: Autoreset, vectors: Vectors) -> Self {
+        let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
+        let mut batch = Batch::<A, _>::new(42, len, blocks).unwrap();
+        batch.set_autoreset(autoreset);
+        batch.set_vectors(vectors);
+        Self {
+            batch,
+            alone: SeedSequence::from(42)
+                .spawn(len as u64)
+                .map(|seed| TimeLimit::v1(Acrobot::new(seed)))
+                .collect(),
+            ended: vec![false; len],
+            autoreset,
+            bounds: StartBounds::DEFAULT,
+        }
+    }
+
+    fn set_params(&mut self, params: Params<A::Scalar>) {
+        self.batch.set_params(params).unwrap();
+        for alone in &mut self.alone {
+            alone.inner_mut().set_params(params).unwrap();
+        }
+    }
+
+    fn start_within(&mut self, low: f64, high: f64) {
+        self.bounds = StartBounds::new(low, high).unwrap();
+        self.batch.set_start_bounds(self.bounds);
+        self.batch.reset();
+        for alone in &mut self.alone {
+            alone.reset_within(self.bounds);
+        }
+    }
+
+    /// Steps both with the same actions, and compares every bit.
+    fn step(&mut self, actions: &[Action]) {
+        let len = self.alone.len();
+        let (mut rewards, mut terminated, mut truncated) =
+            (vec![9.0; len], vec![true; len], vec![true; len]);
+        let mut rows = vec![[9.0; 6]; len];
+        let output = Output {
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+            observations: Observations::Rows(&mut rows),
+        };
+        self.batch.step(actions, output).unwrap();
+        for (i, alone) in self.alone.iter_mut().enumerate() {
+            let expected = if std::mem::take(&mut self.ended[i]) {
+                (alone.reset_within(self.bounds), 0.0, false, false)
+            } else {
+                let step = alone.step(actions[i]);
+                let observation = match (step.ended(), self.autoreset) {
+                    (true, Autoreset::SameStep) => alone.reset_within(self.bounds),
+                    (ended, _) => {
+                        self.ended[i] = ended;
+                        step.observation
+                    }
+                };
+                (observation, step.reward, step.terminated, step.truncated)
+            };
+            let bits = |state: State<A::Scalar>| {
+                <[A::Scalar; 4]>::from(state).map(|x| x.to_f64().to_bits())
+            };
+            assert_eq!(
+                bits(self.batch.state(i).unwrap()),
+                bits(alone.inner().state()),
+                "acrobot {i}"
+            );
+            assert_eq!(rows[i].map(f32::to_bits), expected.0.map(f32::to_bits));
+            assert_eq!(
+                (rewards[i], terminated[i], truncated[i]),
+                (expected.1, expected.2, expected.3)
+            );
+        }
+    }
+
+    /// Random actions, or where `swinging` torque against θ̇1, which reaches the goal.
+    fn play(&mut self, steps: u32, swinging: bool) {
+        let mut rng = Pcg64::new(7);
+        for _ in 0..steps {
+            let actions: Vec<Action> = self
+                .alone
+                .iter()
+                .map(|alone| {
+                    let random = Action::sample(&mut rng);
+                    match alone.inner().state().dtheta1 > A::Scalar::ZERO {
+                        _ if !swinging => random,
+                        true => Action::Negative,
+                        false => Action::Positive,
+                    }
+                })
+                .collect();
+            self.step(&actions);
+        }
+    }
+}
+
+/// More than a block, and not a whole number of them; through ends and resets of either kind.
+fn plays_as_one_alone<A: Arithmetic>(len: usize, steps: u32) {
+    for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
+        let mut twins = Twins::<A>::new(len, autoreset);
+        twins.play(steps, true);
+        twins.play(steps, false);
+    }
+}
+
+#[test]
+fn fast_plays_as_one_alone() {
+    plays_as_one_alone::<Fast>(35, 1200);
+}
+
+#[test]
+fn other_arithmetics_play_as_one_alone() {
+    plays_as_one_alone::<Portable>(17, 600);
+    plays_as_one_alone::<Micro>(17, 600);
+    plays_as_one_alone::<Host>(17, 600);
+}
+
+/// With every kind of vectors that the machine has; the others are as the baseline.
+#[test]
+fn a_thousand_play_ten_thousand_steps_as_one_alone() {
+    let steps = if cfg!(debug_assertions) { 600 } else { 10_000 };
+    for vectors in [Vectors::Baseline, Vectors::Avx2, Vectors::Avx512] {
+        println!("{vectors:?} available: {}", vectors.is_available());
+        Twins::<Fast>::with_vectors(1000, Autoreset::NextStep, vectors).play(steps, true);
+    }
+}
+
+#[test]
+fn any_size_plays_as_one_alone() {
+    for len in [1, 2, 15, 16, 17, 31, 32, 33, 100] {
+        Twins::<Fast>::new(len, Autoreset::SameStep).play(200, true);
+    }
+}
+
+#[test]
+fn other_parameters_noise_and_starts_play_as_one_alone() {
+    let mut rng = Pcg64::new(11);
+    for dynamics in [Dynamics::Book, Dynamics::Nips] {
+        for noise in [0.0, 0.5] {
+            for (size, dt) in [(0.1, 0.2), (3.2, 0.05), (100.0, 0.2), (1e5, 1.0)] {
+                let mut twins = Twins::<Fast>::new(40, Autoreset::NextStep);
+                let mut draw = || acrobot::uniform(&mut rng, 0.5, 2.0) as f32;
+                twins.set_params(Params {
+                    mass1: draw(),
+                    mass2: draw(),
+                    length1: draw(),
+                    torques: [-draw(), draw() - 1.0, draw()],
+                    torque_noise: noise,
+                    dt,
+                    dynamics,
+                    ..Params::default()
+                });
+                twins.start_within(-size, size);
+                twins.play(700, true);
+            }
+        }
+    }
+}
+
+/// Where steps are not finite in some lanes and not in others.
+#[test]
+fn what_cannot_be_represented_is_as_for_one_alone() {
+    for torque in [1e3, 1e8, 1e18, 1e30, f32::MAX] {
+        for size in [1.0, 1e10, 1e19, 1e38] {
+            let mut twins = Twins::<Fast>::new(48, Autoreset::NextStep);
+            twins.set_params(Params {
+                torques: [-torque, 0.0, torque],
+                max_velocity1: f32::MAX,
+                max_velocity2: f32::MAX,
+                ..Params::default()
+            });
+            twins.start_within(-size, size);
+            twins.play(60, false);
+        }
+    }
+}
+
+#[test]
+fn columns_are_the_rows() {
+    let mut batch = Batch::<Fast, _>::new(1, 20, [const { Block::EMPTY }; 2]).unwrap();
+    batch.set_limit(NonZeroU32::MIN);
+    let mut rows = [[0.0; 6]; 20];
+    batch.observe(Observations::Rows(&mut rows)).unwrap();
+    let mut columns = [[0.0; 20]; 6];
+    batch
+        .observe(Observations::Columns(
+            columns.each_mut().map(|column| &mut column[..]),
+        ))
+        .unwrap();
+    for (i, row) in rows.iter().enumerate() {
+        assert_eq!(*row, columns.map(|column| column[i]));
+        let alone = Acrobot::<Fast>::new(SeedSequence::from(1).child(i as u64));
+        assert_eq!(*row, *alone.observation());
+    }
+}
+
+#[test]
+fn bad_input_is_refused_before_anything_is_stepped() {
+    let refused = Batch::<Fast, _>::new(0, 0, [const { Block::EMPTY }; 1]).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "len is 0 acrobots; allowed is 1 or more"
+    );
+    let refused = Batch::<Fast, _>::new(0, 17, [const { Block::EMPTY }; 1]).unwrap_err();
+    assert_eq!(refused.to_string(), "blocks has 1 elements; allowed is 2");
+
+    let mut batch = Batch::<Fast, _>::new(0, 3, [const { Block::EMPTY }; 1]).unwrap();
+    let before = batch.state(1);
+    let mut step = |actions: &[u8], lengths: [usize; 4]| {
+        let [rewards, terminated, truncated, rows] = lengths;
+        batch.step(
+            actions,
+            Output {
+                rewards: &mut vec![0.0; rewards],
+                terminated: &mut vec![false; terminated],
+                truncated: &mut vec![false; truncated],
+                observations: Observations::Rows(&mut vec![[0.0; 6]; rows]),
+            },
+        )
+    };
+    for (actions, lengths, message) in [
+        (&[0, 1][..], [3; 4], "actions has 2 elements; allowed is 3"),
+        (
+            &[0, 1, 2],
+            [2, 3, 3, 3],
+            "rewards has 2 elements; allowed is 3",
+        ),
+        (
+            &[0, 1, 2],
+            [3, 0, 3, 3],
+            "terminated has 0 elements; allowed is 3",
+        ),
+        (
+            &[0, 1, 2],
+            [3, 3, 4, 3],
+            "truncated has 4 elements; allowed is 3",
+        ),
+        (
+            &[0, 1, 2],
+            [3, 3, 3, 1],
+            "observations has 1 elements; allowed is 3",
+        ),
+        (
+            &[0, 3, 1],
+            [3; 4],
+            "action is 3; allowed is 0 (negative torque), 1 (none) or 2 (positive)",
+        ),
+    ] {
+        assert_eq!(step(actions, lengths).unwrap_err().to_string(), message);
+    }
+    assert_eq!(batch.state(1), before);
+    assert_eq!(batch.state(3), None);
+    let error = batch.set_params(Params {
+        dt: 0.0,
+        ..Params::default()
+    });
+    assert!(matches!(error, Err(Error::OutOfRange { name: "dt", .. })));
+}
