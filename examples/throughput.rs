@@ -27,6 +27,7 @@ fn main() {
         batch::<Fast>("fast", len);
     }
     batch::<Portable>("portable", 1024);
+    threads(1 << 20);
 }
 
 const ROUNDS: usize = 7;
@@ -120,6 +121,43 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize) {
             }),
         );
     }
+}
+
+/// One call on all cores, beside the same on one: the ratio is that of the two.
+fn threads(len: usize) {
+    let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
+    let mut one = Batch::<Fast, _>::new(0, len, blocks).expect("a batch of its size");
+    let mut many = one.clone();
+    let actions: Vec<u8> = (0..len).map(|i| (i * 7 % 3) as u8).collect();
+    let (mut rewards, mut terminated, mut truncated) =
+        (vec![0.0; len], vec![false; len], vec![false; len]);
+    let (mut rewards1, mut terminated1, mut truncated1) =
+        (rewards.clone(), terminated.clone(), truncated.clone());
+    let on_all = || {
+        let output = Output {
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+            observations: Observations::None,
+        };
+        many.par_step(&actions, output).expect("slices of its size");
+        len
+    };
+    let on_one = || {
+        let output = Output {
+            rewards: &mut rewards1,
+            terminated: &mut terminated1,
+            truncated: &mut truncated1,
+            observations: Observations::None,
+        };
+        one.step(&actions, output).expect("slices of its size");
+        len
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    report(
+        &format!("batch_fast_{len}_threads_{threads}"),
+        compare(on_all, on_one),
+    );
 }
 
 /// Gymnasium's order in f64, `x * x` for its squares, without ends and resets.

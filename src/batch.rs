@@ -161,19 +161,41 @@ impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Ba
     /// [`Error::UnknownAction`] for a number above 2; nothing is stepped then.
     pub fn step(
         &mut self,
+        actions: &[impl Copy + Into<u8>],
+        output: Output<'_>,
+    ) -> Result<(), Error> {
+        self.check(actions, &output)?;
+        let blocks = self.blocks.as_mut();
+        self.vectors
+            .step::<A>(&self.shared, blocks, actions, output);
+        Ok(())
+    }
+
+    fn check(&self, actions: &[impl Copy + Into<u8>], output: &Output<'_>) -> Result<(), Error> {
+        check_length("actions", actions.len(), self.len)?;
+        output.check(self.len)?;
+        let numbers = actions.iter().map(|&action| action.into());
+        match numbers.fold(0, u8::max) {
+            0..=2 => Ok(()),
+            highest => Err(Error::UnknownAction(highest)),
+        }
+    }
+
+    /// [`step`](Self::step) on all cores, by rayon: the same bits, whatever the number of threads.
+    ///
+    /// # Errors
+    ///
+    /// As [`step`](Self::step).
+    #[cfg(feature = "rayon")]
+    pub fn par_step(
+        &mut self,
         actions: &[impl Copy + Into<u8> + Sync],
         output: Output<'_>,
     ) -> Result<(), Error> {
-        check_length("actions", actions.len(), self.len)?;
-        output.check(self.len)?;
-        let highest = actions
-            .iter()
-            .fold(0, |highest, &action| highest.max(action.into()));
-        if highest > 2 {
-            return Err(Error::UnknownAction(highest));
-        }
+        self.check(actions, &output)?;
+        let blocks = self.blocks.as_mut();
         self.vectors
-            .step::<A>(&self.shared, self.blocks.as_mut(), actions, output);
+            .par_step::<A>(&self.shared, blocks, actions, output);
         Ok(())
     }
 
@@ -251,6 +273,28 @@ fn check_length(name: &'static str, found: usize, expected: usize) -> Result<(),
 }
 
 impl Output<'_> {
+    /// The outputs of the acrobots before an index, and of those from there on.
+    #[cfg(feature = "rayon")]
+    fn split_at(self, index: usize) -> (Self, Self) {
+        let (rewards1, rewards2) = self.rewards.split_at_mut(index);
+        let (terminated1, terminated2) = self.terminated.split_at_mut(index);
+        let (truncated1, truncated2) = self.truncated.split_at_mut(index);
+        let (observations1, observations2) = self.observations.split_at(index);
+        let before = Self {
+            rewards: rewards1,
+            terminated: terminated1,
+            truncated: truncated1,
+            observations: observations1,
+        };
+        let after = Self {
+            rewards: rewards2,
+            terminated: terminated2,
+            truncated: truncated2,
+            observations: observations2,
+        };
+        (before, after)
+    }
+
     fn check(&self, len: usize) -> Result<(), Error> {
         check_length("rewards", self.rewards.len(), len)?;
         check_length("terminated", self.terminated.len(), len)?;
@@ -260,6 +304,23 @@ impl Output<'_> {
 }
 
 impl Observations<'_> {
+    #[cfg(feature = "rayon")]
+    fn split_at(self, index: usize) -> (Self, Self) {
+        match self {
+            Self::None => (Self::None, Self::None),
+            Self::Rows(rows) => {
+                let (before, after) = rows.split_at_mut(index);
+                (Self::Rows(before), Self::Rows(after))
+            }
+            Self::Columns(columns) => {
+                let mut halves = columns.map(|column| column.split_at_mut(index));
+                let before = halves.each_mut().map(|(before, _)| core::mem::take(before));
+                let after = halves.map(|(_, after)| after);
+                (Self::Columns(before), Self::Columns(after))
+            }
+        }
+    }
+
     fn check(&self, len: usize) -> Result<(), Error> {
         match self {
             Self::None => Ok(()),

@@ -203,6 +203,45 @@ fn what_cannot_be_represented_is_as_for_one_alone() {
     }
 }
 
+/// As many threads as there are, and columns.
+#[test]
+fn threads_change_no_bit() {
+    let len = 5003_usize;
+    let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
+    let mut one = Batch::<Fast, _>::new(3, len, blocks).unwrap();
+    let mut many = one.clone();
+    let mut rng = Pcg64::new(1);
+    type Step = fn(&mut Batch<Fast, Blocks<Fast>>, &[Action], Output<'_>) -> Result<(), Error>;
+    let run = |batch: &mut Batch<Fast, Blocks<Fast>>, actions: &[Action], step: Step| {
+        let (mut rewards, mut terminated, mut truncated) =
+            (vec![9.0; len], vec![true; len], vec![true; len]);
+        let mut columns = vec![vec![9.0; len]; 6];
+        let [a, b, c, d, e, f] = &mut columns[..] else {
+            unreachable!()
+        };
+        let output = Output {
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+            observations: Observations::Columns([a, b, c, d, e, f]),
+        };
+        step(batch, actions, output).unwrap();
+        (rewards, terminated, truncated, columns)
+    };
+    for _ in 0..600 {
+        let actions: Vec<Action> = (0..len).map(|_| Action::sample(&mut rng)).collect();
+        let alone = run(&mut one, &actions, |batch, actions, output| {
+            batch.step(actions, output)
+        });
+        let shared = run(&mut many, &actions, |batch, actions, output| {
+            batch.par_step(actions, output)
+        });
+        assert!(alone == shared);
+    }
+    assert!((0..len).all(|i| one.state(i) == many.state(i)));
+    assert_eq!(one.state(0), many.state(0));
+}
+
 #[test]
 fn columns_are_the_rows() {
     let mut batch = Batch::<Fast, _>::new(1, 20, [const { Block::EMPTY }; 2]).unwrap();

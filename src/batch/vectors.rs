@@ -4,6 +4,8 @@ use super::Output;
 use super::Shared;
 use super::block::{Block, step_blocks};
 use crate::arithmetic::Arithmetic;
+#[cfg(feature = "rayon")]
+use crate::lanes::LANES;
 
 /// The vectors that a [`Batch`](crate::Batch) of [`Fast`](crate::Fast) is stepped with. They change
 /// no bit.
@@ -91,5 +93,29 @@ impl Vectors {
             }
         }
         step_blocks::<A>(shared, blocks, actions, output);
+    }
+
+    /// The same on all cores: halves in parallel, down to what is worth a task.
+    #[cfg(feature = "rayon")]
+    pub(super) fn par_step<A: Arithmetic>(
+        self,
+        shared: &Shared<A::Scalar>,
+        blocks: &mut [Block<A::Scalar>],
+        actions: &[impl Copy + Into<u8> + Sync],
+        output: Output<'_>,
+    ) {
+        /// Some ten microseconds of work.
+        const BLOCKS_OF_A_TASK: usize = 64;
+        if blocks.len() <= BLOCKS_OF_A_TASK {
+            return self.step::<A>(shared, blocks, actions, output);
+        }
+        let middle = blocks.len() / 2;
+        let (blocks1, blocks2) = blocks.split_at_mut(middle);
+        let (actions1, actions2) = actions.split_at(middle * LANES);
+        let (output1, output2) = output.split_at(middle * LANES);
+        rayon::join(
+            || self.par_step::<A>(shared, blocks1, actions1, output1),
+            || self.par_step::<A>(shared, blocks2, actions2, output2),
+        );
     }
 }
