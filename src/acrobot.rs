@@ -1,13 +1,11 @@
 //! The environment: parameters, a state, a generator, and what a step does to them.
 
-use core::marker::PhantomData;
-
 use rand_core::Rng;
 
 use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Portable, Real};
 use crate::bounds::{is_settled, settle};
-use crate::dynamics::{self, Driven, Model, SinCos};
+use crate::dynamics::{Driven, Model, SinCos, reaches_goal, sin_cos};
 use crate::error::{Allowed, Error};
 use crate::observation::Observation;
 use crate::params::Params;
@@ -252,11 +250,7 @@ pub(crate) fn transition<A: Arithmetic>(
     sin_cos: &mut [SinCos<A::Scalar>; 2],
     torque: A::Scalar,
 ) -> bool {
-    let driven = Driven {
-        arithmetic: PhantomData::<A>,
-        model,
-        torque,
-    };
+    let driven = Driven::<A, _>::new(model, torque);
     let y: [A::Scalar; 4] = (*state).into();
     let k1 = driven.with_sin_cos(y, *sin_cos);
     let next = rk4_from(A::FORM, y, k1, model.dts, &driven);
@@ -266,17 +260,7 @@ pub(crate) fn transition<A: Arithmetic>(
         settle::<A>(state, [y[0], y[1]], &model.params);
     }
     *sin_cos = [A::sin_cos_near(state.theta1), A::sin_cos_near(state.theta2)];
-    dynamics::reaches_goal::<A>(state, *sin_cos)
-}
-
-/// Of θ1 and θ2, wherever they are.
-pub(crate) fn sin_cos<A: Arithmetic>(state: &State<A::Scalar>) -> [SinCos<A::Scalar>; 2] {
-    /// Apart, for flash: starts are few.
-    #[inline(never)]
-    fn apart<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
-        A::sin_cos(x)
-    }
-    [apart::<A>(state.theta1), apart::<A>(state.theta2)]
+    reaches_goal::<A>(state, *sin_cos)
 }
 
 #[cfg(feature = "defmt")]

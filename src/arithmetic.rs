@@ -117,12 +117,6 @@ pub trait Real:
     /// The same number, exactly.
     fn to_f64(self) -> f64;
 
-    /// The absolute value.
-    fn abs(self) -> Self;
-
-    /// The one of three at an index of 0 to 2, without a branch or an address that depends on it.
-    fn pick(three: [Self; 3], index: u8) -> Self;
-
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
@@ -159,7 +153,22 @@ impl<S: Real> Numbers<S> for S {
 
 macro_rules! impl_real {
     ($scalar:ident, $bits:ident) => {
-        impl sealed::Sealed for $scalar {}
+        impl sealed::Sealed for $scalar {
+            #[inline]
+            fn pick([first, second, third]: [Self; 3], index: u8) -> Self {
+                let mask = |i| u64::from(index == i).wrapping_neg() as $bits;
+                $scalar::from_bits(
+                    (first.to_bits() & mask(0))
+                        | (second.to_bits() & mask(1))
+                        | (third.to_bits() & mask(2)),
+                )
+            }
+
+            #[inline]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+        }
 
         impl Real for $scalar {
             const ZERO: Self = 0.0;
@@ -175,21 +184,6 @@ macro_rules! impl_real {
             #[inline]
             fn to_f64(self) -> f64 {
                 self.into()
-            }
-
-            #[inline]
-            fn pick([first, second, third]: [Self; 3], index: u8) -> Self {
-                let mask = |i| u64::from(index == i).wrapping_neg() as $bits;
-                $scalar::from_bits(
-                    (first.to_bits() & mask(0))
-                        | (second.to_bits() & mask(1))
-                        | (third.to_bits() & mask(2)),
-                )
-            }
-
-            #[inline]
-            fn abs(self) -> Self {
-                self.abs()
             }
 
             #[inline]
@@ -216,7 +210,14 @@ impl_real!(f32, u32);
 impl_real!(f64, u64);
 
 mod sealed {
-    pub trait Sealed {}
+    /// What only this crate needs of a scalar.
+    pub trait Sealed: Sized {
+        /// The one of three at an index of 0 to 2, without a branch or an address that depends on it.
+        fn pick(three: [Self; 3], index: u8) -> Self;
+
+        /// The absolute value.
+        fn abs(self) -> Self;
+    }
 }
 
 /// The largest angle that the `f32` kernels take, rad: 2¹⁹, where neighbouring `f32` are 1/16 rad

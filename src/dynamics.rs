@@ -190,9 +190,20 @@ impl<S: Real> Model<S> {
 
 /// A model under a torque in N m that stays for a step, of one acrobot or of many.
 pub(crate) struct Driven<'a, A: Arithmetic, V> {
-    pub(crate) arithmetic: PhantomData<A>,
-    pub(crate) model: &'a Model<A::Scalar>,
-    pub(crate) torque: V,
+    arithmetic: PhantomData<A>,
+    model: &'a Model<A::Scalar>,
+    torque: V,
+}
+
+impl<'a, A: Arithmetic, V> Driven<'a, A, V> {
+    #[inline(always)]
+    pub(crate) fn new(model: &'a Model<A::Scalar>, torque: V) -> Self {
+        Self {
+            arithmetic: PhantomData,
+            model,
+            torque,
+        }
+    }
 }
 
 impl<A: Arithmetic> Derivative<A::Scalar, 4> for Driven<'_, A, A::Scalar> {
@@ -254,6 +265,16 @@ pub(crate) fn reaches_goal<A: Arithmetic>(
     -cos1 - cos_sum > A::Scalar::from_f64(1.0)
 }
 
+/// The sines and cosines of θ1 and θ2, wherever they are.
+pub(crate) fn sin_cos<A: Arithmetic>(state: &State<A::Scalar>) -> [SinCos<A::Scalar>; 2] {
+    /// Apart, for flash: starts are few.
+    #[inline(never)]
+    fn apart<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
+        A::sin_cos(x)
+    }
+    [apart::<A>(state.theta1), apart::<A>(state.theta2)]
+}
+
 /// The equations of motion: \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², at a state and under a torque
 /// between the links in N m.
 ///
@@ -276,13 +297,7 @@ pub fn derivative<A: Arithmetic>(
 ) -> [A::Scalar; 4] {
     let model = &Model::new::<A>(*params);
     let y: [A::Scalar; 4] = (*state).into();
-    let sin_cos = [A::sin_cos(state.theta1), A::sin_cos(state.theta2)];
-    let driven = Driven {
-        arithmetic: PhantomData::<A>,
-        model,
-        torque,
-    };
-    driven.with_sin_cos(y, sin_cos)
+    Driven::<A, _>::new(model, torque).with_sin_cos(y, sin_cos::<A>(state))
 }
 
 /// The mass matrix M at a state, kg m²: the kinetic energy is θ̇ᵀ M θ̇ / 2, and M is symmetric and

@@ -112,7 +112,7 @@ impl SeedableRng for Pcg64 {
 
 /// NumPy's `Generator.uniform(low, high)`: a draw from \[`low`, `high`), of 53 random bits. The
 /// difference of the two must be finite.
-#[inline(never)]
+#[inline(never)] // for flash: an acrobot draws four at each start
 pub fn uniform<R: Rng + ?Sized>(rng: &mut R, low: f64, high: f64) -> f64 {
     let unit = (rng.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64);
     low + (high - low) * unit

@@ -50,7 +50,7 @@ impl SeedSequence {
         clippy::indexing_slicing,
         reason = "the pool has four words, and 0..4 is below"
     )]
-    #[inline(never)]
+    #[inline(never)] // for flash, as `hash`, which stands sixteen times in it
     pub fn from_words(words: &[u32]) -> Self {
         let mut sequence = Self {
             pool: [0; 4],

@@ -111,7 +111,7 @@ impl StartBounds {
     }
 
     /// Draws a start. Gymnasium keeps it in f32, whatever it computes in afterwards.
-    #[inline(never)]
+    #[inline(never)] // for flash: it stands at each reset
     pub(crate) fn draw<R: Rng>(&self, rng: &mut R) -> State<f32> {
         [(); 4]
             .map(|()| uniform(rng, self.low, self.high) as f32)

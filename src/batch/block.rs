@@ -2,12 +2,11 @@
 
 use core::any::{Any, TypeId};
 use core::array::from_fn;
-use core::marker::PhantomData;
 
 use super::{Autoreset, Observations, Output, Shared};
-use crate::acrobot::{sin_cos, transition};
+use crate::acrobot::transition;
 use crate::arithmetic::{Arithmetic, Fast, Form, Numbers, Real, kernel};
-use crate::dynamics::{Driven, Model};
+use crate::dynamics::{Driven, Model, sin_cos};
 use crate::lanes::{LANES, Lanes};
 use crate::params::Params;
 use crate::rk4::rk4_from;
@@ -222,11 +221,7 @@ fn advance_lanes(
     let [cos1, sin1, cos2, sin2] = block.cos_sin;
     let sin_cos = [(Lanes(sin1), Lanes(cos1)), (Lanes(sin2), Lanes(cos2))];
     let k1 = model.lean(y, sin_cos, torque);
-    let driven = Driven {
-        arithmetic: PhantomData::<Fast>,
-        model,
-        torque,
-    };
+    let driven = Driven::<Fast, _>::new(model, torque);
     let next = rk4_from(Form::Lean, y, k1, model.dts, &driven);
 
     // 0 times what is not finite is NaN.

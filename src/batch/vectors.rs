@@ -54,7 +54,10 @@ impl Vectors {
     }
 
     /// Steps all blocks; with vectors that the machine has not, as with the baseline.
-    #[allow(unsafe_code)]
+    #[allow(
+        unsafe_code,
+        reason = "the one point where the features of the machine are known and not those of the build"
+    )]
     pub(super) fn step<A: Arithmetic>(
         self,
         shared: &Shared<A::Scalar>,
