@@ -6,7 +6,6 @@
 #![no_std]
 #![no_main]
 
-use core::convert::Infallible;
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
@@ -15,10 +14,9 @@ use acrobot::{
     Output, Params, Portable, Real, SeedSequence, StartBounds, State, Theme, TimeLimit, Trajectory,
 };
 use cortex_m_rt::entry;
-use embedded_graphics::Pixel;
-use embedded_graphics::draw_target::DrawTarget;
-use embedded_graphics::geometry::{OriginDimensions, Size};
+use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
 
 unsafe extern "C" {
     fn a_panicking_branch_is_left() -> !;
@@ -60,7 +58,9 @@ fn everything<A: Arithmetic>() {
         }
         black_box(acrobot.reset_seeded(black_box(7)));
         let mut shown = Figure::new(acrobot.inner());
-        let _ = shown.draw(&mut Display([0; 1024]), &Theme::MONOCHROME);
+        let mut display = Display::new();
+        let _ = shown.draw(&mut display, &Theme::MONOCHROME);
+        black_box(display.data());
         for _ in 0..black_box(10) {
             let action = Action::sample(acrobot.inner_mut().rng_mut());
             black_box(trajectory.step(&mut acrobot, action));
@@ -74,7 +74,8 @@ fn everything<A: Arithmetic>() {
                 inner.mass_matrix(),
             ));
             let figure = Figure::new(inner).with_torque(black_box(1.0));
-            let _ = figure.redraw(&shown, &mut Display([0; 1024]), &Theme::MONOCHROME);
+            let _ = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);
+            black_box(display.data());
             shown = figure;
         }
         trajectory.iter().for_each(|transition| {
@@ -105,37 +106,5 @@ fn batch<A: Arithmetic>() {
     }
 }
 
-/// 128 × 64 pixels of one bit.
-struct Display([u8; 1024]);
-
-impl OriginDimensions for Display {
-    fn size(&self) -> Size {
-        Size::new(128, 64)
-    }
-}
-
-impl DrawTarget for Display {
-    type Color = BinaryColor;
-    type Error = Infallible;
-
-    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
-        &mut self,
-        pixels: I,
-    ) -> Result<(), Infallible> {
-        for Pixel(point, color) in pixels {
-            if let Some(byte) = self
-                .0
-                .get_mut(point.y as usize / 8 * 128 + point.x as usize)
-            {
-                let bit = 1 << (point.y & 7);
-                *byte = if color.is_on() {
-                    *byte | bit
-                } else {
-                    *byte & !bit
-                };
-            }
-        }
-        black_box(&self.0);
-        Ok(())
-    }
-}
+type Display =
+    Framebuffer<BinaryColor, RawU1, BigEndian, 128, 64, { buffer_size::<BinaryColor>(128, 64) }>;
