@@ -31,33 +31,47 @@ impl Arithmetic for Host {
     /// `x**2` of a NumPy scalar is C's `pow`, which glibc rounds differently from `x * x` on one
     /// argument in a thousand: some of those where the exact square lies about half way between two
     /// doubles. Elsewhere `pow` is spared, which costs much of a step.
-    #[inline]
+    #[inline(always)]
     fn square(x: f64) -> f64 {
-        /// How far from `x * x`, in units of its last place, the exact square may be for `pow` to be
-        /// equal to it: half a unit but for the error of `pow`, of which glibc's source says that it adds
-        /// 0.044 units at worst (`e_pow.c`: 0.54 in all).
-        const SURE: f64 = 0.45;
-        let product = x * x;
-        // Within these the residual is exact and the exponents are.
-        if (1e-280..1e280).contains(&product) && residual(x, product).abs() < SURE * ulp(product) {
-            return product;
+        if is_far_from_a_tie(x) {
+            x * x
+        } else {
+            power(x)
         }
-        // LLVM turns `pow(x, 2.0)` into `x * x` wherever it sees the exponent.
-        x.powf(black_box(2.0))
     }
 }
 
-/// x² − `product`, exactly: Dekker's product, for many machines have no fused multiply-add.
-#[inline]
-fn residual(x: f64, product: f64) -> f64 {
-    let scaled = x * 134_217_729.0; // 2²⁷ + 1
-    let high = scaled - (scaled - x);
-    let low = x - high;
-    ((high * high - product) + 2.0 * high * low) + low * low
+/// `pow(x, 2.0)`.
+#[cold]
+#[expect(clippy::disallowed_methods, reason = "as above")]
+fn power(x: f64) -> f64 {
+    // LLVM turns it into `x * x` wherever it sees the exponent.
+    x.powf(black_box(2.0))
 }
 
-/// The unit in the last place of a normal number above 0.
-#[inline]
-fn ulp(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & f64::INFINITY.to_bits()) * f64::EPSILON
+/// Whether x is moderate and its exact square so far from the middle of two doubles that `pow` must
+/// be `x * x`.
+///
+/// glibc's source (`e_pow.c`) bounds the error of `pow` by 0.511 units in the last place and by
+/// 2⁵³ × 1.5 × 2⁻⁶⁸ |2 ln x|, below 0.004 for |x| of 2⁻⁶⁰ to 2⁶⁰. So it is right where the middle is
+/// farther off than 0.015 units; 0.02 are asked for. The bits of the square beyond its last place come
+/// from whole numbers, which is faster than by floats without a fused multiply-add.
+#[inline(always)]
+fn is_far_from_a_tie(x: f64) -> bool {
+    /// 0.02 units, where 2⁶⁴ is one.
+    const NEAR: u64 = (0.02 * 18_446_744_073_709_551_616.0) as u64;
+    const fn mantissa(x: f64) -> u64 {
+        (x.to_bits() & ((1 << 52) - 1)) | (1 << 52)
+    }
+
+    let is_moderate = (x.to_bits() << 1).wrapping_sub((1023 - 60) << 53) < 120 << 53;
+    let mantissa_of_x = mantissa(x);
+    // From √2 on the square has a bit more before its last place.
+    let kept = if mantissa_of_x > mantissa(core::f64::consts::SQRT_2) {
+        11
+    } else {
+        12
+    };
+    let rest = mantissa_of_x.wrapping_mul(mantissa_of_x) << kept;
+    is_moderate & (rest.wrapping_sub((1 << 63) - NEAR) > 2 * NEAR)
 }
