@@ -11,8 +11,8 @@ pub use vectors::Vectors;
 use crate::arithmetic::Arithmetic;
 use crate::dynamics::Model;
 use crate::error::Error;
-use crate::lanes::LANES;
 use crate::params::Params;
+use crate::rng::Pcg64;
 use crate::seed::SeedSequence;
 use crate::state::{StartBounds, State};
 use crate::time_limit::V1;
@@ -24,7 +24,8 @@ pub enum Autoreset {
     /// By the next step, which ignores its action and returns the start, with a reward of 0.
     #[default]
     NextStep,
-    /// By the step that ends it, which returns the start in place of the last observation.
+    /// By the step that ends it, which returns the start as its observation, and what was seen last
+    /// among the [`final_observations`](Output::final_observations).
     SameStep,
 }
 
@@ -39,6 +40,9 @@ pub struct Output<'a> {
     pub truncated: &'a mut [bool],
     /// What the agents see of the new states.
     pub observations: Observations<'a>,
+    /// With [`Autoreset::SameStep`] alone: what the agents saw last of the episodes that this step
+    /// ended. Elements of other acrobots stay as they are.
+    pub final_observations: Observations<'a>,
 }
 
 /// Where the observations go. What they are: [`Observation`](crate::Observation).
@@ -55,16 +59,18 @@ pub enum Observations<'a> {
 /// Many acrobots, each with the parameters of all and a stream of its own.
 ///
 /// Acrobot `i` is [`Acrobot::<A>`](crate::Acrobot) of the `i`-th child of the seed under a
-/// [`TimeLimit`](crate::TimeLimit), to the bit. In [`Fast`](crate::Fast) sixteen are stepped side by side, with
+/// [`TimeLimit`](crate::TimeLimit), to the bit. In [`Fast`](crate::Fast) `N` are stepped side by side, with
 /// the widest vectors that the machine has where the `std` feature is on; in the other arithmetics
-/// one after another.
+/// one after another. Neither `N` nor the vectors change a bit.
 ///
-/// It lives in memory that it is given: an array, a slice or a `Vec` of [`Block`]s.
+/// It lives in memory that it is given: arrays, slices or `Vec`s of [`Block`]s, one for each `N`, and of
+/// generators, one for each. The two are apart because a step seldom draws.
 ///
 /// ```
-/// use acrobot::{Batch, Block, Fast, Observations, Output};
+/// use acrobot::{Batch, Block, Fast, Observations, Output, Pcg64};
 ///
-/// let mut batch = Batch::<Fast, _>::new(42, 50, [const { Block::EMPTY }; 4])?;
+/// let (blocks, generators) = ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50]);
+/// let mut batch = Batch::<Fast, _, _>::new(42, blocks, generators)?;
 /// let (mut rewards, mut terminated, mut truncated) = ([0.0; 50], [false; 50], [false; 50]);
 /// let mut observations = [[0.0; 6]; 50];
 /// batch.step(
@@ -74,17 +80,18 @@ pub enum Observations<'a> {
 ///         terminated: &mut terminated,
 ///         truncated: &mut truncated,
 ///         observations: Observations::Rows(&mut observations),
+///         final_observations: Observations::None,
 ///     },
 /// )?;
 /// assert_eq!(rewards, [-1.0; 50]);
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Batch<A: Arithmetic, B> {
+pub struct Batch<A: Arithmetic, B, G, const N: usize = 16> {
     shared: Shared<A::Scalar>,
     vectors: Vectors,
-    len: usize,
     blocks: B,
+    generators: G,
 }
 
 /// What all acrobots of a batch have in common.
@@ -96,24 +103,31 @@ struct Shared<S> {
     autoreset: Autoreset,
 }
 
-impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Batch<A, B> {
-    /// `len` acrobots with the default parameters in `blocks`, each at its first start; a limit of
-    /// 500 steps, and the reset by the next step.
+impl<A, B, G, const N: usize> Batch<A, B, G, N>
+where
+    A: Arithmetic,
+    B: AsRef<[Block<A::Scalar, N>]> + AsMut<[Block<A::Scalar, N>]>,
+    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
+{
+    /// As many acrobots as generators, seeded anew, with the default parameters and each at its first
+    /// start; a limit of 500 steps, and the reset by the next step.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for no acrobots, and [`Error::WrongLength`] where `blocks` are not as many
-    /// as they need: one for each sixteen, the last of which may be in part.
-    pub fn new(seed: impl Into<SeedSequence>, len: usize, blocks: B) -> Result<Self, Error> {
+    /// [`Error::OutOfRange`] for no generators, and [`Error::WrongLength`] where `blocks` are not as many
+    /// as they need: one for each `N`, the last of which may be in part.
+    pub fn new(seed: impl Into<SeedSequence>, blocks: B, generators: G) -> Result<Self, Error> {
+        const { assert!(N > 0, "a block holds one acrobot or more") };
+        let len = generators.as_ref().len();
         if len == 0 {
             return Err(Error::OutOfRange {
-                name: "len",
+                name: "generators",
                 value: 0.0,
                 unit: "acrobots",
                 allowed: "1 or more",
             });
         }
-        check_length("blocks", blocks.as_ref().len(), len.div_ceil(LANES))?;
+        check_length("blocks", blocks.as_ref().len(), len.div_ceil(N))?;
         let shared = Shared {
             model: Model::new::<A>(Params::default()),
             bounds: StartBounds::DEFAULT,
@@ -123,8 +137,8 @@ impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Ba
         let mut batch = Self {
             shared,
             vectors: Vectors::widest(),
-            len,
             blocks,
+            generators,
         };
         batch.reset_seeded(seed);
         Ok(batch)
@@ -134,21 +148,22 @@ impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Ba
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "there is no batch of none")]
     pub fn len(&self) -> usize {
-        self.len
+        self.generators.as_ref().len()
     }
 
     /// Resets all, each within its own stream.
     pub fn reset(&mut self) {
-        for block in self.blocks.as_mut() {
-            block.reset_all::<A>(self.shared.bounds);
+        let blocks = self.blocks.as_mut().iter_mut();
+        for (block, generators) in blocks.zip(self.generators.as_mut().chunks_mut(N)) {
+            block.reset::<A>(&[true; N], self.shared.bounds, generators);
         }
     }
 
     /// Seeds acrobot `i` with the `i`-th child of `seed`, and resets all.
     pub fn reset_seeded(&mut self, seed: impl Into<SeedSequence>) {
-        let mut children = seed.into().spawn(u64::MAX);
-        for block in self.blocks.as_mut() {
-            block.seed(&mut children);
+        let children = seed.into().spawn(u64::MAX);
+        for (rng, seed) in self.generators.as_mut().iter_mut().zip(children) {
+            *rng = Pcg64::new(seed);
         }
         self.reset();
     }
@@ -165,15 +180,15 @@ impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Ba
         output: Output<'_>,
     ) -> Result<(), Error> {
         self.check(actions, &output)?;
-        let blocks = self.blocks.as_mut();
+        let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
         self.vectors
-            .step::<A>(&self.shared, blocks, actions, output);
+            .step::<A, N>(&self.shared, blocks, generators, actions, output);
         Ok(())
     }
 
     fn check(&self, actions: &[impl Copy + Into<u8>], output: &Output<'_>) -> Result<(), Error> {
-        check_length("actions", actions.len(), self.len)?;
-        output.check(self.len)?;
+        check_length("actions", actions.len(), self.len())?;
+        output.check(self.len())?;
         let numbers = actions.iter().map(|&action| action.into());
         match numbers.fold(0, u8::max) {
             0..=2 => Ok(()),
@@ -193,9 +208,9 @@ impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Ba
         output: Output<'_>,
     ) -> Result<(), Error> {
         self.check(actions, &output)?;
-        let blocks = self.blocks.as_mut();
+        let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
         self.vectors
-            .par_step::<A>(&self.shared, blocks, actions, output);
+            .par_step::<A, N>(&self.shared, blocks, generators, actions, output);
         Ok(())
     }
 
@@ -205,7 +220,7 @@ impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Ba
     ///
     /// [`Error::WrongLength`] for a slice that has not an element for each acrobot.
     pub fn observe(&self, mut observations: Observations<'_>) -> Result<(), Error> {
-        observations.check(self.len)?;
+        observations.check("observations", self.len())?;
         for (number, block) in self.blocks.as_ref().iter().enumerate() {
             block.observe(number, &mut observations);
         }
@@ -215,11 +230,11 @@ impl<A: Arithmetic, B: AsRef<[Block<A::Scalar>]> + AsMut<[Block<A::Scalar>]>> Ba
     /// The state of the acrobot of that index, if there is one.
     #[must_use]
     pub fn state(&self, index: usize) -> Option<State<A::Scalar>> {
-        if index >= self.len {
+        if index >= self.len() {
             return None;
         }
-        let block = self.blocks.as_ref().get(index / LANES)?;
-        Some(block.state(index % LANES))
+        let block = self.blocks.as_ref().get(index / N)?;
+        Some(block.state(index % N))
     }
 
     /// The parameters of all.
@@ -280,17 +295,20 @@ impl Output<'_> {
         let (terminated1, terminated2) = self.terminated.split_at_mut(index);
         let (truncated1, truncated2) = self.truncated.split_at_mut(index);
         let (observations1, observations2) = self.observations.split_at(index);
+        let (finals1, finals2) = self.final_observations.split_at(index);
         let before = Self {
             rewards: rewards1,
             terminated: terminated1,
             truncated: truncated1,
             observations: observations1,
+            final_observations: finals1,
         };
         let after = Self {
             rewards: rewards2,
             terminated: terminated2,
             truncated: truncated2,
             observations: observations2,
+            final_observations: finals2,
         };
         (before, after)
     }
@@ -299,7 +317,8 @@ impl Output<'_> {
         check_length("rewards", self.rewards.len(), len)?;
         check_length("terminated", self.terminated.len(), len)?;
         check_length("truncated", self.truncated.len(), len)?;
-        self.observations.check(len)
+        self.observations.check("observations", len)?;
+        self.final_observations.check("final_observations", len)
     }
 }
 
@@ -321,13 +340,32 @@ impl Observations<'_> {
         }
     }
 
-    fn check(&self, len: usize) -> Result<(), Error> {
+    fn check(&self, name: &'static str, len: usize) -> Result<(), Error> {
         match self {
             Self::None => Ok(()),
-            Self::Rows(rows) => check_length("observations", rows.len(), len),
+            Self::Rows(rows) => check_length(name, rows.len(), len),
             Self::Columns(columns) => columns
                 .iter()
-                .try_for_each(|column| check_length("observations", column.len(), len)),
+                .try_for_each(|column| check_length(name, column.len(), len)),
+        }
+    }
+
+    /// The six numbers of one acrobot, if it is of the batch.
+    fn write(&mut self, index: usize, row: [f32; 6]) {
+        match self {
+            Self::None => {}
+            Self::Rows(rows) => {
+                if let Some(to) = rows.get_mut(index) {
+                    *to = row;
+                }
+            }
+            Self::Columns(columns) => {
+                for (column, x) in columns.iter_mut().zip(row) {
+                    if let Some(to) = column.get_mut(index) {
+                        *to = x;
+                    }
+                }
+            }
         }
     }
 }

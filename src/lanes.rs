@@ -1,20 +1,16 @@
-//! Sixteen `f32` side by side: the numbers that a batch of [`Fast`](crate::Fast) computes in.
+//! Some `f32` side by side: the numbers that a batch of [`Fast`](crate::Fast) computes in.
 //!
-//! Plain arrays and loops over them, which LLVM turns into whatever vectors the target has. Sixteen,
-//! because arrays of eight and of thirty-two were slower (`cargo run --release --example throughput`).
+//! Plain arrays and loops over them, which LLVM turns into whatever vectors the target has.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::arithmetic::{Numbers, QuarterTurns, Real};
 
-/// How many acrobots are stepped at once.
-pub(crate) const LANES: usize = 16;
-
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Lanes(pub(crate) [f32; LANES]);
+pub(crate) struct Lanes<const N: usize>(pub(crate) [f32; N]);
 
-impl Lanes {
+impl<const N: usize> Lanes<N> {
     // Loops, for LLVM keeps `array::map` apart, without the vectors that its caller may use.
     #[inline(always)]
     pub(crate) fn map(mut self, mut f: impl FnMut(f32) -> f32) -> Self {
@@ -57,7 +53,7 @@ impl Lanes {
 
 macro_rules! lane_by_lane {
     ($($trait:ident $method:ident),*) => {$(
-        impl $trait for Lanes {
+        impl<const N: usize> $trait for Lanes<N> {
             type Output = Self;
 
             #[inline(always)]
@@ -70,7 +66,7 @@ macro_rules! lane_by_lane {
 
 lane_by_lane!(Add add, Sub sub, Mul mul, Div div);
 
-impl Neg for Lanes {
+impl<const N: usize> Neg for Lanes<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -79,14 +75,14 @@ impl Neg for Lanes {
     }
 }
 
-impl Numbers<f32> for Lanes {
+impl<const N: usize> Numbers<f32> for Lanes<N> {
     #[inline(always)]
     fn splat(x: f32) -> Self {
-        Self([x; LANES])
+        Self([x; N])
     }
 }
 
-impl QuarterTurns for Lanes {
+impl<const N: usize> QuarterTurns for Lanes<N> {
     /// By picking and by flipping signs. What the table of `f32` makes NaN is infinite here; neither
     /// gives a step that is finite.
     #[inline(always)]

@@ -36,8 +36,9 @@ pub struct Pcg64 {
 }
 
 impl Pcg64 {
-    /// Memory for a generator, not yet seeded.
-    pub(crate) const UNSEEDED: Self = Self {
+    /// Memory for a generator that is yet to be seeded, as by a [`Batch`](crate::Batch): a stream of
+    /// low quality.
+    pub const UNSEEDED: Self = Self {
         state: 0,
         increment: 1,
         half: None,

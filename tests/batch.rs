@@ -8,11 +8,11 @@ use acrobot::{
     TimeLimit, Vectors,
 };
 
-type Blocks<A> = Vec<Block<<A as Arithmetic>::Scalar>>;
+type Blocks<A, const N: usize> = Vec<Block<<A as Arithmetic>::Scalar, N>>;
 
 /// A batch and its scalar twins, and the memory for what a step returns.
-struct Twins<A: Arithmetic> {
-    batch: Batch<A, Blocks<A>>,
+struct Twins<A: Arithmetic, const N: usize = 16> {
+    batch: Batch<A, Blocks<A, N>, Vec<Pcg64>, N>,
     alone: Vec<TimeLimit<Acrobot<A>>>,
     /// Whether each of `alone` is reset by the next step.
     ended: Vec<bool>,
@@ -20,14 +20,14 @@ struct Twins<A: Arithmetic> {
     bounds: StartBounds,
 }
 
-impl<A: Arithmetic> Twins<A> {
+impl<A: Arithmetic, const N: usize> Twins<A, N> {
     fn new(len: usize, autoreset: Autoreset) -> Self {
         Self::with_vectors(len, autoreset, Vectors::widest())
     }
 
     fn with_vectors(len: usize, autoreset: Autoreset, vectors: Vectors) -> Self {
-        let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
-        let mut batch = Batch::<A, _>::new(42, len, blocks).unwrap();
+        let blocks = vec![Block::EMPTY; len.div_ceil(N)];
+        let mut batch = Batch::new(42, blocks, vec![Pcg64::UNSEEDED; len]).unwrap();
         batch.set_autoreset(autoreset);
         batch.set_vectors(vectors);
         Self {
@@ -63,21 +63,26 @@ impl<A: Arithmetic> Twins<A> {
         let len = self.alone.len();
         let (mut rewards, mut terminated, mut truncated) =
             (vec![9.0; len], vec![true; len], vec![true; len]);
-        let mut rows = vec![[9.0; 6]; len];
+        let (mut rows, mut finals) = (vec![[9.0; 6]; len], vec![[9.0; 6]; len]);
         let output = Output {
             rewards: &mut rewards,
             terminated: &mut terminated,
             truncated: &mut truncated,
             observations: Observations::Rows(&mut rows),
+            final_observations: Observations::Rows(&mut finals),
         };
         self.batch.step(actions, output).unwrap();
         for (i, alone) in self.alone.iter_mut().enumerate() {
+            let mut last = [9.0; 6];
             let expected = if std::mem::take(&mut self.ended[i]) {
                 (alone.reset_within(self.bounds), 0.0, false, false)
             } else {
                 let step = alone.step(actions[i]);
                 let observation = match (step.ended(), self.autoreset) {
-                    (true, Autoreset::SameStep) => alone.reset_within(self.bounds),
+                    (true, Autoreset::SameStep) => {
+                        last = *step.observation;
+                        alone.reset_within(self.bounds)
+                    }
                     (ended, _) => {
                         self.ended[i] = ended;
                         step.observation
@@ -94,6 +99,7 @@ impl<A: Arithmetic> Twins<A> {
                 "acrobot {i}"
             );
             assert_eq!(rows[i].map(f32::to_bits), expected.0.map(f32::to_bits));
+            assert_eq!(finals[i].map(f32::to_bits), last.map(f32::to_bits));
             assert_eq!(
                 (rewards[i], terminated[i], truncated[i]),
                 (expected.1, expected.2, expected.3)
@@ -153,6 +159,27 @@ fn a_thousand_play_ten_thousand_steps_as_one_alone() {
     }
 }
 
+/// The widths that are no whole number of a machine's vectors too.
+#[test]
+fn any_width_plays_as_one_alone() {
+    fn plays<const N: usize>() {
+        let (len, steps) = if cfg!(debug_assertions) {
+            (35, 600)
+        } else {
+            (1000, 10_000)
+        };
+        for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
+            Twins::<Fast, N>::new(len, autoreset).play(steps, true);
+        }
+    }
+    plays::<1>();
+    plays::<4>();
+    plays::<7>();
+    plays::<8>();
+    plays::<32>();
+    Twins::<Portable, 4>::new(9, Autoreset::NextStep).play(600, true);
+}
+
 #[test]
 fn any_size_plays_as_one_alone() {
     for len in [1, 2, 15, 16, 17, 31, 32, 33, 100] {
@@ -210,29 +237,33 @@ fn what_cannot_be_represented_is_as_for_one_alone() {
 /// As many threads as there are, and columns.
 #[test]
 fn threads_change_no_bit() {
-    let len = 5003_usize;
+    let len = 50_003_usize;
     let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
-    let mut one = Batch::<Fast, _>::new(3, len, blocks).unwrap();
+    let mut one = Batch::new(3, blocks, vec![Pcg64::UNSEEDED; len]).unwrap();
+    one.set_autoreset(Autoreset::SameStep);
+    one.set_limit(NonZeroU32::new(7).unwrap());
     let mut many = one.clone();
     let mut rng = Pcg64::new(1);
-    type Step = fn(&mut Batch<Fast, Blocks<Fast>>, &[Action], Output<'_>) -> Result<(), Error>;
-    let run = |batch: &mut Batch<Fast, Blocks<Fast>>, actions: &[Action], step: Step| {
+    type Fasts = Batch<Fast, Blocks<Fast, 16>, Vec<Pcg64>>;
+    type Step = fn(&mut Fasts, &[Action], Output<'_>) -> Result<(), Error>;
+    let run = |batch: &mut Fasts, actions: &[Action], step: Step| {
         let (mut rewards, mut terminated, mut truncated) =
             (vec![9.0; len], vec![true; len], vec![true; len]);
-        let mut columns = vec![vec![9.0; len]; 6];
-        let [a, b, c, d, e, f] = &mut columns[..] else {
-            unreachable!()
-        };
+        let mut columns = [(); 6].map(|()| vec![9.0; len]);
+        let mut finals = columns.clone();
         let output = Output {
             rewards: &mut rewards,
             terminated: &mut terminated,
             truncated: &mut truncated,
-            observations: Observations::Columns([a, b, c, d, e, f]),
+            observations: Observations::Columns(columns.each_mut().map(|column| &mut column[..])),
+            final_observations: Observations::Columns(
+                finals.each_mut().map(|column| &mut column[..]),
+            ),
         };
         step(batch, actions, output).unwrap();
-        (rewards, terminated, truncated, columns)
+        (rewards, terminated, truncated, columns, finals)
     };
-    for _ in 0..600 {
+    for _ in 0..60 {
         let actions: Vec<Action> = (0..len).map(|_| Action::sample(&mut rng)).collect();
         let alone = run(&mut one, &actions, |batch, actions, output| {
             batch.step(actions, output)
@@ -245,9 +276,16 @@ fn threads_change_no_bit() {
     assert!((0..len).all(|i| one.state(i) == many.state(i)));
 }
 
+type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
+
+/// A batch without a heap.
+fn small<const BLOCKS: usize, const LEN: usize>() -> Result<Small<BLOCKS, LEN>, Error> {
+    Batch::new(1, [Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN])
+}
+
 #[test]
 fn columns_are_the_rows() {
-    let mut batch = Batch::<Fast, _>::new(1, 20, [const { Block::EMPTY }; 2]).unwrap();
+    let mut batch = small::<2, 20>().unwrap();
     batch.set_limit(NonZeroU32::MIN);
     let mut rows = [[0.0; 6]; 20];
     batch.observe(Observations::Rows(&mut rows)).unwrap();
@@ -266,18 +304,18 @@ fn columns_are_the_rows() {
 
 #[test]
 fn bad_input_is_refused_before_anything_is_stepped() {
-    let refused = Batch::<Fast, _>::new(0, 0, [const { Block::EMPTY }; 1]).unwrap_err();
+    let refused = small::<1, 0>().unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "len is 0 acrobots; allowed is 1 or more"
+        "generators is 0 acrobots; allowed is 1 or more"
     );
-    let refused = Batch::<Fast, _>::new(0, 17, [const { Block::EMPTY }; 1]).unwrap_err();
+    let refused = small::<1, 17>().unwrap_err();
     assert_eq!(refused.to_string(), "blocks has 1 elements; allowed is 2");
 
-    let mut batch = Batch::<Fast, _>::new(0, 3, [const { Block::EMPTY }; 1]).unwrap();
+    let mut batch = small::<1, 3>().unwrap();
     let before = batch.state(1);
-    let mut step = |actions: &[u8], lengths: [usize; 4]| {
-        let [rewards, terminated, truncated, rows] = lengths;
+    let mut step = |actions: &[u8], lengths: [usize; 5]| {
+        let [rewards, terminated, truncated, rows, finals] = lengths;
         batch.step(
             actions,
             Output {
@@ -285,34 +323,40 @@ fn bad_input_is_refused_before_anything_is_stepped() {
                 terminated: &mut vec![false; terminated],
                 truncated: &mut vec![false; truncated],
                 observations: Observations::Rows(&mut vec![[0.0; 6]; rows]),
+                final_observations: Observations::Rows(&mut vec![[0.0; 6]; finals]),
             },
         )
     };
     for (actions, lengths, message) in [
-        (&[0, 1][..], [3; 4], "actions has 2 elements; allowed is 3"),
+        (&[0, 1][..], [3; 5], "actions has 2 elements; allowed is 3"),
         (
             &[0, 1, 2],
-            [2, 3, 3, 3],
+            [2, 3, 3, 3, 3],
             "rewards has 2 elements; allowed is 3",
         ),
         (
             &[0, 1, 2],
-            [3, 0, 3, 3],
+            [3, 0, 3, 3, 3],
             "terminated has 0 elements; allowed is 3",
         ),
         (
             &[0, 1, 2],
-            [3, 3, 4, 3],
+            [3, 3, 4, 3, 3],
             "truncated has 4 elements; allowed is 3",
         ),
         (
             &[0, 1, 2],
-            [3, 3, 3, 1],
+            [3, 3, 3, 1, 3],
             "observations has 1 elements; allowed is 3",
         ),
         (
+            &[0, 1, 2],
+            [3, 3, 3, 3, 4],
+            "final_observations has 4 elements; allowed is 3",
+        ),
+        (
             &[0, 3, 1],
-            [3; 4],
+            [3; 5],
             "action is 3; allowed is 0 (negative torque), 1 (none) or 2 (positive)",
         ),
     ] {

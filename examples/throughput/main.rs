@@ -3,8 +3,8 @@
 //! A batch plays a random policy with its actions drawn and its episodes reset in the loop. Its yardstick
 //! is a loop over eight lanes of AVX2 by hand that does neither, with FMA (`batch_…`) and without
 //! (`batch_…_nofma`). `scalar_fast`'s is the same equations for one acrobot in f32; that of
-//! `scalar_portable` and `scalar_host` is Gymnasium's order in f64 with the platform's sines. Each
-//! figure is the best of several runs, a run of ours and one of the yardstick in turn.
+//! `scalar_portable` and `scalar_host` is Gymnasium's order in f64 with the platform's sines. Both play
+//! the actions that ours plays. Each figure is the best of several runs, a run of ours and one of the yardstick in turn.
 //!
 //! ```text
 //! cargo run --release --example throughput
@@ -33,6 +33,7 @@ fn main() {
     threads(1 << 20);
 }
 
+const LANES: usize = Block::<f32>::LANES;
 const ROUNDS: usize = 7;
 
 /// The best rates of `ours` and `yardstick`, run in turn; each returns how many steps it took.
@@ -54,13 +55,13 @@ fn report(name: &str, (rate, yardstick): (f64, f64)) {
     println!("{name} {rate:.0} {:.2}", rate / yardstick);
 }
 
-fn scalar<A: Arithmetic>(name: &str, yardstick: fn(usize)) {
+fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
     const STEPS: usize = 200_000;
     let mut rng = Pcg64::new(0);
-    let actions: Vec<Action> = (0..4096).map(|_| Action::sample(&mut rng)).collect();
+    let actions: Vec<Action> = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
     let ours = || {
-        for &action in actions.iter().cycle().take(STEPS) {
+        for &action in &actions {
             if black_box(acrobot.step(action)).ended() {
                 acrobot.reset();
             }
@@ -68,7 +69,7 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(usize)) {
         STEPS
     };
     let bare = || {
-        yardstick(STEPS);
+        yardstick(&actions);
         STEPS
     };
     report(name, compare(ours, bare));
@@ -76,8 +77,9 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(usize)) {
 
 fn batch<A: Arithmetic>(arithmetic: &str, len: usize) {
     let steps = (2_000_000 / len).max(2);
-    let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
-    let mut batch = Batch::<A, _>::new(0, len, blocks).expect("a batch of its size");
+    let blocks = vec![Block::EMPTY; len.div_ceil(LANES)];
+    let generators = vec![Pcg64::UNSEEDED; len];
+    let mut batch = Batch::<A, _, _>::new(0, blocks, generators).expect("memory of its size");
     let mut streams: Vec<u32> = (0..len as u32)
         .map(|i| i.wrapping_mul(2_654_435_769))
         .collect();
@@ -100,6 +102,7 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize) {
                         true => Observations::Rows(&mut rows),
                         false => Observations::None,
                     },
+                    final_observations: Observations::None,
                 };
                 batch.step(&actions, output).expect("slices of its size");
             }
@@ -118,8 +121,9 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize) {
 
 /// One call on all cores, beside the same on one: the ratio is that of the two.
 fn threads(len: usize) {
-    let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
-    let mut one = Batch::<Fast, _>::new(0, len, blocks).expect("a batch of its size");
+    let blocks = vec![Block::EMPTY; len.div_ceil(LANES)];
+    let generators = vec![Pcg64::UNSEEDED; len];
+    let mut one = Batch::<Fast, _, _>::new(0, blocks, generators).expect("memory of its size");
     let mut many = one.clone();
     let actions: Vec<u8> = (0..len).map(|i| (i * 7 % 3) as u8).collect();
     let (mut rewards, mut terminated, mut truncated) =
@@ -132,6 +136,7 @@ fn threads(len: usize) {
             terminated: &mut terminated,
             truncated: &mut truncated,
             observations: Observations::None,
+            final_observations: Observations::None,
         };
         many.par_step(&actions, output).expect("slices of its size");
         len
@@ -142,6 +147,7 @@ fn threads(len: usize) {
             terminated: &mut terminated1,
             truncated: &mut truncated1,
             observations: Observations::None,
+            final_observations: Observations::None,
         };
         one.step(&actions, output).expect("slices of its size");
         len

@@ -1,4 +1,4 @@
-//! Sixteen acrobots side by side, and one step of them.
+//! Some acrobots side by side, and one step of them.
 
 use core::any::{Any, TypeId};
 use core::array::from_fn;
@@ -7,46 +7,46 @@ use super::{Autoreset, Observations, Output, Shared};
 use crate::acrobot::transition;
 use crate::arithmetic::{Arithmetic, Fast, Form, Numbers, Real, kernel};
 use crate::dynamics::{Driven, Model, sin_cos};
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::Lanes;
 use crate::params::Params;
 use crate::rk4::rk4_from;
 use crate::rng::{Pcg64, uniform};
-use crate::seed::SeedSequence;
 use crate::state::{StartBounds, State};
 
-/// The memory of sixteen acrobots: what a [`Batch`](crate::Batch) lives in.
+/// The memory of `N` acrobots that are stepped side by side: what a [`Batch`](crate::Batch) lives in.
+///
+/// Sixteen suit a machine with vectors. Fewer waste less where there are few acrobots: a `Block<f32, 1>`
+/// takes 64 bytes, one of sixteen 640.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub struct Block<S = f32> {
+pub struct Block<S = f32, const N: usize = 16> {
     /// θ1, θ2, θ̇1 and θ̇2.
-    state: [[S; LANES]; 4],
+    state: [[S; N]; 4],
     /// cos θ1, sin θ1, cos θ2 and sin θ2: the order of an observation.
-    cos_sin: [[S; LANES]; 4],
-    elapsed: [u32; LANES],
+    cos_sin: [[S; N]; 4],
+    elapsed: [u32; N],
     /// Whether the next step resets.
-    ended: [bool; LANES],
-    rng: [Pcg64; LANES],
+    ended: [bool; N],
 }
 
-impl<S: Real> Block<S> {
+impl<S: Real, const N: usize> Block<S, N> {
     /// How many acrobots a block holds.
-    pub const LANES: usize = LANES;
+    pub const LANES: usize = N;
 
     /// Memory in which no acrobot lives yet.
     pub const EMPTY: Self = Self {
-        state: [[S::ZERO; LANES]; 4],
-        cos_sin: [[S::ZERO; LANES]; 4],
-        elapsed: [0; LANES],
-        ended: [false; LANES],
-        rng: [const { Pcg64::UNSEEDED }; LANES],
+        state: [[S::ZERO; N]; 4],
+        cos_sin: [[S::ZERO; N]; 4],
+        elapsed: [0; N],
+        ended: [false; N],
     };
 }
 
 #[expect(
     clippy::indexing_slicing,
-    reason = "lanes count up to LANES, and a batch has checked its slices"
+    reason = "lanes count up to N, and a batch has checked its slices"
 )]
-impl<S: Real> Block<S> {
+impl<S: Real, const N: usize> Block<S, N> {
     #[inline(always)]
     pub(super) fn state(&self, lane: usize) -> State<S> {
         State::from(self.state.map(|numbers| numbers[lane]))
@@ -62,39 +62,42 @@ impl<S: Real> Block<S> {
         }
     }
 
-    pub(super) fn seed(&mut self, seeds: &mut impl Iterator<Item = SeedSequence>) {
-        for (rng, seed) in self.rng.iter_mut().zip(seeds) {
-            *rng = Pcg64::new(seed);
-        }
-    }
-
-    pub(super) fn reset_all<A: Arithmetic<Scalar = S>>(&mut self, bounds: StartBounds) {
-        for lane in 0..LANES {
-            self.reset::<A>(lane, bounds);
-        }
-    }
-
+    /// Resets some, each by its generator. A lane without one holds no acrobot, and hangs at rest.
     #[cold]
-    fn reset<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, bounds: StartBounds) {
-        // It is below LANES, which LLVM cannot see here.
-        let lane = lane % LANES;
-        let start = bounds.draw(&mut self.rng[lane]).cast();
-        self.place(lane, start, sin_cos::<A>(&start));
-        self.elapsed[lane] = 0;
-        self.ended[lane] = false;
+    pub(super) fn reset<A: Arithmetic<Scalar = S>>(
+        &mut self,
+        some: &[bool; N],
+        bounds: StartBounds,
+        generators: &mut [Pcg64],
+    ) {
+        for lane in (0..N).filter(|&lane| some[lane]) {
+            let start = match generators.get_mut(lane) {
+                Some(rng) => bounds.draw(rng).cast(),
+                None => State::default(),
+            };
+            self.place(lane, start, sin_cos::<A>(&start));
+            self.elapsed[lane] = 0;
+            self.ended[lane] = false;
+        }
+    }
+
+    /// Six times a number of each acrobot.
+    #[inline(always)]
+    fn seen(&self) -> [&[S; N]; 6] {
+        let [cos1, sin1, cos2, sin2] = &self.cos_sin;
+        let [_, _, dtheta1, dtheta2] = &self.state;
+        [cos1, sin1, cos2, sin2, dtheta1, dtheta2]
     }
 
     /// What is seen of the block of that number, written where it belongs.
     #[inline(always)]
     pub(super) fn observe(&self, number: usize, observations: &mut Observations<'_>) {
-        let [cos1, sin1, cos2, sin2] = &self.cos_sin;
-        let [_, _, dtheta1, dtheta2] = &self.state;
-        let seen = [cos1, sin1, cos2, sin2, dtheta1, dtheta2];
-        let start = number * LANES;
+        let seen = self.seen();
+        let start = number * N;
         match observations {
             Observations::None => {}
             Observations::Rows(rows) => {
-                let rows = rows.iter_mut().skip(start).take(LANES);
+                let rows = rows.iter_mut().skip(start).take(N);
                 for (lane, row) in rows.enumerate() {
                     *row = seen.map(|numbers| numbers[lane].to_f64() as f32);
                 }
@@ -109,37 +112,57 @@ impl<S: Real> Block<S> {
         }
     }
 
+    /// The same for some of its lanes.
+    #[cold]
+    fn observe_some(&self, number: usize, some: &[bool; N], observations: &mut Observations<'_>) {
+        for lane in (0..N).filter(|&lane| some[lane]) {
+            let row = self.seen().map(|numbers| numbers[lane].to_f64() as f32);
+            observations.write(number * N + lane, row);
+        }
+    }
+
     #[inline(always)]
     fn step<A: Arithmetic<Scalar = S>>(
         &mut self,
         shared: &Shared<S>,
-        actions: &[u8; LANES],
-    ) -> Stepped {
+        number: usize,
+        actions: &[u8; N],
+        generators: &mut [Pcg64],
+        final_observations: &mut Observations<'_>,
+    ) -> Stepped<N> {
         let params = &shared.model.params;
         let terminated = if params.torque_noise > S::ZERO {
-            let torques = self.noisy_torques(params, actions);
+            let torques = self.noisy_torques(params, actions, generators);
             self.advance::<A>(&shared.model, |lane| torques[lane])
         } else {
             let torques = params.torques;
             self.advance::<A>(&shared.model, |lane| S::pick(torques, actions[lane]))
         };
         let mut stepped = Stepped {
+            rewards: [-1.0; N],
             terminated,
-            ..Stepped::default()
+            truncated: [false; N],
         };
-        for lane in 0..LANES {
+        let mut ended = [false; N];
+        for lane in 0..N {
             self.elapsed[lane] = self.elapsed[lane].saturating_add(1);
             stepped.truncated[lane] = self.elapsed[lane] >= shared.limit.get();
-            stepped.rewards[lane] = if stepped.terminated[lane] { 0.0 } else { -1.0 };
-            stepped.ended[lane] = stepped.terminated[lane] | stepped.truncated[lane];
+            if terminated[lane] {
+                stepped.rewards[lane] = 0.0;
+            }
+            ended[lane] = terminated[lane] | stepped.truncated[lane];
         }
 
         let resets = match shared.autoreset {
-            Autoreset::NextStep => core::mem::replace(&mut self.ended, stepped.ended),
-            Autoreset::SameStep => stepped.ended,
+            Autoreset::NextStep => core::mem::replace(&mut self.ended, ended),
+            Autoreset::SameStep => ended,
         };
         if resets.iter().fold(false, |any, &reset| any | reset) {
-            self.reset_some::<A>(shared, &resets, &mut stepped);
+            match shared.autoreset {
+                Autoreset::NextStep => stepped.forget(&resets),
+                Autoreset::SameStep => self.observe_some(number, &resets, final_observations),
+            }
+            self.reset::<A>(&resets, shared.bounds, generators);
         }
         stepped
     }
@@ -150,7 +173,7 @@ impl<S: Real> Block<S> {
         &mut self,
         model: &Model<S>,
         torque: impl Fn(usize) -> S,
-    ) -> [bool; LANES] {
+    ) -> [bool; N] {
         if TypeId::of::<A>() == TypeId::of::<Fast>() {
             let all: (&mut dyn Any, &dyn Any) = (self, model);
             if let (Some(block), Some(model)) = (all.0.downcast_mut(), all.1.downcast_ref()) {
@@ -168,53 +191,51 @@ impl<S: Real> Block<S> {
         })
     }
 
-    #[cold]
-    fn reset_some<A: Arithmetic<Scalar = S>>(
-        &mut self,
-        shared: &Shared<S>,
-        resets: &[bool; LANES],
-        stepped: &mut Stepped,
-    ) {
-        for lane in (0..LANES).filter(|&lane| resets[lane]) {
-            self.reset::<A>(lane, shared.bounds);
-            if shared.autoreset == Autoreset::NextStep {
-                stepped.rewards[lane] = 0.0;
-                stepped.terminated[lane] = false;
-                stepped.truncated[lane] = false;
-            }
-        }
-    }
-
     /// With a draw of the noise for each that is not to be reset.
     #[cold]
-    fn noisy_torques(&mut self, params: &Params<S>, actions: &[u8; LANES]) -> [S; LANES] {
+    fn noisy_torques(
+        &self,
+        params: &Params<S>,
+        actions: &[u8; N],
+        generators: &mut [Pcg64],
+    ) -> [S; N] {
         let noise = params.torque_noise.to_f64();
         from_fn(|lane| {
             let torque = S::pick(params.torques, actions[lane]);
-            if self.ended[lane] {
-                return torque;
+            match generators.get_mut(lane) {
+                Some(rng) if !self.ended[lane] => torque + S::from_f64(uniform(rng, -noise, noise)),
+                _ => torque,
             }
-            torque + S::from_f64(uniform(&mut self.rng[lane], -noise, noise))
         })
     }
 }
 
 /// What a step of one block returns.
-#[derive(Default)]
-struct Stepped {
-    rewards: [f32; LANES],
-    terminated: [bool; LANES],
-    truncated: [bool; LANES],
-    ended: [bool; LANES],
+struct Stepped<const N: usize> {
+    rewards: [f32; N],
+    terminated: [bool; N],
+    truncated: [bool; N],
 }
 
-/// [`transition`] of sixteen at once, without a branch but for results that are not finite.
+impl<const N: usize> Stepped<N> {
+    /// What a step that only resets has none of.
+    #[cold]
+    fn forget(&mut self, resets: &[bool; N]) {
+        let each = self.rewards.iter_mut().zip(&mut self.terminated);
+        let each = each.zip(&mut self.truncated).zip(resets);
+        for (((reward, terminated), truncated), _) in each.filter(|(_, reset)| **reset) {
+            (*reward, *terminated, *truncated) = (0.0, false, false);
+        }
+    }
+}
+
+/// [`transition`] of all at once, without a branch but for results that are not finite.
 #[inline(always)]
-fn advance_lanes(
-    block: &mut Block<f32>,
+fn advance_lanes<const N: usize>(
+    block: &mut Block<f32, N>,
     model: &Model<f32>,
     torque: impl Fn(usize) -> f32,
-) -> [bool; LANES] {
+) -> [bool; N] {
     let torque = Lanes(from_fn(torque));
     let [theta1, theta2, dtheta1, dtheta2] = block.state;
     let y = [Lanes(theta1), Lanes(theta2), Lanes(dtheta1), Lanes(dtheta2)];
@@ -245,7 +266,7 @@ fn advance_lanes(
 
     let cos_sum = cos1 * cos2 - sin1 * sin2;
     let height = -cos1 - cos_sum;
-    let mut terminated = [false; LANES];
+    let mut terminated = [false; N];
     for (terminated, height) in terminated.iter_mut().zip(height.0) {
         *terminated = height > 1.0;
     }
@@ -254,8 +275,12 @@ fn advance_lanes(
 
 /// Lanes that are not finite keep their angles and stop.
 #[cold]
-#[expect(clippy::indexing_slicing, reason = "from_fn counts up to LANES")]
-fn at_rest(next: [Lanes; 4], zeros: Lanes, [theta1, theta2, ..]: [Lanes; 4]) -> [Lanes; 4] {
+#[expect(clippy::indexing_slicing, reason = "from_fn counts up to N")]
+fn at_rest<const N: usize>(
+    next: [Lanes<N>; 4],
+    zeros: Lanes<N>,
+    [theta1, theta2, ..]: [Lanes<N>; 4],
+) -> [Lanes<N>; 4] {
     let zero = Lanes::splat(0.0);
     let kept = [theta1, theta2, zero, zero];
     from_fn(|number| {
@@ -267,27 +292,30 @@ fn at_rest(next: [Lanes; 4], zeros: Lanes, [theta1, theta2, ..]: [Lanes; 4]) -> 
 }
 
 #[inline(always)]
-pub(super) fn step_blocks<A: Arithmetic>(
+pub(super) fn step_blocks<A: Arithmetic, const N: usize>(
     shared: &Shared<A::Scalar>,
-    blocks: &mut [Block<A::Scalar>],
+    blocks: &mut [Block<A::Scalar, N>],
+    generators: &mut [Pcg64],
     actions: &[impl Copy + Into<u8>],
     mut output: Output<'_>,
 ) {
     let each = actions
-        .chunks(LANES)
-        .zip(output.rewards.chunks_mut(LANES))
-        .zip(output.terminated.chunks_mut(LANES))
-        .zip(output.truncated.chunks_mut(LANES));
-    for ((number, block), (((actions, rewards), terminated), truncated)) in
+        .chunks(N)
+        .zip(generators.chunks_mut(N))
+        .zip(output.rewards.chunks_mut(N))
+        .zip(output.terminated.chunks_mut(N))
+        .zip(output.truncated.chunks_mut(N));
+    for ((number, block), ((((actions, generators), rewards), terminated), truncated)) in
         blocks.iter_mut().enumerate().zip(each)
     {
         // What is left of the last block does nothing that is seen.
-        let mut given = [1; LANES];
-        match actions.first_chunk::<LANES>() {
+        let mut given = [1; N];
+        match actions.first_chunk::<N>() {
             Some(all) => read(&mut given, all),
             None => read(&mut given, actions),
         }
-        let stepped = block.step::<A>(shared, &given);
+        let finals = &mut output.final_observations;
+        let stepped = block.step::<A>(shared, number, &given, generators, finals);
         write(rewards, &stepped.rewards);
         write(terminated, &stepped.terminated);
         write(truncated, &stepped.truncated);
@@ -297,7 +325,7 @@ pub(super) fn step_blocks<A: Arithmetic>(
 
 /// As many as there are.
 #[inline(always)]
-fn read(to: &mut [u8; LANES], from: &[impl Copy + Into<u8>]) {
+fn read<const N: usize>(to: &mut [u8; N], from: &[impl Copy + Into<u8>]) {
     for (to, &from) in to.iter_mut().zip(from) {
         *to = from.into();
     }
@@ -305,7 +333,7 @@ fn read(to: &mut [u8; LANES], from: &[impl Copy + Into<u8>]) {
 
 /// As many as there is room for.
 #[inline(always)]
-fn write<T: Copy>(to: &mut [T], from: &[T; LANES]) {
+fn write<T: Copy, const N: usize>(to: &mut [T], from: &[T; N]) {
     match to.first_chunk_mut() {
         Some(to) => *to = *from,
         None => to.iter_mut().zip(from).for_each(|(to, &from)| *to = from),

@@ -5,7 +5,8 @@ use super::Shared;
 use super::block::{Block, step_blocks};
 use crate::arithmetic::Arithmetic;
 #[cfg(feature = "rayon")]
-use crate::lanes::LANES;
+use crate::arithmetic::Form;
+use crate::rng::Pcg64;
 
 /// The vectors that a [`Batch`](crate::Batch) of [`Fast`](crate::Fast) is stepped with. They change
 /// no bit.
@@ -58,10 +59,11 @@ impl Vectors {
         unsafe_code,
         reason = "the one point where the features of the machine are known and not those of the build"
     )]
-    pub(super) fn step<A: Arithmetic>(
+    pub(super) fn step<A: Arithmetic, const N: usize>(
         self,
         shared: &Shared<A::Scalar>,
-        blocks: &mut [Block<A::Scalar>],
+        blocks: &mut [Block<A::Scalar, N>],
+        generators: &mut [Pcg64],
         actions: &[impl Copy + Into<u8>],
         output: Output<'_>,
     ) {
@@ -70,13 +72,14 @@ impl Vectors {
             macro_rules! compiled_for {
                 ($name:ident, $features:literal) => {
                     #[target_feature(enable = $features)]
-                    fn $name<A: Arithmetic>(
+                    fn $name<A: Arithmetic, const N: usize>(
                         shared: &Shared<A::Scalar>,
-                        blocks: &mut [Block<A::Scalar>],
+                        blocks: &mut [Block<A::Scalar, N>],
+                        generators: &mut [Pcg64],
                         actions: &[impl Copy + Into<u8>],
                         output: Output<'_>,
                     ) {
-                        step_blocks::<A>(shared, blocks, actions, output);
+                        step_blocks::<A, N>(shared, blocks, generators, actions, output);
                     }
                 };
             }
@@ -86,39 +89,44 @@ impl Vectors {
             unsafe {
                 match self {
                     Self::Avx2 if self.is_available() => {
-                        return with_avx2::<A>(shared, blocks, actions, output);
+                        return with_avx2::<A, N>(shared, blocks, generators, actions, output);
                     }
                     Self::Avx512 if self.is_available() => {
-                        return with_avx512::<A>(shared, blocks, actions, output);
+                        return with_avx512::<A, N>(shared, blocks, generators, actions, output);
                     }
                     _ => {}
                 }
             }
         }
-        step_blocks::<A>(shared, blocks, actions, output);
+        step_blocks::<A, N>(shared, blocks, generators, actions, output);
     }
 
     /// The same on all cores: halves in parallel, down to what is worth a task.
     #[cfg(feature = "rayon")]
-    pub(super) fn par_step<A: Arithmetic>(
+    pub(super) fn par_step<A: Arithmetic, const N: usize>(
         self,
         shared: &Shared<A::Scalar>,
-        blocks: &mut [Block<A::Scalar>],
+        blocks: &mut [Block<A::Scalar, N>],
+        generators: &mut [Pcg64],
         actions: &[impl Copy + Into<u8> + Sync],
         output: Output<'_>,
     ) {
-        /// Some ten microseconds of work.
-        const BLOCKS_OF_A_TASK: usize = 64;
-        if blocks.len() <= BLOCKS_OF_A_TASK {
-            return self.step::<A>(shared, blocks, actions, output);
+        // Some hundred microseconds of work: waking a thread takes ten.
+        let acrobots_of_a_task = match A::FORM {
+            Form::Gymnasium => 1024,
+            Form::Lean => 16_384,
+        };
+        if blocks.len() * N <= acrobots_of_a_task {
+            return self.step::<A, N>(shared, blocks, generators, actions, output);
         }
         let middle = blocks.len() / 2;
         let (blocks1, blocks2) = blocks.split_at_mut(middle);
-        let (actions1, actions2) = actions.split_at(middle * LANES);
-        let (output1, output2) = output.split_at(middle * LANES);
+        let (generators1, generators2) = generators.split_at_mut(middle * N);
+        let (actions1, actions2) = actions.split_at(middle * N);
+        let (output1, output2) = output.split_at(middle * N);
         rayon::join(
-            || self.par_step::<A>(shared, blocks1, actions1, output1),
-            || self.par_step::<A>(shared, blocks2, actions2, output2),
+            || self.par_step::<A, N>(shared, blocks1, generators1, actions1, output1),
+            || self.par_step::<A, N>(shared, blocks2, generators2, actions2, output2),
         );
     }
 }

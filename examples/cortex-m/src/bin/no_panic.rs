@@ -11,7 +11,7 @@ use core::panic::PanicInfo;
 
 use acrobot::{
     Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Fast, Figure, Micro, Observations,
-    Output, Params, Portable, Real, SeedSequence, StartBounds, State, Theme, TimeLimit, Trajectory,
+    Output, Params, Pcg64, Portable, Real, SeedSequence, StartBounds, State, Theme, TimeLimit, Trajectory,
 };
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
@@ -86,13 +86,14 @@ fn everything<A: Arithmetic>() {
 
 /// A batch whose last block is not full.
 fn batch<A: Arithmetic>() {
-    let blocks = [const { Block::EMPTY }; 2];
-    let Ok(mut batch) = Batch::<A, _>::new(black_box(42), black_box(20), blocks) else {
+    let blocks = [Block::EMPTY; 2];
+    let generators = [Pcg64::UNSEEDED; 20];
+    let Ok(mut batch) = Batch::<A, _, _>::new(black_box(42), blocks, generators) else {
         return;
     };
     batch.set_autoreset(Autoreset::SameStep);
     let actions = black_box([1_u8; 20]);
-    let mut rows = [[0.0; 6]; 20];
+    let (mut rows, mut finals) = ([[0.0; 6]; 20], [[0.0; 6]; 20]);
     let mut column = [0.0; 20];
     for _ in 0..black_box(10) {
         let output = Output {
@@ -100,9 +101,10 @@ fn batch<A: Arithmetic>() {
             terminated: &mut [false; 20],
             truncated: &mut [false; 20],
             observations: Observations::Rows(&mut rows),
+            final_observations: Observations::Rows(&mut finals),
         };
         let _ = black_box(batch.step(&actions, output));
-        black_box((&rows, &column, batch.state(black_box(3))));
+        black_box((&rows, &finals, &column, batch.state(black_box(3))));
     }
 }
 
