@@ -1,0 +1,227 @@
+//! Plays one Rust peer by a random policy for some seconds of processor time, and prints
+//! `name version steps seconds`; or prints how many times longer one peer takes than another.
+//!
+//! ```text
+//! cargo run --release -- gmgn 1
+//! cargo run --release -- rlevo/fast 1
+//! ```
+
+#![forbid(unsafe_code)]
+
+use std::env;
+use std::hint::black_box;
+use std::process::ExitCode;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Observations, Output, Portable,
+    TimeLimit,
+};
+use cpu_time::ProcessTime;
+use gmgn::env::Env as _;
+use gmgn::envs::classic_control::AcrobotEnv;
+use rlevo_core::action::DiscreteAction as _;
+use rlevo_core::environment::Environment as _;
+use rlevo_environments::classic::acrobot::{Acrobot as RlevoAcrobot, AcrobotAction};
+
+/// Plays that many steps and returns how many episodes they ended.
+type Peer = Box<dyn FnMut(usize) -> usize>;
+
+type New = fn() -> Peer;
+
+/// The name to ask for it by, the package that it measures, and how to make it.
+const PEERS: [(&str, &str, New); 7] = [
+    ("host", "acrobot", ours::<Host>),
+    ("portable", "acrobot", ours::<Portable>),
+    ("fast", "acrobot", ours::<Fast>),
+    ("batch", "acrobot", || batch(|_| Observations::None)),
+    ("observations", "acrobot", || {
+        batch(|rows| Observations::Rows(rows))
+    }),
+    ("gmgn", "gmgn", gmgn),
+    ("rlevo", "rlevo-environments", rlevo),
+];
+
+/// As many as a batch has.
+const ACROBOTS: usize = 1024;
+/// Steps between looks at the clock: some milliseconds, and whole steps of a batch.
+const STEPS: usize = 16 * ACROBOTS;
+const LIMIT: u16 = 500;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    match report(&arguments) {
+        Some(line) => {
+            println!("{line}");
+            ExitCode::SUCCESS
+        }
+        None => {
+            let names = PEERS.map(|(name, ..)| name).join(", ");
+            eprintln!("usage: acrobot-compare NAME[/NAME] SECONDS, where a name is one of {names}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn report(arguments: &[String]) -> Option<String> {
+    let [names, seconds] = arguments else {
+        return None;
+    };
+    let seconds = seconds.parse().ok()?;
+    if let Some((slow, quick)) = names.split_once('/') {
+        let [(slow, _), (quick, _)] = [find(slow)?, find(quick)?];
+        let [slow, quick] = time([slow, quick], seconds).1;
+        return Some(format!("{names} {:.2}", slow / quick));
+    }
+    let (peer, version) = find(names)?;
+    let (steps, [seconds]) = time([peer], seconds);
+    Some(format!("{names} {version} {steps} {seconds}"))
+}
+
+/// The peer of that name and its version.
+fn find(name: &str) -> Option<(Peer, &'static str)> {
+    let (_, package, new) = PEERS.iter().find(|peer| peer.0 == name)?;
+    let lock = include_str!("../Cargo.lock");
+    let (_, rest) = lock.split_once(&format!("name = \"{package}\"\nversion = \""))?;
+    Some((new(), rest.split_once('"')?.0))
+}
+
+/// Plays in turns until one has had its seconds; how many steps each has played, and how long it took.
+fn time<const N: usize>(mut peers: [Peer; N], seconds: f64) -> (usize, [f64; N]) {
+    for play in &mut peers {
+        play(STEPS); // warms up
+    }
+    let (mut steps, mut times) = (0, [0.0; N]);
+    while times.iter().all(|&time| time < seconds) {
+        for (play, time) in peers.iter_mut().zip(&mut times) {
+            let start = ProcessTime::now();
+            play(STEPS);
+            *time += start.elapsed().as_secs_f64();
+        }
+        steps += STEPS;
+    }
+    (steps, times)
+}
+
+/// The policy: so cheap that it is the environments that are measured, and vectors can draw too.
+fn draw(stream: &mut u32) -> u8 {
+    *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    (((*stream >> 16) * 3) >> 16) as u8
+}
+
+/// One environment, from a step that resets at ends and says whether this was one.
+fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Peer {
+    let mut stream = 0;
+    Box::new(move |steps| (0..steps).filter(|_| step(draw(&mut stream))).count())
+}
+
+fn ours<A: Arithmetic + 'static>() -> Peer {
+    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
+    alone(move |action| {
+        let ended = black_box(acrobot.step(Action::ALL[usize::from(action)])).ended();
+        if ended {
+            acrobot.reset();
+        }
+        ended
+    })
+}
+
+fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Peer {
+    const N: usize = ACROBOTS;
+    let blocks = vec![Block::EMPTY; N.div_ceil(Block::<f32>::LANES)];
+    let mut batch = Batch::<Fast, _>::new(0, N, blocks).expect("a batch of its size");
+    let mut streams: Vec<u32> = (0..N as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect();
+    let (mut actions, mut rewards, mut rows) = (vec![0; N], vec![0.0; N], vec![[0.0; 6]; N]);
+    let (mut terminated, mut truncated) = (vec![false; N], vec![false; N]);
+    Box::new(move |steps| {
+        let mut ends = 0;
+        for _ in 0..steps / N {
+            for (action, stream) in actions.iter_mut().zip(&mut streams) {
+                *action = draw(stream);
+            }
+            let output = Output {
+                rewards: &mut rewards,
+                terminated: &mut terminated,
+                truncated: &mut truncated,
+                observations: observe(&mut rows),
+            };
+            batch.step(&actions, output).expect("slices of its size");
+            let ended = terminated.iter().zip(&truncated).map(|(a, b)| a | b);
+            ends += usize::from(ended.map(u16::from).sum::<u16>());
+        }
+        ends
+    })
+}
+
+fn gmgn() -> Peer {
+    let acrobot = AcrobotEnv::new(Default::default()).expect("its default");
+    let mut acrobot = gmgn::wrappers::TimeLimit::new(acrobot, LIMIT.into());
+    acrobot.reset(Some(0)).expect("a start");
+    alone(move |action| {
+        let step = black_box(acrobot.step(&action.into())).expect("an action");
+        let ended = step.terminated || step.truncated;
+        if ended {
+            acrobot.reset(None).expect("a start");
+        }
+        ended
+    })
+}
+
+fn rlevo() -> Peer {
+    let acrobot = <RlevoAcrobot>::default();
+    let mut acrobot = rlevo_environments::wrappers::TimeLimit::new(acrobot, LIMIT.into());
+    acrobot.reset().expect("a start");
+    alone(move |action| {
+        let action = AcrobotAction::from_index(action.into());
+        let step = black_box(acrobot.step(action)).expect("an episode that goes on");
+        let ended = step.status.is_done();
+        if ended {
+            acrobot.reset().expect("a start");
+        }
+        ended
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_peer_steps_and_tells_its_version() {
+        for (name, package, _) in PEERS {
+            let line = report(&[name.into(), "0.01".into()]).unwrap();
+            let [told, version, steps, seconds] = line.split(' ').collect::<Vec<_>>()[..] else {
+                panic!("{line}");
+            };
+            assert_eq!(told, name);
+            let locked = format!("[[package]]\nname = \"{package}\"\nversion = \"{version}\"\n");
+            assert!(include_str!("../Cargo.lock").contains(&locked), "{line}");
+            assert!(steps.parse::<usize>().unwrap() >= STEPS, "{line}");
+            assert!(seconds.parse::<f64>().unwrap() >= 0.01, "{line}");
+        }
+    }
+
+    /// Few random episodes reach the goal before the limit; none goes on beyond it.
+    #[test]
+    fn every_peer_plays_episodes_of_almost_500_steps() {
+        for (name, _, new) in PEERS {
+            let steps = 1200 * ACROBOTS; // a batch's are all at their third then
+            let ends = new()(steps);
+            assert!((steps / 600..steps / 450).contains(&ends), "{name} {ends}");
+        }
+    }
+
+    #[test]
+    fn compares_two_in_turns() {
+        let line = report(&["gmgn/gmgn".into(), "0.1".into()]).unwrap();
+        let ratio: f64 = line.strip_prefix("gmgn/gmgn ").unwrap().parse().unwrap();
+        assert!((0.5..2.0).contains(&ratio), "{line}");
+    }
+
+    #[test]
+    fn refuses_what_it_does_not_know() {
+        for arguments in ["", "fast", "slow 1", "fast/slow 1", "fast soon", "fast 1 1"] {
+            let arguments: Vec<String> = arguments.split(' ').map(str::to_owned).collect();
+            assert_eq!(report(&arguments), None);
+        }
+    }
+}
