@@ -13,7 +13,7 @@ use std::hint::black_box;
 use std::process::ExitCode;
 
 use acrobot::{
-    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Observations, Output, Portable,
+    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Observations, Output, Pcg64, Portable,
     TimeLimit,
 };
 use cpu_time::ProcessTime;
@@ -128,7 +128,8 @@ fn ours<A: Arithmetic + 'static>() -> Peer {
 fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Peer {
     const N: usize = ACROBOTS;
     let blocks = vec![Block::EMPTY; N.div_ceil(Block::<f32>::LANES)];
-    let mut batch = Batch::<Fast, _>::new(0, N, blocks).expect("a batch of its size");
+    let generators = vec![Pcg64::UNSEEDED; N];
+    let mut batch = Batch::<Fast, _, _>::new(0, blocks, generators).expect("memory of its size");
     let mut streams: Vec<u32> = (0..N as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect();
     let (mut actions, mut rewards, mut rows) = (vec![0; N], vec![0.0; N], vec![[0.0; 6]; N]);
     let (mut terminated, mut truncated) = (vec![false; N], vec![false; N]);
@@ -143,6 +144,7 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Peer {
                 terminated: &mut terminated,
                 truncated: &mut truncated,
                 observations: observe(&mut rows),
+                final_observations: Observations::None,
             };
             batch.step(&actions, output).expect("slices of its size");
             let ended = terminated.iter().zip(&truncated).map(|(a, b)| a | b);

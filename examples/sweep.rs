@@ -1,0 +1,379 @@
+//! A million episodes of the bang-bang policy, torque against θ̇1, over a grid of link masses and
+//! torques: each cell's steps to the goal as CSV, and their means as a heat map.
+//!
+//! ```text
+//! cargo run --release --example sweep -- --episodes 1000000 --seed 0 --csv sweep.csv --picture sweep.svg
+//! ```
+//!
+//! The mass is that of each of the two links; lengths and moments of inertia stay Gymnasium's. Every
+//! cell plays the same starts: its acrobot `i` is the `i`-th child of the seed, for one episode. The
+//! CSV is the same on every machine, whatever the number of threads.
+//!
+//! An episode that is not at the goal after 500 steps counts as an episode, and in no mean. Means are
+//! so of those alone that reach it, and too low where `share`, of how many they are, is below 1.
+//!
+//! What one sees: from 0.5 kg on, the steps go about with mass^0.7 and with 1/torque. The energy to be
+//! gained goes with the mass, what a swing gains goes with the torque, and heavier links swing faster,
+//! since their moments of inertia stay. Links of 0.1 kg are up within ten steps of 2 N m.
+//!
+//! Heavy links that fail lack the energy after 500 steps. Light ones have too much: link 1 whirls round
+//! its joint with link 2 hanging from it, which the policy feeds, and the tip is never above the goal.
+
+use std::error::Error;
+use std::fmt::{Display, Write as _};
+use std::fs;
+use std::io::{self, Write as _};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use acrobot::{Action, Batch, Block, Fast, Observations, Output, Params, Pcg64, SeedSequence};
+use clap::Parser;
+use indicatif::ProgressBar;
+use plotters::prelude::*;
+use rayon::prelude::*;
+
+/// Sweeps link masses and torques, and writes the steps to the goal as CSV and as a picture.
+#[derive(Parser)]
+#[command(allow_negative_numbers = true)]
+struct Options {
+    /// Episodes in all: as many in every cell of the grid.
+    #[arg(long, default_value_t = 1_000_000)]
+    episodes: usize,
+    /// Seed of which the starts' seeds are spawned: a decimal integer of any size.
+    #[arg(long, default_value = "0")]
+    seed: SeedSequence,
+    /// Masses of each link, kg.
+    #[arg(long, value_name = "KG", value_delimiter = ',', default_value = GRID)]
+    #[arg(value_parser = |text: &str| positive(text, "kg"))]
+    masses: Vec<f32>,
+    /// Torques of the motor, N m.
+    #[arg(long, value_name = "N_M", value_delimiter = ',', default_value = GRID)]
+    #[arg(value_parser = |text: &str| positive(text, "N m"))]
+    torques: Vec<f32>,
+    /// Where the numbers go.
+    #[arg(long, value_name = "FILE", default_value = "sweep.csv")]
+    #[arg(value_parser = |path: &str| file(path, "csv"))]
+    csv: PathBuf,
+    /// Where the heat map goes.
+    #[arg(long, value_name = "FILE", default_value = "sweep.svg")]
+    #[arg(value_parser = |path: &str| file(path, "svg"))]
+    picture: PathBuf,
+}
+
+/// Twenty by twenty, with Gymnasium's 1 kg and 1 N m among them.
+const GRID: &str = "0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1,1.1,1.2,1.3,1.4,1.5,1.6,1.7,1.8,1.9,2";
+
+fn positive(text: &str, unit: &str) -> Result<f32, String> {
+    match text.trim().parse() {
+        Ok(value) if value > 0.0 && f32::is_finite(value) => Ok(value),
+        _ => Err(format!(
+            "allowed is a number of {unit} above 0 that f32 holds"
+        )),
+    }
+}
+
+/// Refused now, and not after all the episodes.
+fn file(path: &str, extension: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(path);
+    let is_named = path.extension().is_some_and(|found| found == extension);
+    if is_named && path.with_file_name(".").is_dir() {
+        return Ok(path);
+    }
+    Err(format!(
+        "allowed is a name that ends in .{extension}, in a folder that is there"
+    ))
+}
+
+/// What became of the episodes of one mass and one torque.
+struct Cell {
+    params: Params<f32>,
+    episodes: usize,
+    /// Episodes that reached the goal, and their steps in all.
+    reached: usize,
+    steps: usize,
+}
+
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let grid = grid(options);
+    let episodes = episodes_of_a_cell(options.episodes, grid.len())?;
+    let blocks = vec![Block::EMPTY; episodes.div_ceil(Block::<f32>::LANES)];
+    let generators = vec![Pcg64::UNSEEDED; episodes];
+    let starts = Batch::new(options.seed.clone(), blocks, generators)?;
+
+    let began = Instant::now();
+    let progress = ProgressBar::new(options.episodes as u64);
+    let cells = grid.into_par_iter().map(|params| {
+        let cell = play(starts.clone(), params);
+        progress.inc(episodes as u64);
+        cell
+    });
+    let cells = cells.collect::<Result<Vec<Cell>, _>>()?;
+    progress.finish_and_clear();
+    let seconds = began.elapsed().as_secs_f64();
+
+    let (csv, picture) = (&options.csv, &options.picture);
+    fs::write(csv, table(&cells)).map_err(|error| cannot_write(csv, error))?;
+    draw(options, &cells, episodes).map_err(|error| cannot_write(picture, error))?;
+    let reached: usize = cells.iter().map(|cell| cell.reached).sum();
+    writeln!(
+        io::stdout(),
+        "{}, {}: {} episodes in {seconds:.1} s, of which {reached} reached the goal",
+        csv.display(),
+        picture.display(),
+        options.episodes
+    )?;
+    Ok(())
+}
+
+fn cannot_write(path: &Path, error: impl Display) -> String {
+    format!("cannot write {}: {error}", path.display())
+}
+
+/// Column by column: a mass with all torques, and then the next mass.
+fn grid(options: &Options) -> Vec<Params<f32>> {
+    let of_mass = |&mass: &f32| {
+        options.torques.iter().map(move |&torque| Params {
+            mass1: mass,
+            mass2: mass,
+            torques: [-torque, 0.0, torque],
+            ..Params::default()
+        })
+    };
+    options.masses.iter().flat_map(of_mass).collect()
+}
+
+fn episodes_of_a_cell(episodes: usize, cells: usize) -> Result<usize, String> {
+    /// Their batch takes some 100 MB.
+    const MOST: usize = 1_000_000;
+    let of_a_cell = episodes / cells;
+    if (1..=MOST).contains(&of_a_cell) && episodes.is_multiple_of(cells) {
+        return Ok(of_a_cell);
+    }
+    Err(format!(
+        "--episodes is {episodes} episodes; allowed is a multiple of {cells}, the cells of the grid, up to {}",
+        cells.saturating_mul(MOST)
+    ))
+}
+
+/// Steps of an episode before it is truncated, as in Gymnasium: 100 s.
+const LIMIT: usize = 500;
+
+/// One episode of each acrobot. Who has reached the goal steps on unseen until all have: a count of
+/// the episodes that end first would be one of the short ones.
+fn play(
+    mut batch: Batch<Fast, Vec<Block>, Vec<Pcg64>>,
+    params: Params<f32>,
+) -> Result<Cell, acrobot::Error> {
+    batch.set_params(params)?;
+    let len = batch.len();
+    let (mut rewards, mut terminated, mut truncated) =
+        (vec![0.0; len], vec![false; len], vec![false; len]);
+    let mut observations = vec![[0.0; 6]; len];
+    let mut actions = vec![Action::Zero; len];
+    let mut running = vec![true; len];
+
+    batch.observe(Observations::Rows(&mut observations))?;
+    let mut cell = Cell {
+        params,
+        episodes: batch.len(),
+        reached: 0,
+        steps: 0,
+    };
+    for step in 1..=LIMIT {
+        for (action, &[.., dtheta1, _]) in actions.iter_mut().zip(&observations) {
+            *action = if dtheta1 > 0.0 {
+                Action::Negative
+            } else {
+                Action::Positive
+            };
+        }
+        batch.step(
+            &actions,
+            Output {
+                rewards: &mut rewards,
+                terminated: &mut terminated,
+                truncated: &mut truncated,
+                observations: Observations::Rows(&mut observations),
+                final_observations: Observations::None,
+            },
+        )?;
+        for (running, &terminated) in running.iter_mut().zip(&terminated) {
+            if *running && terminated {
+                *running = false;
+                cell.reached += 1;
+                cell.steps += step;
+            }
+        }
+        if cell.reached == len {
+            break;
+        }
+    }
+    Ok(cell)
+}
+
+impl Cell {
+    fn share(&self) -> f64 {
+        self.reached as f64 / self.episodes as f64
+    }
+
+    /// Mean steps of the episodes that reached the goal, if any did.
+    fn mean(&self) -> Option<f64> {
+        (self.reached > 0).then(|| self.steps as f64 / self.reached as f64)
+    }
+
+    /// Grey where the mean would be that of few.
+    fn color(&self) -> RGBColor {
+        match self.mean() {
+            Some(mean) if self.share() >= 0.5 => color(mean.log2()),
+            _ => RGBColor(190, 190, 190),
+        }
+    }
+}
+
+/// As CSV; the mean is empty where no episode reached the goal.
+fn table(cells: &[Cell]) -> String {
+    let mut text =
+        "mass_kg,torque_n_m,episodes,reached,share,steps_of_reached,mean_steps_of_reached\n"
+            .to_owned();
+    for cell in cells {
+        let mean = cell
+            .mean()
+            .map_or(String::new(), |mean| format!("{mean:.3}"));
+        writeln!(
+            text,
+            "{},{},{},{},{:.4},{},{mean}",
+            cell.params.mass1,
+            cell.params.torque(Action::Positive),
+            cell.episodes,
+            cell.reached,
+            cell.share(),
+            cell.steps,
+        )
+        .expect("a String takes all");
+    }
+    text
+}
+
+/// The doublings of 1 step that the colour map spans: from 8 steps, as which fewer are shown, to 512.
+const DOUBLINGS: Range<f64> = 3.0..9.0;
+
+fn color(doublings: f64) -> RGBColor {
+    viridis((doublings - DOUBLINGS.start) / (DOUBLINGS.end - DOUBLINGS.start))
+}
+
+/// The heat map and its colour bar.
+fn draw(options: &Options, cells: &[Cell], episodes: usize) -> Result<(), Box<dyn Error>> {
+    const LABEL: (&str, i32) = ("sans-serif", 15);
+    const NAME: (&str, i32) = ("sans-serif", 18);
+
+    let root = SVGBackend::new(&options.picture, (780, 720)).into_drawing_area();
+    root.fill(&WHITE)?;
+    let caption = format!(
+        "{episodes} episodes a cell; means of those that reach it within {LIMIT} steps; grey: fewer than half do"
+    );
+    let body = root
+        .titled(
+            "Steps to the goal, torque against the first link's velocity",
+            ("sans-serif", 24),
+        )?
+        .titled(&caption, NAME)?;
+    let (map, bar) = body.split_horizontally(660);
+
+    let (masses, torques) = (&options.masses, &options.torques);
+    let mut chart = ChartBuilder::on(&map)
+        .margin(10)
+        .x_label_area_size(44)
+        .y_label_area_size(52)
+        .build_cartesian_2d(around(masses), around(torques))?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .label_style(LABEL)
+        .axis_desc_style(NAME)
+        .x_desc("mass of each link (kg)")
+        .y_desc("torque (N m)")
+        .x_labels(masses.len())
+        .y_labels(torques.len())
+        .x_label_formatter(&|&x| name(masses, x))
+        .y_label_formatter(&|&y| name(torques, y))
+        .draw()?;
+    chart.draw_series(cells.iter().enumerate().map(|(i, cell)| {
+        let (x, y) = ((i / torques.len()) as f64, (i % torques.len()) as f64);
+        Rectangle::new(
+            [(x - 0.5, y - 0.5), (x + 0.5, y + 0.5)],
+            cell.color().filled(),
+        )
+    }))?;
+
+    let mut chart = ChartBuilder::on(&bar)
+        .margin(10)
+        .margin_bottom(54)
+        .y_label_area_size(60)
+        .build_cartesian_2d(0.0..1.0, DOUBLINGS)?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .disable_x_axis()
+        .set_all_tick_mark_size(5)
+        .label_style(LABEL)
+        .axis_desc_style(NAME)
+        .y_desc("mean steps, of 0.2 s each")
+        .y_labels(7)
+        .y_label_formatter(&|doublings| doublings.exp2().to_string())
+        .draw()?;
+    chart.draw_series((0..SHADES).map(|shade| {
+        let [from, middle, to] = [0.0, 0.5, 1.0].map(|part| {
+            let share = (f64::from(shade) + part) / f64::from(SHADES);
+            DOUBLINGS.start + share * (DOUBLINGS.end - DOUBLINGS.start)
+        });
+        Rectangle::new([(0.0, from), (1.0, to)], color(middle).filled())
+    }))?;
+    root.present()?;
+    Ok(())
+}
+
+/// Of the colour bar.
+const SHADES: u32 = 60;
+
+/// The colour map of that name, even to the eye and to the colour-blind, from 0 to 1.
+fn viridis(share: f64) -> RGBColor {
+    const FIVE: [[f64; 3]; 5] = [
+        [68.0, 1.0, 84.0],
+        [59.0, 82.0, 139.0],
+        [33.0, 145.0, 140.0],
+        [94.0, 201.0, 98.0],
+        [253.0, 231.0, 37.0],
+    ];
+    let position = share.clamp(0.0, 1.0) * 4.0;
+    let below = (position as usize).min(3);
+    let weight = position - below as f64;
+    let [red, green, blue] = std::array::from_fn(|i| {
+        let (from, to) = (FIVE[below][i], FIVE[below + 1][i]);
+        (from + weight * (to - from)).round() as u8
+    });
+    RGBColor(red, green, blue)
+}
+
+/// An axis with a unit for each value, which stands in its middle.
+fn around(values: &[f32]) -> Range<f64> {
+    -0.5..values.len() as f64 - 0.5
+}
+
+fn name(values: &[f32], position: f64) -> String {
+    match values.get(position as usize) {
+        Some(value) if position.fract() == 0.0 => value.to_string(),
+        _ => String::new(),
+    }
+}
