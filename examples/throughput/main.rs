@@ -10,18 +10,18 @@
 //! cargo run --release --example throughput
 //! ```
 
-mod yardsticks;
+pub mod yardsticks;
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use acrobot::{
-    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Micro, Observations, Output, Pcg64,
-    Portable, TimeLimit,
+    Acrobot, Action, Arithmetic, Batch, Block, Error, Fast, Host, Micro, Observations, Output,
+    Pcg64, Portable, TimeLimit,
 };
 use yardsticks::{bare_f32, bare_f64};
 
-fn main() {
+pub fn main() {
     scalar::<Host>("scalar_host", bare_f64);
     scalar::<Portable>("scalar_portable", bare_f64);
     scalar::<Fast>("scalar_fast", bare_f32);
@@ -33,7 +33,6 @@ fn main() {
     threads(1 << 20);
 }
 
-const LANES: usize = Block::<f32>::LANES;
 const ROUNDS: usize = 7;
 
 /// The best rates of `ours` and `yardstick`, run in turn; each returns how many steps it took.
@@ -75,36 +74,73 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
     report(name, compare(ours, bare));
 }
 
+/// A batch, the random policy that plays it, and the memory for what its steps return.
+#[derive(Debug)]
+pub struct Play<A: Arithmetic> {
+    pub batch: Batch<A, Vec<Block<A::Scalar>>, Vec<Pcg64>>,
+    streams: Vec<u32>,
+    actions: Vec<u8>,
+    rewards: Vec<f32>,
+    terminated: Vec<bool>,
+    truncated: Vec<bool>,
+    rows: Vec<[f32; 6]>,
+}
+
+type Step<A> = fn(
+    &mut Batch<A, Vec<Block<<A as Arithmetic>::Scalar>>, Vec<Pcg64>>,
+    &[u8],
+    Output<'_>,
+) -> Result<(), Error>;
+
+impl<A: Arithmetic> Play<A> {
+    pub fn new(len: usize) -> Self {
+        let blocks = vec![Block::EMPTY; len.div_ceil(Block::<A::Scalar>::LANES)];
+        let generators = vec![Pcg64::UNSEEDED; len];
+        Self {
+            batch: Batch::new(0, blocks, generators).expect("memory of its size"),
+            streams: (0..len as u32)
+                .map(|i| i.wrapping_mul(0x9e37_79b9))
+                .collect(),
+            actions: vec![0; len],
+            rewards: vec![0.0; len],
+            terminated: vec![false; len],
+            truncated: vec![false; len],
+            rows: vec![[0.0; 6]; len],
+        }
+    }
+
+    pub fn draw_actions(&mut self) {
+        for (stream, action) in self.streams.iter_mut().zip(&mut self.actions) {
+            *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *action = (((*stream >> 16) * 3) >> 16) as u8;
+        }
+    }
+
+    /// Steps by `step`, and returns how many acrobots there are.
+    pub fn step(&mut self, observe: bool, step: Step<A>) -> usize {
+        let output = Output {
+            rewards: &mut self.rewards,
+            terminated: &mut self.terminated,
+            truncated: &mut self.truncated,
+            observations: match observe {
+                true => Observations::Rows(&mut self.rows),
+                false => Observations::None,
+            },
+            final_observations: Observations::None,
+        };
+        step(&mut self.batch, &self.actions, output).expect("slices of its size");
+        self.batch.len()
+    }
+}
+
 fn batch<A: Arithmetic>(arithmetic: &str, len: usize) {
     let steps = (2_000_000 / len).max(2);
-    let blocks = vec![Block::EMPTY; len.div_ceil(LANES)];
-    let generators = vec![Pcg64::UNSEEDED; len];
-    let mut batch = Batch::<A, _, _>::new(0, blocks, generators).expect("memory of its size");
-    let mut streams: Vec<u32> = (0..len as u32)
-        .map(|i| i.wrapping_mul(2_654_435_769))
-        .collect();
-    let mut actions = vec![0_u8; len];
-    let (mut rewards, mut terminated, mut truncated) =
-        (vec![0.0; len], vec![false; len], vec![false; len]);
-    let mut rows = vec![[0.0; 6]; len];
+    let mut play = Play::<A>::new(len);
     for (suffix, observe) in [("", false), ("_observations", true)] {
         let mut ours = || {
             for _ in 0..steps {
-                for (stream, action) in streams.iter_mut().zip(&mut actions) {
-                    *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                    *action = (((*stream >> 16) * 3) >> 16) as u8;
-                }
-                let output = Output {
-                    rewards: &mut rewards,
-                    terminated: &mut terminated,
-                    truncated: &mut truncated,
-                    observations: match observe {
-                        true => Observations::Rows(&mut rows),
-                        false => Observations::None,
-                    },
-                    final_observations: Observations::None,
-                };
-                batch.step(&actions, output).expect("slices of its size");
+                play.draw_actions();
+                play.step(observe, Batch::step);
             }
             steps * len
         };
@@ -119,42 +155,14 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize) {
     }
 }
 
-/// One call on all cores, beside the same on one: the ratio is that of the two.
+/// One call on all cores, beside the same on one: the ratio is that of the two. The same actions again
+/// and again, for only the step is on all cores.
 fn threads(len: usize) {
-    let blocks = vec![Block::EMPTY; len.div_ceil(LANES)];
-    let generators = vec![Pcg64::UNSEEDED; len];
-    let mut one = Batch::<Fast, _, _>::new(0, blocks, generators).expect("memory of its size");
-    let mut many = one.clone();
-    let actions: Vec<u8> = (0..len).map(|i| (i * 7 % 3) as u8).collect();
-    let (mut rewards, mut terminated, mut truncated) =
-        (vec![0.0; len], vec![false; len], vec![false; len]);
-    let (mut rewards1, mut terminated1, mut truncated1) =
-        (rewards.clone(), terminated.clone(), truncated.clone());
-    let on_all = || {
-        let output = Output {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::None,
-            final_observations: Observations::None,
-        };
-        many.par_step(&actions, output).expect("slices of its size");
-        len
-    };
-    let on_one = || {
-        let output = Output {
-            rewards: &mut rewards1,
-            terminated: &mut terminated1,
-            truncated: &mut truncated1,
-            observations: Observations::None,
-            final_observations: Observations::None,
-        };
-        one.step(&actions, output).expect("slices of its size");
-        len
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    report(
-        &format!("batch_fast_{len}_threads_{threads}"),
-        compare(on_all, on_one),
+    let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
+    let rates = compare(
+        || many.step(false, Batch::par_step),
+        || one.step(false, Batch::step),
     );
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    report(&format!("batch_fast_{len}_threads_{threads}"), rates);
 }

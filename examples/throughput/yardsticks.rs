@@ -11,6 +11,7 @@ pub use avx2::Lanes;
 
 /// Without AVX2 there are none.
 #[cfg(not(target_arch = "x86_64"))]
+#[derive(Debug)]
 pub struct Lanes;
 
 #[cfg(not(target_arch = "x86_64"))]
@@ -139,6 +140,7 @@ fn rk4<S: Real>(y: [S; 4], dt: f64, derivative: impl Fn([S; 4]) -> [S; 4]) -> [S
 mod avx2 {
     use std::arch::x86_64::*;
 
+    #[derive(Debug)]
     pub struct Lanes {
         fma: bool,
         state: [[f32; 1024]; 4],

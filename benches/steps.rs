@@ -1,0 +1,130 @@
+//! Steps a second: `cargo bench --bench steps`, which ends with what the example `throughput` prints, each
+//! rate's ratio to its yardstick. The yardsticks stand in divan's table too, as `bare`.
+
+#[path = "../examples/throughput/main.rs"]
+mod throughput;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Micro, Pcg64, Portable, TimeLimit,
+};
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use throughput::{Play, yardsticks};
+
+fn main() {
+    divan::main();
+    // Not where `cargo test` tries each once.
+    if std::env::args().any(|argument| argument == "--bench") {
+        throughput::main();
+    }
+}
+
+/// From one acrobot to a million.
+const SIZES: [usize; 6] = [1, 16, 128, 1024, 32_768, 1 << 20];
+
+#[divan::bench(types = [Host, Portable, Fast, Micro])]
+fn alone<A: Arithmetic>(bencher: Bencher) {
+    let actions = actions();
+    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
+    bencher
+        .counter(ItemsCount::new(actions.len()))
+        .bench_local(|| {
+            for &action in &actions {
+                if divan::black_box(acrobot.step(action)).ended() {
+                    acrobot.reset();
+                }
+            }
+        });
+}
+
+/// Without the observation, which is never read: a controller has the state.
+#[divan::bench(types = [Host, Portable, Fast, Micro])]
+fn alone_without_observation<A: Arithmetic>(bencher: Bencher) {
+    let actions = actions();
+    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
+    bencher
+        .counter(ItemsCount::new(actions.len()))
+        .bench_local(|| {
+            for &action in &actions {
+                if acrobot.step(action).ended() {
+                    acrobot.reset();
+                }
+            }
+            divan::black_box(acrobot.inner().state());
+        });
+}
+
+#[divan::bench(args = [32, 64])]
+fn bare(bencher: Bencher, bits: u32) {
+    let actions = actions();
+    let bare = match bits {
+        32 => yardsticks::bare_f32,
+        _ => yardsticks::bare_f64,
+    };
+    bencher
+        .counter(ItemsCount::new(actions.len()))
+        .bench_local(|| bare(&actions));
+}
+
+#[divan::bench(types = [Host, Portable, Fast, Micro], args = SIZES)]
+fn batch<A: Arithmetic>(bencher: Bencher, len: usize) {
+    let mut play = Play::<A>::new(len);
+    bencher.counter(ItemsCount::new(len)).bench_local(|| {
+        play.draw_actions();
+        play.step(false, Batch::step)
+    });
+}
+
+#[divan::bench(types = [Host, Portable, Fast, Micro], args = SIZES)]
+fn batch_with_observations<A: Arithmetic>(bencher: Bencher, len: usize) {
+    let mut play = Play::<A>::new(len);
+    bencher.counter(ItemsCount::new(len)).bench_local(|| {
+        play.draw_actions();
+        play.step(true, Batch::step)
+    });
+}
+
+/// The same actions again and again, for only the step is on all cores.
+#[divan::bench(types = [Portable, Fast], args = SIZES)]
+fn batch_on_all_cores<A: Arithmetic>(bencher: Bencher, len: usize) {
+    let mut play = Play::<A>::new(len);
+    bencher
+        .counter(ItemsCount::new(len))
+        .bench_local(|| play.step(false, Batch::par_step));
+}
+
+/// Eight lanes of AVX2 by hand, with fused multiply-adds and without.
+#[divan::bench(args = ["fma", "nofma"])]
+fn batch_bare(bencher: Bencher, flavour: &str) {
+    if let Some(mut bare) = yardsticks::Lanes::new(flavour == "fma") {
+        let steps = bare.run();
+        bencher
+            .counter(ItemsCount::new(steps))
+            .bench_local(|| bare.run());
+    }
+}
+
+#[divan::bench(types = [Host, Portable, Fast, Micro])]
+fn reset<A: Arithmetic>(bencher: Bencher) {
+    let mut acrobot = Acrobot::<A>::new(0);
+    bencher
+        .counter(ItemsCount::new(1_usize))
+        .bench_local(|| acrobot.reset());
+}
+
+#[divan::bench(args = SIZES)]
+fn seed_a_batch(bencher: Bencher, len: usize) {
+    let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
+    let generators = vec![Pcg64::UNSEEDED; len];
+    let mut batch = Batch::<Fast, _, _>::new(0, blocks, generators).expect("memory of its size");
+    let mut seed = 0_u64;
+    bencher.counter(ItemsCount::new(len)).bench_local(|| {
+        seed += 1;
+        batch.reset_seeded(seed);
+    });
+}
+
+fn actions() -> Vec<Action> {
+    let mut rng = Pcg64::new(0);
+    (0..4096).map(|_| Action::sample(&mut rng)).collect()
+}
