@@ -61,3 +61,13 @@ fn the_shared_episodes_are_stable() {
     check::<Fast>("fast", episodes::FAST);
     check::<Micro>("micro", episodes::MICRO);
 }
+
+#[test]
+fn the_shared_batch_is_stable_whatever_its_width() {
+    let widths = [
+        episodes::batch::<1, 20>(),
+        episodes::batch::<4, 5>(),
+        episodes::batch::<16, 2>(),
+    ];
+    assert!(widths == [episodes::BATCH; 3], "{widths:#018x?}");
+}

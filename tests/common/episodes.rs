@@ -2,7 +2,10 @@
 //! `examples/cortex-m` and the module in `examples/wasm-parity` share this file: promise 2.
 
 use super::digest::Digest;
-use acrobot::{Acrobot, Action, Arithmetic, Observation, Pcg64, Real, TimeLimit};
+use acrobot::{
+    Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Fast, Observation, Observations, Output,
+    Pcg64, Real, TimeLimit,
+};
 
 /// Adds every bit of a state and of what is seen of it.
 fn add_seen<A: Arithmetic>(
@@ -44,6 +47,42 @@ pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
         }
     }
 }
+
+/// Every bit that a batch of twenty in `Fast` shows in 200 steps under torques against θ̇1, which end
+/// episodes: the same for any width `N`, in as many blocks as it takes.
+pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
+    const LEN: usize = 20;
+    let (blocks, generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]);
+    let Ok(mut batch) = Batch::<Fast, _, _, N>::new(42, blocks, generators) else {
+        return 0;
+    };
+    batch.set_autoreset(Autoreset::SameStep);
+    let mut digest = Digest::new();
+    let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
+    let (mut rows, mut finals) = ([[0.0; 6]; LEN], [[0.0; 6]; LEN]);
+    for _ in 0..200 {
+        let actions = rows.map(|[.., dtheta1, _]| match dtheta1 > 0.0 {
+            true => Action::Negative,
+            false => Action::Positive,
+        });
+        let output = Output {
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+            observations: Observations::Rows(&mut rows),
+            final_observations: Observations::Rows(&mut finals),
+        };
+        if batch.step(&actions, output).is_err() {
+            return 0;
+        }
+        let seen = rows.iter().chain(&finals).flatten().chain(&rewards);
+        seen.for_each(|x| digest.add(x.to_bits().into()));
+        terminated.iter().for_each(|&x| digest.add(x.into()));
+    }
+    digest.0
+}
+
+pub const BATCH: u64 = 0xeae8_bc44_fb2b_ab5e;
 
 pub const PORTABLE: [u64; 16] = [
     0x8223_2046_106d_944e,

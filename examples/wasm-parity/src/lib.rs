@@ -32,6 +32,12 @@ pub extern "C" fn expected(arithmetic: u32, episode: u32) -> u64 {
     digests[episode as usize]
 }
 
+/// Whether a batch is equal to what the host's tests assert.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_is_equal() -> bool {
+    episodes::batch::<4, 5>() == episodes::BATCH && episodes::batch::<16, 2>() == episodes::BATCH
+}
+
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
     core::arch::wasm32::unreachable()

@@ -11,7 +11,8 @@ use core::panic::PanicInfo;
 
 use acrobot::{
     Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Fast, Figure, Micro, Observations,
-    Output, Params, Pcg64, Portable, Real, SeedSequence, StartBounds, State, Theme, TimeLimit, Trajectory,
+    Output, Params, Pcg64, Portable, Real, SeedSequence, StartBounds, State, Theme, TimeLimit,
+    Trajectory,
 };
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};

@@ -1,4 +1,4 @@
-//! Plays the sixteen episodes that the host's tests play, and compares every digest.
+//! Plays the sixteen episodes that the host's tests play, and compares every digest; and a batch, one at a time and sixteen side by side.
 
 #![no_std]
 #![no_main]
@@ -14,12 +14,19 @@ use semihosting::{println, process};
 
 #[entry]
 fn main() -> ! {
+    let batch = episodes::batch::<1, 20>() == episodes::BATCH
+        && episodes::batch::<16, 2>() == episodes::BATCH;
+    println!(
+        "batch: {}",
+        if batch { "equal to the bit" } else { "differs" }
+    );
     let equal = [
         check::<Portable>("portable", &episodes::PORTABLE),
         check::<Fast>("fast", &episodes::FAST),
         check::<Micro>("micro", &episodes::MICRO),
+        batch,
     ];
-    process::exit(if equal == [true; 3] { 0 } else { 1 })
+    process::exit(if equal == [true; 4] { 0 } else { 1 })
 }
 
 fn check<A: Arithmetic>(name: &str, expected: &[u64; 16]) -> bool {
