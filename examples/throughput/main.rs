@@ -4,7 +4,8 @@
 //! is a loop over eight lanes of AVX2 by hand that does neither, with FMA (`batch_…`) and without
 //! (`batch_…_nofma`). `scalar_fast`'s is the same equations for one acrobot in f32; that of
 //! `scalar_portable` and `scalar_host` is Gymnasium's order in f64 with the platform's sines. Both play
-//! the actions that ours plays. Each figure is the best of several runs, a run of ours and one of the yardstick in turn.
+//! the actions that ours plays. Each figure is the best of several runs, a run of ours and one of the
+//! yardstick in turn.
 //!
 //! ```text
 //! cargo run --release --example throughput
@@ -17,7 +18,7 @@ use std::time::Instant;
 
 use acrobot::{
     Acrobot, Action, Arithmetic, Batch, Block, Error, Fast, Host, Micro, Observations, Output,
-    Pcg64, Portable, TimeLimit,
+    Pcg64, Portable, TimeLimit, Vectors,
 };
 use yardsticks::{bare_f32, bare_f64};
 
@@ -27,9 +28,11 @@ pub fn main() {
     scalar::<Fast>("scalar_fast", bare_f32);
     scalar::<Micro>("scalar_micro", bare_f32);
     for len in [1024, 1 << 20] {
-        batch::<Fast>("fast", len);
+        batch::<Fast>("fast", len, Vectors::widest());
     }
-    batch::<Portable>("portable", 1024);
+    batch::<Fast>("fast_avx2", 1024, Vectors::Avx2);
+    batch::<Fast>("fast_baseline", 1024, Vectors::Baseline);
+    batch::<Portable>("portable", 1024, Vectors::Baseline);
     threads(1 << 20);
 }
 
@@ -133,9 +136,14 @@ impl<A: Arithmetic> Play<A> {
     }
 }
 
-fn batch<A: Arithmetic>(arithmetic: &str, len: usize) {
+fn batch<A: Arithmetic>(arithmetic: &str, len: usize, vectors: Vectors) {
     let steps = (2_000_000 / len).max(2);
     let mut play = Play::<A>::new(len);
+    if !vectors.is_available() {
+        println!("batch_{arithmetic}_{len} is not for this machine, which has no {vectors:?}");
+        return;
+    }
+    play.batch.set_vectors(vectors);
     for (suffix, observe) in [("", false), ("_observations", true)] {
         let mut ours = || {
             for _ in 0..steps {
