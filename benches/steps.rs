@@ -7,8 +7,8 @@ mod throughput;
 use acrobot::{
     Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Micro, Pcg64, Portable, TimeLimit,
 };
-use divan::Bencher;
 use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
 use throughput::{Play, yardsticks};
 
 fn main() {
@@ -22,35 +22,24 @@ fn main() {
 /// From one acrobot to a million.
 const SIZES: [usize; 6] = [1, 16, 128, 1024, 32_768, 1 << 20];
 
-#[divan::bench(types = [Host, Portable, Fast, Micro])]
-fn alone<A: Arithmetic>(bencher: Bencher) {
+/// With the observation, and without: one that is never read need not be written.
+#[divan::bench(types = [Host, Portable, Fast, Micro], args = ["observed", "unobserved"])]
+fn alone<A: Arithmetic>(bencher: Bencher, how: &str) {
     let actions = actions();
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
     bencher
         .counter(ItemsCount::new(actions.len()))
         .bench_local(|| {
             for &action in &actions {
-                if divan::black_box(acrobot.step(action)).ended() {
+                let step = acrobot.step(action);
+                if how == "observed" {
+                    black_box(step.observation);
+                }
+                if step.ended() {
                     acrobot.reset();
                 }
             }
-        });
-}
-
-/// Without the observation, which is never read: a controller has the state.
-#[divan::bench(types = [Host, Portable, Fast, Micro])]
-fn alone_without_observation<A: Arithmetic>(bencher: Bencher) {
-    let actions = actions();
-    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
-    bencher
-        .counter(ItemsCount::new(actions.len()))
-        .bench_local(|| {
-            for &action in &actions {
-                if acrobot.step(action).ended() {
-                    acrobot.reset();
-                }
-            }
-            divan::black_box(acrobot.inner().state());
+            black_box(acrobot.inner().state());
         });
 }
 
