@@ -168,6 +168,22 @@ where
         self.reset();
     }
 
+    /// Begins an episode of each in a state of its own: for searches on the model.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::WrongLength`] unless there is a state for each acrobot, and [`Error::OutOfRange`] for a
+    /// number that is not finite; nothing is changed then.
+    pub fn reset_to(&mut self, states: &[State<A::Scalar>]) -> Result<(), Error> {
+        check_length("states", states.len(), self.len())?;
+        states.iter().try_for_each(State::validate)?;
+        let blocks = self.blocks.as_mut().iter_mut();
+        for (block, states) in blocks.zip(states.chunks(N)) {
+            block.reset_to::<A>(states);
+        }
+        Ok(())
+    }
+
     /// Applies an action to each for one `dt`: the numbers 0, 1 and 2, or [`Action`](crate::Action)s.
     ///
     /// # Errors

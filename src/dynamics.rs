@@ -104,13 +104,15 @@ impl<S: Real> Model<S> {
         let two = S::from_f64(2.0);
         let coupling = self.coupling;
 
+        // First, for calls keep no floats in registers on x86-64.
+        let phi2 = self.gravity2 * A::cos(theta1 + theta2 - S::FRAC_PI_2);
+        let cos1 = A::cos(theta1 - S::FRAC_PI_2);
         let arm = arm * cos2;
         let d1 = link1 + m2 * (arms + two * arm) + inertia1 + inertia2;
         let d2 = m2 * (lc2_squared + arm) + inertia2;
-        let phi2 = self.gravity2 * A::cos(theta1 + theta2 - S::FRAC_PI_2);
         let phi1 = -coupling * A::square(dtheta2) * sin2
             - two * coupling * dtheta2 * dtheta1 * sin2
-            + self.gravity1 * A::cos(theta1 - S::FRAC_PI_2)
+            + self.gravity1 * cos1
             + phi2;
         let driven = torque + d2 / d1 * phi1;
         let driven = match dynamics {

@@ -281,6 +281,45 @@ fn small<const BLOCKS: usize, const LEN: usize>() -> Result<Small<BLOCKS, LEN>, 
 }
 
 #[test]
+fn begins_in_given_states_as_one_alone() {
+    let mut rng = Pcg64::new(3);
+    let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
+    // After 500 steps all have ended, and would be reset.
+    for steps in [500, 3, 8] {
+        twins.play(steps, false);
+        let mut number = || acrobot::uniform(&mut rng, -10.0, 10.0) as f32;
+        let states: Vec<State<f32>> = (0..35)
+            .map(|_| State::from([(); 4].map(|()| number())))
+            .collect();
+        twins.batch.reset_to(&states).unwrap();
+        for ((alone, ended), state) in twins.alone.iter_mut().zip(&mut twins.ended).zip(&states) {
+            let rng = alone.inner().rng().clone();
+            alone.reset();
+            alone.inner_mut().set_state(*state).unwrap();
+            *alone.inner_mut().rng_mut() = rng;
+            *ended = false;
+        }
+    }
+    twins.play(520, true);
+
+    let before = twins.batch.state(0);
+    let infinite = State {
+        theta1: f32::INFINITY,
+        ..State::default()
+    };
+    let mut states = [State::default(); 35];
+    states[34] = infinite;
+    let refused = twins.batch.reset_to(&states).unwrap_err();
+    assert!(
+        matches!(refused, Error::OutOfRange { name: "theta1", .. }),
+        "{refused}"
+    );
+    let refused = twins.batch.reset_to(&states[..34]).unwrap_err();
+    assert_eq!(refused.to_string(), "states has 34 elements; allowed is 35");
+    assert_eq!(twins.batch.state(0), before);
+}
+
+#[test]
 fn columns_are_the_rows() {
     let mut batch = small::<2, 20>().unwrap();
     batch.set_limit(NonZeroU32::MIN);

@@ -62,6 +62,18 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
+    pub(super) fn reset_to<A: Arithmetic<Scalar = S>>(&mut self, states: &[State<S>]) {
+        for (lane, state) in states.iter().enumerate().take(N) {
+            self.begin::<A>(lane, *state);
+        }
+    }
+
+    fn begin<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, start: State<S>) {
+        self.place(lane, start, sin_cos::<A>(&start));
+        self.elapsed[lane] = 0;
+        self.ended[lane] = false;
+    }
+
     /// Resets some, each by its generator. A lane without one holds no acrobot, and hangs at rest.
     #[cold]
     pub(super) fn reset<A: Arithmetic<Scalar = S>>(
@@ -75,9 +87,7 @@ impl<S: Real, const N: usize> Block<S, N> {
                 Some(rng) => bounds.draw(rng).cast(),
                 None => State::default(),
             };
-            self.place(lane, start, sin_cos::<A>(&start));
-            self.elapsed[lane] = 0;
-            self.ended[lane] = false;
+            self.begin::<A>(lane, start);
         }
     }
 

@@ -105,6 +105,7 @@ fn batch<A: Arithmetic>() {
             final_observations: Observations::Rows(&mut finals),
         };
         let _ = black_box(batch.step(&actions, output));
+        let _ = black_box(batch.reset_to(&black_box([State::default(); 20])));
         black_box((&rows, &finals, &column, batch.state(black_box(3))));
     }
 }
