@@ -1,0 +1,110 @@
+//! Acrobot as a task for the learner: included by each program that has both, as `mod acrobot_task`.
+
+use core::f32::consts::PI;
+
+use acrobot::{Acrobot, Action, Arithmetic, Observation, TimeLimit};
+use rand_core::Rng;
+use sarsa::{Dimension, Error, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement};
+
+/// A learner of Acrobot with `T` tilings and `S` slots, which take 8 bytes each.
+pub type Learner<'w, const S: usize, const T: usize> = Sarsa<'w, TileCoder<4, T>, S, 2, 4, T>;
+
+/// What the learner is to be good at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// Swinging up after few episodes.
+    Fast,
+    /// The best policy after 10,000 episodes and more.
+    Quality,
+}
+
+/// Tilings of all four numbers, of which `T` are left once each pair has its two.
+const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
+
+impl Preset {
+    /// A learner in this memory.
+    pub fn learner<const S: usize, const T: usize>(
+        self,
+        weights: &mut [[f32; 2]; S],
+    ) -> Result<Learner<'_, S, T>, Error> {
+        let (bins, alpha, epsilon) = match self {
+            Self::Fast => (6, falling(0.5, 0.998, 0.2), Schedule::constant(0.0)),
+            Self::Quality => (7, falling(0.5, 0.9998, 0.01), falling(0.01, 0.9998, 0.0)),
+        };
+        let angle = Dimension::cyclic(-PI, PI, bins);
+        let velocities = [PI, 2.5 * PI].map(|bound| Dimension::bounded(-bound, bound, 6));
+        let dimensions = [angle, angle, velocities[0], velocities[1]];
+        let coder = match self {
+            Self::Fast => {
+                let [a, b, c, d] = PAIRS.each_ref().map(|pair| Group::new(pair, 2));
+                let all = Group::new(&[0, 1, 2, 3], T.saturating_sub(8));
+                TileCoder::new(dimensions, &[all, a, b, c, d], Table::Hashed(S), displacement)?
+            }
+            Self::Quality => TileCoder::new(dimensions, &[Group::new(&[0, 1, 2, 3], T)], Table::Hashed(S), displacement)?,
+        };
+        let settings = Settings {
+            gamma: 1.0,
+            lambda: 0.95,
+            alpha,
+            epsilon,
+            symmetry: Symmetry::Mirror(2),
+        };
+        Sarsa::new(coder, settings, weights)
+    }
+}
+
+const fn falling(start: f32, factor: f32, floor: f32) -> Schedule {
+    Schedule {
+        start,
+        factor,
+        floor,
+    }
+}
+
+/// The actions of the learner: without torque nothing is gained.
+pub const ACTIONS: [Action; 2] = [Action::Negative, Action::Positive];
+
+/// The state as the learner sees it, \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
+pub fn state<A: Arithmetic, R: Rng>(env: &TimeLimit<Acrobot<A, R>>) -> [f32; 4] {
+    env.inner().state().cast().into()
+}
+
+/// Learns in one episode from a new start, and returns the sum of the rewards.
+pub fn learn<A: Arithmetic, R: Rng, const S: usize, const T: usize>(
+    learner: &mut Learner<'_, S, T>,
+    env: &mut TimeLimit<Acrobot<A, R>>,
+    rng: &mut impl Rng,
+) -> f32 {
+    let _: Observation = env.reset();
+    let mut action = learner.start(&state(env), rng);
+    let mut sum = 0.0;
+    loop {
+        let step = env.step(ACTIONS[action]);
+        sum += step.reward;
+        if step.terminated {
+            learner.end(step.reward);
+            return sum;
+        }
+        action = learner.step(step.reward, &state(env), rng);
+        if step.truncated {
+            learner.cut();
+            return sum;
+        }
+    }
+}
+
+/// Plays one greedy episode from a new start: the sum of the rewards, and whether the goal was reached.
+pub fn play<A: Arithmetic, R: Rng, const S: usize, const T: usize>(
+    learner: &Learner<'_, S, T>,
+    env: &mut TimeLimit<Acrobot<A, R>>,
+) -> (f32, bool) {
+    let _: Observation = env.reset();
+    let mut sum = 0.0;
+    loop {
+        let step = env.step(ACTIONS[learner.greedy(&state(env))]);
+        sum += step.reward;
+        if step.ended() {
+            return (sum, step.terminated);
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! Sarsa(λ) with binary features (Sutton & Barto 12.7).
+
+use rand_core::Rng;
+
+use crate::error::Error;
+use crate::schedule::{Schedule, unit_interval};
+use crate::traces::Traces;
+
+/// Turns a state of `D` numbers into `T` binary features, those that are 1.
+pub trait Features<const D: usize, const T: usize> {
+    /// Slots that there are, from 1 to 65,536; each holds a weight for every action.
+    fn slots(&self) -> usize;
+
+    /// The `T` slots of a state, each below [`Features::slots`].
+    fn active(&self, state: &[f32; D]) -> [u16; T];
+
+    /// Hands `mix` the numbers that make these features what they are, so that saved weights are
+    /// not loaded for others.
+    fn fingerprint(&self, mix: impl FnMut(u32));
+}
+
+/// Whether two states are one to the learner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// Each state stands for itself.
+    None,
+    /// Negating all numbers of the state and reversing the order of the actions changes nothing:
+    /// only states that are not negative in this dimension are learnt.
+    Mirror(usize),
+}
+
+/// The learner's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// γ, the discount of a step, in \[0, 1\].
+    pub gamma: f32,
+    /// λ, the decay of a trace in a step, in \[0, 1\]. Traces end below 0.05 and after 64 steps.
+    pub lambda: f32,
+    /// The share of an error that one update removes, in (0, 1]: α times the number of tilings
+    /// (Sutton & Barto 9.6).
+    pub alpha: Schedule,
+    /// ε, the probability of a random action, in \[0, 1\].
+    pub epsilon: Schedule,
+    /// A symmetry of the task.
+    pub symmetry: Symmetry,
+}
+
+/// A learner with `A` actions, numbered from 0, in borrowed memory of `S` slots.
+///
+/// Weights start at 0, which is optimistic where rewards are negative: what was not tried looks
+/// best. Between actions of equal value the first is taken.
+#[derive(Debug)]
+pub struct Sarsa<'w, F, const S: usize, const A: usize, const D: usize, const T: usize> {
+    pub(crate) features: F,
+    settings: Settings,
+    /// α, of each weight.
+    alpha: f32,
+    epsilon: f32,
+    pub(crate) weights: &'w mut [[f32; A]; S],
+    traces: Traces<T>,
+    slots: [u16; T],
+    action: usize,
+}
+
+impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T: usize>
+    Sarsa<'w, F, S, A, D, T>
+{
+    /// A learner that knows nothing: the weights become 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`] for a parameter outside of its range, for no actions or more than 256, for no
+    /// tilings, for features that need more slots than `S`, and for a mirror on no dimension. The
+    /// weights are as they were.
+    pub fn new(
+        features: F,
+        settings: Settings,
+        weights: &'w mut [[f32; A]; S],
+    ) -> Result<Self, Error> {
+        unit_interval("gamma", settings.gamma)?;
+        unit_interval("lambda", settings.lambda)?;
+        let Settings { alpha, epsilon, .. } = settings;
+        alpha.check(["alpha", "alpha's factor", "alpha's floor"])?;
+        epsilon.check(["epsilon", "epsilon's factor", "epsilon's floor"])?;
+        if alpha.start == 0.0 {
+            return Err(Error::OutOfRange {
+                name: "alpha",
+                value: 0.0,
+                unit: "",
+                allowed: "above 0 to 1",
+            });
+        }
+        Error::unless(T > 0, "tilings", T, "at least", 1)?;
+        Error::unless((1..=256).contains(&A), "actions", A, "1 to", 256)?;
+        let slots = features.slots();
+        Error::unless(
+            (1..=S).contains(&slots),
+            "slots of features",
+            slots,
+            "1 to",
+            S,
+        )?;
+        if let Symmetry::Mirror(d) = settings.symmetry {
+            Error::unless(d < D, "as the mirror's dimension", d, "less than", D)?;
+        }
+        for w in weights.iter_mut() {
+            *w = [0.0; A];
+        }
+        Ok(Self {
+            features,
+            settings,
+            alpha: alpha.start,
+            epsilon: epsilon.start,
+            weights,
+            traces: Traces::new(settings.gamma * settings.lambda),
+            slots: [0; T],
+            action: 0,
+        })
+    }
+
+    /// Begins an episode in `state`: no traces. Returns the first action.
+    pub fn start<R: Rng + ?Sized>(&mut self, state: &[f32; D], rng: &mut R) -> usize {
+        let (state, side) = self.fold(state);
+        self.slots = self.features.active(&state);
+        self.action = self.choose(&self.at(&self.slots), rng);
+        self.traces.clear();
+        self.traces.push(&self.slots, self.action);
+        side.action::<A>(self.action)
+    }
+
+    /// Learns from the last action's `reward` and the state that it led to, and returns the next
+    /// action: δ = R + γ q(S′, A′) − q(S, A), and w ← w + αδz (Sutton & Barto 12.7).
+    ///
+    /// An episode that is cut short ends with this, too, and with [`Sarsa::cut`].
+    #[inline]
+    pub fn step<R: Rng + ?Sized>(&mut self, reward: f32, state: &[f32; D], rng: &mut R) -> usize {
+        let (state, side) = self.fold(state);
+        let slots = self.features.active(&state);
+        let values = self.at(&slots);
+        let action = self.choose(&values, rng);
+        self.learn(
+            reward + self.settings.gamma * values[action],
+            Some((&slots, action)),
+        );
+        self.traces.push(&slots, action);
+        (self.slots, self.action) = (slots, action);
+        side.action::<A>(action)
+    }
+
+    /// Learns from the `reward` of the action that ended the episode in a terminal state, whose
+    /// value is 0: δ = R − q(S, A).
+    pub fn end(&mut self, reward: f32) {
+        self.learn(reward, None);
+        self.cut();
+    }
+
+    /// The episode was cut short after the last [`Sarsa::step`]: the schedules go on.
+    pub fn cut(&mut self) {
+        self.alpha = self.settings.alpha.next(self.alpha);
+        self.epsilon = self.settings.epsilon.next(self.epsilon);
+    }
+
+    /// The action with the highest value, the first of equals.
+    #[must_use]
+    #[inline]
+    pub fn greedy(&self, state: &[f32; D]) -> usize {
+        let (state, side) = self.fold(state);
+        side.action::<A>(best(&self.at(&self.features.active(&state))))
+    }
+
+    /// q of each action, in units of the reward.
+    #[must_use]
+    #[inline]
+    pub fn values(&self, state: &[f32; D]) -> [f32; A] {
+        let (state, side) = self.fold(state);
+        let values = self.at(&self.features.active(&state));
+        core::array::from_fn(|action| values[side.action::<A>(action)])
+    }
+
+    /// The weights, of each slot one for each action, in units of the reward.
+    #[must_use]
+    pub fn weights(&self) -> &[[f32; A]; S] {
+        self.weights
+    }
+
+    /// The update towards `target`.
+    #[inline]
+    fn learn(&mut self, target: f32, next: Option<(&[u16; T], usize)>) {
+        let delta = target - self.at(&self.slots)[self.action];
+        let step = self.alpha / T as f32 * delta;
+        self.traces.update(self.weights, step, next);
+    }
+
+    /// q̂(s, a, w) = Σ w of the active features.
+    #[inline]
+    fn at(&self, slots: &[u16; T]) -> [f32; A] {
+        let mut values = [0.0; A];
+        for &slot in slots {
+            if let Some(weights) = self.weights.get(usize::from(slot)) {
+                for (value, w) in values.iter_mut().zip(weights) {
+                    *value += w;
+                }
+            }
+        }
+        values
+    }
+
+    /// ε-greedy (Sutton & Barto 2.2); draws nothing where ε is 0.
+    #[inline]
+    fn choose<R: Rng + ?Sized>(&self, values: &[f32; A], rng: &mut R) -> usize {
+        if self.epsilon > 0.0 && (rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0) < self.epsilon
+        {
+            return ((u64::from(rng.next_u32()) * A as u64) >> 32) as usize;
+        }
+        best(values)
+    }
+
+    /// The state that is learnt in place of this one.
+    #[inline]
+    fn fold(&self, state: &[f32; D]) -> ([f32; D], Side) {
+        match self.settings.symmetry {
+            Symmetry::Mirror(d) if state.get(d).is_some_and(|&x| x < 0.0) => {
+                (state.map(|x| -x), Side::Mirrored)
+            }
+            _ => (*state, Side::Same),
+        }
+    }
+}
+
+/// On which side of the mirror a state is.
+#[derive(Clone, Copy)]
+enum Side {
+    Same,
+    Mirrored,
+}
+
+impl Side {
+    /// The action that is `action` on the other side.
+    #[inline]
+    fn action<const A: usize>(self, action: usize) -> usize {
+        match self {
+            Self::Same => action,
+            Self::Mirrored => A - 1 - action,
+        }
+    }
+}
+
+#[inline]
+fn best<const A: usize>(values: &[f32; A]) -> usize {
+    let mut best = 0;
+    for (action, value) in values.iter().enumerate() {
+        if *value > values[best] {
+            best = action;
+        }
+    }
+    best
+}

@@ -1,0 +1,55 @@
+//! Sarsa(λ) with tile coding: no heap, `f32`, and the same bits on every machine.
+//!
+//! Nothing is computed but sums, differences, products, quotients and comparisons, each rounded once, so that a
+//! laptop, a Cortex-M4F and a browser learn the same weights from the same seed. Sections are those of R. S. Sutton and
+//! A. G. Barto, *Reinforcement Learning: An Introduction*, 2nd edition (2018).
+//!
+//! ```
+//! use rand_pcg::Pcg32;
+//! use sarsa::{Dimension, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement};
+//!
+//! // One number in [0, 1], 4 tilings of 8 intervals; two actions: towards 0 and towards 1, which is the goal.
+//! let line = [Dimension::bounded(0.0, 1.0, 8)];
+//! let coder = TileCoder::<1, 4>::new(line, &[Group::new(&[0], 4)], Table::Direct, displacement)?;
+//! let settings = Settings {
+//!     gamma: 1.0,
+//!     lambda: 0.9,
+//!     alpha: Schedule::constant(0.5),
+//!     epsilon: Schedule::constant(0.0),
+//!     symmetry: Symmetry::None,
+//! };
+//! let mut weights = [[0.0; 2]; 36];
+//! let mut agent = Sarsa::new(coder, settings, &mut weights)?;
+//! let mut rng = Pcg32::new(1, 1);
+//! let mut steps = 0;
+//! for _episode in 0..20 {
+//!     let mut x = 0.5_f32;
+//!     let mut action = agent.start(&[x], &mut rng);
+//!     steps = 1;
+//!     loop {
+//!         x = if action == 0 { (x - 0.1).max(0.0) } else { x + 0.1 };
+//!         if x >= 0.95 {
+//!             agent.end(0.0);
+//!             break;
+//!         }
+//!         action = agent.step(-1.0, &[x], &mut rng);
+//!         steps += 1;
+//!     }
+//! }
+//! assert_eq!(steps, 5);
+//! # Ok::<(), sarsa::Error>(())
+//! ```
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod error;
+mod learner;
+mod schedule;
+mod store;
+mod tiles;
+mod traces;
+
+pub use error::{Error, LoadError};
+pub use learner::{Features, Sarsa, Settings, Symmetry};
+pub use schedule::Schedule;
+pub use tiles::{Dimension, Group, Place, Table, TileCoder, displacement};

@@ -1,0 +1,338 @@
+//! Tile coding (Sutton & Barto 9.5.4): a state becomes one tile of each of several offset grids.
+
+use core::iter::repeat_n;
+
+use crate::error::Error;
+use crate::learner::Features;
+
+/// How one number of the state is divided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dimension {
+    low: f32,
+    high: f32,
+    intervals: u16,
+    cyclic: bool,
+}
+
+impl Dimension {
+    /// From `low` to `high` in equal `intervals`; what lies outside counts as the nearest bound.
+    ///
+    /// Since tilings are offset, each has one interval more, which sticks out.
+    #[must_use]
+    pub const fn bounded(low: f32, high: f32, intervals: u16) -> Self {
+        Self {
+            low,
+            high,
+            intervals,
+            cyclic: false,
+        }
+    }
+
+    /// An angle or the like: `high` is `low` again, and what lies outside is wrapped.
+    #[must_use]
+    pub const fn cyclic(low: f32, high: f32, intervals: u16) -> Self {
+        Self {
+            low,
+            high,
+            intervals,
+            cyclic: true,
+        }
+    }
+
+    /// Coordinates that a tile can have.
+    const fn tiles(&self) -> u16 {
+        self.intervals + !self.cyclic as u16
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let refuse = |name, value, allowed| {
+            Err(Error::OutOfRange {
+                name,
+                value,
+                unit: "of the state",
+                allowed,
+            })
+        };
+        if !self.low.is_finite() {
+            return refuse("a lower bound", self.low, "a finite number");
+        }
+        if !(self.high > self.low && (self.high - self.low).is_finite()) {
+            return refuse(
+                "an upper bound",
+                self.high,
+                "a finite number above the lower",
+            );
+        }
+        let intervals = usize::from(self.intervals);
+        Error::unless(
+            (1..=256).contains(&intervals),
+            "intervals",
+            intervals,
+            "1 to",
+            256,
+        )
+    }
+
+    /// Where `x` lies: the interval before any offset, the one after it, and how far from the first
+    /// to the second, in 2⁻¹⁶ intervals.
+    #[inline]
+    fn locate(&self, x: f32, per_unit: f32) -> [u16; 3] {
+        let mut x = (x - self.low) * per_unit;
+        let intervals = f32::from(self.intervals);
+        if self.cyclic && !(0.0..intervals).contains(&x) {
+            x = wrap(x, intervals);
+        }
+        // Casts saturate, and NaN is 0.
+        let whole = (x as u16).min(self.intervals - 1);
+        let fraction = ((x - f32::from(whole)) * 65536.0) as u32;
+        let next = whole + 1;
+        let next = if next == self.tiles() { 0 } else { next };
+        [whole, next, fraction.min(65535) as u16]
+    }
+}
+
+/// The remainder in \[0, `n`) of a rounded-down division; 0 for what is not finite.
+#[cold]
+fn wrap(x: f32, n: f32) -> f32 {
+    let turns = x / n;
+    let mut whole = turns as i32 as f32;
+    if whole > turns {
+        whole -= 1.0;
+    }
+    let rest = x - whole * n;
+    if rest >= 0.0 && rest < n { rest } else { 0.0 }
+}
+
+/// Tilings over the same dimensions, each offset against the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Group<'a> {
+    dimensions: &'a [usize],
+    tilings: usize,
+}
+
+impl<'a> Group<'a> {
+    /// So many `tilings` over these dimensions of the state, numbered from 0.
+    #[must_use]
+    pub const fn new(dimensions: &'a [usize], tilings: usize) -> Self {
+        Self {
+            dimensions,
+            tilings,
+        }
+    }
+}
+
+/// Where tiles find their slots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Table {
+    /// Each tile has a slot of its own; [`Features::slots`] says how many that takes.
+    Direct,
+    /// All tiles share so many slots, a power of two from 2 to 65,536.
+    Hashed(usize),
+}
+
+/// Slots that 16 bits can number.
+const MAX_SLOTS: usize = 1 << 16;
+
+/// `T` tilings over a state of `D` numbers.
+///
+/// A tile's slot is linear in its coordinates: one product and one comparison for each dimension,
+/// in 16 bits, so that eight tilings fit in the smallest vector register. Hashing is a matter of
+/// other factors and of a shift at the end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TileCoder<const D: usize, const T: usize> {
+    dimensions: [Dimension; D],
+    /// Intervals for each unit of the state.
+    per_unit: [f32; D],
+    /// By which each tiling is moved, in 2⁻¹⁶ intervals.
+    offsets: [[u16; T]; D],
+    /// By which the slot grows from one coordinate to the next; 0 where a tiling does not look.
+    strides: [[u16; T]; D],
+    /// Slot of each tiling's first tile.
+    bases: [u16; T],
+    /// Bits of the sum that are no part of the slot.
+    shift: u32,
+    slots: usize,
+}
+
+impl<const D: usize, const T: usize> TileCoder<D, T> {
+    /// Tilings in these groups, `T` in all, each moved in each dimension by what `offset` says, in
+    /// intervals from 0 to below 1; [`displacement`] is the usual one.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`] for dimensions without extent or with other than 1 to 256 intervals, for other than
+    /// `T` tilings in all, 0 included, for an offset outside of \[0, 1), for a hashed table whose slots
+    /// are no power of two from 2 to 65,536, and for more than 65,536 slots without hashing.
+    pub fn new(
+        dimensions: [Dimension; D],
+        groups: &[Group],
+        table: Table,
+        offset: impl FnMut(Place) -> f32,
+    ) -> Result<Self, Error> {
+        let mut coder = Self::grids(dimensions, groups, offset)?;
+        match table {
+            Table::Direct => coder.place(groups)?,
+            Table::Hashed(slots) => coder.hash(slots)?,
+        }
+        Ok(coder)
+    }
+
+    /// Puts one tiling behind the other.
+    fn place(&mut self, groups: &[Group]) -> Result<(), Error> {
+        let dimensions = &self.dimensions;
+        let tiles = groups.iter().flat_map(|group| {
+            let tiles = |&d: &usize| usize::from(dimensions[d].tiles());
+            repeat_n(
+                group.dimensions.iter().map(tiles).product::<usize>(),
+                group.tilings,
+            )
+        });
+        for (base, tiles) in self.bases.iter_mut().zip(tiles) {
+            *base = self.slots as u16;
+            self.slots += tiles;
+            Error::unless(
+                self.slots <= MAX_SLOTS,
+                "slots",
+                self.slots,
+                "at most",
+                MAX_SLOTS,
+            )?;
+        }
+        Ok(())
+    }
+
+    fn hash(&mut self, slots: usize) -> Result<(), Error> {
+        let fits = slots.is_power_of_two() && (2..=MAX_SLOTS).contains(&slots);
+        Error::unless(fits, "slots", slots, "a power of two from 2 to", MAX_SLOTS)?;
+        self.slots = slots;
+        self.shift = 16 - slots.trailing_zeros();
+        for t in 0..T {
+            // An odd factor near 2¹⁶ over the golden ratio spreads what is close together (Knuth 6.4).
+            self.bases[t] = (t as u16).wrapping_mul(0x9e37).wrapping_mul(0x9e37);
+            for strides in &mut self.strides {
+                strides[t] = strides[t].wrapping_mul(0x9e37);
+            }
+        }
+        Ok(())
+    }
+
+    /// The tilings without their places in the table.
+    fn grids(
+        dimensions: [Dimension; D],
+        groups: &[Group],
+        mut offset: impl FnMut(Place) -> f32,
+    ) -> Result<Self, Error> {
+        let tilings = groups.iter().map(|group| group.tilings).sum();
+        Error::unless(T > 0 && tilings == T, "tilings", tilings, "above 0, and", T)?;
+        for dimension in &dimensions {
+            dimension.check()?;
+        }
+        let mut coder = Self {
+            dimensions,
+            per_unit: dimensions.map(|d| f32::from(d.intervals) / (d.high - d.low)),
+            offsets: [[0; T]; D],
+            strides: [[0; T]; D],
+            bases: [0; T],
+            shift: 0,
+            slots: 0,
+        };
+        let mut first = 0;
+        for (number, group) in groups.iter().enumerate() {
+            let mut stride = 1;
+            for (place, &d) in group.dimensions.iter().enumerate() {
+                let Some(dimension) = dimensions.get(d) else {
+                    return Err(Error::Count {
+                        name: "as a dimension's number",
+                        value: d,
+                        allowed: "less than",
+                        limit: D,
+                    });
+                };
+                for tiling in 0..group.tilings {
+                    let offset = offset(Place {
+                        group: number,
+                        tiling,
+                        tilings: group.tilings,
+                        dimension: place,
+                    });
+                    if !(0.0..1.0).contains(&offset) {
+                        return Err(Error::OutOfRange {
+                            name: "an offset",
+                            value: offset,
+                            unit: "intervals",
+                            allowed: "0 to below 1",
+                        });
+                    }
+                    coder.offsets[d][first + tiling] = (offset * 65536.0) as u16;
+                    coder.strides[d][first + tiling] = stride as u16;
+                }
+                stride *= usize::from(dimension.tiles());
+                Error::unless(
+                    stride <= 1 << 16,
+                    "tiles of a tiling",
+                    stride,
+                    "at most",
+                    1 << 16,
+                )?;
+            }
+            first += group.tilings;
+        }
+        Ok(coder)
+    }
+}
+
+/// Of which tiling and dimension an offset is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The group's place among the groups.
+    pub group: usize,
+    /// The tiling's place in the group.
+    pub tiling: usize,
+    /// Tilings in the group.
+    pub tilings: usize,
+    /// The dimension's place in the group.
+    pub dimension: usize,
+}
+
+/// Displacement by the first odd integers (Sutton & Barto 9.5.4): among n tilings, tiling j is moved by
+/// j (1, 3, 5, 7, …) / n intervals, modulo 1.
+#[must_use]
+pub fn displacement(place: Place) -> f32 {
+    let steps = place.tiling * (2 * place.dimension + 1) % place.tilings;
+    steps as f32 / place.tilings as f32
+}
+
+impl<const D: usize, const T: usize> Features<D, T> for TileCoder<D, T> {
+    fn slots(&self) -> usize {
+        self.slots
+    }
+
+    #[inline]
+    fn active(&self, state: &[f32; D]) -> [u16; T] {
+        let mut slots = self.bases;
+        for (d, &x) in state.iter().enumerate() {
+            let [whole, next, fraction] = self.dimensions[d].locate(x, self.per_unit[d]);
+            let moved = self.offsets[d].iter().zip(&self.strides[d]);
+            for (slot, (&offset, &stride)) in slots.iter_mut().zip(moved) {
+                let (_, carried) = fraction.overflowing_add(offset);
+                let coordinate = if carried { next } else { whole };
+                *slot = slot.wrapping_add(coordinate.wrapping_mul(stride));
+            }
+        }
+        slots.map(|slot| slot >> self.shift)
+    }
+
+    fn fingerprint(&self, mut mix: impl FnMut(u32)) {
+        for d in 0..D {
+            let dimension = &self.dimensions[d];
+            mix(dimension.low.to_bits());
+            mix(dimension.high.to_bits());
+            mix(u32::from(dimension.intervals) << 1 | u32::from(dimension.cyclic));
+            for t in 0..T {
+                mix(u32::from(self.offsets[d][t]) << 16 | u32::from(self.strides[d][t]));
+            }
+        }
+        self.bases.iter().for_each(|&base| mix(u32::from(base)));
+        mix(self.shift);
+    }
+}

@@ -1,0 +1,293 @@
+//! What is refused is refused with its reason, and changes nothing.
+
+use rand_pcg::Pcg32;
+use sarsa::{
+    Dimension, Group, LoadError, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder,
+    displacement,
+};
+
+const LINE: [Dimension; 1] = [Dimension::bounded(0.0, 1.0, 4)];
+
+fn coder(
+    line: [Dimension; 1],
+    tilings: usize,
+    table: Table,
+) -> Result<TileCoder<1, 4>, sarsa::Error> {
+    TileCoder::new(line, &[Group::new(&[0], tilings)], table, displacement)
+}
+
+const SETTINGS: Settings = Settings {
+    gamma: 1.0,
+    lambda: 0.9,
+    alpha: Schedule::constant(0.5),
+    epsilon: Schedule::constant(0.1),
+    symmetry: Symmetry::None,
+};
+
+type Agent<'w> = Sarsa<'w, TileCoder<1, 4>, 32, 2, 1, 4>;
+
+fn agent(weights: &mut [[f32; 2]; 32]) -> Agent<'_> {
+    Sarsa::new(
+        coder(LINE, 4, Table::Hashed(32)).unwrap(),
+        SETTINGS,
+        weights,
+    )
+    .unwrap()
+}
+
+#[test]
+fn settings() {
+    let falling = |start, factor, floor| Schedule {
+        start,
+        factor,
+        floor,
+    };
+    let cases: [(Settings, &str); 11] = [
+        (
+            Settings {
+                gamma: 1.01,
+                ..SETTINGS
+            },
+            "gamma is 1.01; allowed is 0 to 1",
+        ),
+        (
+            Settings {
+                lambda: -0.5,
+                ..SETTINGS
+            },
+            "lambda is -0.5; allowed is 0 to 1",
+        ),
+        (
+            Settings {
+                lambda: f32::NAN,
+                ..SETTINGS
+            },
+            "lambda is NaN; allowed is 0 to 1",
+        ),
+        (
+            Settings {
+                alpha: Schedule::constant(0.0),
+                ..SETTINGS
+            },
+            "alpha is 0; allowed is above 0 to 1",
+        ),
+        (
+            Settings {
+                alpha: Schedule::constant(1.5),
+                ..SETTINGS
+            },
+            "alpha is 1.5; allowed is 0 to 1",
+        ),
+        (
+            Settings {
+                alpha: falling(0.5, 1.5, 0.1),
+                ..SETTINGS
+            },
+            "alpha's factor is 1.5; allowed is 0 to 1",
+        ),
+        (
+            Settings {
+                alpha: falling(0.5, 0.5, 0.6),
+                ..SETTINGS
+            },
+            "alpha's floor is 0.6; allowed is 0 to its start",
+        ),
+        (
+            Settings {
+                epsilon: Schedule::constant(-1.0),
+                ..SETTINGS
+            },
+            "epsilon is -1; allowed is 0 to 1",
+        ),
+        (
+            Settings {
+                epsilon: falling(0.5, -1.0, 0.0),
+                ..SETTINGS
+            },
+            "epsilon's factor is -1; allowed is 0 to 1",
+        ),
+        (
+            Settings {
+                epsilon: falling(0.5, 1.0, f32::NAN),
+                ..SETTINGS
+            },
+            "epsilon's floor is NaN; allowed is 0 to its start",
+        ),
+        (
+            Settings {
+                symmetry: Symmetry::Mirror(1),
+                ..SETTINGS
+            },
+            "1 as the mirror's dimension; allowed is less than 1",
+        ),
+    ];
+    for (settings, reason) in cases {
+        let mut weights = [[7.0; 2]; 32];
+        let error = Sarsa::new(
+            coder(LINE, 4, Table::Direct).unwrap(),
+            settings,
+            &mut weights,
+        )
+        .expect_err(reason);
+        assert_eq!(error.to_string(), reason);
+        assert_eq!(weights, [[7.0; 2]; 32]);
+    }
+}
+
+#[test]
+fn sizes() {
+    let mut few = [[0.0; 2]; 19];
+    let direct = coder(LINE, 4, Table::Direct).unwrap();
+    let error = Sarsa::new(direct.clone(), SETTINGS, &mut few).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "20 slots of features; allowed is 1 to 19"
+    );
+    let mut none = [[0.0; 0]; 32];
+    let error = Sarsa::new(direct, SETTINGS, &mut none).unwrap_err();
+    assert_eq!(error.to_string(), "0 actions; allowed is 1 to 256");
+}
+
+#[test]
+fn coders() {
+    let reason = |line, tilings, table| coder(line, tilings, table).unwrap_err().to_string();
+    for slots in [0, 1, 48, 1 << 17] {
+        assert_eq!(
+            reason(LINE, 4, Table::Hashed(slots)),
+            format!("{slots} slots; allowed is a power of two from 2 to 65536")
+        );
+    }
+    assert_eq!(
+        reason(LINE, 0, Table::Direct),
+        "0 tilings; allowed is above 0, and 4"
+    );
+    assert_eq!(
+        reason(LINE, 5, Table::Direct),
+        "5 tilings; allowed is above 0, and 4"
+    );
+    assert_eq!(
+        reason([Dimension::bounded(0.0, 1.0, 0)], 4, Table::Direct),
+        "0 intervals; allowed is 1 to 256"
+    );
+    assert_eq!(
+        reason([Dimension::bounded(2.0, 1.0, 4)], 4, Table::Direct),
+        "an upper bound is 1 of the state; allowed is a finite number above the lower"
+    );
+    assert_eq!(
+        reason([Dimension::cyclic(f32::NAN, 1.0, 4)], 4, Table::Direct),
+        "a lower bound is NaN of the state; allowed is a finite number"
+    );
+    let none = TileCoder::<1, 0>::new(LINE, &[], Table::Direct, displacement).unwrap_err();
+    assert_eq!(none.to_string(), "0 tilings; allowed is above 0, and 0");
+    let beyond = TileCoder::<1, 4>::new(LINE, &[Group::new(&[1], 4)], Table::Direct, displacement);
+    assert_eq!(
+        beyond.unwrap_err().to_string(),
+        "1 as a dimension's number; allowed is less than 1"
+    );
+    let far = TileCoder::<1, 4>::new(LINE, &[Group::new(&[0], 4)], Table::Direct, |_| 1.0);
+    assert_eq!(
+        far.unwrap_err().to_string(),
+        "an offset is 1 intervals; allowed is 0 to below 1"
+    );
+    let wide = [Dimension::bounded(0.0, 1.0, 256); 2];
+    let many = TileCoder::<2, 1>::new(wide, &[Group::new(&[0, 1], 1)], Table::Direct, displacement);
+    assert_eq!(
+        many.unwrap_err().to_string(),
+        "66049 tiles of a tiling; allowed is at most 65536"
+    );
+    let wide = [Dimension::cyclic(0.0, 1.0, 256); 2];
+    let many = TileCoder::<2, 2>::new(wide, &[Group::new(&[0, 1], 2)], Table::Direct, displacement);
+    assert_eq!(
+        many.unwrap_err().to_string(),
+        "131072 slots; allowed is at most 65536"
+    );
+}
+
+/// A learner that has learnt something.
+fn learnt(weights: &mut [[f32; 2]; 32]) -> Vec<u8> {
+    let mut agent = agent(weights);
+    let mut rng = Pcg32::new(1, 1);
+    for n in 0..20 {
+        agent.start(&[n as f32 / 20.0], &mut rng);
+        agent.end(-1.0 - n as f32);
+    }
+    agent.save().collect()
+}
+
+#[test]
+fn what_was_saved_is_loaded() {
+    let mut weights = [[0.0; 2]; 32];
+    let bytes = learnt(&mut weights);
+    assert_eq!(bytes.len(), Agent::BYTES);
+    assert_eq!(bytes.len(), 16 + 32 * 2 * 4 + 4);
+    let mut other = [[0.0; 2]; 32];
+    agent(&mut other).load(&bytes).unwrap();
+    assert_eq!(weights, other);
+    assert!(weights.iter().flatten().filter(|&&w| w != 0.0).count() > 10);
+}
+
+#[test]
+fn bytes() {
+    let mut weights = [[0.0; 2]; 32];
+    let good = learnt(&mut weights);
+    let refuse = |bytes: &[u8]| {
+        let mut weights = [[0.0; 2]; 32];
+        let mut agent = agent(&mut weights);
+        let error = agent.load(bytes).expect_err("refused");
+        assert_eq!(agent.weights(), &[[0.0; 2]; 32], "{error}");
+        error
+    };
+    let with = |at: usize, value: u8| {
+        let mut bytes = good.clone();
+        bytes[at] = value;
+        bytes
+    };
+    assert_eq!(refuse(&[]), LoadError::Magic);
+    assert_eq!(refuse(&good[..3]), LoadError::Magic);
+    assert_eq!(refuse(&with(0, b'X')), LoadError::Magic);
+    let version = refuse(&with(4, 2));
+    assert_eq!(version.to_string(), "weights of version 2; allowed is 1");
+    for length in [4, 7, 8, 15, 16, 20, good.len() - 1] {
+        let size = refuse(&good[..length]);
+        assert_eq!(
+            size.to_string(),
+            format!("weights of {length} bytes; allowed is 276")
+        );
+    }
+    let longer = [&good[..], &[0]].concat();
+    assert_eq!(
+        refuse(&longer).to_string(),
+        "weights of 277 bytes; allowed is 276"
+    );
+    assert_eq!(
+        refuse(&with(9, 2)).to_string(),
+        "weights of 532 bytes; allowed is 276"
+    );
+    // Any other byte, in the weights and in the checksum itself.
+    for at in 16..good.len() {
+        let error = refuse(&with(at, good[at] ^ 1));
+        assert!(
+            matches!(error, LoadError::Checksum { .. }),
+            "byte {at}: {error}"
+        );
+    }
+}
+
+/// The same size, but what a weight stands for is another tile.
+#[test]
+fn weights_of_other_tiles() {
+    let mut weights = [[0.0; 2]; 32];
+    let good = learnt(&mut weights);
+    let wider = coder([Dimension::bounded(0.0, 2.0, 4)], 4, Table::Hashed(32)).unwrap();
+    let finer = coder([Dimension::bounded(0.0, 1.0, 5)], 4, Table::Hashed(32)).unwrap();
+    let round = coder([Dimension::cyclic(0.0, 1.0, 4)], 4, Table::Hashed(32)).unwrap();
+    let smaller = coder(LINE, 4, Table::Hashed(16)).unwrap();
+    let moved = TileCoder::new(LINE, &[Group::new(&[0], 4)], Table::Hashed(32), |_| 0.0).unwrap();
+    for coder in [wider, finer, round, smaller, moved] {
+        let mut weights = [[0.0; 2]; 32];
+        let mut agent: Agent = Sarsa::new(coder, SETTINGS, &mut weights).unwrap();
+        let error = agent.load(&good).unwrap_err();
+        assert!(matches!(error, LoadError::Features { .. }), "{error}");
+        assert_eq!(weights, [[0.0; 2]; 32]);
+    }
+}
