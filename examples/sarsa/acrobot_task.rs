@@ -2,9 +2,10 @@
 
 use core::f32::consts::PI;
 
-use acrobot::{Acrobot, Action, Arithmetic, Observation, TimeLimit};
-use rand_core::Rng;
-use sarsa::{Dimension, Error, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement};
+use acrobot::{Acrobot, Action, Fast, Pcg64, SeedSequence, TimeLimit};
+use sarsa::{
+    Dimension, Error, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement,
+};
 
 /// A learner of Acrobot with `T` tilings and `S` slots, which take 8 bytes each.
 pub type Learner<'w, const S: usize, const T: usize> = Sarsa<'w, TileCoder<4, T>, S, 2, 4, T>;
@@ -38,9 +39,19 @@ impl Preset {
             Self::Fast => {
                 let [a, b, c, d] = PAIRS.each_ref().map(|pair| Group::new(pair, 2));
                 let all = Group::new(&[0, 1, 2, 3], T.saturating_sub(8));
-                TileCoder::new(dimensions, &[all, a, b, c, d], Table::Hashed(S), displacement)?
+                TileCoder::new(
+                    dimensions,
+                    &[all, a, b, c, d],
+                    Table::Hashed(S),
+                    displacement,
+                )?
             }
-            Self::Quality => TileCoder::new(dimensions, &[Group::new(&[0, 1, 2, 3], T)], Table::Hashed(S), displacement)?,
+            Self::Quality => TileCoder::new(
+                dimensions,
+                &[Group::new(&[0, 1, 2, 3], T)],
+                Table::Hashed(S),
+                displacement,
+            )?,
         };
         let settings = Settings {
             gamma: 1.0,
@@ -64,19 +75,34 @@ const fn falling(start: f32, factor: f32, floor: f32) -> Schedule {
 /// The actions of the learner: without torque nothing is gained.
 pub const ACTIONS: [Action; 2] = [Action::Negative, Action::Positive];
 
+/// An acrobot with 500 steps an episode.
+pub type Env = TimeLimit<Acrobot<Fast>>;
+
+/// What a training with this seed uses everywhere: the acrobot of that seed, and a generator for the
+/// learner's own choices.
+pub fn training(seed: SeedSequence) -> (Env, Pcg64) {
+    let choices = Pcg64::new(seed.child(0));
+    (TimeLimit::v1(Acrobot::new(seed)), choices)
+}
+
+/// An acrobot with starts that [`training`] with this seed does not have.
+pub fn evaluation(seed: &SeedSequence) -> Env {
+    TimeLimit::v1(Acrobot::new(seed.child(1)))
+}
+
 /// The state as the learner sees it, \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
-pub fn state<A: Arithmetic, R: Rng>(env: &TimeLimit<Acrobot<A, R>>) -> [f32; 4] {
-    env.inner().state().cast().into()
+pub fn state(env: &Env) -> [f32; 4] {
+    env.inner().state().into()
 }
 
 /// Learns in one episode from a new start, and returns the sum of the rewards.
-pub fn learn<A: Arithmetic, R: Rng, const S: usize, const T: usize>(
+pub fn learn<const S: usize, const T: usize>(
     learner: &mut Learner<'_, S, T>,
-    env: &mut TimeLimit<Acrobot<A, R>>,
-    rng: &mut impl Rng,
+    env: &mut Env,
+    choices: &mut Pcg64,
 ) -> f32 {
-    let _: Observation = env.reset();
-    let mut action = learner.start(&state(env), rng);
+    env.reset();
+    let mut action = learner.start(&state(env), choices);
     let mut sum = 0.0;
     loop {
         let step = env.step(ACTIONS[action]);
@@ -85,7 +111,7 @@ pub fn learn<A: Arithmetic, R: Rng, const S: usize, const T: usize>(
             learner.end(step.reward);
             return sum;
         }
-        action = learner.step(step.reward, &state(env), rng);
+        action = learner.step(step.reward, &state(env), choices);
         if step.truncated {
             learner.cut();
             return sum;
@@ -93,15 +119,12 @@ pub fn learn<A: Arithmetic, R: Rng, const S: usize, const T: usize>(
     }
 }
 
-/// Plays one greedy episode from a new start: the sum of the rewards, and whether the goal was reached.
-pub fn play<A: Arithmetic, R: Rng, const S: usize, const T: usize>(
-    learner: &Learner<'_, S, T>,
-    env: &mut TimeLimit<Acrobot<A, R>>,
-) -> (f32, bool) {
-    let _: Observation = env.reset();
+/// Plays an episode from a new start: the sum of the rewards, and whether the goal was reached.
+pub fn play(env: &mut Env, mut policy: impl FnMut(&[f32; 4]) -> Action) -> (f32, bool) {
+    env.reset();
     let mut sum = 0.0;
     loop {
-        let step = env.step(ACTIONS[learner.greedy(&state(env))]);
+        let step = env.step(policy(&state(env)));
         sum += step.reward;
         if step.ended() {
             return (sum, step.terminated);

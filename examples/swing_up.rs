@@ -1,0 +1,205 @@
+//! Sutton's Sarsa(λ) learns to swing up, from nothing and within seconds, and its greedy policy is then
+//! evaluated beside two that learn nothing.
+//!
+//! ```text
+//! cargo run --release --example swing_up -- --preset quality --episodes 10000 --save weights.bin
+//! cargo run --release --example swing_up -- --preset quality --episodes 0 --load weights.bin
+//! ```
+//!
+//! The learner and its memory are those of `examples/sarsa`, which microcontrollers and browsers run
+//! to the same bits. `--quiet` prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the
+//! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better; R and S are of
+//! 1,000 greedy episodes from starts that were not trained on, and K of these missed the goal.
+
+use std::collections::VecDeque;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use acrobot::{Action, Pcg64, REWARD_THRESHOLD, SeedSequence};
+use clap::{Parser, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+
+#[path = "sarsa/acrobot_task.rs"]
+mod acrobot_task;
+
+use acrobot_task::{ACTIONS, Learner, Preset, evaluation, learn, play, training};
+
+/// Learns to swing up, and says how well.
+#[derive(Parser)]
+struct Options {
+    /// What the learner is to be good at: few episodes, or the best policy after many.
+    #[arg(long, value_enum, default_value_t = Goal::Fast)]
+    preset: Goal,
+    /// Memory of the weights.
+    #[arg(long, value_enum, default_value_t = Memory::K64)]
+    memory: Memory,
+    /// Episodes to learn in.
+    #[arg(long, default_value_t = 2000)]
+    episodes: u32,
+    /// Seed of everything: a decimal integer of any size.
+    #[arg(long, default_value = "42")]
+    seed: SeedSequence,
+    /// Where the weights go.
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// Where the weights come from, in place of zeros.
+    #[arg(long, value_name = "FILE")]
+    load: Option<PathBuf>,
+    /// Prints one line only.
+    #[arg(long)]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Goal {
+    Fast,
+    Quality,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Memory {
+    #[value(name = "8k")]
+    K8,
+    #[value(name = "16k")]
+    K16,
+    #[value(name = "32k")]
+    K32,
+    #[value(name = "64k")]
+    K64,
+}
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let done = match (options.preset, options.memory) {
+        (Goal::Fast, Memory::K64) => run::<8192, 20>(Preset::Fast, &options),
+        (Goal::Fast, Memory::K32) => run::<4096, 20>(Preset::Fast, &options),
+        (Goal::Fast, Memory::K16) => run::<2048, 20>(Preset::Fast, &options),
+        (Goal::Fast, Memory::K8) => run::<1024, 20>(Preset::Fast, &options),
+        (Goal::Quality, Memory::K64) => run::<8192, 24>(Preset::Quality, &options),
+        (Goal::Quality, Memory::K32) => run::<4096, 16>(Preset::Quality, &options),
+        (Goal::Quality, Memory::K16) => run::<2048, 12>(Preset::Quality, &options),
+        (Goal::Quality, Memory::K8) => run::<1024, 8>(Preset::Quality, &options),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("error: {reason}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Learns with `T` tilings in `S` slots, and reports.
+fn run<const S: usize, const T: usize>(preset: Preset, options: &Options) -> Result<(), String> {
+    let mut weights = [[0.0; 2]; S];
+    let mut learner: Learner<S, T> = preset.learner(&mut weights).map_err(|e| e.to_string())?;
+    if let Some(path) = &options.load {
+        let named = |reason: &dyn std::fmt::Display| format!("{}: {reason}", path.display());
+        let bytes = fs::read(path).map_err(|e| named(&e))?;
+        learner.load(&bytes).map_err(|e| named(&e))?;
+    }
+
+    let solved_at = train(&mut learner, options);
+    if let Some(path) = &options.save {
+        let bytes: Vec<u8> = learner.save().collect();
+        fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+    }
+
+    let greedy = evaluate(options, |state| ACTIONS[learner.greedy(state)]);
+    let solved_at = solved_at.map_or("never".into(), |episode| episode.to_string());
+    if options.quiet {
+        let [mean, sd] = greedy.moments();
+        let misses = greedy.misses;
+        println!("solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}");
+        return Ok(());
+    }
+    let against = |&[_, _, dtheta1, _]: &[f32; 4]| ACTIONS[usize::from(dtheta1 < 0.0)];
+    let mut actions = Pcg64::new(options.seed.child(2));
+    println!("solved at episode {solved_at}\n");
+    println!("policy              mean return of {EVALUATION} episodes  missed the goal");
+    for (name, returns) in [
+        ("learnt", greedy),
+        ("torque against θ̇1", evaluate(options, against)),
+        (
+            "random",
+            evaluate(options, |_| Action::sample(&mut actions)),
+        ),
+    ] {
+        let [mean, sd] = returns.moments();
+        println!(
+            "{name:<18}  {mean:>19.2} ± {sd:<9.2}  {:>15}",
+            returns.misses
+        );
+    }
+    Ok(())
+}
+
+/// Learns for so many episodes; returns the first from which on Gymnasium calls the task solved.
+fn train<const S: usize, const T: usize>(
+    learner: &mut Learner<S, T>,
+    options: &Options,
+) -> Option<u32> {
+    let (mut env, mut choices) = training(options.seed.clone());
+    let bar = if options.quiet {
+        ProgressBar::hidden()
+    } else {
+        ProgressBar::new(options.episodes.into())
+    };
+    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} episodes {msg}");
+    bar.set_style(style.expect("a valid template"));
+
+    let mut latest = VecDeque::new();
+    let mut sum = 0.0;
+    let mut solved_at = None;
+    for episode in 1..=options.episodes {
+        // Returns are whole numbers, so that the sum of the latest stays exact.
+        let gained = learn(learner, &mut env, &mut choices);
+        latest.push_back(gained);
+        sum += gained;
+        if latest.len() > 100 {
+            sum -= latest.pop_front().unwrap_or_default();
+        }
+        if solved_at.is_none() && latest.len() == 100 && sum / 100.0 >= REWARD_THRESHOLD {
+            solved_at = Some(episode);
+        }
+        bar.set_message(format!("return {:.1}", sum / latest.len() as f32));
+        bar.inc(1);
+    }
+    bar.finish();
+    solved_at
+}
+
+/// Episodes of an evaluation.
+const EVALUATION: u32 = 1000;
+
+/// How a policy did.
+#[derive(Default)]
+struct Returns {
+    sum: f64,
+    squares: f64,
+    /// Episodes that were cut before the goal.
+    misses: u32,
+}
+
+impl Returns {
+    /// Mean and standard deviation.
+    fn moments(&self) -> [f64; 2] {
+        let n = f64::from(EVALUATION);
+        let mean = self.sum / n;
+        [mean, (self.squares / n - mean * mean).max(0.0).sqrt()]
+    }
+}
+
+/// Plays the same starts whatever the policy.
+fn evaluate(options: &Options, mut policy: impl FnMut(&[f32; 4]) -> Action) -> Returns {
+    let mut env = evaluation(&options.seed);
+    let mut returns = Returns::default();
+    for _ in 0..EVALUATION {
+        let (gained, reached) = play(&mut env, &mut policy);
+        returns.sum += f64::from(gained);
+        returns.squares += f64::from(gained * gained);
+        returns.misses += u32::from(!reached);
+    }
+    returns
+}
