@@ -133,6 +133,10 @@ pub enum Table {
 /// Slots that 16 bits can number.
 const MAX_SLOTS: usize = 1 << 16;
 
+/// Multiples of it modulo 2¹⁶ lie far apart, as those of the golden ratio do (Knuth 6.4): no quotient of
+/// the continued fraction of it over 2¹⁶ is above 2, which holds for no other factor.
+const FACTOR: u16 = 0xb3f9;
+
 /// `T` tilings over a state of `D` numbers.
 ///
 /// A tile's slot is linear in its coordinates: one product and one comparison for each dimension,
@@ -207,10 +211,9 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         self.slots = slots;
         self.shift = 16 - slots.trailing_zeros();
         for t in 0..T {
-            // An odd factor near 2¹⁶ over the golden ratio spreads what is close together (Knuth 6.4).
-            self.bases[t] = (t as u16).wrapping_mul(0x9e37).wrapping_mul(0x9e37);
+            self.bases[t] = (t as u16).wrapping_mul(FACTOR).wrapping_mul(FACTOR);
             for strides in &mut self.strides {
-                strides[t] = strides[t].wrapping_mul(0x9e37);
+                strides[t] = strides[t].wrapping_mul(FACTOR);
             }
         }
         Ok(())

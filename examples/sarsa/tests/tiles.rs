@@ -141,7 +141,7 @@ fn a_tiling_sees_its_own_dimensions_only() {
     assert!(a != d && b != e && c == f);
 }
 
-/// Thrown at random, some 500 tiles of each tiling would lose a fifth to tiles that came before.
+/// Thrown at random, the 320 to 625 tiles of a tiling would lose a seventh to a quarter to others.
 #[test]
 fn hashing_spreads_the_tiles() {
     let coders = [eight(Table::Direct), eight(Table::Hashed(1024))];
@@ -159,7 +159,7 @@ fn hashing_spreads_the_tiles() {
     for (tiling, (tiles, slots)) in tiles.iter().zip(&slots).enumerate() {
         let (tiles, slots) = (tiles.len(), slots.len());
         assert!(
-            slots * 5 > tiles * 4,
+            slots * 20 > tiles * 19,
             "tiling {tiling}: {slots} slots for {tiles} tiles"
         );
     }
