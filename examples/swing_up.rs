@@ -72,14 +72,14 @@ enum Memory {
 fn main() -> ExitCode {
     let options = Options::parse();
     let done = match (options.preset, options.memory) {
-        (Goal::Fast, Memory::K64) => run::<8192, 20>(Preset::Fast, &options),
-        (Goal::Fast, Memory::K32) => run::<4096, 20>(Preset::Fast, &options),
-        (Goal::Fast, Memory::K16) => run::<2048, 20>(Preset::Fast, &options),
-        (Goal::Fast, Memory::K8) => run::<1024, 20>(Preset::Fast, &options),
-        (Goal::Quality, Memory::K64) => run::<8192, 24>(Preset::Quality, &options),
-        (Goal::Quality, Memory::K32) => run::<4096, 16>(Preset::Quality, &options),
-        (Goal::Quality, Memory::K16) => run::<2048, 12>(Preset::Quality, &options),
-        (Goal::Quality, Memory::K8) => run::<1024, 8>(Preset::Quality, &options),
+        (Goal::Fast, Memory::K64) => run::<8192, 28>(Preset::Fast, &options),
+        (Goal::Fast, Memory::K32) => run::<4096, 24>(Preset::Fast, &options),
+        (Goal::Fast, Memory::K16) => run::<2048, 24>(Preset::Fast, &options),
+        (Goal::Fast, Memory::K8) => run::<1024, 24>(Preset::Fast, &options),
+        (Goal::Quality, Memory::K64) => run::<8192, 28>(Preset::Quality, &options),
+        (Goal::Quality, Memory::K32) => run::<4096, 20>(Preset::Quality, &options),
+        (Goal::Quality, Memory::K16) => run::<2048, 16>(Preset::Quality, &options),
+        (Goal::Quality, Memory::K8) => run::<1024, 12>(Preset::Quality, &options),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -19,40 +19,26 @@ pub enum Preset {
     Quality,
 }
 
-/// Tilings of all four numbers, of which `T` are left once each pair has its two.
+/// What an angle shares with its velocity or with the other angle is learnt over pairs, within few episodes.
 const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
 
 impl Preset {
-    /// A learner in this memory.
+    /// A learner in this memory, with `T` tilings, of which some go to the pairs.
     pub fn learner<const S: usize, const T: usize>(
         self,
         weights: &mut [[f32; 2]; S],
     ) -> Result<Learner<'_, S, T>, Error> {
-        let (bins, alpha, epsilon) = match self {
-            Self::Fast => (6, falling(0.5, 0.998, 0.2), Schedule::constant(0.0)),
-            Self::Quality => (7, falling(0.5, 0.9998, 0.01), falling(0.01, 0.9998, 0.0)),
+        let (tilings, alpha, epsilon) = match self {
+            Self::Fast => (2, falling(0.5, 0.999, 0.02), falling(0.005, 0.9995, 0.0)),
+            Self::Quality => (1, falling(0.5, 0.9997, 0.01), falling(0.01, 0.9998, 0.0)),
         };
-        let angle = Dimension::cyclic(-PI, PI, bins);
+        let angle = Dimension::cyclic(-PI, PI, if S < 8192 { 6 } else { 7 });
         let velocities = [PI, 2.5 * PI].map(|bound| Dimension::bounded(-bound, bound, 6));
         let dimensions = [angle, angle, velocities[0], velocities[1]];
-        let coder = match self {
-            Self::Fast => {
-                let [a, b, c, d] = PAIRS.each_ref().map(|pair| Group::new(pair, 2));
-                let all = Group::new(&[0, 1, 2, 3], T.saturating_sub(8));
-                TileCoder::new(
-                    dimensions,
-                    &[all, a, b, c, d],
-                    Table::Hashed(S),
-                    displacement,
-                )?
-            }
-            Self::Quality => TileCoder::new(
-                dimensions,
-                &[Group::new(&[0, 1, 2, 3], T)],
-                Table::Hashed(S),
-                displacement,
-            )?,
-        };
+        let all = Group::new(&[0, 1, 2, 3], T.saturating_sub(4 * tilings));
+        let [a, b, c, d] = PAIRS.each_ref().map(|pair| Group::new(pair, tilings));
+        let groups = [all, a, b, c, d];
+        let coder = TileCoder::new(dimensions, &groups, Table::Hashed(S), displacement)?;
         let settings = Settings {
             gamma: 1.0,
             lambda: 0.95,

@@ -133,9 +133,13 @@ pub enum Table {
 /// Slots that 16 bits can number.
 const MAX_SLOTS: usize = 1 << 16;
 
-/// Multiples of it modulo 2¹⁶ lie far apart, as those of the golden ratio do (Knuth 6.4): no quotient of
-/// the continued fraction of it over 2¹⁶ is above 2, which holds for no other factor.
+/// From tile to tile of a tiling: multiples of it modulo 2¹⁶ lie far apart, as those of the golden ratio
+/// do (Knuth 6.4), since no quotient of the continued fraction of it over 2¹⁶ is above 2, which holds
+/// for no other factor.
 const FACTOR: u16 = 0xb3f9;
+
+/// From tiling to tiling: 2¹⁶ over the golden ratio.
+const GOLDEN: u16 = 0x9e37;
 
 /// `T` tilings over a state of `D` numbers.
 ///
@@ -211,7 +215,7 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         self.slots = slots;
         self.shift = 16 - slots.trailing_zeros();
         for t in 0..T {
-            self.bases[t] = (t as u16).wrapping_mul(FACTOR).wrapping_mul(FACTOR);
+            self.bases[t] = (t as u16).wrapping_mul(GOLDEN);
             for strides in &mut self.strides {
                 strides[t] = strides[t].wrapping_mul(FACTOR);
             }
