@@ -186,7 +186,8 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
     /// The update towards `target`.
     #[inline]
     fn learn(&mut self, target: f32, next: Option<(&[u16; T], usize)>) {
-        let delta = target - self.at(&self.slots)[self.action];
+        let value = self.at(&self.slots).get(self.action).copied();
+        let delta = target - value.unwrap_or(0.0);
         let step = self.alpha / T as f32 * delta;
         self.traces.update(self.weights, step, next);
     }
@@ -210,7 +211,9 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
     fn choose<R: Rng + ?Sized>(&self, values: &[f32; A], rng: &mut R) -> usize {
         if self.epsilon > 0.0 && (rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0) < self.epsilon
         {
-            return ((u64::from(rng.next_u32()) * A as u64) >> 32) as usize;
+            let action = (u64::from(rng.next_u32()) * A as u64) >> 32;
+            // No more than it is; the compiler sees so that no index is out of bounds.
+            return (action as usize).min(A.saturating_sub(1));
         }
         best(values)
     }

@@ -189,7 +189,7 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
     fn place(&mut self, groups: &[Group]) -> Result<(), Error> {
         let dimensions = &self.dimensions;
         let tiles = groups.iter().flat_map(|group| {
-            let tiles = |&d: &usize| usize::from(dimensions[d].tiles());
+            let tiles = |&d: &usize| dimensions.get(d).map_or(1, |d| usize::from(d.tiles()));
             repeat_n(
                 group.dimensions.iter().map(tiles).product::<usize>(),
                 group.tilings,
@@ -270,8 +270,13 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
                             allowed: "0 to below 1",
                         });
                     }
-                    coder.offsets[d][first + tiling] = (offset * 65536.0) as u16;
-                    coder.strides[d][first + tiling] = stride as u16;
+                    let t = first + tiling;
+                    if let Some(moved) = coder.offsets[d].get_mut(t) {
+                        *moved = (offset * 65536.0) as u16;
+                    }
+                    if let Some(factor) = coder.strides[d].get_mut(t) {
+                        *factor = stride as u16;
+                    }
                 }
                 stride *= usize::from(dimension.tiles());
                 Error::unless(
@@ -305,8 +310,8 @@ pub struct Place {
 /// j (1, 3, 5, 7, …) / n intervals, modulo 1.
 #[must_use]
 pub fn displacement(place: Place) -> f32 {
-    let steps = place.tiling * (2 * place.dimension + 1) % place.tilings;
-    steps as f32 / place.tilings as f32
+    let steps = place.tiling * (2 * place.dimension + 1);
+    steps.checked_rem(place.tilings).unwrap_or(0) as f32 / place.tilings as f32
 }
 
 impl<const D: usize, const T: usize> Features<D, T> for TileCoder<D, T> {

@@ -1,5 +1,6 @@
 //! Replacing eligibility traces (Sutton & Barto 12.5, there for linear methods with binary features) as a ring of the
-//! latest tile sets: a trace is known from its age, and nothing is stored for a weight that has none.
+//! latest tile sets: a trace is known from its age, and nothing is stored for a weight that has none. Where hashing makes
+//! two tilings share a slot, each has a trace of its own for it, and the two add up.
 
 /// Sets that the ring holds.
 const LENGTH: usize = 64;
@@ -68,19 +69,16 @@ impl<const T: usize> Traces<T> {
         next: Option<(&[u16; T], usize)>,
     ) {
         let mut steps = [0.0; LENGTH];
-        for age in 0..self.ages {
-            steps[(self.head + LENGTH - age) % LENGTH] = step * self.decay[age];
+        for (age, decay) in self.decay.iter().take(self.ages).enumerate() {
+            steps[(self.head + LENGTH - age) % LENGTH] = step * decay;
         }
-        for t in 0..T {
-            let (mut rest, mut again) = (self.live[t], 0);
+        for (t, (slots, live)) in self.slots.iter().zip(&mut self.live).enumerate() {
+            let (mut rest, mut again) = (*live, 0);
             while rest != 0 {
-                let place = rest.trailing_zeros() as usize;
-                let slot = self.slots[t][place];
-                let action = usize::from(self.actions[place]);
-                if let Some(w) = weights
-                    .get_mut(usize::from(slot))
-                    .and_then(|w| w.get_mut(action))
-                {
+                let place = rest.trailing_zeros() as usize % LENGTH;
+                let (slot, action) = (slots[place], usize::from(self.actions[place]));
+                let weights = weights.get_mut(usize::from(slot));
+                if let Some(w) = weights.and_then(|w| w.get_mut(action)) {
                     *w += steps[place];
                 }
                 if next.is_some_and(|(next, chosen)| slot == next[t] && action == chosen) {
@@ -88,7 +86,7 @@ impl<const T: usize> Traces<T> {
                 }
                 rest &= rest - 1;
             }
-            self.live[t] &= !again;
+            *live &= !again;
         }
     }
 }
