@@ -1,0 +1,257 @@
+//! What a chip with a model can add to what it has learnt: before each action a beam search steps the
+//! exact model ahead, and the learnt values judge where it ends.
+//!
+//! ```text
+//! cargo run --release --example swing_up -- --preset quality --episodes 10000 --save weights.bin
+//! cargo run --release --example plan -- --load weights.bin
+//! ```
+//!
+//! Every step ahead doubles the beam by the two actions, in one step of a batch of sixteen, and keeps
+//! the eight states that the learner values most. A sequence that reaches the goal is taken at once: none is
+//! shorter. Without `--load` it learns first. Memory is fixed: the learner's, and the search's, which
+//! is printed.
+
+use std::fmt::Display;
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use acrobot::{Action, Batch, Block, Fast, Observations, Output, Pcg64, SeedSequence, State};
+use clap::Parser;
+use indicatif::ProgressIterator;
+
+#[path = "sarsa/acrobot_task.rs"]
+mod acrobot_task;
+
+use acrobot_task::{ACTIONS, Learner, Preset, evaluation, learn, play, training};
+
+/// Compares the learner's greedy policy with a beam search that ends in the learnt values.
+#[derive(Parser)]
+struct Options {
+    /// Steps that the search looks ahead.
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=100))]
+    depth: u32,
+    /// Episodes to play.
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
+    episodes: u32,
+    /// Seed of everything: a decimal integer of any size.
+    #[arg(long, default_value = "42")]
+    seed: SeedSequence,
+    /// Weights that `swing_up --preset quality --save` wrote, in place of learning.
+    #[arg(long, value_name = "FILE")]
+    load: Option<PathBuf>,
+    /// Episodes to learn in without `--load`.
+    #[arg(long, default_value_t = 10_000)]
+    learn: u32,
+}
+
+/// 64 KiB of weights.
+const SLOTS: usize = 8192;
+const TILINGS: usize = 24;
+
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            eprintln!("error: {reason}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(options: &Options) -> Result<(), String> {
+    let mut weights = [[0.0; 2]; SLOTS];
+    let mut learner: Learner<SLOTS, TILINGS> = Preset::Quality
+        .learner(&mut weights)
+        .map_err(|error| error.to_string())?;
+    match &options.load {
+        Some(path) => {
+            let named = |reason: &dyn Display| format!("{}: {reason}", path.display());
+            let bytes = fs::read(path).map_err(|error| named(&error))?;
+            learner.load(&bytes).map_err(|error| named(&error))?;
+        }
+        None => {
+            let (mut env, mut choices) = training(options.seed.clone());
+            for _ in (0..options.learn).progress() {
+                learn(&mut learner, &mut env, &mut choices);
+            }
+        }
+    }
+
+    let mut search = Search::new().map_err(|error| error.to_string())?;
+    println!(
+        "policy          mean return of {} episodes  missed the goal",
+        options.episodes
+    );
+    report("greedy", options, |state| ACTIONS[learner.greedy(state)]);
+    report(
+        &format!("{} steps ahead", options.depth),
+        options,
+        |state| search.choose(&learner, State::from(*state), options.depth),
+    );
+    println!(
+        "the search takes {} bytes, and {} steps of the model an action",
+        size_of::<Search>(),
+        search.steps / u64::from(search.choices.max(1))
+    );
+    Ok(())
+}
+
+fn report(name: &str, options: &Options, mut policy: impl FnMut(&[f32; 4]) -> Action) {
+    let mut env = evaluation(&options.seed);
+    let (mut sum, mut squares, mut misses) = (0.0, 0.0, 0);
+    for _ in (0..options.episodes).progress() {
+        let (gained, reached) = play(&mut env, &mut policy);
+        sum += f64::from(gained);
+        squares += f64::from(gained * gained);
+        misses += u32::from(!reached);
+    }
+    let n = f64::from(options.episodes);
+    let mean = sum / n;
+    let sd = (squares / n - mean * mean).max(0.0).sqrt();
+    println!("{name:<14}  {mean:>16.2} ± {sd:<9.2}  {misses:>15}");
+}
+
+/// States that are followed at once.
+const BEAM: usize = 8;
+/// One for each action in each of them.
+const LANES: usize = 2 * BEAM;
+
+/// A beam search on the model, in fixed memory.
+struct Search {
+    batch: Batch<Fast, [Block; 1], [Pcg64; LANES]>,
+    beam: [Node; LANES],
+    /// The shortest way to the goal that was found, from the state that the next choice is for.
+    plan: Option<Way>,
+    choices: u32,
+    steps: u64,
+}
+
+/// Actions, the first in the lowest bit.
+#[derive(Clone, Copy, Default)]
+struct Way {
+    actions: u128,
+    len: u32,
+}
+
+impl Way {
+    fn then(self, action: usize) -> Self {
+        Self {
+            actions: self.actions | (action as u128) << self.len,
+            len: self.len + 1,
+        }
+    }
+
+    fn first(self) -> Action {
+        ACTIONS[(self.actions & 1) as usize]
+    }
+
+    /// What is left of it after its first action.
+    fn rest(self) -> Option<Self> {
+        let len = self.len.checked_sub(1)?;
+        (len > 0).then_some(Self {
+            actions: self.actions >> 1,
+            len,
+        })
+    }
+}
+
+/// A state that can be reached, the way there, and the value of what is left.
+#[derive(Clone, Copy, Default)]
+struct Node {
+    state: State<f32>,
+    way: Way,
+    value: f32,
+}
+
+impl Search {
+    fn new() -> Result<Self, acrobot::Error> {
+        Ok(Self {
+            batch: Batch::new(0, [Block::EMPTY], [Pcg64::UNSEEDED; LANES])?,
+            beam: [Node::default(); LANES],
+            plan: None,
+            choices: 0,
+            steps: 0,
+        })
+    }
+
+    /// The first action of the best way found, now or before.
+    fn choose(
+        &mut self,
+        learner: &Learner<SLOTS, TILINGS>,
+        state: State<f32>,
+        depth: u32,
+    ) -> Action {
+        self.choices += 1;
+        let way = match (self.plan, self.best(learner, state, depth)) {
+            (Some(plan), (found, true)) if found.len < plan.len => found,
+            (Some(plan), _) => plan,
+            (None, (found, is_goal)) => {
+                if !is_goal {
+                    return found.first();
+                }
+                found
+            }
+        };
+        self.plan = way.rest();
+        way.first()
+    }
+
+    /// The best way of up to `depth` actions, and whether it ends in the goal.
+    fn best(
+        &mut self,
+        learner: &Learner<SLOTS, TILINGS>,
+        state: State<f32>,
+        depth: u32,
+    ) -> (Way, bool) {
+        self.beam[0] = Node {
+            state,
+            ..Node::default()
+        };
+        let mut followed = 1;
+        for _ in 0..depth {
+            let from = self.beam;
+            let children = 2 * followed;
+            let mut actions = [Action::Zero; LANES];
+            let mut states = [State::default(); LANES];
+            for lane in 0..children {
+                let (parent, action) = (from[lane / 2], lane % 2);
+                states[lane] = parent.state;
+                actions[lane] = ACTIONS[action];
+                self.beam[lane].way = parent.way.then(action);
+            }
+            let terminated = self.step(&states, &actions);
+            self.steps += children as u64;
+            for lane in 0..children {
+                if terminated[lane] {
+                    return (self.beam[lane].way, true);
+                }
+                let state = self.batch.state(lane).unwrap_or_default();
+                let [negative, positive] = learner.values(&state.into());
+                self.beam[lane].state = state;
+                self.beam[lane].value = negative.max(positive);
+            }
+            self.beam[..children].sort_unstable_by(|a, b| b.value.total_cmp(&a.value));
+            followed = children.min(BEAM);
+        }
+        (self.beam[0].way, false)
+    }
+
+    /// One step of the model from each state; which reach the goal.
+    fn step(&mut self, states: &[State<f32>; LANES], actions: &[Action; LANES]) -> [bool; LANES] {
+        let mut terminated = [false; LANES];
+        let output = Output {
+            rewards: &mut [0.0; LANES],
+            terminated: &mut terminated,
+            truncated: &mut [false; LANES],
+            observations: Observations::None,
+            final_observations: Observations::None,
+        };
+        let stepped = self
+            .batch
+            .reset_to(states)
+            .and_then(|()| self.batch.step(actions, output));
+        stepped.expect("as many as lanes, and finite");
+        terminated
+    }
+}
