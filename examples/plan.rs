@@ -47,7 +47,7 @@ struct Options {
 
 /// 64 KiB of weights.
 const SLOTS: usize = 8192;
-const TILINGS: usize = 24;
+const TILINGS: usize = 28;
 
 fn main() -> ExitCode {
     match run(&Options::parse()) {
