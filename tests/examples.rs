@@ -1,6 +1,8 @@
 //! The examples do what they say, as a user starts them.
 
 mod common;
+#[path = "examples/sutton1996.rs"]
+mod sutton1996;
 
 use std::fs;
 use std::io::Write;
