@@ -3,7 +3,7 @@
 mod common;
 
 use acrobot::{Acrobot, Action, Arithmetic, Fast, Micro, Pcg64, Portable, TimeLimit};
-use common::{Digest, episodes};
+use common::{Digest, episodes, training};
 
 /// Every bit of the states, rewards and ends of 64 seeds' random episodes: 100,000 steps or so.
 fn digest<A: Arithmetic>() -> u64 {
@@ -70,4 +70,11 @@ fn the_shared_batch_is_stable_whatever_its_width() {
         episodes::batch::<16, 2>(),
     ];
     assert!(widths == [episodes::BATCH; 3], "{widths:#018x?}");
+}
+
+/// From the seed through 100 episodes to the weights; a learner or a task of other numbers learns others.
+#[test]
+fn the_shared_training_is_stable() {
+    let found = training::weights();
+    assert!(found == training::WEIGHTS, "{found:#018x}");
 }

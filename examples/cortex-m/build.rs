@@ -11,6 +11,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("cargo:rustc-link-arg=-Tlink.x");
     println!("cargo:rustc-link-arg-bin=logger=-Tdefmt.x");
+    // 16 KiB are its weights alone.
+    println!("cargo:rustc-link-arg-bin=learn=--defsym=RAM_SIZE=32K");
     if env::var_os("CARGO_FEATURE_LIBGCC").is_some() {
         let float = match env::var("TARGET")?.ends_with("hf") {
             true => ["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"].as_slice(),

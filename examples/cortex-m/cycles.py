@@ -34,8 +34,8 @@ def cost(mnemonic, operands, taken, after_load):
     return 1 + branch
 
 
-def per_instruction(image):
-    """The mean over some steps of the firmware in the file `image`."""
+def per_instruction(image, most=None):
+    """The mean over some steps of the firmware in the file `image`, or over its first `most` instructions."""
     listing = subprocess.run(
         ["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image], check=True, capture_output=True, text=True
     ).stdout
@@ -62,6 +62,8 @@ def per_instruction(image):
             steps += 1
             if steps > STEPS:
                 break
+        if instructions == most:
+            break
         if steps > 0 and previous is not None:
             mnemonic, operands = code[previous]
             taken = address not in (previous + 2, previous + 4)

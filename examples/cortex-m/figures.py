@@ -3,7 +3,7 @@
     python3 figures.py             fails where a figure has grown by more than 5 %, and names both
     python3 figures.py --update    writes the table anew, and what follows from it
 
-`bench` counts instructions and stack; flash is what `minimal_fast` and the others have above
+`bench` and `learn` count instructions, stack and RAM; flash is what `minimal_fast` and the others have above
 `minimal_without`; `cycles.py` says how many cycles an instruction takes.
 """
 
@@ -35,6 +35,10 @@ ROWS = {
     "flash": "flash of the crate, bytes, seeding included",
     "size": "RAM of an `Acrobot`, bytes",
     "stack": "stack of a step, bytes",
+    "learn": "instructions a step with learning",
+    "training": "millions of instructions until the mean of 100 episodes is −100",
+    "milliseconds": "milliseconds that these take at 168 MHz, estimated",
+    "ram": "RAM in all of the firmware that learns and draws, bytes",
 }
 CLOCKS = {
     "STM32F4 (Cortex-M4F)": 168,
@@ -50,23 +54,23 @@ def run(*command, rustflags=""):
     return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=environment).stdout
 
 
-def bench(features="", rustflags=""):
-    """Its lines: arithmetic, figure and value."""
-    options = ["--quiet", "--locked", "--release", "--features", features, "--bin", "bench"]
-    for line in run("cargo", "run", *options, rustflags=rustflags).splitlines():
-        arithmetic, figure, value = line.split()
+def bench(features="", rustflags="", binary="bench"):
+    """Its figures: arithmetic, figure and value."""
+    options = ["--quiet", "--locked", "--release", "--features", features, "--bin", binary]
+    lines = run("cargo", "run", *options, rustflags=rustflags)
+    for arithmetic, figure, value in re.findall(r"^(\w+) (\w+) (\d+)$", lines, re.MULTILINE):
         yield arithmetic, figure, int(value)
 
 
-def minimal(name, rustflags=""):
+def image(binary, rustflags=""):
     """The path of that firmware."""
-    run("cargo", "build", "--quiet", "--locked", "--release", "--bin", f"minimal_{name}", rustflags=rustflags)
-    return f"target/thumbv7em-none-eabihf/release/minimal_{name}"
+    run("cargo", "build", "--quiet", "--locked", "--release", "--bin", binary, rustflags=rustflags)
+    return f"target/thumbv7em-none-eabihf/release/{binary}"
 
 
 def flash(name):
     """Bytes of code, constants and initial values."""
-    sections = run("size", "-A", minimal(name))
+    sections = run("size", "-A", image(f"minimal_{name}"))
     return sum(int(size) for size in re.findall(r"^\.(?:text|rodata|data)\s+(\d+)", sections, re.MULTILINE))
 
 
@@ -77,10 +81,14 @@ def measure():
     tuned = "-C target-cpu=cortex-m4"
     for arithmetic in ["fast", "micro", "portable"]:
         figures[arithmetic, "flash"] = flash(arithmetic) - without
-        figures[arithmetic, "cycles"] = round(figures[arithmetic, "step"] * cycles.per_instruction(minimal(arithmetic)))
+        figures[arithmetic, "cycles"] = round(figures[arithmetic, "step"] * cycles.per_instruction(image(f"minimal_{arithmetic}")))
     for arithmetic, figure, value in bench(rustflags=tuned):
         if figure == "step" and arithmetic != "micromath":
-            figures[arithmetic, "tuned"] = round(value * cycles.per_instruction(minimal(arithmetic, tuned)))
+            figures[arithmetic, "tuned"] = round(value * cycles.per_instruction(image(f"minimal_{arithmetic}", tuned)))
+    figures |= {(arithmetic, figure): value for arithmetic, figure, value in bench(binary="learn")}
+    # A hundred steps: all traces are there after 58.
+    each = cycles.per_instruction(image("learn"), most=3_000_000)
+    figures["fast", "milliseconds"] = round(figures["fast", "training"] * each / 168 * 1000)
     return {key: value for key, value in figures.items() if key[0] in COLUMNS and key[1] in ROWS}
 
 

@@ -3,7 +3,7 @@ import { readFile } from "node:fs/promises";
 
 const file = new URL("target/wasm32-unknown-unknown/release/acrobot_wasm_parity.wasm", import.meta.url);
 const { instance } = await WebAssembly.instantiate(await readFile(file));
-const { found, expected, batch_is_equal } = instance.exports;
+const { found, expected, batch_is_equal, training_is_equal } = instance.exports;
 
 for (const [arithmetic, name] of ["portable", "fast", "micro"].entries()) {
   let equal = 0;
@@ -17,9 +17,11 @@ for (const [arithmetic, name] of ["portable", "fast", "micro"].entries()) {
   }
   console.log(`${name}: ${equal} of 16 episodes are equal to the bit`);
 }
-if (batch_is_equal()) {
-  console.log("batch: equal to the bit");
-} else {
-  console.error("batch differs");
-  process.exitCode = 1;
+for (const [name, is_equal] of Object.entries({ batch: batch_is_equal, training: training_is_equal })) {
+  if (is_equal()) {
+    console.log(`${name}: equal to the bit`);
+  } else {
+    console.error(`${name} differs`);
+    process.exitCode = 1;
+  }
 }

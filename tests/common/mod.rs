@@ -5,6 +5,7 @@
 pub mod digest;
 pub mod episodes;
 pub mod oled;
+pub mod training;
 
 use std::hint::black_box;
 use std::io::Write;

@@ -5,21 +5,32 @@ use acrobot::{Acrobot, Action, Fast, Figure, Theme, TimeLimit};
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::pixelcolor::BinaryColor;
 
-/// Draws an episode of torque against θ̇1 and calls `shown` after each frame.
+/// Where the host's episode starts.
+pub fn start() -> TimeLimit<Acrobot<Fast>> {
+    TimeLimit::v1(Acrobot::new(42))
+}
+
+/// Its policy: torque against θ̇1.
+pub fn against(acrobot: &Acrobot<Fast>) -> Action {
+    if acrobot.state().dtheta1 > 0.0 {
+        Action::Negative
+    } else {
+        Action::Positive
+    }
+}
+
+/// Draws the rest of an episode and calls `shown` after each frame.
 pub fn play<D: DrawTarget<Color = BinaryColor>>(
     display: &mut D,
+    mut acrobot: TimeLimit<Acrobot<Fast>>,
+    policy: impl Fn(&Acrobot<Fast>) -> Action,
     mut shown: impl FnMut(&mut D),
 ) -> Result<(), D::Error> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42));
     let mut last = Figure::new(acrobot.inner());
     last.draw(display, &Theme::MONOCHROME)?;
     shown(display);
     loop {
-        let action = if acrobot.inner().state().dtheta1 > 0.0 {
-            Action::Negative
-        } else {
-            Action::Positive
-        };
+        let action = policy(acrobot.inner());
         let step = acrobot.step(action);
         let torque = acrobot.inner().params().torque(action);
         let figure = Figure::new(acrobot.inner()).with_torque(torque);

@@ -1,5 +1,4 @@
-//! Plays the sixteen episodes that the host's tests play; `parity.mjs` beside it compares the
-//! digests.
+//! Plays and learns what the host's tests do; `parity.mjs` beside it compares the digests.
 
 #![no_std]
 
@@ -7,6 +6,8 @@
 mod digest;
 #[path = "../../../tests/common/episodes.rs"]
 mod episodes;
+#[path = "../../../tests/common/training.rs"]
+mod training;
 
 use acrobot::{Fast, Micro, Portable};
 
@@ -36,6 +37,12 @@ pub extern "C" fn expected(arithmetic: u32, episode: u32) -> u64 {
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_is_equal() -> bool {
     episodes::batch::<4, 5>() == episodes::BATCH && episodes::batch::<16, 2>() == episodes::BATCH
+}
+
+/// Whether a training ends in the weights that the host's tests assert.
+#[unsafe(no_mangle)]
+pub extern "C" fn training_is_equal() -> bool {
+    training::weights() == training::WEIGHTS
 }
 
 #[panic_handler]

@@ -1,10 +1,10 @@
-//! Counts instructions and bytes of stack, one figure a line: `arithmetic figure value`.
-//!
-//! Under QEMU's `-icount shift=0` one instruction is one virtual nanosecond, and SysTick, at 25 MHz,
-//! ticks once in 40. Two runs print the same.
+//! Counts instructions and bytes of stack, one figure a line: `arithmetic figure value`. Two runs print the same.
 
 #![no_std]
 #![no_main]
+
+#[path = "../counter.rs"]
+mod counter;
 
 use core::hint::black_box;
 
@@ -13,10 +13,9 @@ use acrobot::{
     Theme, TimeLimit,
 };
 use cortex_m::Peripherals;
-use cortex_m::peripheral::SYST;
-use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::register::msp;
 use cortex_m_rt::entry;
+use counter::Counter;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
@@ -48,29 +47,6 @@ fn main() -> ! {
     measure::<Micromath>("micromath", &mut counter);
     measure::<Portable>("portable", &mut counter);
     process::exit(0)
-}
-
-/// SysTick runs down from 2²⁴ − 1, which is 671 million instructions: longer than any figure takes.
-struct Counter(SYST);
-
-impl Counter {
-    fn start(mut syst: SYST) -> Self {
-        syst.set_clock_source(SystClkSource::Core);
-        syst.set_reload(0xff_ffff);
-        Self(syst)
-    }
-
-    /// Instructions of one of `times` runs.
-    fn count(&mut self, times: u32, mut run: impl FnMut()) -> u32 {
-        self.0.clear_current();
-        self.0.enable_counter();
-        for _ in 0..times {
-            run();
-        }
-        let ticks = 0xff_ffff - SYST::get_current();
-        self.0.disable_counter();
-        ticks * 40 / times
-    }
 }
 
 type Display =

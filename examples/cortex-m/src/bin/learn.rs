@@ -1,0 +1,130 @@
+//! Learns to swing up on the chip, in 32 KiB of RAM of which half are weights: to the same bits as the host, until the
+//! mean of 100 episodes is −100 or better. Then it plays what it has learnt on an OLED.
+//!
+//! The last lines are figures as those of `bench`: `fast figure value`.
+
+#![no_std]
+#![no_main]
+
+#[path = "../counter.rs"]
+mod counter;
+#[path = "../../../../tests/common/digest.rs"]
+mod digest;
+#[allow(dead_code, reason = "the episode here is another")]
+#[path = "../../../../tests/common/oled.rs"]
+mod oled;
+#[path = "../panel.rs"]
+mod panel;
+#[path = "../../../../tests/common/training.rs"]
+mod training;
+
+use core::cell::RefCell;
+
+use acrobot::{Action, REWARD_THRESHOLD};
+use cortex_m::Peripherals;
+use cortex_m_rt::{STACK_PAINT_VALUE, entry, heap_start};
+use counter::Counter;
+use heapless::HistoryBuf;
+use panel::{Bus, Panel};
+use semihosting::{println, process};
+use ssd1306::mode::DisplayConfig;
+use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
+use ssd1306::{I2CDisplayInterface, Ssd1306};
+use training::acrobot_task::{ACTIONS, Env, Preset, evaluation, learn, play};
+use training::{Learner, Weights};
+
+/// Where it gives up.
+const EPISODES: u32 = 200;
+
+#[entry]
+fn main() -> ! {
+    static mut WEIGHTS: Weights = training::UNTRAINED;
+    let (Some(peripherals), Ok(mut learner)) = (Peripherals::take(), Preset::Fast.learner(WEIGHTS))
+    else {
+        process::exit(1)
+    };
+    let solved = train(&mut learner, &mut Counter::start(peripherals.SYST));
+    let mut env = evaluation(&training::SEED.into());
+    let greedy = |state: &[f32; 4]| ACTIONS[learner.greedy(state)];
+    let sum: f32 = (0..100).map(|_| play(&mut env, greedy).0).sum();
+    println!("mean return of 100 greedy episodes: {}", sum as i32 / 100);
+    env.reset();
+    let swung_up = draw(env, greedy);
+    println!("fast ram {}", ram());
+    process::exit(if solved && swung_up { 0 } else { 1 })
+}
+
+/// Whether the task was solved and the weights were the host's on the way.
+fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
+    let (mut env, mut choices) = training::acrobot_task::training(training::SEED.into());
+    let mut returns = HistoryBuf::<f32, 100>::new();
+    let (mut steps, mut instructions) = (0, 0);
+    let mut equal = false;
+    for episode in 1..=EPISODES {
+        // Where `cycles.py` begins to count.
+        cortex_m::asm::nop();
+        let mut gained = 0.0;
+        instructions += u64::from(counter.count(1, || {
+            gained = learn(learner, &mut env, &mut choices);
+        }));
+        steps += env.elapsed();
+        returns.write(gained);
+        if episode % 10 == 0 {
+            let mean = returns.oldest_ordered().rev().take(10).sum::<f32>() as i32 / 10;
+            println!("{episode:>4} {mean:>5} {:*<1$}", "", (-mean / 5) as usize);
+        }
+        if episode == training::EPISODES {
+            let found = training::digest(learner);
+            equal = found == training::WEIGHTS;
+            if !equal {
+                println!("not the host's weights: digest {found:#018x}");
+            }
+        }
+        if returns.is_full() && returns.iter().sum::<f32>() >= REWARD_THRESHOLD * 100.0 {
+            println!("solved at episode {episode}");
+            println!("fast learn {}", instructions / u64::from(steps));
+            println!("fast training {}", instructions / 1_000_000);
+            return equal;
+        }
+    }
+    println!("not solved in {EPISODES} episodes");
+    false
+}
+
+/// Plays an episode on a display, and returns whether the goal was reached.
+fn draw(env: Env, policy: impl Fn(&[f32; 4]) -> Action) -> bool {
+    let panel = RefCell::new(Panel::new());
+    let interface = I2CDisplayInterface::new(Bus(&panel));
+    let mut display = Ssd1306::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
+        .into_buffered_graphics_mode();
+    let mut refused = display.init().is_err();
+    let mut frames = 0;
+    let drawn = oled::play(
+        &mut display,
+        env,
+        |acrobot| policy(&acrobot.state().into()),
+        |display| {
+            frames += 1;
+            refused |= display.flush().is_err();
+        },
+    );
+    // The first frame is the start.
+    let steps = frames - 1;
+    println!("swings up in {steps} steps");
+    !refused && !panel.borrow().unknown && drawn.is_ok() && steps < 500
+}
+
+/// Bytes of RAM in all: what was painted at the start and never written is free.
+fn ram() -> usize {
+    unsafe extern "C" {
+        static _ram_start: u32;
+        static _ram_end: u32;
+    }
+    let mut deepest = heap_start();
+    // SAFETY: the stack begins there, and this function's own frame ends the search.
+    while unsafe { deepest.read_volatile() } == STACK_PAINT_VALUE {
+        deepest = deepest.wrapping_add(1);
+    }
+    let statics = heap_start() as usize - (&raw const _ram_start) as usize;
+    statics + (&raw const _ram_end) as usize - deepest as usize
+}
