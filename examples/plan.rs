@@ -28,7 +28,7 @@ use indicatif::ProgressIterator;
 #[allow(dead_code, reason = "one of the two presets")]
 mod acrobot_task;
 
-use acrobot_task::{ACTIONS, Learner, Preset, evaluation, learn, play, training};
+use acrobot_task::{Learner, Preset, evaluation, learn, play, torque, training};
 
 /// Compares the learner's greedy policy with a beam search that ends in the learnt values.
 #[derive(Parser)]
@@ -88,7 +88,7 @@ fn run(options: &Options) -> Result<(), String> {
         "policy          mean return of {} episodes  missed the goal",
         options.episodes
     );
-    report("greedy", options, |state| ACTIONS[learner.greedy(state)]);
+    report("greedy", options, |state| torque(learner.greedy(state)));
     report(
         &format!("{} steps ahead", options.depth),
         options,
@@ -148,7 +148,7 @@ impl Way {
     }
 
     fn first(self) -> Action {
-        ACTIONS[(self.actions & 1) as usize]
+        torque((self.actions & 1) as usize)
     }
 
     /// What is left of it after its first action.
@@ -222,19 +222,18 @@ impl Search {
             for lane in 0..children {
                 let (parent, action) = (from[lane / 2], lane % 2);
                 states[lane] = parent.state;
-                actions[lane] = ACTIONS[action];
+                actions[lane] = torque(action);
                 self.beam[lane].way = parent.way.then(action);
             }
             let terminated = self.step(&states, &actions);
             self.steps += children as u64;
-            for lane in 0..children {
+            for (lane, node) in self.beam.iter_mut().enumerate().take(children) {
                 if terminated[lane] {
-                    return (self.beam[lane].way, true);
+                    return (node.way, true);
                 }
-                let state = self.batch.state(lane).unwrap_or_default();
-                let [negative, positive] = learner.values(&state.into());
-                self.beam[lane].state = state;
-                self.beam[lane].value = negative.max(positive);
+                node.state = self.batch.state(lane).unwrap_or_default();
+                let [negative, positive] = learner.values(&node.state.into());
+                node.value = negative.max(positive);
             }
             self.beam[..children].sort_unstable_by(|a, b| b.value.total_cmp(&a.value));
             followed = children.min(BEAM);

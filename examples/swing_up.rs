@@ -23,7 +23,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 #[path = "sarsa/acrobot_task.rs"]
 mod acrobot_task;
 
-use acrobot_task::{ACTIONS, Learner, Preset, evaluation, learn, play, training};
+use acrobot_task::{Learner, Preset, evaluation, learn, play, torque, training};
 
 /// Learns to swing up, and says how well.
 #[derive(Parser)]
@@ -106,7 +106,7 @@ fn run<const S: usize, const T: usize>(preset: Preset, options: &Options) -> Res
         fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()))?;
     }
 
-    let greedy = evaluate(options, |state| ACTIONS[learner.greedy(state)]);
+    let greedy = evaluate(options, |state| torque(learner.greedy(state)));
     let solved_at = solved_at.map_or("never".into(), |episode| episode.to_string());
     if options.quiet {
         let [mean, sd] = greedy.moments();
@@ -114,7 +114,7 @@ fn run<const S: usize, const T: usize>(preset: Preset, options: &Options) -> Res
         println!("solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}");
         return Ok(());
     }
-    let against = |&[_, _, dtheta1, _]: &[f32; 4]| ACTIONS[usize::from(dtheta1 < 0.0)];
+    let against = |&[_, _, dtheta1, _]: &[f32; 4]| torque((dtheta1 < 0.0).into());
     let mut actions = Pcg64::new(options.seed.child(2));
     println!("solved at episode {solved_at}\n");
     println!("policy              mean return of {EVALUATION} episodes  missed the goal");

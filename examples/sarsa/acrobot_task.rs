@@ -58,8 +58,13 @@ const fn falling(start: f32, factor: f32, floor: f32) -> Schedule {
     }
 }
 
-/// The actions of the learner: without torque nothing is gained.
-pub const ACTIONS: [Action; 2] = [Action::Negative, Action::Positive];
+/// The learner's actions 0 and 1: without torque nothing is gained.
+pub fn torque(action: usize) -> Action {
+    match action {
+        0 => Action::Negative,
+        _ => Action::Positive,
+    }
+}
 
 /// An acrobot with 500 steps an episode.
 pub type Env = TimeLimit<Acrobot<Fast>>;
@@ -91,7 +96,7 @@ pub fn learn<const S: usize, const T: usize>(
     let mut action = learner.start(&state(env), choices);
     let mut sum = 0.0;
     loop {
-        let step = env.step(ACTIONS[action]);
+        let step = env.step(torque(action));
         sum += step.reward;
         if step.terminated {
             learner.end(step.reward);

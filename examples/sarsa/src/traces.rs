@@ -51,12 +51,13 @@ impl<const T: usize> Traces<T> {
     /// The latest set: its tiles' traces become 1, and all others a step older.
     #[inline]
     pub fn push(&mut self, slots: &[u16; T], action: usize) {
-        self.head = (self.head + 1) % LENGTH;
-        self.actions[self.head] = action as u8;
-        let oldest = (self.head + LENGTH - self.ages) % LENGTH;
+        let head = (self.head + 1) % LENGTH;
+        self.head = head;
+        self.actions[head] = action as u8;
+        let oldest = (head + LENGTH - self.ages) % LENGTH;
         for ((&slot, slots), live) in slots.iter().zip(&mut self.slots).zip(&mut self.live) {
-            slots[self.head] = slot;
-            *live = *live & !(1 << oldest) | 1 << self.head;
+            slots[head] = slot;
+            *live = *live & !(1 << oldest) | 1 << head;
         }
     }
 
@@ -73,20 +74,24 @@ impl<const T: usize> Traces<T> {
             steps[(self.head + LENGTH - age) % LENGTH] = step * decay;
         }
         for (t, (slots, live)) in self.slots.iter().zip(&mut self.live).enumerate() {
-            let (mut rest, mut again) = (*live, 0);
-            while rest != 0 {
-                let place = rest.trailing_zeros() as usize % LENGTH;
-                let (slot, action) = (slots[place], usize::from(self.actions[place]));
-                let weights = weights.get_mut(usize::from(slot));
-                if let Some(w) = weights.and_then(|w| w.get_mut(action)) {
-                    *w += steps[place];
+            // By the machine's words: a Cortex-M takes half as long again for 64 bits at once.
+            for low in (0..LENGTH).step_by(usize::BITS as usize) {
+                let (mut rest, mut again) = ((*live >> low) as usize, 0);
+                while rest != 0 {
+                    let bit = rest & rest.wrapping_neg();
+                    let place = (low + rest.trailing_zeros() as usize) % LENGTH;
+                    let (slot, action) = (slots[place], usize::from(self.actions[place]));
+                    let weights = weights.get_mut(usize::from(slot));
+                    if let Some(w) = weights.and_then(|w| w.get_mut(action)) {
+                        *w += steps[place];
+                    }
+                    if next.is_some_and(|(next, chosen)| slot == next[t] && action == chosen) {
+                        again = bit;
+                    }
+                    rest ^= bit;
                 }
-                if next.is_some_and(|(next, chosen)| slot == next[t] && action == chosen) {
-                    again = 1 << place;
-                }
-                rest &= rest - 1;
+                *live &= !((again as u64) << low);
             }
-            *live &= !again;
         }
     }
 }

@@ -30,7 +30,7 @@ use semihosting::{println, process};
 use ssd1306::mode::DisplayConfig;
 use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
 use ssd1306::{I2CDisplayInterface, Ssd1306};
-use training::acrobot_task::{ACTIONS, Env, Preset, evaluation, learn, play};
+use training::acrobot_task::{Env, Preset, evaluation, learn, play, torque};
 use training::{Learner, Weights};
 
 /// Where it gives up.
@@ -45,7 +45,7 @@ fn main() -> ! {
     };
     let solved = train(&mut learner, &mut Counter::start(peripherals.SYST));
     let mut env = evaluation(&training::SEED.into());
-    let greedy = |state: &[f32; 4]| ACTIONS[learner.greedy(state)];
+    let greedy = |state: &[f32; 4]| torque(learner.greedy(state));
     let sum: f32 = (0..100).map(|_| play(&mut env, greedy).0).sum();
     println!("mean return of 100 greedy episodes: {}", sum as i32 / 100);
     env.reset();

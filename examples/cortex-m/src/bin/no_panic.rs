@@ -6,6 +6,12 @@
 #![no_std]
 #![no_main]
 
+#[path = "../../../../tests/common/digest.rs"]
+mod digest;
+#[allow(dead_code, reason = "shared with what compares the weights")]
+#[path = "../../../../tests/common/training.rs"]
+mod training;
+
 use core::hint::black_box;
 use core::panic::PanicInfo;
 
@@ -18,6 +24,7 @@ use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
+use training::acrobot_task::{Preset, learn};
 
 unsafe extern "C" {
     fn a_panicking_branch_is_left() -> !;
@@ -36,6 +43,7 @@ fn main() -> ! {
         everything::<Portable>();
         batch::<Fast>();
         batch::<Portable>();
+        learner();
     }
 }
 
@@ -108,6 +116,18 @@ fn batch<A: Arithmetic>() {
         let _ = black_box(batch.reset_to(&black_box([State::default(); 20])));
         black_box((&rows, &finals, &column, batch.state(black_box(3))));
     }
+}
+
+/// The learner of `learn`, which comes with the crate's examples.
+fn learner() {
+    let mut weights = black_box(training::UNTRAINED);
+    let Ok(mut learner) = Preset::Fast.learner(&mut weights) else {
+        return;
+    };
+    let (mut env, mut choices) = training::acrobot_task::training(black_box(42).into());
+    black_box(learn(&mut learner, &mut env, &mut choices));
+    black_box(learner.greedy(&black_box([0.0; 4])));
+    black_box(training::digest(&learner));
 }
 
 type Display =
