@@ -27,6 +27,7 @@ use acrobot_task::{Learner, Preset, evaluation, learn, play, torque, training};
 
 /// Learns to swing up, and says how well.
 #[derive(Parser)]
+#[command(allow_negative_numbers = true)]
 struct Options {
     /// What the learner is to be good at: few episodes, or the best policy after many.
     #[arg(long, value_enum, default_value_t = Goal::Fast)]
@@ -41,14 +42,35 @@ struct Options {
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
     /// Where the weights go.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = file)]
     save: Option<PathBuf>,
     /// Where the weights come from, in place of zeros.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
-    /// Prints one line only.
+    /// Where the pictures go.
+    #[arg(long, value_name = "FOLDER", default_value = ".", value_parser = folder)]
+    pictures: PathBuf,
+    /// Prints one line only, and draws nothing.
     #[arg(long)]
     quiet: bool,
+}
+
+/// Refused now, and not after all the episodes.
+fn file(path: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(path);
+    let is_file = path.file_name().is_some() && !path.is_dir();
+    if is_file && path.with_file_name(".").is_dir() {
+        return Ok(path);
+    }
+    Err("allowed is a file in a folder that is there".into())
+}
+
+fn folder(path: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(path);
+    if path.is_dir() {
+        return Ok(path);
+    }
+    Err("allowed is a folder that is there".into())
 }
 
 #[derive(Clone, Copy, ValueEnum)]
