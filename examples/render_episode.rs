@@ -16,7 +16,9 @@ use std::process::ExitCode;
 use acrobot::env::Frame;
 use acrobot::{Acrobot, Action, Figure, Portable, SeedSequence, State, Theme, TimeLimit};
 use clap::Parser;
-use indicatif::ProgressBar;
+
+#[path = "pictures/animation.rs"]
+mod animation;
 
 /// Draws an episode as FILE.gif and a strip of its frames as FILE.png, or one state as a PNG.
 #[derive(Parser)]
@@ -74,18 +76,15 @@ fn draw_state(state: State, out: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Side of the animation's frames and of the strip's, in pixels.
-const SIDE: u32 = 300;
+/// Side of the strip's frames, in pixels.
 const STRIP_SIDE: u32 = 150;
 const STRIP_FRAMES: usize = 8;
-/// Hundredths of a second that a step of 0.2 s is shown: three times as fast as it is.
-const DELAY: u16 = 7;
 
 fn draw_episode(seed: SeedSequence, out: &Path) -> Result<(), Box<dyn Error>> {
     expect_extension(out, "gif")?;
     let strip = out.with_extension("png");
     let figures = figures(seed);
-    write_gif(create(out)?, &figures).map_err(|error| cannot_write(out, error))?;
+    animation::write_gif(create(out)?, &figures).map_err(|error| cannot_write(out, error))?;
     write_png(&strip, &draw_strip(&figures))?;
     writeln!(io::stdout(), "{}: {} frames", out.display(), figures.len())?;
     writeln!(io::stdout(), "{}: {STRIP_FRAMES} of them", strip.display())?;
@@ -110,28 +109,6 @@ fn figures(seed: SeedSequence) -> Vec<Figure> {
             return figures;
         }
     }
-}
-
-fn draw(figure: &Figure, side: u32) -> Frame {
-    let mut frame = Frame::new(side, side);
-    let Ok(()) = figure.draw(&mut frame, &Theme::GYMNASIUM);
-    frame
-}
-
-fn write_gif(file: BufWriter<File>, figures: &[Figure]) -> Result<(), gif::EncodingError> {
-    let side = SIDE as u16;
-    let mut encoder = gif::Encoder::new(file, side, side, &[])?;
-    encoder.set_repeat(gif::Repeat::Infinite)?;
-    let progress = ProgressBar::new(figures.len() as u64);
-    for (i, figure) in figures.iter().enumerate() {
-        let mut frame = gif::Frame::from_rgb(side, side, draw(figure, SIDE).bytes());
-        // The goal stays in sight for two seconds.
-        frame.delay = if i + 1 == figures.len() { 200 } else { DELAY };
-        encoder.write_frame(&frame)?;
-        progress.inc(1);
-    }
-    progress.finish_and_clear();
-    Ok(encoder.into_inner()?.flush()?)
 }
 
 /// Frames at equal distances, side by side.

@@ -34,6 +34,11 @@ use indicatif::ProgressBar;
 use plotters::prelude::*;
 use rayon::prelude::*;
 
+#[path = "pictures/heat_map.rs"]
+mod heat_map;
+
+use heat_map::{LABEL, NAME, color, draw_bar};
+
 /// Sweeps link masses and torques, and writes the steps to the goal as CSV and as a picture.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
@@ -236,7 +241,7 @@ impl Cell {
     /// Grey where the mean would be that of few.
     fn color(&self) -> RGBColor {
         match self.mean() {
-            Some(mean) if self.share() >= 0.5 => color(mean.log2()),
+            Some(mean) if self.share() >= 0.5 => color(mean.log2(), &DOUBLINGS),
             _ => RGBColor(190, 190, 190),
         }
     }
@@ -269,15 +274,8 @@ fn table(cells: &[Cell]) -> String {
 /// The doublings of 1 step that the colour map spans: from 8 steps, as which fewer are shown, to 512.
 const DOUBLINGS: Range<f64> = 3.0..9.0;
 
-fn color(doublings: f64) -> RGBColor {
-    viridis((doublings - DOUBLINGS.start) / (DOUBLINGS.end - DOUBLINGS.start))
-}
-
 /// The heat map and its colour bar.
 fn draw(options: &Options, cells: &[Cell], episodes: usize) -> Result<(), Box<dyn Error>> {
-    const LABEL: (&str, i32) = ("sans-serif", 15);
-    const NAME: (&str, i32) = ("sans-serif", 18);
-
     let root = SVGBackend::new(&options.picture, (780, 720)).into_drawing_area();
     root.fill(&WHITE)?;
     let caption = format!(
@@ -317,53 +315,14 @@ fn draw(options: &Options, cells: &[Cell], episodes: usize) -> Result<(), Box<dy
         )
     }))?;
 
-    let mut chart = ChartBuilder::on(&bar)
-        .margin(10)
-        .margin_bottom(54)
-        .y_label_area_size(60)
-        .build_cartesian_2d(0.0..1.0, DOUBLINGS)?;
-    chart
-        .configure_mesh()
-        .disable_mesh()
-        .disable_x_axis()
-        .set_all_tick_mark_size(5)
-        .label_style(LABEL)
-        .axis_desc_style(NAME)
-        .y_desc("mean steps, of 0.2 s each")
-        .y_labels(7)
-        .y_label_formatter(&|doublings| doublings.exp2().to_string())
-        .draw()?;
-    chart.draw_series((0..SHADES).map(|shade| {
-        let [from, middle, to] = [0.0, 0.5, 1.0].map(|part| {
-            let share = (f64::from(shade) + part) / f64::from(SHADES);
-            DOUBLINGS.start + share * (DOUBLINGS.end - DOUBLINGS.start)
-        });
-        Rectangle::new([(0.0, from), (1.0, to)], color(middle).filled())
-    }))?;
+    draw_bar(
+        &bar,
+        &DOUBLINGS,
+        "mean steps, of 0.2 s each",
+        &|doublings| doublings.exp2().to_string(),
+    )?;
     root.present()?;
     Ok(())
-}
-
-/// Of the colour bar.
-const SHADES: u32 = 60;
-
-/// The colour map of that name, even to the eye and to the colour-blind, from 0 to 1.
-fn viridis(share: f64) -> RGBColor {
-    const FIVE: [[f64; 3]; 5] = [
-        [68.0, 1.0, 84.0],
-        [59.0, 82.0, 139.0],
-        [33.0, 145.0, 140.0],
-        [94.0, 201.0, 98.0],
-        [253.0, 231.0, 37.0],
-    ];
-    let position = share.clamp(0.0, 1.0) * 4.0;
-    let below = (position as usize).min(3);
-    let weight = position - below as f64;
-    let [red, green, blue] = std::array::from_fn(|i| {
-        let (from, to) = (FIVE[below][i], FIVE[below + 1][i]);
-        (from + weight * (to - from)).round() as u8
-    });
-    RGBColor(red, green, blue)
 }
 
 /// An axis with a unit for each value, which stands in its middle.

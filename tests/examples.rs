@@ -258,6 +258,17 @@ impl Drop for Folder {
     }
 }
 
+fn gif_frames(path: &str) -> usize {
+    let mut frames = gif::DecodeOptions::new()
+        .read_info(fs::File::open(path).unwrap())
+        .unwrap();
+    let mut count = 0;
+    while frames.read_next_frame().unwrap().is_some() {
+        count += 1;
+    }
+    count
+}
+
 fn png(path: &str) -> (u32, u32, Vec<u8>) {
     let file = std::io::Cursor::new(fs::read(path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
@@ -301,14 +312,7 @@ fn the_episode_is_the_readmes_picture() {
     assert_eq!((width, height), (8 * 150, 150));
     assert!(pixels.chunks(3).any(|pixel| pixel == [0, 204, 204]));
 
-    let mut frames = gif::DecodeOptions::new()
-        .read_info(fs::File::open(&gif).unwrap())
-        .unwrap();
-    let mut count = 0;
-    while frames.read_next_frame().unwrap().is_some() {
-        count += 1;
-    }
-    assert_eq!(count, 95);
+    assert_eq!(gif_frames(&gif), 95);
 }
 
 #[test]
@@ -593,6 +597,32 @@ fn swing_up_is_better_than_torque_against_the_velocity() {
     assert!(learnt[0] - against[0] > chance, "{output}");
     assert_eq!([learnt[2], against[2]], [0.0, 0.0], "{output}");
     assert!(random[0] < -490.0 && random[2] > 900.0, "{output}");
+
+    // The curve from the first to the last episode, and the line at which it is solved.
+    let curve = fs::read_to_string(folder.file("learning_curve.svg")).unwrap();
+    for text in ["Learning to swing up", "episode", "solved: -100", "1000"] {
+        assert!(curve.contains(text), "{text}");
+    }
+    let points = |line: &str| line.split('"').map(|part| part.matches(',').count()).max();
+    let lines = curve.match_indices("<polyline");
+    let long =
+        lines.filter(|&(at, _)| points(curve[at..].split("/>").next().unwrap()) >= Some(2000));
+    assert_eq!(long.count(), 2, "returns, and their running mean");
+
+    // Each cell, sixty shades of the colour bar and the paper; the goal is grey on both sides alike.
+    let values = fs::read_to_string(folder.file("values.svg")).unwrap();
+    assert_eq!(values.matches("<rect").count(), 72 * 72 + 60 + 1);
+    let grey = values.matches("#BEBEBE").count();
+    assert!(
+        grey.is_multiple_of(2) && (500..1500).contains(&grey),
+        "{grey}"
+    );
+
+    // The start and every step; the goal is reached, or there were 501 frames.
+    let steps = output.split("last greedy episode, ").nth(1).unwrap();
+    let steps: usize = steps.split(' ').next().unwrap().parse().unwrap();
+    assert_eq!(gif_frames(&folder.file("swing_up.gif")), steps + 1);
+    assert!((50..200).contains(&steps), "{output}");
 
     let untrained = figures(&swing_up("--quiet --episodes 0", &[]));
     assert_eq!(untrained, (None, against[0], against[1], 0));

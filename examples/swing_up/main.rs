@@ -10,18 +10,28 @@
 //! to the same bits. `--quiet` prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the
 //! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better; R and S are of
 //! 1,000 greedy episodes from starts that were not trained on, and K of these missed the goal.
+//! Without it, pictures are drawn of how it learnt, of the values, and of the last greedy episode.
+//!
+//! Nothing learnt is no bad policy: of equal actions the learner takes the first, which its mirror makes
+//! torque against θ̇1. What it has learnt is what it is better by.
 
-use std::collections::VecDeque;
+use std::fmt::Display;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use acrobot::{Action, Pcg64, REWARD_THRESHOLD, SeedSequence};
+use acrobot::{Action, Pcg64, SeedSequence};
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
-#[path = "sarsa/acrobot_task.rs"]
+#[path = "../sarsa/acrobot_task.rs"]
 mod acrobot_task;
+#[path = "../pictures/animation.rs"]
+mod animation;
+mod curve;
+#[path = "../pictures/heat_map.rs"]
+mod heat_map;
+mod pictures;
 
 use acrobot_task::{Learner, Preset, evaluation, learn, play, torque, training};
 
@@ -122,14 +132,15 @@ fn run<const S: usize, const T: usize>(preset: Preset, options: &Options) -> Res
         learner.load(&bytes).map_err(|e| named(&e))?;
     }
 
-    let solved_at = train(&mut learner, options);
+    let returns = train(&mut learner, options);
     if let Some(path) = &options.save {
         let bytes: Vec<u8> = learner.save().collect();
-        fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+        fs::write(path, bytes).map_err(|e| cannot_write(path, e))?;
     }
 
     let greedy = evaluate(options, |state| torque(learner.greedy(state)));
-    let solved_at = solved_at.map_or("never".into(), |episode| episode.to_string());
+    let solved_at =
+        curve::solved_at(&returns).map_or("never".into(), |episode| episode.to_string());
     if options.quiet {
         let [mean, sd] = greedy.moments();
         let misses = greedy.misses;
@@ -154,42 +165,79 @@ fn run<const S: usize, const T: usize>(preset: Preset, options: &Options) -> Res
             returns.misses
         );
     }
+    println!();
+    draw(&learner, &returns, options)
+}
+
+/// Draws the pictures, and says where.
+fn draw<const S: usize, const T: usize>(
+    learner: &Learner<S, T>,
+    returns: &[f32],
+    options: &Options,
+) -> Result<(), String> {
+    let path = |name| options.pictures.join(name);
+    if !returns.is_empty() {
+        let curve = path("learning_curve.svg");
+        pictures::draw_curve(&curve, returns).map_err(|e| cannot_write(&curve, e))?;
+        println!(
+            "{}: the returns of {} episodes",
+            curve.display(),
+            returns.len()
+        );
+    }
+
+    let values = path("values.svg");
+    let value = |state: &[f32; 4]| learner.values(state).into_iter().fold(f32::MIN, f32::max);
+    pictures::draw_values(&values, value).map_err(|e| cannot_write(&values, e))?;
+    println!("{}: the values at rest", values.display());
+
+    let episode = path("swing_up.gif");
+    let mut env = evaluation(&options.seed);
+    for _ in 1..EVALUATION {
+        // Only starts are drawn from its generator: this is the way to the last of them.
+        env.reset();
+    }
+    let frames = pictures::draw_episode(&episode, &mut env, |s| torque(learner.greedy(s)));
+    let frames = frames.map_err(|e| cannot_write(&episode, e))?;
+    println!(
+        "{}: the last greedy episode, {} steps",
+        episode.display(),
+        frames - 1
+    );
     Ok(())
 }
 
-/// Learns for so many episodes; returns the first from which on Gymnasium calls the task solved.
+fn cannot_write(path: &Path, error: impl Display) -> String {
+    format!("cannot write {}: {error}", path.display())
+}
+
+/// Learns for so many episodes; returns their returns.
 fn train<const S: usize, const T: usize>(
     learner: &mut Learner<S, T>,
     options: &Options,
-) -> Option<u32> {
+) -> Vec<f32> {
     let (mut env, mut choices) = training(options.seed.clone());
     let bar = if options.quiet {
         ProgressBar::hidden()
     } else {
         ProgressBar::new(options.episodes.into())
     };
-    let style = ProgressStyle::with_template("{elapsed} {wide_bar} {pos}/{len} episodes {msg}");
-    bar.set_style(style.expect("a valid template"));
+    let template = "{msg}{elapsed} {wide_bar} {pos}/{len} episodes";
+    let style = ProgressStyle::with_template(template).expect("a valid template");
+    bar.set_style(style);
 
-    let mut latest = VecDeque::new();
-    let mut sum = 0.0;
-    let mut solved_at = None;
-    for episode in 1..=options.episodes {
-        // Returns are whole numbers, so that the sum of the latest stays exact.
-        let gained = learn(learner, &mut env, &mut choices);
-        latest.push_back(gained);
-        sum += gained;
-        if latest.len() > 100 {
-            sum -= latest.pop_front().unwrap_or_default();
+    // A hundred times in all, since a chart takes as long as some steps.
+    let period = (options.episodes as usize).div_ceil(100).max(1);
+    let mut returns = Vec::new();
+    for _ in 0..options.episodes {
+        returns.push(learn(learner, &mut env, &mut choices));
+        if !bar.is_hidden() && returns.len().is_multiple_of(period) {
+            bar.set_message(curve::chart(&returns));
         }
-        if solved_at.is_none() && latest.len() == 100 && sum / 100.0 >= REWARD_THRESHOLD {
-            solved_at = Some(episode);
-        }
-        bar.set_message(format!("return {:.1}", sum / latest.len() as f32));
         bar.inc(1);
     }
     bar.finish();
-    solved_at
+    returns
 }
 
 /// Episodes of an evaluation.

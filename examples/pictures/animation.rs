@@ -1,0 +1,30 @@
+//! Figures as an animated GIF: included by each example that writes one.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+
+use acrobot::env::Frame;
+use acrobot::{Figure, Theme};
+use indicatif::ProgressBar;
+
+/// Side of the frames in pixels.
+const SIDE: u16 = 300;
+/// Hundredths of a second that a step of 0.2 s is shown: three times as fast as it is.
+const DELAY: u16 = 7;
+
+pub fn write_gif(file: BufWriter<File>, figures: &[Figure]) -> Result<(), gif::EncodingError> {
+    let mut encoder = gif::Encoder::new(file, SIDE, SIDE, &[])?;
+    encoder.set_repeat(gif::Repeat::Infinite)?;
+    let progress = ProgressBar::new(figures.len() as u64);
+    for (i, figure) in figures.iter().enumerate() {
+        let mut drawn = Frame::new(SIDE.into(), SIDE.into());
+        let Ok(()) = figure.draw(&mut drawn, &Theme::GYMNASIUM);
+        let mut frame = gif::Frame::from_rgb(SIDE, SIDE, drawn.bytes());
+        // The goal stays in sight for two seconds.
+        frame.delay = if i + 1 == figures.len() { 200 } else { DELAY };
+        encoder.write_frame(&frame)?;
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    Ok(encoder.into_inner()?.flush()?)
+}
