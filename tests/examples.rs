@@ -790,6 +790,26 @@ fn a_full_disk_is_an_error() {
             "{errors}"
         );
     }
+    for name in [
+        "learning_curve.svg",
+        "values.svg",
+        "swing_up.gif",
+        "weights",
+    ] {
+        let folder = Folder::new(&format!("full-{name}"));
+        let path = folder.file(name);
+        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+        let mut swing_up = command("swing_up", &["--episodes", "20"]);
+        swing_up.args(["--pictures", folder.0.to_str().unwrap()]);
+        if name == "weights" {
+            swing_up.args(["--save", &path]);
+        }
+        let output = swing_up.output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}: {errors}");
+        let reason = format!("cannot write {path}: No space left");
+        assert!(errors.contains(&reason), "{errors}");
+    }
 }
 
 #[test]

@@ -15,8 +15,10 @@
 //! Nothing learnt is no bad policy: of equal actions the learner takes the first, which its mirror makes
 //! torque against θ̇1. What it has learnt is what it is better by.
 
+use std::error::Error;
 use std::fmt::Display;
 use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -123,11 +125,14 @@ fn main() -> ExitCode {
 }
 
 /// Learns with `T` tilings in `S` slots, and reports.
-fn run<const S: usize, const T: usize>(preset: Preset, options: &Options) -> Result<(), String> {
+fn run<const S: usize, const T: usize>(
+    preset: Preset,
+    options: &Options,
+) -> Result<(), Box<dyn Error>> {
     let mut weights = [[0.0; 2]; S];
-    let mut learner: Learner<S, T> = preset.learner(&mut weights).map_err(|e| e.to_string())?;
+    let mut learner: Learner<S, T> = preset.learner(&mut weights)?;
     if let Some(path) = &options.load {
-        let named = |reason: &dyn std::fmt::Display| format!("{}: {reason}", path.display());
+        let named = |reason: &dyn Display| format!("{}: {reason}", path.display());
         let bytes = fs::read(path).map_err(|e| named(&e))?;
         learner.load(&bytes).map_err(|e| named(&e))?;
     }
@@ -138,19 +143,25 @@ fn run<const S: usize, const T: usize>(preset: Preset, options: &Options) -> Res
         fs::write(path, bytes).map_err(|e| cannot_write(path, e))?;
     }
 
+    let mut out = io::stdout();
     let greedy = evaluate(options, |state| torque(learner.greedy(state)));
-    let solved_at =
-        curve::solved_at(&returns).map_or("never".into(), |episode| episode.to_string());
+    let solved_at = curve::solved_at(&returns).map_or("never".into(), |n| n.to_string());
     if options.quiet {
         let [mean, sd] = greedy.moments();
         let misses = greedy.misses;
-        println!("solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}");
+        writeln!(
+            out,
+            "solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}"
+        )?;
         return Ok(());
     }
     let against = |&[_, _, dtheta1, _]: &[f32; 4]| torque((dtheta1 < 0.0).into());
     let mut actions = Pcg64::new(options.seed.child(2));
-    println!("solved at episode {solved_at}\n");
-    println!("policy              mean return of {EVALUATION} episodes  missed the goal");
+    writeln!(out, "solved at episode: {solved_at}\n")?;
+    writeln!(
+        out,
+        "policy              mean return of {EVALUATION} episodes  missed the goal"
+    )?;
     for (name, returns) in [
         ("learnt", greedy),
         ("torque against θ̇1", evaluate(options, against)),
@@ -160,12 +171,13 @@ fn run<const S: usize, const T: usize>(preset: Preset, options: &Options) -> Res
         ),
     ] {
         let [mean, sd] = returns.moments();
-        println!(
+        writeln!(
+            out,
             "{name:<18}  {mean:>19.2} ± {sd:<9.2}  {:>15}",
             returns.misses
-        );
+        )?;
     }
-    println!();
+    writeln!(out)?;
     draw(&learner, &returns, options)
 }
 
@@ -174,22 +186,26 @@ fn draw<const S: usize, const T: usize>(
     learner: &Learner<S, T>,
     returns: &[f32],
     options: &Options,
-) -> Result<(), String> {
+) -> Result<(), Box<dyn Error>> {
+    let mut out = io::stdout();
     let path = |name| options.pictures.join(name);
     if !returns.is_empty() {
         let curve = path("learning_curve.svg");
-        pictures::draw_curve(&curve, returns).map_err(|e| cannot_write(&curve, e))?;
-        println!(
+        let svg = pictures::svg((900, 480), |area| pictures::draw_curve(area, returns))?;
+        fs::write(&curve, svg).map_err(|e| cannot_write(&curve, e))?;
+        writeln!(
+            out,
             "{}: the returns of {} episodes",
             curve.display(),
             returns.len()
-        );
+        )?;
     }
 
     let values = path("values.svg");
     let value = |state: &[f32; 4]| learner.values(state).into_iter().fold(f32::MIN, f32::max);
-    pictures::draw_values(&values, value).map_err(|e| cannot_write(&values, e))?;
-    println!("{}: the values at rest", values.display());
+    let svg = pictures::svg((780, 720), |area| pictures::draw_values(area, value))?;
+    fs::write(&values, svg).map_err(|e| cannot_write(&values, e))?;
+    writeln!(out, "{}: the values at rest", values.display())?;
 
     let episode = path("swing_up.gif");
     let mut env = evaluation(&options.seed);
@@ -199,11 +215,12 @@ fn draw<const S: usize, const T: usize>(
     }
     let frames = pictures::draw_episode(&episode, &mut env, |s| torque(learner.greedy(s)));
     let frames = frames.map_err(|e| cannot_write(&episode, e))?;
-    println!(
+    writeln!(
+        out,
         "{}: the last greedy episode, {} steps",
         episode.display(),
         frames - 1
-    );
+    )?;
     Ok(())
 }
 

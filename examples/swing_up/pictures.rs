@@ -1,4 +1,4 @@
-//! What was learnt, as pictures.
+//! What was learnt, as pictures: SVG texts, and a GIF.
 
 use std::error::Error;
 use std::f32::consts::PI;
@@ -7,6 +7,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use acrobot::{Action, Fast, Figure, Params, REWARD_THRESHOLD, State, tip_height};
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use crate::acrobot_task::{Env, state};
@@ -16,14 +17,29 @@ use crate::heat_map::{LABEL, NAME, color, draw_bar};
 
 const TITLE: (&str, i32) = ("sans-serif", 24);
 
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// The text of a picture with so many pixels, which whoever writes it sees fail.
+pub fn svg(
+    size: (u32, u32),
+    draw: impl FnOnce(&Area) -> Result<(), Box<dyn Error>>,
+) -> Result<String, Box<dyn Error>> {
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        area.fill(&WHITE)?;
+        draw(&area)?;
+        area.present()?;
+    }
+    Ok(text)
+}
+
 /// The return of each episode, and the running mean.
-pub fn draw_curve(path: &Path, returns: &[f32]) -> Result<(), Box<dyn Error>> {
+pub fn draw_curve(area: &Area, returns: &[f32]) -> Result<(), Box<dyn Error>> {
     const MEAN: RGBColor = RGBColor(33, 145, 140);
     const THRESHOLD: RGBColor = RGBColor(200, 60, 40);
 
-    let root = SVGBackend::new(path, (900, 480)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let body = root.titled("Learning to swing up", TITLE)?;
+    let body = area.titled("Learning to swing up", TITLE)?;
     // Both axes by doublings: most is learnt in few episodes, and the last steps are the hardest to save.
     let threshold = f64::from(REWARD_THRESHOLD);
     let (worst, best) = (-500_f64, -40_f64);
@@ -81,12 +97,11 @@ pub fn draw_curve(path: &Path, returns: &[f32]) -> Result<(), Box<dyn Error>> {
         .border_style(RGBColor(200, 200, 200))
         .label_font(LABEL)
         .draw()?;
-    root.present()?;
     Ok(())
 }
 
 /// Values over the two angles at rest; where the tip is above the goal there is nothing left to learn.
-pub fn draw_values(path: &Path, value: impl Fn(&[f32; 4]) -> f32) -> Result<(), Box<dyn Error>> {
+pub fn draw_values(area: &Area, value: impl Fn(&[f32; 4]) -> f32) -> Result<(), Box<dyn Error>> {
     /// Cells of a side.
     const SIDE: usize = 72;
     let at = |i: usize| ((i as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0) * PI;
@@ -108,9 +123,7 @@ pub fn draw_values(path: &Path, value: impl Fn(&[f32; 4]) -> f32) -> Result<(), 
     let most = tens(values().fold(f64::NEG_INFINITY, f64::max)).ceil() * 10.0;
     let range = least..most.max(least + 10.0);
 
-    let root = SVGBackend::new(path, (780, 720)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let body = root
+    let body = area
         .titled("Learnt values of the acrobot at rest", TITLE)?
         .titled(
             "the higher action value; grey: the tip is above the goal",
@@ -146,7 +159,6 @@ pub fn draw_values(path: &Path, value: impl Fn(&[f32; 4]) -> f32) -> Result<(), 
         "value (minus the steps to the goal)",
         &|value| format!("{value:.0}"),
     )?;
-    root.present()?;
     Ok(())
 }
 
