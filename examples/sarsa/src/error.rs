@@ -100,6 +100,11 @@ pub enum LoadError {
         /// Fingerprint of this learner's features.
         expected: u32,
     },
+    /// A weight that is infinite or NaN.
+    NotFinite {
+        /// Its place among the weights, counted from 0.
+        index: usize,
+    },
     /// Changed since they were saved.
     Checksum {
         /// In the bytes.
@@ -123,6 +128,12 @@ impl fmt::Display for LoadError {
                 f,
                 "weights of features {found:08x}; allowed is {expected:08x}"
             ),
+            Self::NotFinite { index } => {
+                write!(
+                    f,
+                    "weight {index} is not finite; allowed are finite numbers"
+                )
+            }
             Self::Checksum { found, expected } => write!(
                 f,
                 "damaged weights: checksum {found:08x}, computed {expected:08x}"

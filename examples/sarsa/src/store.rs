@@ -33,7 +33,7 @@ impl<F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T:
     ///
     /// # Errors
     ///
-    /// [`LoadError`] for bytes of another kind, version, size or learner, or that were changed; the
+    /// [`LoadError`] for bytes of another kind, version, size or learner, that were changed, or with a weight that is not finite; the
     /// weights are as they were.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
         let word = |at: usize| match bytes.get(at..at + 4) {
@@ -77,9 +77,15 @@ impl<F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T:
                 expected: checksum,
             });
         }
-        let weights = self.weights.iter_mut().flatten();
-        for (w, bytes) in weights.zip(body[HEADER..].chunks_exact(4)) {
-            *w = f32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+        let numbers = || {
+            let (numbers, _) = body[HEADER..].as_chunks();
+            numbers.iter().map(|&bytes| f32::from_le_bytes(bytes))
+        };
+        if let Some(index) = numbers().position(|w| !w.is_finite()) {
+            return Err(LoadError::NotFinite { index });
+        }
+        for (w, number) in self.weights.iter_mut().flatten().zip(numbers()) {
+            *w = number;
         }
         Ok(())
     }

@@ -229,7 +229,9 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         groups: &[Group],
         mut offset: impl FnMut(Place) -> f32,
     ) -> Result<Self, Error> {
-        let tilings = groups.iter().map(|group| group.tilings).sum();
+        // Saturating: a sum that wrapped to T would pass.
+        let each = groups.iter().map(|group| group.tilings);
+        let tilings = each.fold(0, usize::saturating_add);
         Error::unless(T > 0 && tilings == T, "tilings", tilings, "above 0, and", T)?;
         for dimension in &dimensions {
             dimension.check()?;

@@ -291,3 +291,37 @@ fn weights_of_other_tiles() {
         assert_eq!(weights, [[0.0; 2]; 32]);
     }
 }
+
+/// Damaged before the checksum was made, which is therefore right.
+#[test]
+fn weights_that_are_not_finite() {
+    let mut weights = [[0.0; 2]; 32];
+    let saved = learnt(&mut weights);
+    for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let mut bytes = saved.clone();
+        bytes[16 + 4 * 5..][..4].copy_from_slice(&number.to_le_bytes());
+        let mut untouched = [[0.0; 2]; 32];
+        let mut agent = agent(&mut untouched);
+        let Err(LoadError::Checksum { expected, .. }) = agent.load(&bytes) else {
+            panic!("the checksum was not made for {number}")
+        };
+        let end = bytes.len() - 4;
+        bytes[end..].copy_from_slice(&expected.to_le_bytes());
+        let error = agent.load(&bytes).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "weight 5 is not finite; allowed are finite numbers"
+        );
+        assert_eq!(*agent.weights(), [[0.0; 2]; 32]);
+    }
+}
+
+#[test]
+fn tilings_whose_sum_wraps() {
+    let groups = [Group::new(&[0], usize::MAX), Group::new(&[0], 5)];
+    let coder = TileCoder::<1, 4>::new(LINE, &groups, Table::Direct, displacement);
+    assert_eq!(
+        coder.unwrap_err().to_string(),
+        format!("{} tilings; allowed is above 0, and 4", usize::MAX)
+    );
+}
