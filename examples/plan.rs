@@ -13,7 +13,7 @@
 //!
 //! What one sees: a few steps ahead are worse than none. Values are learnt along the ways that the policy
 //! takes, and a search finds the states off them whose values are too good to be true. From some ten steps on,
-//! true rewards outweigh that, and from thirty on nothing is gained any more.
+//! true rewards outweigh that; beyond thirty little is gained, unless the values are poor.
 
 use std::fmt::Display;
 use std::fs;
