@@ -75,7 +75,7 @@ fn host(alone: Alone<Host>) -> Alone<Host> {
     play_alone(alone)
 }
 
-#[library_benchmark(config = limit(1416.0, 1), setup = alone::<Portable>)]
+#[library_benchmark(config = limit(1072.0, 1), setup = alone::<Portable>)]
 fn portable(alone: Alone<Portable>) -> Alone<Portable> {
     play_alone(alone)
 }
@@ -105,7 +105,7 @@ fn batch_fast_with_observations(play: Play<Fast>) -> Play<Fast> {
 }
 
 #[library_benchmark(setup = batch::<Portable>)]
-#[bench::baseline(args = (Vectors::Baseline), config = limit(1570.0, ACROBOTS))]
+#[bench::baseline(args = (Vectors::Baseline), config = limit(1262.0, ACROBOTS))]
 fn batch_portable(play: Play<Portable>) -> Play<Portable> {
     play_batch(play, false)
 }

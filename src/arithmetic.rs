@@ -76,6 +76,14 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
         Self::sin_cos(x).1
     }
 
+    /// The cosine of a link's angle against the horizontal, of which its weight turns it, where `x` rad
+    /// is that against the vertical: sin `x`, which is `sin` if a step knows it already. Only
+    /// [`Form::Gymnasium`] asks for it, whose source takes cos(x − π/2).
+    #[inline]
+    fn cos_from_horizontal(x: Self::Scalar, sin: Option<Self::Scalar>) -> Self::Scalar {
+        sin.unwrap_or_else(|| Self::sin_cos(x).0)
+    }
+
     /// The square of `x`.
     #[inline]
     fn square(x: Self::Scalar) -> Self::Scalar {
@@ -108,8 +116,6 @@ pub trait Real:
     const PI: Self;
     /// 2π, rounded to the scalar.
     const TAU: Self;
-    /// π/2, rounded to the scalar.
-    const FRAC_PI_2: Self;
 
     /// The scalar nearest to `x`.
     fn from_f64(x: f64) -> Self;
@@ -174,7 +180,6 @@ macro_rules! impl_real {
             const ZERO: Self = 0.0;
             const PI: Self = core::$scalar::consts::PI;
             const TAU: Self = core::$scalar::consts::TAU;
-            const FRAC_PI_2: Self = core::$scalar::consts::FRAC_PI_2;
 
             #[inline]
             fn from_f64(x: f64) -> Self {

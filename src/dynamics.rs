@@ -89,6 +89,7 @@ impl<S: Real> Model<S> {
     fn gymnasium<A: Arithmetic<Scalar = S>>(
         &self,
         [theta1, theta2, dtheta1, dtheta2]: [S; 4],
+        sin1: Option<S>,
         (sin2, cos2): SinCos<S>,
         torque: S,
     ) -> [S; 4] {
@@ -105,8 +106,8 @@ impl<S: Real> Model<S> {
         let coupling = self.coupling;
 
         // First, for calls keep no floats in registers on x86-64.
-        let phi2 = self.gravity2 * A::cos(theta1 + theta2 - S::FRAC_PI_2);
-        let cos1 = A::cos(theta1 - S::FRAC_PI_2);
+        let phi2 = self.gravity2 * A::cos_from_horizontal(theta1 + theta2, None);
+        let cos1 = A::cos_from_horizontal(theta1, sin1);
         let arm = arm * cos2;
         let d1 = link1 + m2 * (arms + two * arm) + inertia1 + inertia2;
         let d2 = m2 * (lc2_squared + arm) + inertia2;
@@ -215,7 +216,7 @@ impl<A: Arithmetic> Derivative<A::Scalar, 4> for Driven<'_, A, A::Scalar> {
     fn at(&self, y: [A::Scalar; 4]) -> [A::Scalar; 4] {
         let second = A::sin_cos_near(y[1]);
         match A::FORM {
-            Form::Gymnasium => self.model.gymnasium::<A>(y, second, self.torque),
+            Form::Gymnasium => self.model.gymnasium::<A>(y, None, second, self.torque),
             Form::Lean => self
                 .model
                 .lean(y, [A::sin_cos_near(y[0]), second], self.torque),
@@ -231,8 +232,11 @@ impl<A: Arithmetic> Driven<'_, A, A::Scalar> {
         y: [A::Scalar; 4],
         sin_cos: [SinCos<A::Scalar>; 2],
     ) -> [A::Scalar; 4] {
+        let [(sin1, _), second] = sin_cos;
         match A::FORM {
-            Form::Gymnasium => self.model.gymnasium::<A>(y, sin_cos[1], self.torque),
+            Form::Gymnasium => self
+                .model
+                .gymnasium::<A>(y, Some(sin1), second, self.torque),
             Form::Lean => self.model.lean(y, sin_cos, self.torque),
         }
     }

@@ -37,7 +37,7 @@ fn digest<A: Arithmetic>() -> u64 {
 
 #[test]
 fn portable_is_stable() {
-    assert_eq!(format!("{:016x}", digest::<Portable>()), "feef7e5f31292db3");
+    assert_eq!(format!("{:016x}", digest::<Portable>()), "d1dd63ad921c91c5");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! f64 with the platform's C library, in Gymnasium's order: Gymnasium's own bits.
 
+use core::f64::consts::FRAC_PI_2;
 use core::hint::black_box;
 
 use super::{Arithmetic, Form};
@@ -26,6 +27,11 @@ impl Arithmetic for Host {
     #[inline]
     fn cos(x: f64) -> f64 {
         x.cos()
+    }
+
+    #[inline]
+    fn cos_from_horizontal(x: f64, _: Option<f64>) -> f64 {
+        (x - FRAC_PI_2).cos()
     }
 
     /// `x**2` of a NumPy scalar is C's `pow`, which glibc rounds differently from `x * x` on one
