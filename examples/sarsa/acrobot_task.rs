@@ -2,7 +2,7 @@
 
 use core::f32::consts::PI;
 
-use acrobot::{Acrobot, Action, Fast, Pcg64, SeedSequence, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Pcg64, SeedSequence, State, TimeLimit};
 use sarsa::{
     Dimension, Error, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement,
 };
@@ -23,38 +23,37 @@ pub enum Preset {
 const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
 
 impl Preset {
-    /// A learner in this memory, with `T` tilings, of which some go to the pairs.
+    /// A learner in this memory, with `T` tilings, of which some go to the pairs. It learns and explores less from
+    /// episode to episode of those that it is to learn in; then it hardly changes.
     pub fn learner<const S: usize, const T: usize>(
         self,
+        episodes: u32,
         weights: &mut [[f32; 2]; S],
     ) -> Result<Learner<'_, S, T>, Error> {
-        let (tilings, alpha, epsilon) = match self {
-            Self::Fast => (2, falling(0.5, 0.999, 0.02), falling(0.005, 0.9995, 0.0)),
-            Self::Quality => (1, falling(0.5, 0.9997, 0.01), falling(0.01, 0.9998, 0.0)),
+        let (tilings, lambda, alpha, epsilon) = match self {
+            Self::Fast => (2, 0.93, 0.5, 0.005),
+            Self::Quality => (1, 0.95, 0.7, 0.01),
         };
-        let angle = Dimension::cyclic(-PI, PI, if S < 8192 { 6 } else { 7 });
-        let velocities = [PI, 2.5 * PI].map(|bound| Dimension::bounded(-bound, bound, 6));
+        let angle = Dimension::cyclic(-PI, PI, if S < 4096 { 6 } else { 7 });
+        let velocities = [1.25 * PI, 2.5 * PI].map(|bound| Dimension::bounded(-bound, bound, 6));
         let dimensions = [angle, angle, velocities[0], velocities[1]];
         let all = Group::new(&[0, 1, 2, 3], T.saturating_sub(4 * tilings));
         let [a, b, c, d] = PAIRS.each_ref().map(|pair| Group::new(pair, tilings));
         let groups = [all, a, b, c, d];
         let coder = TileCoder::new(dimensions, &groups, Table::Hashed(S), displacement)?;
+        let falling = |start, end| Schedule {
+            start,
+            end,
+            episodes,
+        };
         let settings = Settings {
             gamma: 1.0,
-            lambda: 0.95,
-            alpha,
-            epsilon,
+            lambda,
+            alpha: falling(alpha, 0.01),
+            epsilon: falling(epsilon, 0.0),
             symmetry: Symmetry::Mirror(2),
         };
         Sarsa::new(coder, settings, weights)
-    }
-}
-
-const fn falling(start: f32, factor: f32, floor: f32) -> Schedule {
-    Schedule {
-        start,
-        factor,
-        floor,
     }
 }
 
@@ -81,9 +80,19 @@ pub fn evaluation(seed: &SeedSequence) -> Env {
     TimeLimit::v1(Acrobot::new(seed.child(1)))
 }
 
-/// The state as the learner sees it, \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
-pub fn state(env: &Env) -> [f32; 4] {
-    env.inner().state().into()
+/// A state as the learner sees it, \[θ1, θ2, θ̇1, θ̇1 + θ̇2\] in rad and rad/s: how fast link 2 turns in space says more of it
+/// alone than how fast the joint does.
+pub fn view(state: &State<f32>) -> [f32; 4] {
+    let [theta1, theta2, dtheta1, dtheta2] = (*state).into();
+    [theta1, theta2, dtheta1, dtheta1 + dtheta2]
+}
+
+/// The action that the learner holds for the best.
+pub fn greedy<const S: usize, const T: usize>(
+    learner: &Learner<'_, S, T>,
+    state: &State<f32>,
+) -> Action {
+    torque(learner.greedy(&view(state)))
 }
 
 /// Learns in one episode from a new start, and returns the sum of the rewards.
@@ -93,7 +102,7 @@ pub fn learn<const S: usize, const T: usize>(
     choices: &mut Pcg64,
 ) -> f32 {
     env.reset();
-    let mut action = learner.start(&state(env), choices);
+    let mut action = learner.start(&view(&env.inner().state()), choices);
     let mut sum = 0.0;
     loop {
         let step = env.step(torque(action));
@@ -102,7 +111,7 @@ pub fn learn<const S: usize, const T: usize>(
             learner.end(step.reward);
             return sum;
         }
-        action = learner.step(step.reward, &state(env), choices);
+        action = learner.step(step.reward, &view(&env.inner().state()), choices);
         if step.truncated {
             learner.cut();
             return sum;
@@ -111,11 +120,11 @@ pub fn learn<const S: usize, const T: usize>(
 }
 
 /// Plays an episode from a new start: the sum of the rewards, and whether the goal was reached.
-pub fn play(env: &mut Env, mut policy: impl FnMut(&[f32; 4]) -> Action) -> (f32, bool) {
+pub fn play(env: &mut Env, mut policy: impl FnMut(&State<f32>) -> Action) -> (f32, bool) {
     env.reset();
     let mut sum = 0.0;
     loop {
-        let step = env.step(policy(&state(env)));
+        let step = env.step(policy(&env.inner().state()));
         sum += step.reward;
         if step.ended() {
             return (sum, step.terminated);

@@ -85,8 +85,8 @@ pub fn ours(seed: SeedSequence, episodes: usize) -> Result<Vec<u32>, Error> {
         alpha: Schedule::constant(0.3),
         epsilon: Schedule {
             start: 0.01,
-            factor: 0.98,
-            floor: 0.0,
+            end: 0.0,
+            episodes: 100,
         },
         symmetry: Symmetry::Mirror(2),
     };

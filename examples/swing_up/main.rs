@@ -22,7 +22,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use acrobot::{Action, Pcg64, SeedSequence};
+use acrobot::{Action, Pcg64, SeedSequence, State};
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -35,7 +35,7 @@ mod curve;
 mod heat_map;
 mod pictures;
 
-use acrobot_task::{Learner, Preset, evaluation, learn, play, torque, training};
+use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 
 /// Learns to swing up, and says how well.
 #[derive(Parser)]
@@ -105,15 +105,11 @@ enum Memory {
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    let done = match (options.preset, options.memory) {
-        (Goal::Fast, Memory::K64) => run::<8192, 28>(Preset::Fast, &options),
-        (Goal::Fast, Memory::K32) => run::<4096, 24>(Preset::Fast, &options),
-        (Goal::Fast, Memory::K16) => run::<2048, 24>(Preset::Fast, &options),
-        (Goal::Fast, Memory::K8) => run::<1024, 24>(Preset::Fast, &options),
-        (Goal::Quality, Memory::K64) => run::<8192, 28>(Preset::Quality, &options),
-        (Goal::Quality, Memory::K32) => run::<4096, 20>(Preset::Quality, &options),
-        (Goal::Quality, Memory::K16) => run::<2048, 16>(Preset::Quality, &options),
-        (Goal::Quality, Memory::K8) => run::<1024, 12>(Preset::Quality, &options),
+    let done = match options.memory {
+        Memory::K64 => run::<8192, 28>(&options),
+        Memory::K32 => run::<4096, 20>(&options),
+        Memory::K16 => run::<2048, 20>(&options),
+        Memory::K8 => run::<1024, 16>(&options),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -125,12 +121,13 @@ fn main() -> ExitCode {
 }
 
 /// Learns with `T` tilings in `S` slots, and reports.
-fn run<const S: usize, const T: usize>(
-    preset: Preset,
-    options: &Options,
-) -> Result<(), Box<dyn Error>> {
+fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut weights = [[0.0; 2]; S];
-    let mut learner: Learner<S, T> = preset.learner(&mut weights)?;
+    let preset = match options.preset {
+        Goal::Fast => Preset::Fast,
+        Goal::Quality => Preset::Quality,
+    };
+    let mut learner: Learner<S, T> = preset.learner(options.episodes, &mut weights)?;
     if let Some(path) = &options.load {
         let named = |reason: &dyn Display| format!("{}: {reason}", path.display());
         let bytes = fs::read(path).map_err(|e| named(&e))?;
@@ -144,18 +141,18 @@ fn run<const S: usize, const T: usize>(
     }
 
     let mut out = io::stdout();
-    let greedy = evaluate(options, |state| torque(learner.greedy(state)));
+    let learnt = evaluate(options, |state| greedy(&learner, state));
     let solved_at = curve::solved_at(&returns).map_or("never".into(), |n| n.to_string());
     if options.quiet {
-        let [mean, sd] = greedy.moments();
-        let misses = greedy.misses;
+        let [mean, sd] = learnt.moments();
+        let misses = learnt.misses;
         writeln!(
             out,
             "solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}"
         )?;
         return Ok(());
     }
-    let against = |&[_, _, dtheta1, _]: &[f32; 4]| torque((dtheta1 < 0.0).into());
+    let against = |state: &State<f32>| torque((state.dtheta1 < 0.0).into());
     let mut actions = Pcg64::new(options.seed.child(2));
     writeln!(out, "solved at episode: {solved_at}\n")?;
     writeln!(
@@ -163,7 +160,7 @@ fn run<const S: usize, const T: usize>(
         "policy              mean return of {EVALUATION} episodes  missed the goal"
     )?;
     for (name, returns) in [
-        ("learnt", greedy),
+        ("learnt", learnt),
         ("torque against θ̇1", evaluate(options, against)),
         (
             "random",
@@ -202,7 +199,10 @@ fn draw<const S: usize, const T: usize>(
     }
 
     let values = path("values.svg");
-    let value = |state: &[f32; 4]| learner.values(state).into_iter().fold(f32::MIN, f32::max);
+    let value = |state: &State<f32>| {
+        let values = learner.values(&view(state));
+        values.into_iter().fold(f32::MIN, f32::max)
+    };
     let svg = pictures::svg((780, 720), |area| pictures::draw_values(area, value))?;
     fs::write(&values, svg).map_err(|e| cannot_write(&values, e))?;
     writeln!(out, "{}: the values at rest", values.display())?;
@@ -213,7 +213,7 @@ fn draw<const S: usize, const T: usize>(
         // Only starts are drawn from its generator: this is the way to the last of them.
         env.reset();
     }
-    let frames = pictures::draw_episode(&episode, &mut env, |s| torque(learner.greedy(s)));
+    let frames = pictures::draw_episode(&episode, &mut env, |state| greedy(learner, state));
     let frames = frames.map_err(|e| cannot_write(&episode, e))?;
     writeln!(
         out,
@@ -279,7 +279,7 @@ impl Returns {
 }
 
 /// Plays the same starts whatever the policy.
-fn evaluate(options: &Options, mut policy: impl FnMut(&[f32; 4]) -> Action) -> Returns {
+fn evaluate(options: &Options, mut policy: impl FnMut(&State<f32>) -> Action) -> Returns {
     let mut env = evaluation(&options.seed);
     let mut returns = Returns::default();
     for _ in 0..EVALUATION {

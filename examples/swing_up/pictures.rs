@@ -10,7 +10,7 @@ use acrobot::{Action, Fast, Figure, Params, REWARD_THRESHOLD, State, tip_height}
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use crate::acrobot_task::{Env, state};
+use crate::acrobot_task::Env;
 use crate::animation;
 use crate::curve::running_mean;
 use crate::heat_map::{LABEL, NAME, color, draw_bar};
@@ -101,7 +101,7 @@ pub fn draw_curve(area: &Area, returns: &[f32]) -> Result<(), Box<dyn Error>> {
 }
 
 /// Values over the two angles at rest; where the tip is above the goal there is nothing left to learn.
-pub fn draw_values(area: &Area, value: impl Fn(&[f32; 4]) -> f32) -> Result<(), Box<dyn Error>> {
+pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> Result<(), Box<dyn Error>> {
     /// Cells of a side.
     const SIDE: usize = 72;
     let at = |i: usize| ((i as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0) * PI;
@@ -113,7 +113,7 @@ pub fn draw_values(area: &Area, value: impl Fn(&[f32; 4]) -> f32) -> Result<(), 
             ..State::default()
         };
         let is_goal = tip_height::<Fast>(&Params::default(), &rest) > 1.0;
-        let value = (!is_goal).then(|| f64::from(value(&rest.into())));
+        let value = (!is_goal).then(|| f64::from(value(&rest)));
         (f64::from(theta1), f64::from(theta2), value)
     });
     let cells: Vec<_> = cells.collect();
@@ -166,12 +166,12 @@ pub fn draw_values(area: &Area, value: impl Fn(&[f32; 4]) -> f32) -> Result<(), 
 pub fn draw_episode(
     path: &Path,
     env: &mut Env,
-    policy: impl Fn(&[f32; 4]) -> Action,
+    policy: impl Fn(&State<f32>) -> Action,
 ) -> Result<usize, Box<dyn Error>> {
     env.reset();
     let mut figures = vec![Figure::new(env.inner())];
     loop {
-        let action = policy(&state(env));
+        let action = policy(&env.inner().state());
         let step = env.step(action);
         let torque = env.inner().params().torque(action);
         figures.push(Figure::new(env.inner()).with_torque(torque));

@@ -53,7 +53,8 @@ pub struct Settings {
 pub struct Sarsa<'w, F, const S: usize, const A: usize, const D: usize, const T: usize> {
     pub(crate) features: F,
     settings: Settings,
-    /// α, of each weight.
+    /// Episodes that have ended.
+    episode: u32,
     alpha: f32,
     epsilon: f32,
     pub(crate) weights: &'w mut [[f32; A]; S],
@@ -80,9 +81,9 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         unit_interval("gamma", settings.gamma)?;
         unit_interval("lambda", settings.lambda)?;
         let Settings { alpha, epsilon, .. } = settings;
-        alpha.check(["alpha", "alpha's factor", "alpha's floor"])?;
-        epsilon.check(["epsilon", "epsilon's factor", "epsilon's floor"])?;
-        if alpha.start == 0.0 {
+        alpha.check(["alpha", "alpha's end"])?;
+        epsilon.check(["epsilon", "epsilon's end"])?;
+        if alpha.at(0) == 0.0 {
             return Err(Error::OutOfRange {
                 name: "alpha",
                 value: 0.0,
@@ -109,8 +110,9 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         Ok(Self {
             features,
             settings,
-            alpha: alpha.start,
-            epsilon: epsilon.start,
+            episode: 0,
+            alpha: alpha.at(0),
+            epsilon: epsilon.at(0),
             weights,
             traces: Traces::new(settings.gamma * settings.lambda),
             slots: [0; T],
@@ -156,8 +158,9 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
 
     /// The episode was cut short after the last [`Sarsa::step`]: the schedules go on.
     pub fn cut(&mut self) {
-        self.alpha = self.settings.alpha.next(self.alpha);
-        self.epsilon = self.settings.epsilon.next(self.epsilon);
+        self.episode = self.episode.saturating_add(1);
+        self.alpha = self.settings.alpha.at(self.episode);
+        self.epsilon = self.settings.epsilon.at(self.episode);
     }
 
     /// The action with the highest value, the first of equals.

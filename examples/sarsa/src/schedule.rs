@@ -1,16 +1,16 @@
-//! Numbers that fall from episode to episode.
+//! Numbers that change from episode to episode.
 
 use crate::error::Error;
 
-/// A number that is multiplied by `factor` after each episode and stays at `floor`.
+/// A number that goes evenly from `start` to `end`, and stays there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
-    /// In the first episode.
+    /// In the first episode, in \[0, 1\].
     pub start: f32,
-    /// From one episode to the next, in \[0, 1\].
-    pub factor: f32,
-    /// Where it stays, in \[0, `start`\].
-    pub floor: f32,
+    /// After `episodes`, in \[0, 1\].
+    pub end: f32,
+    /// Episodes from `start` to `end`; 0 for `end` at once.
+    pub episodes: u32,
 }
 
 impl Schedule {
@@ -19,30 +19,24 @@ impl Schedule {
     pub const fn constant(value: f32) -> Self {
         Self {
             start: value,
-            factor: 1.0,
-            floor: value,
+            end: value,
+            episodes: 0,
         }
     }
 
-    /// What comes after an episode with `value`.
-    pub(crate) fn next(&self, value: f32) -> f32 {
-        let next = value * self.factor;
-        if next > self.floor { next } else { self.floor }
+    /// The number in an episode, of which the first is 0.
+    pub(crate) fn at(&self, episode: u32) -> f32 {
+        if episode >= self.episodes {
+            return self.end;
+        }
+        let passed = episode as f32 / self.episodes as f32;
+        self.start + (self.end - self.start) * passed
     }
 
-    /// Refuses what does not fall within \[0, 1\].
-    pub(crate) fn check(&self, names: [&'static str; 3]) -> Result<(), Error> {
+    /// Refuses what is not within \[0, 1\].
+    pub(crate) fn check(&self, names: [&'static str; 2]) -> Result<(), Error> {
         unit_interval(names[0], self.start)?;
-        unit_interval(names[1], self.factor)?;
-        if (0.0..=self.start).contains(&self.floor) {
-            return Ok(());
-        }
-        Err(Error::OutOfRange {
-            name: names[2],
-            value: self.floor,
-            unit: "",
-            allowed: "0 to its start",
-        })
+        unit_interval(names[1], self.end)
     }
 }
 

@@ -37,12 +37,12 @@ fn agent(weights: &mut [[f32; 2]; 32]) -> Agent<'_> {
 
 #[test]
 fn settings() {
-    let falling = |start, factor, floor| Schedule {
-        start,
-        factor,
-        floor,
+    let ending = |end| Schedule {
+        start: 0.5,
+        end,
+        episodes: 9,
     };
-    let cases: [(Settings, &str); 11] = [
+    let cases: [(Settings, &str); 10] = [
         (
             Settings {
                 gamma: 1.01,
@@ -80,17 +80,10 @@ fn settings() {
         ),
         (
             Settings {
-                alpha: falling(0.5, 1.5, 0.1),
+                alpha: ending(1.5),
                 ..SETTINGS
             },
-            "alpha's factor is 1.5; allowed is 0 to 1",
-        ),
-        (
-            Settings {
-                alpha: falling(0.5, 0.5, 0.6),
-                ..SETTINGS
-            },
-            "alpha's floor is 0.6; allowed is 0 to its start",
+            "alpha's end is 1.5; allowed is 0 to 1",
         ),
         (
             Settings {
@@ -101,17 +94,17 @@ fn settings() {
         ),
         (
             Settings {
-                epsilon: falling(0.5, -1.0, 0.0),
+                epsilon: ending(-1.0),
                 ..SETTINGS
             },
-            "epsilon's factor is -1; allowed is 0 to 1",
+            "epsilon's end is -1; allowed is 0 to 1",
         ),
         (
             Settings {
-                epsilon: falling(0.5, 1.0, f32::NAN),
+                epsilon: ending(f32::NAN),
                 ..SETTINGS
             },
-            "epsilon's floor is NaN; allowed is 0 to its start",
+            "epsilon's end is NaN; allowed is 0 to 1",
         ),
         (
             Settings {

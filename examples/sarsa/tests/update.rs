@@ -228,12 +228,12 @@ fn a_mirrored_world_is_the_same_world() {
 }
 
 #[test]
-fn schedules_fall_once_an_episode_and_stay_at_their_floor() {
+fn schedules_go_evenly_from_episode_to_episode_and_stay_at_their_end() {
     let settings = Settings {
         alpha: Schedule {
             start: 0.5,
-            factor: 0.5,
-            floor: 0.1,
+            end: 0.1,
+            episodes: 4,
         },
         ..SETTINGS
     };
@@ -242,7 +242,7 @@ fn schedules_fall_once_an_episode_and_stay_at_their_floor() {
     let mut rng = Pcg32::new(1, 1);
     let mut value = 0.0_f32;
     // One state whose reward is −1: what an update leaves of the error is 1 − α.
-    for alpha in [0.5, 0.25, 0.125, 0.1, 0.1] {
+    for alpha in [0.5, 0.4, 0.3, 0.2, 0.1, 0.1] {
         agent.start(&[0.0, 0.0], &mut rng);
         agent.end(-1.0);
         value += alpha * (-1.0 - value);

@@ -20,7 +20,7 @@ mod training;
 
 use core::cell::RefCell;
 
-use acrobot::{Action, REWARD_THRESHOLD};
+use acrobot::{Action, REWARD_THRESHOLD, State};
 use cortex_m::Peripherals;
 use cortex_m_rt::{STACK_PAINT_VALUE, entry, heap_start};
 use counter::Counter;
@@ -30,26 +30,24 @@ use semihosting::{println, process};
 use ssd1306::mode::DisplayConfig;
 use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
 use ssd1306::{I2CDisplayInterface, Ssd1306};
-use training::acrobot_task::{Env, Preset, evaluation, learn, play, torque};
-use training::{Learner, Weights};
-
-/// Where it gives up.
-const EPISODES: u32 = 200;
+use training::acrobot_task::{Env, Preset, evaluation, greedy, learn, play};
+use training::{EPISODES, Learner, Weights};
 
 #[entry]
 fn main() -> ! {
     static mut WEIGHTS: Weights = training::UNTRAINED;
-    let (Some(peripherals), Ok(mut learner)) = (Peripherals::take(), Preset::Fast.learner(WEIGHTS))
+    let (Some(peripherals), Ok(mut learner)) =
+        (Peripherals::take(), Preset::Fast.learner(EPISODES, WEIGHTS))
     else {
         process::exit(1)
     };
     let solved = train(&mut learner, &mut Counter::start(peripherals.SYST));
     let mut env = evaluation(&training::SEED.into());
-    let greedy = |state: &[f32; 4]| torque(learner.greedy(state));
-    let sum: f32 = (0..100).map(|_| play(&mut env, greedy).0).sum();
+    let policy = |state: &State<f32>| greedy(&learner, state);
+    let sum: f32 = (0..100).map(|_| play(&mut env, policy).0).sum();
     println!("mean return of 100 greedy episodes: {}", sum as i32 / 100);
     env.reset();
-    let swung_up = draw(env, greedy);
+    let swung_up = draw(env, policy);
     println!("fast ram {}", ram());
     process::exit(if solved && swung_up { 0 } else { 1 })
 }
@@ -73,7 +71,7 @@ fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
             let mean = returns.oldest_ordered().rev().take(10).sum::<f32>() as i32 / 10;
             println!("{episode:>4} {mean:>5} {:*<1$}", "", (-mean / 5) as usize);
         }
-        if episode == training::EPISODES {
+        if episode == training::COMPARED {
             let found = training::digest(learner);
             equal = found == training::WEIGHTS;
             if !equal {
@@ -92,7 +90,7 @@ fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
 }
 
 /// Plays an episode on a display, and returns whether the goal was reached.
-fn draw(env: Env, policy: impl Fn(&[f32; 4]) -> Action) -> bool {
+fn draw(env: Env, policy: impl Fn(&State<f32>) -> Action) -> bool {
     let panel = RefCell::new(Panel::new());
     let interface = I2CDisplayInterface::new(Bus(&panel));
     let mut display = Ssd1306::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
@@ -102,7 +100,7 @@ fn draw(env: Env, policy: impl Fn(&[f32; 4]) -> Action) -> bool {
     let drawn = oled::play(
         &mut display,
         env,
-        |acrobot| policy(&acrobot.state().into()),
+        |acrobot| policy(&acrobot.state()),
         |display| {
             frames += 1;
             refused |= display.flush().is_err();

@@ -24,7 +24,7 @@ use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
-use training::acrobot_task::{Preset, learn};
+use training::acrobot_task::{Preset, greedy, learn};
 
 unsafe extern "C" {
     fn a_panicking_branch_is_left() -> !;
@@ -121,12 +121,12 @@ fn batch<A: Arithmetic>() {
 /// The learner of `learn`, which comes with the crate's examples.
 fn learner() {
     let mut weights = black_box(training::UNTRAINED);
-    let Ok(mut learner) = Preset::Fast.learner(&mut weights) else {
+    let Ok(mut learner) = Preset::Fast.learner(training::EPISODES, &mut weights) else {
         return;
     };
     let (mut env, mut choices) = training::acrobot_task::training(black_box(42).into());
     black_box(learn(&mut learner, &mut env, &mut choices));
-    black_box(learner.greedy(&black_box([0.0; 4])));
+    black_box(greedy(&learner, &black_box(State::default())));
     black_box(training::digest(&learner));
 }
 

@@ -1,0 +1,152 @@
+//! Pictures are what the README shows, and what cannot be drawn or written is refused.
+
+use std::fs;
+
+use super::{Folder, command, gif_frames, png, printed, refused, run};
+use acrobot::env::Frame;
+use acrobot::{Acrobot, Figure, Portable, State};
+
+#[test]
+fn a_state_is_rendered_as_its_frame() {
+    let folder = Folder::new("state");
+    let out = folder.file("frame.png");
+    printed(run(
+        "render_episode",
+        &["--state", "-0.6,1.5", "--out", &out],
+        "",
+    ));
+    let mut acrobot = Acrobot::<Portable>::new(0);
+    acrobot
+        .set_state(State {
+            theta1: -0.6,
+            theta2: 1.5,
+            ..State::default()
+        })
+        .unwrap();
+    let expected = Frame::of(&Figure::new(&acrobot));
+    assert_eq!(png(&out), (500, 500, expected.bytes().to_vec()));
+}
+
+/// The README's first picture is what the example draws.
+#[test]
+fn the_episode_is_the_readmes_picture() {
+    let folder = Folder::new("episode");
+    let (gif, strip) = (folder.file("episode.gif"), folder.file("episode.png"));
+    printed(run("render_episode", &["--out", &gif], ""));
+    assert!(
+        fs::read(&gif).unwrap() == include_bytes!("../../examples/episode.gif"),
+        "examples/episode.gif is another"
+    );
+    let (width, height, pixels) = png(&strip);
+    assert_eq!((width, height), (8 * 150, 150));
+    assert!(pixels.chunks(3).any(|pixel| pixel == [0, 204, 204]));
+
+    assert_eq!(gif_frames(&gif), 95);
+}
+
+#[test]
+fn the_portrait_has_its_four_panels() {
+    let folder = Folder::new("portrait");
+    let out = folder.file("portrait.svg");
+    assert!(printed(run("phase_portrait", &["--out", &out], "")).contains("94 steps"));
+    let svg = fs::read_to_string(&out).unwrap();
+    for title in [
+        "angles",
+        "velocities",
+        "energy",
+        "phase portrait",
+        "rad/s",
+        "time (s)",
+    ] {
+        assert!(svg.contains(title), "{title}");
+    }
+    assert!(svg.matches("<polyline").count() >= 6);
+}
+
+#[test]
+fn drawing_examples_refuse_with_a_reason() {
+    for (example, arguments, reason) in [
+        (
+            "render_episode",
+            "--state 1",
+            "allowed are two numbers in rad",
+        ),
+        ("render_episode", "--state nan,1", "theta1 is NaN rad"),
+        (
+            "render_episode",
+            "--out picture.png",
+            "--out is picture.png; allowed is a name that ends in .gif",
+        ),
+        (
+            "render_episode",
+            "--out no/such/folder.gif",
+            "cannot write no/such/folder.gif",
+        ),
+        (
+            "phase_portrait",
+            "--out no/such/folder.svg",
+            "cannot write no/such/folder.svg",
+        ),
+        (
+            "render_episode",
+            "--state 1,1 --out frame.gif",
+            "allowed is a name that ends in .png",
+        ),
+        (
+            "phase_portrait",
+            "--out portrait.png",
+            "allowed is a name that ends in .svg",
+        ),
+        (
+            "energy_control",
+            "--limit 0",
+            "allowed is a finite number of N m above 0",
+        ),
+        ("energy_control", "--episodes 0", "0 is not in 1.."),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let errors = refused(example, &arguments, "");
+        assert!(errors.contains(reason), "{errors}");
+    }
+}
+
+/// What cannot be written is no success, also where it is little enough to wait in a buffer.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_is_an_error() {
+    let folder = Folder::new("full");
+    for name in ["frame.png", "episode.gif"] {
+        std::os::unix::fs::symlink("/dev/full", folder.file(name)).unwrap();
+    }
+    let (frame, episode) = (folder.file("frame.png"), folder.file("episode.gif"));
+    for arguments in [
+        ["--state", "1,2", "--out", &frame],
+        ["--seed", "42", "--out", &episode],
+    ] {
+        let errors = refused("render_episode", &arguments, "");
+        assert!(
+            errors.contains("cannot write") && errors.contains("No space left"),
+            "{errors}"
+        );
+    }
+    for name in [
+        "learning_curve.svg",
+        "values.svg",
+        "swing_up.gif",
+        "weights",
+    ] {
+        let folder = Folder::new(&format!("full-{name}"));
+        let path = folder.file(name);
+        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
+        let mut swing_up = command("swing_up", &["--episodes", "20"]);
+        swing_up.args(["--pictures", folder.0.to_str().unwrap()]);
+        if name == "weights" {
+            swing_up.args(["--save", &path]);
+        }
+        let output = swing_up.output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}: {errors}");
+        let reason = format!("cannot write {path}: No space left");
+        assert!(errors.contains(&reason), "{errors}");
+    }
+}

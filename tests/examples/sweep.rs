@@ -1,0 +1,178 @@
+//! `sweep` counts every episode once.
+
+use std::fs;
+
+use super::{Folder, command, printed, refused, run};
+use acrobot::{Acrobot, Action, Fast, Params, SeedSequence, TimeLimit};
+
+/// The row of a cell, from episodes that acrobots play alone.
+fn sweep_row(seed: u64, episodes: u64, mass: f32, torque: f32) -> String {
+    let (mut reached, mut steps) = (0_u64, 0_u64);
+    for seed in SeedSequence::from(seed).spawn(episodes) {
+        let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(seed));
+        let params = Params {
+            mass1: mass,
+            mass2: mass,
+            torques: [-torque, 0.0, torque],
+            ..Params::default()
+        };
+        acrobot.inner_mut().set_params(params).unwrap();
+        let end = loop {
+            let against = acrobot.inner().state().dtheta1 > 0.0;
+            let step = acrobot.step(if against {
+                Action::Negative
+            } else {
+                Action::Positive
+            });
+            if step.ended() {
+                break step;
+            }
+        };
+        if end.terminated {
+            reached += 1;
+            steps += u64::from(acrobot.elapsed());
+        }
+    }
+    let share = reached as f64 / episodes as f64;
+    let mean = match reached {
+        0 => String::new(),
+        _ => format!("{:.3}", steps as f64 / reached as f64),
+    };
+    format!("{mass},{torque},{episodes},{reached},{share:.4},{steps},{mean}")
+}
+
+#[test]
+fn the_sweep_counts_every_episode_once() {
+    let folder = Folder::new("sweep");
+    let (csv, picture) = (folder.file("sweep.csv"), folder.file("sweep.svg"));
+    let [one, two] = ["1", "2"].map(|threads| {
+        // One of these episodes reaches the goal by its very last step.
+        let arguments = "--episodes 1800 --seed 7 --masses 0.1,1.5 --torques 0.001,0.1,0.3";
+        let mut arguments: Vec<&str> = arguments.split(' ').collect();
+        arguments.extend(["--csv", &csv, "--picture", &picture]);
+        let mut sweep = command("sweep", &arguments);
+        let output = sweep.env("RAYON_NUM_THREADS", threads).output().unwrap();
+        assert!(printed(output).contains("1800 episodes"));
+        (
+            fs::read_to_string(&csv).unwrap(),
+            fs::read(&picture).unwrap(),
+        )
+    });
+    assert!(one == two, "the number of threads changes a byte");
+
+    let mut rows = one.0.lines();
+    assert_eq!(
+        rows.next().unwrap(),
+        "mass_kg,torque_n_m,episodes,reached,share,steps_of_reached,mean_steps_of_reached"
+    );
+    let mut shares = Vec::new();
+    for mass in [0.1, 1.5] {
+        for torque in [0.001, 0.1, 0.3] {
+            let row = rows.next().unwrap();
+            assert_eq!(row, sweep_row(7, 300, mass, torque));
+            shares.push(row.split(',').nth(4).unwrap().parse::<f64>().unwrap());
+        }
+    }
+    assert_eq!(rows.next(), None);
+    assert!(
+        [0.0, 1.0].iter().all(|share| shares.contains(share))
+            && shares.iter().any(|&share| 0.0 < share && share < 1.0),
+        "cells of which none, some and all reach the goal: {shares:?}"
+    );
+
+    // Each cell, sixty shades of the colour bar and the paper.
+    let svg = String::from_utf8(one.1).unwrap();
+    assert_eq!(svg.matches("<rect").count(), 6 + 60 + 1);
+    let grey = shares.iter().filter(|&&share| share < 0.5).count();
+    assert_eq!(svg.matches("#BEBEBE").count(), grey);
+    for text in [
+        "300 episodes a cell",
+        "mass of each link (kg)",
+        "torque (N m)",
+        "0.001",
+        "512",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+}
+
+/// The README's heat map is what the command beside it draws.
+#[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "a million episodes, which want optimization"
+)]
+fn the_sweep_is_the_readmes_picture() {
+    let folder = Folder::new("heat-map");
+    let (csv, picture) = (folder.file("sweep.csv"), folder.file("sweep.svg"));
+    printed(run("sweep", &["--csv", &csv, "--picture", &picture], ""));
+    assert!(
+        fs::read(&picture).unwrap() == include_bytes!("../../examples/sweep.svg"),
+        "examples/sweep.svg is another"
+    );
+}
+
+#[test]
+fn the_sweep_refuses_before_it_writes() {
+    let folder = Folder::new("refused-sweep");
+    let (csv, picture) = (folder.file("sweep.csv"), folder.file("sweep.svg"));
+    let missing = folder.file("none/sweep.csv");
+    for (option, value, reason) in [
+        (
+            "--episodes",
+            "1001",
+            "--episodes is 1001 episodes; allowed is a multiple of 400, the cells of the grid, up to 400000000",
+        ),
+        (
+            "--episodes",
+            "0",
+            "--episodes is 0 episodes; allowed is a multiple of 400",
+        ),
+        ("--episodes", "400000400", "up to 400000000"),
+        ("--episodes", "-400", "invalid value '-400' for '--episodes"),
+        (
+            "--seed",
+            "-1",
+            "seed has '-' as character 1; allowed is a decimal integer",
+        ),
+        (
+            "--masses",
+            "1,0",
+            "invalid value '0' for '--masses <KG>': allowed is a number of kg above 0 that f32 holds",
+        ),
+        ("--masses", "", "allowed is a number of kg above 0"),
+        ("--masses", "nan", "allowed is a number of kg above 0"),
+        ("--masses", "1e-60", "allowed is a number of kg above 0"),
+        (
+            "--torques",
+            "inf,1",
+            "invalid value 'inf' for '--torques <N_M>': allowed is a number of N m above 0 that f32 holds",
+        ),
+        ("--torques", "-1", "allowed is a number of N m above 0"),
+        (
+            "--csv",
+            &missing,
+            "allowed is a name that ends in .csv, in a folder that is there",
+        ),
+        ("--csv", &picture, "allowed is a name that ends in .csv"),
+        (
+            "--picture",
+            &csv,
+            "allowed is a name that ends in .svg, in a folder that is there",
+        ),
+    ] {
+        let mut arguments = vec![option, value];
+        for (other, valid) in [
+            ("--episodes", "400"),
+            ("--csv", &csv),
+            ("--picture", &picture),
+        ] {
+            if other != option {
+                arguments.extend([other, valid]);
+            }
+        }
+        let errors = refused("sweep", &arguments, "");
+        assert!(errors.contains(reason), "{errors}");
+        assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 0, "{arguments:?}");
+    }
+}

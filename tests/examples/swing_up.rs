@@ -1,0 +1,203 @@
+//! `swing_up` learns, and keeps its weights.
+
+use std::fs;
+
+use super::{Folder, command, gif_frames, printed, refused, run};
+
+/// The figures of the line that `--quiet` prints: whether and when it was solved, the greedy policy's mean
+/// and standard deviation, and its misses. The line has no other form than theirs.
+fn figures(line: &str) -> (Option<u32>, f64, f64, u32) {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let number = |i: usize| words[i].parse::<f64>().unwrap();
+    let solved_at = words[1].parse().ok();
+    let (mean, sd, misses) = (number(3), number(5), number(7));
+    let solved = solved_at.map_or("never".into(), |n: u32| n.to_string());
+    assert_eq!(
+        line,
+        format!("solved_at {solved} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses:.0}\n")
+    );
+    (solved_at, mean, sd, misses as u32)
+}
+
+fn swing_up(arguments: &str, files: &[&str]) -> String {
+    let arguments: Vec<&str> = arguments
+        .split_whitespace()
+        .chain(files.iter().copied())
+        .collect();
+    printed(run("swing_up", &arguments, ""))
+}
+
+#[test]
+fn swing_up_learns_the_same_from_the_same_seed() {
+    let folder = Folder::new("weights");
+    let [one, two] = ["one", "two"].map(|name| {
+        let path = folder.file(name);
+        let line = swing_up("--quiet --episodes 300 --seed 1", &["--save", &path]);
+        (line, fs::read(&path).unwrap())
+    });
+    assert!(one == two, "{} {}", one.0, two.0);
+    assert_eq!(one.1.len(), 65_536 + 20);
+
+    let (solved_at, mean, sd, misses) = figures(&one.0);
+    assert!(solved_at.is_some_and(|n| (100..=115).contains(&n)) && misses == 0);
+    assert!(mean > -100.0 && sd > 0.0, "{}", one.0);
+    let other = folder.file("other");
+    swing_up("--quiet --episodes 300 --seed 2", &["--save", &other]);
+    assert!(
+        fs::read(other).unwrap() != one.1,
+        "the seed changes nothing"
+    );
+
+    // What was learnt is in the file, and nothing is added to it.
+    let (one, again) = (folder.file("one"), folder.file("again"));
+    let files = ["--load", &one, "--save", &again];
+    let line = swing_up("--quiet --episodes 0 --seed 1", &files);
+    assert_eq!(figures(&line), (None, mean, sd, misses));
+    assert!(fs::read(one).unwrap() == fs::read(again).unwrap());
+}
+
+/// Zeros already are torque against θ̇1: of equal actions the learner takes the first, mirrored with the
+/// state. So what is learnt has to be better than that by more than chance.
+#[test]
+fn swing_up_is_better_than_torque_against_the_velocity() {
+    let folder = Folder::new("swing-up");
+    let pictures = ["--pictures", folder.0.to_str().unwrap()];
+    let output = swing_up("--seed 42", &pictures);
+    let row = |policy: &str| -> [f64; 3] {
+        let row = output.lines().find_map(|line| line.strip_prefix(policy));
+        let row = row.unwrap_or_else(|| panic!("{output}")).replace('±', "");
+        let numbers = row.split_whitespace().map(|word| word.parse().unwrap());
+        numbers.collect::<Vec<f64>>().try_into().unwrap()
+    };
+    let [learnt, against, random] = ["learnt", "torque against θ̇1", "random"].map(row);
+    // Three standard errors of the difference, of 1,000 episodes each.
+    let chance = 3.0 * ((learnt[1] * learnt[1] + against[1] * against[1]) / 1000.0).sqrt();
+    assert!(learnt[0] - against[0] > chance, "{output}");
+    assert_eq!([learnt[2], against[2]], [0.0, 0.0], "{output}");
+    assert!(random[0] < -490.0 && random[2] > 900.0, "{output}");
+
+    // The curve from the first to the last episode, and the line at which it is solved.
+    let curve = fs::read_to_string(folder.file("learning_curve.svg")).unwrap();
+    for text in ["Learning to swing up", "episode", "solved: -100", "1000"] {
+        assert!(curve.contains(text), "{text}");
+    }
+    let points = |line: &str| line.split('"').map(|part| part.matches(',').count()).max();
+    let lines = curve.match_indices("<polyline");
+    let long =
+        lines.filter(|&(at, _)| points(curve[at..].split("/>").next().unwrap()) >= Some(2000));
+    assert_eq!(long.count(), 2, "returns, and their running mean");
+
+    // Each cell, sixty shades of the colour bar and the paper; the goal is grey on both sides alike.
+    let values = fs::read_to_string(folder.file("values.svg")).unwrap();
+    assert_eq!(values.matches("<rect").count(), 72 * 72 + 60 + 1);
+    let grey = values.matches("#BEBEBE").count();
+    assert!(
+        grey.is_multiple_of(2) && (500..1500).contains(&grey),
+        "{grey}"
+    );
+
+    // The start and every step; the goal is reached, or there were 501 frames.
+    let steps = output.split("last greedy episode, ").nth(1).unwrap();
+    let steps: usize = steps.split(' ').next().unwrap().parse().unwrap();
+    assert_eq!(gif_frames(&folder.file("swing_up.gif")), steps + 1);
+    assert!((50..200).contains(&steps), "{output}");
+
+    let untrained = figures(&swing_up("--quiet --episodes 0", &[]));
+    assert_eq!(untrained, (None, against[0], against[1], 0));
+}
+
+#[test]
+fn swing_up_takes_every_preset_and_memory() {
+    for (memory, bytes) in [("8k", 8192), ("16k", 16384), ("32k", 32768), ("64k", 65536)] {
+        for preset in ["fast", "quality"] {
+            let folder = Folder::new(&format!("{preset}-{memory}"));
+            let path = folder.file("weights");
+            let arguments = format!("--quiet --episodes 3 --preset {preset} --memory {memory}");
+            assert_eq!(figures(&swing_up(&arguments, &["--save", &path])).0, None);
+            assert_eq!(fs::read(path).unwrap().len(), bytes + 20);
+        }
+    }
+}
+
+#[test]
+fn swing_up_refuses_weights_that_are_not_its_own() {
+    let folder = Folder::new("refused-weights");
+    let weights = folder.file("weights");
+    swing_up("--quiet --episodes 3", &["--save", &weights]);
+    let bytes = fs::read(&weights).unwrap();
+    let changed = |at: usize| {
+        let mut bytes = bytes.clone();
+        bytes[at] ^= 2;
+        bytes
+    };
+    for (bytes, arguments, reason) in [
+        (bytes[1..].to_vec(), "", "these are no weights"),
+        (vec![], "", "these are no weights"),
+        (changed(4), "", "weights of version 3; allowed is 1"),
+        (
+            bytes[..65_555].to_vec(),
+            "",
+            "weights of 65555 bytes; allowed is 65556",
+        ),
+        (
+            [&bytes[..], &[0]].concat(),
+            "",
+            "weights of 65557 bytes; allowed is 65556",
+        ),
+        (
+            bytes.clone(),
+            "--memory 16k",
+            "weights of 65556 bytes; allowed is 16404",
+        ),
+        (changed(30_000), "", "damaged weights: checksum "),
+        (changed(65_555), "", "damaged weights: checksum "),
+        (bytes.clone(), "--preset quality", "weights of features "),
+    ] {
+        fs::write(&weights, bytes).unwrap();
+        let out = folder.file("out");
+        let mut all: Vec<&str> = arguments.split_whitespace().collect();
+        let pictures = folder.0.to_str().unwrap();
+        all.extend(["--load", &weights, "--save", &out, "--pictures", pictures]);
+        let errors = refused("swing_up", &all, "");
+        assert!(
+            errors.contains(&weights) && errors.contains(reason),
+            "{errors}"
+        );
+        assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1, "{errors}");
+    }
+}
+
+#[test]
+fn swing_up_refuses_before_it_learns() {
+    let folder = Folder::new("refused-swing-up");
+    for (arguments, reason) in [
+        ("--preset slow", "possible values: fast, quality"),
+        ("--memory 12k", "possible values: 8k, 16k, 32k, 64k"),
+        ("--episodes -1", "-1 is not in 0..=4294967295"),
+        (
+            "--episodes 4294967296",
+            "4294967296 is not in 0..=4294967295",
+        ),
+        ("--seed -1", "seed has '-' as character 1"),
+        ("--load none/weights", "none/weights: "),
+        (
+            "--save none/weights",
+            "allowed is a file in a folder that is there",
+        ),
+        ("--pictures none", "allowed is a folder that is there"),
+    ] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let mut swing_up = command("swing_up", &arguments);
+        if arguments[0] != "--pictures" {
+            swing_up.args(["--pictures", folder.0.to_str().unwrap()]);
+        }
+        let output = swing_up.output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{errors}");
+        assert!(
+            output.stdout.is_empty() && errors.contains(reason),
+            "{errors}"
+        );
+        assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 0, "{errors}");
+    }
+}
