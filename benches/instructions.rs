@@ -75,12 +75,12 @@ fn host(alone: Alone<Host>) -> Alone<Host> {
     play_alone(alone)
 }
 
-#[library_benchmark(config = limit(1072.0, 1), setup = alone::<Portable>)]
+#[library_benchmark(config = limit(1162.0, 1), setup = alone::<Portable>)]
 fn portable(alone: Alone<Portable>) -> Alone<Portable> {
     play_alone(alone)
 }
 
-#[library_benchmark(config = limit(645.0, 1), setup = alone::<Fast>)]
+#[library_benchmark(config = limit(647.0, 1), setup = alone::<Fast>)]
 fn fast(alone: Alone<Fast>) -> Alone<Fast> {
     play_alone(alone)
 }
@@ -91,21 +91,21 @@ fn micro(alone: Alone<Micro>) -> Alone<Micro> {
 }
 
 #[library_benchmark(setup = batch::<Fast>)]
-#[bench::baseline(args = (Vectors::Baseline), config = limit(252.0, ACROBOTS))]
-#[bench::avx2(args = (Vectors::Avx2), config = limit(120.0, ACROBOTS))]
+#[bench::baseline(args = (Vectors::Baseline), config = limit(243.0, ACROBOTS))]
+#[bench::avx2(args = (Vectors::Avx2), config = limit(116.0, ACROBOTS))]
 fn batch_fast(play: Play<Fast>) -> Play<Fast> {
     play_batch(play, false)
 }
 
 #[library_benchmark(setup = batch::<Fast>)]
-#[bench::baseline(args = (Vectors::Baseline), config = limit(268.0, ACROBOTS))]
-#[bench::avx2(args = (Vectors::Avx2), config = limit(135.0, ACROBOTS))]
+#[bench::baseline(args = (Vectors::Baseline), config = limit(259.0, ACROBOTS))]
+#[bench::avx2(args = (Vectors::Avx2), config = limit(132.0, ACROBOTS))]
 fn batch_fast_with_observations(play: Play<Fast>) -> Play<Fast> {
     play_batch(play, true)
 }
 
 #[library_benchmark(setup = batch::<Portable>)]
-#[bench::baseline(args = (Vectors::Baseline), config = limit(1262.0, ACROBOTS))]
+#[bench::baseline(args = (Vectors::Baseline), config = limit(1322.0, ACROBOTS))]
 fn batch_portable(play: Play<Portable>) -> Play<Portable> {
     play_batch(play, false)
 }
