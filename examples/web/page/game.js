@@ -1,0 +1,78 @@
+// One episode: its seed, parameters and actions, and what came of them.
+
+import { LIMIT } from "./module.js";
+
+export class Game {
+  #acrobot;
+  seed;
+  params;
+  actions = [];
+  /** Six numbers a state, of the start and after each step. */
+  #rows = [];
+  /** `"goal"` or `"limit"` at its end. */
+  end = null;
+
+  constructor(acrobot, seed, params) {
+    this.#acrobot = acrobot;
+    this.begin(seed, params);
+  }
+
+  /** Begins anew; throws where the crate refuses the parameters, and goes on as before. */
+  begin(seed, params = this.params) {
+    this.#acrobot.setParams(params);
+    this.#acrobot.reset(seed);
+    Object.assign(this, { seed, params, actions: [], end: null });
+    this.#rows = [this.#acrobot.numbers()];
+  }
+
+  step(action) {
+    if (this.end !== null) return;
+    const { terminated, truncated } = this.#acrobot.step(action);
+    this.actions.push(action);
+    this.#rows.push(this.#acrobot.numbers());
+    if (terminated) this.end = "goal";
+    else if (truncated) this.end = "limit";
+  }
+
+  get steps() {
+    return this.actions.length;
+  }
+
+  /** −1 for each step but the one that reaches the goal. */
+  get return() {
+    return (this.end === "goal" ? 1 : 0) - this.steps;
+  }
+
+  /** The state, its energy and its height. */
+  get numbers() {
+    return this.#rows.at(-1);
+  }
+
+  /** One of the six numbers, of the start and after each step. */
+  column(index) {
+    return Array.from(this.#rows, (row) => row[index]);
+  }
+
+  /** The transitions with the columns of the crate's own CSV. */
+  csv() {
+    const state = ["theta1 (rad)", "theta2 (rad)", "dtheta1 (rad/s)", "dtheta2 (rad/s)"];
+    const next = state.map((name) => `next ${name}`);
+    const names = ["step", ...state, "torque (N m)", "reward", ...next, "terminated", "truncated"];
+    const lines = this.actions.map((action, i) => {
+      const last = i + 1 === this.steps;
+      const terminated = last && this.end === "goal";
+      const states = [this.#rows[i], this.#rows[i + 1]].map((row) => Array.from(row.subarray(0, 4), shortest));
+      const truncated = i + 1 === LIMIT;
+      return [i + 1, ...states[0], action - 1, terminated ? 0 : -1, ...states[1], Number(terminated), Number(truncated)];
+    });
+    return [names, ...lines].map((cells) => `${cells.join(",")}\n`).join("");
+  }
+}
+
+/** The fewest digits that read back to a number of single precision. */
+export function shortest(number) {
+  for (let digits = 1; ; digits++) {
+    const text = String(Number(number.toPrecision(digits)));
+    if (digits === 17 || Math.fround(Number(text)) === number) return text;
+  }
+}

@@ -1,0 +1,60 @@
+// A run in an address: seed, parameters that are not Gymnasium's, and actions, after the #.
+
+import { DEFAULTS, LIMIT, PARAMETERS, parseSeed } from "./module.js";
+
+/** Fills up the last byte; not an action. */
+const PADDING = 3;
+
+/** Actions as base64url, two bits each and the first in the highest. */
+export function encodeActions(actions) {
+  let binary = "";
+  for (let i = 0; i < actions.length; i += 4) {
+    const [a, b = PADDING, c = PADDING, d = PADDING] = actions.slice(i, i + 4);
+    binary += String.fromCharCode((a << 6) | (b << 4) | (c << 2) | d);
+  }
+  return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+}
+
+export function decodeActions(text) {
+  const wrong = text.search(/[^A-Za-z0-9_-]/);
+  if (wrong >= 0) throw new Error(`actions has '${text[wrong]}' as character ${wrong + 1}; allowed are letters, digits, - and _`);
+  if (text.length % 4 === 1) throw new Error(`actions has ${text.length} characters; allowed is a length that is not 1 more than a multiple of 4`);
+  const binary = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
+  const actions = Array.from(binary, (byte) => [6, 4, 2, 0].map((shift) => (byte.charCodeAt(0) >> shift) & 3)).flat();
+  while (actions.at(-1) === PADDING) actions.pop();
+  const unknown = actions.indexOf(PADDING);
+  if (unknown >= 0) throw new Error(`action ${unknown + 1} is 3; allowed is 0, 1 or 2`);
+  if (actions.length > LIMIT) throw new Error(`actions has ${actions.length} actions; allowed are ${LIMIT}`);
+  return actions;
+}
+
+export function encodeRun({ seed, params, actions }) {
+  const fields = new URLSearchParams({ seed });
+  for (const [name, value] of Object.entries(params)) {
+    if (value !== DEFAULTS[name]) fields.set(name, value);
+  }
+  if (actions.length > 0) fields.set("actions", encodeActions(actions));
+  return `#${fields}`;
+}
+
+/** The run of an address, its parameters unchecked; an `Error` with the reason where it is none. */
+export function decodeRun(hash) {
+  const fields = new URLSearchParams(hash.slice(1));
+  const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];
+  const unknown = [...fields.keys()].find((name) => !known.includes(name));
+  if (unknown !== undefined) throw new Error(`the link has "${unknown}"; allowed are ${known.join(", ")}`);
+  const params = { ...DEFAULTS };
+  for (const { name } of PARAMETERS) {
+    if (fields.has(name)) params[name] = parseNumber(fields.get(name));
+  }
+  if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
+  if (!["book", "nips"].includes(params.dynamics)) {
+    throw new Error(`dynamics is "${params.dynamics}"; allowed is book or nips`);
+  }
+  return { seed: parseSeed(fields.get("seed") ?? "42"), params, actions: decodeActions(fields.get("actions") ?? "") };
+}
+
+/** A number as it was written; NaN for what is none. */
+export function parseNumber(text) {
+  return text.trim() === "" ? NaN : Number(text);
+}

@@ -1,0 +1,401 @@
+// Loads the module that this browser can run, and ties the page to it.
+
+import { decodeRun, encodeRun, parseNumber } from "./link.js";
+import { Acrobot, DEFAULTS, LIMIT, PARAMETERS, hasSimd128, parseSeed } from "./module.js";
+import { Game } from "./game.js";
+import { color, plot, rangeOf } from "./plot.js";
+import { speedPanel } from "./speed.js";
+import { Stage } from "./stage.js";
+import { download, trainingPanel } from "./training.js";
+
+const $ = (id) => document.getElementById(id);
+
+/** Steps in one frame at the most, so that a small dt does not freeze the page: the simulation falls behind instead. */
+const STEPS_A_FRAME = 100;
+/** How long the end of an episode is shown before a policy begins the next, ms. */
+const INTERVAL = 1500;
+
+async function load() {
+  const simd = hasSimd128();
+  const response = await fetch(simd ? "acrobot-simd128.wasm" : "acrobot.wasm");
+  if (!response.ok) throw new Error(`${response.url} answered ${response.status}`);
+  const bytes = await response.arrayBuffer();
+  performance.mark("module");
+  const kib = (bytes.byteLength / 1024).toFixed(1);
+  $("module").textContent = simd
+    ? `WebAssembly with simd128, ${kib} KiB.`
+    : `WebAssembly, ${kib} KiB. This browser has no simd128: all is the same to the bit, but a batch is no faster than one.`;
+  $("vectors").textContent = simd ? ", by simd128" : ", without simd128";
+  const module = await WebAssembly.compile(bytes);
+  start(module, await Acrobot.load(module));
+}
+
+function start(module, acrobot) {
+  const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  const game = new Game(acrobot, 42n, { ...DEFAULTS });
+  $("app").hidden = false;
+  $("notice").hidden = true;
+  const stage = new Stage(acrobot);
+
+  let playing = !calm.matches;
+  /** How long the last step has been shown, s; as long as dt before the first. */
+  let shown = game.params.dt;
+  /** When the next episode begins; none while nobody waits for it. */
+  let nextAt = Infinity;
+  /** Actions of a link that are to come, the next first. */
+  let recorded = [];
+  let best = null;
+  const held = { left: false, right: false };
+
+  // ---- the episode
+
+  const action = () => {
+    const policy = $("policy").value;
+    if (policy === "keys") return 1 + Number(held.right) - Number(held.left);
+    return policy === "link" ? recorded[game.steps] : acrobot.act(policy);
+  };
+
+  const step = () => {
+    const next = action();
+    if (next === undefined) return pause("The link ends here.");
+    game.step(next);
+    shown = 0;
+    if (game.end === null) return;
+    if (game.end === "goal" && (best === null || game.steps < best)) best = game.steps;
+    const goal = `The tip is over the line, after ${game.steps} steps.`;
+    say(game.end === "goal" ? goal : `Out of time, after ${LIMIT} steps.`);
+    if (!["keys", "link"].includes($("policy").value)) nextAt = performance.now() + INTERVAL;
+  };
+
+  const begin = (seed, params = game.params) => {
+    game.begin(seed, params);
+    shown = params.dt;
+    nextAt = Infinity;
+    stage.clearTrail();
+    $("seed").value = seed;
+    $("seed").removeAttribute("aria-invalid");
+    $("seed-reason").textContent = "";
+    $("link-field").hidden = true;
+    changed();
+  };
+
+  const reset = () => {
+    begin(game.seed);
+    say(`Reset to the start of seed ${name(game.seed)}.`);
+  };
+  const next = () => {
+    begin(game.seed + 1n);
+    say(`Seed ${name(game.seed)}.`);
+  };
+
+  const play = () => {
+    playing = true;
+    if (game.end !== null) reset();
+    say("Running.");
+    changed();
+  };
+  const pause = (message) => {
+    playing = false;
+    nextAt = Infinity;
+    say(message);
+    changed();
+  };
+  const toggle = () => (playing ? pause("Paused.") : play());
+  const single = () => {
+    if (playing) pause("Paused.");
+    if (game.end !== null) return say("The episode has ended: reset it, or take the next seed.");
+    step();
+    shown = game.params.dt;
+    changed();
+  };
+
+  /** Of a seed of any size, what fits a sentence. */
+  const name = (seed) => (`${seed}`.length > 24 ? `${`${seed}`.slice(0, 20)}…` : `${seed}`);
+  const say = (message) => ($("status").textContent = message);
+
+  const choose = (policy) => {
+    $("policy").value = policy;
+    if (policy !== "keys" && game.end !== null) begin(game.seed);
+    changed();
+  };
+
+  // ---- what the page shows
+
+  const rows = [
+    ["θ1", "rad"], ["θ2", "rad"], ["θ̇1", "rad/s"], ["θ̇2", "rad/s"],
+  ].map(([name, unit]) => {
+    const row = $("state").insertRow();
+    row.innerHTML = `<th scope="row">${name}</th><td></td><td><code></code></td>`;
+    return { unit, value: row.cells[1], bits: row.querySelector("code") };
+  });
+
+  const number = (value, digits = 2) => value.toFixed(digits).replace("-", "−");
+  const caption = (id, parts) => {
+    $(id).replaceChildren(
+      ...parts.map(([text, kind]) => {
+        const span = document.createElement("span");
+        span.textContent = text;
+        span.className = kind ?? "";
+        return span;
+      }),
+    );
+  };
+
+  /** Of the standing acrobot with these parameters, J; the centres of mass stay at 0.5 m. */
+  const upright = ({ mass1, mass2, length1, gravity }) => gravity * (0.5 * mass1 + (length1 + 0.5) * mass2);
+
+  const plots = () => {
+    const end = Math.max(game.steps, 50);
+    const [first, second] = [color("--first"), color("--second")];
+    const [theta1, theta2, dtheta1, dtheta2, energy, height] = game.numbers;
+    const energies = game.column(4);
+    const standing = upright(game.params);
+    plot($("energy"), {
+      series: [{ values: energies, color: first }],
+      range: rangeOf([...energies, standing, -standing]),
+      marks: [standing],
+      end,
+    });
+    caption("energy-caption", [["Energy"], [`${number(energy)} J`, "first"], [`standing: ${number(standing)} J`, "mark"], [`tip at ${number(height)} m`]]);
+    plot($("angles"), {
+      series: [{ values: game.column(0), color: first }, { values: game.column(1), color: second }],
+      range: [-Math.PI, Math.PI],
+      jump: Math.PI,
+      end,
+    });
+    caption("angles-caption", [["Angles"], [`θ1 ${number(theta1)} rad`, "first"], [`θ2 ${number(theta2)} rad`, "second"]]);
+    const velocities = [game.column(2), game.column(3)];
+    const fastest = Math.max(2, ...velocities.flat().map(Math.abs));
+    plot($("velocities"), {
+      series: [{ values: velocities[0], color: first }, { values: velocities[1], color: second }],
+      range: [-1.06 * fastest, 1.06 * fastest],
+      end,
+    });
+    caption("velocities-caption", [["Velocities"], [`θ̇1 ${number(dtheta1)} rad/s`, "first"], [`θ̇2 ${number(dtheta2)} rad/s`, "second"]]);
+  };
+
+  let dirty = true;
+  /** Something but the picture is to be shown anew. */
+  const changed = () => (dirty = true);
+
+  const update = () => {
+    dirty = false;
+    $("step").textContent = `${game.steps} of ${LIMIT}`;
+    $("return").textContent = String(game.return).replace("-", "−");
+    $("best").textContent = best ?? "–";
+    $("pause").textContent = playing ? "Pause" : "Play";
+    $("verdict").textContent = { goal: `${game.steps} steps`, limit: "Out of time" }[game.end] ?? "";
+    $("drive").disabled = document.querySelector("[value=learnt]").disabled;
+    $("between").textContent = calm.matches
+      ? "Shown step by step and without a trail, for less motion."
+      : `Physics every ${game.params.dt} s. Between two steps the picture is interpolated: by the cubic through both states' angles and velocities.`;
+    const bits = new Uint32Array(game.numbers.buffer);
+    rows.forEach(({ unit, value, bits: code }, i) => {
+      value.textContent = `${number(game.numbers[i], 4)} ${unit}`;
+      code.textContent = bits[i].toString(16).padStart(8, "0");
+    });
+    plots();
+  };
+
+  const cost = { frames: 0, physics: 0, drawing: 0 };
+  let last = performance.now();
+  const frame = (now) => {
+    // A page in the background has no frames; what it missed is not made up for.
+    const elapsed = Math.min(Math.max(now - last, 0), 100) / 1000;
+    last = now;
+    const { dt } = game.params;
+    const before = performance.now();
+    if (playing && game.end === null) {
+      shown += elapsed * Number($("pace").value);
+      for (let steps = 0; shown >= dt && playing && game.end === null; steps++) {
+        const over = steps < STEPS_A_FRAME ? shown - dt : 0;
+        step();
+        shown = playing ? over : dt;
+        changed();
+      }
+    } else {
+      shown = Math.min(shown + elapsed * Number($("pace").value), playing ? dt : shown);
+    }
+    const stepped = performance.now();
+    if (now >= nextAt && playing) next();
+    const { length1, length2 } = game.params;
+    stage.draw(calm.matches ? 1 : Math.min(shown / dt, 1), length1 + length2, !calm.matches);
+    if (cost.frames++ === 0) performance.measure("first frame", "module");
+    cost.physics += stepped - before;
+    cost.drawing += performance.now() - stepped;
+    if (cost.frames % 60 === 0) {
+      $("physics").textContent = `${(cost.physics / 60).toFixed(3)} ms`;
+      $("drawing").textContent = `${(cost.drawing / 60).toFixed(1)} ms`;
+      cost.physics = cost.drawing = 0;
+    }
+    if (dirty) update();
+    requestAnimationFrame(frame);
+  };
+
+  // ---- keys and buttons
+
+  const hold = (side, on) => {
+    held[side] = on;
+    $(side).classList.toggle("held", on);
+    if (on && $("policy").value !== "keys") choose("keys");
+  };
+  const keys = { " ": toggle, s: single, r: reset, n: next };
+  const sides = { ArrowLeft: "left", ArrowRight: "right" };
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select")) return;
+    // A button is pressed by the space bar.
+    if (event.key === " " && event.target.closest("button, summary, a")) return;
+    if (event.key in sides) hold(sides[event.key], true);
+    else if (!event.repeat && event.key.toLowerCase() in keys) keys[event.key.toLowerCase()]();
+    else return;
+    event.preventDefault();
+  });
+  document.addEventListener("keyup", ({ key }) => key in sides && hold(sides[key], false));
+  // Whoever has the keyboard now is told of the keys that are released.
+  addEventListener("blur", () => ["left", "right"].forEach((side) => hold(side, false)));
+  for (const side of ["left", "right"]) {
+    const button = $(side);
+    button.addEventListener("pointerdown", ({ pointerId }) => {
+      button.setPointerCapture(pointerId);
+      hold(side, true);
+    });
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      button.addEventListener(end, () => hold(side, false));
+    }
+    button.addEventListener("keydown", ({ key }) => [" ", "Enter"].includes(key) && hold(side, true));
+    button.addEventListener("keyup", ({ key }) => [" ", "Enter"].includes(key) && hold(side, false));
+    button.addEventListener("contextmenu", (event) => event.preventDefault());
+  }
+  Object.entries({ pause: toggle, single, reset, next }).forEach(([id, act]) => ($(id).onclick = act));
+  $("policy").onchange = ({ target }) => choose(target.value);
+
+  // ---- what can be set, and refused
+
+  /** Runs `set`; where it throws, the reason stands below the field. */
+  const attempt = (field, reason, set) => {
+    try {
+      set();
+      field.removeAttribute("aria-invalid");
+      reason.textContent = "";
+    } catch (error) {
+      field.setAttribute("aria-invalid", "true");
+      reason.textContent = error.message;
+    }
+  };
+
+  $("seed").value = game.seed;
+  $("seed").oninput = ({ target }) => {
+    const { value } = target;
+    attempt(target, $("seed-reason"), () => begin(parseSeed(value)));
+    target.value = value;
+  };
+
+  const fields = PARAMETERS.map(({ name, label, unit, end, step }) => {
+    const field = document.createElement("div");
+    field.className = "field parameter";
+    field.innerHTML = `
+      <label for="${name}">${label}</label>
+      <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-reason">
+      <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-reason">
+      <span class="unit">${unit}</span>
+      <p id="${name}-reason" class="reason" role="alert"></p>`;
+    $("params").append(field);
+    const [slider, text] = field.querySelectorAll("input");
+    const reason = field.querySelector(".reason");
+    const set = (value) => attempt(text, reason, () => begin(game.seed, { ...game.params, [name]: parseNumber(value) }));
+    slider.oninput = () => {
+      text.value = slider.value;
+      set(slider.value);
+    };
+    text.oninput = () => {
+      if (Number.isFinite(parseNumber(text.value))) slider.value = text.value;
+      set(text.value);
+    };
+    return {
+      show() {
+        slider.value = text.value = game.params[name];
+        text.removeAttribute("aria-invalid");
+        reason.textContent = "";
+      },
+    };
+  });
+  $("dynamics").onchange = ({ target }) => begin(game.seed, { ...game.params, dynamics: target.value });
+  const showParams = () => {
+    $("dynamics").value = game.params.dynamics;
+    fields.forEach((field) => field.show());
+  };
+  $("defaults").onclick = () => {
+    begin(game.seed, { ...DEFAULTS });
+    showParams();
+  };
+
+  // ---- links, files, and the panels
+
+  const open = () => {
+    if (location.hash.length <= 1) return;
+    attempt($("link"), $("link-reason"), () => {
+      const run = decodeRun(location.hash);
+      begin(run.seed, run.params);
+      showParams();
+      recorded = run.actions;
+      document.querySelector("[value=link]").disabled = false;
+      choose("link");
+      say(`The run of a link: ${recorded.length} steps of seed ${name(run.seed)}.`);
+    });
+  };
+  addEventListener("hashchange", open);
+  $("share").onclick = async () => {
+    const hash = encodeRun(game);
+    // Not through `location`, which would open it.
+    history.replaceState(null, "", hash);
+    $("link").value = location.href;
+    $("link-field").hidden = false;
+    $("link").select();
+    try {
+      await navigator.clipboard.writeText(location.href);
+      say("The link is copied.");
+    } catch {
+      say("The link is in the field; copy it from there.");
+    }
+  };
+  $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
+
+  const learnt = document.querySelector("[value=learnt]");
+  const training = trainingPanel(acrobot, module, {
+    ready() {
+      learnt.disabled = false;
+      learnt.textContent = "Learnt";
+    },
+    drive() {
+      choose("learnt");
+      if (!playing) play();
+    },
+  });
+  speedPanel(module);
+
+  for (const query of ["(prefers-color-scheme: dark)", "(prefers-reduced-motion: reduce)"]) {
+    matchMedia(query).addEventListener("change", () => {
+      stage.repaint();
+      training.draw();
+      changed();
+    });
+  }
+  new ResizeObserver(changed).observe($("energy"));
+
+  showParams();
+  choose("bang_bang");
+  open();
+  requestAnimationFrame(frame);
+}
+
+const notice = $("notice");
+if (typeof WebAssembly === "object") {
+  notice.textContent = "Loading";
+  load().catch((error) => {
+    $("app").hidden = true;
+    notice.hidden = false;
+    notice.textContent = `The page could not start: ${error.message}.`;
+  });
+} else {
+  notice.textContent = "This browser has no WebAssembly, or does not allow it here, and the acrobot is computed in it.";
+}

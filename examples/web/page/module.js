@@ -1,0 +1,157 @@
+// The module's functions over numbers, as methods over JavaScript's values. The page has one, and each worker its own.
+
+/** Bytes of a module that uses simd128: `i32.const 0`, `i8x16.splat`, `drop`. */
+const SIMD128 = Uint8Array.of(
+  0, 97, 115, 109, 1, 0, 0, 0, // magic and version
+  1, 4, 1, 96, 0, 0, // a type: () -> ()
+  3, 2, 1, 0, // a function of it
+  10, 9, 1, 7, 0, 65, 0, 253, 15, 26, 11, // its body
+);
+
+export const hasSimd128 = () => WebAssembly.validate(SIMD128);
+
+/** Steps of an episode at the most. */
+export const LIMIT = 500;
+
+/** The parameters that can be set: name, label, unit, Gymnasium's value, and the slider's end and step. */
+export const PARAMETERS = [
+  ["dt", "Time of a step, dt", "s", 0.2, 0.5, 0.01],
+  ["mass1", "Mass of link 1", "kg", 1, 4, 0.05],
+  ["mass2", "Mass of link 2", "kg", 1, 4, 0.05],
+  ["length1", "Length of link 1", "m", 1, 3, 0.05],
+  ["length2", "Length of link 2", "m", 1, 3, 0.05],
+  ["gravity", "Gravity", "m/s²", 9.8, 25, 0.1],
+].map(([name, label, unit, value, end, step]) => ({ name, label, unit, value, end, step }));
+
+export const DEFAULTS = {
+  dynamics: "book",
+  ...Object.fromEntries(PARAMETERS.map(({ name, value }) => [name, value])),
+};
+
+/** Words of 32 bits that the module takes of a seed. */
+const SEED_WORDS = 64;
+
+/** The seed that a text is; an `Error` with the reason for another. */
+export function parseSeed(text) {
+  const digits = text.trim();
+  const allowed = "allowed is a decimal integer, 0 or more, of up to 600 digits";
+  if (digits === "") throw new Error(`seed is empty; ${allowed}`);
+  const wrong = digits.search(/[^0-9]/);
+  if (wrong >= 0) throw new Error(`seed has '${digits[wrong]}' as character ${wrong + 1}; ${allowed}`);
+  if (digits.length > 600) throw new Error(`seed has ${digits.length} digits; ${allowed}`);
+  return BigInt(digits);
+}
+
+export class Acrobot {
+  #exports;
+  #buffer;
+
+  static async load(module) {
+    return new Acrobot((await WebAssembly.instantiate(module)).exports);
+  }
+
+  constructor(exports) {
+    this.#exports = exports;
+    this.#buffer = exports.buffer();
+  }
+
+  /** A view of the module's memory, whose size never changes. */
+  #bytes(length, address = this.#buffer) {
+    return new Uint8Array(this.#exports.memory.buffer, address, length);
+  }
+
+  #floats(address, length) {
+    return new Float32Array(this.#exports.memory.buffer, address, length);
+  }
+
+  #text(length, start = 0) {
+    return new TextDecoder().decode(this.#bytes(length).slice(start));
+  }
+
+  /** Writes a seed where the module reads it; returns how many words it has. */
+  #seed(seed) {
+    const words = new DataView(this.#exports.memory.buffer, this.#buffer);
+    let count = 0;
+    for (; seed > 0n && count < SEED_WORDS; seed >>= 32n) {
+      words.setUint32(4 * count++, Number(seed & 0xffff_ffffn), true);
+    }
+    return count;
+  }
+
+  reset(seed) {
+    this.#exports.reset(this.#seed(seed));
+  }
+
+  /** Steps; returns whether the goal or the limit of steps was reached. */
+  step(action) {
+    const flags = this.#exports.step(action);
+    return { terminated: (flags & 1) !== 0, truncated: (flags & 2) !== 0 };
+  }
+
+  /** θ1, θ2, θ̇1, θ̇2, energy and height of the tip: a copy, in single precision. */
+  numbers() {
+    return this.#floats(this.#exports.numbers(), 6).slice();
+  }
+
+  /** Sets the parameters, or throws an `Error` with the crate's reason and changes nothing. */
+  setParams(params) {
+    const { dynamics, dt, mass1, mass2, length1, length2, gravity } = params;
+    const length = this.#exports.set_params(dynamics === "nips", dt, mass1, mass2, length1, length2, gravity);
+    if (length === 0) return;
+    const [name, unit, allowed] = this.#text(length, 8).split("\n");
+    const rounded = new DataView(this.#exports.memory.buffer, this.#buffer).getFloat64(0, true);
+    // As it was written, where single precision has something like it.
+    const value = params[name] * rounded > 0 && Number.isFinite(rounded) ? params[name] : rounded;
+    throw new Error(`${name} is ${String(value).replace("Infinity", "inf")} ${unit}; allowed is ${allowed}`);
+  }
+
+  /** The action of a policy of this name. */
+  act(policy) {
+    return { random: this.#exports.sample, ...this.#exports }[policy]();
+  }
+
+  resize(side) {
+    this.#exports.resize(side, side);
+    const pixels = this.#bytes(4 * side * side, this.#exports.pixels());
+    return new ImageData(new Uint8ClampedArray(pixels.buffer, pixels.byteOffset, pixels.length), side, side);
+  }
+
+  paint(...colors) {
+    this.#exports.paint(...colors);
+  }
+
+  /** Draws a part of the last step, from 0 to 1; returns where the tip is, m to the right and above. */
+  draw(part) {
+    return this.#floats(this.#exports.draw(part), 2);
+  }
+
+  /** Takes weights as the policy `learnt`, or throws an `Error` with the reason and changes nothing. */
+  load(weights) {
+    const room = this.#bytes(1 << 17);
+    const bytes = weights.subarray(0, room.length);
+    room.set(bytes);
+    const length = this.#exports.load(bytes.length);
+    if (length !== 0) throw new Error(this.#text(length));
+  }
+
+  beginTraining(preset, seed) {
+    this.#exports.begin_training(preset === "quality", this.#seed(seed));
+  }
+
+  /** Trains for an episode; returns its return. */
+  train() {
+    return this.#exports.train();
+  }
+
+  save() {
+    return this.#bytes(this.#exports.save()).slice();
+  }
+
+  scalarSteps(steps) {
+    this.#exports.scalar_steps(steps);
+  }
+
+  batchSteps(steps) {
+    this.#exports.batch_steps(steps);
+  }
+}

@@ -1,0 +1,74 @@
+// Lines over the steps of an episode or over episodes, on a canvas as sharp as the display.
+
+const MARGIN = { left: 40, right: 8, top: 6, bottom: 18 };
+
+/** The colours that the style sheet has for an element: those of its custom properties. */
+export function color(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+/**
+ * Draws `series`, each with `values` and a `color`, the first value at x = `start`. `marks` are values of their own
+ * with a line across; `jump` is how far apart two values may be for a line between them.
+ */
+export function plot(canvas, { series, range, start = 0, end, marks = [], jump = Infinity }) {
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const scale = devicePixelRatio;
+  canvas.width = Math.round(width * scale);
+  canvas.height = Math.round(height * scale);
+  const context = canvas.getContext("2d");
+  context.scale(scale, scale);
+
+  const [low, high] = range;
+  const x = (value) => MARGIN.left + ((value - start) / Math.max(end - start, 1)) * (width - MARGIN.left - MARGIN.right);
+  const y = (value) => MARGIN.top + ((high - value) / (high - low)) * (height - MARGIN.top - MARGIN.bottom);
+  const line = (points, style, dashes = []) => {
+    context.strokeStyle = style;
+    context.setLineDash(dashes);
+    context.beginPath();
+    points.forEach(([x, y, apart]) => (apart ? context.moveTo(x, y) : context.lineTo(x, y)));
+    context.stroke();
+  };
+
+  context.font = `11px ${getComputedStyle(canvas).fontFamily}`;
+  context.fillStyle = color("--muted");
+  context.textBaseline = "middle";
+  context.textAlign = "right";
+  for (const tick of ticks(low, high, 4)) {
+    context.fillText(label(tick), MARGIN.left - 6, y(tick));
+    line([[MARGIN.left, y(tick)], [width - MARGIN.right, y(tick)]], color("--grid"));
+  }
+  context.textBaseline = "alphabetic";
+  for (const tick of ticks(start, end, 5)) {
+    context.textAlign = tick === start ? "left" : x(tick) > width - 20 ? "right" : "center";
+    context.fillText(label(tick), x(tick), height - 4);
+  }
+  for (const mark of marks) line([[MARGIN.left, y(mark)], [width - MARGIN.right, y(mark)]], color("--muted"), [4, 4]);
+
+  context.lineWidth = 1.5;
+  context.lineJoin = "round";
+  for (const { values, color } of series) {
+    line(
+      Array.from(values, (value, i) => [x(start + i), y(value), Math.abs(value - values[i - 1]) > jump]),
+      color,
+    );
+  }
+}
+
+/** Round numbers from `low` to `high`, about as many as asked for. */
+function ticks(low, high, count) {
+  const raw = (high - low) / count;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].find((digit) => digit * power >= raw) * power;
+  const first = Math.ceil(low / step);
+  return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, i) => (first + i) * step);
+}
+
+const label = (value) => String(Number(value.toPrecision(3))).replace("-", "−");
+
+/** The range of some values, a little wider, and never of no width. */
+export function rangeOf(values) {
+  const low = Math.min(...values), high = Math.max(...values);
+  const room = (high - low || 1) * 0.06;
+  return [low - room, high + room];
+}

@@ -1,0 +1,71 @@
+// The picture of the acrobot over the trail of its tip.
+
+import { color } from "./plot.js";
+
+/** Pixels of the picture's side at the most: the module has memory for these. */
+const SIDE = 1024;
+/** Drawings that a tip's place is shown for. */
+const TRAIL = 90;
+
+export class Stage {
+  #acrobot;
+  #picture = document.querySelector("#picture");
+  #trail = document.querySelector("#trail");
+  #pixels;
+  #tips = [];
+
+  constructor(acrobot) {
+    this.#acrobot = acrobot;
+    this.#fit();
+    this.repaint();
+    new ResizeObserver(() => this.#fit()).observe(this.#picture);
+  }
+
+  /** At least two pixels for each that the page counts, so that edges are smooth on any display. */
+  #fit() {
+    const side = Math.min(Math.max(Math.round(this.#picture.clientWidth * Math.max(devicePixelRatio, 2)), 1), SIDE);
+    if (side === this.#pixels?.width) return;
+    this.#pixels = this.#acrobot.resize(side);
+    for (const canvas of [this.#picture, this.#trail]) canvas.width = canvas.height = side;
+  }
+
+  /** Takes the colours that the style sheet has now. */
+  repaint() {
+    const colors = ["--line", "--link", "--joint", "--torque"].map((name) => {
+      const [red, green, blue] = color(name).match(/\w\w/g).map((digits) => parseInt(digits, 16));
+      return ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
+    });
+    this.#acrobot.paint(...colors);
+  }
+
+  clearTrail() {
+    this.#tips = [];
+  }
+
+  /** Draws a part of the last step, from 0 to 1, of an acrobot whose links are `reach` m long in all. */
+  draw(part, reach, withTrail) {
+    const half = this.#pixels.width / 2;
+    // As the crate scales its picture.
+    const metre = half / (reach + 0.2);
+    const [x, y] = this.#acrobot.draw(part);
+    this.#picture.getContext("2d").putImageData(this.#pixels, 0, 0);
+
+    const tip = [half + metre * x, half - metre * y];
+    const last = this.#tips.at(-1);
+    if (last === undefined || Math.hypot(tip[0] - last[0], tip[1] - last[1]) > 1) this.#tips.push(tip);
+    this.#tips.splice(0, this.#tips.length - TRAIL);
+    const context = this.#trail.getContext("2d");
+    context.clearRect(0, 0, 2 * half, 2 * half);
+    if (!withTrail) return;
+    context.strokeStyle = color("--trail");
+    context.lineWidth = metre / 30;
+    context.lineCap = "round";
+    for (let i = 1; i < this.#tips.length; i++) {
+      context.globalAlpha = (0.7 * i) / this.#tips.length;
+      context.beginPath();
+      context.moveTo(...this.#tips[i - 1]);
+      context.lineTo(...this.#tips[i]);
+      context.stroke();
+    }
+  }
+}

@@ -1,0 +1,112 @@
+// The panel that trains in a worker, draws the curve, and loads and saves weights.
+
+import { parseSeed } from "./module.js";
+import { color, plot, rangeOf } from "./plot.js";
+
+/** Episodes that a mean is of, as where Gymnasium calls the task solved. */
+const WINDOW = 100;
+const SOLVED = -100;
+const EPISODES = 1_000_000;
+
+const $ = (id) => document.getElementById(id);
+
+/** `ready` is called when a policy is there; `drive` when it is to drive. */
+export function trainingPanel(acrobot, module, { ready, drive }) {
+  let worker = null;
+  let weights = null;
+  let means = [];
+
+  const draw = () => {
+    const [low, high] = rangeOf([...means, SOLVED]);
+    const series = [{ values: means, color: color("--link") }];
+    plot($("curve"), { series, range: [low, high], start: 1, end: Math.max(means.length, 2), marks: [SOLVED] });
+  };
+
+  /** Lets the page's module have weights; throws with the reason where they are none of its. */
+  const take = (bytes) => {
+    acrobot.load(bytes);
+    weights = bytes;
+    $("save").disabled = $("drive").disabled = false;
+    ready();
+  };
+
+  const stop = (message) => {
+    worker?.terminate();
+    worker = null;
+    $("train").textContent = "Train";
+    if (message) $("training-status").textContent = message;
+  };
+
+  const train = () => {
+    const reason = $("training-reason");
+    reason.textContent = "";
+    const episodes = Number($("episodes").value);
+    let seed;
+    try {
+      if (!Number.isInteger(episodes) || episodes < 1 || episodes > EPISODES) {
+        throw new Error(`episodes is ${$("episodes").value || "empty"}; allowed is an integer from 1 to 1,000,000`);
+      }
+      seed = parseSeed($("training-seed").value);
+    } catch (error) {
+      reason.textContent = error.message;
+      return;
+    }
+    const returns = [];
+    let sum = 0;
+    means = [];
+    const began = performance.now();
+    worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
+    worker.onerror = ({ message }) => stop(`The training failed: ${message}`);
+    worker.onmessage = ({ data }) => {
+      if (data.failed) return stop(`The training failed: ${data.failed}`);
+      for (const value of data.returns) {
+        returns.push(value);
+        sum += value - (returns[returns.length - 1 - WINDOW] ?? 0);
+        means.push(sum / Math.min(returns.length, WINDOW));
+      }
+      take(data.weights);
+      draw();
+      const rate = Math.round((returns.length / (performance.now() - began)) * 60_000);
+      const solved = means.findIndex((mean, i) => i + 1 >= WINDOW && mean >= SOLVED);
+      const text = [
+        `${returns.length.toLocaleString("en")} of ${episodes.toLocaleString("en")} episodes`,
+        `mean return ${means.at(-1).toFixed(1).replace("-", "−")}`,
+        solved < 0 ? "not solved yet" : `solved at episode ${solved + 1}`,
+        `${rate.toLocaleString("en")} episodes a minute`,
+      ].join(" · ");
+      $("training-status").textContent = text;
+      if (returns.length === episodes) stop();
+    };
+    worker.postMessage({ module, task: "train", preset: $("preset").value, seed, episodes });
+    $("train").textContent = "Stop";
+    $("training-status").textContent = "Training";
+  };
+
+  $("train").onclick = () => (worker ? stop("Stopped; what it has learnt is kept.") : train());
+  $("drive").onclick = drive;
+  $("save").onclick = () => download("weights.bin", weights);
+  $("load").onchange = async ({ target }) => {
+    const [file] = target.files;
+    // So that the same file can be chosen again.
+    target.value = "";
+    $("weights-reason").textContent = "";
+    if (file === undefined) return;
+    try {
+      take(new Uint8Array(await file.arrayBuffer()));
+      $("training-status").textContent = `${file.name} is loaded.`;
+    } catch (error) {
+      $("weights-reason").textContent = `${file.name}: ${error.message}`;
+    }
+  };
+  new ResizeObserver(draw).observe($("curve"));
+  return { draw };
+}
+
+export function download(name, content) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([content]));
+  link.download = name;
+  link.click();
+  // The browser may still be reading it.
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}

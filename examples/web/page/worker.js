@@ -1,0 +1,44 @@
+// One task in a module of its own, away from the page: { module, task, … } in, reports out. To stop it, end the worker.
+
+import { Acrobot } from "./module.js";
+
+/** How often it reports, ms. */
+const PERIOD = 150;
+
+const tasks = {
+  train(acrobot, { preset, seed, episodes }) {
+    acrobot.beginTraining(preset, seed);
+    let returns = [];
+    let reported = performance.now();
+    for (let episode = 1; episode <= episodes; episode++) {
+      returns.push(acrobot.train());
+      if (episode === episodes || performance.now() - reported >= PERIOD) {
+        postMessage({ returns, weights: acrobot.save() });
+        returns = [];
+        reported = performance.now();
+      }
+    }
+  },
+
+  speed(acrobot) {
+    const scalar = fastest(1_000_000, (steps) => acrobot.scalarSteps(steps));
+    const batch = fastest(4_000_000, (steps) => acrobot.batchSteps(steps / 1000)) * 1.024;
+    postMessage({ scalar, batch });
+  },
+};
+
+/** Steps a second in the best of several runs, the first of which the browser may still be compiling in. */
+function fastest(steps, run) {
+  let best = Infinity;
+  for (let round = 0; round < 10; round++) {
+    const start = performance.now();
+    run(steps);
+    best = Math.min(best, performance.now() - start);
+  }
+  return (steps / best) * 1000;
+}
+
+onmessage = ({ data }) => {
+  const done = Acrobot.load(data.module).then((acrobot) => tasks[data.task](acrobot, data));
+  done.catch((error) => postMessage({ failed: String(error) }));
+};

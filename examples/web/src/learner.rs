@@ -1,0 +1,158 @@
+//! The learner of `swing_up` with its 64 KiB of weights: training, in a worker's module, and what was learnt as a policy,
+//! in the page's.
+
+use core::fmt::{self, Write};
+
+use acrobot::{Action, Pcg64};
+use sarsa::LoadError;
+
+use crate::memory::{BUFFER, Once, Shared};
+use crate::simulation;
+
+#[allow(dead_code, reason = "this program uses a part")]
+#[path = "../../sarsa/acrobot_task.rs"]
+mod acrobot_task;
+
+use acrobot_task::{Env, Preset, learn, state, torque, training};
+
+const SLOTS: usize = 8192;
+type Weights = [[f32; 2]; SLOTS];
+const UNTRAINED: Weights = [[0.0; 2]; SLOTS];
+type Learner = acrobot_task::Learner<'static, SLOTS, 28>;
+
+/// A learner that knows nothing; none where its memory was taken before.
+fn learner(preset: Preset, memory: &'static Once<Weights>) -> Option<Learner> {
+    preset.learner(memory.take()?).ok()
+}
+
+static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);
+
+/// Begins to train the preset `fast`, or `quality`, with the seed in the buffer, as `swing_up` does. False where this
+/// module has begun one before: each has memory for one.
+#[unsafe(no_mangle)]
+pub extern "C" fn begin_training(quality: bool, words: usize) -> bool {
+    static WEIGHTS: Once<Weights> = Once::new(UNTRAINED);
+    let preset = if quality {
+        Preset::Quality
+    } else {
+        Preset::Fast
+    };
+    let Some(learner) = learner(preset, &WEIGHTS) else {
+        return false;
+    };
+    let (env, choices) = training(simulation::seed_in_buffer(words));
+    *TRAINING.borrow() = Some((learner, env, choices));
+    true
+}
+
+/// Trains for an episode; returns the sum of its rewards, or NaN where no training has begun.
+#[unsafe(no_mangle)]
+pub extern "C" fn train() -> f32 {
+    match &mut *TRAINING.borrow() {
+        Some((learner, env, choices)) => learn(learner, env, choices),
+        None => f32::NAN,
+    }
+}
+
+/// Writes the weights of the training into the buffer, as `swing_up --save` does; returns how many bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn save() -> usize {
+    let Some((learner, ..)) = &*TRAINING.borrow() else {
+        return 0;
+    };
+    for (to, byte) in BUFFER.borrow().iter_mut().zip(learner.save()) {
+        *to = byte;
+    }
+    Learner::BYTES
+}
+
+/// What was loaded last, of either preset.
+struct Policy {
+    presets: [Learner; 2],
+    last: usize,
+}
+
+static POLICY: Shared<Option<Policy>> = Shared::new(None);
+
+impl Policy {
+    /// One that knows nothing; none where there was one before.
+    fn new() -> Option<Self> {
+        static FAST: Once<Weights> = Once::new(UNTRAINED);
+        static QUALITY: Once<Weights> = Once::new(UNTRAINED);
+        Some(Self {
+            presets: [
+                learner(Preset::Fast, &FAST)?,
+                learner(Preset::Quality, &QUALITY)?,
+            ],
+            last: 0,
+        })
+    }
+
+    fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
+        let mut refused = LoadError::Magic;
+        for (number, learner) in self.presets.iter_mut().enumerate() {
+            match learner.load(bytes) {
+                Ok(()) => {
+                    self.last = number;
+                    return Ok(());
+                }
+                Err(error) => refused = error,
+            }
+        }
+        Err(refused)
+    }
+
+    fn action(&self, state: &[f32; 4]) -> Action {
+        let learner = self.presets.get(self.last);
+        learner.map_or(Action::Zero, |learner| torque(learner.greedy(state)))
+    }
+}
+
+/// Takes the weights in the buffer's first `len` bytes as the policy, of whichever preset they are. Not 0 where they are
+/// refused: the length of the reason, which is in the buffer. The policy is as it was then.
+#[unsafe(no_mangle)]
+pub extern "C" fn load(len: usize) -> usize {
+    let mut policy = POLICY.borrow();
+    if policy.is_none() {
+        *policy = Policy::new();
+    }
+    let mut buffer = BUFFER.borrow();
+    let bytes = buffer.get(..len).unwrap_or_default();
+    let loaded = policy.as_mut().map(|policy| policy.load(bytes));
+    let Some(Err(error)) = loaded else {
+        return 0;
+    };
+    let mut text = Text {
+        bytes: &mut *buffer,
+        len: 0,
+    };
+    // It has room for a hundred times as much.
+    let _ = write!(text, "{error}");
+    text.len
+}
+
+/// The action of the loaded policy; no torque before one was loaded.
+#[unsafe(no_mangle)]
+pub extern "C" fn learnt() -> u8 {
+    let policy = POLICY.borrow();
+    let action = policy.as_ref().map_or(Action::Zero, |policy| {
+        simulation::with(|simulation| policy.action(&state(&simulation.env)))
+    });
+    action.into()
+}
+
+/// Writes into bytes, and ends with an error where they are full.
+struct Text<'a> {
+    bytes: &'a mut [u8],
+    len: usize,
+}
+
+impl Write for Text<'_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        let end = self.len + text.len();
+        let room = self.bytes.get_mut(self.len..end).ok_or(fmt::Error)?;
+        room.copy_from_slice(text.as_bytes());
+        self.len = end;
+        Ok(())
+    }
+}

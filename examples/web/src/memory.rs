@@ -1,0 +1,69 @@
+//! What the exported functions share, and the crate's only `unsafe`.
+
+use core::cell::{RefCell, RefMut};
+
+#[cfg(target_feature = "atomics")]
+compile_error!("the statics here are for a module with one thread");
+
+/// A value that all exported functions see.
+pub struct Shared<T>(RefCell<T>);
+
+// SAFETY: a module without atomics has one thread.
+unsafe impl<T> Sync for Shared<T> {}
+
+impl<T> Shared<T> {
+    pub const fn new(value: T) -> Self {
+        Self(RefCell::new(value))
+    }
+
+    pub fn borrow(&self) -> RefMut<'_, T> {
+        self.0.borrow_mut()
+    }
+
+    /// Where JavaScript reads and writes between calls.
+    pub fn address(&self) -> *mut T {
+        self.0.as_ptr()
+    }
+}
+
+/// What is too long for a number passes here; the longest is an episode as CSV, some 75 KB.
+pub static BUFFER: Shared<[u8; 1 << 17]> = Shared::new([0; 1 << 17]);
+
+#[unsafe(no_mangle)]
+pub extern "C" fn buffer() -> *mut u8 {
+    BUFFER.address().cast()
+}
+
+#[cfg(feature = "page")]
+pub use once::Once;
+
+#[cfg(feature = "page")]
+mod once {
+    use core::cell::{Cell, UnsafeCell};
+
+    /// Memory that is handed out once, for good.
+    pub struct Once<T> {
+        taken: Cell<bool>,
+        value: UnsafeCell<T>,
+    }
+
+    // SAFETY: as above.
+    unsafe impl<T> Sync for Once<T> {}
+
+    impl<T> Once<T> {
+        pub const fn new(value: T) -> Self {
+            Self {
+                taken: Cell::new(false),
+                value: UnsafeCell::new(value),
+            }
+        }
+
+        pub fn take(&'static self) -> Option<&'static mut T> {
+            if self.taken.replace(true) {
+                return None;
+            }
+            // SAFETY: nobody took it before, and nobody will again.
+            Some(unsafe { &mut *self.value.get() })
+        }
+    }
+}
