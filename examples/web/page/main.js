@@ -180,7 +180,7 @@ function start(module, acrobot) {
 
   const update = () => {
     dirty = false;
-    $("step").textContent = `${game.steps} of ${LIMIT}`;
+    $("step").textContent = game.steps;
     $("return").textContent = String(game.return).replace("-", "−");
     $("best").textContent = best ?? "–";
     $("pause").textContent = playing ? "Pause" : "Play";

@@ -28,7 +28,8 @@ export const DEFAULTS = {
   ...Object.fromEntries(PARAMETERS.map(({ name, value }) => [name, value])),
 };
 
-/** Words of 32 bits that the module takes of a seed. */
+/** Bytes of the module's buffer, and words of 32 bits that the module takes of a seed. */
+const BUFFER = 1 << 17;
 const SEED_WORDS = 64;
 
 /** The seed that a text is; an `Error` with the reason for another. */
@@ -127,10 +128,9 @@ export class Acrobot {
 
   /** Takes weights as the policy `learnt`, or throws an `Error` with the reason and changes nothing. */
   load(weights) {
-    const room = this.#bytes(1 << 17);
-    const bytes = weights.subarray(0, room.length);
-    room.set(bytes);
-    const length = this.#exports.load(bytes.length);
+    if (weights.length > BUFFER) throw new Error(`weights of ${weights.length} bytes; allowed are ${BUFFER} at the most`);
+    this.#bytes(weights.length).set(weights);
+    const length = this.#exports.load(weights.length);
     if (length !== 0) throw new Error(this.#text(length));
   }
 

@@ -59,7 +59,6 @@ export class Stage {
     if (!withTrail) return;
     context.strokeStyle = color("--trail");
     context.lineWidth = metre / 30;
-    context.lineCap = "round";
     for (let i = 1; i < this.#tips.length; i++) {
       context.globalAlpha = (0.7 * i) / this.#tips.length;
       context.beginPath();

@@ -17,9 +17,9 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
   let means = [];
 
   const draw = () => {
-    const [low, high] = rangeOf([...means, SOLVED]);
+    const range = rangeOf([...means, 2 * SOLVED, 0]);
     const series = [{ values: means, color: color("--link") }];
-    plot($("curve"), { series, range: [low, high], start: 1, end: Math.max(means.length, 2), marks: [SOLVED] });
+    plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), marks: [SOLVED] });
   };
 
   /** Lets the page's module have weights; throws with the reason where they are none of its. */

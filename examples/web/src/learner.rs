@@ -6,7 +6,8 @@ use core::fmt::{self, Write};
 use acrobot::{Action, Pcg64};
 use sarsa::LoadError;
 
-use crate::memory::{BUFFER, Once, Shared};
+use crate::memory::{BUFFER, Shared};
+use crate::once::Once;
 use crate::simulation;
 
 #[allow(dead_code, reason = "this program uses a part")]
@@ -16,12 +17,15 @@ mod acrobot_task;
 use acrobot_task::{Env, Preset, learn, state, torque, training};
 
 const SLOTS: usize = 8192;
-type Weights = [[f32; 2]; SLOTS];
-const UNTRAINED: Weights = [[0.0; 2]; SLOTS];
+type Memory = Once<[[f32; 2]; SLOTS]>;
 type Learner = acrobot_task::Learner<'static, SLOTS, 28>;
 
+const fn memory() -> Memory {
+    Once::new([[0.0; 2]; SLOTS])
+}
+
 /// A learner that knows nothing; none where its memory was taken before.
-fn learner(preset: Preset, memory: &'static Once<Weights>) -> Option<Learner> {
+fn learner(preset: Preset, memory: &'static Memory) -> Option<Learner> {
     preset.learner(memory.take()?).ok()
 }
 
@@ -31,7 +35,7 @@ static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);
 /// module has begun one before: each has memory for one.
 #[unsafe(no_mangle)]
 pub extern "C" fn begin_training(quality: bool, words: usize) -> bool {
-    static WEIGHTS: Once<Weights> = Once::new(UNTRAINED);
+    static WEIGHTS: Memory = memory();
     let preset = if quality {
         Preset::Quality
     } else {
@@ -77,8 +81,8 @@ static POLICY: Shared<Option<Policy>> = Shared::new(None);
 impl Policy {
     /// One that knows nothing; none where there was one before.
     fn new() -> Option<Self> {
-        static FAST: Once<Weights> = Once::new(UNTRAINED);
-        static QUALITY: Once<Weights> = Once::new(UNTRAINED);
+        static FAST: Memory = memory();
+        static QUALITY: Memory = memory();
         Some(Self {
             presets: [
                 learner(Preset::Fast, &FAST)?,

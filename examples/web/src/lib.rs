@@ -9,6 +9,8 @@
 mod learner;
 mod memory;
 #[cfg(feature = "page")]
+mod once;
+#[cfg(feature = "page")]
 mod picture;
 #[cfg(feature = "page")]
 mod policies;

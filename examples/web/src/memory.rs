@@ -1,4 +1,4 @@
-//! What the exported functions share, and the crate's only `unsafe`.
+//! What the exported functions share, and most of the crate's `unsafe`.
 
 use core::cell::{RefCell, RefMut};
 
@@ -26,44 +26,10 @@ impl<T> Shared<T> {
     }
 }
 
-/// What is too long for a number passes here; the longest is an episode as CSV, some 75 KB.
+/// What is too long for a number passes here; the longest are the learner's weights, 64 KiB.
 pub static BUFFER: Shared<[u8; 1 << 17]> = Shared::new([0; 1 << 17]);
 
 #[unsafe(no_mangle)]
 pub extern "C" fn buffer() -> *mut u8 {
     BUFFER.address().cast()
-}
-
-#[cfg(feature = "page")]
-pub use once::Once;
-
-#[cfg(feature = "page")]
-mod once {
-    use core::cell::{Cell, UnsafeCell};
-
-    /// Memory that is handed out once, for good.
-    pub struct Once<T> {
-        taken: Cell<bool>,
-        value: UnsafeCell<T>,
-    }
-
-    // SAFETY: as above.
-    unsafe impl<T> Sync for Once<T> {}
-
-    impl<T> Once<T> {
-        pub const fn new(value: T) -> Self {
-            Self {
-                taken: Cell::new(false),
-                value: UnsafeCell::new(value),
-            }
-        }
-
-        pub fn take(&'static self) -> Option<&'static mut T> {
-            if self.taken.replace(true) {
-                return None;
-            }
-            // SAFETY: nobody took it before, and nobody will again.
-            Some(unsafe { &mut *self.value.get() })
-        }
-    }
 }

@@ -1,0 +1,40 @@
+// What the host computes: the examples of the repository, with these arguments.
+
+import { spawnSync } from "node:child_process";
+import { resolve } from "node:path";
+
+// Built for the host and without this crate's flags, whatever those are.
+const root = resolve(import.meta.dirname, "../../..");
+const env = { ...process.env, RUSTFLAGS: "", CARGO_BUILD_TARGET: undefined };
+
+function example(name, args, input) {
+  const command = ["run", "--quiet", "--locked", "--example", name, "--", ...args];
+  const { status, stdout, stderr, error } = spawnSync("cargo", command, { cwd: root, env, input, encoding: "utf8" });
+  if (error) throw error;
+  return { status, stdout, stderr };
+}
+
+/** The bits of θ1, θ2, θ̇1 and θ̇2 in single precision, at the start and after each action. */
+export function trace(seed, actions, ...args) {
+  const { status, stdout, stderr } = example("trace", ["--arithmetic", "fast", "--seed", seed, ...args], actions.join(""));
+  if (status !== 0) throw new Error(stderr);
+  return stdout.trim().split("\n").map((line) =>
+    line.split(" ").slice(0, 4).map((word) => {
+      const view = new DataView(new ArrayBuffer(8));
+      view.setBigUint64(0, BigInt(`0x${word}`));
+      view.setFloat32(0, view.getFloat64(0));
+      return view.getUint32(0).toString(16).padStart(8, "0");
+    }),
+  );
+}
+
+/** Why the host refuses arguments of `trace`. */
+export function refusal(...args) {
+  return example("trace", ["--seed", "0", ...args], "").stderr.trim().replace(/^error: /, "");
+}
+
+/** Learns, saves and loads as `args` say; what it wrote to standard error, if it failed. */
+export function swingUp(...args) {
+  const { status, stderr } = example("swing_up", ["--quiet", ...args], "");
+  return status === 0 ? null : stderr.trim();
+}

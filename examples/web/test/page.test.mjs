@@ -1,0 +1,474 @@
+// The page in Chromium, and what it computes beside what the host does.
+
+import assert from "node:assert/strict";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+
+import { launch } from "../browser.mjs";
+import { decodeActions, encodeActions } from "../page/link.js";
+import { Acrobot, DEFAULTS } from "../page/module.js";
+import { serve } from "../serve.mjs";
+import { refusal, swingUp, trace } from "./host.mjs";
+
+const dist = join(import.meta.dirname, "../dist");
+const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
+let server, browser, origin;
+
+before(async () => {
+  server = await serve(0);
+  origin = `http://localhost:${server.address().port}/`;
+  browser = await launch();
+});
+
+after(async () => {
+  await browser?.close();
+  server?.close();
+  rmSync(folder, { recursive: true });
+});
+
+/** Opens the page, plays with it, and finds no error in its console and no request but for its own files. */
+async function open(play, { hash = "", prepare, ...options } = {}) {
+  const context = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
+  const page = await context.newPage();
+  const wrong = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
+  page.on("pageerror", (error) => wrong.push(error.message));
+  context.on("request", (request) => {
+    const url = request.url();
+    if (!url.startsWith(origin) && !url.startsWith(`blob:${origin}`)) wrong.push(`a request for ${url}`);
+  });
+  if (prepare) await page.addInitScript(prepare);
+  await page.goto(origin + hash);
+  try {
+    await play(page);
+    assert.deepEqual(wrong, []);
+  } finally {
+    await context.close();
+  }
+}
+
+/** Once what was done is shown. */
+const shown = (page) =>
+  page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+
+const text = async (page, selector) => {
+  await shown(page);
+  return page.textContent(selector);
+};
+
+const bits = async (page) => {
+  await shown(page);
+  return page.locator("#state code").allTextContents();
+};
+
+/** At the start of a seed, paused, and played by keys. */
+async function paused(page, seed) {
+  await page.selectOption("#policy", "keys");
+  if ((await text(page, "#pause")) === "Pause") await page.click("#pause");
+  await page.fill("#seed", String(seed));
+}
+
+/** Holds the key of each action for a single step. */
+async function press(page, actions) {
+  await page.focus("#stage");
+  for (const action of actions) {
+    const key = ["ArrowLeft", null, "ArrowRight"][action];
+    if (key) await page.keyboard.down(key);
+    await page.keyboard.press("s");
+    if (key) await page.keyboard.up(key);
+  }
+}
+
+/** The actions of the run that the page has a link to. */
+async function linkedActions(page) {
+  await page.click("#share");
+  const fields = new URLSearchParams(new URL(await page.inputValue("#link")).hash.slice(1));
+  return decodeActions(fields.get("actions") ?? "");
+}
+
+async function downloaded(page, button) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
+  return readFileSync(await download.path());
+}
+
+const ACTIONS = [2, 2, 2, 0, 0, 1, 2, 2, 0, 0, 0, 1, 1, 2, 0, 2, 2, 2, 0, 0, 0];
+
+test("the modules are within their limits", () => {
+  for (const [name, kib] of [["acrobot-simd128", 48], ["acrobot", 48], ["simulation", 12]]) {
+    const { size } = statSync(join(dist, `${name}.wasm`));
+    assert.ok(size <= kib * 1024, `${name}.wasm has ${size} bytes; allowed are ${kib * 1024}`);
+  }
+});
+
+test("the plain simulation has the host's bits", async () => {
+  const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(join(dist, "simulation.wasm"))));
+  const now = () => Array.from(new Uint32Array(acrobot.numbers().buffer, 0, 4), (word) => word.toString(16).padStart(8, "0"));
+  acrobot.setParams({ ...DEFAULTS, dynamics: "nips" });
+  acrobot.reset(7n);
+  const states = [now(), ...ACTIONS.map((action) => (acrobot.step(action), now()))];
+  assert.deepEqual(states, trace("7", ACTIONS, "--dynamics", "nips"));
+});
+
+test("actions survive the way through a link", () => {
+  for (let length = 0; length <= 9; length++) {
+    const actions = Array.from({ length }, (_, i) => (i * 2 + 1) % 3);
+    assert.deepEqual(decodeActions(encodeActions(actions)), actions);
+  }
+});
+
+test("the page loads, swings by itself, and has a strict policy", () =>
+  open(async (page) => {
+    const policy = await page.getAttribute("meta[http-equiv]", "content");
+    assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
+    assert.match(policy, /default-src 'none'/);
+    await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 2);
+    assert.match(await text(page, "#module"), /^WebAssembly with simd128/);
+    const drawn = () => page.evaluate(() => {
+      const { data } = document.querySelector("#picture").getContext("2d").getImageData(0, 0, 900, 900);
+      return new Set(new Uint32Array(data.buffer)).size;
+    });
+    // Ground, line, links, joints, and the arrow.
+    assert.equal(await drawn(), 5);
+  }));
+
+test("keys move it, to the host's bits", () =>
+  open(async (page) => {
+    await paused(page, 42);
+    await press(page, ACTIONS);
+    assert.deepEqual(await bits(page), trace("42", ACTIONS).at(-1));
+    assert.equal(await text(page, "#step"), String(ACTIONS.length));
+    assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
+
+    // In the page's own time: which actions were taken is in the link.
+    await page.keyboard.press("Space");
+    await page.keyboard.down("ArrowRight");
+    await page.waitForTimeout(700);
+    await page.keyboard.up("ArrowRight");
+    await page.keyboard.down("ArrowLeft");
+    await page.waitForTimeout(500);
+    await page.keyboard.up("ArrowLeft");
+    await page.keyboard.press("Space");
+    const actions = await linkedActions(page);
+    const played = actions.slice(ACTIONS.length);
+    assert.ok(played.includes(2) && played.includes(0), `${played}`);
+    assert.deepEqual(await bits(page), trace("42", actions).at(-1));
+  }));
+
+test("seeds are Gymnasium's, of any size, and others are refused", () =>
+  open(async (page) => {
+    const seed = "123456789012345678901234567890";
+    await paused(page, seed);
+    const [start] = trace(seed, []);
+    assert.deepEqual(await bits(page), start);
+    for (const [bad, reason] of [
+      ["", "seed is empty"],
+      ["-1", "seed has '-' as character 1"],
+      ["12x", "seed has 'x' as character 3"],
+      ["9".repeat(601), "seed has 601 digits"],
+    ]) {
+      await page.fill("#seed", bad);
+      assert.equal(await text(page, "#seed-reason"), `${reason}; allowed is a decimal integer, 0 or more, of up to 600 digits`);
+      assert.equal(await page.getAttribute("#seed", "aria-invalid"), "true");
+      assert.deepEqual(await bits(page), start);
+    }
+    await page.fill("#seed", "5");
+    assert.equal(await text(page, "#seed-reason"), "");
+    assert.deepEqual(await bits(page), trace("5", [])[0]);
+  }));
+
+test("reset, pause and the next seed", () =>
+  open(async (page) => {
+    await paused(page, 42);
+    const start = await bits(page);
+    await press(page, [2, 2, 2]);
+    const before = await bits(page);
+    await page.waitForTimeout(500);
+    assert.deepEqual(await bits(page), before);
+    await page.keyboard.press("r");
+    assert.deepEqual(await bits(page), start);
+    assert.equal(await text(page, "#step"), "0");
+    await page.click("#next");
+    assert.equal(await page.inputValue("#seed"), "43");
+    assert.deepEqual(await bits(page), trace("43", [])[0]);
+    await page.click("#single");
+    await page.click("#reset");
+    assert.equal(await text(page, "#step"), "0");
+    await page.click("#pause");
+    await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) > 0);
+    assert.equal(await text(page, "#pause"), "Pause");
+  }));
+
+test("parameters change the physics as on the host, and bad ones are refused in the crate's words", () =>
+  open(async (page) => {
+    await paused(page, 42);
+    await page.fill("#dt", "0.05");
+    await page.selectOption("#dynamics", "nips");
+    await press(page, ACTIONS);
+    const state = await bits(page);
+    assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--dynamics", "nips").at(-1));
+
+    for (const [value, host] of [["-0.1"], ["0"], ["abc", "NaN"], ["", "NaN"], ["1e999", "inf"]]) {
+      await page.fill("#dt", value);
+      assert.equal(await text(page, "#dt-reason"), refusal("--dt", host ?? value));
+    }
+    assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
+    assert.deepEqual(await bits(page), state);
+
+    const slider = page.locator(".parameter", { hasText: "Mass of link 1" }).locator("[type=range]");
+    await slider.fill("0");
+    assert.equal(await text(page, "#mass1-reason"), "mass1 is 0 kg; allowed is a finite number above 0");
+    assert.deepEqual(await bits(page), state);
+    await slider.fill("2");
+    assert.equal(await text(page, "#mass1-reason"), "");
+    assert.equal(await page.inputValue("#mass1"), "2");
+    assert.equal(await text(page, "#step"), "0");
+    await press(page, ACTIONS);
+    assert.notDeepEqual(await bits(page), state);
+
+    await page.click("#defaults");
+    assert.equal(await page.inputValue("#mass1"), "1");
+    await press(page, ACTIONS);
+    assert.deepEqual(await bits(page), trace("42", ACTIONS).at(-1));
+  }));
+
+test("a time step of nearly nothing does not freeze the page", () =>
+  open(async (page) => {
+    await page.fill("#dt", "1e-9");
+    await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 500);
+    assert.match(await text(page, "#status"), /^Out of time/);
+  }));
+
+test("a link reproduces a run, and a bad one is refused", async () => {
+  let link, state;
+  await open(async (page) => {
+    await paused(page, 7);
+    await page.fill("#length2", "1.5");
+    await page.fill("#mass2", "0.75");
+    await page.selectOption("#dynamics", "nips");
+    await press(page, ACTIONS);
+    await page.click("#share");
+    link = await page.inputValue("#link");
+    assert.equal(await page.evaluate(() => navigator.clipboard.readText()), link);
+    assert.equal(page.url(), link);
+    state = await bits(page);
+  });
+  const { hash } = new URL(link);
+  await open(
+    async (page) => {
+      await page.selectOption("#pace", "4");
+      await page.waitForFunction(() => document.querySelector("#status").textContent === "The link ends here.");
+      assert.deepEqual(await bits(page), state);
+      assert.equal(await page.inputValue("#length2"), "1.5");
+    },
+    { hash },
+  );
+  for (const [bad, reason] of [
+    ["#seed=4&actions=a*", /^actions has '\*' as character 2; allowed/],
+    ["#seed=4&actions=abcde", /^actions has 5 characters; allowed/],
+    ["#seed=4&actions=wAAA", /^action 1 is 3; allowed is 0, 1 or 2/],
+    [`#seed=4&actions=${"A".repeat(700)}`, /^actions has 2100 actions; allowed are 500/],
+    ["#seed=-4", /^seed has '-' as character 1; allowed/],
+    ["#seed=4&mass1=0", /^mass1 is 0 kg; allowed is a finite number above 0/],
+    ["#seed=4&dynamics=other", /^dynamics is "other"; allowed is book or nips/],
+    ["#sed=4", /^the link has "sed"; allowed are seed/],
+  ]) {
+    await open(
+      async (page) => {
+        assert.match(await text(page, "#link-reason"), reason);
+        assert.equal(await page.inputValue("#seed"), "42");
+        assert.equal(await page.inputValue("#mass1"), "1");
+      },
+      { hash: bad },
+    );
+  }
+});
+
+test("the CSV has the episode, to the bit", () =>
+  open(async (page) => {
+    await paused(page, 42);
+    await press(page, ACTIONS);
+    const [names, ...lines] = (await downloaded(page, "#csv")).toString().trimEnd().split("\n");
+    // The names that the crate's own `Trajectory::write_csv` has.
+    assert.equal(names.split(",").length, 13);
+    assert.ok(readFileSync(join(import.meta.dirname, "../../../src/trajectory.rs"), "utf8").replace(/\\\n\s*/g, "").includes(names));
+    const bitsOf = (cells) => Array.from(new Uint32Array(Float32Array.from(cells).buffer), (word) => word.toString(16).padStart(8, "0"));
+    const states = trace("42", ACTIONS);
+    lines.forEach((line, i) => {
+      const cells = line.split(",").map(Number);
+      assert.deepEqual(cells.slice(5, 7), [ACTIONS[i] - 1, -1]);
+      assert.equal(cells[0], i + 1);
+      assert.deepEqual(bitsOf(cells.slice(1, 5)), states[i]);
+      assert.deepEqual(bitsOf(cells.slice(7, 11)), states[i + 1]);
+    });
+    assert.equal(lines.length, ACTIONS.length);
+  }));
+
+test("policies drive: Gymnasium's samples, and two that reach the line", () =>
+  open(async (page) => {
+    await paused(page, 42);
+    await page.selectOption("#policy", "random");
+    await page.focus("#stage");
+    for (let step = 0; step < 20; step++) await page.keyboard.press("s");
+    assert.deepEqual(await linkedActions(page), [0, 2, 1, 1, 1, 2, 0, 2, 0, 0, 1, 2, 2, 2, 2, 2, 1, 0, 2, 1]);
+    for (const policy of ["bang_bang", "energy_law"]) {
+      await page.selectOption("#policy", policy);
+      await page.click("#reset");
+      for (let step = 0; step < 200; step++) await page.keyboard.press("s");
+      assert.match(await text(page, "#verdict"), /^\d+ steps$/, policy);
+      assert.ok(Number(await text(page, "#best")) < 200);
+    }
+  }));
+
+test("training ends in the host's weights, and weights go both ways", () =>
+  open(async (page) => {
+    for (const [preset, seed] of [["fast", "42"], ["quality", "123456789012345678901"]]) {
+      await page.selectOption("#preset", preset);
+      await page.fill("#episodes", "100");
+      await page.fill("#training-seed", seed);
+      await page.click("#train");
+      await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
+      assert.match(await text(page, "#training-status"), /^100 of 100 episodes/);
+      const host = join(folder, `${preset}.bin`);
+      assert.equal(swingUp("--preset", preset, "--episodes", "100", "--seed", seed, "--save", host), null);
+      const weights = await downloaded(page, "#save");
+      assert.ok(weights.equals(readFileSync(host)), `${preset}: other weights than the host's`);
+
+      const own = join(folder, "page.bin");
+      writeFileSync(own, weights);
+      assert.equal(swingUp("--preset", preset, "--episodes", "0", "--load", own), null);
+    }
+  }));
+
+test("weights of a host drive, and bad ones are refused in its words", () =>
+  open(async (page) => {
+    const host = join(folder, "host.bin");
+    assert.equal(swingUp("--preset", "quality", "--episodes", "300", "--save", host), null);
+    await paused(page, 42);
+    await page.setInputFiles("#load", host);
+    await page.waitForFunction(() => document.querySelector("#training-status").textContent.endsWith("is loaded."));
+    assert.ok((await downloaded(page, "#save")).equals(readFileSync(host)));
+    await page.click("#drive");
+    await page.click("#pause");
+    for (let step = 0; step < 200; step++) await page.keyboard.press("s");
+    assert.match(await text(page, "#verdict"), /^\d+ steps$/);
+
+    const good = readFileSync(host);
+    for (const [name, bytes] of Object.entries({
+      "empty.bin": good.subarray(0, 0),
+      "short.bin": good.subarray(0, 1000),
+      "long.bin": Buffer.concat([good, good]).subarray(0, 1e5),
+      "damaged.bin": Buffer.from(good).fill(1, 500, 504),
+    })) {
+      const path = join(folder, name);
+      writeFileSync(path, bytes);
+      await page.setInputFiles("#load", path);
+      await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
+      const reason = await text(page, "#weights-reason");
+      const refused = swingUp("--preset", "quality", "--episodes", "0", "--load", path);
+      assert.equal(refused, `error: ${folder}/${reason}`);
+    }
+    const huge = join(folder, "huge.bin");
+    writeFileSync(huge, Buffer.alloc(1e6));
+    await page.setInputFiles("#load", huge);
+    await page.waitForFunction(() => document.querySelector("#weights-reason").textContent.startsWith("huge"));
+    assert.equal(await text(page, "#weights-reason"), "huge.bin: weights of 1000000 bytes; allowed are 131072 at the most");
+    // Those before are as they were.
+    assert.ok((await downloaded(page, "#save")).equals(good));
+    for (const [id, value] of [["episodes", "0"], ["episodes", "1.5"], ["episodes", "1e9"], ["training-seed", "x"]]) {
+      await page.fill("#episodes", "10");
+      await page.fill(`#${id}`, value);
+      await page.click("#train");
+      assert.match(await text(page, "#training-reason"), /allowed is/);
+      assert.equal(await text(page, "#train"), "Train");
+    }
+  }));
+
+test("speed is measured, and the page goes on meanwhile", () =>
+  open(async (page) => {
+    await page.click("#measure");
+    const frames = await page.evaluate(() => new Promise((resolve) => {
+      let frames = 0;
+      const count = () => (document.querySelector("#measure").disabled ? (frames++, requestAnimationFrame(count)) : resolve(frames));
+      count();
+    }));
+    assert.ok(frames > 10, `${frames} frames`);
+    for (const id of ["scalar", "batch"]) assert.match(await text(page, `#${id}`), /^\d+\.\d million$/);
+  }));
+
+test("without simd128 the scalar module has the same bits, and the page says so", () =>
+  open(
+    async (page) => {
+      assert.match(await text(page, "#module"), /no simd128/);
+      await paused(page, 42);
+      await press(page, ACTIONS);
+      assert.deepEqual(await bits(page), trace("42", ACTIONS).at(-1));
+    },
+    { prepare: () => (WebAssembly.validate = () => false) },
+  ));
+
+test("without WebAssembly the page says so", () =>
+  open(
+    async (page) => {
+      assert.match(await text(page, "#notice"), /no WebAssembly/);
+      assert.ok(await page.isHidden("#app"));
+    },
+    { prepare: () => delete globalThis.WebAssembly },
+  ));
+
+test("without JavaScript the page says so", () =>
+  open(async (page) => assert.match(await page.textContent("#notice"), /needs JavaScript/), { javaScriptEnabled: false }));
+
+test("with less motion it starts paused and is shown step by step", () =>
+  open(
+    async (page) => {
+      await page.waitForSelector("#app:not([hidden])");
+      assert.equal(await text(page, "#pause"), "Play");
+      assert.match(await text(page, "#between"), /less motion/);
+      await page.waitForTimeout(500);
+      assert.equal(await text(page, "#step"), "0");
+    },
+    { reducedMotion: "reduce" },
+  ));
+
+test("touch applies torque while it lasts", () =>
+  open(
+    async (page) => {
+      await paused(page, 42);
+      const { x, y, width, height } = await page.locator("#right").boundingBox();
+      const finger = await page.context().newCDPSession(page);
+      const touch = (type, touchPoints) => finger.send("Input.dispatchTouchEvent", { type, touchPoints });
+      await page.focus("#stage");
+      await touch("touchStart", [{ x: x + width / 2, y: y + height / 2 }]);
+      await page.keyboard.press("s");
+      await touch("touchEnd", []);
+      await page.keyboard.press("s");
+      assert.deepEqual(await linkedActions(page), [2, 1]);
+    },
+    { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true },
+  ));
+
+test("screenshots, in which nothing is wider than the screen", async () => {
+  mkdirSync(join(dist, "screenshots"), { recursive: true });
+  for (const [size, options] of Object.entries({
+    phone: { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
+    desktop: { viewport: { width: 1280, height: 900 } },
+  })) {
+    for (const colorScheme of ["light", "dark"]) {
+      await open(
+        async (page) => {
+          await page.fill("#episodes", "300");
+          await page.click("#train");
+          await page.selectOption("#pace", "4");
+          await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 60);
+          await page.click("#pause");
+          await page.screenshot({ path: join(dist, "screenshots", `${size}-${colorScheme}.png`), fullPage: true });
+          const [content, screen] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+          assert.equal(content, screen);
+        },
+        { ...options, colorScheme },
+      );
+    }
+  }
+});
