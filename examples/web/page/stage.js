@@ -12,6 +12,7 @@ export class Stage {
   #picture = document.querySelector("#picture");
   #trail = document.querySelector("#trail");
   #pixels;
+  /** Where the tip was, m to the right and above. */
   #tips = [];
 
   constructor(acrobot) {
@@ -50,9 +51,8 @@ export class Stage {
     const [x, y] = this.#acrobot.draw(part);
     this.#picture.getContext("2d").putImageData(this.#pixels, 0, 0);
 
-    const tip = [half + metre * x, half - metre * y];
     const last = this.#tips.at(-1);
-    if (last === undefined || Math.hypot(tip[0] - last[0], tip[1] - last[1]) > 1) this.#tips.push(tip);
+    if (last === undefined || Math.hypot(x - last[0], y - last[1]) * metre > 1) this.#tips.push([x, y]);
     this.#tips.splice(0, this.#tips.length - TRAIL);
     const context = this.#trail.getContext("2d");
     context.clearRect(0, 0, 2 * half, 2 * half);
@@ -62,8 +62,7 @@ export class Stage {
     for (let i = 1; i < this.#tips.length; i++) {
       context.globalAlpha = (0.7 * i) / this.#tips.length;
       context.beginPath();
-      context.moveTo(...this.#tips[i - 1]);
-      context.lineTo(...this.#tips[i]);
+      for (const [x, y] of this.#tips.slice(i - 1, i + 1)) context.lineTo(half + metre * x, half - metre * y);
       context.stroke();
     }
   }

@@ -436,10 +436,11 @@ test("touch applies torque while it lasts", () =>
   open(
     async (page) => {
       await paused(page, 42);
+      await page.focus("#stage");
+      await page.locator("#right").scrollIntoViewIfNeeded();
       const { x, y, width, height } = await page.locator("#right").boundingBox();
       const finger = await page.context().newCDPSession(page);
       const touch = (type, touchPoints) => finger.send("Input.dispatchTouchEvent", { type, touchPoints });
-      await page.focus("#stage");
       await touch("touchStart", [{ x: x + width / 2, y: y + height / 2 }]);
       await page.keyboard.press("s");
       await touch("touchEnd", []);
