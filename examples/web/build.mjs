@@ -6,9 +6,9 @@ import { cpSync, mkdirSync, rmSync, statSync } from "node:fs";
 const run = (command, args, env = {}) =>
   execFileSync(command, args, { cwd: import.meta.dirname, stdio: "inherit", env: { ...process.env, ...env } });
 
-/** No loop unrolled that is longer than a batch's block has lanes, and none turned into vectors: for size. */
-const SMALL = ["-Cllvm-args=-unroll-full-max-count=8", "-Cno-vectorize-loops"];
-/** Of the optimizer's passes `-Os`, and constants that stand often as locals. */
+/** For size: no loop is unrolled but whole, none of more turns than a batch's block has lanes, and none made of vectors. */
+const SMALL = ["-Cllvm-args=-unroll-full-max-count=8", "-Cllvm-args=-unroll-allow-partial=false", "-Cno-vectorize-loops"];
+/** Of wasm-opt's passes those for size, and constants that stand often as locals. Rust puts nothing below address 1024. */
 const PASSES = ["--low-memory-unused", "-Os", "--const-hoisting", "-Os", "--strip-debug", "--strip-producers", "--strip-target-features"];
 /** What Rust's compiler takes for granted in WebAssembly, which every browser with modules in workers has. */
 const FEATURES = ["bulk-memory", "multivalue", "mutable-globals", "nontrapping-float-to-int", "reference-types", "sign-ext"];

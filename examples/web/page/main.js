@@ -141,15 +141,12 @@ function start(module, acrobot) {
     );
   };
 
-  /** Of the standing acrobot with these parameters, J; the centres of mass stay at 0.5 m. */
-  const upright = ({ mass1, mass2, length1, gravity }) => gravity * (0.5 * mass1 + (length1 + 0.5) * mass2);
-
   const plots = () => {
     const end = Math.max(game.steps, 50);
     const [first, second] = [color("--first"), color("--second")];
     const [theta1, theta2, dtheta1, dtheta2, energy, height] = game.numbers;
     const energies = game.column(4);
-    const standing = upright(game.params);
+    const standing = acrobot.standing();
     plot($("energy"), {
       series: [{ values: energies, color: first }],
       range: rangeOf([...energies, standing, -standing]),

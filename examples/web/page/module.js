@@ -106,9 +106,14 @@ export class Acrobot {
     throw new Error(`${name} is ${String(value).replace("Infinity", "inf")} ${unit}; allowed is ${allowed}`);
   }
 
-  /** The action of a policy of this name. */
+  /** The energy of standing upright, J. */
+  standing() {
+    return this.#exports.standing();
+  }
+
+  /** The action of a policy: `random`, `bang_bang`, `energy_law` or `learnt`. */
   act(policy) {
-    return { random: this.#exports.sample, ...this.#exports }[policy]();
+    return this.#exports[policy]();
   }
 
   resize(side) {

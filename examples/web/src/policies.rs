@@ -1,4 +1,4 @@
-//! Policies that learn nothing. That of the goal and of random actions are elsewhere: the keys and `sample`.
+//! Two policies that learn nothing.
 
 use core::f32::consts::PI;
 
@@ -24,21 +24,30 @@ pub extern "C" fn bang_bang() -> u8 {
 /// energy is missing, and takes away what is too much.
 #[unsafe(no_mangle)]
 pub extern "C" fn energy_law() -> u8 {
+    let standing = standing();
     simulation::with(|simulation| {
         let acrobot = simulation.env.inner();
-        let mut upright = acrobot.clone();
-        let standing = State {
-            theta1: PI,
-            ..State::default()
-        };
-        // It is finite.
-        let _ = upright.set_state(standing);
-        let missing = upright.energy() - acrobot.energy();
+        let missing = standing - acrobot.energy();
         let action = match -missing * acrobot.state().dtheta1 {
             torque if torque <= -0.5 => Action::Negative,
             torque if torque >= 0.5 => Action::Positive,
             _ => Action::Zero,
         };
         action.into()
+    })
+}
+
+/// The energy of standing upright, J.
+#[unsafe(no_mangle)]
+pub extern "C" fn standing() -> f32 {
+    simulation::with(|simulation| {
+        let mut acrobot = simulation.env.inner().clone();
+        let upright = State {
+            theta1: PI,
+            ..State::default()
+        };
+        // It is finite.
+        let _ = acrobot.set_state(upright);
+        acrobot.energy()
     })
 }

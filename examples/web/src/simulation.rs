@@ -79,7 +79,7 @@ pub extern "C" fn step(action: u8) -> u32 {
 
 /// A random action: Gymnasium's `action_space.sample()`.
 #[unsafe(no_mangle)]
-pub extern "C" fn sample() -> u8 {
+pub extern "C" fn random() -> u8 {
     with(|simulation| Action::sample(&mut simulation.action_space).into())
 }
 
