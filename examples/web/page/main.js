@@ -1,8 +1,9 @@
 // Loads the module that this browser can run, and ties the page to it.
 
-import { decodeRun, encodeRun, parseNumber } from "./link.js";
-import { Acrobot, DEFAULTS, LIMIT, PARAMETERS, hasSimd128, parseSeed } from "./module.js";
 import { Game } from "./game.js";
+import { decodeRun, encodeRun } from "./link.js";
+import { Acrobot, DEFAULTS, LIMIT, hasSimd128, parseSeed } from "./module.js";
+import { attempt, parametersPanel } from "./parameters.js";
 import { color, plot, rangeOf } from "./plot.js";
 import { speedPanel } from "./speed.js";
 import { Stage } from "./stage.js";
@@ -267,18 +268,6 @@ function start(module, acrobot) {
 
   // ---- what can be set, and refused
 
-  /** Runs `set`; where it throws, the reason stands below the field. */
-  const attempt = (field, reason, set) => {
-    try {
-      set();
-      field.removeAttribute("aria-invalid");
-      reason.textContent = "";
-    } catch (error) {
-      field.setAttribute("aria-invalid", "true");
-      reason.textContent = error.message;
-    }
-  };
-
   $("seed").value = game.seed;
   $("seed").oninput = ({ target }) => {
     const { value } = target;
@@ -286,44 +275,10 @@ function start(module, acrobot) {
     target.value = value;
   };
 
-  const fields = PARAMETERS.map(({ name, label, unit, end, step }) => {
-    const field = document.createElement("div");
-    field.className = "field parameter";
-    field.innerHTML = `
-      <label for="${name}">${label}</label>
-      <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-reason">
-      <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-reason">
-      <span class="unit">${unit}</span>
-      <p id="${name}-reason" class="reason" role="alert"></p>`;
-    $("params").append(field);
-    const [slider, text] = field.querySelectorAll("input");
-    const reason = field.querySelector(".reason");
-    const set = (value) => attempt(text, reason, () => begin(game.seed, { ...game.params, [name]: parseNumber(value) }));
-    slider.oninput = () => {
-      text.value = slider.value;
-      set(slider.value);
-    };
-    text.oninput = () => {
-      if (Number.isFinite(parseNumber(text.value))) slider.value = text.value;
-      set(text.value);
-    };
-    return {
-      show() {
-        slider.value = text.value = game.params[name];
-        text.removeAttribute("aria-invalid");
-        reason.textContent = "";
-      },
-    };
-  });
-  $("dynamics").onchange = ({ target }) => begin(game.seed, { ...game.params, dynamics: target.value });
-  const showParams = () => {
-    $("dynamics").value = game.params.dynamics;
-    fields.forEach((field) => field.show());
-  };
-  $("defaults").onclick = () => {
-    begin(game.seed, { ...DEFAULTS });
-    showParams();
-  };
+  const showParams = parametersPanel(
+    () => game.params,
+    (params) => begin(game.seed, params),
+  );
 
   // ---- links, files, and the panels
 

@@ -31,12 +31,12 @@ fn learner(preset: Preset, memory: &'static Memory) -> Option<Learner> {
 
 static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);
 
-/// Begins to train the preset `fast`, or `quality`, with the seed in the buffer, as `swing_up` does. False where this
+/// Begins to train the preset `fast`, or `quality` where that is not 0, with the seed in the buffer, as `swing_up` does. False where this
 /// module has begun one before: each has memory for one.
 #[unsafe(no_mangle)]
-pub extern "C" fn begin_training(quality: bool, words: usize) -> bool {
+pub extern "C" fn begin_training(quality: u32, words: usize) -> bool {
     static WEIGHTS: Memory = memory();
-    let preset = if quality {
+    let preset = if quality != 0 {
         Preset::Quality
     } else {
         Preset::Fast

@@ -65,8 +65,9 @@ pub extern "C" fn reset(words: usize) {
 /// Steps by an action's number. Bit 0 says whether the goal was reached, bit 1 whether it was the last step of the
 /// limit; bit 2 refuses the action.
 #[unsafe(no_mangle)]
-pub extern "C" fn step(action: u8) -> u32 {
-    let Ok(action) = Action::try_from(action) else {
+pub extern "C" fn step(action: u32) -> u32 {
+    let number = u8::try_from(action).unwrap_or(u8::MAX);
+    let Ok(action) = Action::try_from(number) else {
         return 4;
     };
     with(|simulation| {
@@ -96,11 +97,11 @@ pub extern "C" fn numbers() -> *const [f32; 6] {
     NUMBERS.address()
 }
 
-/// Sets the parameters, in SI units; all others are Gymnasium's. Not 0 where they are refused: the length of the reason,
+/// Sets the equations, those of the book where `nips` is 0, and parameters in SI units; all others are Gymnasium's. Not 0 where they are refused: the length of the reason,
 /// which is in the buffer. Nothing is changed then.
 #[unsafe(no_mangle)]
 pub extern "C" fn set_params(
-    nips: bool,
+    nips: u32,
     dt: f32,
     mass1: f32,
     mass2: f32,
@@ -115,7 +116,11 @@ pub extern "C" fn set_params(
         mass2,
         gravity,
         dt,
-        dynamics: if nips { Dynamics::Nips } else { Dynamics::Book },
+        dynamics: if nips != 0 {
+            Dynamics::Nips
+        } else {
+            Dynamics::Book
+        },
         ..Params::default()
     };
     let set = with(|simulation| simulation.env.inner_mut().set_params(params));

@@ -1,0 +1,58 @@
+// The panel of the physics: equations, and a slider and a field for each parameter, where bad values are refused in place.
+
+import { parseNumber } from "./link.js";
+import { DEFAULTS, PARAMETERS } from "./module.js";
+
+const $ = (id) => document.getElementById(id);
+
+/** Runs `set`; where it throws, the field is marked and the reason stands at it. */
+export function attempt(field, reason, set) {
+  try {
+    set();
+    field.removeAttribute("aria-invalid");
+    reason.textContent = "";
+  } catch (error) {
+    field.setAttribute("aria-invalid", "true");
+    reason.textContent = error.message;
+  }
+}
+
+/** `get` gives the parameters, and `set` takes them or throws. Returns what shows the parameters that there are now. */
+export function parametersPanel(get, set) {
+  const fields = PARAMETERS.map(({ name, label, unit, end, step }) => {
+    const field = document.createElement("div");
+    field.className = "field parameter";
+    field.innerHTML = `
+      <label for="${name}">${label}</label>
+      <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-reason">
+      <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-reason">
+      <span class="unit">${unit}</span>
+      <p id="${name}-reason" class="reason" role="alert"></p>`;
+    $("params").append(field);
+    const [slider, text] = field.querySelectorAll("input");
+    const reason = field.querySelector(".reason");
+    const change = () => attempt(text, reason, () => set({ ...get(), [name]: parseNumber(text.value) }));
+    slider.oninput = () => {
+      text.value = slider.value;
+      change();
+    };
+    text.oninput = () => {
+      if (Number.isFinite(parseNumber(text.value))) slider.value = text.value;
+      change();
+    };
+    return () => {
+      slider.value = text.value = get()[name];
+      attempt(text, reason, () => {});
+    };
+  });
+  const show = () => {
+    $("dynamics").value = get().dynamics;
+    fields.forEach((show) => show());
+  };
+  $("dynamics").onchange = ({ target }) => set({ ...get(), dynamics: target.value });
+  $("defaults").onclick = () => {
+    set({ ...DEFAULTS });
+    show();
+  };
+  return show;
+}
