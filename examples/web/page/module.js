@@ -139,8 +139,8 @@ export class Acrobot {
     if (length !== 0) throw new Error(this.#text(length));
   }
 
-  beginTraining(preset, seed) {
-    this.#exports.begin_training(preset === "quality", this.#seed(seed));
+  beginTraining(preset, episodes, seed) {
+    this.#exports.begin_training(preset === "quality", episodes, this.#seed(seed));
   }
 
   /** Trains for an episode; returns its return. */

@@ -7,7 +7,7 @@ const PERIOD = 150;
 
 const tasks = {
   train(acrobot, { preset, seed, episodes }) {
-    acrobot.beginTraining(preset, seed);
+    acrobot.beginTraining(preset, episodes, seed);
     let returns = [];
     let reported = performance.now();
     for (let episode = 1; episode <= episodes; episode++) {

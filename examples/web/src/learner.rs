@@ -3,7 +3,7 @@
 
 use core::fmt::{self, Write};
 
-use acrobot::{Action, Pcg64};
+use acrobot::{Action, Pcg64, State};
 use sarsa::LoadError;
 
 use crate::memory::{BUFFER, Shared};
@@ -14,7 +14,7 @@ use crate::simulation;
 #[path = "../../sarsa/acrobot_task.rs"]
 mod acrobot_task;
 
-use acrobot_task::{Env, Preset, learn, state, torque, training};
+use acrobot_task::{Env, Preset, greedy, learn, training};
 
 const SLOTS: usize = 8192;
 type Memory = Once<[[f32; 2]; SLOTS]>;
@@ -25,23 +25,23 @@ const fn memory() -> Memory {
 }
 
 /// A learner that knows nothing; none where its memory was taken before.
-fn learner(preset: Preset, memory: &'static Memory) -> Option<Learner> {
-    preset.learner(memory.take()?).ok()
+fn learner(preset: Preset, episodes: u32, memory: &'static Memory) -> Option<Learner> {
+    preset.learner(episodes, memory.take()?).ok()
 }
 
 static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);
 
-/// Begins to train the preset `fast`, or `quality` where that is not 0, with the seed in the buffer, as `swing_up` does. False where this
-/// module has begun one before: each has memory for one.
+/// Begins to train the preset `fast`, or `quality` where that is not 0, in so many episodes and with the seed in the buffer, as
+/// `swing_up` does. False where this module has begun one before: each has memory for one.
 #[unsafe(no_mangle)]
-pub extern "C" fn begin_training(quality: u32, words: usize) -> bool {
+pub extern "C" fn begin_training(quality: u32, episodes: u32, words: usize) -> bool {
     static WEIGHTS: Memory = memory();
     let preset = if quality != 0 {
         Preset::Quality
     } else {
         Preset::Fast
     };
-    let Some(learner) = learner(preset, &WEIGHTS) else {
+    let Some(learner) = learner(preset, episodes, &WEIGHTS) else {
         return false;
     };
     let (env, choices) = training(simulation::seed_in_buffer(words));
@@ -85,8 +85,8 @@ impl Policy {
         static QUALITY: Memory = memory();
         Some(Self {
             presets: [
-                learner(Preset::Fast, &FAST)?,
-                learner(Preset::Quality, &QUALITY)?,
+                learner(Preset::Fast, 0, &FAST)?,
+                learner(Preset::Quality, 0, &QUALITY)?,
             ],
             last: 0,
         })
@@ -106,9 +106,9 @@ impl Policy {
         Err(refused)
     }
 
-    fn action(&self, state: &[f32; 4]) -> Action {
+    fn action(&self, state: &State<f32>) -> Action {
         let learner = self.presets.get(self.last);
-        learner.map_or(Action::Zero, |learner| torque(learner.greedy(state)))
+        learner.map_or(Action::Zero, |learner| greedy(learner, state))
     }
 }
 
@@ -140,7 +140,7 @@ pub extern "C" fn load(len: usize) -> usize {
 pub extern "C" fn learnt() -> u8 {
     let policy = POLICY.borrow();
     let action = policy.as_ref().map_or(Action::Zero, |policy| {
-        simulation::with(|simulation| policy.action(&state(&simulation.env)))
+        simulation::with(|simulation| policy.action(&simulation.env.inner().state()))
     });
     action.into()
 }
