@@ -9,7 +9,8 @@
 //! Coding*, NIPS 8 (1996); R. S. Sutton and A. G. Barto, *Reinforcement Learning: An Introduction*, 1st
 //! edition (1998), 11.3. Neither prints numbers but in the text, some 75 steps in the end: the table has
 //! those of another replication. What is not published is as in Sutton's Lisp: the goal ends a decision at
-//! any of its time steps. What is not his: traces below 0.05 are cut, after 29 steps.
+//! any of its time steps. What is not his: traces below 0.05 are cut, after 29 steps. With 64 steps his learner's
+//! last 300 episodes take 84.5 and 81.5 steps with seeds 0 and 1, and with 29 they take 84.5 and 82.5.
 //!
 //! Every episode starts at rest, and no step is limited or random but by the learner: run `i` has the
 //! `i`-th child of the seed, for offsets in Sutton's learner and for exploration in this crate's. The CSV

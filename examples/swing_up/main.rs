@@ -47,7 +47,7 @@ struct Options {
     /// Memory of the weights.
     #[arg(long, value_enum, default_value_t = Memory::K64)]
     memory: Memory,
-    /// Episodes to learn in.
+    /// Episodes to learn in; towards the last of them less and less is changed and explored.
     #[arg(long, default_value_t = 2000)]
     episodes: u32,
     /// Seed of everything: a decimal integer of any size.
