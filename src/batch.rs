@@ -1,11 +1,13 @@
 //! Many acrobots at once: the bits of each are those of one alone.
 
 mod block;
+mod member;
 mod vectors;
 
 use core::num::NonZeroU32;
 
 pub use block::Block;
+pub use member::Member;
 pub use vectors::Vectors;
 
 use crate::arithmetic::Arithmetic;

@@ -44,7 +44,7 @@ pub use arithmetic::Host;
 pub use acrobot::{Acrobot, REWARD_THRESHOLD, Step};
 pub use action::Action;
 pub use arithmetic::{Arithmetic, Fast, Form, Micro, Portable, Real};
-pub use batch::{Autoreset, Batch, Block, Observations, Output, Vectors};
+pub use batch::{Autoreset, Batch, Block, Member, Observations, Output, Vectors};
 pub use bounds::{bound, wrap};
 pub use dynamics::{derivative, energy, mass_matrix, tip_height};
 pub use error::Error;

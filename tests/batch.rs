@@ -319,6 +319,41 @@ fn begins_in_given_states_as_one_alone() {
     assert_eq!(twins.batch.state(0), before);
 }
 
+/// In the middle of episodes, of which some have just ended, with noise to come.
+#[test]
+fn members_go_on_in_another_batch() {
+    let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
+    let params = Params {
+        torque_noise: 0.3,
+        ..Params::default()
+    };
+    twins.set_params(params);
+    for steps in [70, 430] {
+        twins.play(steps, true);
+        let members: Vec<_> = (0..35).map(|i| twins.batch.member(i).unwrap()).collect();
+        assert!(members.iter().any(|member| member.elapsed > 0));
+        let (blocks, generators) = (vec![Block::EMPTY; 3], vec![Pcg64::UNSEEDED; 35]);
+        twins.batch = Batch::new(7, blocks, generators).unwrap();
+        twins.batch.set_params(params).unwrap();
+        for (index, member) in members.into_iter().enumerate() {
+            twins.batch.set_member(index, member).unwrap();
+        }
+    }
+    twins.play(600, false);
+
+    assert_eq!(twins.batch.member(35), None);
+    let mut member = twins.batch.member(34).unwrap();
+    let refused = twins.batch.set_member(35, member.clone()).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "index is 35 acrobots; allowed is one below the length of the batch"
+    );
+    member.state.dtheta2 = f32::NAN;
+    let before = twins.batch.member(34);
+    assert!(twins.batch.set_member(34, member).is_err());
+    assert_eq!(twins.batch.member(34), before);
+}
+
 #[test]
 fn columns_are_the_rows() {
     let mut batch = small::<2, 20>().unwrap();

@@ -68,6 +68,23 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
+    /// The steps of a lane's episode, and whether the next one resets it.
+    pub(super) fn progress(&self, lane: usize) -> (u32, bool) {
+        (self.elapsed[lane], self.ended[lane])
+    }
+
+    /// Continues an episode in a lane.
+    pub(super) fn resume<A: Arithmetic<Scalar = S>>(
+        &mut self,
+        lane: usize,
+        state: State<S>,
+        (elapsed, ended): (u32, bool),
+    ) {
+        self.begin::<A>(lane, state);
+        self.elapsed[lane] = elapsed;
+        self.ended[lane] = ended;
+    }
+
     fn begin<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, start: State<S>) {
         self.place(lane, start, sin_cos::<A>(&start));
         self.elapsed[lane] = 0;

@@ -1,0 +1,79 @@
+//! One acrobot of a batch, to save and to resume.
+
+use super::{Batch, Block};
+use crate::arithmetic::Arithmetic;
+use crate::error::Error;
+use crate::rng::Pcg64;
+use crate::state::State;
+
+/// What of one acrobot of a [`Batch`] cannot be derived; those of all are a snapshot of the batch, but
+/// for what its setters set.
+///
+/// ```
+/// use acrobot::{Batch, Block, Fast, Member, Pcg64};
+///
+/// let new = |seed| Batch::<Fast, _, _>::new(seed, [Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
+/// let (batch, mut twin) = (new(42)?, new(0)?);
+/// let saved: Vec<Member<f32>> = (0..20).filter_map(|index| batch.member(index)).collect();
+/// for (index, member) in saved.into_iter().enumerate() {
+///     twin.set_member(index, member)?;
+/// }
+/// assert_eq!(twin.member(19), batch.member(19));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Member<S = f32> {
+    /// The state.
+    pub state: State<S>,
+    /// The steps since the last reset.
+    pub elapsed: u32,
+    /// Whether the next step resets it, as with [`Autoreset::NextStep`](super::Autoreset::NextStep).
+    pub ended: bool,
+    /// The generator that its starts and its torque noise are drawn from.
+    pub rng: Pcg64,
+}
+
+impl<A, B, G, const N: usize> Batch<A, B, G, N>
+where
+    A: Arithmetic,
+    B: AsRef<[Block<A::Scalar, N>]> + AsMut<[Block<A::Scalar, N>]>,
+    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
+{
+    /// The acrobot of that index, if there is one.
+    #[must_use]
+    pub fn member(&self, index: usize) -> Option<Member<A::Scalar>> {
+        let rng = self.generators.as_ref().get(index)?.clone();
+        let block = self.blocks.as_ref().get(index / N)?;
+        let (elapsed, ended) = block.progress(index % N);
+        Some(Member {
+            state: block.state(index % N),
+            elapsed,
+            ended,
+            rng,
+        })
+    }
+
+    /// Puts an acrobot in the place of that index, where it goes on to the same bits.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for an index that is not in the batch, and for a number of the state that is
+    /// not finite; nothing is changed then.
+    pub fn set_member(&mut self, index: usize, member: Member<A::Scalar>) -> Result<(), Error> {
+        member.state.validate()?;
+        let block = self.blocks.as_mut().get_mut(index / N);
+        let rng = self.generators.as_mut().get_mut(index);
+        let (Some(block), Some(rng)) = (block, rng) else {
+            return Err(Error::OutOfRange {
+                name: "index",
+                value: index as f64,
+                unit: "acrobots",
+                allowed: "one below the length of the batch",
+            });
+        };
+        block.resume::<A>(index % N, member.state, (member.elapsed, member.ended));
+        *rng = member.rng;
+        Ok(())
+    }
+}
