@@ -1,0 +1,161 @@
+"""The single environment, with the bits of Gymnasium's."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import ArrayLike, NDArray
+
+from acrobot_rs import _native
+from acrobot_rs.parameters import Parameters, start_bounds
+
+
+class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], int]):
+    """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between them is to swing them up.
+
+    ## Description
+
+    Starts, noise and ends of a seed are those of Gymnasium's environment, and on x86-64 Linux with glibc states,
+    rewards and observations are equal to the bit, but for the observation of a start, which may be one unit in
+    the last place off.
+
+    ## Action Space
+
+    ``Discrete(3)``: a torque of -1 (action 0), 0 (1) or 1 N m (2) between the links.
+
+    ## Observation Space
+
+    ``Box`` of shape ``(6,)``, ``float32``:
+
+    | Num | Observation                        | Min   | Max  |
+    |-----|------------------------------------|-------|------|
+    | 0   | cosine of theta1                   | -1    | 1    |
+    | 1   | sine of theta1                     | -1    | 1    |
+    | 2   | cosine of theta2                   | -1    | 1    |
+    | 3   | sine of theta2                     | -1    | 1    |
+    | 4   | angular velocity of theta1, rad/s  | -4 pi | 4 pi |
+    | 5   | angular velocity of theta2, rad/s  | -9 pi | 9 pi |
+
+    theta1 is the angle of link 1, 0 where it hangs straight down; theta2 that of link 2 relative to link 1.
+
+    ## Rewards
+
+    -1 for each step, and 0 for the one that reaches the goal. The threshold is -100.
+
+    ## Starting State
+
+    All four numbers of the state are drawn uniformly from -0.1 to 0.1 (rad, rad/s), or from ``options["low"]`` to
+    ``options["high"]`` of ``reset``.
+
+    ## Episode End
+
+    1. Termination: ``-cos(theta1) - cos(theta1 + theta2) > 1``, the tip is higher than one link above the joint.
+    2. Truncation, by ``gymnasium.make``: 500 steps.
+
+    ## Arguments
+
+    ``render_mode``: ``None``, ``"rgb_array"`` (an array of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines
+    of braille characters, and one of numbers).
+
+    >>> import gymnasium as gym
+    >>> import acrobot_rs
+    >>> env = gym.make("acrobot_rs/Acrobot-v1")
+    >>> env.unwrapped.book_or_nips = "nips"
+    >>> env.reset(seed=123, options={"low": -0.2, "high": 0.2})[0].shape
+    (6,)
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 15}
+
+    _native: _native.Acrobot
+    #: Whether the observation is the state itself.
+    _ANGLES = False
+
+    def __init__(self, render_mode: str | None = None) -> None:
+        """An environment that is to be reset first.
+
+        Raises:
+            ValueError: For another render mode, and for a parameter of a subclass that is refused.
+        """
+        super().__init__(_native.Acrobot(self._ANGLES), render_mode)
+        self.action_space = spaces.Discrete(3)
+        self.observation_space = self._observation_space
+
+    @property
+    def state(self) -> NDArray[np.float64] | None:
+        """theta1, theta2 (rad) and their velocities (rad/s), of shape ``(4,)``; ``None`` before the first reset.
+
+        A copy, and not writable, since writing into it would change nothing: assign four finite numbers to set it.
+        """
+        state = self._native.state
+        if state is not None:
+            state.flags.writeable = False
+        return state
+
+    @state.setter
+    def state(self, state: ArrayLike) -> None:
+        self._native.state = np.asarray(state, dtype=np.float64)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begin an episode.
+
+        Args:
+            seed: Of the generator, an integer of any size, 0 or more; by ``None`` it goes on.
+            options: ``"low"`` and ``"high"``, the bounds of the start, rad and rad/s; -0.1 and 0.1 if not given.
+
+        Returns:
+            The observation of the start, and an empty info.
+
+        Raises:
+            ValueError: For bounds that are no finite numbers in order; nothing is changed then.
+        """
+        low, high = start_bounds(options)
+        super().reset(seed=seed)
+        # Gymnasium keeps a start in float32.
+        self.state = self.np_random.uniform(low, high, 4).astype(np.float32)
+        return self._native.observation(), {}
+
+    def step(self, action: int) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Apply a torque for ``dt``.
+
+        Args:
+            action: 0, 1 or 2: a torque of -1, 0 or 1 N m.
+
+        Returns:
+            The observation; the reward, -1.0, or 0.0 in the goal; whether the goal is reached; ``False``, since it
+            is ``gymnasium.make`` that counts the steps; and an empty info.
+
+        Raises:
+            gymnasium.error.InvalidAction: For another action.
+            AssertionError: Before the first reset.
+        """
+        noise = self.torque_noise_max
+        if noise:
+            noise = self.np_random.uniform(-noise, noise)
+        return self._native.step(action, noise)
+
+    def render(self) -> NDArray[np.uint8] | str | None:
+        """What the render mode asks for: an array of shape ``(500, 500, 3)``, a text, or with a warning nothing."""
+        if self.render_mode is None:
+            return self._warn_of_no_render_mode()
+        return self._native.render(self.render_mode)
+
+
+class AcrobotV0Env(AcrobotEnv):
+    """``Acrobot-v0``, which Gymnasium has no more: :class:`AcrobotEnv`, seen as the state itself.
+
+    The observation is theta1, theta2 (within pi, rad) and their velocities (within 4 pi and 9 pi, rad/s), ``float32`` of shape
+    ``(4,)``. ``gymnasium.make`` truncates it after 200 steps.
+    """
+
+    _ANGLES = True
+
+    @property
+    def _observation_space(self) -> spaces.Box:
+        high = np.array([np.pi, np.pi, self.MAX_VEL_1, self.MAX_VEL_2], dtype=np.float32)
+        return spaces.Box(-high, high, dtype=np.float32)

@@ -1,0 +1,117 @@
+//! One acrobot, with the bits of Gymnasium's.
+
+use acrobot::{Action, Host, Observation, Params, State};
+use numpy::PyArray1;
+use pyo3::exceptions::PyAssertionError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+
+use crate::{InvalidAction, load, refused, render, save, with};
+
+/// What `Env.step` returns: observation, reward, terminated, truncated and info.
+type Step<'py> = (
+    Bound<'py, PyArray1<f32>>,
+    f64,
+    bool,
+    bool,
+    Bound<'py, PyDict>,
+);
+
+/// Parameters and a state. All draws are NumPy's, of the generator that the environment has.
+#[pyclass(module = "acrobot_rs._native")]
+pub struct Acrobot {
+    acrobot: acrobot::Acrobot<Host>,
+    /// Whether it is seen as by `Acrobot-v0`.
+    angles: bool,
+    /// Gymnasium has no state before the first reset.
+    started: bool,
+}
+
+#[pymethods]
+impl Acrobot {
+    #[new]
+    fn new(angles: bool) -> Self {
+        Self {
+            acrobot: acrobot::Acrobot::new(0),
+            angles,
+            started: false,
+        }
+    }
+
+    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        let params = with(*self.acrobot.params(), name, value)?;
+        // The noise is drawn outside, and comes with each step.
+        let params = Params {
+            torque_noise: 0.0,
+            ..params
+        };
+        self.acrobot.set_params(params).map_err(refused)
+    }
+
+    #[getter]
+    fn state<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let state: [f64; 4] = self.acrobot.state().into();
+        self.started.then(|| PyArray1::from_slice(py, &state))
+    }
+
+    #[setter]
+    fn set_state(&mut self, state: [f64; 4]) -> PyResult<()> {
+        self.acrobot
+            .set_state(State::from(state))
+            .map_err(refused)?;
+        self.started = true;
+        Ok(())
+    }
+
+    fn observation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        if self.angles {
+            PyArray1::from_slice(py, &*Observation::<4>::from(self.acrobot.state()))
+        } else {
+            PyArray1::from_slice(py, &*self.acrobot.observation())
+        }
+    }
+
+    fn step<'py>(&mut self, action: &Bound<'py, PyAny>, noise: f64) -> PyResult<Step<'py>> {
+        if !self.started {
+            let message = "the environment has no state yet; call reset before step";
+            return Err(PyAssertionError::new_err(message));
+        }
+        let number = action.extract::<u8>().ok();
+        let known = number.and_then(|number| Action::try_from(number).ok());
+        let known = known.ok_or_else(|| {
+            let shown = action.repr().map(|repr| repr.to_string());
+            InvalidAction::new_err(format!(
+                "action is {}; allowed is 0 (negative torque), 1 (none) or 2 (positive)",
+                shown.unwrap_or_default()
+            ))
+        })?;
+        let torque = self.acrobot.params().torque(known) + noise;
+        let step = self.acrobot.step_torque(torque).map_err(refused)?;
+        let py = action.py();
+        Ok((
+            self.observation(py),
+            step.reward.into(),
+            step.terminated,
+            false,
+            PyDict::new(py),
+        ))
+    }
+
+    fn render<'py>(&self, py: Python<'py>, mode: &str) -> PyResult<Bound<'py, PyAny>> {
+        render(py, *self.acrobot.params(), self.acrobot.state(), mode)
+    }
+
+    fn __getnewargs__(&self) -> (bool,) {
+        (self.angles,)
+    }
+
+    fn __getstate__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = save(&(&self.acrobot, self.started))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    fn __setstate__(&mut self, bytes: &[u8]) -> PyResult<()> {
+        (self.acrobot, self.started) = load(bytes)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,204 @@
+"""The single environment is one of Gymnasium's, by Gymnasium's own checks, and refuses as they do."""
+
+import copy
+import pickle
+
+import acrobot_rs
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.error import InvalidAction
+from gymnasium.utils.env_checker import check_env
+
+V1, V0 = "acrobot_rs/Acrobot-v1", "acrobot_rs/Acrobot-v0"
+
+
+@pytest.fixture
+def env():
+    """Without wrappers, at a start."""
+    env = acrobot_rs.AcrobotEnv()
+    env.reset(seed=42)
+    return env
+
+
+def make(name, **kwargs):
+    if name == V1:
+        return gymnasium.make(name, **kwargs)
+    with pytest.warns(DeprecationWarning, match="out of date"):  # as of every v0 that has a v1
+        return gymnasium.make(name, **kwargs)
+
+
+@pytest.mark.parametrize("name", [V1, V0])
+def test_gymnasium_checks_pass_without_a_warning(name):
+    check_env(make(name, render_mode="rgb_array").unwrapped)
+
+
+@pytest.mark.parametrize(("name", "limit"), [(V1, 500), (V0, 200)])
+def test_episodes_are_truncated(name, limit):
+    env = make(name)
+    env.reset(seed=1)
+    steps = 1
+    while not env.step(1)[3]:
+        steps += 1
+    assert steps == limit
+
+
+def test_spaces_and_registration_are_those_of_gymnasium():
+    ours, theirs = gymnasium.make(V1), gymnasium.make("Acrobot-v1")
+    assert ours.observation_space == theirs.observation_space
+    assert ours.action_space == theirs.action_space
+    assert ours.spec.reward_threshold == theirs.spec.reward_threshold
+    assert ours.metadata["render_fps"] == theirs.metadata["render_fps"]
+    assert make(V0).observation_space.contains(np.float32([np.pi, np.pi, 4 * np.pi, 9 * np.pi]))
+
+
+def test_frames(env):
+    pictures = acrobot_rs.AcrobotEnv(render_mode="rgb_array")
+    pictures.reset(seed=42)
+    hanging = pictures.render()
+    assert hanging.shape == (500, 500, 3) and hanging.dtype == np.uint8
+    # The first link, in Gymnasium's colour, below the joint and not above it.
+    assert list(hanging[300, 250]) == [0, 204, 204]
+    pictures.state = [np.pi, 0, 0, 0]
+    assert list(pictures.render()[200, 250]) == [0, 204, 204]
+
+    texts = acrobot_rs.AcrobotEnv(render_mode="ansi")
+    texts.reset(seed=42)
+    assert len(texts.render().splitlines()) == 21
+
+    with pytest.warns(UserWarning, match="without a render mode"):
+        assert env.render() is None
+    with pytest.raises(ValueError, match="render_mode is 'human'"):
+        acrobot_rs.AcrobotEnv(render_mode="human")
+
+
+@pytest.mark.parametrize("action", [3, -1, 256, 2**70, 1.0, "1", None, np.array([1, 2])])
+def test_other_actions_are_refused(env, action):
+    before = env.state
+    with pytest.raises(InvalidAction, match="allowed is 0"):
+        env.step(action)
+    assert (env.state == before).all()
+
+
+@pytest.mark.parametrize("action", [2, np.int64(2), np.uint8(2), np.array(2)])
+def test_actions_are_integers_of_any_kind(env, action):
+    assert env.action_space.contains(2)
+    env.step(action)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("dt", 0.0),
+        ("dt", np.nan),
+        ("LINK_MASS_1", -1.0),
+        ("LINK_MOI", np.inf),
+        ("MAX_VEL_2", 1e300),
+        ("AVAIL_TORQUE", [0.0, 1.0, np.inf]),
+        ("AVAIL_TORQUE", [0.0, 1.0]),
+        ("torque_noise_max", -0.1),
+        ("book_or_nips", "paper"),
+        ("state", [0.0, 0.0, 0.0]),
+        ("state", [0.0, 0.0, 0.0, np.nan]),
+    ],
+)
+def test_other_values_are_refused(env, name, value):
+    before = np.copy(getattr(env, name))
+    with pytest.raises(ValueError):
+        setattr(env, name, value)
+    assert (getattr(env, name) == before).all()
+
+
+@pytest.mark.parametrize("options", [{"low": 1, "high": 0}, {"low": "x"}, {"high": None}, {"high": np.inf}, {"low": np.nan}])
+def test_other_bounds_are_refused(env, options):
+    state, rng = env.state, env.np_random.bit_generator.state
+    with pytest.raises(ValueError):
+        env.reset(seed=1, options=options)
+    assert (env.state == state).all() and env.np_random.bit_generator.state == rng
+
+
+def test_a_reset_comes_first():
+    env = acrobot_rs.AcrobotEnv()
+    assert env.state is None
+    with pytest.raises(AssertionError, match="reset"):
+        env.step(0)
+
+
+def test_the_state_is_set_as_a_whole(env):
+    with pytest.raises(ValueError, match="read-only"):
+        env.state[0] = 1.0
+    env.state = np.array([0.1, 0.2, 0.3, 0.4])
+    assert list(env.state) == [0.1, 0.2, 0.3, 0.4]
+
+
+def test_every_parameter_acts():
+    """Each changes what a step does, or what is drawn; also one of a subclass."""
+    changes = {
+        "dt": 0.05,
+        "LINK_LENGTH_1": 1.5,
+        "LINK_MASS_1": 1.5,
+        "LINK_MASS_2": 1.5,
+        "LINK_COM_POS_1": 0.6,
+        "LINK_COM_POS_2": 0.6,
+        "LINK_MOI": 1.5,
+        "MAX_VEL_1": 0.1,
+        "MAX_VEL_2": 0.1,
+        "AVAIL_TORQUE": [-5.0, 0.0, 5.0],
+        "torque_noise_max": 0.5,
+        "book_or_nips": "nips",
+    }
+
+    def after_a_step(env):
+        env.reset(seed=3)
+        env.state = [0.5, 1.0, 2.0, -1.0]
+        env.step(2)
+        return env.state.tobytes()
+
+    plain = after_a_step(acrobot_rs.AcrobotEnv())
+    for name, value in changes.items():
+        env = acrobot_rs.AcrobotEnv()
+        setattr(env, name, value)
+        changed = after_a_step(env)
+        assert changed != plain, name
+        assert after_a_step(type("Changed", (acrobot_rs.AcrobotEnv,), {name: value})()) == changed, name
+
+    pictures = acrobot_rs.AcrobotEnv("rgb_array")
+    pictures.reset(seed=3)
+    before = pictures.render()
+    pictures.LINK_LENGTH_2 = 0.5
+    assert (pictures.render() != before).any()
+
+
+@pytest.mark.parametrize("again", [copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+@pytest.mark.parametrize("name", [V1, V0])
+def test_copies_go_on_to_the_same_bits(name, again):
+    env = make(name)
+    env.unwrapped.torque_noise_max = 0.3
+    env.unwrapped.book_or_nips = "nips"
+    again(env)  # also before the first reset
+    env.reset(seed=5)
+    env.action_space.seed(5)
+    for _ in range(150):
+        env.step(env.action_space.sample())
+    twin = again(env)
+
+    def play(env):
+        played = []
+        for _ in range(400):
+            observation, *signals, _ = env.step(env.action_space.sample())
+            played.append((observation.tobytes(), env.unwrapped.state.tobytes(), *signals))
+            if signals[1] or signals[2]:
+                env.reset()
+        return played
+
+    assert play(env) == play(twin)
+
+
+def test_damaged_snapshots_are_refused(env):
+    native = env._native
+    good = native.__getstate__()
+    infinite = copy.deepcopy(native)
+    for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good)]:
+        with pytest.raises(ValueError, match="snapshot"):
+            infinite.__setstate__(bad)
+    assert infinite.__getstate__() == good

@@ -1,0 +1,262 @@
+"""The vector environment: its streams, its resets as SyncVectorEnv's, and its numbers close to Gymnasium's."""
+
+import copy
+import pickle
+import threading
+
+import acrobot_rs
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.error import InvalidAction
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+
+V1 = "acrobot_rs/Acrobot-v1"
+BOTH_MODES = pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
+
+
+def make_vec(num_envs, **kwargs):
+    return gymnasium.make_vec(V1, num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
+
+
+def play(envs, steps, seed):
+    """All that random actions give."""
+    rng = np.random.default_rng(seed)
+    played = []
+    for _ in range(steps):
+        *results, infos = envs.step(rng.integers(3, size=envs.num_envs))
+        # Lists, since NumPy compares no arrays of arrays.
+        played.append([results, {key: list(value) for key, value in infos.items()}, envs.state])
+    return played
+
+
+def test_made_without_a_warning_with_spaces_for_all():
+    envs = make_vec(5)
+    theirs = gymnasium.make_vec("Acrobot-v1", num_envs=5, vectorization_mode="sync")
+    assert envs.observation_space == theirs.observation_space
+    assert envs.action_space == theirs.action_space
+    assert envs.single_observation_space == theirs.single_observation_space
+    assert envs.single_action_space == theirs.single_action_space
+    assert envs.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    assert envs.spec.max_episode_steps == 500
+    observations, infos = envs.reset(seed=1)
+    assert observations in envs.observation_space and infos == {}
+    observations, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
+    assert observations in envs.observation_space and infos == {}
+    for signals, dtype in [(rewards, np.float32), (terminated, np.bool_), (truncated, np.bool_)]:
+        assert signals.shape == (5,) and signals.dtype == dtype
+    envs.close()
+
+
+@BOTH_MODES
+def test_resets_are_those_of_sync_vector_env(mode):
+    """Gymnasium's own Acrobot in Gymnasium's own vector, given the streams of ours and few steps an episode, so that f32
+    and f64 have no time to part. Wide starts reach the goal now and then."""
+    count, seed, limit = 33, 7, 5
+    theirs = SyncVectorEnv(
+        [lambda: gymnasium.make("Acrobot-v1", max_episode_steps=limit)] * count, autoreset_mode=mode
+    )
+    children = np.random.SeedSequence(seed).spawn(count)
+    for env, child in zip(theirs.envs, children, strict=True):
+        env.unwrapped.np_random = np.random.default_rng(child)
+    ours = make_vec(count, max_episode_steps=limit, autoreset_mode=mode)
+    # By autoreset, SyncVectorEnv's environments start within the default bounds.
+    expected, found = theirs.reset(), ours.reset(seed=seed)
+    rng = np.random.default_rng(0)
+    ends = 0
+    for step in range(60):
+        np.testing.assert_allclose(found[0], expected[0], atol=1e-5)
+        np.testing.assert_equal(found[1:-1], expected[1:-1])
+        np.testing.assert_equal(list(found[-1]), list(expected[-1]))
+        for key, value in expected[-1].items():
+            if key == "final_obs":
+                for one, other in zip(found[-1][key], value, strict=True):
+                    assert (one is None) == (other is None)
+                    if one is not None:
+                        np.testing.assert_allclose(one, other, atol=1e-5)
+            else:
+                np.testing.assert_equal(found[-1][key], value)
+        if step % 20 == 10:  # a reset of all goes on in the streams
+            expected, found = theirs.reset(), ours.reset()
+        else:
+            actions = rng.integers(3, size=count)
+            expected, found = theirs.step(actions), ours.step(actions)
+        ends += len(expected) == 5 and int(expected[3].sum())
+    assert ends > 200
+
+
+@BOTH_MODES
+def test_goals_end_episodes_as_in_sync_vector_env(mode):
+    """From every state of ours one step of Gymnasium's, near the goal and far from it."""
+    envs = make_vec(64, autoreset_mode=mode)
+    envs.reset(seed=3, options={"low": -3.0, "high": 3.0})
+    single = gymnasium.make("Acrobot-v1").unwrapped
+    single.reset(seed=0)
+    resets, reached = np.zeros(64, bool), 0
+    for actions in np.random.default_rng(1).integers(3, size=(50, 64)):
+        states = envs.state
+        observations, rewards, terminated, truncated, infos = envs.step(actions)
+        for i in np.flatnonzero(~resets):
+            single.state = states[i].astype(np.float64)
+            observation, reward, goal, _, _ = single.step(actions[i])
+            height = -np.cos(single.state[0]) - np.cos(single.state[0] + single.state[1])
+            if abs(height - 1.0) < 1e-3:
+                continue
+            assert terminated[i] == goal and rewards[i] == reward
+            seen = infos["final_obs"][i] if goal and mode is AutoresetMode.SAME_STEP else observations[i]
+            np.testing.assert_allclose(seen, observation, atol=2e-3)
+            reached += goal
+        assert not rewards[resets].any() and not terminated[resets].any()
+        if mode is AutoresetMode.NEXT_STEP:
+            resets = terminated | truncated
+    assert reached > 20
+
+
+def test_seeds_are_children_and_sizes_change_nothing():
+    small, large = make_vec(5), make_vec(100)
+    for seed in [0, 42, 2**100 + 3]:
+        small.reset(seed=seed), large.reset(seed=seed)
+        starts = [np.random.default_rng(child).uniform(-0.1, 0.1, 4) for child in np.random.SeedSequence(seed).spawn(100)]
+        assert (large.state == np.float32(starts)).all()
+        assert large.np_random_seed == seed
+        for actions in np.random.default_rng(0).integers(3, size=(700, 100)):
+            small.step(actions[:5])
+            large.step(actions)
+            assert (small.state == large.state[:5]).all()
+    assert (make_vec(5).reset()[0] != make_vec(5).reset()[0]).any(), "without a seed starts are random"
+    with pytest.raises(gymnasium.error.Error):
+        small.reset(seed=-1)
+
+
+@pytest.mark.parametrize("again", [copy.deepcopy, lambda envs: pickle.loads(pickle.dumps(envs))])
+@BOTH_MODES
+def test_copies_go_on_to_the_same_bits(mode, again):
+    envs = make_vec(37, autoreset_mode=mode, max_episode_steps=90)
+    envs.torque_noise_max = 0.3
+    envs.book_or_nips = "nips"
+    envs.reset(seed=1, options={"low": -1.0, "high": 0.5})
+    play(envs, 90, 2)  # in mode NEXT_STEP all are to be reset by the next step
+    twin = again(envs)
+    np.testing.assert_equal(play(envs, 300, 3), play(twin, 300, 3))
+
+
+def test_damaged_snapshots_are_refused():
+    native = make_vec(3)._native
+    good = native.__getstate__()
+    for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good)]:
+        with pytest.raises(ValueError, match="snapshot"):
+            native.__setstate__(bad)
+    assert native.__getstate__() == good
+
+
+def test_parameters_are_set_live_and_by_subclasses():
+    class Heavy(acrobot_rs.AcrobotVectorEnv):
+        LINK_MASS_2 = 2.0
+
+    live, heavy, plain = acrobot_rs.AcrobotVectorEnv(20), Heavy(20), acrobot_rs.AcrobotVectorEnv(20)
+    live.LINK_MASS_2 = 2.0
+    plays = []
+    for envs in (live, heavy, plain):
+        envs.reset(seed=4)
+        plays.append(play(envs, 30, 4))
+    np.testing.assert_equal(plays[0], plays[1])
+    assert (plays[0][-1][2] != plays[2][-1][2]).any()
+    with pytest.raises(ValueError, match="dt is 0 s"):
+        live.dt = 0.0
+    assert live.dt == 0.2
+
+
+def test_observations_are_copies_or_one_array():
+    for copies in (True, False):
+        envs = make_vec(4, copy=copies)
+        first, _ = envs.reset(seed=1)
+        second = envs.step([0, 1, 2, 0])[0]
+        assert (first is not second) == copies
+        assert (first != second).any() == copies
+
+
+@pytest.mark.parametrize(
+    "actions",
+    [[0, 1, 2, 3], [0, 0, 0, -1], [0, 0, 256, 0], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]], [0.0, 1.0, 2.0, 0.0], "0120", 1,
+     np.array([0, 0, 0, 2**63], dtype=np.uint64)],
+)  # fmt: skip
+def test_other_actions_are_refused(actions):
+    envs = make_vec(4)
+    envs.reset(seed=1)
+    before = envs.state
+    with pytest.raises(InvalidAction, match="allowed"):
+        envs.step(actions)
+    assert (envs.state == before).all()
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.int8, np.int32, np.uint64, ">i8"])
+def test_actions_are_integers_of_any_kind(dtype):
+    envs, twin = make_vec(4), make_vec(4)
+    actions = np.array([[0, 1], [1, 1], [2, 1], [0, 1]])
+    for each in (envs, twin):
+        each.reset(seed=1)
+    one = envs.step(actions[:, 0].copy())
+    other = twin.step(actions.astype(dtype)[:, 0])  # not contiguous either
+    np.testing.assert_equal(one, other)
+
+
+@pytest.mark.parametrize(
+    "kwargs",
+    [
+        {"num_envs": 0},
+        {"num_envs": -1},
+        {"num_envs": 2**40},
+        {"num_envs": 2, "max_episode_steps": 0},
+        {"num_envs": 2, "max_episode_steps": 2**32},
+        {"num_envs": 2, "autoreset_mode": AutoresetMode.DISABLED},
+        {"num_envs": 2, "autoreset_mode": "Sometimes"},
+        {"num_envs": 2, "render_mode": "human"},
+    ],
+)
+def test_other_arguments_are_refused(kwargs):
+    with pytest.raises(ValueError):
+        acrobot_rs.AcrobotVectorEnv(**kwargs)
+
+
+@pytest.mark.parametrize("options", [{"low": 1, "high": 0}, {"high": np.inf}, {"reset_mask": np.array([True, False])}])
+def test_other_options_are_refused(options):
+    envs = make_vec(2)
+    before = envs.state
+    with pytest.raises(ValueError):
+        envs.reset(seed=1, options=options)
+    assert (envs.state == before).all()
+
+
+def test_pictures_of_all():
+    envs = make_vec(2, render_mode="rgb_array")
+    envs.reset(seed=1, options={"low": -2.0, "high": 2.0})
+    single = acrobot_rs.AcrobotEnv("rgb_array")
+    for frame, state in zip(envs.render(), envs.state, strict=True):
+        single.state = state
+        assert (frame == single.render()).all()
+    with pytest.warns(UserWarning, match="without a render mode"):
+        assert make_vec(2).render() is None
+
+
+def test_other_threads_run_while_it_steps():
+    """One step of many is longer than a thread has to wait for its turn, unless the lock is held on to."""
+    envs = make_vec(1_000_000, copy=False)
+    envs.reset(seed=1)
+    actions = np.ones(envs.num_envs, np.int64)
+    stepping, done, counted = threading.Event(), threading.Event(), [0]
+
+    def count():
+        stepping.wait()
+        while not done.is_set():
+            counted[0] += 1
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    native, results = envs._native, [np.empty(envs.num_envs, dtype) for dtype in (np.float32, np.bool_, np.bool_)]
+    stepping.set()
+    before = counted[0]
+    native.step(actions, envs._observations, *results, None)
+    during = counted[0] - before
+    done.set()
+    thread.join()
+    assert during > 0
