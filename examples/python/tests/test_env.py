@@ -109,7 +109,9 @@ def test_other_values_are_refused(env, name, value):
     assert (getattr(env, name) == before).all()
 
 
-@pytest.mark.parametrize("options", [{"low": 1, "high": 0}, {"low": "x"}, {"high": None}, {"high": np.inf}, {"low": np.nan}])
+@pytest.mark.parametrize(
+    "options", [{"low": 1, "high": 0}, {"low": "x"}, {"high": None}, {"high": np.inf}, {"low": np.nan}]
+)
 def test_other_bounds_are_refused(env, options):
     state, rng = env.state, env.np_random.bit_generator.state
     with pytest.raises(ValueError):

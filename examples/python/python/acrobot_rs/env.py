@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import gymnasium
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs import _native
+from acrobot_rs._native import Acrobot
 from acrobot_rs.parameters import Parameters, start_bounds
 
 
-class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], int]):
+class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between them is to swing them up.
 
     ## Description
@@ -68,9 +68,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], int]):
     (6,)
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 15}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 15}
 
-    _native: _native.Acrobot
+    _native: Acrobot
     #: Whether the observation is the state itself.
     _ANGLES = False
 
@@ -80,7 +80,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], int]):
         Raises:
             ValueError: For another render mode, and for a parameter of a subclass that is refused.
         """
-        super().__init__(_native.Acrobot(self._ANGLES), render_mode)
+        super().__init__(Acrobot(self._ANGLES), render_mode)
         self.action_space = spaces.Discrete(3)
         self.observation_space = self._observation_space
 
@@ -120,7 +120,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], int]):
         self.state = self.np_random.uniform(low, high, 4).astype(np.float32)
         return self._native.observation(), {}
 
-    def step(self, action: int) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+    def step(self, action: int | np.integer[Any]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
 
         Args:
@@ -142,7 +142,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], int]):
     def render(self) -> NDArray[np.uint8] | str | None:
         """What the render mode asks for: an array of shape ``(500, 500, 3)``, a text, or with a warning nothing."""
         if self.render_mode is None:
-            return self._warn_of_no_render_mode()
+            self._warn_of_no_render_mode()
+            return None
         return self._native.render(self.render_mode)
 
 
@@ -156,6 +157,6 @@ class AcrobotV0Env(AcrobotEnv):
     _ANGLES = True
 
     @property
-    def _observation_space(self) -> spaces.Box:
+    def _observation_space(self) -> spaces.Box[np.float32]:
         high = np.array([np.pi, np.pi, self.MAX_VEL_1, self.MAX_VEL_2], dtype=np.float32)
         return spaces.Box(-high, high, dtype=np.float32)

@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium import logger, spaces
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 
-from acrobot_rs import _native
+from acrobot_rs._native import Acrobot, Batch, check_start_bounds
 
 
 class Parameters:
@@ -47,11 +47,12 @@ class Parameters:
     #: The equations of motion: those of Sutton and Barto's book, or those printed in the paper of 1996.
     book_or_nips: Literal["book", "nips"] = "book"
 
+    metadata: dict[str, Any]
     spec: Any
     render_mode: str | None
-    _native: _native.Acrobot | _native.Batch
+    _native: Acrobot | Batch
 
-    def __init__(self, native: _native.Acrobot | _native.Batch, render_mode: str | None) -> None:
+    def __init__(self, native: Acrobot | Batch, render_mode: str | None) -> None:
         """Take over what a subclass may have set."""
         modes = self.metadata["render_modes"]
         if render_mode is not None and render_mode not in modes:
@@ -76,7 +77,7 @@ class Parameters:
         )
 
     @property
-    def _observation_space(self) -> spaces.Box:
+    def _observation_space(self) -> spaces.Box[np.float32]:
         high = np.array([1.0, 1.0, 1.0, 1.0, self.MAX_VEL_1, self.MAX_VEL_2], dtype=np.float32)
         return spaces.Box(-high, high, dtype=np.float32)
 
@@ -91,5 +92,5 @@ def start_bounds(options: dict[str, Any] | None) -> tuple[float, float]:
         ValueError: For what is no number that float32 holds, and for a low above high.
     """
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
-    _native.check_start_bounds(low, high)
+    check_start_bounds(low, high)
     return low, high

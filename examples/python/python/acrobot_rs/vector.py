@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from gymnasium import spaces
@@ -11,7 +11,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs import _native
+from acrobot_rs._native import Batch
 from acrobot_rs.parameters import Parameters, start_bounds
 
 Floats = NDArray[np.float32]
@@ -35,13 +35,13 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
     (1024, 6)
     """
 
-    metadata: ClassVar[dict[str, Any]] = {
+    metadata: dict[str, Any] = {
         "render_modes": ["rgb_array", "ansi"],
         "render_fps": 15,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    _native: _native.Batch
+    _native: Batch
 
     def __init__(
         self,
@@ -68,7 +68,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         if autoreset_mode is AutoresetMode.DISABLED:
             raise ValueError("autoreset_mode is Disabled; allowed is NextStep or SameStep")
         self._same_step = autoreset_mode is AutoresetMode.SAME_STEP
-        native = _native.Batch(num_envs, str(self.np_random_seed), max_episode_steps, self._same_step)
+        native = Batch(num_envs, str(self.np_random_seed), max_episode_steps, self._same_step)
         super().__init__(native, render_mode)
         self.metadata = {**self.metadata, "autoreset_mode": autoreset_mode}
         self.num_envs = num_envs
@@ -85,9 +85,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         """theta1, theta2 (rad) and their velocities (rad/s) of each, of shape ``(num_envs, 4)``; a copy."""
         return self._native.states().reshape(self.num_envs, 4)
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Floats, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode of each.
 
         Args:
@@ -142,7 +140,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
     def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
         """What the render mode asks for, of each: arrays of shape ``(500, 500, 3)``, texts, or with a warning nothing."""
         if self.render_mode is None:
-            return self._warn_of_no_render_mode()
+            self._warn_of_no_render_mode()
+            return None
         return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
 
     def _empty(self) -> Floats:
