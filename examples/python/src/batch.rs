@@ -29,9 +29,6 @@ pub struct Batch {
 struct Settings {
     limit: NonZeroU32,
     same_step: bool,
-    /// Bounds of the starts to come, rad and rad/s.
-    low: f64,
-    high: f64,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -49,8 +46,6 @@ impl Batch {
         let settings = Settings {
             limit: positive("max_episode_steps", max_episode_steps)?,
             same_step,
-            low: StartBounds::DEFAULT.low(),
-            high: StartBounds::DEFAULT.high(),
         };
         Self::assemble(num_envs, parse(seed)?, settings)
     }
@@ -60,17 +55,20 @@ impl Batch {
         self.batch.set_params(params.cast()).map_err(refused)
     }
 
-    /// Sets the bounds of this start and those to come, and begins all episodes anew: in the stream that
-    /// each has, or where there is a seed in its children's.
+    /// Begins all episodes anew within these bounds: in the stream that each has, or where there is a seed in
+    /// its children's.
     #[pyo3(signature = (seed, low, high))]
     fn reset(&mut self, py: Python<'_>, seed: Option<&str>, low: f64, high: f64) -> PyResult<()> {
         let bounds = StartBounds::new(low, high).map_err(refused)?;
         let seed = seed.map(parse).transpose()?;
-        (self.settings.low, self.settings.high) = (low, high);
-        self.batch.set_start_bounds(bounds);
-        py.detach(|| match seed {
-            Some(seed) => self.batch.reset_seeded(seed),
-            None => self.batch.reset(),
+        py.detach(|| {
+            self.batch.set_start_bounds(bounds);
+            match seed {
+                Some(seed) => self.batch.reset_seeded(seed),
+                None => self.batch.reset(),
+            }
+            // Those of Gymnasium's options hold for this reset alone.
+            self.batch.set_start_bounds(StartBounds::DEFAULT);
         });
         Ok(())
     }
@@ -160,11 +158,9 @@ impl Batch {
 
 impl Batch {
     fn assemble(num_envs: usize, seed: SeedSequence, settings: Settings) -> PyResult<Self> {
-        let bounds = StartBounds::new(settings.low, settings.high).map_err(refused)?;
         let blocks = memory(Block::EMPTY, num_envs.div_ceil(Block::<f32>::LANES))?;
         let generators = memory(Pcg64::UNSEEDED, num_envs)?;
         let mut batch = Native::new(seed, blocks, generators).map_err(refused)?;
-        batch.set_start_bounds(bounds);
         batch.set_limit(settings.limit);
         batch.set_autoreset(match settings.same_step {
             true => Autoreset::SameStep,

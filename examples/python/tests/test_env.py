@@ -164,6 +164,10 @@ def test_every_parameter_acts():
         assert changed != plain, name
         assert after_a_step(type("Changed", (acrobot_rs.AcrobotEnv,), {name: value})()) == changed, name
 
+    env.AVAIL_TORQUE = [-2.0, 0.0, 2.0]
+    with pytest.raises(TypeError):
+        env.AVAIL_TORQUE[0] = 0.0  # which would not be noticed
+
     pictures = acrobot_rs.AcrobotEnv("rgb_array")
     pictures.reset(seed=3)
     before = pictures.render()

@@ -60,6 +60,8 @@ def test_resets_are_those_of_sync_vector_env(mode):
     for env, child in zip(theirs.envs, children, strict=True):
         env.unwrapped.np_random = np.random.default_rng(child)
     ours = make_vec(count, max_episode_steps=limit, autoreset_mode=mode)
+    assert ours.metadata["autoreset_mode"] is theirs.metadata["autoreset_mode"]
+    assert acrobot_rs.AcrobotVectorEnv.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
     expected, found = theirs.reset(), ours.reset(seed=seed)
     rng = np.random.default_rng(0)
     ends = 0
@@ -75,8 +77,9 @@ def test_resets_are_those_of_sync_vector_env(mode):
                         np.testing.assert_allclose(one, other, atol=1e-5)
             else:
                 np.testing.assert_equal(found[-1][key], value)
-        if step % 20 == 10:  # a reset of all goes on in the streams
-            expected, found = theirs.reset(), ours.reset()
+        if step % 20 == 10:  # a reset of all goes on in the streams; its bounds hold for itself alone
+            options = {"low": -0.5, "high": 1.0}
+            expected, found = theirs.reset(options=options), ours.reset(options=options)
         else:
             actions = rng.integers(3, size=count)
             expected, found = theirs.step(actions), ours.step(actions)
@@ -172,8 +175,11 @@ def test_observations_are_copies_or_one_array():
         envs = make_vec(4, copy=copies)
         first, _ = envs.reset(seed=1)
         second = envs.step([0, 1, 2, 0])[0]
-        assert (first is not second) == copies
-        assert (first != second).any() == copies
+        third = envs.step([0, 1, 2, 0])[0]
+        fourth, _ = envs.reset()
+        for one, other in [(first, second), (second, third), (third, fourth)]:
+            assert np.shares_memory(one, other) != copies
+            assert (one != other).any() == copies
 
 
 @pytest.mark.parametrize(

@@ -90,8 +90,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
 
         Args:
             seed: An integer of any size, 0 or more, whose children are the streams; by ``None`` they go on.
-            options: ``"low"`` and ``"high"``, the bounds of these starts and those to come by autoreset, rad and
-                rad/s; -0.1 and 0.1 if not given.
+            options: ``"low"`` and ``"high"``, the bounds of these starts, rad and rad/s; -0.1 and 0.1 if not given,
+                and for starts by autoreset.
 
         Returns:
             The observations, of shape ``(num_envs, 6)``, and empty infos.
