@@ -57,7 +57,6 @@ impl Batch {
 
     /// Begins all episodes anew within these bounds: in the stream that each has, or where there is a seed in
     /// its children's.
-    #[pyo3(signature = (seed, low, high))]
     fn reset(&mut self, py: Python<'_>, seed: Option<&str>, low: f64, high: f64) -> PyResult<()> {
         let bounds = StartBounds::new(low, high).map_err(refused)?;
         let seed = seed.map(parse).transpose()?;
@@ -82,7 +81,6 @@ impl Batch {
 
     /// Writes into the arrays, without Python's lock; into `finals` where there is one.
     #[expect(clippy::too_many_arguments, reason = "an array for each result")]
-    #[pyo3(signature = (actions, observations, rewards, terminated, truncated, finals))]
     fn step(
         &mut self,
         py: Python<'_>,

@@ -37,6 +37,11 @@ fn refused(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
+/// A text from Python that is no name of what there is.
+fn unknown(name: &str, found: &str, allowed: &str) -> PyErr {
+    PyValueError::new_err(format!("{name} is {found:?}; allowed is {allowed}"))
+}
+
 /// A count from Python, which has no types for it.
 fn positive(name: &str, value: i64) -> PyResult<NonZeroU32> {
     let count = u32::try_from(value).ok().and_then(NonZeroU32::new);
@@ -68,11 +73,7 @@ fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params
             params.dynamics = match value.extract()? {
                 "book" => Dynamics::Book,
                 "nips" => Dynamics::Nips,
-                other => {
-                    let message =
-                        format!(r#"book_or_nips is {other:?}; allowed is "book" or "nips""#);
-                    return Err(PyValueError::new_err(message));
-                }
+                other => return Err(unknown(name, other, r#""book" or "nips""#)),
             }
         }
         _ => return Err(PyAttributeError::new_err(format!("no parameter {name}"))),
@@ -81,7 +82,7 @@ fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params
     Ok(params)
 }
 
-/// What of a frame or a text a render mode shows of a state.
+/// What a render mode shows of a state: an array of shape (500, 500, 3), or a text.
 fn render<'py>(
     py: Python<'py>,
     params: Params,
@@ -91,11 +92,7 @@ fn render<'py>(
     let mode = match mode {
         "rgb_array" => RenderMode::RgbArray,
         "ansi" => RenderMode::Ansi,
-        _ => {
-            let message =
-                format!(r#"the render mode is {mode:?}; allowed is "rgb_array" or "ansi""#);
-            return Err(PyValueError::new_err(message));
-        }
+        other => return Err(unknown("render_mode", other, r#""rgb_array" or "ansi""#)),
     };
     let mut env = AcrobotEnv::<Host, Observation>::new(params, mode).map_err(refused)?;
     env.unwrapped_mut().set_state(state).map_err(refused)?;

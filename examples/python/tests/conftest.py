@@ -3,5 +3,6 @@
 import os
 from pathlib import Path
 
-if "avx512f" in Path("/proc/cpuinfo").read_text():
+cpu = Path("/proc/cpuinfo")
+if cpu.exists() and "avx512f" in cpu.read_text():
     os.environ["NPY_DISABLE_CPU_FEATURES"] = "X86_V4 AVX512_ICL AVX512_SPR"

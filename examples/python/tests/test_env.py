@@ -203,8 +203,8 @@ def test_copies_go_on_to_the_same_bits(name, again):
 def test_damaged_snapshots_are_refused(env):
     native = env._native
     good = native.__getstate__()
-    infinite = copy.deepcopy(native)
-    for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good)]:
+    not_finite = good.replace(env.state[:1].tobytes(), np.float64(np.nan).tobytes())
+    for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good), not_finite]:
         with pytest.raises(ValueError, match="snapshot"):
-            infinite.__setstate__(bad)
-    assert infinite.__getstate__() == good
+            native.__setstate__(bad)
+    assert native.__getstate__() == good
