@@ -115,6 +115,9 @@ fn batch<A: Arithmetic>() {
         let _ = black_box(batch.step(&actions, output));
         let _ = black_box(batch.reset_to(&black_box([State::default(); 20])));
         black_box((&rows, &finals, &column, batch.state(black_box(3))));
+        if let Some(member) = batch.member(black_box(3)) {
+            let _ = black_box(batch.set_member(black_box(4), member));
+        }
     }
 }
 
