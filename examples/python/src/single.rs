@@ -71,7 +71,8 @@ impl Acrobot {
         }
     }
 
-    fn step<'py>(&mut self, action: &Bound<'py, PyAny>, noise: f64) -> PyResult<Step<'py>> {
+    /// The torque of an action, N m, where it is one and there is a state to step from.
+    fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
         if !self.started {
             let message = "the environment has no state yet; call reset before step";
             return Err(PyAssertionError::new_err(message));
@@ -85,7 +86,11 @@ impl Acrobot {
                 shown.unwrap_or_default()
             ))
         })?;
-        let torque = self.acrobot.params().torque(known) + noise;
+        Ok(self.acrobot.params().torque(known))
+    }
+
+    fn step<'py>(&mut self, action: &Bound<'py, PyAny>, noise: f64) -> PyResult<Step<'py>> {
+        let torque = self.torque(action)? + noise;
         let step = self.acrobot.step_torque(torque).map_err(refused)?;
         let py = action.py();
         Ok((

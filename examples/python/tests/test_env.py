@@ -74,10 +74,12 @@ def test_frames(env):
 
 @pytest.mark.parametrize("action", [3, -1, 256, 2**70, 1.0, "1", None, np.array([1, 2])])
 def test_other_actions_are_refused(env, action):
-    before = env.state
+    env.unwrapped.torque_noise_max = 0.5
+    before, drawn = env.state, env.np_random.bit_generator.state
     with pytest.raises(InvalidAction, match="allowed is 0"):
         env.step(action)
     assert (env.state == before).all()
+    assert env.np_random.bit_generator.state == drawn
 
 
 @pytest.mark.parametrize("action", [2, np.int64(2), np.uint8(2), np.array(2)])

@@ -136,6 +136,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         """
         noise = self.torque_noise_max
         if noise:
+            # Refuses an action before anything is drawn.
+            self._native.torque(action)
             noise = self.np_random.uniform(-noise, noise)
         return self._native.step(action, noise)
 
