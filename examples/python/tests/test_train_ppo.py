@@ -1,0 +1,86 @@
+"""PPO: its advantages, its rollouts, and that it learns."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import gymnasium
+import jax
+import numpy as np
+import pytest
+import train_ppo
+
+SCRIPT = Path(train_ppo.__file__)
+
+
+def test_advantages_are_the_discounted_errors_until_an_episode_ends():
+    rng = np.random.default_rng(0)
+    shape = (train_ppo.STEPS, 3)
+    observations, seen = rng.normal(size=(2, *shape, 6)).astype(np.float32)
+    rewards = -np.ones(shape, np.float32)
+    terminated, truncated = rng.random((2, *shape)) < 0.1
+    ended = terminated | truncated
+    parameters = train_ppo.initial(jax.random.key(0))
+    value, following = (np.asarray(train_ppo.values(parameters, each)) for each in (observations, seen))
+
+    expected = np.zeros(shape)
+    for step, env in np.ndindex(shape):
+        weight = 1.0
+        for later in range(step, train_ppo.STEPS):
+            rest = 0.0 if terminated[later, env] else train_ppo.DISCOUNT * following[later, env]
+            expected[step, env] += weight * (rewards[later, env] + rest - value[later, env])
+            if ended[later, env]:
+                break
+            weight *= train_ppo.DISCOUNT * train_ppo.LAMBDA
+
+    advantages = train_ppo.advantages(parameters, observations, seen, rewards, terminated, ended)
+    np.testing.assert_allclose(advantages, expected, rtol=1e-4, atol=1e-4)
+
+
+def test_a_rollout_sees_how_an_episode_ended_and_goes_on_with_the_next():
+    mode = gymnasium.vector.AutoresetMode.SAME_STEP
+    envs = gymnasium.make_vec(train_ppo.NAME, num_envs=4, autoreset_mode=mode, max_episode_steps=10)
+    start, _ = envs.reset(seed=0)
+    parameters = train_ppo.initial(jax.random.key(0))
+    rollout, last, _ = train_ppo.roll_out(envs, parameters, jax.random.key(0), start)
+    observations, actions, seen, rewards, terminated, ended = rollout
+
+    assert actions.shape == rewards.shape == terminated.shape == (train_ppo.STEPS, 4)
+    assert (ended == (np.arange(train_ppo.STEPS) % 10 == 9)[:, None]).all() and not terminated.any()
+    before, after = seen[:-1][ended[:-1]], observations[1:][ended[:-1]]
+    assert (before != after).any(axis=1).all()
+    # A start: within 0.1 rad/s.
+    assert (np.abs(after[:, 4:]) <= 0.1).all()
+    assert (seen[:-1][~ended[:-1]] == observations[1:][~ended[:-1]]).all()
+    assert (observations[0] == start).all() and (seen[-1] == last).all()
+
+
+def test_an_evaluation_counts_one_episode_of_each():
+    envs = gymnasium.make_vec(train_ppo.NAME, num_envs=2, max_episode_steps=7)
+    envs.reset(seed=0)
+    assert train_ppo.evaluate(envs, train_ppo.initial(jax.random.key(0)), jax.random.key(0)) == -7
+
+
+def test_it_learns_and_draws_the_curves(tmp_path):
+    picture = tmp_path / "curve.svg"
+    run = subprocess.run(
+        [sys.executable, SCRIPT, "1", "2", "3", "--picture", picture], capture_output=True, text=True, check=True
+    )
+    means = [float(mean) for mean in re.findall(r"seed \d: (-[\d.]+) after", run.stdout)]
+    assert len(means) == 3 and min(means) > -100, run.stdout
+    assert "mean return" in run.stderr
+    assert picture.read_text().count("<path") > 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["--", "-1"], "a seed is -1; allowed is 0 or more"),
+        (["--picture", "missing/curve.png"], "--picture is missing/curve.png; allowed is a file in a folder that exists"),
+        (["--picture", "curve.text"], "--picture is curve.text; allowed"),
+    ],
+)
+def test_bad_arguments_are_refused_first(arguments, reason, tmp_path):
+    run = subprocess.run([sys.executable, SCRIPT, *arguments], capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert run.returncode == 2 and reason in run.stderr and not run.stdout

@@ -1,0 +1,217 @@
+"""PPO on the vector environment until the mean return of 100 episodes passes -100: one file, in CleanRL's way, with JAX.
+
+    pip install -r requirements.txt && pip install .
+    python train_ppo.py            seeds 1, 2 and 3
+    python train_ppo.py 42 --picture curve.png
+
+Prints what each seed took, with what its policy reaches in Gymnasium's own environment, and draws the learning curves.
+Fails where a seed has not learnt after a million steps.
+"""
+
+import argparse
+import pathlib
+import sys
+import time
+
+import acrobot_rs  # noqa: F401 registers
+import gymnasium
+import jax
+import jax.numpy as jnp
+import matplotlib.figure
+import numpy as np
+import optax
+from tqdm import tqdm
+
+NAME = "acrobot_rs/Acrobot-v1"
+THRESHOLD = gymnasium.spec(NAME).reward_threshold
+ENVS, STEPS = 64, 64  # of one update
+UPDATES = 1_000_000 // (ENVS * STEPS)
+EPOCHS, MINIBATCHES = 4, 4
+LEARNING_RATE, MAX_GRADIENT = 2.5e-3, 0.5
+DISCOUNT, LAMBDA = 0.99, 0.95
+CLIP, ENTROPY, VALUE = 0.2, 0.01, 0.5
+EPISODES, EVALUATE_EVERY = 100, 5  # of an evaluation; updates
+# What observations are divided by: the largest velocities.
+SCALE = jnp.array([1, 1, 1, 1, 4 * jnp.pi, 9 * jnp.pi])
+
+optimizer = optax.chain(optax.clip_by_global_norm(MAX_GRADIENT), optax.adam(LEARNING_RATE, eps=1e-5))
+
+
+def layers(key, outputs, gain):
+    """Weights and biases of a perceptron with two hidden layers of 64, orthogonal as is usual for PPO."""
+    sizes = [6, 64, 64, outputs]
+    gains = [2**0.5, 2**0.5, gain]
+    return [
+        (jax.nn.initializers.orthogonal(gain)(key, shape), jnp.zeros(shape[1]))
+        for key, gain, *shape in zip(jax.random.split(key, 3), gains, sizes, sizes[1:])
+    ]
+
+
+def perceptron(layers, observations):
+    *hidden, (weights, biases) = layers
+    x = observations / SCALE
+    for w, b in hidden:
+        x = jnp.tanh(x @ w + b)
+    return x @ weights + biases
+
+
+def initial(key):
+    """The actor and the critic before they have learnt."""
+    actor, critic = jax.random.split(key)
+    return {"actor": layers(actor, 3, 0.01), "critic": layers(critic, 1, 1.0)}
+
+
+def log_probabilities(parameters, observations):
+    return jax.nn.log_softmax(perceptron(parameters["actor"], observations))
+
+
+def values(parameters, observations):
+    return perceptron(parameters["critic"], observations)[..., 0]
+
+
+@jax.jit
+def act(parameters, key, observations):
+    """Actions drawn from the policy, and the key of the next draw."""
+    key, draw = jax.random.split(key)
+    return jax.random.categorical(draw, log_probabilities(parameters, observations)), key
+
+
+def roll_out(envs, parameters, key, observations):
+    """STEPS of each environment: observations, actions, what was seen then, rewards, terminations and ends, each of
+    shape (STEPS, ENVS) and more; the observations to go on from; and the key of the next draw."""
+    rollout = []
+    for _ in range(STEPS):
+        actions, key = act(parameters, key, observations)
+        actions = np.asarray(actions)
+        following, rewards, terminated, truncated, infos = envs.step(actions)
+        ended = terminated | truncated
+        # An episode's last observation, and not the start that took its place.
+        seen = following.copy()
+        if ended.any():
+            seen[ended] = np.stack(infos["final_obs"][ended])
+        rollout.append((observations, actions, seen, rewards, terminated, ended))
+        observations = following
+    return [np.stack(each) for each in zip(*rollout)], observations, key
+
+
+def advantages(parameters, observations, seen, rewards, terminated, ended):
+    """Generalized advantage estimates."""
+    # A truncated episode would have gone on; its last observation's value stands for the rest.
+    errors = rewards + DISCOUNT * ~terminated * values(parameters, seen) - values(parameters, observations)
+
+    def back(advantage, step):
+        error, ended = step
+        advantage = error + DISCOUNT * LAMBDA * ~ended * advantage
+        return advantage, advantage
+
+    return jax.lax.scan(back, jnp.zeros_like(errors[0]), (errors, ended), reverse=True)[1]
+
+
+def loss(parameters, batch):
+    """PPO's clipped loss of a minibatch."""
+    observations, actions, old, advantage, targets = batch
+    log_all = log_probabilities(parameters, observations)
+    log = jnp.take_along_axis(log_all, actions[:, None], axis=1)[:, 0]
+    ratio = jnp.exp(log - old)
+    advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
+    gain = jnp.minimum(ratio * advantage, jnp.clip(ratio, 1 - CLIP, 1 + CLIP) * advantage).mean()
+    entropy = -(jnp.exp(log_all) * log_all).sum(axis=1).mean()
+    error = jnp.square(values(parameters, observations) - targets).mean()
+    return VALUE * error - gain - ENTROPY * entropy
+
+
+@jax.jit
+def learn(parameters, state, key, rollout):
+    """The parameters after EPOCHS over the rollout."""
+    observations, actions, seen, rewards, terminated, ended = rollout
+    advantage = advantages(parameters, observations, seen, rewards, terminated, ended)
+    targets = advantage + values(parameters, observations)
+    old = jnp.take_along_axis(log_probabilities(parameters, observations), actions[..., None], axis=2)[..., 0]
+    flat = [each.reshape(ENVS * STEPS, *each.shape[2:]) for each in (observations, actions, old, advantage, targets)]
+
+    def minibatch(carry, indices):
+        parameters, state = carry
+        gradient = jax.grad(loss)(parameters, [each[indices] for each in flat])
+        updates, state = optimizer.update(gradient, state)
+        return (optax.apply_updates(parameters, updates), state), None
+
+    keys = jax.random.split(key, EPOCHS)
+    orders = jnp.concatenate([jax.random.permutation(each, ENVS * STEPS).reshape(MINIBATCHES, -1) for each in keys])
+    return jax.lax.scan(minibatch, (parameters, state), orders)[0]
+
+
+def evaluate(envs, parameters, key):
+    """The mean return of one new episode of each environment: of all, and not of those that end first."""
+    observations, _ = envs.reset()
+    returns, running = np.zeros(envs.num_envs), np.ones(envs.num_envs, bool)
+    while running.any():
+        actions, key = act(parameters, key, observations)
+        observations, rewards, terminated, truncated, _ = envs.step(np.asarray(actions))
+        returns += rewards * running
+        running &= ~(terminated | truncated)
+    return returns.mean()
+
+
+def train(seed):
+    """The parameters learnt, and (steps, mean return) of each evaluation, of which the last has passed or none."""
+    envs = gymnasium.make_vec(NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
+    others = gymnasium.make_vec(NAME, num_envs=EPISODES)
+    of_envs, of_others, of_jax = (int(each) for each in np.random.SeedSequence(seed).generate_state(3))
+    observations, _ = envs.reset(seed=of_envs)
+    others.reset(seed=of_others)
+    start, key = jax.random.split(jax.random.key(of_jax))
+    parameters = initial(start)
+    state = optimizer.init(parameters)
+    curve = []
+    with tqdm(total=UPDATES * ENVS * STEPS, desc=f"seed {seed}", unit="step", unit_scale=True, leave=False) as bar:
+        for update in range(UPDATES + 1):
+            if update % EVALUATE_EVERY == 0:
+                key, draw = jax.random.split(key)
+                curve.append((update * ENVS * STEPS, evaluate(others, parameters, draw)))
+                bar.set_postfix_str(f"mean return {curve[-1][1]:.1f}")
+                if curve[-1][1] > THRESHOLD:
+                    break
+            rollout, observations, key = roll_out(envs, parameters, key, observations)
+            key, order = jax.random.split(key)
+            parameters, state = learn(parameters, state, order, rollout)
+            bar.update(ENVS * STEPS)
+    return parameters, curve
+
+
+def draw(figure, curves, path):
+    axes = figure.subplots()
+    for seed, curve in curves.items():
+        axes.plot(*zip(*curve), label=f"seed {seed}")
+    axes.axhline(THRESHOLD, color="gray", linestyle="dashed", label="solved")
+    axes.set(xlabel="steps", ylabel=f"mean return of {EPISODES} episodes")
+    axes.legend()
+    figure.savefig(path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.partition(":")[0])
+    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help="integers of any size, 0 or more")
+    parser.add_argument("--picture", type=pathlib.Path, default="train_ppo.png", help="file for the curves, as .png or .svg")
+    arguments = parser.parse_args()
+    if min(arguments.seeds) < 0:
+        parser.error(f"a seed is {min(arguments.seeds)}; allowed is 0 or more")
+    figure = matplotlib.figure.Figure(figsize=(7, 4), layout="constrained")
+    kinds = figure.canvas.get_supported_filetypes()
+    if arguments.picture.suffix[1:] not in kinds or not arguments.picture.parent.is_dir():
+        parser.error(f"--picture is {arguments.picture}; allowed is a file in a folder that exists, of {', '.join(kinds)}")
+    gymnasiums = gymnasium.make_vec("Acrobot-v1", num_envs=EPISODES, vectorization_mode="sync")
+    curves = {}
+    for seed in arguments.seeds:
+        before = time.perf_counter()
+        parameters, curves[seed] = train(seed)
+        seconds = time.perf_counter() - before
+        steps, mean = curves[seed][-1]
+        gymnasiums.reset(seed=seed)
+        there = evaluate(gymnasiums, parameters, jax.random.key(0))
+        print(f"seed {seed}: {mean:.1f} after {steps:,} steps and {seconds:.1f} s; in Gymnasium's own {there:.1f}", flush=True)
+    draw(figure, curves, arguments.picture)
+    return 0 if all(curve[-1][1] > THRESHOLD for curve in curves.values()) else "not all seeds have learnt"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
