@@ -1,0 +1,250 @@
+"""Episodes of many environments, shard by shard on all workers of a Ray cluster, as one Parquet file.
+
+    python scale_out.py                               starts a cluster on this machine, on loopback alone
+    python scale_out.py --workers 2 --kill 3          a worker dies in the middle of shard 3, and nothing changes
+    python scale_out.py --address 10.0.0.1:6379       on a cluster with acrobot-rs and pyarrow on each node
+
+A shard is a function of the seed, of its number and of what is to be played: it knows nothing of the worker that plays it.
+Shard k has the k-th child of the seed, whose two children in turn give the starts and what a random policy draws. So the
+file is the same for any number of workers, whoever played what, and where workers died: their shards are played again.
+
+Every environment plays the same number of episodes. To stop all after a number of steps instead would count more of the
+short ones.
+"""
+
+import argparse
+import contextlib
+import importlib.metadata
+import json
+import os
+import secrets
+import signal
+import socket
+import sys
+import tempfile
+import time
+from collections import Counter, deque
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from acrobot_rs import AcrobotVectorEnv
+from tqdm import tqdm
+
+TRIES = 3
+POLICIES = {
+    "random": lambda observations, rng: rng.integers(3, size=len(observations)),
+    # Torque against the first link's velocity.
+    "bang-bang": lambda observations, rng: np.where(observations[:, 4] > 0, 0, 2),
+}
+
+
+class ShardError(Exception):
+    """A shard that cannot be played."""
+
+
+class Played(NamedTuple):
+    worker: str
+    seconds: float
+    table: pa.Table
+
+
+def streams(seed, shard):
+    """The seed of a shard's environments, of 256 bits, and the generator of its policy."""
+    starts, draws = np.random.SeedSequence(seed, spawn_key=(shard,)).spawn(2)
+    words = starts.generate_state(8).astype("<u4")
+    return int.from_bytes(words.tobytes(), "little"), np.random.default_rng(draws)
+
+
+def play(seed, shard, environments, episodes, policy):
+    """A row for each episode of a shard, by environment and then by episode: its length in steps, its return, its end."""
+    start, rng = streams(seed, shard)
+    envs = AcrobotVectorEnv(environments, copy=False)
+    observations, _ = envs.reset(seed=start)
+    done, steps, returns = np.zeros((3, environments), np.int32)
+    columns = {
+        name: np.empty((environments, episodes), dtype)
+        for name, dtype in [("length", np.int32), ("return", np.int32), ("terminated", np.bool_), ("truncated", np.bool_)]
+    }
+    while done.min() < episodes:
+        observations, rewards, terminated, truncated, _ = envs.step(POLICIES[policy](observations, rng))
+        steps += 1
+        returns += rewards.astype(np.int32)
+        ended = np.flatnonzero(terminated | truncated)
+        if len(ended):
+            counted = ended[done[ended] < episodes]
+            for column, values in zip(columns.values(), (steps, returns, terminated, truncated), strict=True):
+                column[counted, done[counted]] = values[counted]
+            done[ended] += 1
+            steps[ended] = -1  # the next step only resets
+            returns[ended] = 0
+    environment, episode = np.indices((environments, episodes), np.int32)
+    keys = {"shard": np.full_like(episode, shard), "environment": environment, "episode": episode}
+    return pa.table({name: column.ravel() for name, column in (keys | columns).items()})
+
+
+def work(what, kill, shard, attempt):
+    """What a worker does; one that is to be killed goes half the way."""
+    import ray
+
+    if shard == kill and attempt == 1:
+        play(shard=shard, **what | {"episodes": (what["episodes"] + 1) // 2})
+        os.kill(os.getpid(), signal.SIGKILL)
+    start = time.perf_counter()
+    table = play(shard=shard, **what)
+    seconds = time.perf_counter() - start
+    return Played(f"{ray.util.get_node_ip_address()} {os.getpid()}", seconds, table)
+
+
+@contextlib.contextmanager
+def cluster(address, cpus):
+    """The CPUs of the cluster at that address, or of one that lives and listens on this machine alone.
+
+    Ray reads its variables where it is imported, so that it is imported here.
+    """
+    os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+    if address is None:
+        # Off, as it is by default on these two systems, a cluster is on loopback; an address given to `init` is not kept.
+        os.environ.setdefault("RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER", "0")
+        # Ray would keep a token in the home folder.
+        os.environ.setdefault("RAY_AUTH_MODE", "token")
+        os.environ.setdefault("RAY_AUTH_TOKEN", secrets.token_hex(32))
+    import ray
+
+    with tempfile.TemporaryDirectory(prefix="scale_out-", dir="/tmp", ignore_cleanup_errors=True) as folder:
+        local = {"num_cpus": cpus, "include_dashboard": False, "_temp_dir": folder} if address is None else {}
+        try:
+            ray.init(address=address or "local", log_to_driver=False, logging_level="error", **local)
+            yield int(ray.cluster_resources().get("CPU", 0))
+        finally:
+            ray.shutdown()
+
+
+def play_all(work, shards, workers):
+    """Yields each shard and what `work(shard, attempt)` made of it on some worker, as they are done.
+
+    Ray's own retries are off: a shard whose worker died is played again here, up to `TRIES` times in all, so that what
+    kills every worker ends. An exception of a shard's own would come again, and ends the run at once.
+    """
+    import ray
+    from ray.exceptions import RayError, RayTaskError
+
+    remote = ray.remote(num_cpus=1, max_retries=0)(work)
+    waiting, running = deque((shard, 1) for shard in range(shards)), {}
+    while waiting or running:
+        while waiting and len(running) < workers:
+            shard, attempt = waiting.popleft()
+            running[remote.remote(shard, attempt)] = shard, attempt
+        [ref], _ = ray.wait(list(running))
+        shard, attempt = running.pop(ref)
+        try:
+            played = ray.get(ref)
+        except RayTaskError as error:
+            raise ShardError(f"shard {shard} fails: {error.cause!r}") from error
+        except RayError as error:
+            if attempt == TRIES:
+                raise ShardError(f"shard {shard} was lost {TRIES} times: {error}") from error
+            tqdm.write(f"shard {shard} is lost by a {type(error).__name__}, and played again", file=sys.stderr)
+            waiting.append((shard, attempt + 1))
+        else:
+            yield shard, played
+
+
+def gather(what, shards, workers, kill=None):
+    """All shards as one table, in order, and what each took and on which worker."""
+    results = play_all(lambda shard, attempt: work(what, kill, shard, attempt), shards, workers)
+    played = dict(tqdm(results, total=shards, unit="shard"))
+    table = pa.concat_tables(played[shard].table for shard in range(shards))
+    settings = what | {"shards": shards, "acrobot-rs": importlib.metadata.version("acrobot-rs")}
+    return table.replace_schema_metadata({"scale_out": json.dumps(settings)}), played.values()
+
+
+def write(table, path):
+    """A file that is there as a whole or not at all."""
+    part = path.with_name(path.name + ".part")
+    pq.write_table(table, part)
+    part.replace(path)
+
+
+def report(played, seconds):
+    """Steps of counted episodes per second: of each worker while it played, and of all with what Ray took."""
+    shards, steps, busy = Counter(), Counter(), Counter()
+    for worker, took, table in played:
+        shards[worker] += 1
+        steps[worker] += sum(table["length"].to_numpy())
+        busy[worker] += took
+    print(f"{'worker':28}{'shards':>8}{'steps':>16}{'steps/s':>14}")
+    for worker in sorted(shards):
+        print(f"{worker:28}{shards[worker]:8}{steps[worker]:16,}{steps[worker] / busy[worker]:14,.0f}")
+    print(f"{'in all':28}{shards.total():8}{steps.total():16,}{steps.total() / seconds:14,.0f}")
+
+
+def whole(low, high=None):
+    """An integer of these bounds, for argparse."""
+
+    def parse(text):
+        allowed = f"an integer, {low} or more" if high is None else f"an integer from {low} to {high}"
+        if not (text.isascii() and text.isdigit() and low <= int(text) and (high is None or int(text) <= high)):
+            raise argparse.ArgumentTypeError(f"{text!r}; allowed is {allowed}")
+        return int(text)
+
+    return parse
+
+
+def listening(text):
+    """An address that somebody listens at, for argparse; Ray would try for ever."""
+    host, _, port = text.rpartition(":")
+    try:
+        socket.create_connection((host, int(port)), timeout=10).close()
+    except (OSError, OverflowError, ValueError) as error:
+        raise argparse.ArgumentTypeError(f"{text!r}; allowed is host:port of a cluster's head: {error}") from error
+    return text
+
+
+def parse(arguments):
+    count = whole(1, 2**31 - 1)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--shards", type=count, default=8, help="default 8")
+    parser.add_argument("--environments", type=count, default=1024, help="of each shard; default 1024")
+    parser.add_argument("--episodes", type=count, default=100, help="of each environment; default 100")
+    parser.add_argument("--policy", choices=POLICIES, default="bang-bang", help="default bang-bang")
+    parser.add_argument("--seed", type=whole(0), default=0, help="of any size; default 0")
+    parser.add_argument("--workers", type=count, help="default: as many as the cluster has CPUs")
+    parser.add_argument("--address", type=listening, help="host:port of an existing cluster's head")
+    parser.add_argument("--kill", type=whole(0), metavar="SHARD", help="kill the first worker of this shard half-way")
+    parser.add_argument("--output", type=Path, default=Path("episodes.parquet"), help="default episodes.parquet")
+    options = parser.parse_args(arguments)
+    if options.workers and options.workers > options.shards:
+        parser.error(f"--workers is {options.workers}; allowed is 1 to {options.shards}, the number of shards")
+    if options.kill is not None and options.kill >= options.shards:
+        parser.error(f"--kill is {options.kill}; allowed is 0 to {options.shards - 1}, a shard")
+    if options.output.is_dir() or not options.output.parent.is_dir():
+        parser.error(f"--output is {options.output}; allowed is a file in a folder that exists")
+    return options
+
+
+def main(arguments=None):
+    options = parse(arguments)
+    what = {name: getattr(options, name) for name in ("seed", "environments", "episodes", "policy")}
+    try:
+        with cluster(options.address, options.workers) as cpus:
+            # Ray's own handler would leave the cluster behind.
+            signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated"))
+            workers = options.workers or min(cpus, options.shards)
+            if not 1 <= workers <= cpus:
+                sys.exit(f"--workers is {workers}; allowed is 1 to {cpus}, the CPUs of the cluster")
+            start = time.perf_counter()
+            table, played = gather(what, options.shards, workers, options.kill)
+            seconds = time.perf_counter() - start
+    except (ConnectionError, ShardError) as error:
+        sys.exit(str(error))
+    except KeyboardInterrupt:
+        sys.exit(130)
+    write(table, options.output)
+    report(played, seconds)
+
+
+if __name__ == "__main__":
+    main()
