@@ -1,0 +1,104 @@
+"""Integrates the published equations of motion by SciPy's DOP853: writes truth.txt beside itself.
+
+    pip install scipy==1.17.1 numpy==2.4.6
+    python tests/data/truth.py
+
+The equations are those that R. S. Sutton and A. G. Barto print (Reinforcement Learning: An Introduction, 1998, figure
+11.4), and R. S. Sutton before them (Generalization in Reinforcement Learning, NIPS 8, 1996) without one term: here
+as two linear equations for the two accelerations, which LAPACK solves, and with sines for the cosines of angles
+less pi/2. The work of all torques is integrated beside them.
+
+What is written is judged twice. The same run at a quarter of the tolerance says how far off each row may be, which
+stands in it. And the energy, from where the links are and how fast they move, has to be the work done on them.
+"""
+
+import math
+import platform
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import scipy
+from scipy.integrate import solve_ivp
+
+TOLERANCE, FINER = 1e-13, 2.5e-14
+HOLD = 0.2  # s, for which a torque is held
+GRAVITY, LENGTH, CENTER, INERTIA = 9.8, 1.0, 0.5, 1.0  # of both links, whose masses are 1 kg
+STARTS = {"rest": ([0.05, -0.03, 0.02, 0.01], [1, 10, 100]), "fast": ([1.2, -0.7, 3.0, 2.0], [1, 10])}
+TORQUES = {"constant": np.ones(500), "switching": np.random.default_rng(9).integers(-1, 2, 500).astype(float)}
+# Far above what is found, far below what a wrong sign would make of it.
+BALANCE = 1e-8  # J
+
+
+def derivative(_, y, torque, dynamics):
+    theta1, theta2, dtheta1, dtheta2, _ = y
+    sin2, arm = math.sin(theta2), LENGTH * CENTER
+    d1 = CENTER**2 + LENGTH**2 + CENTER**2 + 2 * arm * math.cos(theta2) + INERTIA + INERTIA
+    d2 = CENTER**2 + arm * math.cos(theta2) + INERTIA
+    phi2 = CENTER * GRAVITY * math.sin(theta1 + theta2)
+    phi1 = -arm * dtheta2**2 * sin2 - 2 * arm * dtheta2 * dtheta1 * sin2
+    phi1 += (CENTER + LENGTH) * GRAVITY * math.sin(theta1) + phi2
+    centrifugal = arm * dtheta1**2 * sin2
+    if dynamics == "nips":
+        # Where the term is left out, the pendulum moves as under a torque that cancels it.
+        torque = torque + centrifugal
+    mass = [[d1, d2], [d2, CENTER**2 + INERTIA]]
+    return [dtheta1, dtheta2, *np.linalg.solve(mass, [-phi1, torque - centrifugal - phi2]), torque * dtheta2]
+
+
+def energy(theta1, theta2, dtheta1, dtheta2):
+    """Of two rods, from the positions and velocities of their centres of mass."""
+    across = np.array([np.cos(theta1), np.sin(theta1)]) * dtheta1
+    turning = dtheta1 + dtheta2
+    second = LENGTH * across + CENTER * np.array([np.cos(theta1 + theta2), np.sin(theta1 + theta2)]) * turning
+    kinetic = (CENTER * across) @ (CENTER * across) + second @ second + INERTIA * (dtheta1**2 + turning**2)
+    heights = -CENTER * np.cos(theta1) - LENGTH * np.cos(theta1) - CENTER * np.cos(theta1 + theta2)
+    return kinetic / 2 + GRAVITY * heights
+
+
+def integrate(dynamics, start, torques, tolerance):
+    """The states and the work after each torque."""
+    rows = [np.array([*start, 0.0])]
+    for torque in torques:
+        solution = solve_ivp(
+            derivative, (0, HOLD), rows[-1], "DOP853", rtol=tolerance, atol=tolerance, args=(torque, dynamics)
+        )
+        assert solution.success
+        rows.append(solution.y[:, -1])
+    return np.array(rows)
+
+
+def hexes(numbers):
+    return " ".join(f"{int(word):016x}" for word in np.asarray(numbers, dtype="<f8").view("<u8"))
+
+
+def main():
+    lines, worst = [], 0.0
+    for name, torques in TORQUES.items():
+        lines.append(f"torques {name} {' '.join(f'{torque:.0f}' for torque in torques)}")
+    for dynamics, start, plan in product(["book", "nips"], STARTS, TORQUES):
+        y, times = STARTS[start]
+        torques = TORQUES[plan][: round(times[-1] / HOLD)]
+        found, finer = (integrate(dynamics, y, torques, tolerance) for tolerance in (TOLERANCE, FINER))
+        balance = [energy(*row[:4]) - energy(*y) - row[4] for row in found]
+        worst = max(worst, np.abs(balance).max())
+        lines.append(f"start {dynamics} {start} {plan} {hexes(y)}")
+        for time in times:
+            after = round(time / HOLD)
+            uncertainty = np.abs(found - finer)[: after + 1, :4].max()
+            wrapped = [math.remainder(angle, math.tau) for angle in found[after, :2]]
+            lines.append(f"after {time} {hexes([*wrapped, *found[after, 2:4]])} {uncertainty:.1e}")
+    assert worst <= BALANCE, worst
+    versions = f"scipy {scipy.__version__}, numpy {np.__version__}, Python {platform.python_version()}"
+    head = [
+        f"# {versions}, {' '.join(platform.libc_ver())}, {platform.machine()}",
+        f"# DOP853 at rtol = atol = {TOLERANCE}; energy and work differ by {worst:.0e} J or less.",
+        "# torques NAME: N m, for 0.2 s each",
+        "# start DYNAMICS START TORQUES, and the state (bits of f64)",
+        f"# after SECONDS, the state, and the largest difference until then from the same at {FINER}",
+    ]
+    (Path(__file__).parent / "truth.txt").write_text("\n".join(head + lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()

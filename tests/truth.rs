@@ -1,0 +1,175 @@
+//! Promise 1, Gymnasium's numbers: what they are worth, by an integrator of another project. `data/truth.py` ran it.
+
+mod common;
+
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+use acrobot::{Acrobot, Arithmetic, Dynamics, Fast, Params, Portable, State};
+use common::{assert_readme_says, distance};
+
+/// A run under torques that are held for 0.2 s each.
+struct Run {
+    dynamics: Dynamics,
+    start: &'static str,
+    state: State,
+    torques: &'static [f64],
+    after: Vec<Row>,
+}
+
+struct Row {
+    seconds: u32,
+    state: State,
+    /// How far off it may be itself.
+    uncertainty: f64,
+}
+
+static RUNS: LazyLock<Vec<Run>> = LazyLock::new(|| {
+    let state = |words: &[&str]| {
+        State::from(std::array::from_fn(|i| {
+            f64::from_bits(u64::from_str_radix(words[i], 16).unwrap())
+        }))
+    };
+    let mut torques = HashMap::new();
+    let mut runs: Vec<Run> = Vec::new();
+    for line in include_str!("data/truth.txt").lines() {
+        let words: Vec<&str> = line.split(' ').collect();
+        match words[0] {
+            "#" => {}
+            "torques" => {
+                let numbers: Vec<f64> = words[2..].iter().map(|n| n.parse().unwrap()).collect();
+                torques.insert(words[1], &*numbers.leak());
+            }
+            "start" => runs.push(Run {
+                dynamics: match words[1] {
+                    "book" => Dynamics::Book,
+                    "nips" => Dynamics::Nips,
+                    name => panic!("unknown dynamics {name}"),
+                },
+                start: words[2],
+                state: state(&words[4..]),
+                torques: torques[words[3]],
+                after: Vec::new(),
+            }),
+            "after" => runs.last_mut().unwrap().after.push(Row {
+                seconds: words[1].parse().unwrap(),
+                state: state(&words[2..]),
+                uncertainty: words[6].parse().unwrap(),
+            }),
+            name => panic!("unknown row {name}"),
+        }
+    }
+    runs
+});
+
+impl Run {
+    /// The error at each of its rows, of an acrobot whose step lasts 0.2 s / `parts`.
+    fn errors<A: Arithmetic>(&self, parts: u32) -> Vec<f64> {
+        let mut acrobot = Acrobot::<A>::new(0);
+        let params = Params {
+            dt: 0.2 / f64::from(parts),
+            // The integration alone is judged.
+            max_velocity1: f32::MAX.into(),
+            max_velocity2: f32::MAX.into(),
+            dynamics: self.dynamics,
+            ..Params::DEFAULT
+        };
+        acrobot.set_params(params.cast()).unwrap();
+        acrobot.set_state(self.state.cast()).unwrap();
+        let mut errors = Vec::new();
+        let mut rows = self.after.iter().peekable();
+        for (held, &torque) in (1..).zip(self.torques) {
+            for _ in 0..parts {
+                acrobot
+                    .step_torque(acrobot::Real::from_f64(torque))
+                    .unwrap();
+            }
+            if let Some(row) = rows.next_if(|row| row.seconds * 5 == held) {
+                errors.push(distance(acrobot.state().cast(), row.state));
+            }
+        }
+        assert!(rows.next().is_none());
+        errors
+    }
+}
+
+/// The larger errors of the two runs, under either kind of torques.
+fn worst<A: Arithmetic>(dynamics: Dynamics, start: &str, parts: u32) -> Vec<f64> {
+    RUNS.iter()
+        .filter(|run| run.dynamics == dynamics && run.start == start)
+        .map(|run| run.errors::<A>(parts))
+        .reduce(|x, y| x.into_iter().zip(y).map(|(x, y)| x.max(y)).collect())
+        .unwrap()
+}
+
+/// In how many parts the 0.2 s of a torque are stepped: dt is 0.2, 0.1, 0.05 and 0.01 s.
+const PARTS: [u32; 4] = [1, 2, 4, 20];
+
+/// The README's table is what is measured here; its bits are the same on every machine.
+#[test]
+fn errors_are_as_the_readme_says() {
+    let mut rows = Vec::new();
+    for dynamics in [Dynamics::Book, Dynamics::Nips] {
+        for parts in PARTS {
+            let mut row = format!("| `{dynamics:?}` | {} |", 0.2 / f64::from(parts));
+            for start in ["rest", "fast"] {
+                for error in worst::<Portable>(dynamics, start, parts) {
+                    row += &format!(" {error:.1e} |");
+                }
+            }
+            rows.push(row);
+        }
+    }
+    let table = rows.join("\n");
+    println!("{table}");
+    assert_readme_says(&table);
+}
+
+/// So the digits of an error are the method's, and not those of the truth's own error.
+#[test]
+fn the_truth_is_known_far_better_than_the_error() {
+    let mut worst = 0.0_f64;
+    for run in RUNS.iter() {
+        for (error, row) in run.errors::<Portable>(20).into_iter().zip(&run.after) {
+            assert!(row.uncertainty * 1e4 <= error);
+            worst = worst.max(row.uncertainty);
+        }
+    }
+    assert_readme_says(&format!("known to {worst:.1e}"));
+}
+
+#[test]
+fn errors_shrink_with_the_fourth_power_of_dt() {
+    for run in RUNS.iter() {
+        let [coarse, fine] = [4, 20].map(|parts| run.errors::<Portable>(parts));
+        for ((coarse, fine), row) in coarse.iter().zip(fine).zip(&run.after) {
+            let order = (coarse / fine).ln() / 5.0_f64.ln();
+            println!(
+                "{:?} {} {} s: {order:.2}",
+                run.dynamics, run.start, row.seconds
+            );
+            // Later the fast ones are chaotic: an error does not stay small enough to have an order.
+            if run.start == "rest" || row.seconds == 1 {
+                assert!((3.85..4.3).contains(&order));
+            }
+        }
+    }
+}
+
+/// In `f32` rounding is small beside the method's error at Gymnasium's dt, and is all that is left at 0.01 s.
+#[test]
+fn single_precision_is_as_good_as_the_readme_says() {
+    let (mut excess, mut least, mut most) = (0.0_f64, f64::INFINITY, 0.0_f64);
+    for run in RUNS.iter() {
+        let [fast, portable] = [run.errors::<Fast>(1), run.errors::<Portable>(1)];
+        for (fast, portable) in fast.iter().zip(portable) {
+            excess = excess.max((fast / portable - 1.0).abs());
+        }
+        let after_a_second = run.errors::<Fast>(20)[0];
+        (least, most) = (least.min(after_a_second), most.max(after_a_second));
+    }
+    assert_readme_says(&format!(
+        "`Fast` has the same errors within {:.1} % at 0.2 s, and after 1 s at 0.01 s {least:.1e} to {most:.1e}",
+        excess * 100.0
+    ));
+}
