@@ -1,4 +1,25 @@
-#![doc = include_str!("../README.md")]
+//! Gymnasium's two-link Acrobot, without a heap, a panic or a hang, and with the same bits on a microcontroller, in a
+//! browser and on a server.
+//!
+//! ```
+//! use acrobot::{Acrobot, Action, Fast};
+//!
+//! let mut acrobot = Acrobot::<Fast>::new(42); // the start of Gymnasium's reset(seed=42)
+//! let [cos1, sin1, cos2, sin2, dtheta1, dtheta2] = *acrobot.observation();
+//! let step = acrobot.step(Action::Positive);
+//! assert_eq!(step.reward, -1.0);
+//! ```
+//!
+//! # The book
+//!
+//! - To begin: [on a host](guide::host), [on a chip](guide::chip), [in a page](guide::page).
+//! - To understand: [the equations](guide::equations), [determinism](guide::determinism),
+//!   [numbers](guide::numbers).
+//! - To look up: [the README](guide::readme), with every figure, the [features](guide::readme#features) and the
+//!   [examples](guide::readme#examples); the items below, each with its units and sources.
+//! - To work on it: the next section, and `CONTRIBUTING.md`.
+//!
+#![doc = include_str!("../ARCHITECTURE.md")]
 #![no_std]
 #![deny(missing_docs, unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -26,6 +47,8 @@ mod dynamics;
 #[cfg(feature = "std")]
 pub mod env;
 mod error;
+#[cfg(doc)]
+pub mod guide;
 mod lanes;
 mod observation;
 mod params;
