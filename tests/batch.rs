@@ -273,13 +273,6 @@ fn threads_change_no_bit() {
     assert!((0..len).all(|i| one.state(i) == many.state(i)));
 }
 
-type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
-
-/// A batch without a heap.
-fn small<const BLOCKS: usize, const LEN: usize>() -> Result<Small<BLOCKS, LEN>, Error> {
-    Batch::new(1, [Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN])
-}
-
 #[test]
 fn begins_in_given_states_as_one_alone() {
     let mut rng = Pcg64::new(3);
@@ -352,92 +345,4 @@ fn members_go_on_in_another_batch() {
     let before = twins.batch.member(34);
     assert!(twins.batch.set_member(34, member).is_err());
     assert_eq!(twins.batch.member(34), before);
-}
-
-#[test]
-fn columns_are_the_rows() {
-    let mut batch = small::<2, 20>().unwrap();
-    batch.set_limit(NonZeroU32::MIN);
-    let mut rows = [[0.0; 6]; 20];
-    batch.observe(Observations::Rows(&mut rows)).unwrap();
-    let mut columns = [[0.0; 20]; 6];
-    batch
-        .observe(Observations::Columns(
-            columns.each_mut().map(|column| &mut column[..]),
-        ))
-        .unwrap();
-    for (i, row) in rows.iter().enumerate() {
-        assert_eq!(*row, columns.map(|column| column[i]));
-        let alone = Acrobot::<Fast>::new(SeedSequence::from(1).child(i as u64));
-        assert_eq!(*row, *alone.observation());
-    }
-}
-
-#[test]
-fn bad_input_is_refused_before_anything_is_stepped() {
-    let refused = small::<1, 0>().unwrap_err();
-    assert_eq!(
-        refused.to_string(),
-        "generators is 0 acrobots; allowed is 1 or more"
-    );
-    let refused = small::<1, 17>().unwrap_err();
-    assert_eq!(refused.to_string(), "blocks has 1 elements; allowed is 2");
-
-    let mut batch = small::<1, 3>().unwrap();
-    let before = batch.state(1);
-    let mut step = |actions: &[u8], lengths: [usize; 5]| {
-        let [rewards, terminated, truncated, rows, finals] = lengths;
-        batch.step(
-            actions,
-            Output {
-                rewards: &mut vec![0.0; rewards],
-                terminated: &mut vec![false; terminated],
-                truncated: &mut vec![false; truncated],
-                observations: Observations::Rows(&mut vec![[0.0; 6]; rows]),
-                final_observations: Observations::Rows(&mut vec![[0.0; 6]; finals]),
-            },
-        )
-    };
-    for (actions, lengths, message) in [
-        (&[0, 1][..], [3; 5], "actions has 2 elements; allowed is 3"),
-        (
-            &[0, 1, 2],
-            [2, 3, 3, 3, 3],
-            "rewards has 2 elements; allowed is 3",
-        ),
-        (
-            &[0, 1, 2],
-            [3, 0, 3, 3, 3],
-            "terminated has 0 elements; allowed is 3",
-        ),
-        (
-            &[0, 1, 2],
-            [3, 3, 4, 3, 3],
-            "truncated has 4 elements; allowed is 3",
-        ),
-        (
-            &[0, 1, 2],
-            [3, 3, 3, 1, 3],
-            "observations has 1 elements; allowed is 3",
-        ),
-        (
-            &[0, 1, 2],
-            [3, 3, 3, 3, 4],
-            "final_observations has 4 elements; allowed is 3",
-        ),
-        (
-            &[0, 3, 1],
-            [3; 5],
-            "action is 3; allowed is 0 (negative torque), 1 (none) or 2 (positive)",
-        ),
-    ] {
-        assert_eq!(step(actions, lengths).unwrap_err().to_string(), message);
-    }
-    assert_eq!(batch.state(1), before);
-    assert_eq!(batch.state(3), None);
-    let error = batch.set_params(Params {
-        dt: 0.0,
-        ..Params::default()
-    });
-    assert!(matches!(error, Err(Error::OutOfRange { name: "dt", .. })));
 }
