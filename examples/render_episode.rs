@@ -7,7 +7,6 @@
 //! ```
 
 use std::error::Error;
-use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -19,6 +18,10 @@ use clap::Parser;
 
 #[path = "pictures/animation.rs"]
 mod animation;
+#[path = "common/files.rs"]
+mod files;
+
+use files::cannot_write;
 
 /// Draws an episode as FILE.gif and a strip of its frames as FILE.png, or one state as a PNG.
 #[derive(Parser)]
@@ -152,8 +155,4 @@ fn expect_extension(out: &Path, extension: &str) -> Result<(), String> {
 fn create(path: &Path) -> Result<BufWriter<File>, String> {
     let file = File::create(path).map_err(|error| cannot_write(path, error))?;
     Ok(BufWriter::new(file))
-}
-
-fn cannot_write(path: &Path, error: impl Display) -> String {
-    format!("cannot write {}: {error}", path.display())
 }

@@ -20,11 +20,11 @@
 //! its joint with link 2 hanging from it, which the policy feeds, and the tip is never above the goal.
 
 use std::error::Error;
-use std::fmt::{Display, Write as _};
+use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, Write as _};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -34,9 +34,12 @@ use indicatif::ProgressBar;
 use plotters::prelude::*;
 use rayon::prelude::*;
 
+#[path = "common/files.rs"]
+mod files;
 #[path = "pictures/heat_map.rs"]
 mod heat_map;
 
+use files::{cannot_write, file};
 use heat_map::{LABEL, NAME, color, draw_bar};
 
 /// Sweeps link masses and torques, and writes the steps to the goal as CSV and as a picture.
@@ -77,18 +80,6 @@ fn positive(text: &str, unit: &str) -> Result<f32, String> {
             "allowed is a number of {unit} above 0 that f32 holds"
         )),
     }
-}
-
-/// Refused now, and not after all the episodes.
-fn file(path: &str, extension: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(path);
-    let is_named = path.extension().is_some_and(|found| found == extension);
-    if is_named && path.with_file_name(".").is_dir() {
-        return Ok(path);
-    }
-    Err(format!(
-        "allowed is a name that ends in .{extension}, in a folder that is there"
-    ))
 }
 
 /// What became of the episodes of one mass and one torque.
@@ -140,10 +131,6 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         options.episodes
     )?;
     Ok(())
-}
-
-fn cannot_write(path: &Path, error: impl Display) -> String {
-    format!("cannot write {}: {error}", path.display())
 }
 
 /// Column by column: a mass with all torques, and then the next mass.

@@ -16,15 +16,17 @@
 //! `i`-th child of the seed, for offsets in Sutton's learner and for exploration in this crate's. The CSV
 //! is the same whatever the number of threads.
 
+#[path = "../common/files.rs"]
+mod files;
 mod learners;
 mod simulator;
 
 use std::error::Error;
-use std::fmt::{Display, Write as _};
+use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, Write as _};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use acrobot::SeedSequence;
@@ -34,6 +36,7 @@ use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use rayon::prelude::*;
 
+use files::{cannot_write, file};
 use learners::{ours, sutton};
 
 /// Repeats Sutton's experiment of 1996, and runs this crate's learner beside it.
@@ -57,18 +60,6 @@ struct Options {
     #[arg(long, value_name = "FILE", default_value = "sutton1996.svg")]
     #[arg(value_parser = |path: &str| file(path, "svg"))]
     picture: PathBuf,
-}
-
-/// Refused now, and not after all the runs.
-fn file(path: &str, extension: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(path);
-    let is_named = path.extension().is_some_and(|found| found == extension);
-    if is_named && path.with_file_name(".").is_dir() {
-        return Ok(path);
-    }
-    Err(format!(
-        "allowed is a name that ends in .{extension}, in a folder that is there"
-    ))
 }
 
 fn main() -> ExitCode {
@@ -101,10 +92,6 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     draw(options, &curves).map_err(|error| cannot_write(picture, error))?;
     write!(io::stdout(), "{}", table(&experiments, &curves))?;
     Ok(())
-}
-
-fn cannot_write(path: &Path, error: impl Display) -> String {
-    format!("cannot write {}: {error}", path.display())
 }
 
 /// Steps to the goal of every run and episode.

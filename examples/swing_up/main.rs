@@ -19,7 +19,7 @@ use std::error::Error;
 use std::fmt::Display;
 use std::fs;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use acrobot::{Action, Pcg64, SeedSequence, State};
@@ -31,11 +31,14 @@ mod acrobot_task;
 #[path = "../pictures/animation.rs"]
 mod animation;
 mod curve;
+#[path = "../common/files.rs"]
+mod files;
 #[path = "../pictures/heat_map.rs"]
 mod heat_map;
 mod pictures;
 
 use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
+use files::cannot_write;
 
 /// Learns to swing up, and says how well.
 #[derive(Parser)]
@@ -222,10 +225,6 @@ fn draw<const S: usize, const T: usize>(
         frames - 1
     )?;
     Ok(())
-}
-
-fn cannot_write(path: &Path, error: impl Display) -> String {
-    format!("cannot write {}: {error}", path.display())
 }
 
 /// Learns for so many episodes; returns their returns.
