@@ -9,6 +9,15 @@ use crate::rng::integers;
 
 /// One of the three torques that an agent can apply between the links, numbered 0, 1 and 2 as in
 /// Gymnasium; [`Params::torques`](crate::Params::torques) says how many N m each is.
+///
+/// ```
+/// use acrobot::Action;
+///
+/// assert_eq!(Action::try_from(2)?, Action::Positive);
+/// assert_eq!(u8::from(Action::Zero), 1);
+/// assert!(Action::try_from(3).is_err());
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

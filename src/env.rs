@@ -96,6 +96,26 @@ use crate::{Action, Observation};
 ///
 /// It is object-safe where the types are named; [`DynEnv`] is the one that [`make`] returns.
 /// [`check_env`] checks an implementation.
+///
+/// ```
+/// use acrobot::env::{Env, Space, acrobot_v0, acrobot_v1};
+/// use acrobot::{Fast, Pcg64};
+///
+/// /// Steps of an episode by a random policy, whatever the environment.
+/// fn length(mut env: impl Env) -> u32 {
+///     let mut rng = Pcg64::new(42);
+///     env.reset(Some(42.into()), None);
+///     let mut steps = 1;
+///     while !env.step(env.action_space().sample(&mut rng)).ended() {
+///         steps += 1;
+///     }
+///     steps
+/// }
+///
+/// assert!(length(acrobot_v0::<Fast>(Default::default())?) <= 200);
+/// assert!(length(acrobot_v1::<Fast>(Default::default())?) <= 500);
+/// # Ok::<(), acrobot::env::Error>(())
+/// ```
 pub trait Env {
     /// What the agent sees.
     type Observation;

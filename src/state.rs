@@ -10,6 +10,14 @@ use crate::rng::uniform;
 ///
 /// After a step the angles lie in \[−π, π\] and the velocities within their bounds. A start and a
 /// state that was set may lie outside, as Gymnasium's may.
+///
+/// ```
+/// use acrobot::State;
+///
+/// let state = State::from([0.5, -0.25, 1.0, 0.0]); // the order of Gymnasium's env.unwrapped.state
+/// assert_eq!(state, State { theta1: 0.5, theta2: -0.25, dtheta1: 1.0, ..State::default() });
+/// assert_eq!(state.cast::<f32>().theta2, -0.25_f32);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

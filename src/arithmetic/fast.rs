@@ -5,6 +5,13 @@ use super::{Arithmetic, FARTHEST, Form, Numbers};
 
 /// `f32` and polynomial trigonometry, in the lean form: the same bits on every target, from a
 /// single-precision FPU without a fused multiply-add.
+///
+/// ```
+/// use acrobot::{Arithmetic, Fast};
+///
+/// let (sin, cos) = Fast::sin_cos(1.0);
+/// assert!((sin - 0.84147098).abs() < 1.2e-7 && (cos - 0.54030231).abs() < 1.2e-7);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Fast;

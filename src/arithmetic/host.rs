@@ -7,6 +7,12 @@ use super::{Arithmetic, Form};
 
 /// `f64` and the C library's `sin`, `cos` and `pow`, in Gymnasium's order: Gymnasium's bits where
 /// the library is the one that NumPy calls, as on x86-64 Linux with glibc.
+///
+/// ```
+/// use acrobot::{Arithmetic, Host};
+///
+/// assert_eq!(Host::sin_cos(1.0), 1.0_f64.sin_cos());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Host;

@@ -8,6 +8,13 @@ use super::{Arithmetic, FARTHEST, Form};
 /// than [`Fast`](crate::Fast) on a Cortex-M4, and some seven times its error for |x| ≤ π.
 ///
 /// A table does not suit SIMD: a batch computes one acrobot after another.
+///
+/// ```
+/// use acrobot::{Arithmetic, Micro};
+///
+/// let (sin, cos) = Micro::sin_cos(1.0);
+/// assert!((sin - 0.84147098).abs() < 8e-7 && (cos - 0.54030231).abs() < 8e-7);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Micro;

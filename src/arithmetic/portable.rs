@@ -5,6 +5,13 @@ use super::{Arithmetic, Form};
 /// `f64` and `libm`'s trigonometry, in Gymnasium's order: the same bits on every target, and
 /// within rounding of Gymnasium's, from which it departs in one thing: what is there cos(x − π/2) is
 /// sin x, which costs less where it is known and is rounded once less.
+///
+/// ```
+/// use acrobot::{Arithmetic, Portable};
+///
+/// let (sin, cos) = Portable::sin_cos(1.0);
+/// assert_eq!([sin, cos].map(f64::to_bits), [0x3fea_ed54_8f09_0cee, 0x3fe1_4a28_0fb5_068c]);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Portable;

@@ -17,6 +17,14 @@ use crate::state::{StartBounds, State};
 ///
 /// Sixteen suit a machine with vectors. Fewer waste less where there are few acrobots: a `Block<f32, 1>`
 /// takes 64 bytes, one of sixteen 640.
+///
+/// ```
+/// use acrobot::Block;
+///
+/// let blocks = vec![Block::<f32>::EMPTY; 1000_usize.div_ceil(Block::<f32>::LANES)];
+/// assert_eq!(size_of_val(&blocks[..]), 63 * 640);
+/// assert_eq!(size_of::<Block<f32, 1>>(), 64);
+/// ```
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Block<S = f32, const N: usize = 16> {

@@ -13,6 +13,15 @@ use crate::rng::Pcg64;
 ///
 /// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there is
 /// the baseline: what the crate is compiled for, such as WASM's simd128 or NEON.
+///
+/// ```
+/// use acrobot::{Batch, Block, Fast, Pcg64, Vectors};
+///
+/// let mut batch = Batch::<Fast, _, _>::new(42, [Block::EMPTY; 1], [Pcg64::UNSEEDED; 16])?;
+/// batch.set_vectors(Vectors::Baseline); // in place of Vectors::widest(), to compare their speed
+/// # assert!(Vectors::widest().is_available());
+/// # Ok::<(), acrobot::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

@@ -15,6 +15,19 @@ use crate::state::{StartBounds, State};
 use crate::{Action, Observation};
 
 /// An observation that an acrobot can be seen as.
+///
+/// ```
+/// use acrobot::env::View;
+/// use acrobot::{Acrobot, Observation, Portable};
+///
+/// fn length<O: View>(acrobot: &Acrobot<Portable>) -> usize {
+///     O::of(acrobot).as_ref().len()
+/// }
+///
+/// let acrobot = Acrobot::new(42);
+/// assert_eq!(length::<Observation>(&acrobot), 6);
+/// assert_eq!(length::<Observation<4>>(&acrobot), 4);
+/// ```
 pub trait View: AsRef<[f32]> + AsMut<[f32]> + Clone + fmt::Debug + PartialEq + 'static {
     /// What the agent sees.
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self;
@@ -208,6 +221,21 @@ impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
 }
 
 /// An acrobot of any arithmetic, for live changes through [`DynEnv`](super::DynEnv).
+///
+/// ```
+/// use acrobot::env::{Env, Error, LiveAcrobot, make};
+/// use acrobot::{Params, State};
+///
+/// fn hang_still(acrobot: &mut dyn LiveAcrobot) -> Result<(), Error> {
+///     acrobot.set_params(Params { torque_noise: 0.0, ..acrobot.params() })?;
+///     Ok(acrobot.set_state(State::default())?)
+/// }
+///
+/// let mut env = make("Acrobot-v1")?;
+/// hang_still(env.unwrapped_mut())?;
+/// assert_eq!(env.unwrapped().state(), State::default());
+/// # Ok::<(), Error>(())
+/// ```
 pub trait LiveAcrobot {
     /// The state, exactly.
     fn state(&self) -> State;

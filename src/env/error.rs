@@ -4,6 +4,14 @@ use core::fmt;
 use std::string::String;
 
 /// Why an environment cannot be made or shown.
+///
+/// ```
+/// use acrobot::env::{Env, Error, make};
+///
+/// let mut env = make("Acrobot-v1")?;
+/// assert_eq!(env.render(), Err(Error::NoRenderMode));
+/// # Ok::<(), Error>(())
+/// ```
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {

@@ -51,6 +51,18 @@ impl Default for Options {
 }
 
 /// The environment that [`make`] returns, of either version and any arithmetic.
+///
+/// ```
+/// use acrobot::env::{DynEnv, Env, Reading, make};
+///
+/// fn start(env: &mut DynEnv) -> Reading {
+///     env.reset(Some(42.into()), None).0
+/// }
+///
+/// assert!(matches!(start(&mut *make("Acrobot-v0")?), Reading::V0(_)));
+/// assert_eq!(start(&mut *make("Acrobot-v1")?).len(), 6);
+/// # Ok::<(), acrobot::env::Error>(())
+/// ```
 pub type DynEnv = dyn Env<
         Observation = Reading,
         Action = Action,

@@ -22,17 +22,17 @@ pub struct EpisodeStatistics {
 /// [`Info`], and the last hundred are kept.
 ///
 /// ```
-/// use acrobot::env::{Env, RecordEpisodeStatistics, acrobot_v1};
+/// use acrobot::env::{Env, EpisodeStatistics, RecordEpisodeStatistics, acrobot_v1};
 /// use acrobot::{Action, Fast};
 ///
 /// let mut env = RecordEpisodeStatistics::new(acrobot_v1::<Fast>(Default::default())?);
 /// env.reset(Some(42.into()), None);
-/// let episode = loop {
+/// let EpisodeStatistics { length, episode_return, .. } = loop {
 ///     if let Some(episode) = env.step(Action::Zero).info.episode {
 ///         break episode;
 ///     }
 /// };
-/// assert_eq!((episode.length, episode.episode_return), (500, -500.0));
+/// assert_eq!((length, episode_return), (500, -500.0));
 /// assert_eq!(env.mean_return(), Some(-500.0));
 /// # Ok::<(), acrobot::env::Error>(())
 /// ```
