@@ -6,6 +6,9 @@ import { resolve } from "node:path";
 // Not from here, where cargo is told to build for WebAssembly.
 const root = resolve(import.meta.dirname, "../../..");
 
+/** What several tests do, on the host and here. */
+export const ACTIONS = [2, 2, 2, 0, 0, 1, 2, 2, 0, 0, 0, 1, 1, 2, 0, 2, 2, 2, 0, 0, 0];
+
 function example(name, args, input) {
   const command = ["run", "--quiet", "--locked", "--example", name, "--", ...args];
   const { status, stdout, stderr, error } = spawnSync("cargo", command, { cwd: root, input, encoding: "utf8" });

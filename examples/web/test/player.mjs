@@ -1,0 +1,93 @@
+// Opens the page in Chromium and plays with it, for the tests of a file that imports this.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before } from "node:test";
+
+import { launch } from "../browser.mjs";
+import { decodeActions } from "../page/link.js";
+import { serve } from "../serve.mjs";
+
+export const dist = join(import.meta.dirname, "../dist");
+/** What a test writes goes here. */
+export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
+let server, browser, origin;
+
+before(async () => {
+  server = await serve(0);
+  origin = `http://localhost:${server.address().port}/`;
+  browser = await launch();
+});
+
+after(async () => {
+  await browser?.close();
+  server?.close();
+  rmSync(folder, { recursive: true });
+});
+
+/** Opens the page, plays with it, and finds no error in its console and no request but for its own files. */
+export async function open(play, { hash = "", prepare, ...options } = {}) {
+  const context = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
+  const page = await context.newPage();
+  const wrong = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
+  page.on("pageerror", (error) => wrong.push(error.message));
+  context.on("request", (request) => {
+    const url = request.url();
+    if (!url.startsWith(origin) && !url.startsWith(`blob:${origin}`)) wrong.push(`a request for ${url}`);
+  });
+  if (prepare) await page.addInitScript(prepare);
+  await page.goto(origin + hash);
+  try {
+    await play(page);
+    assert.deepEqual(wrong, []);
+  } finally {
+    await context.close();
+  }
+}
+
+/** Once what was done is shown. */
+const shown = (page) =>
+  page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+
+export const text = async (page, selector) => {
+  await shown(page);
+  return page.textContent(selector);
+};
+
+export const bits = async (page) => {
+  await shown(page);
+  return page.locator("#state code").allTextContents();
+};
+
+/** At the start of a seed, paused, and played by keys. */
+export async function paused(page, seed) {
+  await page.selectOption("#policy", "keys");
+  if ((await text(page, "#pause")) === "Pause") await page.click("#pause");
+  await page.fill("#seed", String(seed));
+}
+
+/** Holds the key of each action for a single step. */
+export async function press(page, actions) {
+  await page.focus("#stage");
+  for (const action of actions) {
+    const key = ["ArrowLeft", null, "ArrowRight"][action];
+    if (key) await page.keyboard.down(key);
+    await page.keyboard.press("s");
+    if (key) await page.keyboard.up(key);
+  }
+}
+
+/** The actions of the run that the page has a link to. */
+export async function linkedActions(page) {
+  await page.click("#share");
+  const fields = new URLSearchParams(new URL(await page.inputValue("#link")).hash.slice(1));
+  return decodeActions(fields.get("actions") ?? "");
+}
+
+export async function downloaded(page, button) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
+  return readFileSync(await download.path());
+}
