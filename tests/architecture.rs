@@ -1,4 +1,4 @@
-//! The house in order: modules import one way, as ARCHITECTURE.md says.
+//! The house in order: modules import one way, as ARCHITECTURE.md says, and what it names is there.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -79,4 +79,23 @@ fn modules_import_only_what_stands_above_them() {
         }
     }
     assert!(imports > 80, "{imports} were found");
+}
+
+/// Files and folders in backquotes, of which a `*` stands for any name.
+#[test]
+fn what_the_texts_name_is_there() {
+    let mut named = 0;
+    for text in ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"].map(read) {
+        for path in text.split('`').flat_map(|quoted| quoted.split(' ')) {
+            let folders = ["src/", "tests/", "examples/", "docs/", "benches/", ".ci/"];
+            if folders.iter().any(|folder| path.starts_with(folder)) {
+                named += 1;
+                let whole = path.split('*').next().unwrap();
+                let folder = whole.rsplit_once('/').unwrap().0;
+                let there = if whole == path { path } else { folder };
+                assert!(Path::new(ROOT).join(there).exists(), "{path}");
+            }
+        }
+    }
+    assert!(named > 30, "{named} were found");
 }
