@@ -16,7 +16,7 @@ use acrobot::env::Frame;
 use acrobot::{Acrobot, Action, Figure, Portable, SeedSequence, State, Theme, TimeLimit};
 use clap::Parser;
 
-#[path = "pictures/animation.rs"]
+#[path = "common/animation.rs"]
 mod animation;
 #[path = "common/files.rs"]
 mod files;

@@ -36,7 +36,7 @@ use rayon::prelude::*;
 
 #[path = "common/files.rs"]
 mod files;
-#[path = "pictures/heat_map.rs"]
+#[path = "common/heat_map.rs"]
 mod heat_map;
 
 use files::{cannot_write, file};

@@ -1,5 +1,4 @@
-//! The host's environments: Gymnasium's runs through `make`, the contract and who breaks it,
-//! pictures, live changes, and what is refused.
+//! The host's environments: Gymnasium's runs through `make`, pictures, live changes, and what is refused.
 
 mod common;
 

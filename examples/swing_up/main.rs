@@ -28,12 +28,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 #[path = "../sarsa/acrobot_task.rs"]
 mod acrobot_task;
-#[path = "../pictures/animation.rs"]
+#[path = "../common/animation.rs"]
 mod animation;
 mod curve;
 #[path = "../common/files.rs"]
 mod files;
-#[path = "../pictures/heat_map.rs"]
+#[path = "../common/heat_map.rs"]
 mod heat_map;
 mod pictures;
 
