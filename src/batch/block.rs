@@ -166,13 +166,12 @@ impl<S: Real, const N: usize> Block<S, N> {
         final_observations: &mut Observations<'_>,
     ) -> Stepped<N> {
         let params = &shared.model.params;
-        let terminated = if params.torque_noise > S::ZERO {
-            let torques = self.noisy_torques(params, actions, generators);
-            self.advance::<A>(&shared.model, |lane| torques[lane])
+        let torques = if params.torque_noise > S::ZERO {
+            self.noisy_torques(params, actions, generators)
         } else {
-            let torques = params.torques;
-            self.advance::<A>(&shared.model, |lane| S::pick(torques, actions[lane]))
+            actions.map(|action| S::pick(params.torques, action))
         };
+        let terminated = self.advance::<A>(&shared.model, torques);
         let mut stepped = Stepped {
             rewards: [-1.0; N],
             terminated,
@@ -207,20 +206,19 @@ impl<S: Real, const N: usize> Block<S, N> {
     fn advance<A: Arithmetic<Scalar = S>>(
         &mut self,
         model: &Model<S>,
-        torque: impl Fn(usize) -> S,
+        torques: [S; N],
     ) -> [bool; N] {
         if TypeId::of::<A>() == TypeId::of::<Fast>() {
             let all: (&mut dyn Any, &dyn Any) = (self, model);
             if let (Some(block), Some(model)) = (all.0.downcast_mut(), all.1.downcast_ref()) {
-                let torque = |lane| torque(lane).to_f64() as f32;
-                return advance_lanes(block, model, torque);
+                return advance_lanes(block, model, torques.map(|torque| torque.to_f64() as f32));
             }
         }
         from_fn(|lane| {
             let mut state = self.state(lane);
             let [cos1, sin1, cos2, sin2] = self.cos_sin.map(|numbers| numbers[lane]);
             let mut sin_cos = [(sin1, cos1), (sin2, cos2)];
-            let terminated = transition::<A>(model, &mut state, &mut sin_cos, torque(lane));
+            let terminated = transition::<A>(model, &mut state, &mut sin_cos, torques[lane]);
             self.place(lane, state, sin_cos);
             terminated
         })
@@ -269,9 +267,9 @@ impl<const N: usize> Stepped<N> {
 fn advance_lanes<const N: usize>(
     block: &mut Block<f32, N>,
     model: &Model<f32>,
-    torque: impl Fn(usize) -> f32,
+    torques: [f32; N],
 ) -> [bool; N] {
-    let torque = Lanes(from_fn(torque));
+    let torque = Lanes(torques);
     let [theta1, theta2, dtheta1, dtheta2] = block.state;
     let y = [Lanes(theta1), Lanes(theta2), Lanes(dtheta1), Lanes(dtheta2)];
     let [cos1, sin1, cos2, sin2] = block.cos_sin;
