@@ -283,3 +283,16 @@ fn what_cannot_be_represented_stops_where_it_is() {
     check::<Fast>();
     check::<Micro>();
 }
+
+/// Of what is derived from these parameters a part is not a number.
+#[test]
+fn whatever_its_parameters_an_acrobot_equals_its_clone() {
+    let mut acrobot = Acrobot::<Fast>::new(0);
+    let params = Params {
+        length1: 1e38,
+        inertia2: 0.0,
+        ..Params::default()
+    };
+    acrobot.set_params(params).unwrap();
+    assert_eq!(acrobot, acrobot.clone());
+}
