@@ -59,9 +59,10 @@ pub struct Step {
 ///
 /// With the `serde` feature an acrobot is stored in any format of serde's, and goes on to the same bits. The
 /// first field says what is stored, its version (1) and its scalar. Loading refuses any other, with both
-/// in the reason; parameters and states that the setters refuse; and an even increment of a [`Pcg64`]. A
-/// [`TimeLimit`](crate::TimeLimit) has the version of what it wraps. What snapshots consist of (`Params`,
-/// `State`, `Pcg64`) can be stored alone, without a version and, but for the generator, unchecked.
+/// in the reason, which postcard drops; parameters and states that the setters refuse; and an even
+/// increment of a [`Pcg64`]. A [`TimeLimit`](crate::TimeLimit) has the version of what it wraps. What
+/// snapshots consist of (`Params`, `State`, `Pcg64`) can be stored alone, without a version and, but for
+/// the generator, unchecked.
 ///
 /// ```
 /// use acrobot::{Acrobot, Fast, Portable};
