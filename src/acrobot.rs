@@ -54,7 +54,29 @@ pub struct Step {
 /// the scalar. A step whose result is not finite keeps the angles and sets both velocities to 0.
 /// Starts far outside of ±π are valid: the first step wraps the angles and bounds the velocities.
 /// No step, reset or observation hangs, panics or turns into NaN.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// # Snapshots
+///
+/// With the `serde` feature an acrobot is stored in any format of serde's, and goes on to the same bits. The
+/// first field says what is stored, its version (1) and its scalar. Loading refuses any other, with both
+/// in the reason, which postcard drops; parameters and states that the setters refuse; and an even
+/// increment of a [`Pcg64`]. A [`TimeLimit`](crate::TimeLimit) has the version of what it wraps. What
+/// snapshots consist of (`Params`, `State`, `Pcg64`) can be stored alone, without a version and, but for
+/// the generator, unchecked.
+///
+/// ```
+/// use acrobot::{Acrobot, Fast, Portable};
+///
+/// let acrobot = Acrobot::<Portable>::new(42);
+/// let text = serde_json::to_string(&acrobot)?;
+/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":1,"scalar":"f64"}"#));
+/// assert_eq!(serde_json::from_str::<Acrobot<Portable>>(&text)?, acrobot);
+///
+/// let error = serde_json::from_str::<Acrobot<Fast>>(&text).unwrap_err().to_string();
+/// assert!(error.contains("version 1, in f64; allowed is \"acrobot\", version 1, in f32"));
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug)]
 pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
     model: Model<A::Scalar>,
     state: State<A::Scalar>,
@@ -263,6 +285,14 @@ pub(crate) fn transition<A: Arithmetic>(
     reaches_goal::<A>(state, *sin_cos)
 }
 
+impl<A: Arithmetic, R: PartialEq> PartialEq for Acrobot<A, R> {
+    /// Parameters, state and generator; of what is derived from them extreme parameters make NaN, which
+    /// is not equal to itself.
+    fn eq(&self, other: &Self) -> bool {
+        self.params() == other.params() && self.state == other.state && self.rng == other.rng
+    }
+}
+
 #[cfg(feature = "defmt")]
 impl<A: Arithmetic<Scalar: defmt::Format>, R: defmt::Format> defmt::Format for Acrobot<A, R> {
     /// Parameters, state and generator; the rest is derived from them.
@@ -284,11 +314,18 @@ mod snapshot {
     use serde::ser::{Serialize, Serializer};
 
     use super::{Acrobot, Arithmetic, Params, State};
+    use crate::snapshot::{Header, Subject};
+
+    impl<A: Arithmetic, R> Subject for Acrobot<A, R> {
+        const NAME: &'static str = "acrobot";
+        type Scalar = A::Scalar;
+    }
 
     /// What of an acrobot cannot be derived.
     #[derive(serde::Serialize, serde::Deserialize)]
     #[serde(rename = "Acrobot")]
-    struct Snapshot<S, R> {
+    struct Snapshot<H, S, R> {
+        snapshot: H,
         params: Params<S>,
         state: State<S>,
         rng: R,
@@ -297,6 +334,7 @@ mod snapshot {
     impl<A: Arithmetic<Scalar: Serialize>, R: Serialize> Serialize for Acrobot<A, R> {
         fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
             Snapshot {
+                snapshot: Header::<Self>::NEW,
                 params: *self.params(),
                 state: self.state,
                 rng: &self.rng,
@@ -312,7 +350,9 @@ mod snapshot {
     {
         /// Refuses what `set_params` and `set_state` refuse.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot { params, state, rng } = Snapshot::deserialize(deserializer)?;
+            let Snapshot::<Header<Self>, _, _> {
+                params, state, rng, ..
+            } = Snapshot::deserialize(deserializer)?;
             params.validate().map_err(D::Error::custom)?;
             state.validate().map_err(D::Error::custom)?;
             Ok(Self::assemble(params, state, rng))

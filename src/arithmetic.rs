@@ -160,6 +160,8 @@ impl<S: Real> Numbers<S> for S {
 macro_rules! impl_real {
     ($scalar:ident, $bits:ident) => {
         impl sealed::Sealed for $scalar {
+            const NAME: &'static str = stringify!($scalar);
+
             #[inline]
             fn pick([first, second, third]: [Self; 3], index: u8) -> Self {
                 let mask = |i| u64::from(index == i).wrapping_neg() as $bits;
@@ -214,9 +216,12 @@ macro_rules! impl_real {
 impl_real!(f32, u32);
 impl_real!(f64, u64);
 
-mod sealed {
+pub(crate) mod sealed {
     /// What only this crate needs of a scalar.
     pub trait Sealed: Sized {
+        /// Its name in Rust.
+        const NAME: &'static str;
+
         /// The one of three at an index of 0 to 2, without a branch or an address that depends on it.
         fn pick(three: [Self; 3], index: u8) -> Self;
 

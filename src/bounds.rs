@@ -10,9 +10,9 @@ const MAX_TURNS: u32 = 64;
 /// The angle `x` rad brought to \[−π, π\] by whole turns.
 ///
 /// In Gymnasium's form it subtracts turn by turn, as Gymnasium does, up to 64 of them; beyond, where
-/// Gymnasium's would take ever longer or never return, it takes the remainder. The lean
-/// form subtracts one rounded quotient, which is right to half of the spacing that `f32` has at
-/// `x`: 6e-8 |x|. An angle that is infinite or NaN gives NaN.
+/// Gymnasium's would take ever longer or never return, it takes the remainder. The lean form subtracts
+/// one rounded quotient, which is right to the spacing that `f32` has at `x`: 1.2e-7 |x|. Either takes −x
+/// to the mirror image, in `f32` up to 2²² turns. An angle that is infinite or NaN gives NaN.
 ///
 /// ```
 /// use acrobot::{Fast, Portable, wrap};

@@ -18,7 +18,7 @@ pub(crate) type SinCos<S> = (S, S);
 
 /// The parameters, and every part of the equations that depends on them alone, computed once when
 /// they are set.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Model<S> {
     pub(crate) params: Params<S>,
     /// m2 l1 lc2, kg m²: how strongly the links turn each other.
@@ -308,7 +308,7 @@ pub fn derivative<A: Arithmetic>(
 }
 
 /// The mass matrix M at a state, kg m²: the kinetic energy is θ̇ᵀ M θ̇ / 2, and M is symmetric and
-/// positive definite.
+/// positive definite. Of parameters as extreme as for [`energy`] its numbers may be infinite or NaN.
 ///
 /// ```
 /// use acrobot::{Params, Portable, State, mass_matrix};
@@ -327,8 +327,8 @@ pub fn mass_matrix<A: Arithmetic>(
 /// The total mechanical energy of a state, J; the potential energy is 0 at the height of the fixed
 /// joint, so that hanging at rest has the least.
 ///
-/// The book's equations conserve it where the torque is 0; those of the paper do not. It may be
-/// infinite where velocities or parameters are extreme.
+/// The book's equations conserve it where the torque is 0; those of the paper do not. Where velocities or
+/// parameters are so extreme that a part of it is beyond the scalar, it may be infinite or NaN.
 ///
 /// ```
 /// use acrobot::{Params, Portable, State, energy};

@@ -57,6 +57,8 @@ mod render;
 mod rk4;
 mod rng;
 mod seed;
+#[cfg(feature = "serde")]
+mod snapshot;
 mod state;
 mod time_limit;
 mod trajectory;

@@ -149,6 +149,8 @@ impl<'de> serde::Deserialize<'de> for Pcg64 {
         struct Snapshot {
             state: u128,
             increment: u128,
+            // Not left out: that would be another stream, and not an older snapshot.
+            #[serde(deserialize_with = "Option::deserialize")]
             half: Option<u32>,
         }
 

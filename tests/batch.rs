@@ -209,28 +209,6 @@ fn other_parameters_noise_and_starts_play_as_one_alone() {
     }
 }
 
-/// Where steps are not finite in some lanes and not in others.
-#[test]
-fn what_cannot_be_represented_is_as_for_one_alone() {
-    for torque in [1e3, 1e8, 1e18, 1e30, f32::MAX] {
-        for size in [1.0, 1e10, 1e19, 1e38] {
-            for (dynamics, gravity) in [(Dynamics::Book, 9.8), (Dynamics::Nips, 0.0)] {
-                let mut twins = Twins::<Fast>::new(48, Autoreset::NextStep);
-                twins.set_params(Params {
-                    torques: [-torque, 0.0, torque],
-                    max_velocity1: f32::MAX,
-                    max_velocity2: f32::MAX,
-                    dynamics,
-                    gravity,
-                    ..Params::default()
-                });
-                twins.start_within(-size, size);
-                twins.play(60, false);
-            }
-        }
-    }
-}
-
 /// As many threads as there are, and columns.
 #[test]
 fn threads_change_no_bit() {

@@ -4,7 +4,7 @@
 use acrobot::{
     Acrobot, Action, Arithmetic, Dynamics, Error, Fast, Form, Host, Micro, Observation, Params,
     Pcg64, Portable, REWARD_THRESHOLD, SeedSequence, State, TimeLimit, Trajectory, Transition,
-    bound, energy, mass_matrix, tip_height, wrap,
+    energy, mass_matrix, tip_height, wrap,
 };
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
@@ -133,31 +133,6 @@ fn parameters_change_on_a_running_acrobot() {
 }
 
 #[test]
-fn observations_lie_within_their_bounds() {
-    let mut acrobot = Acrobot::<Fast>::new(2);
-    let mut actions = Pcg64::new(2);
-    acrobot
-        .set_state(State::from([0.0, 0.0, 12.0, -28.0]))
-        .unwrap();
-    for _ in 0..1000 {
-        let seen = acrobot.step(Action::sample(&mut actions)).observation;
-        for i in 0..6 {
-            assert!(
-                Observation::LOW[i] <= seen[i] && seen[i] <= Observation::HIGH[i],
-                "{seen:?}"
-            );
-        }
-        let seen = Observation::<4>::from(acrobot.state());
-        for i in 0..4 {
-            assert!(
-                Observation::V0_LOW[i] <= seen[i] && seen[i] <= Observation::V0_HIGH[i],
-                "{seen:?}"
-            );
-        }
-    }
-}
-
-#[test]
 fn a_seeded_reset_is_a_new_acrobot() {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(0));
     acrobot.step(Action::Zero);
@@ -221,7 +196,7 @@ fn the_methods_of_an_acrobot_are_of_its_state_and_parameters() {
 }
 
 #[test]
-fn angles_wrap_and_velocities_stop() {
+fn angles_wrap() {
     use std::f64::consts::{PI, TAU};
     for (x, wrapped) in [
         (0.5, 0.5),
@@ -245,14 +220,4 @@ fn angles_wrap_and_velocities_stop() {
             }
         }
     }
-    // The lean form: to half of f32's spacing.
-    for x in [3.0_f32, 4.0, -50.0, 123.4, 1e3, -1e5, 1e6] {
-        let wrapped = f64::from(wrap::<Fast>(x));
-        let turns = (f64::from(x) - wrapped) / TAU;
-        let error = (turns - turns.round()).abs() * TAU;
-        assert!(error <= 2e-7 + 6e-8 * f64::from(x.abs()), "{x}: {error:e}");
-    }
-    assert_eq!(bound(5.0, 4.0), 4.0);
-    assert_eq!(bound(-5.0, 4.0), -4.0);
-    assert_eq!(bound(3.0, 4.0), 3.0);
 }

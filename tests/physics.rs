@@ -4,8 +4,8 @@
 mod common;
 
 use acrobot::{
-    Acrobot, Action, Arithmetic, Dynamics, Fast, Form, Host, Micro, Params, Pcg64, Portable, Real,
-    State, derivative, energy, mass_matrix, rk4, uniform,
+    Acrobot, Action, Arithmetic, Dynamics, Form, Params, Pcg64, Portable, State, derivative,
+    energy, mass_matrix, rk4, uniform,
 };
 use common::distance;
 
@@ -258,37 +258,6 @@ fn energy_drifts_no_faster_than_the_fourth_power_of_dt() {
         "{coarse:e} {middle:e} {fine:e}"
     );
     assert!(coarse <= 1e-2, "{coarse:e}");
-}
-
-/// The largest difference between a run and the mirror image of the mirrored run, step by step
-/// from the same states.
-fn asymmetry<A: Arithmetic>() -> f64 {
-    let mirror = |state: State<A::Scalar>| State::from(<[A::Scalar; 4]>::from(state).map(|x| -x));
-    let mut rng = Pcg64::new(3);
-    let mut worst = 0.0_f64;
-    for seed in 0..50 {
-        let (mut left, mut right) = (Acrobot::<A>::new(seed), Acrobot::<A>::new(seed));
-        for _ in 0..400 {
-            right.set_state(mirror(left.state())).unwrap();
-            let action = Action::sample(&mut rng);
-            let torque = left.params().torque(action) * A::Scalar::from_f64(3.0);
-            left.step_torque(torque).unwrap();
-            right.step_torque(-torque).unwrap();
-            worst = worst.max(distance(left.state().cast(), mirror(right.state()).cast()));
-        }
-    }
-    worst
-}
-
-#[test]
-fn left_is_the_mirror_image_of_right() {
-    assert_eq!(asymmetry::<Fast>(), 0.0);
-    assert_eq!(asymmetry::<Micro>(), 0.0);
-    // cos(θ1 − π/2) is not symmetric to the bit, and a step at high speed amplifies it.
-    for worst in [asymmetry::<Portable>(), asymmetry::<Host>()] {
-        println!("{worst:e}");
-        assert!(worst <= 1e-14, "{worst:e}");
-    }
 }
 
 /// A step with a torque is the step of the action that stands for it.

@@ -167,50 +167,6 @@ fn bad_start_bounds_and_actions_are_refused() {
     }
 }
 
-fn assert_bounded<A: Arithmetic>(acrobot: &Acrobot<A>) {
-    let params = acrobot.params();
-    let limits = [
-        A::Scalar::PI,
-        A::Scalar::PI,
-        params.max_velocity1,
-        params.max_velocity2,
-    ];
-    for (x, limit) in <[A::Scalar; 4]>::from(acrobot.state())
-        .into_iter()
-        .zip(limits)
-    {
-        assert!(-limit <= x && x <= limit, "{:?}", acrobot.state());
-    }
-    let [cos1, sin1, cos2, sin2, _, _] = *acrobot.observation();
-    assert!(
-        [cos1, sin1, cos2, sin2]
-            .into_iter()
-            .all(|x| (-1.0..=1.0).contains(&x))
-    );
-}
-
-#[test]
-fn starts_far_outside_come_back_with_the_first_step() {
-    fn check<A: Arithmetic>() {
-        for size in [1e2, 1e6, 1e12, 1e30, 3.4e38] {
-            let bounds = StartBounds::new(-size, size).unwrap();
-            let mut acrobot = Acrobot::<A>::new(3);
-            for _ in 0..20 {
-                let start = acrobot.reset_within(bounds);
-                assert!(start.into_iter().all(f32::is_finite));
-                for action in Action::ALL {
-                    acrobot.step(action);
-                    assert_bounded(&acrobot);
-                }
-            }
-        }
-    }
-    check::<Portable>();
-    check::<Host>();
-    check::<Fast>();
-    check::<Micro>();
-}
-
 #[test]
 fn what_cannot_be_represented_stops_where_it_is() {
     fn check<A: Arithmetic>() {
@@ -222,41 +178,7 @@ fn what_cannot_be_represented_stops_where_it_is() {
             1e38
         });
         let start = State::from([0.5, -0.25, 1.0, 2.0]).cast::<A::Scalar>();
-        for params in [
-            Params {
-                dt: huge,
-                ..Params::default()
-            },
-            Params {
-                mass1: huge,
-                length1: huge,
-                ..Params::default()
-            },
-            Params {
-                gravity: huge,
-                dt: number(1e10),
-                ..Params::default()
-            },
-            Params {
-                mass2: number(1e-38),
-                center_of_mass2: huge,
-                ..Params::default()
-            },
-            Params {
-                torques: [huge; 3],
-                torque_noise: huge,
-                ..Params::default()
-            },
-        ] {
-            acrobot.set_params(params).unwrap();
-            acrobot.set_state(start).unwrap();
-            for action in Action::ALL {
-                acrobot.step(action);
-                assert_bounded(&acrobot);
-            }
-        }
-
-        // One that surely blows up: the angles stay and the velocities are gone.
+        // The angles stay and the velocities are gone.
         acrobot
             .set_params(Params {
                 dt: huge,
@@ -282,4 +204,17 @@ fn what_cannot_be_represented_stops_where_it_is() {
     check::<Host>();
     check::<Fast>();
     check::<Micro>();
+}
+
+/// Of what is derived from these parameters a part is not a number.
+#[test]
+fn whatever_its_parameters_an_acrobot_equals_its_clone() {
+    let mut acrobot = Acrobot::<Fast>::new(0);
+    let params = Params {
+        length1: 1e38,
+        inertia2: 0.0,
+        ..Params::default()
+    };
+    acrobot.set_params(params).unwrap();
+    assert_eq!(acrobot, acrobot.clone());
 }

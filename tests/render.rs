@@ -2,16 +2,14 @@
 
 mod common;
 
-use std::convert::Infallible;
-
 use acrobot::env::Frame;
-use acrobot::{Acrobot, Arithmetic, Figure, Params, Pcg64, Portable, State, Theme, uniform};
+use acrobot::{Acrobot, Arithmetic, Figure, Params, Portable, State, Theme};
+use common::canvas::Canvas;
 use common::{Digest, oled};
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
-use embedded_graphics::geometry::{Dimensions, Point, Size};
+use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::pixelcolor::BinaryColor;
-use embedded_graphics::primitives::Rectangle;
 
 fn figure(theta1: f64, theta2: f64) -> Figure {
     figure_of([theta1, theta2, 1.0, 1.0])
@@ -118,52 +116,6 @@ fn frames_are_gymnasiums() {
     assert!(farthest <= 1.0, "{farthest}");
 }
 
-/// A target of any place and size that counts what is written to it, and knows nothing else.
-struct Canvas {
-    area: Rectangle,
-    pixels: Vec<Option<BinaryColor>>,
-    written: usize,
-}
-
-impl Canvas {
-    fn new(top_left: Point, size: Size) -> Self {
-        let pixels = vec![None; (size.width * size.height) as usize];
-        Self {
-            area: Rectangle::new(top_left, size),
-            pixels,
-            written: 0,
-        }
-    }
-}
-
-impl Dimensions for Canvas {
-    fn bounding_box(&self) -> Rectangle {
-        self.area
-    }
-}
-
-impl DrawTarget for Canvas {
-    type Color = BinaryColor;
-    type Error = Infallible;
-
-    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
-        &mut self,
-        pixels: I,
-    ) -> Result<(), Infallible> {
-        for Pixel(point, color) in pixels {
-            assert!(
-                self.area.contains(point),
-                "{point} is outside of {:?}",
-                self.area
-            );
-            let Point { x, y } = point - self.area.top_left;
-            self.pixels[y as usize * self.area.size.width as usize + x as usize] = Some(color);
-            self.written += 1;
-        }
-        Ok(())
-    }
-}
-
 const THEME: Theme<BinaryColor> = Theme::MONOCHROME;
 
 /// The drawing on a 128×64 display, a character a pixel.
@@ -217,46 +169,6 @@ fn the_oled_episode_is_its_snapshot() {
         "{frames}, {:#018x}",
         digest.0
     );
-}
-
-#[test]
-fn nothing_is_drawn_outside_of_any_target() {
-    let mut rng = Pcg64::new(0);
-    let mut draw = move |low, high| uniform(&mut rng, low, high);
-    let mut sizes = vec![
-        (0, 0),
-        (0, 7),
-        (7, 0),
-        (1, 1),
-        (2, 2),
-        (3, 1000),
-        (1000, 3),
-        (128, 64),
-        (1000, 1000),
-    ];
-    sizes.extend((0..60).map(|_| (draw(0.0, 100.0) as u32, draw(0.0, 100.0) as u32)));
-    for (width, height) in sizes {
-        let corner = Point::new(draw(-500.0, 500.0) as i32, draw(-500.0, 500.0) as i32);
-        let mut canvas = Canvas::new(corner, Size::new(width, height));
-        let mut acrobot = Acrobot::<Portable>::new(0);
-        for length in [1.0, 1e-300, 1e300, f64::MAX] {
-            acrobot
-                .set_params(Params {
-                    length1: length,
-                    length2: 1.5 * draw(0.0, 1.0) + 0.1,
-                    ..Params::DEFAULT
-                })
-                .unwrap();
-            let size = 10_f64.powi(draw(0.0, 300.0) as i32);
-            acrobot
-                .set_state(State::from([(); 4].map(|()| draw(-size, size))))
-                .unwrap();
-            let figure = Figure::new(&acrobot).with_torque(draw(-1.0, 1.0) as f32);
-            canvas.written = 0;
-            figure.draw(&mut canvas, &THEME).unwrap();
-            assert_eq!(canvas.written, (width * height) as usize, "each pixel once");
-        }
-    }
 }
 
 #[test]

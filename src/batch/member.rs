@@ -7,7 +7,8 @@ use crate::rng::Pcg64;
 use crate::state::State;
 
 /// What of one acrobot of a [`Batch`] cannot be derived; those of all are a snapshot of the batch, but
-/// for what its setters set.
+/// for what its setters set. With the `serde` feature it can be stored, as an
+/// [`Acrobot`](crate::Acrobot#snapshots) can.
 ///
 /// ```
 /// use acrobot::{Batch, Block, Fast, Member, Pcg64};
@@ -22,7 +23,6 @@ use crate::state::State;
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Member<S = f32> {
     /// The state.
     pub state: State<S>,
@@ -75,5 +75,63 @@ where
         block.resume::<A>(index % N, member.state, (member.elapsed, member.ended));
         *rng = member.rng;
         Ok(())
+    }
+}
+
+#[cfg(feature = "serde")]
+mod snapshot {
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::{Serialize, Serializer};
+
+    use super::{Member, Pcg64, State};
+    use crate::arithmetic::Real;
+    use crate::snapshot::{Header, Subject};
+
+    impl<S: Real> Subject for Member<S> {
+        const NAME: &'static str = "batch member";
+        type Scalar = S;
+    }
+
+    #[derive(serde::Serialize, serde::Deserialize)]
+    #[serde(rename = "Member")]
+    struct Snapshot<H, S, R> {
+        snapshot: H,
+        state: State<S>,
+        elapsed: u32,
+        ended: bool,
+        rng: R,
+    }
+
+    impl<S: Real + Serialize> Serialize for Member<S> {
+        fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
+            Snapshot {
+                snapshot: Header::<Self>::NEW,
+                state: self.state,
+                elapsed: self.elapsed,
+                ended: self.ended,
+                rng: &self.rng,
+            }
+            .serialize(serializer)
+        }
+    }
+
+    impl<'de, S: Real + Deserialize<'de>> Deserialize<'de> for Member<S> {
+        /// Refuses what [`set_member`](crate::Batch::set_member) refuses.
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let Snapshot::<Header<Self>, S, Pcg64> {
+                state,
+                elapsed,
+                ended,
+                rng,
+                ..
+            } = Snapshot::deserialize(deserializer)?;
+            state.validate().map_err(D::Error::custom)?;
+            Ok(Self {
+                state,
+                elapsed,
+                ended,
+                rng,
+            })
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod canvas;
 pub mod digest;
 pub mod episodes;
 pub mod oled;

@@ -107,18 +107,25 @@ fn render<'py>(
     }
 }
 
+/// Of what this package adds to the crate's snapshots, which have a version of their own.
+const VERSION: u32 = 1;
+
 /// The bytes of a snapshot, for pickle.
 fn save(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
-    postcard::to_stdvec(snapshot).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    postcard::to_stdvec(&(VERSION, snapshot))
+        .map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
 /// The snapshot of such bytes, checked, and nothing after it.
 fn load<T: DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
-    match postcard::take_from_bytes(bytes) {
-        Ok((snapshot, [])) => Ok(snapshot),
-        Ok(_) => Err(PyValueError::new_err("the snapshot has bytes too many")),
-        Err(error) => Err(PyValueError::new_err(format!(
-            "the snapshot is damaged: {error}"
-        ))),
+    let damaged = |error| PyValueError::new_err(format!("the snapshot is damaged: {error}"));
+    let (version, bytes) = postcard::take_from_bytes::<u32>(bytes).map_err(damaged)?;
+    if version != VERSION {
+        let message = format!("the snapshot is of version {version}; allowed is {VERSION}");
+        return Err(PyValueError::new_err(message));
+    }
+    match postcard::take_from_bytes(bytes).map_err(damaged)? {
+        (snapshot, []) => Ok(snapshot),
+        _ => Err(PyValueError::new_err("the snapshot has bytes too many")),
     }
 }

@@ -209,4 +209,6 @@ def test_damaged_snapshots_are_refused(env):
     for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good), not_finite]:
         with pytest.raises(ValueError, match="snapshot"):
             native.__setstate__(bad)
+    with pytest.raises(ValueError, match="of version 2; allowed is 1"):
+        native.__setstate__(b"\x02" + good[1:])
     assert native.__getstate__() == good

@@ -1,0 +1,182 @@
+//! Seeds, generators and what is drawn from them.
+
+use std::num::NonZeroU32;
+
+use acrobot::env::{BoxSpace, Discrete, Space};
+use acrobot::{Acrobot, Pcg64, Portable, SeedSequence, StartBounds, integers, uniform};
+use proptest::prelude::*;
+use rand_core::{Rng, SeedableRng, TryRng};
+
+use crate::given::{Range, holds, number, start_bounds};
+
+/// A generator of the user's own, which may be any: these words, again and again.
+#[derive(Clone, Debug)]
+struct Repeating(Vec<u64>, usize);
+
+impl TryRng for Repeating {
+    type Error = core::convert::Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
+        self.try_next_u64().map(|word| word as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
+        self.1 += 1;
+        Ok(self.0[self.1 % self.0.len()])
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
+        bytes.fill_with(|| self.next_u64() as u8);
+        Ok(())
+    }
+}
+
+fn generator() -> impl Strategy<Value = Repeating> {
+    let word = prop_oneof![Just(0), Just(u64::MAX), any::<u64>()];
+    prop::collection::vec(word, 1..4).prop_map(|words| Repeating(words, 0))
+}
+
+#[test]
+fn integers_are_below_their_number_whatever_draws_them() {
+    let n = prop_oneof![Just(1), 1..10_u32, any::<u32>()].prop_filter_map("0", NonZeroU32::new);
+    holds(2000, (generator(), n), |(mut rng, n)| {
+        assert!(integers(&mut rng, n) < n.get());
+        assert!(integers(&mut Pcg64::new(rng.0[0]), n) < n.get());
+    });
+}
+
+#[test]
+fn uniform_draws_are_within_their_bounds() {
+    let bounds = || number::<f64>(Range::Any);
+    holds(
+        5000,
+        (generator(), bounds(), bounds()),
+        |(mut rng, x, y)| {
+            let (low, high) = (x.min(y), x.max(y));
+            if (high - low).is_finite() {
+                let drawn = uniform(&mut rng, low, high);
+                assert!(low <= drawn && drawn <= high, "{drawn}");
+            }
+        },
+    );
+}
+
+/// In `f32`, to which the bounds are rounded with them.
+#[test]
+fn starts_are_within_their_bounds() {
+    holds(1000, (generator(), start_bounds()), |(rng, bounds)| {
+        let mut acrobot = Acrobot::<Portable, _>::with_rng(rng);
+        acrobot.reset_within(bounds);
+        let [low, high] = [bounds.low(), bounds.high()].map(|bound| f64::from(bound as f32));
+        for x in <[f64; 4]>::from(acrobot.state()) {
+            assert!(low <= x && x <= high, "{x}");
+        }
+    });
+}
+
+#[test]
+fn start_bounds_are_ordered_and_in_f32() {
+    let bound = || prop_oneof![number::<f64>(Range::Any), prop::num::f64::ANY];
+    holds(2000, (bound(), bound()), |(low, high)| {
+        let in_f32 = |x: f64| x.abs() <= f32::MAX.into();
+        match StartBounds::new(low, high) {
+            Ok(bounds) => assert_eq!((bounds.low(), bounds.high()), (low, high)),
+            Err(_) => assert!(!in_f32(low) || !in_f32(high) || low > high),
+        }
+        let valid = in_f32(low) && in_f32(high) && low <= high;
+        assert_eq!(StartBounds::new(low, high).is_ok(), valid);
+    });
+}
+
+#[test]
+fn seeds_are_the_same_however_they_are_written() {
+    holds(1000, (any::<u128>(), 0..128_u32), |(seed, shift)| {
+        let seed = seed >> shift;
+        let words = [0, 32, 64, 96].map(|shift| (seed >> shift) as u32);
+        let sequence = SeedSequence::from_words(&words);
+        assert_eq!(seed.to_string().parse(), Ok(sequence.clone()));
+        assert_eq!(format!("000{seed}").parse(), Ok(sequence.clone()));
+        let mut bytes = [0; 32];
+        bytes[..16].copy_from_slice(&seed.to_le_bytes());
+        assert_eq!(Pcg64::from_seed(bytes), Pcg64::new(sequence.clone()));
+        if let Ok(seed) = u64::try_from(seed) {
+            assert_eq!(SeedSequence::from(seed), sequence);
+            assert_eq!(Pcg64::seed_from_u64(seed), Pcg64::new(seed));
+        }
+    });
+    let letter = prop_oneof![4 => prop::char::range('0', '9'), 1 => any::<char>()];
+    holds(1000, prop::collection::vec(letter, 0..5), |letters| {
+        let text = String::from_iter(letters);
+        let is_decimal = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+        assert_eq!(text.parse::<SeedSequence>().is_ok(), is_decimal, "{text:?}");
+    });
+}
+
+#[test]
+fn children_are_numbered_over_all_that_are_spawned() {
+    let counts = prop::collection::vec(0..5_u64, 0..5);
+    let words = prop::collection::vec(any::<u32>(), 0..9);
+    holds(
+        500,
+        (words, counts, any::<u64>()),
+        |(words, counts, far)| {
+            let parent = SeedSequence::from_words(&words);
+            let mut sequence = parent.clone();
+            let all: Vec<_> = counts
+                .into_iter()
+                .flat_map(|count| sequence.spawn(count))
+                .collect();
+            for (index, child) in (0..).zip(all) {
+                assert_eq!(child, parent.child(index));
+                assert_ne!(child, parent.child(index + 1));
+            }
+            let [first, _, _] = parent.child(far).generate_state();
+            assert_eq!(parent.child(far).generate_state(), [first]);
+            // The last of all: there is no other after it.
+            assert!(sequence.spawn(u64::MAX).next().is_some());
+            assert_eq!(sequence.spawn(1).count(), 0);
+        },
+    );
+}
+
+#[test]
+fn spaces_contain_what_they_sample() {
+    let bound = || prop_oneof![4 => number::<f32>(Range::Any), 1 => prop::num::f32::ANY];
+    let bounds = prop::collection::vec((bound(), bound()), 0..4);
+    holds(2000, (bounds, generator()), |(bounds, mut rng)| {
+        let (low, high): (Vec<f32>, Vec<f32>) = bounds.into_iter().unzip();
+        let valid = low
+            .iter()
+            .zip(&high)
+            .all(|(low, high)| low.is_finite() && high.is_finite() && low <= high);
+        let space = BoxSpace::new(low, high);
+        assert_eq!(space.is_some(), valid);
+        if let Some(space) = space {
+            let sample = space.sample(&mut rng);
+            assert!(space.contains(&sample), "{sample:?}");
+        }
+        let space = Discrete::new(&[1, 2, 3, 5, 8]).unwrap();
+        assert!(space.contains(&space.sample(&mut rng)));
+    });
+}
+
+/// Two halves of each word, the low one first, whatever is drawn between them.
+#[test]
+fn halves_of_a_word_outlive_draws_of_whole_ones() {
+    let draws = prop::collection::vec(any::<bool>(), 0..20);
+    holds(500, (any::<u64>(), draws), |(seed, draws)| {
+        let (mut rng, mut words) = (Pcg64::new(seed), Pcg64::new(seed));
+        let mut high = None;
+        for whole in draws {
+            if whole {
+                assert_eq!(rng.next_u64(), words.next_u64());
+            } else if let Some(high) = high.take() {
+                assert_eq!(rng.next_u32(), high);
+            } else {
+                let word = words.next_u64();
+                assert_eq!(rng.next_u32(), word as u32);
+                high = Some((word >> 32) as u32);
+            }
+        }
+    });
+}

@@ -1,0 +1,123 @@
+//! The contract of `Env` for any valid parameters, and after any calls.
+
+use acrobot::env::{
+    ArithmeticKind, Env, Error, Options, RecordEpisodeStatistics, RenderMode, Rendering, Space,
+    acrobot_v0, acrobot_v1, check_env, make_with,
+};
+use acrobot::{Action, Arithmetic, Params, StartBounds, State, TimeLimit};
+use proptest::prelude::*;
+
+use crate::given::{Number, Range, action, holds, params, start_bounds, state};
+
+/// Parameters that are valid in `f32` too, and whose space holds the starts that Gymnasium draws.
+fn fitting() -> impl Strategy<Value = Params> {
+    params::<f32>(Range::Any)
+        .prop_map(|params| params.cast())
+        .prop_filter("starts within their space", |params: &Params| {
+            params.max_velocity1 > 0.1 && params.max_velocity2 > 0.1
+        })
+}
+
+#[test]
+fn environments_of_any_parameters_keep_the_contract() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        holds(
+            10,
+            (fitting(), any::<u64>(), 1..600_u32),
+            |(params, seed, limit)| {
+                let options = Options {
+                    params,
+                    ..Options::default()
+                };
+                let env = acrobot_v1::<A>(options.clone()).unwrap();
+                let env = TimeLimit::new(env, limit.try_into().unwrap());
+                check_env(&env, seed).unwrap();
+                let env = RecordEpisodeStatistics::new(acrobot_v0::<A>(options).unwrap());
+                check_env(&env, seed).unwrap();
+            },
+        );
+    }
+    in_every_arithmetic!(check);
+}
+
+#[derive(Clone, Debug)]
+enum Call {
+    Reset(Option<u64>, Option<StartBounds>),
+    Step(Action),
+    SetState(State),
+    SetParams(Params),
+    Render,
+    Close,
+}
+
+fn call() -> impl Strategy<Value = Call> {
+    let reset = (any::<Option<u64>>(), prop::option::of(start_bounds()));
+    prop_oneof![
+        2 => reset.prop_map(|(seed, bounds)| Call::Reset(seed, bounds)),
+        20 => action().prop_map(Call::Step),
+        2 => state::<f64>(Range::Any).prop_map(Call::SetState),
+        2 => params::<f64>(Range::Any).prop_map(Call::SetParams),
+        2 => Just(Call::Render),
+        1 => Just(Call::Close),
+    ]
+}
+
+/// Also steps before a reset and after an end, in the render mode of fewest pixels.
+#[test]
+fn any_calls_in_any_order_keep_observations_in_their_space() {
+    use ArithmeticKind::{Fast, Host, Micro, Portable};
+
+    let arithmetic = prop::sample::select(&[Host, Portable, Fast, Micro][..]);
+    let id = prop::sample::select(&["Acrobot-v0", "Acrobot-v1"][..]);
+    let calls = prop::collection::vec(call(), 0..60);
+    holds(300, (arithmetic, id, calls), |(arithmetic, id, calls)| {
+        let limit = if id == "Acrobot-v0" { 200 } else { 500 };
+        let options = Options {
+            arithmetic,
+            render_mode: RenderMode::Ansi,
+            ..Options::default()
+        };
+        let mut env = RecordEpisodeStatistics::new(make_with(id, options).unwrap());
+        let (mut elapsed, mut closed) = (0, false);
+        for call in calls {
+            match call {
+                Call::Reset(seed, bounds) => {
+                    let (start, _) = env.reset(seed.map(Into::into), bounds);
+                    assert!(start.iter().all(|x| x.is_finite()));
+                    elapsed = 0;
+                }
+                Call::Step(action) => {
+                    let step = env.step(action);
+                    elapsed += 1;
+                    let space = env.observation_space();
+                    assert!(space.contains(&step.observation), "{:?}", step.observation);
+                    assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
+                    assert_eq!(step.truncated, elapsed >= limit);
+                    let ended = step.info.episode.map(|episode| episode.length);
+                    assert_eq!(ended, step.ended().then_some(elapsed));
+                }
+                // What `f32` cannot hold is refused.
+                Call::SetState(state) => {
+                    let before = env.unwrapped().state();
+                    if env.unwrapped_mut().set_state(state).is_err() {
+                        assert_eq!(env.unwrapped().state(), before);
+                    }
+                }
+                Call::SetParams(params) => {
+                    let before = env.unwrapped().params();
+                    if env.unwrapped_mut().set_params(params).is_err() {
+                        assert_eq!(env.unwrapped().params(), before);
+                    }
+                }
+                Call::Render => match env.render() {
+                    Ok(Rendering::Text(text)) => assert_eq!(text.lines().count(), 21),
+                    other => assert!(closed && other == Err(Error::NoRenderMode), "{other:?}"),
+                },
+                Call::Close => {
+                    env.close();
+                    closed = true;
+                }
+            }
+        }
+    });
+}

@@ -1,0 +1,196 @@
+//! What the properties are given: numbers of every size, and what is made of them.
+
+use std::fmt::Debug;
+
+use acrobot::{Acrobot, Action, Arithmetic, Dynamics, Params, Real, StartBounds, State};
+use proptest::num::{f32, f64};
+use proptest::prelude::*;
+use proptest::test_runner::{FileFailurePersistence, RngSeed, TestRunner};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// Tries a property on so many cases, or as many as the environment says; always the same ones, unless it
+/// says otherwise.
+pub fn holds<G: Strategy + 'static>(cases: u32, given: G, property: impl Fn(G::Value)) {
+    hold(cases, given.boxed(), &property);
+}
+
+/// Apart, for it is large and compiled for each type of what is given.
+fn hold<T: Debug>(cases: u32, given: BoxedStrategy<T>, property: &dyn Fn(T)) {
+    let default = ProptestConfig::default();
+    let asked = std::env::var_os("PROPTEST_CASES").is_some();
+    let config = ProptestConfig {
+        cases: if asked { default.cases } else { cases },
+        rng_seed: match default.rng_seed {
+            RngSeed::Random => RngSeed::Fixed(0),
+            fixed => fixed,
+        },
+        max_local_rejects: u32::MAX,
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct(
+            "tests/properties/regressions.txt",
+        ))),
+        ..default
+    };
+    let outcome = TestRunner::new(config).run(&given, |value| {
+        property(value);
+        Ok(())
+    });
+    if let Err(failure) = outcome {
+        panic!("{failure}");
+    }
+}
+
+/// Calls `check::<A>()` for each arithmetic.
+macro_rules! in_every_arithmetic {
+    ($check:ident) => {{
+        $check::<acrobot::Portable>();
+        $check::<acrobot::Host>();
+        $check::<acrobot::Fast>();
+        $check::<acrobot::Micro>();
+    }};
+}
+
+/// A scalar that can be given and compared by its bits.
+pub trait Number: Real + Debug + Serialize + DeserializeOwned {
+    /// Any finite one: each exponent is as likely as any other.
+    fn finite() -> BoxedStrategy<Self>;
+
+    fn bits(self) -> u64;
+}
+
+macro_rules! impl_number {
+    ($($scalar:ident),*) => {$(
+        impl Number for $scalar {
+            fn finite() -> BoxedStrategy<Self> {
+                use $scalar::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
+                (POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO).boxed()
+            }
+
+            fn bits(self) -> u64 {
+                self.to_bits().into()
+            }
+        }
+    )*};
+}
+
+impl_number!(f32, f64);
+
+/// The bits of a state, which tell 0 from −0.
+pub fn bits<S: Number>(state: State<S>) -> [u64; 4] {
+    <[S; 4]>::from(state).map(S::bits)
+}
+
+/// How far from what is usual.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Range {
+    /// Within a factor of thirty of what Gymnasium has.
+    Moderate,
+    /// Moderate for the most part, and else whatever is finite.
+    Any,
+}
+
+/// Finite, of either sign.
+pub fn number<S: Number>(range: Range) -> BoxedStrategy<S> {
+    let moderate = (-30.0..30.0).prop_map(S::from_f64);
+    match range {
+        Range::Moderate => moderate.boxed(),
+        Range::Any => prop_oneof![3 => moderate, 1 => S::finite()].boxed(),
+    }
+}
+
+/// Above 0, `usual` more often than not.
+fn positive<S: Number>(range: Range, usual: f64) -> BoxedStrategy<S> {
+    let usual = S::from_f64(usual);
+    let moderate = (-3.4..3.4_f64).prop_map(|exponent| S::from_f64(exponent.exp()));
+    match range {
+        Range::Moderate => prop_oneof![1 => Just(usual), 1 => moderate].boxed(),
+        Range::Any => {
+            let any = S::finite().prop_map(|x| if x < S::ZERO { -x } else { x });
+            prop_oneof![8 => Just(usual), 5 => moderate, 1 => any].boxed()
+        }
+    }
+}
+
+/// Valid parameters.
+pub fn params<S: Number>(range: Range) -> BoxedStrategy<Params<S>> {
+    let Params {
+        dt,
+        max_velocity1,
+        max_velocity2,
+        ..
+    } = Params::DEFAULT;
+    let of_links = [(); 4].map(|()| positive::<S>(range, 1.0));
+    let or_none = |usual| prop_oneof![4 => positive::<S>(range, usual), 1 => Just(S::ZERO)];
+    let centers = [0.5, 0.5].map(or_none);
+    let inertias = [1.0, 1.0].map(or_none);
+    let limits = [max_velocity1, max_velocity2].map(|usual| positive::<S>(range, usual));
+    let gravity = prop_oneof![1 => Just(S::from_f64(9.8)), 1 => number(range)];
+    let torques = [(); 3].map(|()| number::<S>(range));
+    let noise = prop_oneof![2 => Just(S::ZERO), 1 => positive::<S>(range, 1.0)];
+    let dynamics = prop_oneof![Just(Dynamics::Book), Just(Dynamics::Nips)];
+    let all = (
+        (of_links, centers, inertias, limits),
+        (gravity, positive(range, dt), torques, noise, dynamics),
+    );
+    all.prop_map(|((links, centers, inertias, limits), others)| {
+        let (gravity, dt, torques, torque_noise, dynamics) = others;
+        let [length1, length2, mass1, mass2] = links;
+        let [center_of_mass1, center_of_mass2] = centers;
+        let [inertia1, inertia2] = inertias;
+        let [max_velocity1, max_velocity2] = limits;
+        Params {
+            length1,
+            length2,
+            mass1,
+            mass2,
+            center_of_mass1,
+            center_of_mass2,
+            inertia1,
+            inertia2,
+            gravity,
+            dt,
+            max_velocity1,
+            max_velocity2,
+            torques,
+            torque_noise,
+            dynamics,
+        }
+    })
+    .prop_filter("valid parameters", |params| params.validate().is_ok())
+    .boxed()
+}
+
+/// Any finite state.
+pub fn state<S: Number>(range: Range) -> BoxedStrategy<State<S>> {
+    [(); 4]
+        .map(|()| number::<S>(range))
+        .prop_map(State::from)
+        .boxed()
+}
+
+pub fn action() -> impl Strategy<Value = Action> {
+    prop::sample::select(&Action::ALL[..])
+}
+
+/// Any that are valid.
+pub fn start_bounds() -> impl Strategy<Value = StartBounds> {
+    let bound = || {
+        prop_oneof![
+            number::<f64>(Range::Moderate),
+            number::<f32>(Range::Any).prop_map(f64::from)
+        ]
+    };
+    (bound(), bound()).prop_map(|(x, y)| StartBounds::new(x.min(y), x.max(y)).unwrap())
+}
+
+/// An acrobot of these parameters in this state.
+pub fn acrobot<A: Arithmetic>(
+    params: Params<A::Scalar>,
+    state: State<A::Scalar>,
+    seed: u64,
+) -> Acrobot<A> {
+    let mut acrobot = Acrobot::new(seed);
+    acrobot.set_params(params).unwrap();
+    acrobot.set_state(state).unwrap();
+    acrobot
+}

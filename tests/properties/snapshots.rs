@@ -1,0 +1,110 @@
+//! Snapshots of any acrobot: resumed to the same bits, and harmless when damaged.
+
+use acrobot::{Acrobot, Action, Arithmetic, Member, Params, Pcg64, State, TimeLimit};
+use proptest::prelude::*;
+use rand_core::Rng;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::given::{Number, Range, acrobot, bits, holds, params, state};
+
+/// An acrobot after some steps, its generator after some draws, and its episode as old as it likes.
+fn running<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = TimeLimit<Acrobot<A>>> {
+    let given = (params(Range::Any), state(Range::Any), any::<u64>(), 0..4);
+    let limit = prop_oneof![Just(1), Just(500), 1..=u32::MAX];
+    (given, limit).prop_map(|((params, state, seed, steps), limit)| {
+        let mut acrobot = TimeLimit::new(acrobot(params, state, seed), limit.try_into().unwrap());
+        for _ in 0..steps {
+            let action = Action::sample(acrobot.inner_mut().rng_mut());
+            acrobot.step(action);
+        }
+        acrobot
+    })
+}
+
+/// What is stored and loaded, in a format of texts and in one of bytes.
+fn again<T: Serialize + DeserializeOwned>(original: &T) -> [T; 2] {
+    let text = serde_json::to_string(original).unwrap();
+    let bytes = postcard::to_stdvec(original).unwrap();
+    [
+        serde_json::from_str(&text).unwrap(),
+        postcard::from_bytes(&bytes).unwrap(),
+    ]
+}
+
+#[test]
+fn snapshots_resume_to_the_same_bits() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        holds(500, running::<A>(), |original| {
+            let expected = serde_json::to_string(&original).unwrap();
+            for mut resumed in again(&original) {
+                let mut original = original.clone();
+                assert_eq!(serde_json::to_string(&resumed).unwrap(), expected);
+                for _ in 0..3 {
+                    assert_eq!(resumed, original);
+                    let [state, other] =
+                        [&resumed, &original].map(|limited| limited.inner().state());
+                    assert_eq!(bits(state), bits(other));
+                    let action = Action::sample(original.inner_mut().rng_mut());
+                    assert_eq!(Action::sample(resumed.inner_mut().rng_mut()), action);
+                    assert_eq!(resumed.step(action), original.step(action));
+                }
+            }
+        });
+    }
+    in_every_arithmetic!(check);
+}
+
+#[test]
+fn members_and_parts_are_loaded_as_they_were_stored() {
+    let given = (state(Range::Any), any::<(u32, bool, u64, bool)>());
+    holds(500, given, |(state, (elapsed, ended, seed, half))| {
+        let mut rng = Pcg64::new(seed);
+        if half {
+            rng.next_u32();
+        }
+        let member = Member::<f32> {
+            state,
+            elapsed,
+            ended,
+            rng,
+        };
+        for loaded in again(&member) {
+            assert_eq!(bits(loaded.state), bits(member.state));
+            assert_eq!(loaded, member);
+        }
+    });
+    let given = (params::<f64>(Range::Any), state::<f64>(Range::Any));
+    holds(500, given, |parts: (Params, State)| {
+        assert_eq!(again(&parts), [parts; 2]);
+    });
+}
+
+/// Bytes that were changed, cut off or added are refused, or are those of another valid acrobot.
+#[test]
+fn damaged_snapshots_are_refused_or_valid() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let changes = prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4);
+        let kept = any::<prop::sample::Index>();
+        let given = (running::<A>(), changes, prop::option::weighted(0.2, kept));
+        holds(2000, given, |(original, changes, kept)| {
+            let mut bytes = postcard::to_stdvec(&original).unwrap();
+            for (at, byte) in changes {
+                let at = at.index(bytes.len());
+                bytes[at] = byte;
+            }
+            if let Some(kept) = kept {
+                bytes.truncate(kept.index(bytes.len()));
+            }
+            if let Ok(mut loaded) = postcard::from_bytes::<TimeLimit<Acrobot<A>>>(&bytes) {
+                loaded.inner().params().validate().unwrap();
+                loaded.inner().state().validate().unwrap();
+                let observation = loaded.step(Action::Positive).observation;
+                assert!(observation.iter().all(|x| x.is_finite()));
+                let [again, _] = again(&loaded);
+                assert_eq!(again, loaded);
+            }
+        });
+    }
+    in_every_arithmetic!(check);
+}

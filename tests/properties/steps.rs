@@ -1,0 +1,245 @@
+//! Steps of any acrobot: bounds, mirror symmetry, time limits, and lanes of a batch.
+
+use std::cell::Cell;
+use std::f64::consts::PI;
+use std::num::NonZeroU32;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Micro, Observation, Observations,
+    Output, Params, Pcg64, Portable, Real, State, Step, TimeLimit, derivative, integers, rk4,
+};
+use proptest::prelude::*;
+
+use crate::common::distance;
+use crate::given::{
+    Number, Range, acrobot, action, bits, holds, number, params, start_bounds, state,
+};
+
+/// Two of each, for what is set on a running acrobot.
+fn two<G: Strategy>(given: impl Fn() -> G) -> [G; 2] {
+    [given(), given()]
+}
+
+fn assert_seen<A: Arithmetic>(acrobot: &Acrobot<A>, observation: Observation) {
+    assert_eq!(observation, acrobot.observation());
+    let [trigonometric @ .., dtheta1, dtheta2] = *observation;
+    for x in trigonometric {
+        assert!((-1.0..=1.0).contains(&x), "{observation:?}");
+    }
+    let state = acrobot.state();
+    for (seen, x) in [(dtheta1, state.dtheta1), (dtheta2, state.dtheta2)] {
+        assert_eq!(seen.to_bits(), (x.to_f64() as f32).to_bits());
+    }
+}
+
+/// Promise 3 for what a step leaves and returns.
+fn assert_stepped<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) {
+    let Params {
+        max_velocity1,
+        max_velocity2,
+        ..
+    } = *acrobot.params();
+    let limits = [A::Scalar::PI, A::Scalar::PI, max_velocity1, max_velocity2];
+    let state = acrobot.state();
+    for (x, limit) in <[A::Scalar; 4]>::from(state).into_iter().zip(limits) {
+        assert!(-limit <= x && x <= limit, "{state:?}");
+    }
+    assert_seen(acrobot, step.observation);
+    assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
+}
+
+/// Ten million steps where optimized: so many cases of 100 on average in four arithmetics.
+#[test]
+fn whatever_is_set_and_done_stays_in_bounds() {
+    const CASES: u32 = if cfg!(debug_assertions) { 500 } else { 25_500 };
+
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let steps = Cell::new(0_u64);
+        let set = (two(|| params(Range::Any)), two(|| state(Range::Any)));
+        let done = (
+            start_bounds(),
+            number(Range::Any),
+            any::<u64>(),
+            0..=200_u32,
+        );
+        holds(CASES, (set, done), |((params, states), done)| {
+            let (bounds, torque, seed, count) = done;
+            let mut choices = Pcg64::new(seed);
+            let mut acrobot = Acrobot::<A>::new(seed);
+            for (params, state) in params.into_iter().zip(states) {
+                acrobot.set_params(params).unwrap();
+                acrobot.set_state(state).unwrap();
+                assert_seen(&acrobot, acrobot.observation());
+                for _ in 0..count / 2 {
+                    match integers(&mut choices, NonZeroU32::new(32).unwrap()) {
+                        0 => {
+                            let start = acrobot.reset();
+                            assert_seen(&acrobot, start);
+                        }
+                        1 => {
+                            let start = acrobot.reset_within(bounds);
+                            assert_seen(&acrobot, start);
+                        }
+                        2 | 3 => {
+                            let step = acrobot.step_torque(torque).unwrap();
+                            assert_stepped(&acrobot, step);
+                        }
+                        _ => {
+                            let step = acrobot.step(Action::sample(&mut choices));
+                            assert_stepped(&acrobot, step);
+                        }
+                    }
+                }
+            }
+            steps.set(steps.get() + u64::from(count / 2 * 2));
+        });
+        println!("{:?}: {} steps", A::default(), steps.get());
+    }
+    in_every_arithmetic!(check);
+}
+
+/// The mirror image of a state.
+fn mirror<S: Real>(state: State<S>) -> State<S> {
+    <[S; 4]>::from(state).map(|x| -x).into()
+}
+
+fn mirrored<S: Real>(params: Params<S>) -> Params<S> {
+    let [negative, zero, positive] = params.torques;
+    Params {
+        torques: [-positive, -zero, -negative],
+        torque_noise: S::ZERO,
+        ..params
+    }
+}
+
+/// The largest angle that a step passes through, rad.
+fn reach<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: State<A::Scalar>,
+    torque: A::Scalar,
+) -> f64 {
+    let reach = Cell::new(0.0_f64);
+    let next = rk4(state.into(), params.dt, |y| {
+        let [theta1, theta2, ..] = y.map(|x| x.to_f64().abs());
+        reach.set(reach.get().max(theta1).max(theta2));
+        derivative::<A>(params, &y.into(), torque)
+    });
+    let [theta1, theta2, ..] = next.map(|x| x.to_f64().abs());
+    if next.into_iter().all(Real::is_finite) {
+        reach.get().max(theta1).max(theta2)
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// `Portable` to the bit, whatever it is given. `Fast` and `Micro` too, up to where their kernels lose
+/// the quadrant: there |x| + 1.5 × 2²³ and −|x| + 1.5 × 2²³ are not rounded alike.
+#[test]
+fn left_is_the_mirror_image_of_right() {
+    fn check<A: Arithmetic<Scalar: Number>>(farthest: f64) {
+        let checked = Cell::new(0);
+        let given = (params(Range::Any), state(Range::Any), action());
+        holds(2000, given, |(params, state, action)| {
+            let right = mirrored::<A::Scalar>(params);
+            let left = mirrored(right);
+            if reach::<A>(&left, state, left.torque(action)) > farthest {
+                return;
+            }
+            checked.set(checked.get() + 1);
+            let opposite = Action::ALL[2 - action as usize];
+            let mut left = acrobot::<A>(left, state, 0);
+            let mut right = acrobot::<A>(right, mirror(state), 0);
+            let [step, mirrored] = [left.step(action), right.step(opposite)];
+            assert_eq!(left.state(), mirror(right.state()));
+            assert_eq!(step.terminated, mirrored.terminated);
+        });
+        println!("{:?}: {}", A::default(), checked.get());
+        assert!(checked.get() > 500, "{} were checked", checked.get());
+    }
+    check::<Portable>(f64::INFINITY);
+    check::<Fast>(5e5);
+    check::<Micro>(5e5);
+}
+
+/// `Host` takes cos(x − π/2) as Gymnasium does, which is not symmetric to the bit.
+#[test]
+fn left_is_nearly_the_mirror_image_of_right_in_host() {
+    /// A few roundings of numbers up to 3; faster links would amplify them.
+    const ROUNDING: f64 = 4e-15;
+
+    let given = ([-PI..PI, -PI..PI, -3.0..3.0, -3.0..3.0], action());
+    holds(2000, given, |(numbers, action)| {
+        let opposite = Action::ALL[2 - action as usize];
+        let mut left = acrobot::<Host>(Params::DEFAULT, numbers.into(), 0);
+        let mut right = acrobot::<Host>(Params::DEFAULT, mirror(numbers.into()), 0);
+        left.step(action);
+        right.step(opposite);
+        let error = distance(left.state(), mirror(right.state()));
+        assert!(error <= ROUNDING, "{error:e}");
+    });
+}
+
+#[test]
+fn episodes_are_truncated_from_their_limit_on() {
+    let done = prop::collection::vec(prop::option::weighted(0.9, action()), 0..40);
+    holds(500, (1..20_u32, done), |(limit, done)| {
+        let limit = NonZeroU32::new(limit).unwrap();
+        let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(0), limit);
+        let mut alone = acrobot.inner().clone();
+        let mut elapsed = 0;
+        for action in done {
+            if let Some(action) = action {
+                let (step, expected) = (acrobot.step(action), alone.step(action));
+                elapsed += 1;
+                assert_eq!(step.observation, expected.observation);
+                assert_eq!(step.terminated, expected.terminated);
+                assert_eq!(step.truncated, elapsed >= limit.get());
+            } else {
+                assert_eq!(acrobot.reset(), alone.reset());
+                elapsed = 0;
+            }
+            assert_eq!(acrobot.elapsed(), elapsed);
+        }
+    });
+}
+
+/// What no lane does to another: each with a state of its own, far out or not, beside the others.
+#[test]
+fn lanes_of_a_batch_are_as_one_alone() {
+    const LEN: usize = 18;
+    let states = prop::collection::vec(state::<f32>(Range::Any), LEN);
+    let given = (params::<f32>(Range::Any), states, action());
+    holds(1000, given, |(params, states, action)| {
+        let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; LEN]);
+        let mut batch = Batch::<Fast, _, _>::new(0, blocks, generators).unwrap();
+        batch.set_params(params).unwrap();
+        batch.reset_to(&states).unwrap();
+        let alone = states.iter().zip(0..);
+        let mut alone: Vec<_> = alone
+            .map(|(state, i)| {
+                let mut alone = acrobot::<Fast>(params, *state, 0);
+                *alone.rng_mut() = batch.member(i).unwrap().rng;
+                alone
+            })
+            .collect();
+        let mut rows = [[0.0; 6]; LEN];
+        let mut terminated = [false; LEN];
+        let output = Output {
+            rewards: &mut [0.0; LEN],
+            terminated: &mut terminated,
+            truncated: &mut [false; LEN],
+            observations: Observations::Rows(&mut rows),
+            final_observations: Observations::None,
+        };
+        batch.step(&[action; LEN], output).unwrap();
+        for (i, alone) in alone.iter_mut().enumerate() {
+            let step = alone.step(action);
+            assert_eq!(bits(batch.state(i).unwrap()), bits(alone.state()), "{i}");
+            assert_eq!(
+                rows[i].map(f32::to_bits),
+                step.observation.map(f32::to_bits)
+            );
+            assert_eq!(terminated[i], step.terminated);
+        }
+    });
+}

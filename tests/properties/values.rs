@@ -1,0 +1,259 @@
+//! The pure functions, of any numbers.
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+use acrobot::{
+    Arithmetic, Fast, Form, Observation, Params, Real, State, Trajectory, Transition, bound,
+    derivative, energy, mass_matrix, rk4, tip_height, wrap,
+};
+use proptest::prelude::*;
+
+use crate::given::{Number, Range, acrobot, bits, holds, number, params, state};
+
+#[test]
+fn angles_wrap_into_half_a_turn_to_either_side() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        holds(5000, number::<A::Scalar>(Range::Any), |x| {
+            let wrapped = wrap::<A>(x);
+            let pi = A::Scalar::PI;
+            assert!(-pi <= wrapped && wrapped <= pi, "{wrapped}");
+            // From 2²² turns on an `f32` counts them no more, and not alike to both sides.
+            if A::FORM == Form::Gymnasium || x.to_f64().abs() <= 4_194_304.0 * TAU {
+                assert_eq!(wrap::<A>(-x), -wrapped);
+            }
+            if -pi <= x && x <= pi {
+                assert_eq!(wrapped.bits(), x.bits());
+            }
+        });
+    }
+    in_every_arithmetic!(check);
+}
+
+#[test]
+fn angles_wrap_by_whole_turns() {
+    /// The spacing that `f32` has at x, and near 0 that of π.
+    const ROUNDING: [f64; 2] = [1.2e-7, 2e-7];
+
+    let angle = (0.0..15.0_f32).prop_map(f32::exp);
+    holds(5000, (angle, any::<bool>()), |(x, negative)| {
+        let x = if negative { -x } else { x };
+        let turns = (f64::from(x) - f64::from(wrap::<Fast>(x))) / TAU;
+        let error = (turns - turns.round()).abs() * TAU;
+        assert!(
+            error <= ROUNDING[0] * f64::from(x.abs()) + ROUNDING[1],
+            "{error:e}"
+        );
+    });
+}
+
+#[test]
+fn bounds_are_clamps() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let given = (number::<A::Scalar>(Range::Any), number(Range::Any));
+        holds(1000, given, |(x, limit): (A::Scalar, A::Scalar)| {
+            let limit = if limit < A::Scalar::ZERO {
+                -limit
+            } else {
+                limit
+            };
+            let clamped = x.to_f64().clamp(-limit.to_f64(), limit.to_f64());
+            assert_eq!(bound(x, limit).to_f64(), clamped);
+        });
+    }
+    in_every_arithmetic!(check);
+}
+
+#[test]
+fn sines_and_cosines_are_of_the_unit_circle() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        holds(5000, number::<A::Scalar>(Range::Any), |x| {
+            let (sin, cos) = A::sin_cos(x);
+            let [sine, cosine] = [sin, cos].map(Real::to_f64);
+            assert!(sine.abs() <= 1.0 && cosine.abs() <= 1.0, "{sine} {cosine}");
+            let radius = sine * sine + cosine * cosine;
+            // Far out, where an `f32` tells few angles apart, `Micro` leaves the range of its polynomials.
+            assert!((radius - 1.0).abs() <= 1e-4, "{radius}");
+            assert_eq!(A::sin_cos(-x), (-sin, cos));
+            assert_eq!(A::cos(x).bits(), cos.bits());
+        });
+    }
+    in_every_arithmetic!(check);
+}
+
+/// What is shown of an acrobot is what the functions say, and the tip is within reach.
+#[test]
+fn readings_are_the_functions_of_the_same_name() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let given = (params(Range::Any), state(Range::Any));
+        holds(1000, given, |(params, state)| {
+            let acrobot = acrobot::<A>(params, state, 0);
+            let bits = |x: A::Scalar| {
+                if x.to_f64().is_nan() {
+                    None
+                } else {
+                    Some(x.bits())
+                }
+            };
+            assert_eq!(acrobot.params(), &params);
+            assert_eq!(acrobot.state(), state);
+            assert_eq!(
+                acrobot.mass_matrix().map(|row| row.map(bits)),
+                mass_matrix::<A>(&params, &state).map(|row| row.map(bits))
+            );
+            assert_eq!(bits(acrobot.energy()), bits(energy::<A>(&params, &state)));
+            let height = acrobot.tip_height();
+            assert_eq!(height, tip_height::<A>(&params, &state));
+            let reach = params.length1 + params.length2;
+            assert!(-reach <= height && height <= reach, "{height}");
+
+            let angles = Observation::<4>::from(state);
+            assert_eq!(
+                *angles,
+                <[A::Scalar; 4]>::from(state).map(|x| x.to_f64() as f32)
+            );
+        });
+    }
+    in_every_arithmetic!(check);
+}
+
+/// Of parameters and states that are not extreme: of those the parts may be beyond the scalar.
+#[test]
+fn the_equations_are_those_of_a_pendulum() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let given = (
+            params(Range::Moderate),
+            state(Range::Moderate),
+            number(Range::Moderate),
+        );
+        holds(
+            2000,
+            given,
+            |(params, state, torque): (Params<A::Scalar>, _, _)| {
+                let rates = derivative::<A>(&params, &state, torque).map(Real::to_f64);
+                assert!(rates.into_iter().all(f64::is_finite), "{rates:?}");
+                let State {
+                    dtheta1, dtheta2, ..
+                } = state.cast::<f64>();
+                assert_eq!(rates[..2], [dtheta1, dtheta2]);
+
+                let [[m11, m12], [m21, m22]] =
+                    mass_matrix::<A>(&params, &state).map(|row| row.map(Real::to_f64));
+                assert_eq!(m12, m21);
+                assert!(m11 > 0.0 && m22 > 0.0, "{m11} {m22}");
+
+                // The kinetic energy is never negative, but for roundings of parts that cancel.
+                let at_rest = State {
+                    dtheta1: A::Scalar::ZERO,
+                    dtheta2: A::Scalar::ZERO,
+                    ..state
+                };
+                let [potential, total] =
+                    [at_rest, state].map(|state| energy::<A>(&params, &state).to_f64());
+                let parts = m11 * dtheta1 * dtheta1 + m22 * dtheta2 * dtheta2 + potential.abs();
+                assert!(total >= potential - 1e-5 * parts, "{total} {potential}");
+            },
+        );
+    }
+    in_every_arithmetic!(check);
+}
+
+/// y' = c and y' = t, which it solves exactly but for rounding, and no time at all, in which nothing moves.
+#[test]
+fn rk4_solves_what_it_can_exactly() {
+    let given = (
+        [number::<f64>(Range::Moderate), number(Range::Moderate)],
+        number(Range::Any),
+    );
+    holds(1000, given, |([y, rate], dt)| {
+        let [line, parabola, time] = rk4([y, y, 0.0], dt, |[_, _, time]| [rate, time, 1.0]);
+        let close = |x: f64, expected: f64| {
+            let scale = expected.abs().max(y.abs());
+            x == expected || (x - expected).abs() <= 1e-14 * scale || !scale.is_finite()
+        };
+        assert!(close(time, dt), "{time}");
+        assert!(close(line, y + rate * dt), "{line}");
+        assert!(close(parabola, y + 0.5 * dt * dt), "{parabola}");
+        assert_eq!(rk4([y], 0.0, |_| [rate]), [y]);
+    });
+}
+
+#[test]
+fn wider_scalars_keep_what_is_cast() {
+    holds(
+        1000,
+        (params::<f32>(Range::Any), state::<f32>(Range::Any)),
+        |(params, state)| {
+            assert_eq!(params.cast::<f64>().cast::<f32>(), params);
+            assert_eq!(bits(state.cast::<f64>().cast::<f32>()), bits(state));
+            assert_eq!(params.cast::<f64>().validate(), Ok(()));
+        },
+    );
+}
+
+fn transition() -> impl Strategy<Value = Transition> {
+    let states = [state(Range::Any), state(Range::Any)];
+    (states, number(Range::Any), any::<[bool; 2]>()).prop_map(
+        |([state, next], torque, [terminated, truncated])| Transition {
+            state,
+            torque,
+            reward: if terminated { 0.0 } else { -1.0 },
+            next,
+            terminated,
+            truncated,
+        },
+    )
+}
+
+/// As a queue that forgets, and in CSV to the bit.
+#[test]
+fn a_trajectory_keeps_the_last_transitions_in_order() {
+    const ROOM: usize = 5;
+    let done = prop::collection::vec(prop::option::weighted(0.9, transition()), 0..20);
+    holds(500, done, |done| {
+        let mut trajectory = Trajectory::<f64, ROOM>::new();
+        let (mut kept, mut pushed) = (VecDeque::new(), 0);
+        for transition in done {
+            if let Some(transition) = transition {
+                trajectory.push(transition);
+                kept.push_back(transition);
+                pushed += 1;
+                if kept.len() > ROOM {
+                    kept.pop_front();
+                }
+            } else {
+                trajectory.clear();
+                kept.clear();
+                pushed = 0;
+            }
+            assert!(trajectory.iter().eq(&kept));
+            assert_eq!(trajectory.len(), kept.len());
+            assert_eq!(trajectory.is_empty(), kept.is_empty());
+        }
+        let mut csv = String::new();
+        trajectory.write_csv(&mut csv).unwrap();
+        let mut lines = csv.lines();
+        let columns: Vec<&str> = lines.next().unwrap().split(',').collect();
+        assert_eq!(columns[..2], ["step", "theta1 (rad)"]);
+        for (number, transition) in (pushed - kept.len() + 1..).zip(&kept) {
+            let fields: Vec<f64> = lines
+                .next()
+                .unwrap()
+                .split(',')
+                .map(|field| field.parse().unwrap())
+                .collect();
+            let mut expected = vec![number as f64];
+            expected.extend(<[f64; 4]>::from(transition.state));
+            expected.extend([transition.torque, transition.reward.into()]);
+            expected.extend(<[f64; 4]>::from(transition.next));
+            expected.extend(
+                [transition.terminated, transition.truncated].map(|x| f64::from(u8::from(x))),
+            );
+            let bits =
+                |numbers: Vec<f64>| numbers.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+            assert_eq!(fields.len(), columns.len());
+            assert_eq!(bits(fields), bits(expected));
+        }
+        assert_eq!(lines.next(), None);
+    });
+}
