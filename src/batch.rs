@@ -287,9 +287,16 @@ where
         self.shared.limit = limit;
     }
 
-    /// Sets when ended episodes are reset.
+    /// Sets when ended episodes are reset; those that wait for it are at once by
+    /// [`Autoreset::SameStep`], with which none waits.
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.shared.autoreset = autoreset;
+        if autoreset == Autoreset::SameStep {
+            let blocks = self.blocks.as_mut().iter_mut();
+            for (block, generators) in blocks.zip(self.generators.as_mut().chunks_mut(N)) {
+                block.reset_ended::<A>(self.shared.bounds, generators);
+            }
+        }
     }
 }
 

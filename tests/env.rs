@@ -365,3 +365,21 @@ fn spaces_know_their_elements() {
             .all(|action| Discrete::ACTIONS.contains(action))
     );
 }
+
+#[test]
+fn what_only_rounding_would_allow_is_refused() {
+    // As f32 it is 0.
+    let params = Params {
+        torque_noise: -1e-60,
+        ..Params::DEFAULT
+    };
+    let options = Options {
+        arithmetic: ArithmeticKind::Fast,
+        ..Options::default()
+    };
+    let mut env = make_with("Acrobot-v1", options.clone()).unwrap();
+    let expected = params.validate().unwrap_err();
+    assert_eq!(env.unwrapped_mut().set_params(params), Err(expected));
+    let made = make_with("Acrobot-v1", Options { params, ..options });
+    assert_eq!(made.unwrap_err(), Error::Invalid(expected));
+}

@@ -255,3 +255,10 @@ fn a_frame_ignores_what_is_outside_of_it() {
         (0, 0)
     );
 }
+
+#[test]
+#[should_panic(expected = "capacity overflow")]
+fn a_frame_has_no_fewer_pixels_than_it_says() {
+    // Three bytes for each are 2⁶⁴ and a little more.
+    let _ = Frame::new(u32::MAX, 1_431_655_766);
+}

@@ -116,6 +116,16 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
+    /// Resets those that wait for the next step to do it.
+    pub(super) fn reset_ended<A: Arithmetic<Scalar = S>>(
+        &mut self,
+        bounds: StartBounds,
+        generators: &mut [Pcg64],
+    ) {
+        let ended = self.ended;
+        self.reset::<A>(&ended, bounds, generators);
+    }
+
     /// Six times a number of each acrobot.
     #[inline(always)]
     fn seen(&self) -> [&[S; N]; 6] {

@@ -1,6 +1,6 @@
 //! One acrobot of a batch, to save and to resume.
 
-use super::{Batch, Block};
+use super::{Autoreset, Batch, Block};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::rng::Pcg64;
@@ -28,7 +28,7 @@ pub struct Member<S = f32> {
     pub state: State<S>,
     /// The steps since the last reset.
     pub elapsed: u32,
-    /// Whether the next step resets it, as with [`Autoreset::NextStep`](super::Autoreset::NextStep).
+    /// Whether the next step resets it, as with [`Autoreset::NextStep`].
     pub ended: bool,
     /// The generator that its starts and its torque noise are drawn from.
     pub rng: Pcg64,
@@ -54,7 +54,8 @@ where
         })
     }
 
-    /// Puts an acrobot in the place of that index, where it goes on to the same bits.
+    /// Puts an acrobot in the place of that index, where it goes on to the same bits. One that waits for
+    /// its reset is reset at once with [`Autoreset::SameStep`], with which none waits.
     ///
     /// # Errors
     ///
@@ -63,8 +64,9 @@ where
     pub fn set_member(&mut self, index: usize, member: Member<A::Scalar>) -> Result<(), Error> {
         member.state.validate()?;
         let block = self.blocks.as_mut().get_mut(index / N);
-        let rng = self.generators.as_mut().get_mut(index);
-        let (Some(block), Some(rng)) = (block, rng) else {
+        let generators = self.generators.as_mut().chunks_mut(N).nth(index / N);
+        let generators = generators.unwrap_or_default();
+        let (Some(block), Some(rng)) = (block, generators.get_mut(index % N)) else {
             return Err(Error::OutOfRange {
                 name: "index",
                 value: index as f64,
@@ -74,6 +76,9 @@ where
         };
         block.resume::<A>(index % N, member.state, (member.elapsed, member.ended));
         *rng = member.rng;
+        if self.shared.autoreset == Autoreset::SameStep {
+            block.reset_ended::<A>(self.shared.bounds, generators);
+        }
         Ok(())
     }
 }

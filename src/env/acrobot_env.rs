@@ -129,12 +129,11 @@ impl<A: Arithmetic, O: View> AcrobotEnv<A, O> {
     ///
     /// The first parameter that is refused, also where it is so only as rounded to `A`'s scalar.
     pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, Refusal> {
-        params.validate()?;
         let mut env = Self {
             render_mode,
             ..Self::default()
         };
-        env.acrobot.set_params(params.cast())?;
+        LiveAcrobot::set_params(&mut env.acrobot, params)?;
         Ok(env)
     }
 
@@ -254,7 +253,7 @@ pub trait LiveAcrobot {
     ///
     /// # Errors
     ///
-    /// As there.
+    /// As there, for a parameter that is refused as it is or as rounded.
     fn set_params(&mut self, params: Params) -> Result<(), Refusal>;
 
     /// The figure to draw.
@@ -275,6 +274,7 @@ impl<A: Arithmetic> LiveAcrobot for Acrobot<A> {
     }
 
     fn set_params(&mut self, params: Params) -> Result<(), Refusal> {
+        params.validate()?;
         Self::set_params(self, params.cast())
     }
 

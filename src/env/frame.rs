@@ -48,9 +48,14 @@ impl Frame {
     }
 
     /// A black frame of that many pixels.
+    ///
+    /// # Panics
+    ///
+    /// Where no memory can hold so many.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
-        let bytes = std::vec![0; width as usize * height as usize * 3];
+        let pixels = (width as usize).saturating_mul(height as usize);
+        let bytes = std::vec![0; pixels.saturating_mul(3)];
         Self { width, bytes }
     }
 

@@ -144,6 +144,11 @@ def test_copies_go_on_to_the_same_bits(mode, again):
     np.testing.assert_equal(play(envs, 300, 3), play(twin, 300, 3))
 
 
+def test_true_is_a_seed_as_to_gymnasium():
+    envs = make_vec(3)
+    assert (envs.reset(seed=True)[0] == envs.reset(seed=1)[0]).all()
+
+
 def test_damaged_snapshots_are_refused():
     envs = make_vec(3)
     native = envs._native

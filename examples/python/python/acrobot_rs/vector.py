@@ -89,7 +89,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         """Begin an episode of each.
 
         Args:
-            seed: An integer of any size, 0 or more, whose children are the streams; by ``None`` they go on.
+            seed: An integer of up to 4,300 digits, 0 or more, whose children are the streams; by ``None`` they go on.
             options: ``"low"`` and ``"high"``, the bounds of these starts, rad and rad/s; -0.1 and 0.1 if not given,
                 and for starts by autoreset.
 
@@ -104,7 +104,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
             raise ValueError('options has "reset_mask"; allowed is "low" and "high": ended episodes reset themselves')
         low, high = start_bounds(options)
         super().reset(seed=seed)
-        self._native.reset(None if seed is None else str(seed), low, high)
+        self._native.reset(None if seed is None else str(int(seed)), low, high)  # True is a seed, too
         observations = self._empty() if self.copy else self._observations
         self._native.observe(observations)
         return observations, {}

@@ -7,6 +7,8 @@
 //! The first line is the start and each other one a step: the bits of θ1, θ2, θ̇1 and θ̇2 as f64, then
 //! the reward and whether the state is in the goal. Stepping goes on past it.
 
+mod actions;
+
 use std::error::Error;
 use std::io::{self, BufWriter, Read, Write};
 use std::process::ExitCode;
@@ -95,7 +97,7 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
     rounded.map_err(|error| format!("rounded to the arithmetic's f32, {error}"))?;
     let mut input = Vec::new();
     io::stdin().read_to_end(&mut input)?;
-    let actions = parse_actions(&input)?;
+    let actions = actions::parse(&input)?;
 
     acrobot.reseed(options.seed.clone());
     acrobot.reset_within(bounds);
@@ -104,25 +106,6 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         result => Ok(result?),
     }
-}
-
-/// White space to Python, and not to Rust.
-const VERTICAL_TAB: u8 = 0x0b;
-
-fn parse_actions(input: &[u8]) -> Result<Vec<Action>, String> {
-    let bytes = input
-        .iter()
-        .zip(1..)
-        .filter(|(byte, _)| !(byte.is_ascii_whitespace() || **byte == VERTICAL_TAB));
-    bytes
-        .map(|(&byte, position)| {
-            let action = Action::try_from(byte.wrapping_sub(b'0'));
-            action.map_err(|_| {
-                let found = byte.escape_ascii();
-                format!("'{found}' at byte {position} of the input; allowed are the actions 0, 1 and 2, and white space")
-            })
-        })
-        .collect()
 }
 
 fn print<A: Arithmetic>(

@@ -1,0 +1,191 @@
+"""Anything at all given to the environments: they refuse it as Gymnasium does, and never panic, nor turn into NaN.
+
+More of it: ``python -m pytest --hypothesis-profile=long tests/test_anything.py``.
+"""
+
+import contextlib
+
+import acrobot_rs
+import gymnasium
+import numpy as np
+import pytest
+from acrobot_rs import _native
+from acrobot_rs.parameters import _NAMES
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+#: A panic in Rust is none of these, and not even an Exception.
+REFUSALS = (AssertionError, OverflowError, TypeError, ValueError, gymnasium.error.Error)
+
+NUMBERS = st.one_of(
+    st.integers(0, 2),
+    st.integers(),
+    st.floats(),
+    st.floats(0.01, 10.0),
+    st.booleans(),
+    st.sampled_from([2**63, 2**64 - 1, -(2**63), 10**400, 1e300, 3.5e38, 5e-324, -0.0]),
+    arrays.from_dtype(np.dtype(np.int64)),
+    arrays.from_dtype(np.dtype(np.float32)),
+)
+ARRAYS = arrays.arrays(
+    arrays.integer_dtypes() | arrays.unsigned_integer_dtypes() | arrays.floating_dtypes() | arrays.boolean_dtypes(),
+    arrays.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=4),
+)
+ANYTHING = st.recursive(
+    NUMBERS | ARRAYS | st.none() | st.text(st.characters(), max_size=9) | st.binary(max_size=9) | st.builds(object),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.sampled_from(["low", "high"]), inner),
+    max_leaves=4,
+)
+NAMES = st.sampled_from(_NAMES)
+VALUES = st.one_of(NUMBERS, st.lists(NUMBERS, min_size=3, max_size=3), st.sampled_from(["book", "nips"]), ANYTHING)
+OPTIONS = st.none() | st.dictionaries(st.sampled_from(["low", "high"]), NUMBERS | ANYTHING)
+SEEDS = st.none() | st.integers(0, 2**200) | ANYTHING
+FEW = st.integers(1, 4)
+
+
+def calls(**methods):
+    """Some calls: a name and arguments each."""
+    return st.lists(st.one_of([st.tuples(st.just(name), args) for name, args in methods.items()]), max_size=20)
+
+
+def attempt(function, *args, **kwargs):
+    try:
+        return function(*args, **kwargs)
+    except REFUSALS:
+        return None
+
+
+def assert_numbers(array):
+    assert not np.isnan(array).any(), array
+
+
+def play(env, do, sequence):
+    """The calls of a sequence, whose observations are arrays."""
+    for name, args in sequence:
+        before = env._native.__getstate__()
+        try:
+            result = do[name](*args)
+        except REFUSALS:
+            assert env._native.__getstate__() == before, "a refusal has changed something"
+            continue
+        if isinstance(result, np.ndarray):
+            assert_numbers(result)
+        if env.state is not None:
+            assert np.isfinite(env.state).all()
+
+
+SINGLE = calls(
+    reset=st.tuples(SEEDS, OPTIONS),
+    set=st.tuples(NAMES, VALUES),
+    state=st.tuples(st.lists(NUMBERS, min_size=4, max_size=4) | ANYTHING),
+    step=st.tuples(st.integers(0, 2) | ANYTHING),
+    render=st.tuples(),
+)
+
+
+@given(st.booleans(), st.sampled_from([None, "ansi", "ansi", "ansi", "rgb_array"]), SINGLE)
+def test_a_single_environment(angles, mode, sequence):
+    env = (acrobot_rs.AcrobotV0Env if angles else acrobot_rs.AcrobotEnv)(mode)
+    do = {
+        "reset": lambda seed, options: env.reset(seed=seed, options=options)[0],
+        "set": lambda name, value: setattr(env, name, value),
+        "state": lambda value: setattr(env, "state", value),
+        "step": lambda action: env.step(action)[0],
+        "render": lambda: None if mode is None else env.render(),
+    }
+    play(env, do, sequence)
+
+
+VECTOR = calls(
+    reset=st.tuples(SEEDS, OPTIONS),
+    set=st.tuples(NAMES, VALUES),
+    step=st.tuples(st.integers(0, 2)),
+    actions=st.tuples(st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING),
+    render=st.tuples(),
+)
+
+
+@given(FEW, FEW, st.sampled_from(["NextStep", "SameStep"]), st.booleans(), VECTOR)
+def test_a_vector_environment(num_envs, limit, autoreset, copy, sequence):
+    envs = acrobot_rs.AcrobotVectorEnv(num_envs, limit, "ansi", autoreset, copy)
+    do = {
+        "reset": lambda seed, options: envs.reset(seed=seed, options=options)[0],
+        "set": lambda name, value: setattr(envs, name, value),
+        "step": lambda action: envs.step([action] * num_envs)[0],
+        "actions": lambda actions: envs.step(actions)[0],
+        "render": envs.render,
+    }
+    play(envs, do, sequence)
+
+
+@given(FEW | ANYTHING, FEW | ANYTHING, ANYTHING, st.sampled_from(["NextStep", "SameStep"]) | ANYTHING)
+def test_arguments_of_environments(num_envs, limit, mode, autoreset):
+    # What is an integer may be as many as there is no memory for.
+    if not isinstance(num_envs, int | np.integer) or num_envs < 1000:
+        attempt(acrobot_rs.AcrobotVectorEnv, num_envs, limit, mode, autoreset)
+    attempt(acrobot_rs.AcrobotEnv, mode)
+
+
+def damaged(good):
+    """Snapshots with some bytes cut off, changed or added, and other bytes."""
+    change = st.tuples(st.integers(0, len(good) - 1), st.integers(1, 255))
+
+    def apply(changes, end, more):
+        bad = bytearray(good)
+        for index, difference in changes:
+            bad[index] ^= difference
+        return bytes(bad[:end]) + more
+
+    ends = st.just(len(good)) | st.integers(0, len(good))
+    return st.builds(apply, st.lists(change, max_size=4), ends, st.just(b"") | st.binary(max_size=4)) | st.binary()
+
+
+SNAPSHOT = acrobot_rs.AcrobotEnv()
+SNAPSHOT.reset(seed=1)
+
+
+@given(damaged(SNAPSHOT._native.__getstate__()))
+def test_damaged_snapshots_of_one(snapshot):
+    env = acrobot_rs.AcrobotEnv("ansi")
+    env.reset(seed=2)
+    before = env._native.__getstate__()
+    try:
+        env._native.__setstate__(snapshot)
+    except ValueError:
+        assert env._native.__getstate__() == before
+    if env.state is not None:
+        assert_numbers(env.step(1)[0])
+    env.render()
+
+
+@given(damaged(acrobot_rs.AcrobotVectorEnv(2, autoreset_mode="SameStep")._native.__getstate__()))
+def test_damaged_snapshots_of_a_batch(snapshot):
+    batch = _native.Batch(2, "2", 5, True)
+    before = batch.__getstate__()
+    try:
+        batch.__setstate__(snapshot)
+    except ValueError:
+        assert batch.__getstate__() == before
+    count = len(batch.states()) // 4
+    observations, finals = np.zeros((2, count, 6), np.float32)
+    rewards, (terminated, truncated) = np.zeros(count, np.float32), np.zeros((2, count), np.bool_)
+    batch.step(np.ones(count, np.int64), observations, rewards, terminated, truncated, finals)
+    assert_numbers(observations)
+    assert np.isfinite(batch.states()).all()
+
+
+@given(st.lists(ANYTHING | ARRAYS, min_size=6, max_size=6), st.booleans())
+def test_arrays_of_a_batch(arguments, alias):
+    batch = _native.Batch(2, "0", 5, False)
+    attempt(batch.step, *arguments)
+    attempt(batch.observe, arguments[0])
+    with contextlib.suppress(IndexError):
+        attempt(batch.render, arguments[0], "ansi")
+    attempt(batch.reset, arguments[0], arguments[1], arguments[2])
+    # The same array twice, or one that is not writable, is no place for results.
+    rows, flags = np.zeros((2, 6), np.float32), np.zeros(2, np.bool_)
+    if not alias:
+        rows.flags.writeable = False
+    with pytest.raises(REFUSALS):
+        batch.step(np.ones(2, np.int64), rows, np.zeros(2, np.float32), flags, flags, rows)

@@ -1,0 +1,89 @@
+//! What the targets have in common: numbers made of bytes, and what holds after every step.
+
+pub mod snapshots;
+
+use acrobot::{Dynamics, Observation, Params, Real, State, Step};
+use libfuzzer_sys::arbitrary::{Result, Unstructured};
+
+/// What the edges of a range are likely to be wrong at.
+const EDGES: [f64; 12] = [
+    0.0,
+    -0.0,
+    f64::from_bits(1),
+    f64::MIN_POSITIVE,
+    f32::MIN_POSITIVE as f64,
+    f32::EPSILON as f64,
+    f32::MAX as f64,
+    f64::MAX,
+    f64::MIN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::NAN,
+];
+
+/// A number near the `usual` one, at an edge, or of any bits: of any bits alone, few sequences would
+/// come to a step.
+pub fn number(u: &mut Unstructured<'_>, usual: f64) -> Result<f64> {
+    Ok(match u.int_in_range(0..=7)? {
+        0 => f64::from_bits(u.arbitrary()?),
+        1 => f32::from_bits(u.arbitrary()?).into(),
+        2 => *u.choose(&EDGES)?,
+        3 | 4 => usual * f64::from(u.arbitrary::<i16>()?) / 256.0,
+        _ => usual,
+    })
+}
+
+/// Parameters, valid or not.
+pub fn params(u: &mut Unstructured<'_>) -> Result<Params> {
+    let usual = Params::DEFAULT;
+    Ok(Params {
+        length1: number(u, usual.length1)?,
+        length2: number(u, usual.length2)?,
+        mass1: number(u, usual.mass1)?,
+        mass2: number(u, usual.mass2)?,
+        center_of_mass1: number(u, usual.center_of_mass1)?,
+        center_of_mass2: number(u, usual.center_of_mass2)?,
+        inertia1: number(u, usual.inertia1)?,
+        inertia2: number(u, usual.inertia2)?,
+        gravity: number(u, usual.gravity)?,
+        dt: number(u, usual.dt)?,
+        max_velocity1: number(u, usual.max_velocity1)?,
+        max_velocity2: number(u, usual.max_velocity2)?,
+        torques: [number(u, -1.0)?, number(u, 0.0)?, number(u, 1.0)?],
+        torque_noise: number(u, usual.torque_noise)?,
+        dynamics: *u.choose(&[Dynamics::Book, Dynamics::Nips])?,
+    })
+}
+
+/// A state, finite or not.
+pub fn state(u: &mut Unstructured<'_>) -> Result<State> {
+    let numbers = [
+        number(u, 3.0)?,
+        number(u, 1.0)?,
+        number(u, 6.0)?,
+        number(u, 9.0)?,
+    ];
+    Ok(numbers.into())
+}
+
+/// What holds after a step, whatever was stepped from and by what.
+pub fn assert_stepped<S: Real>(step: Step, state: State<S>, params: &Params<S>) {
+    assert_settled(state, params);
+    assert_seen(step.observation);
+    assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
+}
+
+/// Angles and velocities are within their bounds, and so none is NaN.
+pub fn assert_settled<S: Real>(state: State<S>, params: &Params<S>) {
+    let limits = [S::PI, S::PI, params.max_velocity1, params.max_velocity2];
+    for (x, limit) in <[S; 4]>::from(state).into_iter().zip(limits) {
+        assert!(-limit <= x && x <= limit, "{state:?}");
+    }
+}
+
+/// Nothing of an observation is NaN, and sines and cosines are such.
+pub fn assert_seen(Observation(numbers): Observation) {
+    let [sines @ .., dtheta1, dtheta2] = numbers;
+    assert!(!dtheta1.is_nan() && !dtheta2.is_nan(), "{numbers:?}");
+    assert!(sines.iter().all(|x| x.abs() <= 1.0), "{numbers:?}");
+}

@@ -1,0 +1,261 @@
+//! Everything that can be saved, and what has to hold of whatever is loaded.
+
+use std::num::NonZeroU32;
+
+use acrobot::{
+    Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Dynamics, Fast, Host, Member, Micro,
+    Observations, Output, Params, Pcg64, Portable, Real, State, TimeLimit, uniform,
+};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::{assert_settled, assert_stepped};
+
+/// A type that can be saved.
+trait Snapshot: Serialize + DeserializeOwned {
+    /// What a user might save.
+    fn sample() -> Self;
+
+    /// Uses what was loaded, and says whether all of it is valid, as plain data need not be.
+    fn check(self) -> bool;
+}
+
+/// How one type is loaded from bytes, and its sample in every format.
+type Kind = (fn(&[u8]), fn() -> [Vec<u8>; 2]);
+
+const fn kind<T: Snapshot>() -> Kind {
+    (load::<T>, save::<T>)
+}
+
+const KINDS: [Kind; 14] = [
+    kind::<Acrobot<Portable>>(),
+    kind::<Acrobot<Fast>>(),
+    kind::<Acrobot<Micro>>(),
+    kind::<Acrobot<Host>>(),
+    kind::<TimeLimit<Acrobot<Portable>>>(),
+    kind::<TimeLimit<Acrobot<Fast>>>(),
+    kind::<Member<f32>>(),
+    kind::<Member<f64>>(),
+    kind::<Pcg64>(),
+    kind::<Params<f64>>(),
+    kind::<Params<f32>>(),
+    kind::<State<f64>>(),
+    kind::<Action>(),
+    kind::<Dynamics>(),
+];
+
+/// Loads a snapshot of the type that the first byte says, from the other bytes in each format.
+pub fn check(input: &[u8]) {
+    let Some((kind, bytes)) = input.split_first() else {
+        return;
+    };
+    let (load, _) = KINDS[usize::from(*kind) % KINDS.len()];
+    load(bytes);
+}
+
+/// Inputs of [`check`] that are valid, of every type and format.
+pub fn samples() -> impl Iterator<Item = Vec<u8>> {
+    let kinds = (0_u8..).zip(KINDS);
+    kinds.flat_map(|(kind, (_, save))| save().map(|bytes| [vec![kind], bytes].concat()))
+}
+
+fn save<T: Snapshot>() -> [Vec<u8>; 2] {
+    [binary(&T::sample()), json(&T::sample())]
+}
+
+fn binary(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(value).expect("there is memory")
+}
+
+fn json(value: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(value).expect("there is memory")
+}
+
+fn load<T: Snapshot>(bytes: &[u8]) {
+    let binaries = postcard::from_bytes::<T>(bytes).ok();
+    let texts = serde_json::from_slice::<T>(bytes).ok();
+    for loaded in binaries.into_iter().chain(texts) {
+        // Compared as bytes, because plain data may be NaN.
+        let (saved, text) = (binary(&loaded), json(&loaded));
+        let again: T = postcard::from_bytes(&saved).expect("it was saved");
+        assert_eq!(binary(&again), saved);
+        // JSON has no NaN and no infinity.
+        if loaded.check() {
+            let again: T = serde_json::from_slice(&text).expect("it was saved");
+            assert_eq!(binary(&again), saved);
+        }
+    }
+}
+
+impl<A> Snapshot for Acrobot<A>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
+    fn sample() -> Self {
+        let mut acrobot = Acrobot::new(42);
+        let noisy = Params {
+            torque_noise: A::Scalar::from_f64(0.1),
+            ..Params::default()
+        };
+        assert!(acrobot.set_params(noisy).is_ok());
+        Action::sample(acrobot.rng_mut()); // leaves half of a draw
+        acrobot.step(Action::Positive);
+        acrobot
+    }
+
+    fn check(mut self) -> bool {
+        assert!(self == self.clone());
+        assert!(self.params().validate().is_ok() && self.state().validate().is_ok());
+        for action in Action::ALL {
+            assert_stepped(self.step(action), self.state(), self.params());
+        }
+        self.reset();
+        assert!(self.state().validate().is_ok());
+        true
+    }
+}
+
+impl<A> Snapshot for TimeLimit<Acrobot<A>>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
+    fn sample() -> Self {
+        let mut limited = TimeLimit::v1(Acrobot::sample());
+        limited.step(Action::Zero);
+        limited
+    }
+
+    fn check(mut self) -> bool {
+        let elapsed = self.elapsed();
+        let step = self.step(Action::Negative);
+        assert_eq!(self.elapsed(), elapsed.saturating_add(1));
+        assert_eq!(step.truncated, self.elapsed() >= self.limit().get());
+        self.inner().clone().check()
+    }
+}
+
+impl<S: Real + Serialize + DeserializeOwned> Snapshot for Member<S> {
+    fn sample() -> Self {
+        Self {
+            state: State::sample(),
+            elapsed: 3,
+            ended: true,
+            rng: Pcg64::sample(),
+        }
+    }
+
+    fn check(self) -> bool {
+        assert!(self.state.validate().is_ok());
+        let Self {
+            state,
+            elapsed,
+            ended,
+            rng,
+        } = self;
+        let member = Member {
+            state: state.cast::<f32>(),
+            elapsed,
+            ended,
+            rng,
+        };
+        for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
+            let batch = Batch::<Fast, _, _, 1>::new(0, [Block::EMPTY], [Pcg64::UNSEEDED]);
+            let mut batch = batch.expect("a block for one");
+            batch.set_autoreset(autoreset);
+            batch.set_limit(NonZeroU32::MAX);
+            let before = batch.member(0);
+            let put = batch.set_member(0, member.clone());
+            assert_eq!(put.is_ok(), member.state.validate().is_ok());
+            if put.is_err() {
+                assert_eq!(batch.member(0), before);
+                continue;
+            }
+            let output = Output {
+                rewards: &mut [0.0],
+                terminated: &mut [false],
+                truncated: &mut [false],
+                observations: Observations::None,
+                final_observations: Observations::None,
+            };
+            assert!(batch.step(&[2_u8], output).is_ok());
+            assert_settled(batch.state(0).expect("it has one"), batch.params());
+        }
+        true
+    }
+}
+
+impl Snapshot for Pcg64 {
+    fn sample() -> Self {
+        let mut rng = Self::new(42);
+        Action::sample(&mut rng);
+        rng
+    }
+
+    fn check(mut self) -> bool {
+        Action::sample(&mut self);
+        assert!((-1.0..1.0).contains(&uniform(&mut self, -1.0, 1.0)));
+        true
+    }
+}
+
+impl<S: Real + Serialize + DeserializeOwned> Snapshot for Params<S> {
+    fn sample() -> Self {
+        Self {
+            dynamics: Dynamics::Nips,
+            ..Self::default()
+        }
+    }
+
+    fn check(self) -> bool {
+        let mut acrobot = Acrobot::<Host>::new(0);
+        let params = self.cast();
+        assert_eq!(
+            acrobot.set_params(params).is_ok(),
+            params.validate().is_ok()
+        );
+        assert_stepped(
+            acrobot.step(Action::Positive),
+            acrobot.state(),
+            acrobot.params(),
+        );
+        self.validate().is_ok()
+    }
+}
+
+impl<S: Real + Serialize + DeserializeOwned> Snapshot for State<S> {
+    fn sample() -> Self {
+        State::from([0.5, -0.25, 1.0, -2.0]).cast()
+    }
+
+    fn check(self) -> bool {
+        let mut acrobot = Acrobot::<Portable>::new(0);
+        let valid = self.validate().is_ok();
+        assert_eq!(acrobot.set_state(self.cast()).is_ok(), valid);
+        assert_stepped(
+            acrobot.step(Action::Positive),
+            acrobot.state(),
+            acrobot.params(),
+        );
+        valid
+    }
+}
+
+impl Snapshot for Action {
+    fn sample() -> Self {
+        Self::Positive
+    }
+
+    fn check(self) -> bool {
+        Self::try_from(u8::from(self)) == Ok(self)
+    }
+}
+
+impl Snapshot for Dynamics {
+    fn sample() -> Self {
+        Self::Nips
+    }
+
+    fn check(self) -> bool {
+        true
+    }
+}
