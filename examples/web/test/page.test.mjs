@@ -304,16 +304,15 @@ test("without WebAssembly the page says so", () =>
       assert.match(await text(page, "#notice"), /no WebAssembly/);
       assert.ok(await page.isHidden("#app"));
     },
-    { prepare: () => delete globalThis.WebAssembly },
+    { prepare: () => delete globalThis.WebAssembly, starts: false },
   ));
 
 test("without JavaScript the page says so", () =>
-  open(async (page) => assert.match(await page.textContent("#notice"), /needs JavaScript/), { javaScriptEnabled: false }));
+  open(async (page) => assert.match(await page.textContent("#notice"), /needs JavaScript/), { javaScriptEnabled: false, starts: false }));
 
 test("with less motion it starts paused and is shown step by step", () =>
   open(
     async (page) => {
-      await page.waitForSelector("#app:not([hidden])");
       assert.equal(await text(page, "#pause"), "Play");
       assert.match(await text(page, "#between"), /less motion/);
       await page.waitForTimeout(500);

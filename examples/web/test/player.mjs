@@ -27,8 +27,8 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Opens the page, plays with it, and finds no error in its console and no request but for its own files. */
-export async function open(play, { hash = "", prepare, ...options } = {}) {
+/** Opens the page, plays with it once it has started, and finds no error in its console and no request but for its own files. */
+export async function open(play, { hash = "", prepare, starts = true, ...options } = {}) {
   const context = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
   const page = await context.newPage();
   const wrong = [];
@@ -41,6 +41,7 @@ export async function open(play, { hash = "", prepare, ...options } = {}) {
   if (prepare) await page.addInitScript(prepare);
   await page.goto(origin + hash);
   try {
+    if (starts) await page.waitForSelector("#app:not([hidden])");
     await play(page);
     assert.deepEqual(wrong, []);
   } finally {
