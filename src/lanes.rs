@@ -89,10 +89,11 @@ impl<const N: usize> QuarterTurns for Lanes<N> {
     fn rotate(turns: Self, mut sin: Self, mut cos: Self) -> (Self, Self) {
         const SIGN: u32 = 1 << 31;
         for ((turns, sin), cos) in turns.0.iter().zip(&mut sin.0).zip(&mut cos.0) {
-            let (odd, half) = (turns.to_bits() << 31, turns.to_bits() << 30);
-            let swap = (sin.to_bits() ^ cos.to_bits()) & ((odd as i32 >> 31) as u32);
-            let turned_sin = sin.to_bits() ^ swap ^ (half & SIGN);
-            let turned_cos = cos.to_bits() ^ swap ^ ((half ^ odd) & SIGN);
+            let turns = turns.to_bits();
+            let even = (turns & 1).wrapping_sub(1);
+            let kept = (sin.to_bits() ^ cos.to_bits()) & even;
+            let turned_sin = cos.to_bits() ^ kept ^ (turns << 30 & SIGN);
+            let turned_cos = sin.to_bits() ^ kept ^ (turns.wrapping_add(1) << 30 & SIGN);
             *sin = f32::from_bits(turned_sin);
             *cos = f32::from_bits(turned_cos);
         }

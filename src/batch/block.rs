@@ -318,20 +318,18 @@ fn advance_lanes<const N: usize>(
 
 /// Lanes that are not finite keep their angles and stop.
 #[cold]
-#[expect(clippy::indexing_slicing, reason = "from_fn counts up to N")]
 fn at_rest<const N: usize>(
-    next: [Lanes<N>; 4],
+    mut next: [Lanes<N>; 4],
     zeros: Lanes<N>,
     [theta1, theta2, ..]: [Lanes<N>; 4],
 ) -> [Lanes<N>; 4] {
     let zero = Lanes::splat(0.0);
-    let kept = [theta1, theta2, zero, zero];
-    from_fn(|number| {
-        Lanes(from_fn(|lane| {
-            let from = if zeros.0[lane] == 0.0 { &next } else { &kept };
-            from[number].0[lane]
-        }))
-    })
+    for (next, kept) in next.iter_mut().zip([theta1, theta2, zero, zero]) {
+        for ((next, kept), zero) in next.0.iter_mut().zip(kept.0).zip(zeros.0) {
+            *next = if zero == 0.0 { *next } else { kept };
+        }
+    }
+    next
 }
 
 #[inline(always)]

@@ -30,7 +30,7 @@ pub extern "C" fn scalar_steps(steps: u32) {
 /// Acrobots of the batch.
 const LEN: usize = 1024;
 const LANES: usize = if cfg!(target_feature = "simd128") {
-    8
+    16
 } else {
     1
 };
