@@ -34,7 +34,7 @@ fn busy() -> Limited {
 }
 
 fn run(acrobot: &mut Limited) -> Vec<LimitedStep> {
-    (0..100)
+    (0..20)
         .map(|_| {
             let action = Action::sample(acrobot.inner_mut().rng_mut());
             acrobot.step(action)
@@ -114,7 +114,7 @@ fn batch_of_one() -> Batch<Fast, [Block; 1], [Pcg64; 1]> {
     Batch::new(42, [Block::EMPTY], [Pcg64::UNSEEDED]).unwrap()
 }
 
-/// 100 steps of an acrobot, and its reset.
+/// Ten steps of an acrobot, and its reset.
 fn play<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
     let mut digest = Digest::new();
     let mut add = |acrobot: &Acrobot<A>| {
@@ -122,7 +122,7 @@ fn play<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
             digest.add(x.to_f64().to_bits());
         }
     };
-    for _ in 0..100 {
+    for _ in 0..10 {
         let action = Action::sample(acrobot.rng_mut());
         acrobot.step(action);
         add(&acrobot);
@@ -137,7 +137,7 @@ fn play_member(member: Member) -> u64 {
     let mut batch = batch_of_one();
     batch.set_member(0, member).unwrap();
     let mut digest = Digest::new();
-    for _ in 0..100 {
+    for _ in 0..10 {
         let mut rows = [[0.0; 6]];
         let output = Output {
             rewards: &mut [0.0],
