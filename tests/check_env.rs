@@ -250,14 +250,13 @@ fn the_contracts_check_finds_who_breaks_it() {
         (Flaw::ActionSamples, "the action space contains its samples"),
         (Flaw::Render, "rendering changes nothing"),
     ] {
-        let Err(Violation {
+        let violation = check(flaw).expect_err(rule);
+        let Violation {
             rule: broken,
             found,
-        }) = check(flaw)
-        else {
-            panic!("{rule} is not checked")
-        };
-        assert_eq!(broken, rule, "{found}");
+        } = &violation;
+        assert_eq!(*broken, rule, "{found}");
         assert!(!found.is_empty());
+        assert_eq!(violation.to_string(), format!("{rule}: {found}"));
     }
 }

@@ -149,6 +149,7 @@ fn boxed_and_borrowed_environments_are_environments() {
     // The shorter of two limits, and whoever shows is let go of through all of them.
     let (sender, frames) = std::sync::mpsc::channel();
     let display = Display::new(move |frame| sender.send(frame.width()).unwrap());
+    assert_eq!(format!("{display:?}"), "Display");
     let options = Options {
         render_mode: RenderMode::Human(display),
         ..Options::default()
@@ -381,5 +382,9 @@ fn what_only_rounding_would_allow_is_refused() {
     let expected = params.validate().unwrap_err();
     assert_eq!(env.unwrapped_mut().set_params(params), Err(expected));
     let made = make_with("Acrobot-v1", Options { params, ..options });
-    assert_eq!(made.unwrap_err(), Error::Invalid(expected));
+    let error = made.unwrap_err();
+    assert_eq!(error, Error::Invalid(expected));
+    let source = std::error::Error::source(&error).unwrap();
+    assert_eq!(source.to_string(), expected.to_string());
+    assert!(format!("{env:?}").starts_with("DynEnv { state: State"));
 }

@@ -3,8 +3,8 @@
 
 use acrobot::{
     Acrobot, Action, Arithmetic, Dynamics, Error, Fast, Form, Host, Micro, Observation, Params,
-    Pcg64, Portable, REWARD_THRESHOLD, SeedSequence, State, TimeLimit, Trajectory, Transition,
-    energy, mass_matrix, tip_height, wrap,
+    Pcg64, Portable, REWARD_THRESHOLD, SeedSequence, StartBounds, State, TimeLimit, Trajectory,
+    Transition, energy, mass_matrix, tip_height, wrap,
 };
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
@@ -57,6 +57,33 @@ impl Arithmetic for AtTheLine {
 
     fn sin_cos(_: f64) -> (f64, f64) {
         (0.0, -0.5)
+    }
+}
+
+/// With nothing but what an arithmetic must have.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Least;
+
+impl Arithmetic for Least {
+    type Scalar = f64;
+    const FORM: Form = Form::Gymnasium;
+
+    fn sin_cos(x: f64) -> (f64, f64) {
+        Portable::sin_cos(x)
+    }
+}
+
+#[test]
+fn what_an_arithmetic_has_by_default_is_portables() {
+    let mut least = Acrobot::<Least>::new(3);
+    let mut portable = Acrobot::<Portable>::new(3);
+    for _ in 0..100 {
+        assert_eq!(
+            least.step(Action::Positive),
+            portable.step(Action::Positive)
+        );
+        assert_eq!(least.state(), portable.state());
+        assert_eq!(least.energy(), portable.energy());
     }
 }
 
@@ -130,6 +157,34 @@ fn parameters_change_on_a_running_acrobot() {
     // Noise draws from the generator, and nothing else of a step does.
     assert_ne!(noisy.rng(), acrobot.rng());
     assert_eq!(nips.rng(), acrobot.rng());
+}
+
+#[test]
+fn acrobots_are_equal_by_parameters_state_and_generator() {
+    let acrobot = Acrobot::<Portable>::new(0);
+    assert_eq!(acrobot, acrobot.clone());
+
+    let mut heavier = acrobot.clone();
+    let params = Params {
+        mass2: 1.5,
+        ..*heavier.params()
+    };
+    heavier.set_params(params).unwrap();
+    assert_ne!(acrobot, heavier);
+
+    let mut moved = acrobot.clone();
+    moved.set_state(State::default()).unwrap();
+    assert_ne!(acrobot, moved);
+
+    let mut drawn = acrobot.clone();
+    Action::sample(drawn.rng_mut());
+    assert_ne!(acrobot, drawn);
+}
+
+#[test]
+fn start_bounds_are_what_they_were_made_of() {
+    let bounds = StartBounds::new(-0.2, 0.3).unwrap();
+    assert_eq!((bounds.low(), bounds.high()), (-0.2, 0.3));
 }
 
 #[test]
