@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 
 use acrobot::{
-    Acrobot, Batch, Block, Error, Fast, Observations, Output, Params, Pcg64, SeedSequence,
+    Acrobot, Batch, Block, Error, Fast, Observations, Output, Params, Pcg64, SeedSequence, Vectors,
 };
 
 type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
@@ -99,4 +99,27 @@ fn bad_input_is_refused_before_anything_is_stepped() {
         ..Params::default()
     });
     assert!(matches!(error, Err(Error::OutOfRange { name: "dt", .. })));
+}
+
+#[test]
+fn vectors_are_what_the_machine_has() {
+    #[cfg(target_arch = "x86_64")]
+    let (avx2, avx512) = (
+        is_x86_feature_detected!("avx2"),
+        is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl"),
+    );
+    #[cfg(not(target_arch = "x86_64"))]
+    let (avx2, avx512) = (false, false);
+    assert!(Vectors::Baseline.is_available());
+    assert_eq!(Vectors::Avx2.is_available(), avx2);
+    assert_eq!(Vectors::Avx512.is_available(), avx512);
+    let widest = match (avx512, avx2) {
+        (true, _) => Vectors::Avx512,
+        (_, true) => Vectors::Avx2,
+        _ => Vectors::Baseline,
+    };
+    assert_eq!(Vectors::widest(), widest);
 }

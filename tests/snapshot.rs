@@ -110,7 +110,7 @@ fn member() -> Member {
     batch.member(0).unwrap()
 }
 
-fn batch_of_one() -> Batch<Fast, [Block; 1], [Pcg64; 1]> {
+fn batch_of_one() -> Batch<Fast, [Block<f32, 1>; 1], [Pcg64; 1], 1> {
     Batch::new(42, [Block::EMPTY], [Pcg64::UNSEEDED]).unwrap()
 }
 

@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 
 import { shortest } from "../page/game.js";
-import { decodeActions, encodeActions } from "../page/link.js";
+import { decodeActions, decodeRun, encodeActions, encodeRun } from "../page/link.js";
 import { Acrobot, DEFAULTS } from "../page/module.js";
 import { ACTIONS, trace } from "./host.mjs";
 
@@ -39,4 +39,35 @@ test("actions survive the way through a link", () => {
     const actions = Array.from({ length }, (_, i) => (i * 2 + 1) % 3);
     assert.deepEqual(decodeActions(encodeActions(actions)), actions);
   }
+});
+
+test("whatever is in a link, it is a run or is refused with what is allowed", async () => {
+  const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(join(dist, "simulation.wasm"))));
+  const link = encodeRun({ seed: 42n, params: { ...DEFAULTS, mass1: 1.5, dt: 0.05, dynamics: "nips" }, actions: ACTIONS });
+  const others = "#&=%+-_.,09eEnaAzZ \u00e9\u{1f600}";
+  // A linear congruential generator, so that it is the same links each time.
+  let state = 1;
+  const below = (n) => ((state = (Math.imul(state, 1664525) + 1013904223) >>> 0), Math.floor((state / 2 ** 32) * n));
+  let played = 0;
+  for (let i = 0; i < 20_000; i++) {
+    let changed = link;
+    for (let changes = below(3); changes >= 0; changes--) {
+      const at = 1 + below(changed.length);
+      const kept = [at, at + 1, at + 1 + below(10)][below(3)];
+      changed = changed.slice(0, at) + [...others][below([...others].length)].repeat(below(3)) + changed.slice(kept);
+    }
+    try {
+      const run = decodeRun(changed);
+      assert.deepEqual(decodeRun(encodeRun(run)), run, changed);
+      acrobot.setParams(run.params);
+      acrobot.reset(run.seed);
+      run.actions.slice(0, 10).forEach((action) => acrobot.step(action));
+      assert.ok(acrobot.numbers().every(Number.isFinite), changed);
+      played++;
+    } catch (error) {
+      assert.equal(error.constructor, Error, `${changed}: ${error.stack}`);
+      assert.match(error.message, /allowed (is|are) /, changed);
+    }
+  }
+  assert.ok(played > 1000 && played < 19_000, `${played} were runs`);
 });
