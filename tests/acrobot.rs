@@ -3,8 +3,8 @@
 
 use acrobot::{
     Acrobot, Action, Arithmetic, Dynamics, Error, Fast, Form, Host, Micro, Observation, Params,
-    Pcg64, Portable, REWARD_THRESHOLD, SeedSequence, StartBounds, State, TimeLimit, Trajectory,
-    Transition, energy, mass_matrix, tip_height, wrap,
+    Pcg64, Portable, REWARD_THRESHOLD, Real, SeedSequence, StartBounds, State, TimeLimit,
+    Trajectory, Transition, energy, mass_matrix, tip_height, wrap,
 };
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
@@ -94,6 +94,41 @@ fn the_goal_is_above_the_line_and_not_on_it() {
     assert_eq!(step.reward, -1.0);
 }
 
+fn assert_goal_is_by_height<A: Arithmetic>() {
+    let mut acrobot = Acrobot::<A>::new(0);
+    let dt = A::Scalar::from_f64(1e-6);
+    let params = Params {
+        dt,
+        ..*acrobot.params()
+    };
+    acrobot.set_params(params).unwrap();
+    let mut terminated = 0;
+    for [i, j] in (0..64).flat_map(|i| (0..64).map(move |j| [i, j])) {
+        let [theta1, theta2] = [i, j].map(|k| A::Scalar::from_f64(0.1 * f64::from(k) - 3.13));
+        let state = State {
+            theta1,
+            theta2,
+            ..State::default()
+        };
+        acrobot.set_state(state).unwrap();
+        let height = acrobot.tip_height().to_f64();
+        if (height - 1.0).abs() > 1e-4 {
+            let step = acrobot.step(Action::Zero);
+            assert_eq!(step.terminated, height > 1.0, "{state:?}");
+            terminated += u32::from(step.terminated);
+        }
+    }
+    assert!(terminated > 500);
+}
+
+#[test]
+fn the_goal_is_by_height_in_every_arithmetic() {
+    assert_goal_is_by_height::<Fast>();
+    assert_goal_is_by_height::<Micro>();
+    assert_goal_is_by_height::<Portable>();
+    assert_goal_is_by_height::<Host>();
+}
+
 #[test]
 fn time_limits_truncate_apart_from_termination() {
     for (mut acrobot, limit) in [
@@ -112,10 +147,10 @@ fn time_limits_truncate_apart_from_termination() {
         let last = acrobot.step(Action::Zero);
         assert!(last.terminated && last.truncated, "both on the last step");
         assert_eq!(acrobot.elapsed(), limit);
-        assert!(
-            acrobot.step(Action::Zero).truncated,
-            "and beyond, as in Gymnasium"
-        );
+        acrobot.inner_mut().set_state(State::default()).unwrap();
+        let beyond = acrobot.step(Action::Zero);
+        assert!(!beyond.terminated && beyond.truncated, "as in Gymnasium");
+        assert!(beyond.ended() && last.ended());
         acrobot.reset();
         assert_eq!(acrobot.elapsed(), 0);
         assert!(!acrobot.step(Action::Zero).ended());

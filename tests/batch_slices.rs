@@ -3,7 +3,8 @@
 use std::num::NonZeroU32;
 
 use acrobot::{
-    Acrobot, Batch, Block, Error, Fast, Observations, Output, Params, Pcg64, SeedSequence, Vectors,
+    Acrobot, Autoreset, Batch, Block, Error, Fast, Observations, Output, Params, Pcg64,
+    SeedSequence, Vectors,
 };
 
 type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
@@ -29,6 +30,25 @@ fn columns_are_the_rows() {
         assert_eq!(*row, columns.map(|column| column[i]));
         let alone = Acrobot::<Fast>::new(SeedSequence::from(1).child(i as u64));
         assert_eq!(*row, *alone.observation());
+    }
+}
+
+#[test]
+fn a_limit_truncates_each_of_its_steps() {
+    let mut batch = small::<1, 3>().unwrap();
+    batch.set_limit(NonZeroU32::new(2).unwrap());
+    batch.set_autoreset(Autoreset::SameStep);
+    for expected in [false, true, false, true] {
+        let mut truncated = [!expected; 3];
+        let output = Output {
+            rewards: &mut [0.0; 3],
+            terminated: &mut [false; 3],
+            truncated: &mut truncated,
+            observations: Observations::None,
+            final_observations: Observations::None,
+        };
+        batch.step(&[1_u8; 3], output).unwrap();
+        assert_eq!(truncated, [expected; 3]);
     }
 }
 

@@ -44,3 +44,25 @@ fn a_trajectory_keeps_the_last_transitions_in_order() {
         assert!(trajectory.is_empty());
     }
 }
+
+#[test]
+fn a_row_of_csv_reads_back_as_its_transition() {
+    let (trajectory, all) = record::<10>(25);
+    let mut csv = String::new();
+    trajectory.write_csv(&mut csv).unwrap();
+    let mut rows = csv.lines();
+    assert_eq!(rows.next().unwrap().split(',').count(), 13);
+    for (i, transition) in all.iter().enumerate().skip(15) {
+        let row: Vec<&str> = rows.next().unwrap().split(',').collect();
+        assert_eq!(row[0], (i + 1).to_string());
+        let before = <[_; 4]>::from(transition.state);
+        let after = <[_; 4]>::from(transition.next);
+        let numbers = [&before[..], &[transition.torque, transition.reward], &after].concat();
+        for (text, number) in row[1..11].iter().zip(numbers) {
+            assert_eq!(text.parse(), Ok(number));
+        }
+        assert_eq!(row[11], u8::from(transition.terminated).to_string());
+        assert_eq!(row[12], u8::from(transition.truncated).to_string());
+    }
+    assert_eq!(rows.next(), None);
+}
