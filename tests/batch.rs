@@ -238,7 +238,7 @@ fn threads_change_no_bit() {
         step(batch, actions, output).unwrap();
         (rewards, terminated, truncated, columns, finals)
     };
-    for _ in 0..60 {
+    for _ in 0..16 {
         let actions: Vec<Action> = (0..len).map(|_| Action::sample(&mut rng)).collect();
         let alone = run(&mut one, &actions, |batch, actions, output| {
             batch.step(actions, output)
