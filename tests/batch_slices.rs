@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::{
     Acrobot, Autoreset, Batch, Block, Error, Fast, Observations, Output, Params, Pcg64,
-    SeedSequence, Vectors,
+    SeedSequence, State, Vectors,
 };
 
 type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
@@ -33,23 +33,49 @@ fn columns_are_the_rows() {
     }
 }
 
+/// By each kind of vectors, one after another.
 #[test]
 fn a_limit_truncates_each_of_its_steps() {
     let mut batch = small::<1, 3>().unwrap();
     batch.set_limit(NonZeroU32::new(2).unwrap());
     batch.set_autoreset(Autoreset::SameStep);
-    for expected in [false, true, false, true] {
-        let mut truncated = [!expected; 3];
-        let output = Output {
-            rewards: &mut [0.0; 3],
-            terminated: &mut [false; 3],
-            truncated: &mut truncated,
-            observations: Observations::None,
-            final_observations: Observations::None,
-        };
-        batch.step(&[1_u8; 3], output).unwrap();
-        assert_eq!(truncated, [expected; 3]);
+    for vectors in [Vectors::Baseline, Vectors::Avx2, Vectors::Avx512] {
+        batch.set_vectors(vectors);
+        for expected in [false, true] {
+            let mut truncated = [!expected; 3];
+            let output = Output {
+                rewards: &mut [0.0; 3],
+                terminated: &mut [false; 3],
+                truncated: &mut truncated,
+                observations: Observations::None,
+                final_observations: Observations::None,
+            };
+            batch.step(&[1_u8; 3], output).unwrap();
+            assert_eq!(truncated, [expected; 3]);
+        }
     }
+}
+
+#[test]
+fn an_episode_ends_once_where_the_goal_is_reached_on_its_last_step() {
+    let mut batch = small::<1, 1>().unwrap();
+    batch.set_limit(NonZeroU32::MIN);
+    let upright = State {
+        theta1: core::f32::consts::PI,
+        ..State::default()
+    };
+    batch.reset_to(&[upright]).unwrap();
+    let (mut terminated, mut truncated) = ([false], [false]);
+    let output = Output {
+        rewards: &mut [0.0],
+        terminated: &mut terminated,
+        truncated: &mut truncated,
+        observations: Observations::None,
+        final_observations: Observations::None,
+    };
+    batch.step(&[1_u8], output).unwrap();
+    assert_eq!((terminated, truncated), ([true], [true]));
+    assert!(batch.member(0).unwrap().ended);
 }
 
 #[test]

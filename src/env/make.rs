@@ -284,12 +284,17 @@ where
 
 #[cfg(test)]
 mod tests {
+    use core::num::NonZeroU32;
+
     use super::*;
     use crate::env::check_env;
 
     #[test]
     fn erased_environments_keep_the_contract() {
-        check_env(&Erased(acrobot_v0::<Fast>(Options::default()).unwrap()), 1).unwrap();
-        check_env(&Erased(acrobot_v1::<Fast>(Options::default()).unwrap()), 1).unwrap();
+        let limit = NonZeroU32::new(30).unwrap();
+        let v0 = AcrobotEnv::<Fast, Observation<4>>::default();
+        let v1 = AcrobotEnv::<Fast, Observation<6>>::default();
+        check_env(&Erased(TimeLimit::new(v0, limit)), 1).unwrap();
+        check_env(&Erased(TimeLimit::new(v1, limit)), 1).unwrap();
     }
 }
