@@ -33,7 +33,7 @@ fn columns_are_the_rows() {
     }
 }
 
-/// By each kind of vectors, one after another.
+/// By each kind of vectors, one after another; on one thread, for so few are not shared out.
 #[test]
 fn a_limit_truncates_each_of_its_steps() {
     let mut batch = small::<1, 3>().unwrap();
@@ -50,7 +50,7 @@ fn a_limit_truncates_each_of_its_steps() {
                 observations: Observations::None,
                 final_observations: Observations::None,
             };
-            batch.step(&[1_u8; 3], output).unwrap();
+            batch.par_step(&[1_u8; 3], output).unwrap();
             assert_eq!(truncated, [expected; 3]);
         }
     }
