@@ -91,15 +91,15 @@ fn micro(alone: Alone<Micro>) -> Alone<Micro> {
 }
 
 #[library_benchmark(setup = batch::<Fast>)]
-#[bench::baseline(args = (Vectors::Baseline), config = limit(247.0, ACROBOTS))]
-#[bench::avx2(args = (Vectors::Avx2), config = limit(120.0, ACROBOTS))]
+#[bench::baseline(args = (Vectors::Baseline), config = limit(243.0, ACROBOTS))]
+#[bench::avx2(args = (Vectors::Avx2), config = limit(116.0, ACROBOTS))]
 fn batch_fast(play: Play<Fast>) -> Play<Fast> {
     play_batch(play, false)
 }
 
 #[library_benchmark(setup = batch::<Fast>)]
-#[bench::baseline(args = (Vectors::Baseline), config = limit(263.0, ACROBOTS))]
-#[bench::avx2(args = (Vectors::Avx2), config = limit(135.0, ACROBOTS))]
+#[bench::baseline(args = (Vectors::Baseline), config = limit(259.0, ACROBOTS))]
+#[bench::avx2(args = (Vectors::Avx2), config = limit(132.0, ACROBOTS))]
 fn batch_fast_with_observations(play: Play<Fast>) -> Play<Fast> {
     play_batch(play, true)
 }

@@ -4,7 +4,7 @@ use acrobot::{
     Autoreset, Batch, Block, Fast, Member, Observations, Output, Params, Pcg64, StartBounds,
 };
 
-type One = Batch<Fast, [Block<f32, 1>; 1], [Pcg64; 1], 1>;
+type One = Batch<Fast, [Block; 1], [Pcg64; 1]>;
 
 /// One with noise, within bounds that starts can be known by.
 fn one(autoreset: Autoreset) -> One {
