@@ -42,8 +42,9 @@ def copy(shard):
     folder = ROOT / f"target/mutants/{shard}"
     if not folder.exists():
         subprocess.run(["git", "clone", "--quiet", ROOT, folder], check=True)
-    subprocess.run(["git", "pull", "--quiet"], cwd=folder, check=True)
-    subprocess.run(["git", "reset", "--quiet", "--hard"], cwd=folder, check=True)
+    # Also where a run was interrupted within a mutant, or nothing but a commit is checked out.
+    subprocess.run(["git", "fetch", "--quiet", "origin", "HEAD"], cwd=folder, check=True)
+    subprocess.run(["git", "reset", "--quiet", "--hard", "FETCH_HEAD"], cwd=folder, check=True)
     return folder
 
 
@@ -54,7 +55,7 @@ def play(folder, shard, files, tests, done):
     output.mkdir()
     for name in ("caught", "missed", "timeout", "unviable"):
         (output / f"{name}.txt").write_text("".join(f"{mutant}\n" for mutant in done) if name == "caught" else "")
-    options = ["--in-place", "--iterate", f"--shard={shard}/{SHARDS}", "--no-times", "--colors=never", "--timeout=120"]
+    options = ["--in-place", "--iterate", f"--shard={shard}/{SHARDS}", "--no-times", "--colors=never", "--timeout=300"]
     options += [f"--file={file}" for file in files] + [f"--cargo-arg=--test={test}" for test in tests]
     options += [f"--cargo-arg={option}" for option in CARGO]
     # One shard takes the dependencies that are built already.
@@ -71,6 +72,8 @@ def main():
     chosen = [f"--file={file}" for file in sys.argv[1:]]
     mutants = json.loads(subprocess.check_output(["cargo", "mutants", "--list", "--json", *chosen], cwd=ROOT))
     files = {mutant["name"]: mutant["file"] for mutant in mutants}
+    if not files:
+        sys.exit(f"no mutants in {' '.join(sys.argv[1:])}; allowed are files below src/")
     folders = [copy(shard) for shard in range(SHARDS)]
     became = {}
     for patterns, tests in ROUNDS:
@@ -84,7 +87,7 @@ def main():
 
     counts = Counter(became.values())
     caught, missed = counts["CaughtMutant"] + counts["Timeout"], counts["MissedMutant"]
-    print(f"{caught} of {caught + missed} mutants were noticed, {caught / (caught + missed):.1%}; {counts['Unviable']} did not compile")
+    print(f"{caught} of {caught + missed} mutants were noticed, {caught / max(caught + missed, 1):.1%}; {counts['Unviable']} did not compile")
     # Without line and column, which other changes move.
     survivors = Counter(re.sub(r":\d+:\d+", "", name) for name, summary in became.items() if summary == "MissedMutant")
     lines = SURVIVORS.read_text().splitlines()
