@@ -1,7 +1,7 @@
 """Records 64 frames of Gymnasium's rgb_array rendering: writes frames.png, eight rows of eight, and frames.txt, the
 states, beside itself.
 
-    pip install gymnasium==1.4.0 numpy==2.4.6 pygame==2.6.1
+    pip install -r tests/data/requirements.txt
     python tests/data/frames.py
 """
 

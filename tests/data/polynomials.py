@@ -1,15 +1,20 @@
 """Prints the constants of src/arithmetic/fast.rs and src/arithmetic/micro.rs, as bits of f32, and the error of
-each polynomial.
+each polynomial; fails where there are others.
 
-    pip install numpy==2.4.6 scipy
+    pip install -r tests/data/requirements.txt
     python tests/data/polynomials.py
 
 Minimax by linear programming. Each coefficient is rounded to f32 in turn, the one of the lowest power first, and
 the rest are fitted again to make up for it.
 """
 
+import sys
+from pathlib import Path
+
 import numpy as np
 from scipy.optimize import linprog
+
+SOURCES = Path(__file__).parents[2] / "src/arithmetic"
 
 
 def fit(r, target, powers):
@@ -29,7 +34,14 @@ def fit(r, target, powers):
 
 
 def bits(values):
-    return " ".join(f"0x{np.float32(value).view(np.uint32):08x}" for value in values)
+    return [f"0x{np.float32(value).view(np.uint32):08x}" for value in values]
+
+
+def check(name, what, constants, error=""):
+    print(name, what, *constants, error)
+    source = (SOURCES / f"{name}.rs").read_text().replace("_", "")
+    if missing := [constant for constant in constants if constant not in source]:
+        sys.exit(f"src/arithmetic/{name}.rs has no {', '.join(missing)}")
 
 
 for name, end, sin_powers, cos_powers in [
@@ -39,6 +51,5 @@ for name, end, sin_powers, cos_powers in [
     r = np.linspace(1e-4, end + 1e-6, 3000)
     for function, target, powers in [("S", np.sin(r) - r, sin_powers), ("C", np.cos(r) - 1, cos_powers)]:
         coefficients, error = fit(r, target, powers)
-        print(name, function, bits(coefficients), f"within {error:.1e}")
-print("micro sines", bits(np.sin(np.arange(9) * np.pi / 16)))
-print("micro pi/16", bits([np.pi / 16]), "16/pi", bits([16 / np.pi]))
+        check(name, function, bits(coefficients), f"within {error:.1e}")
+check("micro", "sines", bits(np.sin(np.arange(9) * np.pi / 16)))

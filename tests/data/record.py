@@ -1,6 +1,6 @@
 """Records what Gymnasium's Acrobot does: writes episodes.txt, episodes.bin, steps.bin and seeds.txt beside itself.
 
-    pip install gymnasium==1.4.0 numpy==2.4.6
+    pip install -r tests/data/requirements.txt
     python tests/data/record.py
 
 The files hold the bits of one C library's sin, cos and pow: those were recorded with glibc 2.36 on
@@ -22,7 +22,7 @@ from gymnasium.spaces import Discrete
 HERE = Path(__file__).parent
 STEPS = 500
 VERSIONS = (
-    f"gymnasium {gymnasium.__version__}, numpy {np.__version__}, Python {platform.python_version()}, "
+    f"gymnasium {gymnasium.__version__}, numpy {np.__version__}, "
     f"{' '.join(platform.libc_ver())}, {platform.machine()}"
 )
 FNV_OFFSET, FNV_PRIME = 0xCBF29CE484222325, 0x100000001B3
