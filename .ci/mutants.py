@@ -2,7 +2,7 @@
 """Mutation testing of what is committed: which changes to src/ does no test notice?
 
     python3 .ci/mutants.py              # an hour on two cores
-    python3 .ci/mutants.py src/rng.rs
+    python3 .ci/mutants.py src/trajectory.rs
 
 Mutants meet the tests that know their file first, and those that survive all others. It fails unless the survivors are
 those of .ci/mutants.txt, where each has its reason. It needs `cargo install cargo-mutants`.

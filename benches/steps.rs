@@ -4,15 +4,19 @@
 #[path = "../examples/throughput/main.rs"]
 mod throughput;
 
+use std::time::Duration;
+
 use acrobot::{
     Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Micro, Pcg64, Portable, TimeLimit,
 };
 use divan::counter::ItemsCount;
-use divan::{Bencher, black_box};
+use divan::{Bencher, Divan, black_box};
 use throughput::{Play, yardsticks};
 
 fn main() {
-    divan::main();
+    Divan::from_args()
+        .max_time(Duration::from_millis(500))
+        .main();
     // Not where `cargo test` tries each once.
     if std::env::args().any(|argument| argument == "--bench") {
         throughput::main();

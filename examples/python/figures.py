@@ -16,7 +16,7 @@ import envpool
 import gymnasium
 import numpy as np
 
-ROUNDS, SECONDS = 5, 1.0
+ROUNDS, SECONDS = 5, 0.5
 POOLS = [16, 64, 256, 1024, 4096]
 
 

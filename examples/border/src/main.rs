@@ -1,7 +1,7 @@
 //! Trains an agent on Acrobot in the loop of `border-core`, through the adapter beside it.
 //!
 //! ```text
-//! cargo run --release -- --seed 42 --steps 100000
+//! cargo run -- --seed 42 --steps 100000
 //! ```
 
 mod agent;

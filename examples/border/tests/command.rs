@@ -31,6 +31,14 @@ fn learns_and_repeats_itself() {
 }
 
 #[test]
+fn does_what_the_readme_says() {
+    let readme = include_str!("../README.md").replace('−', "-");
+    for score in scores(&run(&["--seed", "42", "--steps", "100000"])) {
+        assert!(readme.contains(&format!("{score:.1} ")), "{score}");
+    }
+}
+
+#[test]
 fn refuses_with_status_2() {
     for arguments in [
         ["--steps", "0"],
