@@ -21,6 +21,9 @@ use std::process::ExitCode;
 use acrobot::{Acrobot, Action, Params, Pcg64, Portable, SeedSequence, State, energy, wrap};
 use clap::Parser;
 
+#[path = "common/exit.rs"]
+mod exit;
+
 /// Compares policies by their steps to the goal, and catches the upright with one of them.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
@@ -49,14 +52,7 @@ const STEPS: u32 = 1000;
 const HELD: u32 = 50;
 
 fn main() -> ExitCode {
-    match compare(&Options::parse(), &mut io::stdout().lock()) {
-        // Whoever reads has read enough.
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            eprintln!("error: cannot print: {error}");
-            ExitCode::from(2)
-        }
-        _ => ExitCode::SUCCESS,
-    }
+    exit::status(compare(&Options::parse(), &mut io::stdout().lock()))
 }
 
 fn compare(options: &Options, out: &mut impl Write) -> io::Result<()> {

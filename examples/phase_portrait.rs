@@ -16,6 +16,9 @@ use clap::Parser;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
+#[path = "common/exit.rs"]
+mod exit;
+
 /// Plots an episode as SVG.
 #[derive(Parser)]
 struct Options {
@@ -37,13 +40,7 @@ struct Sample {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit::status(run(&Options::parse()))
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {

@@ -15,8 +15,10 @@
 //! takes, and a search finds the states off them whose values are too good to be true. From some ten steps on,
 //! true rewards outweigh that; thirty give nearly all, and sixty, of which few are needed, half a step more.
 
+use std::error::Error;
 use std::fmt::Display;
 use std::fs;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -27,6 +29,8 @@ use indicatif::ProgressIterator;
 #[path = "sarsa/acrobot_task.rs"]
 #[allow(dead_code, reason = "one of the two presets")]
 mod acrobot_task;
+#[path = "common/exit.rs"]
+mod exit;
 
 use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 
@@ -55,20 +59,13 @@ const SLOTS: usize = 8192;
 const TILINGS: usize = 28;
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(reason) => {
-            eprintln!("error: {reason}");
-            ExitCode::from(2)
-        }
-    }
+    exit::status(run(&Options::parse()))
 }
 
-fn run(options: &Options) -> Result<(), String> {
+fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut weights = [[0.0; 2]; SLOTS];
-    let mut learner: Learner<SLOTS, TILINGS> = Preset::Quality
-        .learner(options.learn, &mut weights)
-        .map_err(|error| error.to_string())?;
+    let mut learner: Learner<SLOTS, TILINGS> =
+        Preset::Quality.learner(options.learn, &mut weights)?;
     match &options.load {
         Some(path) => {
             let named = |reason: &dyn Display| format!("{}: {reason}", path.display());
@@ -83,26 +80,30 @@ fn run(options: &Options) -> Result<(), String> {
         }
     }
 
-    let mut search = Search::new().map_err(|error| error.to_string())?;
-    println!(
+    let mut search = Search::new()?;
+    let mut out = io::stdout();
+    writeln!(
+        out,
         "policy          mean return of {} episodes  missed the goal",
         options.episodes
-    );
-    report("greedy", options, |state| greedy(&learner, state));
-    report(
-        &format!("{} steps ahead", options.depth),
-        options,
-        |state| search.choose(&learner, *state, options.depth),
-    );
-    println!(
+    )?;
+    let learnt = report("greedy", options, |state| greedy(&learner, state));
+    writeln!(out, "{learnt}")?;
+    let name = format!("{} steps ahead", options.depth);
+    let planned = report(&name, options, |state| {
+        search.choose(&learner, *state, options.depth)
+    });
+    writeln!(out, "{planned}")?;
+    writeln!(
+        out,
         "the search takes {} bytes, and {} steps of the model an action",
         size_of::<Search>(),
         search.steps / u64::from(search.choices.max(1))
-    );
+    )?;
     Ok(())
 }
 
-fn report(name: &str, options: &Options, mut policy: impl FnMut(&State<f32>) -> Action) {
+fn report(name: &str, options: &Options, mut policy: impl FnMut(&State<f32>) -> Action) -> String {
     let mut env = evaluation(&options.seed);
     let (mut sum, mut squares, mut misses) = (0.0, 0.0, 0);
     for _ in (0..options.episodes).progress() {
@@ -114,7 +115,7 @@ fn report(name: &str, options: &Options, mut policy: impl FnMut(&State<f32>) -> 
     let n = f64::from(options.episodes);
     let mean = sum / n;
     let sd = (squares / n - mean * mean).max(0.0).sqrt();
-    println!("{name:<14}  {mean:>16.2} ± {sd:<9.2}  {misses:>15}");
+    format!("{name:<14}  {mean:>16.2} ± {sd:<9.2}  {misses:>15}")
 }
 
 /// States that are followed at once.

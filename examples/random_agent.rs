@@ -22,6 +22,9 @@ use std::process::ExitCode;
 use acrobot::{Acrobot, Action, Host, Pcg64, SeedSequence, TimeLimit};
 use clap::Parser;
 
+#[path = "common/exit.rs"]
+mod exit;
+
 /// Plays Acrobot-v1 at random and prints a line an episode.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
@@ -36,14 +39,7 @@ struct Options {
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    match play(&options, &mut io::stdout().lock()) {
-        // Whoever reads has read enough.
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            eprintln!("error: cannot print: {error}");
-            ExitCode::from(2)
-        }
-        _ => ExitCode::SUCCESS,
-    }
+    exit::status(play(&options, &mut io::stdout().lock()))
 }
 
 fn play(options: &Options, out: &mut impl Write) -> io::Result<()> {

@@ -18,6 +18,8 @@ use clap::Parser;
 
 #[path = "common/animation.rs"]
 mod animation;
+#[path = "common/exit.rs"]
+mod exit;
 #[path = "common/files.rs"]
 mod files;
 
@@ -61,13 +63,7 @@ fn main() -> ExitCode {
         Some(state) => draw_state(state, &options.out.unwrap_or("frame.png".into())),
         None => draw_episode(options.seed, &options.out.unwrap_or("episode.gif".into())),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit::status(result)
 }
 
 fn draw_state(state: State, out: &Path) -> Result<(), Box<dyn Error>> {

@@ -34,6 +34,8 @@ use indicatif::ProgressBar;
 use plotters::prelude::*;
 use rayon::prelude::*;
 
+#[path = "common/exit.rs"]
+mod exit;
 #[path = "common/files.rs"]
 mod files;
 #[path = "common/heat_map.rs"]
@@ -92,13 +94,7 @@ struct Cell {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit::status(run(&Options::parse()))
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {

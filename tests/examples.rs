@@ -1,6 +1,8 @@
 //! The examples do what they say, as a user starts them.
 
 mod common;
+#[path = "examples/exit.rs"]
+mod exit;
 #[path = "examples/pictures.rs"]
 mod pictures;
 #[path = "examples/plan.rs"]

@@ -16,6 +16,8 @@
 //! `i`-th child of the seed, for offsets in Sutton's learner and for exploration in this crate's. The CSV
 //! is the same whatever the number of threads.
 
+#[path = "../common/exit.rs"]
+mod exit;
 #[path = "../common/files.rs"]
 mod files;
 mod learners;
@@ -63,13 +65,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit::status(run(&Options::parse()))
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {

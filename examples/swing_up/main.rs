@@ -16,9 +16,9 @@
 //! torque against θ̇1. What it has learnt is what it is better by.
 
 use std::error::Error;
-use std::fmt::Display;
+use std::fmt::{Display, Write as _};
 use std::fs;
-use std::io::{self, Write};
+use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -31,6 +31,8 @@ mod acrobot_task;
 #[path = "../common/animation.rs"]
 mod animation;
 mod curve;
+#[path = "../common/exit.rs"]
+mod exit;
 #[path = "../common/files.rs"]
 mod files;
 #[path = "../common/heat_map.rs"]
@@ -114,13 +116,7 @@ fn main() -> ExitCode {
         Memory::K16 => run::<2048, 20>(&options),
         Memory::K8 => run::<1024, 16>(&options),
     };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(reason) => {
-            eprintln!("error: {reason}");
-            ExitCode::from(2)
-        }
-    }
+    exit::status(done)
 }
 
 /// Learns with `T` tilings in `S` slots, and reports.
@@ -143,20 +139,21 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
         fs::write(path, bytes).map_err(|e| cannot_write(path, e))?;
     }
 
-    let mut out = io::stdout();
     let learnt = evaluate(options, |state| greedy(&learner, state));
     let solved_at = curve::solved_at(&returns).map_or("never".into(), |n| n.to_string());
     if options.quiet {
         let [mean, sd] = learnt.moments();
         let misses = learnt.misses;
         writeln!(
-            out,
+            io::stdout(),
             "solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}"
         )?;
         return Ok(());
     }
     let against = |state: &State<f32>| torque((state.dtheta1 < 0.0).into());
     let mut actions = Pcg64::new(options.seed.child(2));
+    let drawn = draw(&learner, &returns, options)?;
+    let mut out = io::stdout();
     writeln!(out, "solved at episode: {solved_at}\n")?;
     writeln!(
         out,
@@ -177,24 +174,24 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
             returns.misses
         )?;
     }
-    writeln!(out)?;
-    draw(&learner, &returns, options)
+    write!(out, "\n{drawn}")?;
+    Ok(())
 }
 
-/// Draws the pictures, and says where.
+/// Draws the pictures; returns a line for each.
 fn draw<const S: usize, const T: usize>(
     learner: &Learner<S, T>,
     returns: &[f32],
     options: &Options,
-) -> Result<(), Box<dyn Error>> {
-    let mut out = io::stdout();
+) -> Result<String, Box<dyn Error>> {
+    let mut lines = String::new();
     let path = |name| options.pictures.join(name);
     if !returns.is_empty() {
         let curve = path("learning_curve.svg");
         let svg = pictures::svg((900, 480), |area| pictures::draw_curve(area, returns))?;
         fs::write(&curve, svg).map_err(|e| cannot_write(&curve, e))?;
         writeln!(
-            out,
+            lines,
             "{}: the returns of {} episodes",
             curve.display(),
             returns.len()
@@ -208,7 +205,7 @@ fn draw<const S: usize, const T: usize>(
     };
     let svg = pictures::svg((780, 720), |area| pictures::draw_values(area, value))?;
     fs::write(&values, svg).map_err(|e| cannot_write(&values, e))?;
-    writeln!(out, "{}: the values at rest", values.display())?;
+    writeln!(lines, "{}: the values at rest", values.display())?;
 
     let episode = path("swing_up.gif");
     let mut env = evaluation(&options.seed);
@@ -219,12 +216,12 @@ fn draw<const S: usize, const T: usize>(
     let frames = pictures::draw_episode(&episode, &mut env, |state| greedy(learner, state));
     let frames = frames.map_err(|e| cannot_write(&episode, e))?;
     writeln!(
-        out,
+        lines,
         "{}: the last greedy episode, {} steps",
         episode.display(),
         frames - 1
     )?;
-    Ok(())
+    Ok(lines)
 }
 
 /// Learns for so many episodes; returns their returns.

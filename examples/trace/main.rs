@@ -8,6 +8,8 @@
 //! the reward and whether the state is in the goal. Stepping goes on past it.
 
 mod actions;
+#[path = "../common/exit.rs"]
+mod exit;
 
 use std::error::Error;
 use std::io::{self, BufWriter, Read, Write};
@@ -69,13 +71,7 @@ fn main() -> ExitCode {
         ArithmeticName::Fast => trace::<Fast>(&options),
         ArithmeticName::Micro => trace::<Micro>(&options),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
+    exit::status(result)
 }
 
 /// Everything is read and checked before the first line is printed.
@@ -96,16 +92,14 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
     let rounded = acrobot.set_params(params.cast());
     rounded.map_err(|error| format!("rounded to the arithmetic's f32, {error}"))?;
     let mut input = Vec::new();
-    io::stdin().read_to_end(&mut input)?;
+    let read = io::stdin().read_to_end(&mut input);
+    read.map_err(|error| format!("cannot read standard input: {error}"))?;
     let actions = actions::parse(&input)?;
 
     acrobot.reseed(options.seed.clone());
     acrobot.reset_within(bounds);
-    match print(&mut acrobot, &actions, BufWriter::new(io::stdout().lock())) {
-        // Whoever reads has read enough.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => Ok(result?),
-    }
+    let out = BufWriter::new(io::stdout().lock());
+    Ok(print(&mut acrobot, &actions, out)?)
 }
 
 fn print<A: Arithmetic>(

@@ -1,0 +1,82 @@
+//! How all examples end when what they print cannot be printed.
+
+use std::fs::{self, File};
+use std::process::Stdio;
+
+use super::{Folder, command};
+
+/// Each example with little to do, and the files that it leaves in a folder.
+const EXAMPLES: [(&str, &str, &[&str]); 9] = [
+    ("energy_control", "--episodes 1", &[]),
+    ("phase_portrait", "--out FOLDER/a.svg", &["a.svg"]),
+    ("plan", "--learn 10 --episodes 1 --depth 2", &[]),
+    ("random_agent", "", &[]),
+    ("render_episode", "--out FOLDER/a.gif", &["a.gif", "a.png"]),
+    (
+        "sutton1996",
+        "--runs 1 --episodes 20 --csv FOLDER/a.csv --picture FOLDER/a.svg",
+        &["a.csv", "a.svg"],
+    ),
+    (
+        "sweep",
+        "--episodes 400 --csv FOLDER/a.csv --picture FOLDER/a.svg",
+        &["a.csv", "a.svg"],
+    ),
+    (
+        "swing_up",
+        "--episodes 10 --save FOLDER/a.bin --pictures FOLDER",
+        &["a.bin", "learning_curve.svg", "values.svg", "swing_up.gif"],
+    ),
+    ("trace", "--seed 42", &[]),
+];
+
+/// Runs each with `stdout` as its output; gives name, status and errors, once its files are there.
+fn end(name: &str, stdout: impl Fn() -> Stdio) -> Vec<(&'static str, Option<i32>, String)> {
+    let ends = EXAMPLES.map(|(example, arguments, files)| {
+        let folder = Folder::new(&format!("{name}-{example}"));
+        let arguments = arguments.replace("FOLDER", folder.0.to_str().unwrap());
+        let arguments: Vec<&str> = arguments.split_whitespace().collect();
+        let output = command(example, &arguments)
+            .stdin(Stdio::null())
+            .stdout(stdout())
+            .output()
+            .unwrap();
+        for file in files {
+            assert!(fs::metadata(folder.file(file)).is_ok(), "{example}: {file}");
+        }
+        let errors = String::from_utf8(output.stderr).unwrap();
+        (example, output.status.code(), errors)
+    });
+    ends.into()
+}
+
+#[test]
+fn whoever_reads_may_stop() {
+    let closed = || {
+        let (_, writer) = std::io::pipe().unwrap();
+        writer.into()
+    };
+    for (example, status, errors) in end("closed", closed) {
+        assert_eq!(status, Some(0), "{example}: {errors}");
+        assert!(!errors.contains("error"), "{example}: {errors}");
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_cannot_be_printed_is_an_error() {
+    let full = || {
+        File::options()
+            .write(true)
+            .open("/dev/full")
+            .unwrap()
+            .into()
+    };
+    for (example, status, errors) in end("unprinted", full) {
+        assert_eq!(status, Some(2), "{example}: {errors}");
+        assert!(
+            errors.contains("error: cannot print: "),
+            "{example}: {errors}"
+        );
+    }
+}
