@@ -37,13 +37,13 @@ def documented():
     """Each command, the folder that it is for if it stands on a line of its own, and the file that has it."""
     for name in subprocess.check_output(["git", "ls-files"], cwd=ROOT, text=True).splitlines():
         path = ROOT / name
-        if path.suffix not in {".md", ".rs", ".py"} or path.name in {"CHANGELOG.md", Path(__file__).name}:
+        if path.suffix not in {".md", ".mjs", ".py", ".rs"} or path.name in {"CHANGELOG.md", Path(__file__).name}:
             continue
         text = path.read_text()
-        if path.suffix == ".rs":
-            text = "\n".join(re.findall(r"^ *//[/!] ?(.*)", text, re.M))
-        elif path.suffix == ".py":
+        if path.suffix == ".py":
             text = "\n".join(re.findall(r'"""(.*?)"""', text, re.S))
+        elif path.suffix != ".md":
+            text = "\n".join(re.findall(r"^ *//[/!]? ?(.*)", text, re.M))
         folder = next(folder for folder in path.parents if (folder / "Cargo.toml").exists()).relative_to(ROOT)
         blocks = re.findall(r"^```.*?^```", text, re.M | re.S) + re.findall(r"^    .*", text, re.M)
         for line in "\n".join(blocks).splitlines():

@@ -1,4 +1,4 @@
-"""Reads `cargo metadata` and fails on a dependency of the library that needs a newer Rust than it declares."""
+"""Reads what cargo metadata prints of all features, and fails on a dependency of the library that needs a newer Rust than it declares."""
 
 import json
 import sys
