@@ -152,7 +152,8 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
     }
     let against = |state: &State<f32>| torque((state.dtheta1 < 0.0).into());
     let mut actions = Pcg64::new(options.seed.child(2));
-    let drawn = draw(&learner, &returns, options)?;
+    // Before anything is printed, for whoever reads may stop; what was learnt is told if it fails, too.
+    let drawn = draw(&learner, &returns, options);
     let mut out = io::stdout();
     writeln!(out, "solved at episode: {solved_at}\n")?;
     writeln!(
@@ -174,7 +175,7 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
             returns.misses
         )?;
     }
-    write!(out, "\n{drawn}")?;
+    write!(out, "\n{}", drawn?)?;
     Ok(())
 }
 

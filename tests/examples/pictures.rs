@@ -148,5 +148,7 @@ fn a_full_disk_is_an_error() {
         assert_eq!(output.status.code(), Some(2), "{name}: {errors}");
         let reason = format!("cannot write {path}: No space left");
         assert!(errors.contains(&reason), "{errors}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(name == "weights" || text.contains("\nlearnt "), "{text}");
     }
 }
