@@ -1,4 +1,4 @@
-//! How all examples end when what they print cannot be printed.
+//! How the examples end when what they print cannot be printed; `throughput` only measures.
 
 use std::fs::{self, File};
 use std::process::Stdio;
