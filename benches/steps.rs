@@ -1,14 +1,15 @@
-//! Steps a second: `cargo bench --bench steps`, which ends with what the example `throughput` prints, each
-//! rate's ratio to its yardstick. The yardsticks stand in divan's table too, as `bare`.
+//! Steps per second: `cargo bench --bench steps`. It ends with the output of the example `throughput`: each rate's ratio
+//! to its yardstick. divan's table has the yardsticks too, as `bare` and `batch_bare`.
 
 #[path = "../examples/throughput/main.rs"]
 mod throughput;
 
 use std::time::Duration;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Micro, Pcg64, Portable, TimeLimit,
-};
+use acrobot::arithmetic::{Arithmetic, Host, Micro};
+use acrobot::batch::{Batch, Block};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use divan::counter::ItemsCount;
 use divan::{Bencher, Divan, black_box};
 use throughput::{Play, yardsticks};
@@ -17,7 +18,7 @@ fn main() {
     Divan::from_args()
         .max_time(Duration::from_millis(500))
         .main();
-    // Not where `cargo test` tries each once.
+    // Not in `cargo test`, which runs each benchmark once.
     if std::env::args().any(|argument| argument == "--bench") {
         throughput::main();
     }
@@ -26,7 +27,7 @@ fn main() {
 /// From one acrobot to a million.
 const SIZES: [usize; 6] = [1, 16, 128, 1024, 32_768, 1 << 20];
 
-/// With the observation, and without: one that is never read need not be written.
+/// With and without the observation: one that is not read need not be computed.
 #[divan::bench(types = [Host, Portable, Fast, Micro], args = ["observed", "unobserved"])]
 fn alone<A: Arithmetic>(bencher: Bencher, how: &str) {
     let actions = actions();
@@ -39,7 +40,7 @@ fn alone<A: Arithmetic>(bencher: Bencher, how: &str) {
                 if how == "observed" {
                     black_box(step.observation);
                 }
-                if step.ended() {
+                if step.done() {
                     acrobot.reset();
                 }
             }
@@ -77,7 +78,7 @@ fn batch_with_observations<A: Arithmetic>(bencher: Bencher, len: usize) {
     });
 }
 
-/// The same actions again and again, for only the step is on all cores.
+/// The actions stay the same, because only the step runs on all cores.
 #[divan::bench(types = [Portable, Fast], args = SIZES)]
 fn batch_on_all_cores<A: Arithmetic>(bencher: Bencher, len: usize) {
     let mut play = Play::<A>::new(len);
@@ -86,7 +87,7 @@ fn batch_on_all_cores<A: Arithmetic>(bencher: Bencher, len: usize) {
         .bench_local(|| play.step(false, Batch::par_step));
 }
 
-/// Eight lanes of AVX2 by hand, with fused multiply-adds and without.
+/// Handwritten AVX2 with eight lanes, with and without fused multiply-adds.
 #[divan::bench(args = ["fma", "nofma"])]
 fn batch_bare(bencher: Bencher, flavour: &str) {
     if let Some(mut bare) = yardsticks::Lanes::new(flavour == "fma") {
@@ -109,11 +110,12 @@ fn reset<A: Arithmetic>(bencher: Bencher) {
 fn seed_a_batch(bencher: Bencher, len: usize) {
     let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
     let generators = vec![Pcg64::UNSEEDED; len];
-    let mut batch = Batch::<Fast, _, _>::new(0, blocks, generators).expect("memory of its size");
+    let mut batch =
+        Batch::<Fast, _, _>::new(0, blocks, generators).expect("a block for each 16 generators");
     let mut seed = 0_u64;
     bencher.counter(ItemsCount::new(len)).bench_local(|| {
         seed += 1;
-        batch.reset_seeded(seed);
+        batch.reset_with_seed(seed);
     });
 }
 

@@ -1,24 +1,26 @@
-//! A controller that pumps energy until the acrobot can be caught upright, and holds it there, beside
-//! two simpler policies: mean steps to the goal over a hundred seeds.
+//! A controller that pumps energy until it can catch the acrobot upright, and holds it there. Prints its mean steps
+//! to the goal over a hundred seeds, beside those of two simpler policies.
 //!
 //! ```text
 //! cargo run --release --example energy_control -- --limit 10
 //! ```
 //!
-//! Pumping: the motor adds energy where torque and θ̇2 have the same sign, and in the slower of the two
-//! ways to swing θ̇2 runs against θ̇1. A torque against θ̇1, in proportion to the energy that is missing,
-//! brings the acrobot to the energy of standing upright.
+//! Pumping: the motor adds energy while torque and θ̇2 have the same sign, and in the slower mode of swinging θ̇2
+//! is opposite to θ̇1. A torque against θ̇1, in proportion to the missing energy, brings the acrobot to the energy of
+//! standing upright.
 //!
-//! Catching: a linear-quadratic regulator holds the upright within a region that nobody needs to know,
-//! since a clone of the acrobot is the exact model: where a clone that is regulated from here on ends
-//! upright, so will the original.
+//! Catching: a linear-quadratic regulator holds the acrobot upright from some states. A clone of the pendulum is an
+//! exact model, so the controller need not know which states these are: it regulates a clone for 40 steps, and starts
+//! to regulate when the clone ends upright.
 
 use std::array::from_fn;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use acrobot::{Acrobot, Action, Params, Pcg64, Portable, SeedSequence, State, energy, wrap};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::{self, wrap};
+use acrobot::{Acrobot, Action, Portable, State};
 use clap::Parser;
 
 #[path = "common/exit.rs"]
@@ -28,7 +30,7 @@ mod exit;
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Seed of which the episodes' seeds are spawned: a decimal integer of any size.
+    /// Seed whose children seed the episodes: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
     /// Episodes of each policy.
@@ -42,14 +44,16 @@ struct Options {
 fn limit(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(limit) if limit > 0.0 && f64::is_finite(limit) => Ok(limit),
-        _ => Err("allowed is a finite number of N m above 0".into()),
+        _ => Err("must be finite and above 0 N m".into()),
     }
 }
 
-/// Episodes end here, in steps of 0.2 s.
+/// The steps of an episode, each 0.2 s.
 const STEPS: u32 = 1000;
-/// Held for so many steps in a row is caught.
+/// The acrobot is caught when it is upright for this many steps in a row.
 const HELD: u32 = 50;
+
+type Pendulum = physics::Pendulum<Portable>;
 
 fn main() -> ExitCode {
     exit::status(compare(&Options::parse(), &mut io::stdout().lock()))
@@ -60,30 +64,31 @@ fn compare(options: &Options, out: &mut impl Write) -> io::Result<()> {
         out,
         "policy                torque limit  steps to the goal      caught upright"
     )?;
-    let mut actions = Pcg64::new(options.seed.clone());
-    let random = |acrobot: &Acrobot| acrobot.params().torque(Action::sample(&mut actions));
+    let mut actions = Pcg64::from(options.seed.clone());
+    let random = |pendulum: &Pendulum| pendulum.params().torque(Action::sample(&mut actions));
     writeln!(out, "{}", report(options, "random", 1.0, random))?;
-    let bang_bang = |acrobot: &Acrobot| -acrobot.state().dtheta1.signum();
+    let bang_bang = |pendulum: &Pendulum| -pendulum.state().dtheta1.signum();
     writeln!(out, "{}", report(options, "bang-bang", 1.0, bang_bang))?;
     let regulator = Regulator::new();
     for limit in [1.0, options.limit] {
-        let energy = |acrobot: &Acrobot| regulator.control(acrobot, limit);
+        let energy = |pendulum: &Pendulum| regulator.control(pendulum, limit);
         writeln!(out, "{}", report(options, "energy", limit, energy))?;
     }
     Ok(())
 }
 
-/// Plays the episodes of one policy and says in a line how they went.
+/// Plays the episodes of one policy. Returns a line with the results.
 fn report(
     options: &Options,
     name: &str,
     limit: f64,
-    mut policy: impl FnMut(&Acrobot) -> f64,
+    mut policy: impl FnMut(&Pendulum) -> f64,
 ) -> String {
     let mut parent = options.seed.clone();
     let (mut goals, mut catches) = (Vec::new(), Vec::new());
     for seed in parent.spawn(options.episodes) {
-        let (goal, catch) = play(Acrobot::new(seed), &mut policy);
+        let initial = Acrobot::<Portable>::with_rng(Pcg64::from(seed)).state();
+        let (goal, catch) = play(initial, &mut policy);
         goals.extend(goal);
         catches.extend(catch);
     }
@@ -103,22 +108,17 @@ fn report(
     )
 }
 
-/// The steps to the goal, and to when the acrobot stood still upright.
-fn play(
-    mut acrobot: Acrobot,
-    policy: &mut impl FnMut(&Acrobot) -> f64,
-) -> (Option<u32>, Option<u32>) {
+/// Plays an episode. Returns the steps to the goal, and the steps until the acrobot is held upright.
+fn play(initial: State, policy: &mut impl FnMut(&Pendulum) -> f64) -> (Option<u32>, Option<u32>) {
+    let mut pendulum = at(initial);
     let (mut goal, mut held) = (None, 0);
     for step in 1..=STEPS {
-        let torque = policy(&acrobot);
-        let reached = acrobot
-            .step_torque(torque)
-            .expect("policies give finite torques")
-            .terminated;
+        let torque = policy(&pendulum);
+        let reached = pendulum.step(torque).expect("policies give finite torques");
         if reached && goal.is_none() {
             goal = Some(step);
         }
-        held = if is_upright(acrobot.state()) {
+        held = if is_upright(pendulum.state()) {
             held + 1
         } else {
             0
@@ -130,14 +130,9 @@ fn play(
     (goal, None)
 }
 
-/// The state as it differs from standing upright.
+/// The difference of the state from standing upright.
 fn from_upright(state: State) -> [f64; 4] {
-    let State {
-        theta1,
-        theta2,
-        dtheta1,
-        dtheta2,
-    } = state;
+    let [theta1, theta2, dtheta1, dtheta2] = state.into();
     [wrap::<Portable>(theta1 - PI), theta2, dtheta1, dtheta2]
 }
 
@@ -145,13 +140,17 @@ fn is_upright(state: State) -> bool {
     from_upright(state).iter().all(|x| x.abs() < 0.05)
 }
 
+fn at(state: State) -> Pendulum {
+    Pendulum::at(state).expect("a finite state")
+}
+
 type Matrix = [[f64; 4]; 4];
 
-/// A discrete linear-quadratic regulator about the upright, for a step of 0.2 s.
+/// A discrete linear-quadratic regulator about the upright position, for steps of 0.2 s.
 struct Regulator {
     /// N m per rad and per rad/s.
     gain: [f64; 4],
-    /// Energy of standing upright, J.
+    /// The energy of standing upright, J.
     upright: f64,
 }
 
@@ -164,53 +163,50 @@ impl Regulator {
         };
         Self {
             gain: gain(a, b),
-            upright: energy::<Portable>(&Params::DEFAULT, &upright),
+            upright: at(upright).energy(),
         }
     }
 
-    fn control(&self, acrobot: &Acrobot, limit: f64) -> f64 {
-        let torque = if self.catches(acrobot.clone(), limit) {
-            self.regulate(acrobot)
+    fn control(&self, pendulum: &Pendulum, limit: f64) -> f64 {
+        let torque = if self.catches(pendulum.clone(), limit) {
+            self.regulate(pendulum)
         } else {
-            -(self.upright - acrobot.energy()) * acrobot.state().dtheta1
+            -(self.upright - pendulum.energy()) * pendulum.state().dtheta1
         };
         torque.clamp(-limit, limit)
     }
 
-    fn regulate(&self, acrobot: &Acrobot) -> f64 {
-        let x = from_upright(acrobot.state());
+    fn regulate(&self, pendulum: &Pendulum) -> f64 {
+        let x = from_upright(pendulum.state());
         -x.iter()
             .zip(self.gain)
             .map(|(x, gain)| gain * x)
             .sum::<f64>()
     }
 
-    /// Whether regulating from here on ends upright.
-    fn catches(&self, mut acrobot: Acrobot, limit: f64) -> bool {
+    /// Whether `model` ends upright if it is regulated from now on.
+    fn catches(&self, mut model: Pendulum, limit: f64) -> bool {
         for _ in 0..40 {
-            let torque = self.regulate(&acrobot).clamp(-limit, limit);
-            if acrobot.step_torque(torque).is_err() {
+            let torque = self.regulate(&model).clamp(-limit, limit);
+            if model.step(torque).is_err() {
                 return false;
             }
         }
-        is_upright(acrobot.state())
+        is_upright(model.state())
     }
 }
 
-/// How the next state depends on the state and on the torque, about the upright, by central
-/// differences of the step itself.
+/// The derivatives of the next state with respect to state and torque at the upright position, from central
+/// differences of a step.
 fn linearize() -> (Matrix, [f64; 4]) {
     const H: f64 = 1e-5;
-    let mut acrobot = Acrobot::<Portable>::new(0);
-    let mut next = |mut x: [f64; 4], torque| {
+    let next = |mut x: [f64; 4], torque| {
         x[0] += PI;
-        acrobot
-            .set_state(x.into())
-            .and_then(|()| acrobot.step_torque(torque))
-            .expect("finite");
-        from_upright(acrobot.state())
+        let mut pendulum = at(x.into());
+        pendulum.step(torque).expect("a finite torque");
+        from_upright(pendulum.state())
     };
-    let mut slope = |x: [f64; 4], torque: f64| {
+    let slope = |x: [f64; 4], torque: f64| {
         let (ahead, behind) = (next(x, torque), next(x.map(|x| -x), -torque));
         from_fn(|i| (ahead[i] - behind[i]) / (2.0 * H))
     };
@@ -218,7 +214,7 @@ fn linearize() -> (Matrix, [f64; 4]) {
     (from_fn(|i| from_fn(|j| columns[j][i])), slope([0.0; 4], H))
 }
 
-/// The gain that minimizes Σ x² + torque², by iterating the Riccati equation to its fixed point.
+/// The gain that minimizes Σ x² + torque², from iterating the Riccati equation to its fixed point.
 fn gain(a: Matrix, b: [f64; 4]) -> [f64; 4] {
     let dot = |x: [f64; 4], y: [f64; 4]| (0..4).map(|n| x[n] * y[n]).sum::<f64>();
     let column = |m: &Matrix, j: usize| from_fn(|i| m[i][j]);

@@ -1,5 +1,5 @@
-//! Plots an episode of the bang-bang policy, torque against θ̇1: angles, velocities and energy over
-//! time, and the portrait of θ̇1 over θ1, as SVG.
+//! Plots an episode of the bang-bang policy, torque against θ̇1, as SVG: angles, velocities and energy over
+//! time, and θ̇1 over θ1.
 //!
 //! ```text
 //! cargo run --release --example phase_portrait -- --seed 42 --out portrait.svg
@@ -8,34 +8,40 @@
 use std::error::Error;
 use std::io::{self, Write};
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use acrobot::{Acrobot, Action, Portable, SeedSequence, State, TimeLimit};
+use acrobot::numpy::SeedSequence;
+use acrobot::{Acrobot, Action, Portable, State, TimeLimit};
 use clap::Parser;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
 #[path = "common/exit.rs"]
 mod exit;
+#[path = "common/files.rs"]
+mod files;
+
+use files::{cannot_write, file};
 
 /// Plots an episode as SVG.
 #[derive(Parser)]
 struct Options {
-    /// Seed of the start: a decimal integer of any size.
+    /// Seed of the initial state: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// What to write.
+    /// The picture to write.
     #[arg(long, value_name = "FILE", default_value = "portrait.svg")]
+    #[arg(value_parser = |path: &str| file(path, "svg"))]
     out: PathBuf,
 }
 
 /// The episode at one time.
 struct Sample {
-    /// s since the start.
+    /// s since the initial state.
     time: f64,
     state: State,
-    /// J, of which hanging at rest has −19.6.
+    /// J; −19.6 hanging at rest.
     energy: f64,
 }
 
@@ -44,22 +50,16 @@ fn main() -> ExitCode {
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
-    let out = options.out.display();
-    if options
-        .out
-        .extension()
-        .is_none_or(|extension| extension != "svg")
-    {
-        return Err(format!("--out is {out}; allowed is a name that ends in .svg").into());
-    }
+    let out = &options.out;
     let samples = record(&options.seed);
-    plot(options, &samples).map_err(|error| format!("cannot write {out}: {error}"))?;
-    writeln!(io::stdout(), "{out}: {} steps", samples.len() - 1)?;
+    plot(out, &samples).map_err(|error| cannot_write(out, error))?;
+    let (out, steps) = (out.display(), samples.len() - 1);
+    writeln!(io::stdout(), "{out}: {steps} steps")?;
     Ok(())
 }
 
 fn record(seed: &SeedSequence) -> Vec<Sample> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(seed.clone()));
+    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(seed.clone().into()));
     let sample = |acrobot: &TimeLimit<Acrobot>| Sample {
         time: f64::from(acrobot.elapsed()) * acrobot.inner().params().dt,
         state: acrobot.inner().state(),
@@ -74,7 +74,7 @@ fn record(seed: &SeedSequence) -> Vec<Sample> {
             Action::Positive
         });
         samples.push(sample(&acrobot));
-        if step.ended() {
+        if step.done() {
             return samples;
         }
     }
@@ -83,7 +83,7 @@ fn record(seed: &SeedSequence) -> Vec<Sample> {
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Line<'a> = (&'a str, RGBColor, Vec<(f64, f64)>);
 
-fn plot(options: &Options, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
+fn plot(out: &Path, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
     const BLUE: RGBColor = RGBColor(0, 114, 178);
     const ORANGE: RGBColor = RGBColor(213, 94, 0);
 
@@ -93,11 +93,11 @@ fn plot(options: &Options, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
             .map(|sample| (sample.time, of(sample)))
             .collect()
     };
-    let root = SVGBackend::new(&options.out, (1000, 700)).into_drawing_area();
+    let root = SVGBackend::new(out, (1000, 700)).into_drawing_area();
     root.fill(&WHITE)?;
     let panels = root.split_evenly((2, 2));
     let [angles, velocities, energy, portrait] = &panels[..] else {
-        unreachable!("two by two")
+        unreachable!("2 × 2 panels")
     };
     chart(
         angles,
@@ -140,7 +140,7 @@ fn plot(options: &Options, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// One panel; a name stands beside the lines where there are two.
+/// Draws one panel, with a legend if there are several lines.
 fn chart(
     area: &Area,
     title: &str,
@@ -166,7 +166,7 @@ fn chart(
         .draw()?;
     let named = lines.len() > 1;
     for (name, color, points) in lines {
-        // An angle that wraps is no line across the panel.
+        // An angle that wraps draws no line across the panel.
         for piece in points.chunk_by(|(_, from), (_, to)| (to - from).abs() < 5.0) {
             chart.draw_series(LineSeries::new(
                 piece.iter().copied(),
@@ -192,7 +192,7 @@ fn chart(
     Ok(())
 }
 
-/// From the least to the greatest, and a little around; also where all are equal.
+/// From the lowest to the highest value, with a margin, so that equal values have a range too.
 fn span(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
         (low.min(x), high.max(x))

@@ -1,19 +1,19 @@
-//! What a chip with a model can add to what it has learnt: before each action a beam search steps the
-//! exact model ahead, and the learnt values judge where it ends.
+//! What a chip with a model can add to its learnt policy: before each action a beam search steps the exact model
+//! ahead, and the learnt values rate the states that it reaches.
 //!
 //! ```text
 //! cargo run --release --example swing_up -- --preset quality --episodes 10000 --save weights.bin
 //! cargo run --release --example plan -- --load weights.bin
 //! ```
 //!
-//! Every step ahead tries both actions in each of the beam's eight states, by one step of a batch of
-//! sixteen, and keeps the eight states that the learner values most. The first way to the goal is taken, for
-//! none found later is shorter, and followed until a shorter one is found. Without `--load` it learns first. Memory
-//! is fixed: the learner's, and the search's, which is printed.
+//! Every step ahead tries both actions in each of the beam's eight states, and keeps the eight new states that the
+//! learner values most. The search ends at the first path to the goal, because no later one is shorter. The path is
+//! followed until a shorter one is found. Without `--load` it learns first. Memory is fixed: the learner's, and the
+//! search's, which is printed.
 //!
-//! What one sees: a few steps ahead are worse than none. Values are learnt along the ways that the policy
-//! takes, and a search finds the states off them whose values are too good to be true. From some ten steps on,
-//! true rewards outweigh that; thirty give nearly all, and sixty, of which few are needed, half a step more.
+//! Result: a few steps ahead are worse than none. Values are learnt along the policy's own paths, and a search finds
+//! states beside them whose values are too high. From about ten steps on, true rewards outweigh that. Thirty steps
+//! give nearly all of the gain. Sixty give half a step more, and most searches end earlier.
 
 use std::error::Error;
 use std::fmt::Display;
@@ -22,7 +22,9 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use acrobot::{Action, Batch, Block, Fast, Observations, Output, Pcg64, SeedSequence, State};
+use acrobot::numpy::SeedSequence;
+use acrobot::physics::Pendulum;
+use acrobot::{Action, Fast, State};
 use clap::Parser;
 use indicatif::ProgressIterator;
 
@@ -34,10 +36,10 @@ mod exit;
 
 use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 
-/// Compares the learner's greedy policy with a beam search that ends in the learnt values.
+/// Compares the learner's greedy policy with a beam search over the learnt values.
 #[derive(Parser)]
 struct Options {
-    /// Steps that the search looks ahead.
+    /// Steps to look ahead.
     #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=128))]
     depth: u32,
     /// Episodes to play.
@@ -46,7 +48,7 @@ struct Options {
     /// Seed of everything: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// Weights that `swing_up --preset quality --save` wrote, in place of learning.
+    /// Weights that `swing_up --preset quality --save` wrote, instead of learning.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
     /// Episodes to learn in without `--load`.
@@ -80,7 +82,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         }
     }
 
-    let mut search = Search::new()?;
+    let mut search = Search::new();
     let mut out = io::stdout();
     writeln!(
         out,
@@ -120,27 +122,26 @@ fn report(name: &str, options: &Options, mut policy: impl FnMut(&State<f32>) -> 
 
 /// States that are followed at once.
 const BEAM: usize = 8;
-/// One for each action in each of them.
-const LANES: usize = 2 * BEAM;
 
 /// A beam search on the model, in fixed memory.
 struct Search {
-    batch: Batch<Fast, [Block; 1], [Pcg64; LANES]>,
-    beam: [Node; LANES],
-    /// The shortest way to the goal that was found, from the state that the next choice is for.
-    plan: Option<Way>,
+    model: Pendulum<Fast>,
+    /// The followed states, and the new states that each action leads to.
+    beam: [Node; 2 * BEAM],
+    /// The shortest known path to the goal from the state of the next choice.
+    plan: Option<Path>,
     choices: u32,
     steps: u64,
 }
 
 /// Actions, the first in the lowest bit.
 #[derive(Clone, Copy, Default)]
-struct Way {
+struct Path {
     actions: u128,
     len: u32,
 }
 
-impl Way {
+impl Path {
     fn then(self, action: usize) -> Self {
         Self {
             actions: self.actions | (action as u128) << self.len,
@@ -152,7 +153,7 @@ impl Way {
         torque((self.actions & 1) as usize)
     }
 
-    /// What is left of it after its first action.
+    /// The actions after the first.
     fn rest(self) -> Option<Self> {
         let len = self.len.checked_sub(1)?;
         (len > 0).then_some(Self {
@@ -162,26 +163,26 @@ impl Way {
     }
 }
 
-/// A state that can be reached, the way there, and the value of what is left.
+/// A reachable state, the path there, and the learnt value of the remaining steps.
 #[derive(Clone, Copy, Default)]
 struct Node {
     state: State<f32>,
-    way: Way,
+    path: Path,
     value: f32,
 }
 
 impl Search {
-    fn new() -> Result<Self, acrobot::Error> {
-        Ok(Self {
-            batch: Batch::new(0, [Block::EMPTY], [Pcg64::UNSEEDED; LANES])?,
-            beam: [Node::default(); LANES],
+    fn new() -> Self {
+        Self {
+            model: Pendulum::hanging(),
+            beam: [Node::default(); 2 * BEAM],
             plan: None,
             choices: 0,
             steps: 0,
-        })
+        }
     }
 
-    /// The first action of the best way found, now or before.
+    /// The first action of the best path found now or before.
     fn choose(
         &mut self,
         learner: &Learner<SLOTS, TILINGS>,
@@ -189,7 +190,7 @@ impl Search {
         depth: u32,
     ) -> Action {
         self.choices += 1;
-        let way = match (self.plan, self.best(learner, state, depth)) {
+        let path = match (self.plan, self.best(learner, state, depth)) {
             (Some(plan), (found, true)) if found.len < plan.len => found,
             (Some(plan), _) => plan,
             (None, (found, is_goal)) => {
@@ -199,17 +200,17 @@ impl Search {
                 found
             }
         };
-        self.plan = way.rest();
-        way.first()
+        self.plan = path.rest();
+        path.first()
     }
 
-    /// The best way of up to `depth` actions, and whether it ends in the goal.
+    /// The best path of up to `depth` actions, and whether it ends in the goal.
     fn best(
         &mut self,
         learner: &Learner<SLOTS, TILINGS>,
         state: State<f32>,
         depth: u32,
-    ) -> (Way, bool) {
+    ) -> (Path, bool) {
         self.beam[0] = Node {
             state,
             ..Node::default()
@@ -218,45 +219,25 @@ impl Search {
         for _ in 0..depth {
             let from = self.beam;
             let children = 2 * followed;
-            let mut actions = [Action::Zero; LANES];
-            let mut states = [State::default(); LANES];
-            for lane in 0..children {
-                let (parent, action) = (from[lane / 2], lane % 2);
-                states[lane] = parent.state;
-                actions[lane] = torque(action);
-                self.beam[lane].way = parent.way.then(action);
-            }
-            let terminated = self.step(&states, &actions);
-            self.steps += children as u64;
-            for (lane, node) in self.beam.iter_mut().enumerate().take(children) {
-                if terminated[lane] {
-                    return (node.way, true);
+            for (child, node) in self.beam.iter_mut().enumerate().take(children) {
+                let (parent, action) = (from[child / 2], child % 2);
+                let model = &mut self.model;
+                let reached = model
+                    .set_state(parent.state)
+                    .and_then(|()| model.step(model.params().torque(torque(action))))
+                    .expect("finite states and torques");
+                self.steps += 1;
+                node.path = parent.path.then(action);
+                if reached {
+                    return (node.path, true);
                 }
-                node.state = self.batch.state(lane).unwrap_or_default();
+                node.state = model.state();
                 let [negative, positive] = learner.values(&view(&node.state));
                 node.value = negative.max(positive);
             }
             self.beam[..children].sort_unstable_by(|a, b| b.value.total_cmp(&a.value));
             followed = children.min(BEAM);
         }
-        (self.beam[0].way, false)
-    }
-
-    /// One step of the model from each state; which reach the goal.
-    fn step(&mut self, states: &[State<f32>; LANES], actions: &[Action; LANES]) -> [bool; LANES] {
-        let mut terminated = [false; LANES];
-        let output = Output {
-            rewards: &mut [0.0; LANES],
-            terminated: &mut terminated,
-            truncated: &mut [false; LANES],
-            observations: Observations::None,
-            final_observations: Observations::None,
-        };
-        let stepped = self
-            .batch
-            .reset_to(states)
-            .and_then(|()| self.batch.step(actions, output));
-        stepped.expect("as many as lanes, and finite");
-        terminated
+        (self.beam[0].path, false)
     }
 }

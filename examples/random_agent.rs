@@ -1,10 +1,10 @@
-//! Gymnasium's quick start in Rust: random actions, and a reset at each end.
+//! Gymnasium's quick start in Rust: random actions, and a reset after each episode.
 //!
 //! ```text
 //! cargo run --release --example random_agent -- --seed 42 --steps 1000
 //! ```
 //!
-//! With the same seed these are the episodes of
+//! With the same seed this Python code plays the same episodes:
 //!
 //! ```python
 //! env = gymnasium.make("Acrobot-v1")
@@ -19,17 +19,19 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use acrobot::{Acrobot, Action, Host, Pcg64, SeedSequence, TimeLimit};
+use acrobot::arithmetic::Host;
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Acrobot, Action, TimeLimit};
 use clap::Parser;
 
 #[path = "common/exit.rs"]
 mod exit;
 
-/// Plays Acrobot-v1 at random and prints a line an episode.
+/// Plays Acrobot-v1 at random and prints a line for each episode.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Seed of the starts and of the actions: a decimal integer of any size.
+    /// Seed of the initial states and of the actions: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
     /// How many steps to take.
@@ -43,15 +45,16 @@ fn main() -> ExitCode {
 }
 
 fn play(options: &Options, out: &mut impl Write) -> io::Result<()> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Host>::new(options.seed.clone()));
-    let mut action_space = Pcg64::new(options.seed.clone());
+    let rng = Pcg64::from(options.seed.clone());
+    let mut action_space = rng.clone();
+    let mut acrobot = TimeLimit::v1(Acrobot::<Host>::with_rng(rng));
 
     let (mut episodes, mut goals, mut sum) = (0_u64, 0_u64, 0.0);
     let mut episode_return = 0.0;
     for _ in 0..options.steps {
         let step = acrobot.step(Action::sample(&mut action_space));
         episode_return += f64::from(step.reward);
-        if step.ended() {
+        if step.done() {
             episodes += 1;
             goals += u64::from(step.terminated);
             sum += episode_return;

@@ -12,8 +12,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use acrobot::env::Frame;
-use acrobot::{Acrobot, Action, Figure, Portable, SeedSequence, State, Theme, TimeLimit};
+use acrobot::numpy::SeedSequence;
+use acrobot::physics::Pendulum;
+use acrobot::render::{Figure, Frame, Theme};
+use acrobot::{Acrobot, Action, Portable, State, TimeLimit};
 use clap::Parser;
 
 #[path = "common/animation.rs"]
@@ -29,10 +31,10 @@ use files::cannot_write;
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Seed of the start: a decimal integer of any size.
+    /// Seed of the initial state: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// Draws this state alone, in 500×500 pixels: two angles in rad.
+    /// Draws only this state, in 500×500 pixels: two angles in rad.
     #[arg(long, value_name = "THETA1,THETA2", value_parser = state, allow_hyphen_values = true)]
     state: Option<State>,
     /// What to write: a GIF, or with --state a PNG.
@@ -42,12 +44,9 @@ struct Options {
 
 fn state(text: &str) -> Result<State, String> {
     let angles = text.split_once(',').and_then(|(theta1, theta2)| {
-        Some([
-            theta1.trim().parse::<f64>().ok()?,
-            theta2.trim().parse::<f64>().ok()?,
-        ])
+        Some([theta1.trim().parse().ok()?, theta2.trim().parse().ok()?])
     });
-    let [theta1, theta2] = angles.ok_or("allowed are two numbers in rad, such as 0.6,-1.5")?;
+    let [theta1, theta2] = angles.ok_or("must be two numbers in rad, such as 0.6,-1.5")?;
     let state = State {
         theta1,
         theta2,
@@ -68,14 +67,13 @@ fn main() -> ExitCode {
 
 fn draw_state(state: State, out: &Path) -> Result<(), Box<dyn Error>> {
     expect_extension(out, "png")?;
-    let mut acrobot = Acrobot::<Portable>::new(0);
-    acrobot.set_state(state)?;
+    let acrobot = Acrobot::from_pendulum(Pendulum::<Portable>::at(state)?, ());
     write_png(out, &Frame::of(&Figure::new(&acrobot)))?;
     writeln!(io::stdout(), "{}: the frame", out.display())?;
     Ok(())
 }
 
-/// Side of the strip's frames, in pixels.
+/// The side of the strip's frames, pixels.
 const STRIP_SIDE: u32 = 150;
 const STRIP_FRAMES: usize = 8;
 
@@ -90,9 +88,9 @@ fn draw_episode(seed: SeedSequence, out: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The episode's start and every step.
+/// The initial state and every step of the episode.
 fn figures(seed: SeedSequence) -> Vec<Figure> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(seed));
+    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(seed.into()));
     let mut figures = vec![Figure::new(acrobot.inner())];
     loop {
         let against = acrobot.inner().state().dtheta1 > 0.0;
@@ -104,13 +102,13 @@ fn figures(seed: SeedSequence) -> Vec<Figure> {
         let step = acrobot.step(action);
         let torque = acrobot.inner().params().torque(action) as f32;
         figures.push(Figure::new(acrobot.inner()).with_torque(torque));
-        if step.ended() {
+        if step.done() {
             return figures;
         }
     }
 }
 
-/// Frames at equal distances, side by side.
+/// Frames at equal intervals, side by side.
 fn draw_strip(figures: &[Figure]) -> Frame {
     use embedded_graphics::draw_target::DrawTargetExt;
     use embedded_graphics::geometry::{Point, Size};
@@ -143,7 +141,7 @@ fn expect_extension(out: &Path, extension: &str) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "--out is {}; allowed is a name that ends in .{extension}",
+        "--out must end in .{extension}, got {}",
         out.display()
     ))
 }

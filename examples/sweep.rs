@@ -1,23 +1,23 @@
-//! A million episodes of the bang-bang policy, torque against θ̇1, over a grid of link masses and
-//! torques: each cell's steps to the goal as CSV, and their means as a heat map.
+//! A million episodes of the bang-bang policy, torque against θ̇1, over a grid of link masses and torques.
+//! Writes each cell's steps to the goal as CSV, and their means as a heat map.
 //!
 //! ```text
 //! cargo run --release --example sweep -- --episodes 1000000 --seed 0 --csv sweep.csv --picture sweep.svg
 //! ```
 //!
-//! The mass is that of each of the two links; lengths and moments of inertia stay Gymnasium's. Every
-//! cell plays the same starts: its acrobot `i` is the `i`-th child of the seed, for one episode. The
-//! CSV is the same on every machine, whatever the number of threads.
+//! Each of the two links has the mass; lengths and moments of inertia are Gymnasium's. Every cell plays the same
+//! initial states: its acrobot `i` plays one episode with the seed's `i`-th child. The CSV is the same on every
+//! machine and for every number of threads.
 //!
-//! An episode that is not at the goal after 500 steps counts as an episode, and in no mean. Means are
-//! so of those alone that reach it, and too low where `share`, of how many they are, is below 1.
+//! An episode that does not reach the goal within 500 steps counts in `episodes` but not in the mean. So where
+//! `share`, the part that reaches the goal, is below 1, the mean is too low.
 //!
-//! What one sees: from 0.5 kg on, the steps go about with mass^0.7 and with 1/torque. The energy to be
-//! gained goes with the mass, what a swing gains goes with the torque, and heavier links swing faster,
-//! since their moments of inertia stay. Links of 0.1 kg are up within ten steps of 2 N m.
+//! Result: from 0.5 kg on, the steps grow roughly with mass^0.7 and 1/torque. The energy to gain grows with the
+//! mass, the gain of a swing grows with the torque, and heavier links swing faster because their moments of inertia
+//! stay. Links of 0.1 kg reach the goal within ten steps of 2 N m.
 //!
-//! Heavy links that fail lack the energy after 500 steps. Light ones have too much: link 1 whirls round
-//! its joint with link 2 hanging from it, which the policy feeds, and the tip is never above the goal.
+//! Heavy links that fail lack energy after 500 steps. Light ones have too much: link 1 rotates about its joint with
+//! link 2 hanging from it, the policy adds energy to that, and the tip never reaches the target height.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -28,7 +28,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use acrobot::{Action, Batch, Block, Fast, Observations, Output, Params, Pcg64, SeedSequence};
+use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Action, Fast, Params, ResetOptions};
 use clap::Parser;
 use indicatif::ProgressBar;
 use plotters::prelude::*;
@@ -48,10 +50,10 @@ use heat_map::{LABEL, NAME, color, draw_bar};
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Episodes in all: as many in every cell of the grid.
+    /// Episodes in all, the same number in every cell of the grid.
     #[arg(long, default_value_t = 1_000_000)]
     episodes: usize,
-    /// Seed of which the starts' seeds are spawned: a decimal integer of any size.
+    /// Seed whose children seed the episodes: a decimal integer of any size.
     #[arg(long, default_value = "0")]
     seed: SeedSequence,
     /// Masses of each link, kg.
@@ -62,34 +64,33 @@ struct Options {
     #[arg(long, value_name = "N_M", value_delimiter = ',', default_value = GRID)]
     #[arg(value_parser = |text: &str| positive(text, "N m"))]
     torques: Vec<f32>,
-    /// Where the numbers go.
+    /// The file for the numbers.
     #[arg(long, value_name = "FILE", default_value = "sweep.csv")]
     #[arg(value_parser = |path: &str| file(path, "csv"))]
     csv: PathBuf,
-    /// Where the heat map goes.
+    /// The file for the heat map.
     #[arg(long, value_name = "FILE", default_value = "sweep.svg")]
     #[arg(value_parser = |path: &str| file(path, "svg"))]
     picture: PathBuf,
 }
 
-/// Twenty by twenty, with Gymnasium's 1 kg and 1 N m among them.
+/// 20 × 20 cells, with Gymnasium's 1 kg and 1 N m among them.
 const GRID: &str = "0.1,0.2,0.3,0.4,0.5,0.6,0.7,0.8,0.9,1,1.1,1.2,1.3,1.4,1.5,1.6,1.7,1.8,1.9,2";
 
 fn positive(text: &str, unit: &str) -> Result<f32, String> {
     match text.trim().parse() {
         Ok(value) if value > 0.0 && f32::is_finite(value) => Ok(value),
-        _ => Err(format!(
-            "allowed is a number of {unit} above 0 that f32 holds"
-        )),
+        _ => Err(format!("must be finite and above 0 {unit} in f32")),
     }
 }
 
-/// What became of the episodes of one mass and one torque.
+/// The results of one mass and one torque.
 struct Cell {
     params: Params<f32>,
     episodes: usize,
-    /// Episodes that reached the goal, and their steps in all.
+    /// Episodes that reached the goal.
     reached: usize,
+    /// The steps of those, in all.
     steps: usize,
 }
 
@@ -102,12 +103,16 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let episodes = episodes_of_a_cell(options.episodes, grid.len())?;
     let blocks = vec![Block::EMPTY; episodes.div_ceil(Block::<f32>::LANES)];
     let generators = vec![Pcg64::UNSEEDED; episodes];
-    let starts = Batch::new(options.seed.clone(), blocks, generators)?;
+    let mut seeded = Batch::new(0, blocks, generators)?;
+    seeded.reset_with(ResetOptions {
+        seed: Some(options.seed.clone()),
+        ..ResetOptions::default()
+    });
 
     let began = Instant::now();
     let progress = ProgressBar::new(options.episodes as u64);
     let cells = grid.into_par_iter().map(|params| {
-        let cell = play(starts.clone(), params);
+        let cell = play(seeded.clone(), params);
         progress.inc(episodes as u64);
         cell
     });
@@ -129,7 +134,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Column by column: a mass with all torques, and then the next mass.
+/// Column by column: a mass with all torques, then the next mass.
 fn grid(options: &Options) -> Vec<Params<f32>> {
     let of_mass = |&mass: &f32| {
         options.torques.iter().map(move |&torque| Params {
@@ -143,23 +148,23 @@ fn grid(options: &Options) -> Vec<Params<f32>> {
 }
 
 fn episodes_of_a_cell(episodes: usize, cells: usize) -> Result<usize, String> {
-    /// Their batch takes some 100 MB.
+    /// Their batch takes about 100 MB.
     const MOST: usize = 1_000_000;
     let of_a_cell = episodes / cells;
     if (1..=MOST).contains(&of_a_cell) && episodes.is_multiple_of(cells) {
         return Ok(of_a_cell);
     }
     Err(format!(
-        "--episodes is {episodes} episodes; allowed is a multiple of {cells}, the cells of the grid, up to {}",
+        "--episodes must be a multiple of the grid's {cells} cells, from {cells} to {}, got {episodes}",
         cells.saturating_mul(MOST)
     ))
 }
 
-/// Steps of an episode before it is truncated, as in Gymnasium: 100 s.
+/// The steps of an episode before it is truncated, as in Gymnasium: 100 s.
 const LIMIT: usize = 500;
 
-/// One episode of each acrobot. Who has reached the goal steps on unseen until all have: a count of
-/// the episodes that end first would be one of the short ones.
+/// Plays one episode of each acrobot. Those at the goal step on, uncounted, until all are there: counting the first
+/// episodes that end would favour short ones.
 fn play(
     mut batch: Batch<Fast, Vec<Block>, Vec<Pcg64>>,
     params: Params<f32>,
@@ -175,7 +180,7 @@ fn play(
     batch.observe(Observations::Rows(&mut observations))?;
     let mut cell = Cell {
         params,
-        episodes: batch.len(),
+        episodes: len,
         reached: 0,
         steps: 0,
     };
@@ -189,7 +194,7 @@ fn play(
         }
         batch.step(
             &actions,
-            Output {
+            StepBuffers {
                 rewards: &mut rewards,
                 terminated: &mut terminated,
                 truncated: &mut truncated,
@@ -216,12 +221,12 @@ impl Cell {
         self.reached as f64 / self.episodes as f64
     }
 
-    /// Mean steps of the episodes that reached the goal, if any did.
+    /// The mean steps of the episodes that reached the goal, if any did.
     fn mean(&self) -> Option<f64> {
         (self.reached > 0).then(|| self.steps as f64 / self.reached as f64)
     }
 
-    /// Grey where the mean would be that of few.
+    /// Grey where fewer than half of the episodes reached the goal.
     fn color(&self) -> RGBColor {
         match self.mean() {
             Some(mean) if self.share() >= 0.5 => color(mean.log2(), &DOUBLINGS),
@@ -230,7 +235,7 @@ impl Cell {
     }
 }
 
-/// As CSV; the mean is empty where no episode reached the goal.
+/// The CSV. A mean is empty where no episode reached the goal.
 fn table(cells: &[Cell]) -> String {
     let mut text =
         "mass_kg,torque_n_m,episodes,reached,share,steps_of_reached,mean_steps_of_reached\n"
@@ -249,15 +254,15 @@ fn table(cells: &[Cell]) -> String {
             cell.share(),
             cell.steps,
         )
-        .expect("a String takes all");
+        .expect("a String grows");
     }
     text
 }
 
-/// The doublings of 1 step that the colour map spans: from 8 steps, as which fewer are shown, to 512.
+/// The range of the colour map, as binary logarithms of steps: from 8 steps, which stand for fewer too, to 512.
 const DOUBLINGS: Range<f64> = 3.0..9.0;
 
-/// The heat map and its colour bar.
+/// Draws the heat map and its colour bar.
 fn draw(options: &Options, cells: &[Cell], episodes: usize) -> Result<(), Box<dyn Error>> {
     let root = SVGBackend::new(&options.picture, (780, 720)).into_drawing_area();
     root.fill(&WHITE)?;
@@ -308,7 +313,7 @@ fn draw(options: &Options, cells: &[Cell], episodes: usize) -> Result<(), Box<dy
     Ok(())
 }
 
-/// An axis with a unit for each value, which stands in its middle.
+/// An axis with one unit for each value, labelled in its middle.
 fn around(values: &[f32]) -> Range<f64> {
     -0.5..values.len() as f64 - 0.5
 }

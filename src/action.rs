@@ -5,10 +5,10 @@ use core::num::NonZeroU32;
 use rand_core::Rng;
 
 use crate::error::Error;
-use crate::rng::integers;
+use crate::numpy::integers;
 
 /// One of the three torques that an agent can apply between the links, numbered 0, 1 and 2 as in
-/// Gymnasium; [`Params::torques`](crate::Params::torques) says how many N m each is.
+/// Gymnasium. [`Params::torques`](crate::Params::torques) holds their values in N m.
 ///
 /// ```
 /// use acrobot::Action;
@@ -35,11 +35,12 @@ impl Action {
     /// All three, in the order of their numbers.
     pub const ALL: [Self; 3] = [Self::Negative, Self::Zero, Self::Positive];
 
-    /// A random action: what Gymnasium's `action_space.sample()` draws, where `rng` is a
-    /// [`Pcg64`](crate::Pcg64) seeded as `action_space.seed` was.
+    /// Draws a random action: Gymnasium's `action_space.sample()`, if `rng` is a
+    /// [`Pcg64`](crate::numpy::Pcg64) with the seed that was given to `action_space.seed`.
     ///
     /// ```
-    /// use acrobot::{Action, Pcg64};
+    /// use acrobot::Action;
+    /// use acrobot::numpy::Pcg64;
     ///
     /// let mut action_space = Pcg64::new(42);
     /// let numbers = [(); 8].map(|()| u8::from(Action::sample(&mut action_space)));
@@ -59,7 +60,7 @@ impl Action {
 impl TryFrom<u8> for Action {
     type Error = Error;
 
-    /// The action of that number.
+    /// The action with this number.
     ///
     /// # Errors
     ///

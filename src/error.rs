@@ -1,59 +1,83 @@
-//! What the crate refuses, and why.
+//! Errors: what was wrong with an input.
 
 use core::fmt;
 
-use crate::arithmetic::Real;
-
-/// What was wrong with a value that was given, in which unit, and what is allowed.
+/// Why an input was rejected. The message names the value, its unit and the rule.
 ///
-/// A refusal changes nothing: the acrobot, its parameters and its generator stay as they were.
+/// A rejected call changes nothing.
 ///
 /// ```
 /// use acrobot::{Acrobot, Fast, Params};
 ///
 /// let mut acrobot = Acrobot::<Fast>::new(0);
-/// let error = acrobot.set_params(Params { dt: 0.0, ..Params::default() }).unwrap_err();
-/// assert_eq!(error.to_string(), "dt is 0 s; allowed is a finite number above 0");
+/// let error = acrobot.set_params(Params { dt: 0.0, ..Params::DEFAULT }).unwrap_err();
+/// assert_eq!(error.to_string(), "dt must be finite and above 0 s, got 0");
 /// ```
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Error {
-    /// A quantity that is not in its range, or not a number.
+    /// A quantity is outside its range or not a number.
     OutOfRange {
-        /// Which quantity, by the name of its field or argument.
+        /// The field or argument.
         name: &'static str,
-        /// What was given, in `unit`.
+        /// The value given, in `unit`.
         value: f64,
-        /// The SI unit of `value`, such as `"rad/s"`.
+        /// The SI unit, such as `"rad/s"`.
         unit: &'static str,
-        /// What is allowed, in words.
-        allowed: &'static str,
+        /// The rule, to be read before the unit: `"finite and above 0"`.
+        rule: &'static str,
     },
-    /// Start bounds of which the lower is above the upper.
+    /// A link has neither a moment of inertia nor a distance between its centre of mass and its joint, so
+    /// its acceleration is undetermined.
+    NoInertia {
+        /// `"inertia1"` or `"inertia2"`.
+        name: &'static str,
+        /// The moment of inertia given, kg m².
+        value: f64,
+    },
+    /// The lower reset bound is above the upper one.
     ReversedBounds {
-        /// The lower bound that was given, in rad and rad/s.
+        /// The lower bound given, rad and rad/s.
         low: f64,
-        /// The upper bound that was given, in rad and rad/s.
+        /// The upper bound given, rad and rad/s.
         high: f64,
     },
-    /// A slice that has not one element for each acrobot of a batch.
+    /// A batch has no acrobots.
+    EmptyBatch,
+    /// A slice does not have the length that a batch needs.
     WrongLength {
-        /// Which slice.
+        /// The argument.
         name: &'static str,
-        /// How many elements it has.
-        found: usize,
-        /// How many it has to have.
+        /// Its length.
+        len: usize,
+        /// The length that it must have.
         expected: usize,
+    },
+    /// There is no element with this index.
+    NoSuchIndex {
+        /// What was indexed: `"member"` or `"row"`.
+        name: &'static str,
+        /// The index given, counted from 0.
+        index: usize,
+        /// The number of elements.
+        len: usize,
+    },
+    /// A text does not fit into the buffer given for it.
+    BufferTooSmall {
+        /// The length of the buffer, bytes.
+        len: usize,
+        /// The length of the text, bytes.
+        needed: usize,
     },
     /// An action number other than 0, 1 and 2.
     UnknownAction(u8),
-    /// A text that is no seed.
+    /// A text that is not a seed.
     #[cfg(feature = "std")]
     MalformedSeed {
-        /// The first character that is not a decimal digit; none in an empty text.
+        /// The first character that is not a decimal digit; `None` for an empty text.
         found: Option<char>,
-        /// Where it stands, counted from 1.
+        /// Its position, counted from 1.
         position: usize,
     },
 }
@@ -65,28 +89,41 @@ impl fmt::Display for Error {
                 name,
                 value,
                 unit,
-                allowed,
-            } => write!(f, "{name} is {value} {unit}; allowed is {allowed}"),
+                rule,
+            } => write!(f, "{name} must be {rule} {unit}, got {value}"),
+            Self::NoInertia { name, value } => write!(
+                f,
+                "{name} must be above 0 kg m² where the centre of mass is on the joint, got {value}"
+            ),
             Self::ReversedBounds { low, high } => write!(
                 f,
-                "low is {low} and high is {high} (rad and rad/s); allowed is a low that is not above high"
+                "low must not be above high, got {low} and {high} rad and rad/s"
             ),
+            Self::EmptyBatch => {
+                write!(f, "a batch must have at least 1 acrobot, got 0 generators")
+            }
             Self::WrongLength {
                 name,
-                found,
+                len,
                 expected,
-            } => write!(f, "{name} has {found} elements; allowed is {expected}"),
+            } => write!(f, "{name} must have {expected} elements, got {len}"),
+            Self::NoSuchIndex { name, index, len } => {
+                write!(f, "{name} must be below the length {len}, got {index}")
+            }
+            Self::BufferTooSmall { len, needed } => {
+                write!(f, "buffer must have at least {needed} bytes, got {len}")
+            }
             Self::UnknownAction(number) => write!(
                 f,
-                "action is {number}; allowed is 0 (negative torque), 1 (none) or 2 (positive)"
+                "action must be 0 (negative torque), 1 (none) or 2 (positive), got {number}"
             ),
             #[cfg(feature = "std")]
             Self::MalformedSeed { found, position } => {
+                write!(f, "seed must be a decimal integer of at least 0, got ")?;
                 match found {
-                    Some(found) => write!(f, "seed has {found:?} as character {position}")?,
-                    None => write!(f, "seed is empty")?,
+                    Some(found) => write!(f, "{found:?} as character {position}"),
+                    None => write!(f, "an empty text"),
                 }
-                write!(f, "; allowed is a decimal integer, 0 or more, of any size")
             }
         }
     }
@@ -96,44 +133,40 @@ impl core::error::Error for Error {}
 
 /// The ranges that a quantity can have.
 #[derive(Clone, Copy)]
-pub(crate) enum Allowed {
+pub(crate) enum Range {
     Finite,
-    ZeroOrMore,
+    AtLeastZero,
     AboveZero,
-    /// And not beyond what an observation can show.
+    /// Observations are `f32` and contain velocities, so velocity bounds must fit.
     AboveZeroInF32,
-    /// What a start is drawn in.
+    /// Initial states are rounded to `f32`, so reset bounds must fit.
     InF32,
 }
 
-impl Allowed {
-    /// Refuses a `value` outside of the range.
-    pub(crate) fn check<S: Real>(
+impl Range {
+    /// Rejects a `value` outside the range.
+    pub(crate) const fn check(
         self,
         name: &'static str,
-        value: S,
+        value: f64,
         unit: &'static str,
     ) -> Result<(), Error> {
-        let in_f32 = value.to_f64().abs() <= f64::from(f32::MAX);
-        let (holds, allowed) = match self {
-            Self::Finite => (true, "any finite number"),
-            Self::ZeroOrMore => (value >= S::ZERO, "a finite number, 0 or more"),
-            Self::AboveZero => (value > S::ZERO, "a finite number above 0"),
-            Self::AboveZeroInF32 => (
-                value > S::ZERO && in_f32,
-                "a number above 0 that f32 holds, up to 3.4e38",
-            ),
-            Self::InF32 => (in_f32, "a number that f32 holds, from -3.4e38 to 3.4e38"),
+        let in_f32 = value.abs() <= f32::MAX as f64;
+        let (holds, rule) = match self {
+            Self::Finite => (true, "a finite number of"),
+            Self::AtLeastZero => (value >= 0.0, "finite and at least 0"),
+            Self::AboveZero => (value > 0.0, "finite and above 0"),
+            Self::AboveZeroInF32 => (value > 0.0 && in_f32, "above 0 and at most 3.4e38"),
+            Self::InF32 => (in_f32, "within -3.4e38 and 3.4e38"),
         };
         if holds && value.is_finite() {
             return Ok(());
         }
-        let value = value.to_f64();
         Err(Error::OutOfRange {
             name,
             value,
             unit,
-            allowed,
+            rule,
         })
     }
 }

@@ -1,15 +1,22 @@
-//! The book: how to begin, and what the numbers mean.
+//! The book: how to begin, and what the numbers mean. It is documentation only.
 //!
-//! It is there for readers alone; no code can import it. Its pages are in `docs/`.
+//! A first step, explained in [Rust](rust):
+//!
+//! ```
+//! use acrobot::{Acrobot, Action, Fast};
+//!
+//! let step = Acrobot::<Fast>::new(42).step(Action::Positive);
+//! assert!(!step.done());
+//! ```
 
-#[doc = include_str!("../docs/host.md")]
-pub mod host {}
+#[doc = include_str!("../docs/rust.md")]
+pub mod rust {}
 
-#[doc = include_str!("../docs/chip.md")]
-pub mod chip {}
+#[doc = include_str!("../docs/embedded.md")]
+pub mod embedded {}
 
-#[doc = include_str!("../docs/page.md")]
-pub mod page {}
+#[doc = include_str!("../docs/wasm.md")]
+pub mod wasm {}
 
 #[doc = include_str!("../docs/equations.md")]
 pub mod equations {}
@@ -19,6 +26,9 @@ pub mod determinism {}
 
 #[doc = include_str!("../docs/numbers.md")]
 pub mod numbers {}
+
+#[doc = include_str!("../ARCHITECTURE.md")]
+pub mod architecture {}
 
 #[doc = include_str!("../README.md")]
 pub mod readme {}

@@ -1,29 +1,28 @@
-//! Gymnasium's two-link Acrobot, without a heap, a panic or a hang, and with the same bits on a microcontroller, in a
-//! browser and on a server.
+//! Gymnasium's two-link Acrobot without a heap, a panic or a hang, bit-identical on microcontrollers, in browsers and on
+//! servers.
 //!
 //! ```
 //! use acrobot::{Acrobot, Action, Fast};
 //!
-//! let mut acrobot = Acrobot::<Fast>::new(42); // the start of Gymnasium's reset(seed=42)
-//! let [cos1, sin1, cos2, sin2, dtheta1, dtheta2] = *acrobot.observation();
+//! let mut acrobot = Acrobot::<Fast>::new(42); // the state after Gymnasium's reset(seed=42)
+//! let velocity = acrobot.observation().dtheta1(); // rad/s
 //! let step = acrobot.step(Action::Positive);
 //! assert_eq!(step.reward, -1.0);
 //! ```
 //!
-//! # The book
+//! # Where to go
 //!
-//! - To begin: [on a host](guide::host), [on a chip](guide::chip), [in a page](guide::page).
-//! - To understand: [the equations](guide::equations), [determinism](guide::determinism),
-//!   [numbers](guide::numbers).
-//! - To look up: [the README](guide::readme), with every figure, the [features](guide::readme#features) and the
-//!   [examples](guide::readme#examples); the items below, each with its units and sources.
-//! - To work on it: the next section, and `CONTRIBUTING.md`.
-//!
-#![doc = include_str!("../ARCHITECTURE.md")]
+//! - Begin: [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in a browser](guide::wasm).
+//! - [`arithmetic`] chooses the bits, [`physics`] is the pendulum alone, [`batch`] steps many acrobots with SIMD,
+//!   [`numpy`] has Gymnasium's random numbers, [`trajectory`] records steps, `render` (feature `graphics`) draws, and `env`
+//!   (feature `std`) has Gymnasium's `make`, spaces and wrappers.
+//! - Understand: [the equations](guide::equations), [determinism](guide::determinism), [numbers](guide::numbers).
+//! - All figures, [features](guide::readme#features) and [examples](guide::readme#examples): [the README](guide::readme).
+//! - Contribute: [the architecture](guide::architecture).
 #![no_std]
 #![deny(missing_docs, unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// No panic by construction: what could panic is refused here, outside of unit tests.
+// No panic by construction: code that could panic does not compile, except in unit tests.
 #![cfg_attr(
     not(test),
     deny(
@@ -40,46 +39,27 @@ extern crate std;
 
 mod acrobot;
 mod action;
-mod arithmetic;
-mod batch;
-mod bounds;
-mod dynamics;
+pub mod arithmetic;
+pub mod batch;
 #[cfg(feature = "std")]
 pub mod env;
 mod error;
 #[cfg(doc)]
 pub mod guide;
-mod lanes;
+pub mod numpy;
 mod observation;
-mod params;
+pub mod physics;
 #[cfg(feature = "graphics")]
-mod render;
-mod rk4;
-mod rng;
-mod seed;
+pub mod render;
 #[cfg(feature = "serde")]
 mod snapshot;
-mod state;
 mod time_limit;
-mod trajectory;
+pub mod trajectory;
 
-#[cfg(feature = "std")]
-pub use arithmetic::Host;
-
-pub use acrobot::{Acrobot, REWARD_THRESHOLD, Step};
+pub use acrobot::{Acrobot, REWARD_THRESHOLD, ResetOptions, Step};
 pub use action::Action;
-pub use arithmetic::{Arithmetic, Fast, Form, Micro, Portable, Real};
-pub use batch::{Autoreset, Batch, Block, Member, Observations, Output, Vectors};
-pub use bounds::{bound, wrap};
-pub use dynamics::{derivative, energy, mass_matrix, tip_height};
+pub use arithmetic::{Fast, Portable};
 pub use error::Error;
 pub use observation::Observation;
-pub use params::{Dynamics, Params};
-#[cfg(feature = "graphics")]
-pub use render::{Figure, Theme};
-pub use rk4::rk4;
-pub use rng::{Pcg64, integers, uniform};
-pub use seed::SeedSequence;
-pub use state::{StartBounds, State};
-pub use time_limit::{LimitedStep, TimeLimit};
-pub use trajectory::{Trajectory, Transition};
+pub use physics::{Params, State};
+pub use time_limit::TimeLimit;

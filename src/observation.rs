@@ -1,30 +1,70 @@
-//! What an agent sees: the six numbers of `Acrobot-v1`, or the four of `Acrobot-v0`.
+//! Observations: the six numbers of `Acrobot-v1`, or the four of `Acrobot-v0`.
 
 use core::f32::consts::PI;
-use core::ops::Deref;
 
 use crate::arithmetic::Real;
-use crate::state::State;
+use crate::physics::State;
 
-/// An observation: the `N` numbers of Gymnasium's, in its order.
+/// What an agent sees: `N` numbers in Gymnasium's order.
 ///
-/// `Observation`, that is `Observation<6>`, is that of `Acrobot-v1`, the state with its angles as
-/// points on the unit circle: \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\]. Hanging at rest is
-/// \[1, 0, 1, 0, 0, 0\].
+/// `Observation`, short for `Observation<6>`, is that of `Acrobot-v1`. It shows the angles as points on the
+/// unit circle: \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\]. Hanging at rest is \[1, 0, 1, 0, 0, 0\].
 ///
-/// `Observation<4>` is that of `Acrobot-v0`, the state itself: \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
+/// `Observation<4>` is that of `Acrobot-v0`: the state \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
 ///
 /// ```
 /// use acrobot::{Acrobot, Observation, Portable};
 ///
 /// let acrobot = Acrobot::<Portable>::new(42);
-/// let [cos1, sin1, ..] = *acrobot.observation();
+/// let seen = acrobot.observation();
 /// let angles = Observation::<4>::from(acrobot.state());
-/// assert_eq!(angles[0], f32::atan2(sin1, cos1));
+/// assert_eq!(angles.theta1(), f32::atan2(seen.sin_theta1(), seen.cos_theta1()));
+///
+/// let [cos_theta1, ..] = seen.to_array();
+/// assert!(cos_theta1 > 0.99);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Observation<const N: usize = 6>(pub [f32; N]);
+pub struct Observation<const N: usize = 6>([f32; N]);
+
+impl<const N: usize> Observation<N> {
+    /// The numbers.
+    #[must_use]
+    #[inline]
+    pub const fn to_array(self) -> [f32; N] {
+        self.0
+    }
+}
+
+macro_rules! accessors {
+    ($($N:literal: $($index:literal $name:ident $doc:literal),*;)*) => {$(
+        impl Observation<$N> {
+            $(
+                #[doc = $doc]
+                #[must_use]
+                #[inline]
+                pub const fn $name(&self) -> f32 {
+                    self.0[$index]
+                }
+            )*
+        }
+    )*};
+}
+
+accessors! {
+    6:
+        0 cos_theta1 "cos θ1, between −1 and 1; 1 hanging down.",
+        1 sin_theta1 "sin θ1, between −1 and 1.",
+        2 cos_theta2 "cos θ2, between −1 and 1; 1 in line with link 1.",
+        3 sin_theta2 "sin θ2, between −1 and 1.",
+        4 dtheta1 "Angular velocity of link 1, rad/s.",
+        5 dtheta2 "Angular velocity of link 2 relative to link 1, rad/s.";
+    4:
+        0 theta1 "Angle of link 1, rad; 0 hanging down.",
+        1 theta2 "Angle of link 2 relative to link 1, rad; 0 in line with it.",
+        2 dtheta1 "Angular velocity of link 1, rad/s.",
+        3 dtheta2 "Angular velocity of link 2 relative to link 1, rad/s.";
+}
 
 impl Observation<6> {
     /// The upper bounds of `Acrobot-v1`'s observation space: 1, and 4π and 9π rad/s.
@@ -47,12 +87,17 @@ impl<S: Real> From<State<S>> for Observation<4> {
     }
 }
 
-impl<const N: usize> Deref for Observation<N> {
-    type Target = [f32; N];
-
+impl<const N: usize> From<[f32; N]> for Observation<N> {
     #[inline]
-    fn deref(&self) -> &[f32; N] {
-        &self.0
+    fn from(numbers: [f32; N]) -> Self {
+        Self(numbers)
+    }
+}
+
+impl<const N: usize> From<Observation<N>> for [f32; N] {
+    #[inline]
+    fn from(observation: Observation<N>) -> Self {
+        observation.0
     }
 }
 
@@ -67,12 +112,5 @@ impl<const N: usize> AsMut<[f32]> for Observation<N> {
     #[inline]
     fn as_mut(&mut self) -> &mut [f32] {
         &mut self.0
-    }
-}
-
-impl<const N: usize> From<Observation<N>> for [f32; N] {
-    #[inline]
-    fn from(observation: Observation<N>) -> Self {
-        observation.0
     }
 }

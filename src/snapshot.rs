@@ -1,4 +1,4 @@
-//! The header of a snapshot: what it is of, its version and its scalar, so that none is misread.
+//! The header of a snapshot: type, version and scalar.
 
 use core::marker::PhantomData;
 
@@ -7,21 +7,23 @@ use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
 use crate::arithmetic::Real;
-use crate::arithmetic::sealed::Sealed;
 
-/// It moves on whenever the fields of any snapshot change.
+/// Incremented whenever the fields of any snapshot change.
 const VERSION: u32 = 1;
 
-/// What a snapshot can be of.
+/// A type that has snapshots.
 pub(crate) trait Subject {
     const NAME: &'static str;
     type Scalar: Real;
 }
 
-/// The first field of a snapshot of a `T`. It holds nothing, for all that it says is known where it is
-/// read; a binary format has no other way to tell one snapshot from another.
-///
-/// The name comes first, in letters: bytes that begin otherwise are no snapshot.
+/// The scalar's name in Rust.
+fn name<S: Real>() -> &'static str {
+    S::NAME
+}
+
+/// The first field of a snapshot of a `T`. Zero-sized: its contents are constants, checked when loaded. Binary
+/// formats have no other way to tell one snapshot from another, and other bytes do not begin with the name.
 pub(crate) struct Header<T>(PhantomData<T>);
 
 impl<T> Header<T> {
@@ -41,33 +43,31 @@ impl<T: Subject> Serialize for Header<T> {
         Fields {
             of: T::NAME,
             version: VERSION,
-            scalar: T::Scalar::NAME,
+            scalar: name::<T::Scalar>(),
         }
         .serialize(serializer)
     }
 }
 
 impl<'de, T: Subject> Deserialize<'de> for Header<T> {
-    /// Refuses all but its own.
+    /// Rejects any other header.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        // Also where there is none: of what was stored before there were versions.
         let Fields {
             of,
             version,
             scalar,
         }: Fields<String<16>> = Fields::deserialize(deserializer).map_err(|error| {
             D::Error::custom(format_args!(
-                "{error}; allowed is a snapshot of version {VERSION}"
+                "{error}; must be a snapshot of version {VERSION}"
             ))
         })?;
-        if (&*of, version, &*scalar) == (T::NAME, VERSION, T::Scalar::NAME) {
+        if (&*of, version, &*scalar) == (T::NAME, VERSION, name::<T::Scalar>()) {
             return Ok(Self::NEW);
         }
         Err(D::Error::custom(format_args!(
-            "the snapshot is of {of:?}, version {version}, in {scalar}; \
-             allowed is {:?}, version {VERSION}, in {}",
+            "the snapshot must be {:?}, version {VERSION}, {}, got {of:?}, version {version}, {scalar}",
             T::NAME,
-            T::Scalar::NAME
+            name::<T::Scalar>()
         )))
     }
 }

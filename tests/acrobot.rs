@@ -1,15 +1,24 @@
-//! The environment's contract beyond its numbers: ends, time limits, live changes, sizes and
+//! The environment's contract beyond its numbers: construction, resets, ends, time limits, live changes, sizes and
 //! auto-traits.
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Dynamics, Error, Fast, Form, Host, Micro, Observation, Params,
-    Pcg64, Portable, REWARD_THRESHOLD, Real, SeedSequence, StartBounds, State, TimeLimit,
-    Trajectory, Transition, energy, mass_matrix, tip_height, wrap,
+use std::convert::Infallible;
+
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::{
+    Dynamics, Gymnasium, Pendulum, StartBounds, derivative, energy, mass_matrix, positions,
+    tip_height, wrap,
 };
+use acrobot::trajectory::{Trajectory, Transition};
+use acrobot::{
+    Acrobot, Action, Error, Fast, Observation, Params, Portable, REWARD_THRESHOLD, ResetOptions,
+    State, Step, TimeLimit,
+};
+use rand_core::TryRng;
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
 
-/// What firmware counts on; it need not run to be checked.
+/// Firmware relies on these. The compiler checks them.
 const _: () = {
     assert!(size_of::<Acrobot<Micro>>() == size_of::<Acrobot<Fast>>());
     assert!(size_of::<Acrobot<Portable>>() <= 352);
@@ -20,6 +29,7 @@ const _: () = {
     assert!(size_of::<SeedSequence>() == 32);
     assert!(size_of::<Transition<f32>>() <= 44);
     is_send_sync_clone::<Acrobot<Fast>>();
+    is_send_sync_clone::<Pendulum<Fast>>();
     is_send_sync_clone::<Acrobot<Host>>();
     is_send_sync_clone::<TimeLimit<Acrobot<Micro>>>();
     is_send_sync_clone::<Trajectory<f32, 10>>();
@@ -47,26 +57,26 @@ fn the_goal_ends_with_a_reward_of_zero_and_stepping_goes_on() {
     assert_eq!(REWARD_THRESHOLD, -100.0);
 }
 
-/// Cosines that put the tip at exactly the goal's height, for whatever angles.
+/// Cosines that put the tip at exactly the target height, whatever the angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct AtTheLine;
+struct AtTheTarget;
 
-impl Arithmetic for AtTheLine {
+impl Arithmetic for AtTheTarget {
     type Scalar = f64;
-    const FORM: Form = Form::Gymnasium;
+    type Form = Gymnasium;
 
     fn sin_cos(_: f64) -> (f64, f64) {
         (0.0, -0.5)
     }
 }
 
-/// With nothing but what an arithmetic must have.
+/// Only what an arithmetic must have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Least;
 
 impl Arithmetic for Least {
     type Scalar = f64;
-    const FORM: Form = Form::Gymnasium;
+    type Form = Gymnasium;
 
     fn sin_cos(x: f64) -> (f64, f64) {
         Portable::sin_cos(x)
@@ -74,7 +84,7 @@ impl Arithmetic for Least {
 }
 
 #[test]
-fn what_an_arithmetic_has_by_default_is_portables() {
+fn the_default_methods_of_an_arithmetic_are_portables() {
     let mut least = Acrobot::<Least>::new(3);
     let mut portable = Acrobot::<Portable>::new(3);
     for _ in 0..100 {
@@ -88,8 +98,8 @@ fn what_an_arithmetic_has_by_default_is_portables() {
 }
 
 #[test]
-fn the_goal_is_above_the_line_and_not_on_it() {
-    let step = Acrobot::<AtTheLine>::new(0).step(Action::Zero);
+fn a_tip_at_the_target_height_is_not_in_the_goal() {
+    let step = Acrobot::<AtTheTarget>::new(0).step(Action::Zero);
     assert!(!step.terminated);
     assert_eq!(step.reward, -1.0);
 }
@@ -130,7 +140,7 @@ fn the_goal_is_by_height_in_every_arithmetic() {
 }
 
 #[test]
-fn time_limits_truncate_apart_from_termination() {
+fn time_limits_truncate_whether_or_not_an_episode_terminates() {
     for (mut acrobot, limit) in [
         (TimeLimit::v1(Acrobot::<Fast>::new(1)), 500),
         (TimeLimit::v0(Acrobot::<Fast>::new(1)), 200),
@@ -150,10 +160,10 @@ fn time_limits_truncate_apart_from_termination() {
         acrobot.inner_mut().set_state(State::default()).unwrap();
         let beyond = acrobot.step(Action::Zero);
         assert!(!beyond.terminated && beyond.truncated, "as in Gymnasium");
-        assert!(beyond.ended() && last.ended());
+        assert!(beyond.done() && last.done());
         acrobot.reset();
         assert_eq!(acrobot.elapsed(), 0);
-        assert!(!acrobot.step(Action::Zero).ended());
+        assert!(!acrobot.step(Action::Zero).done());
     }
 }
 
@@ -189,7 +199,7 @@ fn parameters_change_on_a_running_acrobot() {
     assert_ne!(nips.step(Action::Positive), plain);
     assert_ne!(short.step(Action::Positive), plain);
     assert_ne!(noisy.step(Action::Positive), plain);
-    // Noise draws from the generator, and nothing else of a step does.
+    // Only noise draws from the generator in a step.
     assert_ne!(noisy.rng(), acrobot.rng());
     assert_eq!(nips.rng(), acrobot.rng());
 }
@@ -217,7 +227,7 @@ fn acrobots_are_equal_by_parameters_state_and_generator() {
 }
 
 #[test]
-fn start_bounds_are_what_they_were_made_of() {
+fn start_bounds_return_both_bounds() {
     let bounds = StartBounds::new(-0.2, 0.3).unwrap();
     assert_eq!((bounds.low(), bounds.high()), (-0.2, 0.3));
 }
@@ -226,41 +236,299 @@ fn start_bounds_are_what_they_were_made_of() {
 fn a_seeded_reset_is_a_new_acrobot() {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(0));
     acrobot.step(Action::Zero);
-    acrobot.reset_seeded(7);
+    let observation = acrobot.reset_with_seed(7);
     assert_eq!(acrobot, TimeLimit::v1(Acrobot::new(7)));
+    assert_eq!(observation, acrobot.inner().observation());
+}
+
+/// `reset_with` seeds as `reset_with_seed` if there is a seed, and draws from its bounds.
+#[test]
+fn resets_with_options_are_seeded_resets_within_bounds() {
+    let bounds = StartBounds::new(-3.0, 5.0).unwrap();
+    let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(0));
+    acrobot.step(Action::Zero);
+    let options = ResetOptions {
+        seed: Some(SeedSequence::new(7)),
+        ..ResetOptions::default()
+    };
+    acrobot.reset_with(options.clone());
+    assert_eq!(acrobot, TimeLimit::v1(Acrobot::new(7)));
+
+    acrobot.step(Action::Zero);
+    let observation = acrobot.reset_with(ResetOptions { bounds, ..options });
+    let mut expected = TimeLimit::v1(Acrobot::hanging(Pcg64::new(7)));
+    assert_eq!(observation, expected.reset_within(bounds));
+    assert_eq!(acrobot, expected);
+
+    acrobot.step(Action::Zero);
+    acrobot.reset_with(ResetOptions { seed: None, bounds });
+    expected.reset_within(bounds);
+    assert_eq!(acrobot, expected, "without a seed the stream goes on");
+}
+
+fn bits<S: Real, const N: usize>(numbers: [S; N]) -> [u64; N] {
+    numbers.map(|x| x.to_f64().to_bits())
+}
+
+/// Every bit of a state, an observation, a reward and an end.
+fn bits_of<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) -> ([u64; 4], [u64; 6], u64, bool) {
+    let Step {
+        observation,
+        reward,
+        terminated,
+        ..
+    } = step;
+    (
+        bits(acrobot.state().into()),
+        bits(observation.to_array()),
+        reward.to_f64().to_bits(),
+        terminated,
+    )
+}
+
+/// An acrobot in a `static`, hanging or in a given state, steps bit-identically to one that `set_state` places.
+#[test]
+fn acrobots_made_by_the_compiler_step_as_those_made_at_run_time() {
+    fn check<A: Arithmetic>(made: &Acrobot<A>, state: State<A::Scalar>) {
+        let (mut made, mut set) = (made.clone(), Acrobot::<A>::new(0));
+        *set.rng_mut() = Pcg64::new(42);
+        set.set_state(state).unwrap();
+        assert_eq!(made, set);
+        assert_eq!(made.observation(), set.observation());
+        let mut actions = Pcg64::new(1);
+        for noise in [0.0, 0.5] {
+            let torque_noise = A::Scalar::from_f64(noise);
+            for acrobot in [&mut made, &mut set] {
+                let params = Params {
+                    torque_noise,
+                    ..*acrobot.params()
+                };
+                acrobot.set_params(params).unwrap();
+            }
+            for _ in 0..200 {
+                let action = Action::sample(&mut actions);
+                let (step, expected) = (made.step(action), set.step(action));
+                assert_eq!(bits_of(&made, step), bits_of(&set, expected));
+            }
+        }
+        assert_eq!(made.reset(), set.reset());
+        assert_eq!(made, set);
+    }
+    macro_rules! check_static {
+        ($($arithmetic:ident),*) => {$({
+            static HANGING: Acrobot<$arithmetic> = Acrobot::hanging(Pcg64::new(42));
+            static PLACED: Acrobot<$arithmetic> = {
+                let state = State { theta1: 2.5, theta2: -4.0, dtheta1: 3.0, dtheta2: -30.0 };
+                let Ok(pendulum) = Pendulum::<$arithmetic>::at(state) else {
+                    panic!()
+                };
+                Acrobot::from_pendulum(pendulum, Pcg64::new(42))
+            };
+            check(&HANGING, State::default());
+            check(&PLACED, State::from([2.5, -4.0, 3.0, -30.0]));
+        })*};
+    }
+    check_static!(Portable, Host, Fast, Micro);
+}
+
+/// A pendulum steps bit-identically to an acrobot without noise, and returns whether the acrobot terminates.
+#[test]
+fn a_pendulum_steps_as_a_noiseless_acrobot() {
+    fn check<A: Arithmetic>() {
+        let number = A::Scalar::from_f64;
+        let params = Params {
+            mass2: number(1.5),
+            dt: number(0.1),
+            ..Params::DEFAULT
+        };
+        let mut acrobot = Acrobot::<A>::new(5);
+        acrobot.set_params(params).unwrap();
+        let mut pendulum = Pendulum::<A>::new(params, acrobot.state()).unwrap();
+        let mut terminated = 0;
+        for _ in 0..500 {
+            // Torque along link 1's velocity, which swings it up.
+            let torque = number(if acrobot.state().dtheta1 > number(0.0) {
+                -2.0
+            } else {
+                2.0
+            });
+            let step = acrobot.step_torque(torque).unwrap();
+            assert_eq!(pendulum.step(torque), Ok(step.terminated));
+            assert_eq!(bits(pendulum.state().into()), bits(acrobot.state().into()));
+            let placed = Acrobot::from_pendulum(pendulum.clone(), ());
+            assert_eq!(placed.observation(), step.observation);
+            let State { theta1, theta2, .. } = pendulum.state();
+            assert_eq!(pendulum.sin_cos(), [theta1, theta2].map(A::sin_cos));
+            terminated += u32::from(step.terminated);
+        }
+        assert!(terminated > 10, "{terminated}");
+    }
+    check::<Portable>();
+    check::<Host>();
+    check::<Fast>();
+    check::<Micro>();
+}
+
+/// After steps, the methods are bit-identical to the functions of the same name.
+#[test]
+fn methods_are_the_functions_of_physics() {
+    fn check<A: Arithmetic>() {
+        let number = A::Scalar::from_f64;
+        let params = Params {
+            length1: number(1.25),
+            length2: number(0.75),
+            mass2: number(1.5),
+            ..Params::DEFAULT
+        };
+        let mut acrobot = Acrobot::<A>::new(5);
+        acrobot.set_params(params).unwrap();
+        for i in 0..200 {
+            let torque = number(f64::from(i % 5 - 2));
+            acrobot.step_torque(torque).unwrap();
+            let state = acrobot.state();
+            let rates = derivative::<A>(&params, &state, torque);
+            assert_eq!(bits(acrobot.derivative(torque)), bits(rates));
+            let expected = [
+                energy::<A>(&params, &state),
+                tip_height::<A>(&params, &state),
+            ];
+            assert_eq!(
+                bits([acrobot.energy(), acrobot.tip_height()]),
+                bits(expected)
+            );
+            for (rows, expected) in [
+                (acrobot.mass_matrix(), mass_matrix::<A>(&params, &state)),
+                (acrobot.positions(), positions::<A>(&params, &state)),
+            ] {
+                assert_eq!(rows.map(bits), expected.map(bits));
+            }
+        }
+    }
+    check::<Portable>();
+    check::<Host>();
+    check::<Fast>();
+    check::<Micro>();
+}
+
+/// Elbow and tip are at the ends of their links, x to the right and y up.
+#[test]
+fn positions_follow_from_the_angles() {
+    use std::f64::consts::FRAC_PI_2;
+    let params = Params {
+        length1: 1.5,
+        length2: 0.5,
+        ..Params::DEFAULT
+    };
+    let at = |theta1: f64, theta2: f64| {
+        let state = State::from([theta1, theta2, 0.0, 0.0]);
+        positions::<Portable>(&params, &state)
+    };
+    let close = |[x, y]: [f64; 2], [right, up]: [f64; 2]| {
+        let distance = (x - right).hypot(y - up);
+        assert!(distance <= 1e-15, "{x} {y} and {right} {up}");
+    };
+    // Counter-clockwise is positive: a quarter turn from hanging points to the right.
+    let [elbow, tip] = at(FRAC_PI_2, -FRAC_PI_2);
+    close(elbow, [1.5, 0.0]);
+    close(tip, [1.5, -0.5]);
+    for i in -30..30 {
+        let (theta1, theta2) = (f64::from(i) * 0.1, f64::from(i) * 0.37);
+        let [elbow, tip] = at(theta1, theta2);
+        let (sin, cos) = Portable::sin_cos(theta1);
+        close(elbow, [1.5 * sin, -1.5 * cos]);
+        let (sin, cos) = Portable::sin_cos(theta1 + theta2);
+        close(tip, [elbow[0] + 0.5 * sin, elbow[1] - 0.5 * cos]);
+    }
+}
+
+/// A custom generator, which counts up in large strides.
+#[derive(Clone, Debug, PartialEq)]
+struct Strides(u64);
+
+impl TryRng for Strides {
+    type Error = Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        self.try_next_u64().map(|word| word as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        Ok(self.0)
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        bytes.fill_with(|| (self.try_next_u64().unwrap_or_default() >> 56) as u8);
+        Ok(())
+    }
+}
+
+/// A custom generator draws initial states and noise, in the order of the calls.
+#[test]
+fn custom_generators_draw_initial_states_and_noise() {
+    let mut rng = Strides(1);
+    let mut drawn = |low, high| {
+        let numbers = [(); 4].map(|()| uniform(&mut rng, low, high) as f32);
+        State::from(numbers)
+    };
+    let mut acrobot = TimeLimit::v1(Acrobot::<Fast, _>::with_rng(Strides(1)));
+    assert_eq!(acrobot.inner().state(), drawn(-0.1, 0.1));
+    acrobot.reset();
+    assert_eq!(acrobot.inner().state(), drawn(-0.1, 0.1));
+    acrobot.reset_within(StartBounds::new(1.0, 2.0).unwrap());
+    assert_eq!(acrobot.inner().state(), drawn(1.0, 2.0));
+
+    let noisy = Params {
+        torque_noise: 0.5,
+        ..Params::DEFAULT
+    };
+    acrobot.inner_mut().set_params(noisy).unwrap();
+    let mut twin = acrobot.inner().clone();
+    twin.set_params(Params::DEFAULT).unwrap();
+    let noise = uniform(twin.rng_mut(), -0.5, 0.5) as f32;
+    acrobot.step(Action::Positive);
+    twin.step_torque(1.0 + noise).unwrap();
+    assert_eq!(acrobot.inner().state(), twin.state());
+    assert_eq!(acrobot.inner().rng(), twin.rng());
 }
 
 #[test]
 fn the_bounds_are_gymnasiums() {
     // As its observation space prints them: 4π and 9π in f32.
     let (four_pi, nine_pi) = (12.566_371, 28.274_334);
-    assert_eq!(*Observation::HIGH, [1.0, 1.0, 1.0, 1.0, four_pi, nine_pi]);
-    assert_eq!(*Observation::LOW, Observation::HIGH.map(|x| -x));
+    let high = Observation::HIGH.to_array();
+    assert_eq!(high, [1.0, 1.0, 1.0, 1.0, four_pi, nine_pi]);
+    assert_eq!(Observation::LOW.to_array(), high.map(|x| -x));
     let pi = core::f32::consts::PI;
-    assert_eq!(*Observation::V0_HIGH, [pi, pi, four_pi, nine_pi]);
-    assert_eq!(*Observation::V0_LOW, Observation::V0_HIGH.map(|x| -x));
+    let high = Observation::V0_HIGH.to_array();
+    assert_eq!(high, [pi, pi, four_pi, nine_pi]);
+    assert_eq!(Observation::V0_LOW.to_array(), high.map(|x| -x));
 }
 
 #[test]
-fn both_readings_show_the_state() {
-    let mut acrobot = Acrobot::<Portable>::new(0);
-    acrobot
-        .set_state(State::from([0.5, -2.0, 3.0, -4.0]))
-        .unwrap();
+fn both_observations_show_the_state() {
+    let state = State::from([0.5, -2.0, 3.0, -4.0]);
+    let acrobot = Acrobot::from_pendulum(Pendulum::<Portable>::at(state).unwrap(), ());
     let (sin1, cos1) = Portable::sin_cos(0.5);
     let (sin2, cos2) = Portable::sin_cos(-2.0);
+    let seen = acrobot.observation();
     assert_eq!(
-        *acrobot.observation(),
+        seen.to_array(),
         [cos1, sin1, cos2, sin2, 3.0, -4.0].map(|x| x as f32)
     );
-    assert_eq!(
-        *Observation::<4>::from(acrobot.state()),
-        [0.5, -2.0, 3.0, -4.0]
-    );
+    let [sines, velocities] = [
+        [seen.cos_theta1(), seen.sin_theta1(), seen.cos_theta2()],
+        [seen.sin_theta2(), seen.dtheta1(), seen.dtheta2()],
+    ];
+    assert_eq!([sines, velocities].concat(), seen.as_ref());
+    let angles = Observation::<4>::from(acrobot.state());
+    assert_eq!(angles.to_array(), [0.5, -2.0, 3.0, -4.0]);
+    assert_eq!([angles.theta1(), angles.theta2()], [0.5, -2.0]);
+    assert_eq!([angles.dtheta1(), angles.dtheta2()], [3.0, -4.0]);
 }
 
 #[test]
-fn the_methods_of_an_acrobot_are_of_its_state_and_parameters() {
+fn methods_follow_the_state_and_the_parameters() {
     let mut acrobot = Acrobot::<Portable>::new(0);
     acrobot
         .set_state(State::from([1.7e308, 1.7e308, 0.0, 0.0]))
@@ -297,7 +565,7 @@ fn angles_wrap() {
     ] {
         assert_eq!(wrap::<Portable>(x), wrapped);
     }
-    // Beyond 64 turns, where the remainder takes over: seamlessly but for rounding.
+    // Beyond 64 turns it takes the remainder, which agrees up to rounding.
     for turns in [60.0, 63.0, 64.0, 65.0, 70.0, 1e6] {
         for x in [-3.0, -1.0, 0.25, 3.0] {
             for turns in [-turns, turns] {

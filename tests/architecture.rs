@@ -1,6 +1,6 @@
-//! The house in order: modules import one way, as ARCHITECTURE.md says, and what it names is there.
+//! The architecture: files import only from files above them, and what the texts name exists.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -12,76 +12,120 @@ fn read(path: impl AsRef<Path>) -> String {
 
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !c.is_alphanumeric() && c != '_')
+        .filter(|word| !word.is_empty())
 }
 
-/// The first cells of the table of modules.
-fn stated_order() -> Vec<String> {
+/// The rows of the table, each with the files that it names.
+fn rows() -> Vec<Vec<String>> {
     let text = read("ARCHITECTURE.md");
-    let rows = text.split("| module |").nth(1).unwrap().lines().skip(2);
-    rows.map_while(|row| row.strip_prefix("| `"))
-        .map(|row| words(row).next().unwrap().to_owned())
-        .collect()
+    let table = text.split("| files in `src/` |").nth(1).unwrap();
+    let rows = table
+        .lines()
+        .skip(2)
+        .map_while(|row| row.strip_prefix("| "));
+    rows.map(|row| {
+        let files = row.split(" | ").next().unwrap().split(", ");
+        files
+            .map(|file| file.trim_matches('`').to_owned())
+            .collect()
+    })
+    .collect()
 }
 
-/// What follows `crate::` in a line of code, in braces or not.
-fn imported(line: &str) -> impl Iterator<Item = &str> {
-    line.split("crate::")
-        .skip(1)
-        .flat_map(|path| match path.strip_prefix('{') {
-            Some(list) => list.split('}').next().unwrap().split(", ").collect(),
-            None => vec![path],
-        })
-        .map(|path| words(path).next().unwrap())
+/// All source files, as `physics/step`.
+fn files(folder: &Path) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let inside = path.strip_prefix(Path::new(ROOT).join("src")).unwrap();
+            found.push(inside.with_extension("").to_str().unwrap().to_owned());
+        }
+    }
+    found
 }
 
-/// `name.rs`, and the files in `name/`.
-fn files(module: &str) -> Vec<PathBuf> {
-    let path = Path::new(ROOT).join("src").join(module);
-    let parts = fs::read_dir(&path).into_iter().flatten();
-    let parts = parts.map(|entry| entry.unwrap().path());
-    parts.chain([path.with_extension("rs")]).collect()
+/// The name that a line defines, if it is an item that other files can import.
+fn defined(line: &str) -> Option<&str> {
+    let (visibility, item) = line.split_once(' ')?;
+    if !visibility.starts_with("pub") {
+        return None;
+    }
+    let kinds = ["fn", "struct", "enum", "trait", "type", "const"];
+    let mut after = words(item).skip_while(|word| !kinds.contains(word));
+    after.find(|word| !kinds.contains(word))
+}
+
+/// The names that follow `crate::` or `super::` outside of comments, in braces or not.
+fn imported(text: &str) -> impl Iterator<Item = &str> {
+    let after = |mark| text.match_indices(mark).map(move |(start, _)| start);
+    let starts = after("crate::").chain(after("super::"));
+    let code = starts.filter(|&start| {
+        let line = text[..start].rsplit('\n').next().unwrap();
+        !line.trim_start().starts_with("//")
+    });
+    code.flat_map(|start| {
+        let path = &text[start..];
+        let end = path.find(|c: char| !c.is_alphanumeric() && !"_:".contains(c));
+        let end = end.unwrap_or(path.len());
+        match path[end..].starts_with('{') {
+            true => words(path.split('}').next().unwrap()),
+            false => words(&path[..end]),
+        }
+    })
 }
 
 #[test]
-fn modules_import_only_what_stands_above_them() {
-    let order = stated_order();
-    let lib = read("src/lib.rs");
-    let modules = lib
-        .lines()
-        .filter_map(|line| line.trim_start_matches("pub ").strip_prefix("mod "))
-        .map(|line| words(line).next().unwrap())
-        .filter(|&module| module != "guide");
-    let stated = order.iter().map(String::as_str);
-    assert_eq!(
-        modules.collect::<BTreeSet<_>>(),
-        stated.collect::<BTreeSet<_>>()
-    );
-
-    // `crate::Action` is from the module that lib.rs exports it from.
-    let position = |name: &str| {
-        let exports = lib.lines().filter_map(|line| line.strip_prefix("pub use "));
-        let mut from = exports.filter(|line| words(line).any(|word| word == name));
-        let module = words(from.next().unwrap_or(name)).next();
-        let found = order.iter().position(|stated| Some(&**stated) == module);
-        found.unwrap_or_else(|| panic!("{name:?} is from no module"))
+fn files_import_only_from_their_own_row_or_above() {
+    let rows = rows();
+    // A file is in the row that names it, or its folder.
+    let row = |file: &str| {
+        let exact = rows
+            .iter()
+            .position(|row| row.iter().any(|name| name == file));
+        let folder = file.split('/').next().unwrap();
+        let by_folder = rows
+            .iter()
+            .position(|row| row.iter().any(|name| name == folder));
+        exact.or(by_folder)
     };
+    let sources = files(&Path::new(ROOT).join("src"));
+    let sources: Vec<&String> = sources
+        .iter()
+        // They have no code.
+        .filter(|file| !["lib", "guide", "physics"].contains(&file.as_str()))
+        .collect();
+    let texts: Vec<String> = sources
+        .iter()
+        .map(|file| read(format!("src/{file}.rs")))
+        .collect();
+    let mut home = HashMap::new();
+    for (file, text) in sources.iter().zip(&texts) {
+        for name in text.lines().filter_map(defined) {
+            home.insert(name, file.as_str());
+        }
+    }
+
+    let mut named: BTreeSet<&str> = rows.iter().flatten().map(String::as_str).collect();
     let mut imports = 0;
-    for (i, module) in order.iter().enumerate() {
-        for file in files(module) {
-            let text = read(&file);
-            let code = text
-                .lines()
-                .filter(|line| !line.trim_start().starts_with("//"));
-            for (line, name) in code.flat_map(|line| imported(line).map(move |name| (line, name))) {
+    for (file, text) in sources.iter().zip(&texts) {
+        let place = row(file).unwrap_or_else(|| panic!("ARCHITECTURE.md has no {file}"));
+        named.remove(file.as_str());
+        for name in imported(text) {
+            if let Some(from) = home.get(name) {
                 imports += 1;
-                assert!(position(name) <= i, "{}: {line}", file.display());
+                let above = row(from).is_some_and(|from| from <= place);
+                assert!(above, "{file} imports {name} from {from}");
             }
         }
     }
-    assert!(imports > 80, "{imports} were found");
+    assert!(imports > 100, "{imports} were found");
+    assert!(named.is_empty(), "ARCHITECTURE.md names {named:?}");
 }
 
-/// Files and folders in backquotes, of which a `*` stands for any name.
+/// Files and folders in backquotes; a `*` stands for any name.
 #[test]
 fn what_the_texts_name_is_there() {
     let mut named = 0;
@@ -92,8 +136,8 @@ fn what_the_texts_name_is_there() {
                 named += 1;
                 let whole = path.split('*').next().unwrap();
                 let folder = whole.rsplit_once('/').unwrap().0;
-                let there = if whole == path { path } else { folder };
-                assert!(Path::new(ROOT).join(there).exists(), "{path}");
+                let there: PathBuf = if whole == path { path } else { folder }.into();
+                assert!(Path::new(ROOT).join(&there).exists(), "{path}");
             }
         }
     }

@@ -1,12 +1,13 @@
-//! With the reset by the step that ends an episode none waits for it, however it came into the batch.
+//! Acrobots wait for their reset in mode `NextStep` only, however they came into the batch.
 
-use acrobot::{
-    Autoreset, Batch, Block, Fast, Member, Observations, Output, Params, Pcg64, StartBounds,
-};
+use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::physics::StartBounds;
+use acrobot::{Fast, Params};
 
 type One = Batch<Fast, [Block; 1], [Pcg64; 1]>;
 
-/// One with noise, within bounds that starts can be known by.
+/// One acrobot with noise, and with reset bounds that tell its initial states from others.
 fn one(autoreset: Autoreset) -> One {
     let mut batch = One::new(42, [Block::EMPTY], [Pcg64::UNSEEDED]).unwrap();
     let noisy = Params {
@@ -27,26 +28,36 @@ fn waiting() -> Member {
     }
 }
 
-/// It is at a start, and draws its noise from there on.
-fn assert_begun(mut batch: One) {
-    let start = batch.member(0).unwrap();
-    assert!((0.5..0.6).contains(&start.state.theta1), "{start:?}");
-    assert_eq!((start.elapsed, start.ended), (0, false));
-    let output = Output {
+/// The acrobot is in an initial state.
+fn assert_begun(batch: One) {
+    let initial = batch.member(0).unwrap();
+    assert!((0.5..0.6).contains(&initial.state.theta1), "{initial:?}");
+    assert_eq!(initial.elapsed, 0);
+    assert_steps(batch);
+}
+
+/// The acrobot does not wait: a step counts and draws noise.
+fn assert_steps(mut batch: One) {
+    let before = batch.member(0).unwrap();
+    assert!(!before.ended);
+    let buffers = StepBuffers {
         rewards: &mut [0.0],
         terminated: &mut [false],
         truncated: &mut [false],
         observations: Observations::None,
         final_observations: Observations::None,
     };
-    batch.step(&[1_u8], output).unwrap();
+    batch.step(&[1_u8], buffers).unwrap();
     let stepped = batch.member(0).unwrap();
-    assert_eq!((stepped.elapsed, stepped.ended), (1, false));
-    assert_ne!(stepped.rng, start.rng, "no noise was drawn");
+    assert_eq!(
+        (stepped.elapsed, stepped.ended),
+        (before.elapsed + 1, false)
+    );
+    assert_ne!(stepped.rng, before.rng, "no noise was drawn");
 }
 
 #[test]
-fn one_that_waits_is_reset_where_it_is_put() {
+fn a_waiting_member_is_reset_immediately_in_mode_same_step() {
     let mut batch = one(Autoreset::SameStep);
     batch.set_member(0, waiting()).unwrap();
     assert_begun(batch);
@@ -57,9 +68,27 @@ fn one_that_waits_is_reset_where_it_is_put() {
 }
 
 #[test]
-fn one_that_waits_is_reset_when_the_mode_changes() {
+fn a_waiting_acrobot_is_reset_when_the_mode_becomes_same_step() {
     let mut batch = one(Autoreset::NextStep);
     batch.set_member(0, waiting()).unwrap();
     batch.set_autoreset(Autoreset::SameStep);
     assert_begun(batch);
+}
+
+/// In mode `Disabled` an acrobot that waited steps on from where it is, however it came there.
+#[test]
+fn a_waiting_acrobot_steps_on_in_mode_disabled() {
+    let mut put = one(Autoreset::Disabled);
+    put.set_member(0, waiting()).unwrap();
+    let mut changed = one(Autoreset::NextStep);
+    changed.set_member(0, waiting()).unwrap();
+    changed.set_autoreset(Autoreset::Disabled);
+    for batch in [put, changed] {
+        let expected = Member {
+            ended: false,
+            ..waiting()
+        };
+        assert_eq!(batch.member(0), Some(expected));
+        assert_steps(batch);
+    }
 }

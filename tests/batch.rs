@@ -1,44 +1,39 @@
-//! Promise 2 for batches: acrobot i of a batch is one alone with the i-th child of the seed, to the bit.
+//! Promise 2 for batches: acrobot i of a batch is bit-identical to one alone with the i-th child of the seed.
 
 use std::num::NonZeroU32;
 
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::batch::{Autoreset, Batch, Block, Observations, SimdLevel, StepBuffers};
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::{Dynamics, StartBounds};
 use acrobot::{
-    Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Dynamics, Error, Fast, Host, Micro,
-    Observations, Output, Params, Pcg64, Portable, Real, SeedSequence, StartBounds, State,
-    TimeLimit, Vectors,
+    Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, Step, TimeLimit,
 };
 
 type Blocks<A, const N: usize> = Vec<Block<<A as Arithmetic>::Scalar, N>>;
 
-/// A batch and its scalar twins, and the memory for what a step returns.
+type Vecs<A, const N: usize> = Batch<A, Blocks<A, N>, Vec<Pcg64>, N>;
+
+/// A batch and its scalar twins.
 struct Twins<A: Arithmetic, const N: usize = 16> {
-    batch: Batch<A, Blocks<A, N>, Vec<Pcg64>, N>,
+    batch: Vecs<A, N>,
     alone: Vec<TimeLimit<Acrobot<A>>>,
-    /// Whether each of `alone` is reset by the next step.
-    ended: Vec<bool>,
-    autoreset: Autoreset,
-    bounds: StartBounds,
+    /// Whether the next step resets each of `alone`.
+    waiting: Vec<bool>,
 }
 
 impl<A: Arithmetic, const N: usize> Twins<A, N> {
     fn new(len: usize, autoreset: Autoreset) -> Self {
-        Self::with_vectors(len, autoreset, Vectors::widest())
-    }
-
-    fn with_vectors(len: usize, autoreset: Autoreset, vectors: Vectors) -> Self {
         let blocks = vec![Block::EMPTY; len.div_ceil(N)];
         let mut batch = Batch::new(42, blocks, vec![Pcg64::UNSEEDED; len]).unwrap();
         batch.set_autoreset(autoreset);
-        batch.set_vectors(vectors);
         Self {
             batch,
-            alone: SeedSequence::from(42)
+            alone: SeedSequence::new(42)
                 .spawn(len as u64)
-                .map(|seed| TimeLimit::v1(Acrobot::new(seed)))
+                .map(|seed| TimeLimit::v1(Acrobot::with_rng(seed.into())))
                 .collect(),
-            ended: vec![false; len],
-            autoreset,
-            bounds: StartBounds::DEFAULT,
+            waiting: vec![false; len],
         }
     }
 
@@ -49,91 +44,154 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         }
     }
 
-    fn start_within(&mut self, low: f64, high: f64) {
-        self.bounds = StartBounds::new(low, high).unwrap();
-        self.batch.set_start_bounds(self.bounds);
-        self.batch.reset();
-        for alone in &mut self.alone {
-            alone.reset_within(self.bounds);
-        }
+    fn set_noise(&mut self, noise: f64) {
+        self.set_params(Params {
+            torque_noise: A::Scalar::from_f64(noise),
+            ..*self.batch.params()
+        });
     }
 
-    /// Steps both with the same actions, and compares every bit.
-    fn step(&mut self, actions: &[Action]) {
+    fn start_within(&mut self, low: f64, high: f64) {
+        let bounds = StartBounds::new(low, high).unwrap();
+        self.batch.set_start_bounds(bounds);
+        self.batch.reset();
+        self.reset_alone(|_, alone| {
+            alone.reset_within(bounds);
+        });
+    }
+
+    /// After a reset of the batch: resets the scalar twins, given their index, and compares every bit.
+    fn reset_alone(&mut self, reset: impl Fn(u64, &mut TimeLimit<Acrobot<A>>)) {
+        for (alone, i) in self.alone.iter_mut().zip(0..) {
+            reset(i, alone);
+        }
+        self.waiting.fill(false);
+        self.assert_equal();
+    }
+
+    /// Steps both with the same actions and compares every bit. Returns which episodes ended.
+    fn step(&mut self, actions: &[Action]) -> Vec<bool> {
+        self.step_by(
+            |batch, buffers| batch.step(actions, buffers),
+            |i, alone| alone.step(actions[i]),
+        )
+    }
+
+    /// [`step`](Self::step) with torques, by `step_torques` or `par_step_torques`.
+    fn step_torques(&mut self, torques: &[A::Scalar], parallel: bool) -> Vec<bool> {
+        self.step_by(
+            |batch, buffers| match parallel {
+                true => batch.par_step_torques(torques, buffers),
+                false => batch.step_torques(torques, buffers),
+            },
+            |i, alone| alone.step_torque(torques[i]).unwrap(),
+        )
+    }
+
+    fn step_by(
+        &mut self,
+        step: impl FnOnce(&mut Vecs<A, N>, StepBuffers<'_>) -> Result<(), Error>,
+        step_alone: impl Fn(usize, &mut TimeLimit<Acrobot<A>>) -> Step,
+    ) -> Vec<bool> {
         let len = self.alone.len();
         let (mut rewards, mut terminated, mut truncated) =
             (vec![9.0; len], vec![true; len], vec![true; len]);
         let (mut rows, mut finals) = (vec![[9.0; 6]; len], vec![[9.0; 6]; len]);
-        let output = Output {
+        let buffers = StepBuffers {
             rewards: &mut rewards,
             terminated: &mut terminated,
             truncated: &mut truncated,
             observations: Observations::Rows(&mut rows),
             final_observations: Observations::Rows(&mut finals),
         };
-        self.batch.step(actions, output).unwrap();
+        step(&mut self.batch, buffers).unwrap();
+        let (autoreset, bounds) = (self.batch.autoreset(), self.batch.start_bounds());
+        let mut done = vec![false; len];
         for (i, alone) in self.alone.iter_mut().enumerate() {
             let mut last = [9.0; 6];
-            let expected = if std::mem::take(&mut self.ended[i]) {
-                (alone.reset_within(self.bounds), 0.0, false, false)
+            let expected = if std::mem::take(&mut self.waiting[i]) {
+                (alone.reset_within(bounds), 0.0, false, false)
             } else {
-                let step = alone.step(actions[i]);
-                let observation = match (step.ended(), self.autoreset) {
-                    (true, Autoreset::SameStep) => {
-                        last = *step.observation;
-                        alone.reset_within(self.bounds)
+                let step = step_alone(i, alone);
+                done[i] = step.done();
+                let mut observation = step.observation;
+                match autoreset {
+                    Autoreset::SameStep if done[i] => {
+                        last = observation.to_array();
+                        observation = alone.reset_within(bounds);
                     }
-                    (ended, _) => {
-                        self.ended[i] = ended;
-                        step.observation
-                    }
-                };
+                    Autoreset::NextStep => self.waiting[i] = done[i],
+                    _ => {}
+                }
                 (observation, step.reward, step.terminated, step.truncated)
             };
-            let bits = |state: State<A::Scalar>| {
-                <[A::Scalar; 4]>::from(state).map(|x| x.to_f64().to_bits())
-            };
-            assert_eq!(
-                bits(self.batch.state(i).unwrap()),
-                bits(alone.inner().state()),
-                "acrobot {i}"
-            );
-            assert_eq!(rows[i].map(f32::to_bits), expected.0.map(f32::to_bits));
+            let observation = expected.0.to_array();
+            assert_eq!(rows[i].map(f32::to_bits), observation.map(f32::to_bits));
             assert_eq!(finals[i].map(f32::to_bits), last.map(f32::to_bits));
             assert_eq!(
                 (rewards[i], terminated[i], truncated[i]),
                 (expected.1, expected.2, expected.3)
             );
         }
+        self.assert_equal();
+        done
     }
 
-    /// Random actions, or where `swinging` torque against θ̇1, which reaches the goal.
-    fn play(&mut self, steps: u32, swinging: bool) {
+    /// Compares every bit of the states, the steps since the last reset, and the generators.
+    fn assert_equal(&self) {
+        let bits =
+            |state: State<A::Scalar>| <[A::Scalar; 4]>::from(state).map(|x| x.to_f64().to_bits());
+        for (i, alone) in self.alone.iter().enumerate() {
+            let member = self.batch.member(i).unwrap();
+            let inner = alone.inner();
+            assert_eq!(bits(member.state), bits(inner.state()), "acrobot {i}");
+            assert_eq!(member.elapsed, alone.elapsed(), "acrobot {i}");
+            assert_eq!(member.ended, self.waiting[i], "acrobot {i}");
+            assert_eq!(member.rng, *inner.rng(), "acrobot {i}");
+        }
+    }
+
+    /// Torque against θ̇1, which reaches the goal.
+    fn swinging(&self) -> Vec<Action> {
+        let actions =
+            self.alone.iter().map(
+                |alone| match alone.inner().state().dtheta1 > A::Scalar::ZERO {
+                    true => Action::Negative,
+                    false => Action::Positive,
+                },
+            );
+        actions.collect()
+    }
+
+    fn swing(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.step(&self.swinging());
+        }
+    }
+
+    fn play_randomly(&mut self, steps: u32) {
         let mut rng = Pcg64::new(7);
         for _ in 0..steps {
-            let actions: Vec<Action> = self
-                .alone
-                .iter()
-                .map(|alone| {
-                    let random = Action::sample(&mut rng);
-                    match alone.inner().state().dtheta1 > A::Scalar::ZERO {
-                        _ if !swinging => random,
-                        true => Action::Negative,
-                        false => Action::Positive,
-                    }
-                })
-                .collect();
-            self.step(&actions);
+            let random = self.alone.iter().map(|_| Action::sample(&mut rng));
+            self.step(&random.collect::<Vec<_>>());
         }
     }
 }
 
-/// More than a block, and not a whole number of them; through ends and resets of either kind.
+const MODES: [Autoreset; 3] = [
+    Autoreset::NextStep,
+    Autoreset::SameStep,
+    Autoreset::Disabled,
+];
+
+const LEVELS: [SimdLevel; 3] = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
+
+/// More than a block, and not a whole number of blocks. Through ends and resets in every mode.
 fn plays_as_one_alone<A: Arithmetic>(len: usize, steps: u32) {
-    for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
+    for autoreset in MODES {
         let mut twins = Twins::<A>::new(len, autoreset);
-        twins.play(steps, true);
-        twins.play(steps, false);
+        twins.swing(steps);
+        twins.play_randomly(steps);
     }
 }
 
@@ -149,7 +207,7 @@ fn other_arithmetics_play_as_one_alone() {
     plays_as_one_alone::<Host>(17, 600);
 }
 
-/// In every width, with every kind of vectors that the machine has; the others are as the baseline.
+/// In every width and with every SIMD level. A level that the machine does not have acts as the baseline.
 #[test]
 fn a_thousand_play_ten_thousand_steps_as_one_alone() {
     fn play<const N: usize>() {
@@ -158,9 +216,11 @@ fn a_thousand_play_ten_thousand_steps_as_one_alone() {
             true => (100, 600),
             false => (1000, 10_000),
         };
-        for vectors in [Vectors::Baseline, Vectors::Avx2, Vectors::Avx512] {
-            println!("{N} by {vectors:?}, available: {}", vectors.is_available());
-            Twins::<Fast, N>::with_vectors(len, Autoreset::NextStep, vectors).play(steps, true);
+        for level in LEVELS {
+            println!("{N} by {level:?}, available: {}", level.is_available());
+            let mut twins = Twins::<Fast, N>::new(len, Autoreset::NextStep);
+            twins.batch.set_simd_level(level);
+            twins.swing(steps);
         }
     }
     play::<1>();
@@ -169,29 +229,48 @@ fn a_thousand_play_ten_thousand_steps_as_one_alone() {
     play::<16>();
 }
 
-/// Also a width that is no whole number of any vectors, and one beyond them.
+/// Every arithmetic with every SIMD level, in widths below, at and above that of a vector. Initial states are far
+/// outside the bounds, and there is noise.
 #[test]
 fn any_width_plays_as_one_alone() {
-    Twins::<Fast, 7>::new(100, Autoreset::SameStep).play(600, true);
-    Twins::<Fast, 32>::new(100, Autoreset::SameStep).play(600, true);
-    Twins::<Portable, 4>::new(9, Autoreset::SameStep).play(600, true);
+    fn play<A: Arithmetic, const N: usize>() {
+        for level in LEVELS {
+            let mut twins = Twins::<A, N>::new(37, Autoreset::SameStep);
+            twins.batch.set_simd_level(level);
+            twins.swing(200);
+            twins.set_noise(0.5);
+            twins.start_within(-100.0, 100.0);
+            twins.swing(200);
+        }
+    }
+    play::<Fast, 7>();
+    play::<Fast, 32>();
+    play::<Micro, 1>();
+    play::<Micro, 7>();
+    play::<Micro, 16>();
+    play::<Portable, 4>();
+    play::<Portable, 7>();
+    play::<Portable, 16>();
+    play::<Host, 1>();
+    play::<Host, 4>();
+    play::<Host, 16>();
 }
 
 #[test]
 fn any_size_plays_as_one_alone() {
     for len in [1, 2, 15, 16, 17, 31, 32, 33, 100] {
-        Twins::<Fast>::new(len, Autoreset::SameStep).play(200, true);
+        Twins::<Fast>::new(len, Autoreset::SameStep).swing(200);
     }
 }
 
 #[test]
-fn other_parameters_noise_and_starts_play_as_one_alone() {
+fn other_parameters_noise_and_initial_states_play_as_one_alone() {
     let mut rng = Pcg64::new(11);
     for dynamics in [Dynamics::Book, Dynamics::Nips] {
         for noise in [0.0, 0.5] {
             for (size, dt) in [(0.1, 0.2), (3.2, 0.05), (100.0, 0.2), (1e5, 1.0)] {
                 let mut twins = Twins::<Fast>::new(40, Autoreset::NextStep);
-                let mut draw = || acrobot::uniform(&mut rng, 0.5, 2.0) as f32;
+                let mut draw = || uniform(&mut rng, 0.5, 2.0) as f32;
                 twins.set_params(Params {
                     mass1: draw(),
                     mass2: draw(),
@@ -203,13 +282,13 @@ fn other_parameters_noise_and_starts_play_as_one_alone() {
                     ..Params::default()
                 });
                 twins.start_within(-size, size);
-                twins.play(700, true);
+                twins.swing(700);
             }
         }
     }
 }
 
-/// As many threads as there are, and columns.
+/// On all cores, with observations in columns, with actions and with torques.
 #[test]
 fn threads_change_no_bit() {
     let len = 50_003_usize;
@@ -219,14 +298,13 @@ fn threads_change_no_bit() {
     one.set_limit(NonZeroU32::new(7).unwrap());
     let mut many = one.clone();
     let mut rng = Pcg64::new(1);
-    type Fasts = Batch<Fast, Blocks<Fast, 16>, Vec<Pcg64>>;
-    type Step = fn(&mut Fasts, &[Action], Output<'_>) -> Result<(), Error>;
-    let run = |batch: &mut Fasts, actions: &[Action], step: Step| {
+    type Fasts = Vecs<Fast, 16>;
+    let run = |batch: &mut Fasts, step: &dyn Fn(&mut Fasts, StepBuffers) -> Result<(), Error>| {
         let (mut rewards, mut terminated, mut truncated) =
             (vec![9.0; len], vec![true; len], vec![true; len]);
         let mut columns = [(); 6].map(|()| vec![9.0; len]);
         let mut finals = columns.clone();
-        let output = Output {
+        let buffers = StepBuffers {
             rewards: &mut rewards,
             terminated: &mut terminated,
             truncated: &mut truncated,
@@ -235,17 +313,25 @@ fn threads_change_no_bit() {
                 finals.each_mut().map(|column| &mut column[..]),
             ),
         };
-        step(batch, actions, output).unwrap();
+        step(batch, buffers).unwrap();
         (rewards, terminated, truncated, columns, finals)
     };
-    // Past two limits; optimized, past eight.
+    // Past two limits, optimized past eight.
     for _ in 0..if cfg!(debug_assertions) { 16 } else { 60 } {
         let actions: Vec<Action> = (0..len).map(|_| Action::sample(&mut rng)).collect();
-        let alone = run(&mut one, &actions, |batch, actions, output| {
-            batch.step(actions, output)
+        let alone = run(&mut one, &|batch, buffers| batch.step(&actions, buffers));
+        let shared = run(&mut many, &|batch, buffers| {
+            batch.par_step(&actions, buffers)
         });
-        let shared = run(&mut many, &actions, |batch, actions, output| {
-            batch.par_step(actions, output)
+        assert!(alone == shared);
+        let torques: Vec<f32> = (0..len)
+            .map(|_| uniform(&mut rng, -2.0, 2.0) as f32)
+            .collect();
+        let alone = run(&mut one, &|batch, buffers| {
+            batch.step_torques(&torques, buffers)
+        });
+        let shared = run(&mut many, &|batch, buffers| {
+            batch.par_step_torques(&torques, buffers)
         });
         assert!(alone == shared);
     }
@@ -256,72 +342,200 @@ fn threads_change_no_bit() {
 fn begins_in_given_states_as_one_alone() {
     let mut rng = Pcg64::new(3);
     let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
-    // After 500 steps all have ended, and would be reset.
+    // After 500 steps most have ended and wait for their reset.
     for steps in [500, 3, 8] {
-        twins.play(steps, false);
-        let mut number = || acrobot::uniform(&mut rng, -10.0, 10.0) as f32;
+        twins.play_randomly(steps);
+        let mut number = || uniform(&mut rng, -10.0, 10.0) as f32;
         let states: Vec<State<f32>> = (0..35)
             .map(|_| State::from([(); 4].map(|()| number())))
             .collect();
         twins.batch.reset_to(&states).unwrap();
-        for ((alone, ended), state) in twins.alone.iter_mut().zip(&mut twins.ended).zip(&states) {
-            let rng = alone.inner().rng().clone();
-            alone.reset();
-            alone.inner_mut().set_state(*state).unwrap();
-            *alone.inner_mut().rng_mut() = rng;
-            *ended = false;
-        }
+        twins.reset_alone(|i, alone| {
+            let mut inner = alone.inner().clone();
+            inner.set_state(states[i as usize]).unwrap();
+            *alone = TimeLimit::v1(inner);
+        });
     }
-    twins.play(520, true);
-
-    let before = twins.batch.state(0);
-    let infinite = State {
-        theta1: f32::INFINITY,
-        ..State::default()
-    };
-    let mut states = [State::default(); 35];
-    states[34] = infinite;
-    let refused = twins.batch.reset_to(&states).unwrap_err();
-    assert!(
-        matches!(refused, Error::OutOfRange { name: "theta1", .. }),
-        "{refused}"
-    );
-    let refused = twins.batch.reset_to(&states[..34]).unwrap_err();
-    assert_eq!(refused.to_string(), "states has 34 elements; allowed is 35");
-    assert_eq!(twins.batch.state(0), before);
+    twins.swing(520);
 }
 
-/// In the middle of episodes, of which some have just ended, with noise to come.
+/// Each kind of reset is that of the same name for every scalar twin. None changes the batch's own bounds.
 #[test]
-fn members_go_on_in_another_batch() {
+fn resets_as_one_alone() {
     let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
-    let params = Params {
-        torque_noise: 0.3,
-        ..Params::default()
-    };
-    twins.set_params(params);
+    let bounds = StartBounds::new(1.0, 2.0).unwrap();
+    // After 500 steps most wait for a reset, which these replace.
+    for steps in [500, 3] {
+        twins.play_randomly(steps);
+        twins.batch.reset();
+        twins.reset_alone(|_, alone| {
+            alone.reset();
+        });
+
+        twins.play_randomly(steps);
+        twins.batch.reset_within(bounds);
+        twins.reset_alone(|_, alone| {
+            alone.reset_within(bounds);
+        });
+
+        twins.play_randomly(steps);
+        twins.batch.reset_with_seed(7);
+        twins.reset_alone(|i, alone| {
+            let child = SeedSequence::new(7).child(i);
+            *alone = TimeLimit::v1(Acrobot::with_rng(child.into()));
+        });
+
+        twins.play_randomly(steps);
+        for seed in [Some(SeedSequence::new(8)), None] {
+            let options = ResetOptions { seed, bounds };
+            twins.batch.reset_with(options.clone());
+            twins.reset_alone(|i, alone| {
+                let seed = options.seed.as_ref().map(|seed| seed.child(i));
+                alone.reset_with(ResetOptions { seed, bounds });
+            });
+        }
+    }
+    assert_eq!(twins.batch.start_bounds(), StartBounds::DEFAULT);
+}
+
+/// Torques for controllers, through ends in every mode, without and with noise.
+#[test]
+fn steps_by_torques_as_one_alone() {
+    fn play<A: Arithmetic, const N: usize>(len: usize, steps: u32, parallel: bool) {
+        for autoreset in MODES {
+            let mut twins = Twins::<A, N>::new(len, autoreset);
+            let mut rng = Pcg64::new(7);
+            let mut ends = 0;
+            for noise in [0.0, 0.5] {
+                twins.set_noise(noise);
+                twins.start_within(-2.0, 2.0);
+                for _ in 0..steps {
+                    let torques = twins.alone.iter().map(|alone| {
+                        let size = uniform(&mut rng, 0.0, 3.0);
+                        let falling = alone.inner().state().dtheta1 > A::Scalar::ZERO;
+                        A::Scalar::from_f64(if falling { -size } else { size })
+                    });
+                    let torques: Vec<_> = torques.collect();
+                    let done = twins.step_torques(&torques, parallel);
+                    ends += done.iter().filter(|done| **done).count();
+                }
+            }
+            assert!(ends > len / 10, "{ends} ends in {autoreset:?}");
+        }
+    }
+    play::<Fast, 16>(35, 300, false);
+    play::<Micro, 7>(35, 300, false);
+    play::<Portable, 16>(35, 300, false);
+    play::<Host, 4>(9, 300, false);
+    // More acrobots than a thread takes at once.
+    play::<Portable, 16>(2100, 12, true);
+    play::<Fast, 16>(33_000, 4, true);
+}
+
+/// `Autoreset::Disabled` with `reset_masked`: as scalar acrobots that are reset by hand, through ends and past them.
+#[test]
+fn masked_resets_are_resets_by_hand() {
+    fn play<A: Arithmetic, const N: usize>() {
+        let mut twins = Twins::<A, N>::new(35, Autoreset::Disabled);
+        twins.set_noise(0.3);
+        twins.start_within(-1.0, 1.0);
+        let bounds = twins.batch.start_bounds();
+        let mut rng = Pcg64::new(7);
+        let (mut ends, mut past) = (0, 0);
+        let mut before = vec![false; 35];
+        for _ in 0..700 {
+            let done = twins.step(&twins.swinging());
+            ends += done.iter().filter(|done| **done).count();
+            // Some that ended step on, and some that did not end are reset.
+            let mask: Vec<bool> = done
+                .iter()
+                .map(|&done| uniform(&mut rng, 0.0, 1.0) < if done { 0.5 } else { 0.005 })
+                .collect();
+            past += before.iter().zip(&mask).filter(|(x, y)| **x && **y).count();
+            before = done.iter().zip(&mask).map(|(x, y)| *x && !y).collect();
+            twins.batch.reset_masked(&mask).unwrap();
+            twins.reset_alone(|i, alone| {
+                if mask[i as usize] {
+                    alone.reset_within(bounds);
+                }
+            });
+        }
+        assert!(ends > 100 && past > 10, "{ends} ends, {past} past them");
+    }
+    play::<Fast, 16>();
+    play::<Micro, 7>();
+    play::<Portable, 16>();
+    play::<Host, 4>();
+}
+
+/// Acrobots that wait for their reset step on when the mode changes to `Disabled`.
+#[test]
+fn waiting_acrobots_step_on_in_mode_disabled_as_one_alone() {
+    let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
+    twins.set_noise(0.3);
+    for _ in 0..3 {
+        while !twins.waiting.contains(&true) {
+            twins.swing(1);
+        }
+        twins.batch.set_autoreset(Autoreset::Disabled);
+        twins.waiting.fill(false);
+        twins.assert_equal();
+        twins.swing(100);
+        twins.batch.set_autoreset(Autoreset::NextStep);
+        twins.swing(100);
+    }
+}
+
+/// The state of one acrobot changes, its episode goes on, and all others stay as they are.
+#[test]
+fn one_state_is_set_as_one_alone() {
+    fn check<A: Arithmetic, const N: usize>() {
+        let mut twins = Twins::<A, N>::new(35, Autoreset::NextStep);
+        twins.set_noise(0.3);
+        let mut rng = Pcg64::new(3);
+        for index in [Some(0), Some(15), Some(16), Some(34), None] {
+            twins.swing(50);
+            // At last one that waits for its reset, which goes on waiting.
+            let index = index.unwrap_or_else(|| {
+                while !twins.waiting.contains(&true) {
+                    twins.swing(1);
+                }
+                twins.waiting.iter().position(|x| *x).unwrap()
+            });
+            let numbers = [(); 4].map(|()| A::Scalar::from_f64(uniform(&mut rng, -10.0, 10.0)));
+            let state = State::from(numbers);
+            twins.batch.set_state(index, state).unwrap();
+            twins.alone[index].inner_mut().set_state(state).unwrap();
+            twins.assert_equal();
+            let mut rows = [[0.0; 6]; 35];
+            twins.batch.observe(Observations::Rows(&mut rows)).unwrap();
+            let observation = twins.alone[index].inner().observation();
+            assert_eq!(rows[index], observation.to_array());
+        }
+        twins.swing(100);
+    }
+    check::<Fast, 16>();
+    check::<Micro, 7>();
+    check::<Portable, 16>();
+    check::<Host, 1>();
+}
+
+/// In the middle of episodes, some of which have just ended, with noise.
+#[test]
+fn members_resume_in_another_batch() {
+    let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
+    twins.set_noise(0.3);
     for steps in [70, 430] {
-        twins.play(steps, true);
+        twins.swing(steps);
         let members: Vec<_> = (0..35).map(|i| twins.batch.member(i).unwrap()).collect();
         assert!(members.iter().any(|member| member.elapsed > 0));
         let (blocks, generators) = (vec![Block::EMPTY; 3], vec![Pcg64::UNSEEDED; 35]);
+        let params = *twins.batch.params();
         twins.batch = Batch::new(7, blocks, generators).unwrap();
         twins.batch.set_params(params).unwrap();
         for (index, member) in members.into_iter().enumerate() {
             twins.batch.set_member(index, member).unwrap();
         }
     }
-    twins.play(600, false);
-
-    assert_eq!(twins.batch.member(35), None);
-    let mut member = twins.batch.member(34).unwrap();
-    let refused = twins.batch.set_member(35, member.clone()).unwrap_err();
-    assert_eq!(
-        refused.to_string(),
-        "index is 35 acrobots; allowed is one below the length of the batch"
-    );
-    member.state.dtheta2 = f32::NAN;
-    let before = twins.batch.member(34);
-    assert!(twins.batch.set_member(34, member).is_err());
-    assert_eq!(twins.batch.member(34), before);
+    twins.play_randomly(600);
 }

@@ -1,11 +1,11 @@
-//! The slices that a batch reads and writes: observations in either layout, and what is refused.
+//! What a batch reads and writes: its settings, observations in either layout, and rejected input.
 
 use std::num::NonZeroU32;
 
-use acrobot::{
-    Acrobot, Autoreset, Batch, Block, Error, Fast, Observations, Output, Params, Pcg64,
-    SeedSequence, State, Vectors,
-};
+use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, SimdLevel, StepBuffers};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::StartBounds;
+use acrobot::{Acrobot, Error, Fast, Params, State};
 
 type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
 
@@ -28,36 +28,37 @@ fn columns_are_the_rows() {
         .unwrap();
     for (i, row) in rows.iter().enumerate() {
         assert_eq!(*row, columns.map(|column| column[i]));
-        let alone = Acrobot::<Fast>::new(SeedSequence::from(1).child(i as u64));
-        assert_eq!(*row, *alone.observation());
+        let child = SeedSequence::new(1).child(i as u64);
+        let alone = Acrobot::<Fast>::with_rng(child.into());
+        assert_eq!(*row, alone.observation().to_array());
     }
 }
 
-/// By each kind of vectors, one after another; on one thread, for so few are not shared out.
+/// At each SIMD level, in one batch. `par_step` takes one thread for so few.
 #[test]
 fn a_limit_truncates_each_of_its_steps() {
     let mut batch = small::<1, 3>().unwrap();
     batch.set_limit(NonZeroU32::new(2).unwrap());
     batch.set_autoreset(Autoreset::SameStep);
-    for vectors in [Vectors::Baseline, Vectors::Avx2, Vectors::Avx512] {
-        batch.set_vectors(vectors);
+    for level in [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512] {
+        batch.set_simd_level(level);
         for expected in [false, true] {
             let mut truncated = [!expected; 3];
-            let output = Output {
+            let buffers = StepBuffers {
                 rewards: &mut [0.0; 3],
                 terminated: &mut [false; 3],
                 truncated: &mut truncated,
                 observations: Observations::None,
                 final_observations: Observations::None,
             };
-            batch.par_step(&[1_u8; 3], output).unwrap();
+            batch.par_step(&[1_u8; 3], buffers).unwrap();
             assert_eq!(truncated, [expected; 3]);
         }
     }
 }
 
 #[test]
-fn an_episode_ends_once_where_the_goal_is_reached_on_its_last_step() {
+fn an_episode_ends_once_if_it_reaches_the_goal_on_its_last_step() {
     let mut batch = small::<1, 1>().unwrap();
     batch.set_limit(NonZeroU32::MIN);
     let upright = State {
@@ -66,89 +67,246 @@ fn an_episode_ends_once_where_the_goal_is_reached_on_its_last_step() {
     };
     batch.reset_to(&[upright]).unwrap();
     let (mut terminated, mut truncated) = ([false], [false]);
-    let output = Output {
+    let buffers = StepBuffers {
         rewards: &mut [0.0],
         terminated: &mut terminated,
         truncated: &mut truncated,
         observations: Observations::None,
         final_observations: Observations::None,
     };
-    batch.step(&[1_u8], output).unwrap();
+    batch.step(&[1_u8], buffers).unwrap();
     assert_eq!((terminated, truncated), ([true], [true]));
     assert!(batch.member(0).unwrap().ended);
 }
 
+/// Getters return what was set, and before that the defaults.
 #[test]
-fn bad_input_is_refused_before_anything_is_stepped() {
-    let refused = small::<1, 0>().unwrap_err();
-    assert_eq!(
-        refused.to_string(),
-        "generators is 0 acrobots; allowed is 1 or more"
-    );
-    let refused = small::<1, 17>().unwrap_err();
-    assert_eq!(refused.to_string(), "blocks has 1 elements; allowed is 2");
-
+fn settings_are_returned_as_set() {
     let mut batch = small::<1, 3>().unwrap();
-    let before = batch.state(1);
-    let mut step = |actions: &[u8], lengths: [usize; 5]| {
-        let [rewards, terminated, truncated, rows, finals] = lengths;
-        batch.step(
-            actions,
-            Output {
-                rewards: &mut vec![0.0; rewards],
-                terminated: &mut vec![false; terminated],
-                truncated: &mut vec![false; truncated],
-                observations: Observations::Rows(&mut vec![[0.0; 6]; rows]),
-                final_observations: Observations::Rows(&mut vec![[0.0; 6]; finals]),
-            },
-        )
+    assert_eq!(batch.len(), 3);
+    assert_eq!(*batch.params(), Params::DEFAULT);
+    assert_eq!(batch.simd_level(), SimdLevel::widest());
+    assert_eq!(batch.start_bounds(), StartBounds::DEFAULT);
+    assert_eq!(batch.limit().get(), 500);
+    assert_eq!(batch.autoreset(), Autoreset::NextStep);
+
+    let params = Params {
+        dt: 0.1,
+        ..Params::DEFAULT
     };
-    for (actions, lengths, message) in [
-        (&[0, 1][..], [3; 5], "actions has 2 elements; allowed is 3"),
+    batch.set_params(params).unwrap();
+    assert_eq!(*batch.params(), params);
+    for level in [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512] {
+        batch.set_simd_level(level);
+        assert_eq!(batch.simd_level(), level);
+    }
+    let bounds = StartBounds::new(1.0, 2.0).unwrap();
+    batch.set_start_bounds(bounds);
+    assert_eq!(batch.start_bounds(), bounds);
+    batch.set_limit(NonZeroU32::MIN);
+    assert_eq!(batch.limit(), NonZeroU32::MIN);
+    for autoreset in [
+        Autoreset::SameStep,
+        Autoreset::Disabled,
+        Autoreset::NextStep,
+    ] {
+        batch.set_autoreset(autoreset);
+        assert_eq!(batch.autoreset(), autoreset);
+    }
+}
+
+/// `reset_within` draws from its own bounds once, and `reset` from the batch's again.
+#[test]
+fn resets_within_bounds_leave_the_batchs_bounds() {
+    let mut batch = small::<2, 20>().unwrap();
+    let within = |batch: &Small<2, 20>, low, high| {
+        members(batch).iter().all(|member| {
+            let numbers: [f32; 4] = member.state.into();
+            numbers.iter().all(|x| (low..=high).contains(x))
+        })
+    };
+    batch.set_start_bounds(StartBounds::new(1.0, 2.0).unwrap());
+    batch.reset_within(StartBounds::new(-4.0, -3.0).unwrap());
+    assert!(within(&batch, -4.0, -3.0));
+    assert_eq!(batch.start_bounds(), StartBounds::new(1.0, 2.0).unwrap());
+    batch.reset();
+    assert!(within(&batch, 1.0, 2.0));
+}
+
+fn members<const BLOCKS: usize, const LEN: usize>(batch: &Small<BLOCKS, LEN>) -> Vec<Member> {
+    (0..LEN).map(|i| batch.member(i).unwrap()).collect()
+}
+
+/// The errors of all four kinds of step, which change neither the batch nor the buffers of these lengths.
+fn rejections(
+    batch: &mut Small<1, 3>,
+    actions: &[u8],
+    torques: &[f32],
+    lengths: [usize; 5],
+) -> [String; 4] {
+    let before = members(batch);
+    let [rewards, terminated, truncated, rows, finals] = lengths;
+    std::array::from_fn(|kind| {
+        let mut rewards = vec![9.0; rewards];
+        let mut ends = [vec![true; terminated], vec![true; truncated]];
+        let mut rows = [vec![[9.0; 6]; rows], vec![[9.0; 6]; finals]];
+        let [terminated, truncated] = &mut ends;
+        let [observations, finals] = &mut rows;
+        let buffers = StepBuffers {
+            rewards: &mut rewards,
+            terminated,
+            truncated,
+            observations: Observations::Rows(observations),
+            final_observations: Observations::Rows(finals),
+        };
+        let result = match kind {
+            0 => batch.step(actions, buffers),
+            1 => batch.par_step(actions, buffers),
+            2 => batch.step_torques(torques, buffers),
+            _ => batch.par_step_torques(torques, buffers),
+        };
+        assert_eq!(members(batch), before);
+        assert!(rewards.iter().all(|x| *x == 9.0));
+        assert!(ends.concat().iter().all(|end| *end));
+        assert!(rows.concat().iter().all(|row| *row == [9.0; 6]));
+        result.unwrap_err().to_string()
+    })
+}
+
+/// Slices of another length, unknown actions and torques that are not finite are rejected before anything is stepped.
+#[test]
+fn rejected_steps_change_nothing() {
+    let batch = &mut small::<1, 3>().unwrap();
+    for (lengths, message) in [
+        ([2, 3, 3, 3, 3], "rewards must have 3 elements, got 2"),
+        ([3, 0, 3, 3, 3], "terminated must have 3 elements, got 0"),
+        ([3, 3, 4, 3, 3], "truncated must have 3 elements, got 4"),
+        ([3, 3, 3, 1, 3], "observations must have 3 elements, got 1"),
         (
-            &[0, 1, 2],
-            [2, 3, 3, 3, 3],
-            "rewards has 2 elements; allowed is 3",
-        ),
-        (
-            &[0, 1, 2],
-            [3, 0, 3, 3, 3],
-            "terminated has 0 elements; allowed is 3",
-        ),
-        (
-            &[0, 1, 2],
-            [3, 3, 4, 3, 3],
-            "truncated has 4 elements; allowed is 3",
-        ),
-        (
-            &[0, 1, 2],
-            [3, 3, 3, 1, 3],
-            "observations has 1 elements; allowed is 3",
-        ),
-        (
-            &[0, 1, 2],
             [3, 3, 3, 3, 4],
-            "final_observations has 4 elements; allowed is 3",
-        ),
-        (
-            &[0, 3, 1],
-            [3; 5],
-            "action is 3; allowed is 0 (negative torque), 1 (none) or 2 (positive)",
+            "final_observations must have 3 elements, got 4",
         ),
     ] {
-        assert_eq!(step(actions, lengths).unwrap_err().to_string(), message);
+        assert_eq!(rejections(batch, &[1; 3], &[0.0; 3], lengths), [message; 4]);
     }
-    assert_eq!(batch.state(1), before);
-    assert_eq!(batch.state(3), None);
-    let error = batch.set_params(Params {
-        dt: 0.0,
-        ..Params::default()
-    });
-    assert!(matches!(error, Err(Error::OutOfRange { name: "dt", .. })));
+    let actions = "actions must have 3 elements, got 2";
+    let torques = "torques must have 3 elements, got 2";
+    assert_eq!(
+        rejections(batch, &[1; 2], &[0.0; 2], [3; 5]),
+        [actions, actions, torques, torques]
+    );
+    let action = "action must be 0 (negative torque), 1 (none) or 2 (positive), got 3";
+    for (number, name) in [
+        (f32::NAN, "NaN"),
+        (f32::INFINITY, "inf"),
+        (f32::NEG_INFINITY, "-inf"),
+    ] {
+        let torque = format!("torque must be a finite number of N m, got {name}");
+        assert_eq!(
+            rejections(batch, &[0, 3, 1], &[0.0, 1.0, number], [3; 5]),
+            [action, action, &torque, &torque]
+        );
+    }
+}
+
+/// Everything else that a batch rejects: the error says why, and the next step is that of a twin.
+#[test]
+fn rejected_changes_change_nothing() {
+    const NAN: State<f32> = State {
+        theta1: 0.0,
+        theta2: f32::NAN,
+        dtheta1: 0.0,
+        dtheta2: 0.0,
+    };
+    assert_eq!(
+        small::<1, 0>().unwrap_err().to_string(),
+        "a batch must have at least 1 acrobot, got 0 generators"
+    );
+    assert_eq!(
+        small::<1, 17>().unwrap_err().to_string(),
+        "blocks must have 2 elements, got 1"
+    );
+    let mut batch = small::<1, 3>().unwrap();
+    let mut twin = batch.clone();
+    let member = batch.member(0).unwrap();
+    let mut invalid = member.clone();
+    invalid.state = NAN;
+    let massless = Params {
+        mass1: 0.0,
+        ..Params::DEFAULT
+    };
+    let mut long = vec![9.0; 4];
+    let mut columns = [(); 5].map(|()| vec![9.0; 3]);
+    let [first, second, third, fourth, fifth] = columns.each_mut().map(|column| &mut column[..]);
+    let uneven = Observations::Columns([first, second, third, fourth, fifth, &mut long]);
+    for (result, message) in [
+        (
+            batch.reset_masked(&[true; 2]),
+            "mask must have 3 elements, got 2",
+        ),
+        (
+            batch.reset_masked(&[true; 4]),
+            "mask must have 3 elements, got 4",
+        ),
+        (
+            batch.reset_to(&[State::default(); 2]),
+            "states must have 3 elements, got 2",
+        ),
+        (
+            batch.reset_to(&[State::default(), State::default(), NAN]),
+            "theta2 must be a finite number of rad, got NaN",
+        ),
+        // Lane 3 of the block holds no acrobot.
+        (
+            batch.set_state(3, State::default()),
+            "member must be below the length 3, got 3",
+        ),
+        (
+            batch.set_state(16, State::default()),
+            "member must be below the length 3, got 16",
+        ),
+        (
+            batch.set_state(1, NAN),
+            "theta2 must be a finite number of rad, got NaN",
+        ),
+        (
+            batch.set_member(3, member),
+            "member must be below the length 3, got 3",
+        ),
+        (
+            batch.set_member(1, invalid),
+            "theta2 must be a finite number of rad, got NaN",
+        ),
+        (
+            batch.set_params(massless),
+            "mass1 must be finite and above 0 kg, got 0",
+        ),
+        (
+            batch.observe(uneven),
+            "observations must have 3 elements, got 4",
+        ),
+    ] {
+        assert_eq!(result.unwrap_err().to_string(), message);
+    }
+    assert_eq!(columns.concat(), [9.0; 15]);
+    assert_eq!((batch.state(3), batch.member(3)), (None, None));
+    assert_eq!(members(&batch), members(&twin));
+    assert_eq!(batch.params(), twin.params());
+    for batch in [&mut batch, &mut twin] {
+        let buffers = StepBuffers {
+            rewards: &mut [0.0; 3],
+            terminated: &mut [false; 3],
+            truncated: &mut [false; 3],
+            observations: Observations::None,
+            final_observations: Observations::None,
+        };
+        batch.step(&[2_u8; 3], buffers).unwrap();
+    }
+    assert_eq!(members(&batch), members(&twin));
 }
 
 #[test]
-fn vectors_are_what_the_machine_has() {
+fn simd_levels_are_available_if_the_machine_has_them() {
     #[cfg(target_arch = "x86_64")]
     let (avx2, avx512) = (
         is_x86_feature_detected!("avx2"),
@@ -159,13 +317,13 @@ fn vectors_are_what_the_machine_has() {
     );
     #[cfg(not(target_arch = "x86_64"))]
     let (avx2, avx512) = (false, false);
-    assert!(Vectors::Baseline.is_available());
-    assert_eq!(Vectors::Avx2.is_available(), avx2);
-    assert_eq!(Vectors::Avx512.is_available(), avx512);
+    assert!(SimdLevel::Baseline.is_available());
+    assert_eq!(SimdLevel::Avx2.is_available(), avx2);
+    assert_eq!(SimdLevel::Avx512.is_available(), avx512);
     let widest = match (avx512, avx2) {
-        (true, _) => Vectors::Avx512,
-        (_, true) => Vectors::Avx2,
-        _ => Vectors::Baseline,
+        (true, _) => SimdLevel::Avx512,
+        (_, true) => SimdLevel::Avx2,
+        _ => SimdLevel::Baseline,
     };
-    assert_eq!(Vectors::widest(), widest);
+    assert_eq!(SimdLevel::widest(), widest);
 }

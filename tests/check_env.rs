@@ -1,16 +1,16 @@
-//! `check_env` passes what keeps the contract of `Env`, and finds who breaks it.
+//! `check_env` accepts environments that keep the contract of `Env`, and finds every violation.
 
 use std::cell::Cell;
 use std::fmt::Debug;
 use std::rc::Rc;
 
+use acrobot::arithmetic::{Host, Micro};
 use acrobot::env::{
-    BoxSpace, Discrete, Env, EnvStep, Error, Info, Options, RecordEpisodeStatistics, RenderMode,
+    AcrobotEnv, BoxSpace, Discrete, Env, Error, Info, Options, RecordEpisodeStatistics, RenderMode,
     Rendering, Space, Violation, acrobot_v0, acrobot_v1, check_env,
 };
 use acrobot::{
-    Acrobot, Action, Fast, Host, Micro, Observation, Params, Portable, SeedSequence, StartBounds,
-    TimeLimit,
+    Acrobot, Action, Fast, Observation, Params, Portable, ResetOptions, Step, TimeLimit,
 };
 use rand_core::Rng;
 
@@ -28,9 +28,8 @@ fn our_environments_keep_the_contract() {
         render_mode: RenderMode::RgbArray,
         ..Options::default()
     };
-    check(Acrobot::<Host>::new(0));
-    check(Acrobot::<Micro>::new(0));
-    check(TimeLimit::v1(Acrobot::<Portable>::new(0)));
+    check(AcrobotEnv::<Host, Observation>::default());
+    check(AcrobotEnv::<Micro, Observation<4>>::default());
     check(acrobot_v0::<Fast>(options()).unwrap());
     check(acrobot_v1::<Host>(options()).unwrap());
     check(RecordEpisodeStatistics::new(
@@ -54,25 +53,25 @@ fn our_environments_keep_the_contract() {
 /// How an environment can break the contract.
 #[derive(Clone)]
 enum Flaw {
-    /// None: to see that the wrapper itself passes.
+    /// None: the wrapper itself keeps the contract.
     None,
     /// Observations leave their space.
     Outside,
-    /// The start is out of its space.
-    OutsideAtStart,
+    /// The first observation is outside its space.
+    OutsideAtReset,
     /// A reward is NaN.
     Reward,
-    /// What is seen of the start hangs on how often it was reset.
-    Start(Cell<u32>),
+    /// The first observation depends on the number of resets.
+    Resets(Cell<u32>),
     /// The seed is ignored.
     Seed,
-    /// The time limit's count goes on over a reset: truncation is reported again.
+    /// A reset does not restart the time limit's count, so truncation is reported again.
     Count(Cell<u32>),
-    /// The same, with a count that only a seed restarts.
+    /// The same, except that a reset with a seed restarts the count.
     Unseeded(Cell<u32>),
-    /// Clones share what they should own.
+    /// Clones share a count.
     Shared(Rc<Cell<u32>>),
-    /// Clones share it, and nobody notices from one reset to the next.
+    /// Clones share a count that each reset restarts.
     SharedInEpisode(Rc<Cell<u32>>),
     /// Rendering moves the acrobot.
     Render,
@@ -81,7 +80,7 @@ enum Flaw {
     ActionSamples,
 }
 
-/// A space that samples something else than what it is asked for.
+/// A space that alters its samples.
 struct Altered<S: Space> {
     space: S,
     alter: fn(S::Element) -> S::Element,
@@ -101,7 +100,7 @@ impl<S: Space> Space for Altered<S> {
 
 #[derive(Clone)]
 struct Broken {
-    env: TimeLimit<Acrobot<Fast>>,
+    env: TimeLimit<AcrobotEnv<Fast, Observation>>,
     flaw: Flaw,
 }
 
@@ -112,37 +111,29 @@ impl Env for Broken {
     type ActionSpace = Altered<Discrete<Action>>;
     type Unwrapped = Acrobot<Fast>;
 
-    fn reset(
-        &mut self,
-        seed: Option<SeedSequence>,
-        bounds: Option<StartBounds>,
-    ) -> (Observation, Info) {
-        let seed = if matches!(self.flaw, Flaw::Seed) {
-            None
-        } else {
-            seed
-        };
+    fn reset_with(&mut self, mut options: ResetOptions) -> (Observation, Info) {
         match &self.flaw {
-            Flaw::Unseeded(count) if seed.is_some() => count.set(0),
+            Flaw::Seed => options.seed = None,
+            Flaw::Unseeded(count) if options.seed.is_some() => count.set(0),
             Flaw::SharedInEpisode(count) => count.set(0),
             _ => {}
         }
-        let (mut start, info) = Env::reset(&mut self.env, seed, bounds);
+        let (mut observation, info) = self.env.reset_with(options);
         match &self.flaw {
-            Flaw::OutsideAtStart => start.0[1] = -1.5,
-            Flaw::Start(count) => {
+            Flaw::OutsideAtReset => observation.as_mut()[1] = -1.5,
+            Flaw::Resets(count) => {
                 count.set(count.get() + 1);
-                start.0[4] = count.get() as f32;
+                observation.as_mut()[4] = count.get() as f32;
             }
             _ => {}
         }
-        (start, info)
+        (observation, info)
     }
 
-    fn step(&mut self, action: Action) -> EnvStep<Observation> {
-        let mut step = Env::step(&mut self.env, action);
+    fn step(&mut self, action: Action) -> Step<Observation, Info> {
+        let mut step = self.env.step(action);
         match &self.flaw {
-            Flaw::Outside => step.observation.0[0] += 1.0,
+            Flaw::Outside => step.observation.as_mut()[0] += 1.0,
             Flaw::Reward => step.reward = f32::NAN,
             Flaw::Count(count) | Flaw::Unseeded(count) => {
                 count.set(count.get() + 1);
@@ -175,7 +166,7 @@ impl Env for Broken {
         match self.flaw {
             Flaw::ObservationSamples => Altered {
                 space,
-                alter: |seen| Observation(seen.map(|x| x + 60.0)),
+                alter: |seen| seen.to_array().map(|x| x + 60.0).into(),
             },
             _ => Altered {
                 space,
@@ -201,11 +192,11 @@ impl Env for Broken {
 }
 
 #[test]
-fn the_contracts_check_finds_who_breaks_it() {
+fn every_violation_is_found() {
     let check = |flaw| {
         check_env(
             &Broken {
-                env: TimeLimit::v1(Acrobot::new(0)),
+                env: TimeLimit::v1(AcrobotEnv::default()),
                 flaw,
             },
             1,
@@ -213,31 +204,31 @@ fn the_contracts_check_finds_who_breaks_it() {
     };
     assert_eq!(check(Flaw::None), Ok(()));
     for (flaw, rule) in [
-        (Flaw::Outside, "an observation is in the observation space"),
+        (Flaw::Outside, "observations are in the observation space"),
         (
-            Flaw::OutsideAtStart,
-            "an observation is in the observation space",
+            Flaw::OutsideAtReset,
+            "observations are in the observation space",
         ),
-        (Flaw::Reward, "a reward is finite"),
+        (Flaw::Reward, "rewards are finite"),
         (
             Flaw::Seed,
-            "the same seed and the same actions give the same episode",
+            "the same seed and actions give the same episode",
         ),
         (
-            Flaw::Start(Cell::new(0)),
-            "the same seed and the same actions give the same episode",
+            Flaw::Resets(Cell::new(0)),
+            "the same seed and actions give the same episode",
         ),
         (
             Flaw::Count(Cell::new(0)),
-            "a reset after an end starts a whole new episode",
+            "a reset after an end begins a whole new episode",
         ),
         (
             Flaw::Unseeded(Cell::new(0)),
-            "a reset after an end starts a whole new episode",
+            "a reset after an end begins a whole new episode",
         ),
         (
             Flaw::Shared(Rc::new(Cell::new(0))),
-            "the same seed and the same actions give the same episode",
+            "the same seed and actions give the same episode",
         ),
         (
             Flaw::SharedInEpisode(Rc::new(Cell::new(0))),
@@ -245,7 +236,7 @@ fn the_contracts_check_finds_who_breaks_it() {
         ),
         (
             Flaw::ObservationSamples,
-            "an observation is in the observation space",
+            "observations are in the observation space",
         ),
         (Flaw::ActionSamples, "the action space contains its samples"),
         (Flaw::Render, "rendering changes nothing"),

@@ -1,16 +1,19 @@
-//! The host's environments: Gymnasium's runs through `make`, pictures, live changes, and what is refused.
+//! Environments: Gymnasium's runs through `make`, pictures, live changes, and rejected input.
 
 mod common;
 
 use std::sync::{Arc, Mutex};
 
+use acrobot::arithmetic::{Arithmetic, Host, Micro};
 use acrobot::env::{
-    AcrobotEnv, ArithmeticKind, BoxSpace, Discrete, Display, Env, Error, Frame, Options,
+    AcrobotEnv, ArithmeticKind, BoxSpace, Discrete, Display, DynObservation, Env, Error, Options,
     RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make, make_with,
 };
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::render::{Figure, Frame};
 use acrobot::{
-    Acrobot, Action, Dynamics, Fast, Figure, Host, Micro, Observation, Params, Pcg64, Portable,
-    SeedSequence, StartBounds, State, TimeLimit,
+    Acrobot, Action, Fast, Observation, Params, Portable, ResetOptions, State, TimeLimit,
 };
 use common::{Digest, is_recorded_library};
 
@@ -28,20 +31,24 @@ fn make_plays_gymnasiums_runs() {
             panic!("{row}")
         };
         let mut env = make(id).unwrap();
-        let mut actions = Pcg64::new(seed.parse::<SeedSequence>().unwrap());
-        env.reset(Some(seed.parse().unwrap()), None);
+        let sequence: SeedSequence = seed.parse().unwrap();
+        let mut actions = Pcg64::from(sequence.clone());
+        env.reset_with(ResetOptions {
+            seed: Some(sequence),
+            ..ResetOptions::default()
+        });
         let (mut found, mut ends) = (Digest::new(), 0);
         for _ in 0..1000 {
             let step = env.step(env.action_space().sample(&mut actions));
-            step.observation
-                .iter()
-                .for_each(|x| found.add(x.to_bits().into()));
+            for x in step.observation.as_slice() {
+                found.add(x.to_bits().into());
+            }
             found.add((step.reward == 0.0).into());
             found.add(step.terminated.into());
             found.add(step.truncated.into());
-            if step.ended() {
+            if step.done() {
                 ends += 1;
-                env.reset(None, None);
+                env.reset();
             }
         }
         assert_eq!(format!("{:016x}", found.0), digest, "{id}, seed {seed}");
@@ -51,11 +58,20 @@ fn make_plays_gymnasiums_runs() {
     assert_eq!(played, 20);
 }
 
+/// The first observation of a reset whose bounds are both `x`.
+fn reset_to(mut env: impl Env<Observation = DynObservation>, x: f64) -> Vec<f32> {
+    let (observation, _) = env.reset_with(ResetOptions {
+        bounds: StartBounds::new(x, x).unwrap(),
+        ..ResetOptions::default()
+    });
+    observation.as_slice().to_vec()
+}
+
 #[test]
 fn versions_differ_in_limit_and_observation() {
     let (mut v0, mut v1) = (make("Acrobot-v0").unwrap(), make("Acrobot-v1").unwrap());
-    let (angles, _) = v0.reset(Some(5.into()), None);
-    let (sines, _) = v1.reset(Some(5.into()), None);
+    let (angles, sines) = (v0.reset_with_seed(5).0, v1.reset_with_seed(5).0);
+    let (angles, sines) = (angles.as_slice(), sines.as_slice());
     assert_eq!((angles.len(), sines.len()), (4, 6));
     let state = v1.unwrapped().state();
     assert_eq!(f64::from(angles[2]), state.dtheta1);
@@ -64,14 +80,13 @@ fn versions_differ_in_limit_and_observation() {
         assert_eq!(v0.step(Action::Zero).truncated, n >= 200);
         assert_eq!(v1.step(Action::Zero).truncated, n >= 500);
     }
-    assert_eq!(**v0.observation_space().high(), *Observation::V0_HIGH);
-    assert_eq!(**v1.observation_space().high(), *Observation::HIGH);
-    assert_eq!(**v1.observation_space().low(), *Observation::LOW);
+    assert_eq!(*v0.observation_space().high(), Observation::V0_HIGH.into());
+    assert_eq!(*v0.observation_space().low(), Observation::V0_LOW.into());
+    assert_eq!(*v1.observation_space().high(), Observation::HIGH.into());
+    assert_eq!(*v1.observation_space().low(), Observation::LOW.into());
     assert_eq!(v1.action_space().n().get(), 3);
 
-    let bounds = StartBounds::new(0.3, 0.3).unwrap();
-    let (start, _) = v0.reset(None, Some(bounds));
-    assert_eq!(*start, [0.3; 4]);
+    assert_eq!(reset_to(&mut v0, 0.3), [0.3; 4]);
 }
 
 #[test]
@@ -83,7 +98,7 @@ fn live_changes_reach_through_every_wrapper() {
     };
     let mut typed = RecordEpisodeStatistics::new(acrobot_v1::<Host>(Options::default()).unwrap());
     let mut erased = make("Acrobot-v1").unwrap();
-    let mut made_so = make_with(
+    let mut made = make_with(
         "Acrobot-v1",
         Options {
             params,
@@ -91,25 +106,21 @@ fn live_changes_reach_through_every_wrapper() {
         },
     )
     .unwrap();
-    typed.reset(Some(3.into()), None);
-    erased.reset(Some(3.into()), None);
-    made_so.reset(Some(3.into()), None);
+    typed.reset_with_seed(3);
+    erased.reset_with_seed(3);
+    made.reset_with_seed(3);
     typed.unwrapped_mut().set_params(params).unwrap();
     erased.unwrapped_mut().set_params(params).unwrap();
     assert_eq!(erased.unwrapped().params(), params);
     let far = State::from([1.0, 1.0, 2.0, 2.0]);
     typed.inner_mut().unwrapped_mut().set_state(far).unwrap();
     erased.unwrapped_mut().set_state(far).unwrap();
-    made_so.unwrapped_mut().set_state(far).unwrap();
+    made.unwrapped_mut().set_state(far).unwrap();
     let expected = typed.step(Action::Positive);
-    assert_eq!(
-        *erased.step(Action::Positive).observation,
-        *expected.observation
-    );
-    assert_eq!(
-        *made_so.step(Action::Positive).observation,
-        *expected.observation
-    );
+    for env in [&mut erased, &mut made] {
+        let step = env.step(Action::Positive);
+        assert_eq!(step.observation, expected.observation.into());
+    }
 
     let slower = Params {
         max_velocity1: 1.0,
@@ -119,22 +130,28 @@ fn live_changes_reach_through_every_wrapper() {
     let mut angles = make("Acrobot-v0").unwrap();
     angles.unwrapped_mut().set_params(slower).unwrap();
     erased.unwrapped_mut().set_params(slower).unwrap();
-    assert_eq!(erased.observation_space().high()[4..], [1.0, 2.0]);
-    assert_eq!(angles.observation_space().high()[2..], [1.0, 2.0]);
+    assert_eq!(
+        erased.observation_space().high().as_slice()[4..],
+        [1.0, 2.0]
+    );
+    assert_eq!(
+        angles.observation_space().high().as_slice()[2..],
+        [1.0, 2.0]
+    );
     assert_eq!(erased.unwrapped().figure(), Figure::new(typed.unwrapped()));
 }
 
-/// What `make` returns goes where any environment goes.
+/// The boxes that `make` returns can be wrapped and borrowed as any environment.
 #[test]
 fn boxed_and_borrowed_environments_are_environments() {
     let limit = 3.try_into().unwrap();
     let mut env = RecordEpisodeStatistics::new(TimeLimit::new(make("Acrobot-v0").unwrap(), limit));
-    env.reset(Some(1.into()), None);
+    env.reset_with_seed(1);
     let mut borrowed = RecordEpisodeStatistics::new(&mut env);
     borrowed.step(Action::Zero);
     borrowed.step(Action::Zero);
     assert_eq!(borrowed.step(Action::Zero).info.episode.unwrap().length, 3);
-    assert_eq!(borrowed.observation_space().high().len(), 4);
+    assert_eq!(borrowed.observation_space().high().as_slice().len(), 4);
     assert_eq!(borrowed.action_space().n().get(), 3);
     assert_eq!(borrowed.render(), Err(Error::NoRenderMode));
     borrowed
@@ -142,11 +159,10 @@ fn boxed_and_borrowed_environments_are_environments() {
         .set_state(State::default())
         .unwrap();
     assert_eq!(borrowed.unwrapped().state(), State::default());
-    let (start, _) = borrowed.reset(None, Some(StartBounds::new(0.5, 0.5).unwrap()));
-    assert_eq!(*start, [0.5; 4]);
+    assert_eq!(reset_to(&mut borrowed, 0.5), [0.5; 4]);
     borrowed.close();
 
-    // The shorter of two limits, and whoever shows is let go of through all of them.
+    // The shorter of two limits truncates. `close` reaches through all wrappers and drops the display.
     let (sender, frames) = std::sync::mpsc::channel();
     let display = Display::new(move |frame| sender.send(frame.width()).unwrap());
     assert_eq!(format!("{display:?}"), "Display");
@@ -157,8 +173,8 @@ fn boxed_and_borrowed_environments_are_environments() {
     let mut env = TimeLimit::v1(RecordEpisodeStatistics::new(
         make_with("Acrobot-v0", options).unwrap(),
     ));
-    env.reset(None, None);
-    let length = (1..).find(|_| Env::step(&mut env, Action::Zero).truncated);
+    env.reset();
+    let length = (1..).find(|_| env.step(Action::Zero).truncated);
     assert_eq!(length, Some(200));
     assert!(
         env.inner()
@@ -167,22 +183,22 @@ fn boxed_and_borrowed_environments_are_environments() {
     );
     assert_eq!(frames.try_iter().count(), 201);
     RecordEpisodeStatistics::new(&mut env).close();
-    assert!(frames.recv().is_err(), "nobody is left to send");
+    assert!(frames.recv().is_err(), "the sender is dropped");
     assert_eq!(env.render(), Err(Error::NoRenderMode));
 }
 
 #[test]
 fn every_arithmetic_can_be_made() {
-    fn start<A: acrobot::Arithmetic>() -> State {
+    fn after_a_step<A: Arithmetic>() -> State {
         let mut acrobot = Acrobot::<A>::new(1);
         acrobot.step(Action::Positive);
         acrobot.state().cast()
     }
     for (arithmetic, expected) in [
-        (ArithmeticKind::Host, start::<Host>()),
-        (ArithmeticKind::Portable, start::<Portable>()),
-        (ArithmeticKind::Fast, start::<Fast>()),
-        (ArithmeticKind::Micro, start::<Micro>()),
+        (ArithmeticKind::Host, after_a_step::<Host>()),
+        (ArithmeticKind::Portable, after_a_step::<Portable>()),
+        (ArithmeticKind::Fast, after_a_step::<Fast>()),
+        (ArithmeticKind::Micro, after_a_step::<Micro>()),
     ] {
         let mut env = make_with(
             "Acrobot-v1",
@@ -192,7 +208,7 @@ fn every_arithmetic_can_be_made() {
             },
         )
         .unwrap();
-        env.reset(Some(1.into()), None);
+        env.reset_with_seed(1);
         env.step(Action::Positive);
         assert_eq!(env.unwrapped().state(), expected, "{arithmetic:?}");
     }
@@ -204,7 +220,7 @@ fn with_mode(render_mode: RenderMode) -> TimeLimit<AcrobotEnv<Portable, Observat
         ..Options::default()
     })
     .unwrap();
-    env.reset(Some(1.into()), None);
+    env.reset_with_seed(1);
     env.unwrapped_mut()
         .set_state(State::from([0.6, -1.5, 1.0, -2.0]))
         .unwrap();
@@ -239,13 +255,11 @@ fn each_render_mode_returns_its_kind() {
 
 #[test]
 fn statistics_are_of_each_episode() {
-    let mut env = RecordEpisodeStatistics::new(TimeLimit::new(
-        Acrobot::<Fast>::new(0),
-        5.try_into().unwrap(),
-    ));
+    let env = AcrobotEnv::<Fast, Observation>::default();
+    let mut env = RecordEpisodeStatistics::new(TimeLimit::new(env, 5.try_into().unwrap()));
     assert_eq!(env.mean_return(), None);
     for episode in 1..=120 {
-        env.reset(None, None);
+        env.reset();
         if episode == 120 {
             let upright = State {
                 theta1: 3.0,
@@ -255,7 +269,7 @@ fn statistics_are_of_each_episode() {
         }
         let last = loop {
             let step = env.step(Action::Zero);
-            assert_eq!(step.info.episode.is_some(), step.ended());
+            assert_eq!(step.info.episode.is_some(), step.done());
             if let Some(last) = step.info.episode {
                 break last;
             }
@@ -267,21 +281,31 @@ fn statistics_are_of_each_episode() {
     assert_eq!(env.mean_return(), Some(-99.0 * 5.0 / 100.0));
 }
 
+/// `into_inner` of a wrapper returns the environment as it is.
 #[test]
-fn what_does_not_fit_is_refused_with_what_to_do() {
-    for (id, nearest) in [
-        ("Acrobot-v2", "Acrobot-v1"),
-        ("acrobot-v0", "Acrobot-v0"),
-        ("", "Acrobot-v1"),
-        ("CartPole-v1", "Acrobot-v1"),
-    ] {
-        let text = make(id).unwrap_err().to_string();
-        let expected = format!(
-            "there is no environment {id:?}; did you mean {nearest:?}? Known are Acrobot-v0 and Acrobot-v1"
-        );
-        assert_eq!(text, expected);
+fn unwrapping_changes_nothing() {
+    let mut env = acrobot_v1::<Fast>(Options::default()).unwrap();
+    env.reset_with_seed(3);
+    let mut wrapped = RecordEpisodeStatistics::new(env.clone());
+    for _ in 0..3 {
+        env.step(Action::Positive);
+        wrapped.step(Action::Positive);
     }
-    let refused = |params, arithmetic| {
+    let inner = wrapped.into_inner();
+    assert_eq!(inner.elapsed(), 3);
+    assert_eq!(inner.unwrapped(), env.unwrapped());
+    assert_eq!(inner.into_inner().unwrapped(), env.unwrapped());
+}
+
+#[test]
+fn rejections_say_what_is_valid() {
+    for id in ["Acrobot-v2", "acrobot-v0", "", "CartPole-v1"] {
+        let error = make(id).unwrap_err();
+        let expected = format!(r#"the id must be "Acrobot-v1" or "Acrobot-v0", got {id:?}"#);
+        assert_eq!(error.to_string(), expected);
+        assert_eq!(error, Error::UnknownId(id.to_owned()));
+    }
+    let rejected = |params, arithmetic| {
         let options = Options {
             params,
             arithmetic,
@@ -289,32 +313,32 @@ fn what_does_not_fit_is_refused_with_what_to_do() {
         };
         make_with("Acrobot-v1", options).unwrap_err().to_string()
     };
-    let text = refused(
+    let text = rejected(
         Params {
             dt: -1.0,
             ..Params::DEFAULT
         },
         ArithmeticKind::Host,
     );
-    assert_eq!(text, "dt is -1 s; allowed is a finite number above 0");
-    let text = refused(
+    assert_eq!(text, "dt must be finite and above 0 s, got -1");
+    let text = rejected(
         Params {
             mass1: 1e-60,
             ..Params::DEFAULT
         },
         ArithmeticKind::Fast,
     );
-    assert_eq!(text, "mass1 is 0 kg; allowed is a finite number above 0");
+    assert_eq!(text, "mass1 must be finite and above 0 kg, got 0");
 
     let mut mute = make("Acrobot-v1").unwrap();
     let error = mute.render().unwrap_err();
     assert_eq!(error, Error::NoRenderMode);
-    assert!(
-        error
-            .to_string()
-            .contains("make the environment with the render mode RgbArray, Ansi or Human")
+    assert_eq!(
+        error.to_string(),
+        "the render mode must be RgbArray, Ansi or Human to render, got None"
     );
-    assert_eq!(Acrobot::<Fast>::new(0).render(), Err(Error::NoRenderMode));
+    let mut typed = AcrobotEnv::<Fast, Observation>::default();
+    assert_eq!(typed.render(), Err(Error::NoRenderMode));
 
     let before = mute.unwrapped().state();
     assert!(
@@ -344,13 +368,12 @@ fn spaces_know_their_elements() {
         .observation_space();
     assert!(space.contains(space.low()) && space.contains(space.high()));
     for i in 0..6 {
-        let mut outside = *space.high();
-        outside.0[i] = outside.0[i].next_up();
-        assert!(!space.contains(&outside));
-        outside.0[i] = space.low()[i].next_down();
-        assert!(!space.contains(&outside));
-        outside.0[i] = f32::NAN;
-        assert!(!space.contains(&outside));
+        let [low, high] = [space.low(), space.high()].map(|bound| bound.as_ref()[i]);
+        for number in [high.next_up(), low.next_down(), f32::NAN] {
+            let mut outside = *space.high();
+            outside.as_mut()[i] = number;
+            assert!(!space.contains(&outside), "{outside:?}");
+        }
     }
     assert!(
         !BoxSpace::new(vec![0.0], vec![1.0])
@@ -367,9 +390,10 @@ fn spaces_know_their_elements() {
     );
 }
 
+/// Parameters are checked before they are rounded to the scalar, too.
 #[test]
-fn what_only_rounding_would_allow_is_refused() {
-    // As f32 it is 0.
+fn parameters_that_only_rounding_makes_valid_are_rejected() {
+    // Rounded to `f32` it is 0.
     let params = Params {
         torque_noise: -1e-60,
         ..Params::DEFAULT

@@ -1,4 +1,4 @@
-//! The examples do what they say, as a user starts them.
+//! The examples do what their docs say, run as a user runs them.
 
 mod common;
 #[path = "examples/exit.rs"]
@@ -43,7 +43,7 @@ fn run(example: &str, arguments: &[&str], input: &str) -> Output {
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
     let mut child = pipes.spawn().unwrap();
-    // One that refuses its arguments does not read.
+    // An example that rejects its arguments does not read.
     let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
     child.wait_with_output().unwrap()
 }
@@ -54,17 +54,17 @@ fn printed(output: Output) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-fn refused(example: &str, arguments: &[&str], input: &str) -> String {
+fn rejected(example: &str, arguments: &[&str], input: &str) -> String {
     let output = run(example, arguments, input);
     assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     assert!(
         output.stdout.is_empty(),
-        "nothing is printed before a refusal"
+        "an example that rejects its input prints nothing"
     );
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// An empty folder of one test, gone when it ends.
+/// An empty folder for one test, removed when the test ends.
 struct Folder(PathBuf);
 
 impl Folder {

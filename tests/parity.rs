@@ -4,23 +4,25 @@ mod common;
 
 use std::f64::consts::FRAC_PI_2;
 
-use acrobot::{Acrobot, Arithmetic, Form, Host, Portable, State};
+use acrobot::arithmetic::{Arithmetic, Host};
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::physics::Gymnasium;
+use acrobot::{Acrobot, Portable, State};
 use common::{Digest, RECORDING, distance, is_recorded_library, recorded_steps};
 
-/// Where the C library is another one, each step from Gymnasium's state stays this close: twice what
-/// [`Libm`] needs.
+/// With another C library each step from Gymnasium's state is at most this far off: twice what [`Libm`] needs.
 const OTHER_LIBRARY: f64 = 4e-14;
 
-/// The same for `Portable`, which does not round x − π/2, where an angle may be dozens of turns.
+/// The same for `Portable`, which does not round x − π/2. It is larger because angles can be dozens of turns.
 const OTHER_SINES: f64 = 2.4e-13;
 
-/// Gymnasium's order with the sines of `libm`, as another C library has others.
+/// Gymnasium's order with the sines of `libm`, in place of another C library.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Libm;
 
 impl Arithmetic for Libm {
     type Scalar = f64;
-    const FORM: Form = Form::Gymnasium;
+    type Form = Gymnasium;
 
     fn sin_cos(x: f64) -> (f64, f64) {
         libm::sincos(x)
@@ -48,7 +50,7 @@ fn host_replays_gymnasium() {
         assert_eq!(
             bits(acrobot.state()),
             bits(episode.states[0]),
-            "start of episode {number}"
+            "initial state of episode {number}"
         );
         for (i, &action) in episode.actions.iter().enumerate() {
             let step = acrobot.step(action);
@@ -61,7 +63,7 @@ fn host_replays_gymnasium() {
             assert_eq!(step.reward, episode.rewards[i], "{context}");
             assert_eq!(step.terminated, episode.terminated[i], "{context}");
             goals += usize::from(step.terminated);
-            for x in *step.observation {
+            for x in step.observation.to_array() {
                 observations.add(x.to_bits().into());
             }
         }
@@ -76,8 +78,7 @@ fn host_replays_gymnasium() {
     );
 }
 
-/// Single steps from states all over the bounds and with other parameters, and from each state of
-/// the episodes.
+/// Single steps with other parameters from states anywhere within the bounds, and from each state of the episodes.
 fn single_steps<A: Arithmetic<Scalar = f64>>(exact: bool, tolerance: f64) {
     let check = |acrobot: &Acrobot<A>, next: State, context: &str| {
         if exact {
@@ -111,18 +112,18 @@ fn host_takes_gymnasiums_single_steps() {
     single_steps::<Host>(is_recorded_library(), OTHER_LIBRARY);
 }
 
-/// What is asked of another library can be met.
+/// Another C library can meet its tolerance.
 #[test]
 fn another_library_takes_them_closely() {
     single_steps::<Libm>(false, OTHER_LIBRARY);
     single_steps::<Portable>(false, OTHER_SINES);
 }
 
-/// NumPy takes the sines of a start by f32 code of its own, which is not that of a later step.
+/// NumPy computes the sines of an initial state with its own `f32` code, and those of later steps with other code.
 #[test]
-fn start_observations_are_within_one_ulp() {
+fn initial_observations_are_within_one_ulp() {
     for (number, episode) in RECORDING.episodes.iter().enumerate() {
-        let ours = *episode.start::<Host>().observation();
+        let ours = episode.start::<Host>().observation().to_array();
         for (x, y) in ours.into_iter().zip(episode.start_observation) {
             let ulps = (i64::from(x.to_bits()) - i64::from(y.to_bits())).abs();
             assert!(ulps <= 1, "episode {number}: {x} and {y} are {ulps} apart");
@@ -130,22 +131,21 @@ fn start_observations_are_within_one_ulp() {
     }
 }
 
-/// `Host` calls C's `pow` only where it can differ from `x * x`; where it is not called it does not.
+/// `Host` calls C's `pow` only where it can differ from `x * x`. Elsewhere the two are equal.
 #[test]
-#[expect(clippy::disallowed_methods, reason = "the platform's own function")]
+#[expect(clippy::disallowed_methods, reason = "the platform's function")]
 fn hosts_square_is_the_platforms_power() {
     let two = std::hint::black_box(2.0);
-    let mut rng = acrobot::Pcg64::new(5);
+    let mut rng = Pcg64::new(5);
     let mut differs = 0;
     for i in 0..3_000_000 {
         let size = if i % 10 == 0 { 300.0 } else { 3.0 };
-        let x = acrobot::uniform(&mut rng, -1.0, 1.0)
-            * 10_f64.powf(acrobot::uniform(&mut rng, -size, size));
+        let x = uniform(&mut rng, -1.0, 1.0) * 10_f64.powf(uniform(&mut rng, -size, size));
         let power = x.powf(two);
         assert_eq!(Host::square(x).to_bits(), power.to_bits(), "{x:e}");
         differs += u32::from(power != x * x);
     }
-    println!("{differs} of 3,000,000 powers are no product");
+    println!("{differs} of 3,000,000 powers differ from the product");
     for x in [0.0, -0.0, 1e-160, 5e-324, 1e160, f64::MAX, f64::INFINITY] {
         assert_eq!(Host::square(x).to_bits(), x.powf(two).to_bits(), "{x:e}");
     }

@@ -1,12 +1,12 @@
-//! The equations are those of the pendulum: against Lagrange's, against each other, and by their
-//! symmetries and their order of convergence.
+//! The equations are those of the pendulum: they agree with Lagrange's and with each other, and converge with the right
+//! order.
 
 mod common;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Dynamics, Form, Params, Pcg64, Portable, State, derivative,
-    energy, mass_matrix, rk4, uniform,
-};
+use acrobot::arithmetic::Arithmetic;
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::physics::{Dynamics, Lean, derivative, energy, mass_matrix, rk4};
+use acrobot::{Acrobot, Action, Params, Portable, State};
 use common::distance;
 
 /// `Portable`'s scalar and trigonometry with the lean form of the equations.
@@ -15,7 +15,7 @@ struct LeanF64;
 
 impl Arithmetic for LeanF64 {
     type Scalar = f64;
-    const FORM: Form = Form::Lean;
+    type Form = Lean;
 
     fn sin_cos(x: f64) -> (f64, f64) {
         Portable::sin_cos(x)
@@ -50,7 +50,7 @@ fn random_cases() -> impl Iterator<Item = (Params, State, f64)> {
     })
 }
 
-/// |x − y| in units of the largest number that went into them.
+/// The largest |x − y|, relative to the largest number of both.
 fn relative(x: [f64; 2], y: [f64; 2]) -> f64 {
     let scale = x
         .into_iter()
@@ -84,8 +84,8 @@ fn both_forms_agree() {
     }
 }
 
-/// A number with its derivatives in two directions and the mixed second one: automatic
-/// differentiation for the Lagrangian below, which knows nothing of the crate's equations.
+/// A number with its derivatives in two directions and the mixed second derivative: automatic differentiation for the
+/// Lagrangian below, which uses none of the crate's equations.
 #[derive(Clone, Copy)]
 struct HyperDual([f64; 4]);
 
@@ -94,7 +94,7 @@ impl HyperDual {
         Self([x, 0.0, 0.0, 0.0])
     }
 
-    /// f of it, from the value and the first two derivatives of f.
+    /// f of the number, given the value and the first two derivatives of f.
     fn map(self, f: f64, first: f64, second: f64) -> Self {
         let [_, a, b, ab] = self.0;
         Self([f, first * a, first * b, first * ab + second * a * b])
@@ -133,11 +133,11 @@ impl std::ops::Mul for HyperDual {
     }
 }
 
-/// Kinetic minus potential energy, from where the two centres of mass are and how they move.
+/// Kinetic minus potential energy, from the positions and velocities of the two centres of mass.
 fn lagrangian(p: &Params, [theta1, theta2, dtheta1, dtheta2]: [HyperDual; 4]) -> HyperDual {
     let number = HyperDual::constant;
     let (absolute, turning) = (theta1 + theta2, dtheta1 + dtheta2);
-    // Velocities of the centres of mass: across and up.
+    // Velocities of the centres of mass, horizontal and vertical.
     let speed1 = number(p.center_of_mass1) * dtheta1;
     let across = number(p.length1) * theta1.cos() * dtheta1
         + number(p.center_of_mass2) * absolute.cos() * turning;
@@ -153,8 +153,8 @@ fn lagrangian(p: &Params, [theta1, theta2, dtheta1, dtheta2]: [HyperDual; 4]) ->
     number(0.5) * twice_kinetic + number(-1.0) * potential
 }
 
-/// The Lagrangian's value, derivatives along the i-th and the j-th of (θ1, θ2, θ̇1, θ̇2), and second
-/// derivative along both.
+/// The Lagrangian's value, its derivatives along the i-th and the j-th of (θ1, θ2, θ̇1, θ̇2), and the second derivative
+/// along both.
 fn differentiate(p: &Params, y: [f64; 4], i: usize, j: usize) -> [f64; 4] {
     let along = |k, axis| f64::from(u8::from(k == axis));
     lagrangian(
@@ -202,7 +202,7 @@ fn the_books_equations_are_lagranges() {
     }
 }
 
-/// M (θ̈ of the paper − θ̈ of the book) = (0, m2 l1 lc2 θ̇1² sin θ2), and nothing else.
+/// M (θ̈ of the paper − θ̈ of the book) = (0, m2 l1 lc2 θ̇1² sin θ2).
 #[test]
 fn the_papers_equations_lack_one_term() {
     fn check<A: Arithmetic<Scalar = f64>>(params: Params, state: State, torque: f64) {
@@ -226,7 +226,7 @@ fn the_papers_equations_lack_one_term() {
     }
 }
 
-/// Swinging without torque for `time` s in steps of `dt`.
+/// The state after `time` s without torque, in steps of `dt` s.
 fn swing(dt: f64, time: f64) -> State {
     let params = Params::DEFAULT;
     let mut y = [1.2, -0.7, 0.4, 1.1];
@@ -260,7 +260,7 @@ fn energy_drifts_no_faster_than_the_fourth_power_of_dt() {
     assert!(coarse <= 1e-2, "{coarse:e}");
 }
 
-/// A step with a torque is the step of the action that stands for it.
+/// A step with the torque of an action equals the step with the action.
 #[test]
 fn actions_are_torques() {
     let mut by_action = Acrobot::<Portable>::new(5);

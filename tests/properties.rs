@@ -1,6 +1,5 @@
-//! Promise 3, no panic, no hang and no NaN, whatever is given: properties of all public functions in every
-//! arithmetic. `PROPTEST_CASES=60000 PROPTEST_RNG_SEED=7 cargo test --release --test properties` tries
-//! others and more.
+//! Promise 3, no panic, no hang and no NaN, for any input: properties of all public functions in every arithmetic.
+//! `PROPTEST_CASES=60000 PROPTEST_RNG_SEED=7 cargo test --release --test properties` tries more and other cases.
 
 mod common;
 #[path = "properties/given.rs"]

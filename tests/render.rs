@@ -1,33 +1,31 @@
-//! Drawings are Gymnasium's, stay on their target, and write no pixel that does not change.
+//! Drawings are Gymnasium's and stay within their target, and a redraw writes only pixels that change.
 
 mod common;
 
-use acrobot::env::Frame;
-use acrobot::{Acrobot, Arithmetic, Figure, Params, Portable, State, Theme};
+use acrobot::arithmetic::Arithmetic;
+use acrobot::physics::Pendulum;
+use acrobot::render::{Figure, Frame, Theme};
+use acrobot::{Acrobot, Params, Portable, State};
 use common::canvas::Canvas;
 use common::{Digest, oled};
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{Point, Size};
-use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::pixelcolor::{BinaryColor, Rgb888, RgbColor};
 
 fn figure(theta1: f64, theta2: f64) -> Figure {
     figure_of([theta1, theta2, 1.0, 1.0])
 }
 
 fn figure_of([theta1, theta2, length1, length2]: [f64; 4]) -> Figure {
-    let mut acrobot = Acrobot::<Portable>::new(0);
-    acrobot
-        .set_params(Params {
-            length1,
-            length2,
-            ..Params::DEFAULT
-        })
-        .unwrap();
-    acrobot
-        .set_state(State::from([theta1, theta2, 0.0, 0.0]))
-        .unwrap();
-    Figure::new(&acrobot)
+    let params = Params {
+        length1,
+        length2,
+        ..Params::DEFAULT
+    };
+    let state = State::from([theta1, theta2, 0.0, 0.0]);
+    let pendulum = Pendulum::<Portable>::new(params, state).unwrap();
+    Figure::new(&Acrobot::from_pendulum(pendulum, ()))
 }
 
 const SIDE: usize = 500;
@@ -58,7 +56,7 @@ fn recorded_frames() -> Vec<([f64; 4], Vec<u8>)> {
     frames.collect()
 }
 
-/// The mean column and row of the pixels of a joint's colour around a place, and how many there are.
+/// The mean column and row of the pixels of a joint's colour around a position, and their number.
 fn joint(frame: &[u8], (column, row): (f64, f64)) -> (f64, f64, usize) {
     let places = (0..SIDE * SIDE).map(|i| ((i % SIDE) as f64, (i / SIDE) as f64));
     let pixels = frame.chunks_exact(3).zip(places);
@@ -74,8 +72,8 @@ fn joint(frame: &[u8], (column, row): (f64, f64)) -> (f64, f64, usize) {
     )
 }
 
-/// What the README says of the frame that is least alike.
-const LEAST_ALIKE: f64 = 0.998;
+/// The share of close pixels in the worst frame, as in the README.
+const LEAST_SHARE: f64 = 0.998;
 
 #[test]
 fn frames_are_gymnasiums() {
@@ -101,7 +99,7 @@ fn frames_are_gymnasiums() {
         ] {
             let ((x, y, n), (their_x, their_y, their_n)) =
                 (joint(ours.bytes(), place), joint(theirs, place));
-            // Link 2 may cover the upper joint.
+            // Link 2 can cover the upper joint.
             let whole = 0.93 * std::f64::consts::PI * (0.1 * pixels / length1).powi(2);
             if n as f64 > whole && their_n as f64 > whole {
                 joints += 1;
@@ -109,16 +107,16 @@ fn frames_are_gymnasiums() {
             }
         }
     }
-    assert!(joints >= 100, "{joints} joints are in sight");
+    assert!(joints >= 100, "{joints} joints are visible");
     let mean = sum / frames.len() as f64;
     println!("worst {worst}, mean {mean}, joints {farthest} pixels apart");
-    assert!(worst >= LEAST_ALIKE && mean >= 0.998, "{worst} {mean}");
+    assert!(worst >= LEAST_SHARE && mean >= 0.998, "{worst} {mean}");
     assert!(farthest <= 1.0, "{farthest}");
 }
 
 const THEME: Theme<BinaryColor> = Theme::MONOCHROME;
 
-/// The drawing on a 128×64 display, a character a pixel.
+/// The drawing on a 128×64 display, one character for each pixel.
 fn ascii(figure: Figure) -> String {
     let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
     figure.draw(&mut canvas, &THEME).unwrap();
@@ -146,7 +144,7 @@ fn the_monochrome_drawing_is_its_snapshot() {
     common::assert_snapshot("oled.txt", include_str!("data/oled.txt"), &drawing);
 }
 
-/// Promise 2 for pictures: the firmware `oled` draws the same on a display's driver.
+/// Promise 2 for pictures: the firmware `oled` draws the same with the driver of a display.
 #[test]
 fn the_oled_episode_is_its_snapshot() {
     let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
@@ -172,13 +170,13 @@ fn the_oled_episode_is_its_snapshot() {
 }
 
 #[test]
-fn a_redraw_writes_what_changed_and_no_more() {
+fn a_redraw_writes_only_the_pixels_that_changed() {
     let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
     let mut shown = figure(0.0, 0.0);
     shown.draw(&mut canvas, &THEME).unwrap();
     for i in 0..50 {
         let angle = f64::from(i) * 0.3;
-        // Other lengths, every tenth time, move the line too.
+        // Every tenth length is another, which also moves the line.
         let length = 1.0 + f64::from(i / 10) * 0.1;
         let next = figure_of([angle / 2.0, angle, length, 1.0]).with_torque((i % 3 - 1) as f32);
         let before = canvas.pixels.clone();
@@ -205,14 +203,14 @@ fn a_redraw_writes_what_changed_and_no_more() {
 }
 
 #[test]
-fn the_arrow_shows_the_torques_direction_where_there_is_room() {
+fn the_arrow_shows_the_torques_direction_if_there_is_room() {
     let still = ascii(figure(0.6, -1.5));
     let positive = ascii(figure(0.6, -1.5).with_torque(0.5));
     assert_ne!(positive, still);
     assert_ne!(positive, ascii(figure(0.6, -1.5).with_torque(-0.5)));
     assert_eq!(ascii(figure(0.6, -1.5).with_torque(0.0)), still);
     assert_eq!(ascii(figure(0.6, -1.5).with_torque(f32::NAN)), still);
-    // Hanging, the two directions are mirror images.
+    // For a hanging acrobot the two directions are mirror images.
     let mirrored = |drawing: String| {
         drawing
             .lines()
@@ -240,8 +238,17 @@ fn the_arrow_shows_the_torques_direction_where_there_is_room() {
     );
 }
 
+/// `Theme::default()` is Gymnasium's in RGB, and monochrome on displays of one colour.
 #[test]
-fn a_frame_ignores_what_is_outside_of_it() {
+fn default_themes_are_those_of_their_colours() {
+    assert_eq!(Theme::<Rgb888>::default(), Theme::GYMNASIUM);
+    assert_eq!(Theme::<BinaryColor>::default(), Theme::MONOCHROME);
+    assert_eq!(Theme::<Rgb888>::default().ground, Rgb888::WHITE);
+    assert_eq!(Theme::<BinaryColor>::default().link, BinaryColor::On);
+}
+
+#[test]
+fn a_frame_ignores_pixels_outside_it() {
     let mut frame = Frame::new(3, 2);
     let white = Theme::GYMNASIUM.ground;
     let around = [(-1, 0), (3, 0), (0, -1), (0, 2)].map(|(x, y)| Pixel(Point::new(x, y), white));
@@ -258,7 +265,7 @@ fn a_frame_ignores_what_is_outside_of_it() {
 
 #[test]
 #[should_panic(expected = "capacity overflow")]
-fn a_frame_has_no_fewer_pixels_than_it_says() {
-    // Three bytes for each are 2⁶⁴ and a little more.
+fn a_frame_too_large_for_memory_panics() {
+    // Three bytes for each pixel are slightly more than 2⁶⁴.
     let _ = Frame::new(u32::MAX, 1_431_655_766);
 }

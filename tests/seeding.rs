@@ -4,8 +4,10 @@ use std::fmt::Debug;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
-use acrobot::env::{Env, Space};
-use acrobot::{Acrobot, Fast, Pcg64, Portable, SeedSequence, integers, uniform};
+use acrobot::env::{AcrobotEnv, Env, Space};
+use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
+use acrobot::physics::StartBounds;
+use acrobot::{Acrobot, Fast, Observation, Portable};
 use rand_core::{Rng, SeedableRng};
 
 /// The rows of `data/seeds.txt` of one kind, without the kind.
@@ -24,6 +26,10 @@ fn seed(decimal: &str) -> SeedSequence {
     decimal.parse().unwrap()
 }
 
+fn generator(decimal: &str) -> Pcg64 {
+    seed(decimal).into()
+}
+
 fn numbers<T: FromStr<Err: Debug>>(row: &[&str]) -> Vec<T> {
     row.iter().map(|number| number.parse().unwrap()).collect()
 }
@@ -35,10 +41,10 @@ fn hexes(row: &[&str]) -> Vec<u64> {
 }
 
 #[test]
-fn starts_are_gymnasiums() {
+fn initial_states_are_gymnasiums() {
     for row in rows("reset") {
-        let portable = Acrobot::<Portable>::new(seed(row[0])).state();
-        let fast = Acrobot::<Fast>::new(seed(row[0])).state();
+        let portable = Acrobot::<Portable>::with_rng(generator(row[0])).state();
+        let fast = Acrobot::<Fast>::with_rng(generator(row[0])).state();
         let bits = <[f32; 4]>::from(fast).map(|x| u64::from(x.to_bits()));
         assert_eq!(bits.to_vec(), hexes(&row[1..]), "seed {}", row[0]);
         assert_eq!(portable, fast.cast());
@@ -48,7 +54,7 @@ fn starts_are_gymnasiums() {
 #[test]
 fn samples_are_gymnasiums() {
     for row in rows("sample") {
-        let mut space = Pcg64::new(seed(row[0]));
+        let mut space = generator(row[0]);
         let n: NonZeroU32 = row[1].parse().unwrap();
         let drawn: Vec<u32> = (0..20).map(|_| integers(&mut space, n)).collect();
         assert_eq!(drawn, numbers::<u32>(&row[2..]), "seed {}, n {n}", row[0]);
@@ -57,24 +63,23 @@ fn samples_are_gymnasiums() {
 
 #[test]
 fn box_samples_are_gymnasiums() {
-    let acrobot = Acrobot::<Fast>::new(0);
+    let space = AcrobotEnv::<Fast, Observation>::default().observation_space();
     for row in rows("box") {
-        let space = acrobot.observation_space();
-        let mut rng = Pcg64::new(seed(row[0]));
+        let mut rng = generator(row[0]);
         let drawn: Vec<u64> = (0..3)
-            .flat_map(|_| *space.sample(&mut rng))
-            .map(|x: f32| x.to_bits().into())
+            .flat_map(|_| space.sample(&mut rng).to_array())
+            .map(|x| x.to_bits().into())
             .collect();
         assert_eq!(drawn, hexes(&row[1..]), "seed {}", row[0]);
     }
 }
 
-/// The half that a 32-bit draw leaves outlives draws of 64 bits.
+/// The half of a draw that a 32-bit draw leaves stays through 64-bit draws.
 #[test]
 fn mixed_draws_are_numpys() {
     let [three, five] = [3, 5].map(|n| NonZeroU32::new(n).unwrap());
     for row in rows("mixed") {
-        let mut rng = Pcg64::new(seed(row[0]));
+        let mut rng = generator(row[0]);
         for words in row[1..].chunks(3) {
             assert_eq!(integers(&mut rng, three), words[0].parse().unwrap());
             assert_eq!(
@@ -108,8 +113,8 @@ fn descendants_are_numpys() {
 }
 
 #[test]
-fn spawn_goes_on_where_it_stopped() {
-    let mut seed = SeedSequence::from(42);
+fn a_later_spawn_gives_the_next_children() {
+    let mut seed = SeedSequence::new(42);
     let parent = seed.clone();
     let first: Vec<_> = seed.spawn(3).collect();
     let second: Vec<_> = seed.spawn(2).collect();
@@ -118,25 +123,83 @@ fn spawn_goes_on_where_it_stopped() {
     assert_eq!(
         seed.generate_state::<4>(),
         parent.generate_state::<4>(),
-        "a parent's own stream stays"
+        "spawning does not change the parent's stream"
     );
 }
 
 #[test]
-fn integers_of_every_kind_are_seeds() {
-    assert_eq!(SeedSequence::from(5), SeedSequence::from_words(&[5]));
-    assert_eq!(SeedSequence::from(u64::MAX), seed("18446744073709551615"));
-    assert_eq!(
-        SeedSequence::from_words(&[5, 0, 0, 0, 0, 0]),
-        SeedSequence::from(5)
-    );
+fn integers_of_every_width_are_seeds() {
+    let five = SeedSequence::new(5);
+    assert_eq!(SeedSequence::from_words(&[5]), five);
+    assert_eq!(SeedSequence::from_words(&[5, 0, 0, 0, 0, 0]), five);
+    for sequence in [
+        5_u8.into(),
+        5_u16.into(),
+        5_u32.into(),
+        5_u64.into(),
+        5_u128.into(),
+    ] {
+        assert_eq!(five, sequence);
+    }
+    const MAX: u32 = u32::MAX;
+    for (sequence, words, decimal) in [
+        (SeedSequence::from(u8::MAX), &[255][..], "255"),
+        (SeedSequence::from(u16::MAX), &[65535], "65535"),
+        (SeedSequence::from(MAX), &[MAX], "4294967295"),
+        (
+            SeedSequence::from(u64::MAX),
+            &[MAX, MAX],
+            "18446744073709551615",
+        ),
+        (
+            SeedSequence::from(u128::MAX),
+            &[MAX, MAX, MAX, MAX],
+            "340282366920938463463374607431768211455",
+        ),
+        (
+            SeedSequence::from((1_u128 << 96) + (2 << 64) + (3 << 32) + 4),
+            &[4, 3, 2, 1],
+            "79228162551157825753847955460",
+        ),
+    ] {
+        assert_eq!(sequence, SeedSequence::from_words(words));
+        assert_eq!(sequence, seed(decimal));
+    }
+    assert_eq!(SeedSequence::new(u64::MAX), SeedSequence::from(u64::MAX));
     assert_eq!(Pcg64::seed_from_u64(42), Pcg64::new(42));
+    assert_eq!(Pcg64::from(SeedSequence::new(42)), Pcg64::new(42));
     let mut bytes = [0; 32];
     bytes[16] = 1;
     assert_eq!(
         Pcg64::from_seed(bytes),
-        Pcg64::new(seed("340282366920938463463374607431768211456"))
+        generator("340282366920938463463374607431768211456")
     );
+}
+
+/// A sequence, a generator and reset bounds that the compiler makes equal those made at run time.
+#[test]
+fn seeds_and_bounds_are_made_in_a_const() {
+    const SEQUENCE: SeedSequence = SeedSequence::from_words(&[42, 7]);
+    const STATE: [u64; 4] = SEQUENCE.generate_state();
+    const BOUNDS: StartBounds = match StartBounds::new(-0.25, 0.5) {
+        Ok(bounds) => bounds,
+        Err(_) => panic!(),
+    };
+    const REVERSED: bool = StartBounds::new(0.5, -0.25).is_err();
+    static RNG: Pcg64 = Pcg64::new(42);
+
+    let words = std::hint::black_box([42, 7]);
+    assert_eq!(SEQUENCE, SeedSequence::from_words(&words));
+    assert_eq!(STATE, SeedSequence::from_words(&words).generate_state());
+    assert_eq!(RNG, Pcg64::new(std::hint::black_box(42)));
+    assert_eq!(StartBounds::new(-0.25, 0.5), Ok(BOUNDS));
+    assert!(REVERSED);
+
+    let mut acrobot = Acrobot::<Fast>::with_rng(RNG.clone());
+    let mut twin = Acrobot::<Fast>::new(42);
+    assert_eq!(acrobot, twin);
+    let bounds = StartBounds::new(-0.25, 0.5).unwrap();
+    assert_eq!(acrobot.reset_within(BOUNDS), twin.reset_within(bounds));
 }
 
 #[test]
@@ -152,7 +215,7 @@ fn a_reset_without_a_seed_continues_the_stream() {
     assert_ne!(first, second);
 }
 
-/// A generator of the user's own: here one that always says the same.
+/// A custom generator, which always draws the same.
 struct Constant(u64);
 
 impl rand_core::TryRng for Constant {
@@ -173,19 +236,19 @@ impl rand_core::TryRng for Constant {
 }
 
 #[test]
-fn another_generator_serves_too() {
+fn a_constant_generator_draws_the_lowest_state_and_does_not_hang() {
     let lowest = Acrobot::<Portable, _>::with_rng(Constant(0)).state();
     assert_eq!(<[f64; 4]>::from(lowest), [f64::from(-0.1_f32); 4]);
-    // Every draw of 0 must be rejected for n = 3, and still there is an end.
+    // Every draw of 0 must be rejected for n = 3, so after 64 the last one is taken.
     assert_eq!(integers(&mut Constant(0), NonZeroU32::new(3).unwrap()), 0);
 }
 
-/// Against another implementation of the generator underneath, over draws of every width.
+/// Equal to another implementation of PCG64, over draws of every width.
 #[test]
 fn the_generator_is_rand_pcgs() {
     for seed in 0..100 {
         let [state1, state0, stream1, stream0] =
-            SeedSequence::from(seed).generate_state().map(u128::from);
+            SeedSequence::new(seed).generate_state().map(u128::from);
         let mut theirs = rand_pcg::Pcg64::new(state1 << 64 | state0, stream1 << 64 | stream0);
         let mut ours = Pcg64::new(seed);
         for _ in 0..100 {

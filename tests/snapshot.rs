@@ -1,21 +1,21 @@
-//! A snapshot resumes to the same bits, also one of an older release, and one that is not valid or of
-//! something else is refused with the reason.
+//! A snapshot resumes to the same bits, also one of an older release. One that is not valid or of another type is
+//! rejected with the reason.
 
 mod common;
 
 use std::fmt::Debug;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Batch, Block, Fast, LimitedStep, Member, Observations, Output,
-    Params, Pcg64, Portable, Real, TimeLimit,
-};
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::batch::{Batch, Block, Member, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use common::Digest;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 type Limited = TimeLimit<Acrobot<Portable>>;
 
-/// An acrobot in the middle of an episode with noise, and its generator between two halves.
+/// An acrobot in the middle of an episode with noise. Its generator keeps half a draw.
 fn busy() -> Limited {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(u64::MAX));
     let inner = acrobot.inner_mut();
@@ -33,7 +33,7 @@ fn busy() -> Limited {
     acrobot
 }
 
-fn run(acrobot: &mut Limited) -> Vec<LimitedStep> {
+fn run(acrobot: &mut Limited) -> Vec<Step> {
     (0..100)
         .map(|_| {
             let action = Action::sample(acrobot.inner_mut().rng_mut());
@@ -60,11 +60,11 @@ fn snapshots_resume_to_the_same_bits() {
 }
 
 #[test]
-fn snapshots_that_are_not_valid_are_refused() {
+fn snapshots_that_are_not_valid_are_rejected() {
     let text = serde_json::to_string(&busy()).unwrap();
     assert!(serde_json::from_str::<Limited>(&text).is_ok());
 
-    let refuse = |from: &str, to: &str, reason: &str| {
+    let reject = |from: &str, to: &str, reason: &str| {
         assert!(text.contains(from), "{from} in {text}");
         let broken = text.replacen(from, to, 1);
         let error = serde_json::from_str::<Limited>(&broken)
@@ -72,18 +72,22 @@ fn snapshots_that_are_not_valid_are_refused() {
             .to_string();
         assert!(error.contains(reason), "{error}");
     };
-    refuse("\"mass2\":1.5", "\"mass2\":-1.5", "mass2 is -1.5 kg");
-    refuse("\"limit\":500", "\"limit\":0", "nonzero");
-    refuse("\"dynamics\":\"Book\"", "\"dynamics\":\"Film\"", "Film");
+    reject(
+        "\"mass2\":1.5",
+        "\"mass2\":-1.5",
+        "mass2 must be finite and above 0 kg, got -1.5",
+    );
+    reject("\"limit\":500", "\"limit\":0", "nonzero");
+    reject("\"dynamics\":\"Book\"", "\"dynamics\":\"Film\"", "Film");
     let start = text.find("\"increment\":").unwrap() + "\"increment\":".len();
     let increment: u128 = text[start..].split(',').next().unwrap().parse().unwrap();
     let (odd, even) = (increment.to_string(), (increment - 1).to_string());
-    refuse(&odd, &even, "allowed is an odd number");
+    reject(&odd, &even, "increment must be odd, got ");
     let half = text.find(",\"half\":").unwrap();
     let half = &text[half..half + text[half..].find('}').unwrap()];
-    refuse(half, "", "missing field `half`");
+    reject(half, "", "missing field `half`");
 
-    // JSON has no NaN; a binary format has.
+    // A binary format can hold NaN, JSON cannot.
     let acrobot = Acrobot::<Portable>::new(0);
     let state = postcard::to_stdvec(&acrobot.state()).unwrap();
     let mut bytes = postcard::to_stdvec(&acrobot).unwrap();
@@ -99,7 +103,7 @@ fn snapshots_that_are_not_valid_are_refused() {
     assert!(postcard::from_bytes::<Member>(&bytes).is_err());
 }
 
-/// One of a batch, in the middle of an episode.
+/// A member of a batch, in the middle of an episode.
 fn member() -> Member {
     let mut batch = batch_of_one();
     let mut member = batch.member(0).unwrap();
@@ -132,21 +136,21 @@ fn play<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
     digest.0
 }
 
-/// Likewise through the end of an episode.
+/// 100 steps of a member, through the end of its episode.
 fn play_member(member: Member) -> u64 {
     let mut batch = batch_of_one();
     batch.set_member(0, member).unwrap();
     let mut digest = Digest::new();
     for _ in 0..100 {
         let mut rows = [[0.0; 6]];
-        let output = Output {
+        let buffers = StepBuffers {
             rewards: &mut [0.0],
             terminated: &mut [false],
             truncated: &mut [false],
             observations: Observations::Rows(&mut rows),
             final_observations: Observations::None,
         };
-        batch.step(&[2_u8], output).unwrap();
+        batch.step(&[2_u8], buffers).unwrap();
         rows.as_flattened()
             .iter()
             .for_each(|x| digest.add(x.to_bits().into()));
@@ -164,13 +168,14 @@ fn from_hex(text: &str) -> Vec<u8> {
     pairs.map(byte).collect()
 }
 
-/// Three lines: as JSON, as postcard, and what it plays; and from those of the file, what these play.
+/// Three lines: `original` as JSON, as postcard, and the digest that it plays. Lines of the file must load as `original`
+/// and play the same.
 fn stored<T>(original: T, lines: &mut std::str::Lines<'_>, play: fn(T) -> u64) -> String
 where
     T: Serialize + DeserializeOwned + PartialEq + Debug,
 {
     let [json, hex, played] = [(); 3].map(|()| lines.next().unwrap_or_default());
-    // Miri takes minutes to play; what it reads is compared all the same.
+    // Miri takes minutes to play, so there only the loaded values are compared.
     let play = |value| match cfg!(miri) {
         true => played.to_owned(),
         false => format!("{:016x}", play(value)),
@@ -188,7 +193,7 @@ where
     format!("{json}\n{hex}\n{}\n", play(original))
 }
 
-/// What is stored differently is of another version, and has a file of its own.
+/// Another version has another file.
 #[test]
 fn snapshots_of_version_1_stay_readable() {
     let file = include_str!("data/snapshots_1.txt");
@@ -201,8 +206,8 @@ fn snapshots_of_version_1_stay_readable() {
     common::assert_snapshot("snapshots_1.txt", file, &found.concat());
 }
 
-/// With what a text has in place of another, if it is refused.
-fn refusal<T: DeserializeOwned + Debug>(text: &str, from: &str, to: &str) -> String {
+/// The error of loading `text` with `to` in place of `from`.
+fn rejection<T: DeserializeOwned + Debug>(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "{from} in {text}");
     let changed = text.replacen(from, to, 1);
     let error = serde_json::from_str::<T>(&changed).unwrap_err();
@@ -210,43 +215,43 @@ fn refusal<T: DeserializeOwned + Debug>(text: &str, from: &str, to: &str) -> Str
 }
 
 #[test]
-fn snapshots_of_something_else_are_refused_by_their_header() {
+fn snapshots_of_another_type_are_rejected_by_their_header() {
     let header = r#""snapshot":{"of":"acrobot","version":1,"scalar":"f64"},"#;
     let text = serde_json::to_string(&busy()).unwrap();
-    let refused = |from, to| refusal::<Limited>(&text, from, to);
+    let rejected = |from, to| rejection::<Limited>(&text, from, to);
     let first = |reason: String| reason.split(" at line").next().unwrap().to_owned();
     assert_eq!(
-        first(refused("\"version\":1", "\"version\":2")),
-        "the snapshot is of \"acrobot\", version 2, in f64; allowed is \"acrobot\", version 1, in f64"
+        first(rejected("\"version\":1", "\"version\":2")),
+        r#"the snapshot must be "acrobot", version 1, f64, got "acrobot", version 2, f64"#
     );
     assert_eq!(
-        first(refused("f64", "f32")),
-        "the snapshot is of \"acrobot\", version 1, in f32; allowed is \"acrobot\", version 1, in f64"
+        first(rejected("f64", "f32")),
+        r#"the snapshot must be "acrobot", version 1, f64, got "acrobot", version 1, f32"#
     );
     assert_eq!(
-        first(refused(header, "")),
-        "missing field `snapshot`; allowed is a snapshot of version 1"
+        first(rejected(header, "")),
+        "missing field `snapshot`; must be a snapshot of version 1"
     );
-    assert!(refused("\"acrobot\"", "\"batch member\"").contains("is of \"batch member\""));
+    assert!(rejected("\"acrobot\"", "\"batch member\"").contains("got \"batch member\""));
     let unknown = "\"an environment of another kind\"";
-    assert!(refused("\"acrobot\"", unknown).contains("allowed is a snapshot of version 1"));
-    // Before anything else is read.
+    assert!(rejected("\"acrobot\"", unknown).contains("must be a snapshot of version 1"));
+    // The header is checked before anything else is read.
     let newer = header.replace('1', "2") + "\"params\":{}";
-    assert!(refused(&(header.to_owned() + "\"params\":{"), &newer).contains("version 2"));
+    assert!(rejected(&(header.to_owned() + "\"params\":{"), &newer).contains("version 2"));
     assert!(
-        refusal::<Member>(&serde_json::to_string(&member()).unwrap(), "f32", "f64").contains(
-            "is of \"batch member\", version 1, in f64; allowed is \"batch member\", version 1, in f32"
+        rejection::<Member>(&serde_json::to_string(&member()).unwrap(), "f32", "f64").contains(
+            r#"must be "batch member", version 1, f32, got "batch member", version 1, f64"#
         )
     );
 }
 
-/// Bytes have no names: what of them can be read as something else is refused all the same.
+/// Binary formats have no field names, so bytes could load as another type.
 #[test]
-fn bytes_of_something_else_are_refused() {
+fn bytes_of_another_type_are_rejected() {
     fn acrobot<A: Arithmetic<Scalar: Serialize>>() -> Vec<u8> {
         postcard::to_stdvec(&Acrobot::<A>::new(1)).unwrap()
     }
-    /// As stored before there were versions.
+    /// A snapshot of a release before version 1.
     fn unversioned<A: Arithmetic<Scalar: Serialize>>() -> Vec<u8> {
         let acrobot = Acrobot::<A>::new(1);
         postcard::to_stdvec(&(acrobot.params(), acrobot.state(), acrobot.rng())).unwrap()
@@ -282,7 +287,7 @@ fn bytes_of_something_else_are_refused() {
     assert_eq!(reads::<Member<f32>>(&all), only(2));
     assert_eq!(reads::<Member<f64>>(&all), only(3));
 
-    // What had no version began with the length of link 1, m, or with θ1, rad: none so large.
+    // Snapshots without a version began with the length of link 1 in m or with θ1 in rad, which are never so large.
     for bytes in &all[..4] {
         assert!(f64::from_le_bytes(bytes[..8].try_into().unwrap()) > 1e200);
         assert!(f32::from_le_bytes(bytes[..4].try_into().unwrap()) > 1e30);

@@ -1,11 +1,13 @@
-//! Promise 2, the same bits everywhere: digests of long runs. A changed one is a breaking release.
+//! Promise 2, the same bits everywhere: digests of long runs. Changing one takes a breaking release.
 
 mod common;
 
-use acrobot::{Acrobot, Action, Arithmetic, Fast, Micro, Pcg64, Portable, TimeLimit};
+use acrobot::arithmetic::{Arithmetic, Micro, Real};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use common::{Digest, episodes, training};
 
-/// Every bit of the states, rewards and ends of 64 seeds' random episodes: 100,000 steps or so.
+/// Every bit of the states, rewards and ends of random episodes with 64 seeds: about 100,000 steps.
 fn digest<A: Arithmetic>() -> u64 {
     let mut digest = Digest::new();
     for seed in 0..64 {
@@ -15,9 +17,9 @@ fn digest<A: Arithmetic>() -> u64 {
             loop {
                 let step = acrobot.step(Action::sample(&mut actions));
                 for x in <[A::Scalar; 4]>::from(acrobot.inner().state()) {
-                    digest.add(acrobot::Real::to_f64(x).to_bits());
+                    digest.add(x.to_f64().to_bits());
                 }
-                for x in *step.observation {
+                for x in step.observation.to_array() {
                     digest.add(x.to_bits().into());
                 }
                 digest.add(
@@ -25,7 +27,7 @@ fn digest<A: Arithmetic>() -> u64 {
                         | u64::from(step.terminated) << 1
                         | u64::from(step.truncated),
                 );
-                if step.ended() {
+                if step.done() {
                     break;
                 }
             }
@@ -50,7 +52,7 @@ fn micro_is_stable() {
     assert_eq!(format!("{:016x}", digest::<Micro>()), "2b5713d875b4e5db");
 }
 
-/// The episodes that other targets play too.
+/// Other targets play the same episodes.
 #[test]
 fn the_shared_episodes_are_stable() {
     fn check<A: Arithmetic>(name: &str, expected: [u64; 16]) {
@@ -63,7 +65,7 @@ fn the_shared_episodes_are_stable() {
 }
 
 #[test]
-fn the_shared_batch_is_stable_whatever_its_width() {
+fn the_shared_batch_is_stable_in_every_width() {
     let widths = [
         episodes::batch::<1, 20>(),
         episodes::batch::<4, 5>(),
@@ -72,7 +74,7 @@ fn the_shared_batch_is_stable_whatever_its_width() {
     assert!(widths == [episodes::BATCH; 3], "{widths:#018x?}");
 }
 
-/// From the seed through 100 episodes to the weights; a learner or a task of other numbers learns others.
+/// From the seed through 100 episodes to the weights. Any change in the learner or the task changes them.
 #[test]
 fn the_shared_training_is_stable() {
     let found = training::weights();

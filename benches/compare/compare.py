@@ -1,12 +1,11 @@
 """Measures this crate beside other Acrobots of PyPI and crates.io, on one core of a Linux machine.
 
     python3 compare.py             prints the table
-    python3 compare.py --update    writes it into the crate's README too
+    python3 compare.py --update    also writes it into the crate's README
     python3 compare.py --quick     one short round, to try it
 
-Each peer runs once a round in a process of its own, Python's by `peers.py` and Rust's by
-`src/main.rs`, and takes its steps per second of processor time; medians count. The packages of
-Python go into `.venv`, 2 GB.
+Each peer runs once a round in its own process, from `peers.py` or `src/main.rs`, and reports steps
+and processor time. Medians count. Python packages are installed into `.venv`, 2 GB.
 """
 
 import argparse
@@ -20,7 +19,7 @@ import venv
 README = pathlib.Path("../../README.md")
 HEAD = "| one core | version | M steps/s | to Gymnasium |"
 BASE = "make"
-# What is installed for each of Python's peers, and the words of all.
+# The package of each Python peer, and the names of all peers in the table.
 PACKAGES = {
     "make": "gymnasium",
     "unwrapped": "gymnasium",
@@ -46,8 +45,8 @@ CARGO = ["--quiet", "--release", "--locked"]
 
 
 def install(package):
-    """A Python with that package, in an environment of its own as gymnax wants an older Gymnasium;
-    and why it does not install, if so."""
+    """A Python with this package, and the error if it does not install. Each package has its own
+    virtual environment, because gymnax needs an older Gymnasium."""
     folder = pathlib.Path(".venv", package)
     venv.create(folder, with_pip=True)
     python = folder / "bin" / "python"
@@ -65,7 +64,7 @@ def run(*command):
 
 
 def measure(commands, rounds, seconds):
-    """The version of each peer and its median rate, and how many times longer than ours rlevo takes."""
+    """The version and the median rate of each peer, and how many times longer than `Fast` rlevo takes."""
     versions, rates, ratios = {}, {name: [] for name in commands}, []
     for _ in range(rounds):
         for name, command in commands.items():
@@ -79,7 +78,7 @@ def measure(commands, rounds, seconds):
 
 
 def digits(number):
-    """Three of them."""
+    """A number with three digits."""
     return f"{float(f'{number:.3g}'):,g}"
 
 
@@ -120,13 +119,13 @@ def main():
         elif not missing[package]:
             commands[name] = [pythons[package], "-W", "ignore", "peers.py"]
 
-    # One core for all that follows, the threads of XLA included.
+    # One core for everything below, also for XLA's threads.
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     rounds, seconds = (1, "0.1") if options.quick else (7, "1")
     versions, rates, ratio = measure(commands, rounds, seconds)
     rows = list(table(versions, rates, missing))
     print("\n".join(rows))
-    print(f"rlevo-environments takes {ratio:.2f} times as long as `Fast`, in turns in one process")
+    print(f"rlevo-environments takes {ratio:.2f} times as long as `Fast`, interleaved in one process")
     if options.update:
         update(rows)
 

@@ -1,4 +1,4 @@
-"""Plays one of Python's packages by a random policy for some seconds of processor time.
+"""Plays one Python package with a random policy for some seconds of processor time.
 
     python peers.py NAME SECONDS    prints name, version, steps and seconds
 
@@ -9,8 +9,8 @@ import importlib.metadata
 import sys
 import time
 
-# Steps of an episode. Vectors play as many between looks at the clock: their episodes are in phase, and
-# sines may take longer the more an acrobot swings (gymnax begins an episode at 3.8 M steps/s and ends it at 2.3).
+# Steps of an episode. Vector environments play as many between two looks at the clock, because their episodes are in
+# phase and sines can take longer for larger angles: gymnax begins an episode at 3.8 M steps/s and ends it at 2.3.
 LIMIT = 500
 
 
@@ -39,7 +39,7 @@ def envpool():
 
 
 def gymnax():
-    """As its documentation has it: vmap over environments and scan over steps, within one jit."""
+    """As in its documentation: vmap over environments and scan over steps, in one jit."""
     import gymnax
     import jax
 
@@ -54,7 +54,7 @@ def gymnax():
         actions = jax.random.randint(action_key, (environments,), 0, 3)
         keys = jax.random.split(step_key, environments)
         observation, state, *signals, _ = step(keys, state, actions, params)
-        # What is carried or returned has to be computed.
+        # Whatever is carried or returned must be computed.
         return (key, observation, state), signals
 
     @jax.jit
@@ -85,7 +85,7 @@ def alone(env):
         for action in rng.integers(3, size=1000).tolist():
             _, _, terminated, _, _ = env.step(action)
             length += 1
-            if terminated or length == LIMIT:  # which `unwrapped` does not count
+            if terminated or length == LIMIT:  # `unwrapped` has no limit
                 env.reset()
                 length = 0
         return 1000
@@ -101,13 +101,13 @@ def together(envs, count):
 
     def run():
         for actions in rng.integers(3, size=(LIMIT, count), dtype=numpy.int32):
-            envs.step(actions)  # resets what has ended by the next step
+            envs.step(actions)  # the step after an end resets
         return LIMIT * count
 
     return run
 
 
-# What makes the function that plays some steps, and the packages that it plays.
+# For each peer a function that returns a function that plays some steps, and the packages to name.
 PEERS = {
     "make": (make, ["gymnasium"]),
     "unwrapped": (unwrapped, ["gymnasium"]),

@@ -1,15 +1,14 @@
-//! Figures as an animated GIF: included by each example that writes one.
+//! Figures as an animated GIF. Each example that writes one includes this file.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
 
-use acrobot::env::Frame;
-use acrobot::{Figure, Theme};
+use acrobot::render::{Figure, Frame, Theme};
 use indicatif::ProgressBar;
 
-/// Side of the frames in pixels.
+/// The side of the frames, pixels.
 const SIDE: u16 = 300;
-/// Hundredths of a second that a step of 0.2 s is shown: three times as fast as it is.
+/// How long a step of 0.2 s is shown, in 1/100 s: about three times as fast as real time.
 const DELAY: u16 = 7;
 
 pub fn write_gif(file: BufWriter<File>, figures: &[Figure]) -> Result<(), gif::EncodingError> {
@@ -20,7 +19,7 @@ pub fn write_gif(file: BufWriter<File>, figures: &[Figure]) -> Result<(), gif::E
         let mut drawn = Frame::new(SIDE.into(), SIDE.into());
         let Ok(()) = figure.draw(&mut drawn, &Theme::GYMNASIUM);
         let mut frame = gif::Frame::from_rgb(SIDE, SIDE, drawn.bytes());
-        // The goal stays in sight for two seconds.
+        // The last frame stays for two seconds.
         frame.delay = if i + 1 == figures.len() { 200 } else { DELAY };
         encoder.write_frame(&frame)?;
         progress.inc(1);

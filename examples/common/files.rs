@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// An argument that names one; refused before the work, and not after it.
+/// Parses the argument that names one. A bad name is rejected before the work, not after it.
 #[allow(dead_code, reason = "each example uses a part")]
 pub fn file(path: &str, extension: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(path);
@@ -12,7 +12,7 @@ pub fn file(path: &str, extension: &str) -> Result<PathBuf, String> {
         return Ok(path);
     }
     Err(format!(
-        "allowed is a name that ends in .{extension}, in a folder that is there"
+        "must be a name that ends in .{extension}, in an existing folder"
     ))
 }
 

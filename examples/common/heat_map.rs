@@ -1,4 +1,4 @@
-//! A colour map and its bar: included by each example that draws a heat map.
+//! A colour map and its bar. Each example that draws a heat map includes this file.
 
 use std::error::Error;
 use std::ops::Range;
@@ -9,15 +9,15 @@ use plotters::prelude::*;
 pub const LABEL: (&str, i32) = ("sans-serif", 15);
 pub const NAME: (&str, i32) = ("sans-serif", 18);
 
-/// Of the colour bar.
+/// The number of shades in the colour bar.
 const SHADES: u32 = 60;
 
-/// The colour of a value in this range; those outside have the colours of its ends.
+/// The colour of a value in this range. Values outside have the colours of its ends.
 pub fn color(value: f64, range: &Range<f64>) -> RGBColor {
     viridis((value - range.start) / (range.end - range.start))
 }
 
-/// The colours of a range, with a name and labels.
+/// Draws the colours of a range, with a name and labels.
 pub fn draw_bar(
     area: &DrawingArea<SVGBackend, Shift>,
     range: &Range<f64>,
@@ -50,7 +50,7 @@ pub fn draw_bar(
     Ok(())
 }
 
-/// The colour map of that name, even to the eye and to the colour-blind, from 0 to 1.
+/// The colour map viridis from 0 to 1, which is perceptually uniform, also for the colour-blind.
 fn viridis(share: f64) -> RGBColor {
     const FIVE: [[f64; 3]; 5] = [
         [68.0, 1.0, 84.0],

@@ -1,8 +1,8 @@
-"""Estimates how many cycles an instruction takes on a Cortex-M4F, by the timings in its Technical Reference Manual
-(ARM DDI 0439, 3.3.1 and 7.2.3), over every instruction that QEMU executes in the loop of a firmware such as
-`minimal_fast`; for `figures.py`.
+"""Estimates the cycles of an instruction on a Cortex-M4F, for `figures.py`.
 
-The memory is taken to have no wait states, a taken branch to refill the pipeline in two cycles.
+It averages over every instruction that QEMU executes in the loop of a firmware such as `minimal_fast`, with the timings of
+ARM's Technical Reference Manual (ARM DDI 0439, 3.3.1 and 7.2.3). It assumes memory without wait states, and two cycles to
+refill the pipeline after a taken branch.
 """
 
 import re
@@ -14,7 +14,7 @@ REGISTERS = re.compile(r"[rsd](\d+)(?:-[rsd](\d+))?|lr|pc|ip|fp|sl|sb")
 
 
 def registers(operands):
-    """How many registers a list of them, such as {r4-r6, lr}, names."""
+    """The number of registers in a list such as {r4-r6, lr}."""
     names = REGISTERS.finditer(operands[operands.index("{") :])
     return sum(int(m[2]) - int(m[1]) + 1 if m[2] else 1 for m in names)
 
@@ -29,7 +29,7 @@ def cost(mnemonic, operands, taken, after_load):
     if re.match(r"ldrd|strd", stem):
         return 3
     if re.match(r"v?(ldr|str)", stem):
-        # One that follows another is pipelined.
+        # A load or store right after another is pipelined.
         return (1 if after_load else 2) + branch
     return 1 + branch
 
@@ -57,7 +57,7 @@ def per_instruction(image, most=None):
         if not match:
             continue
         address = int(match[1], 16)
-        # The loop marks each step by a `nop`; before the first of them is the seeding.
+        # A `nop` marks each step of the loop. Seeding comes before the first.
         if code[address][0] == "nop":
             steps += 1
             if steps > STEPS:

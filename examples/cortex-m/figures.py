@@ -1,10 +1,10 @@
 """Measures what the crate costs on a Cortex-M4F, and compares it with the table in the crate's README.
 
-    python3 figures.py             fails where a figure has grown by more than 5 %, and names both
-    python3 figures.py --update    writes the table anew, and what follows from it
+    python3 figures.py             fails if a figure has grown by more than 5 %, and prints the old and the new one
+    python3 figures.py --update    writes the table and the one derived from it
 
-`bench` and `learn` count instructions, stack and RAM; flash is what `minimal_fast` and the others have above
-`minimal_without`; `cycles.py` says how many cycles an instruction takes.
+`bench` and `learn` count instructions, stack and RAM. Flash is that of `minimal_fast` and the others minus that of
+`minimal_without`. `cycles.py` estimates the cycles of an instruction.
 """
 
 import os
@@ -33,6 +33,7 @@ ROWS = {
     "draw": "instructions a frame of 128×64 pixels",
     "redraw": "instructions a frame of which only what moved is drawn",
     "flash": "flash of the crate, bytes, seeding included",
+    "physics": "flash of the pendulum alone, bytes",
     "size": "RAM of an `Acrobot`, bytes",
     "stack": "stack of a step, bytes",
     "learn": "instructions a step with learning",
@@ -55,7 +56,7 @@ def run(*command, rustflags=""):
 
 
 def bench(features="", rustflags="", binary="bench"):
-    """Its figures: arithmetic, figure and value."""
+    """The figures that it prints: arithmetic, figure and value."""
     options = ["--quiet", "--locked", "--release", "--features", features, "--bin", binary]
     lines = run("cargo", "run", *options, rustflags=rustflags)
     for arithmetic, figure, value in re.findall(r"^(\w+) (\w+) (\d+)$", lines, re.MULTILINE):
@@ -78,6 +79,7 @@ def measure():
     figures = {(arithmetic, figure): value for arithmetic, figure, value in bench()}
     figures |= {("portable_libgcc", figure): value for arithmetic, figure, value in bench("libgcc") if arithmetic == "portable"}
     without = flash("without")
+    figures["fast", "physics"] = flash("physics") - without
     tuned = "-C target-cpu=cortex-m4"
     for arithmetic in ["fast", "micro", "portable"]:
         figures[arithmetic, "flash"] = flash(arithmetic) - without
@@ -86,7 +88,7 @@ def measure():
         if figure == "step" and arithmetic != "micromath":
             figures[arithmetic, "tuned"] = round(value * cycles.per_instruction(image(f"minimal_{arithmetic}", tuned)))
     figures |= {(arithmetic, figure): value for arithmetic, figure, value in bench(binary="learn")}
-    # A hundred steps: all traces are there after 58.
+    # A hundred steps. From step 58 on there are as many traces as there will be.
     each = cycles.per_instruction(image("learn"), most=3_000_000)
     figures["fast", "milliseconds"] = round(figures["fast", "training"] * each / 168 * 1000)
     return {key: value for key, value in figures.items() if key[0] in COLUMNS and key[1] in ROWS}
@@ -103,7 +105,7 @@ def table(figures):
 
 
 def paper(figures):
-    """What the cycles mean on named parts, to three digits."""
+    """Steps a second on some parts, from the cycles, to three digits."""
     yield PAPER_HEAD
     yield "|---|---|---|---|---|"
     for part, megahertz in CLOCKS.items():
@@ -113,13 +115,13 @@ def paper(figures):
 
 
 def find(head, lines):
-    """Where the table with that head begins and ends."""
+    """The first line of the table with that head, and the one after its last."""
     start = lines.index(head)
     return start, next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
 
 
 def documented(lines):
-    """The table's figures as the README has them."""
+    """The figures in the README's table."""
     names = {words: row for row, words in ROWS.items()}
     start, end = find(HEAD, lines)
     for line in lines[start + 2 : end]:
@@ -148,11 +150,11 @@ def main():
             grown.append(f"{' '.join(key)} was {old[key]} and is {value}")
     start, end = find(PAPER_HEAD, lines)
     if lines[start:end] != list(paper(old)):
-        grown.append("the table of steps a second does not follow from that of cycles")
+        grown.append("the table of steps a second does not match the cycles")
     for key in old.keys() - figures.keys():
         grown.append(f"{' '.join(key)} was {old[key]} and is not measured")
     if grown:
-        sys.exit("\n".join(grown) + "\nIf that is on purpose: python3 figures.py --update")
+        sys.exit("\n".join(grown) + "\nIf this is intended: python3 figures.py --update")
 
 
 main()

@@ -3,8 +3,8 @@
     pip install envpool==1.2.5
     python figures.py
 
-All play in turns by random actions drawn in advance, with resets; the medians are printed. EnvPool's best is the best of some
-sizes, in step and asynchronous.
+All play the same kind of random actions, drawn in advance, with resets. Measurements are interleaved, and the medians are
+printed. EnvPool runs with several sizes, synchronous and asynchronous.
 """
 
 import os
@@ -52,7 +52,7 @@ def pool(count):
 
 
 def pool_apart(count, batch):
-    """As EnvPool is fastest by its own account: who is done first is sent on."""
+    """EnvPool's asynchronous mode, its fastest by its documentation: each step takes the environments that are ready."""
     envs = envpool.make_gymnasium("Acrobot-v1", num_envs=count, batch_size=batch, num_threads=1)
     envs.async_reset()
     actions = np.random.default_rng(0).integers(3, size=(500_000 // batch, batch))

@@ -1,15 +1,14 @@
-"""Episodes of many environments, shard by shard on all workers of a Ray cluster, as one Parquet file.
+"""Plays episodes on all workers of a Ray cluster, shard by shard, and writes one Parquet file.
 
-    python scale_out.py                               starts a cluster on this machine, on loopback alone
-    python scale_out.py --workers 2 --kill 3          a worker dies in the middle of shard 3, and nothing changes
+    python scale_out.py                               starts a cluster on this machine, on loopback only
+    python scale_out.py --workers 2 --kill 3          a worker dies in the middle of shard 3; the file is the same
     python scale_out.py --address 10.0.0.1:6379       on a cluster with acrobot-rs and pyarrow on each node
 
-A shard is a function of the seed, of its number and of what is to be played: it knows nothing of the worker that plays it.
-Shard k has the k-th child of the seed, whose two children in turn give the starts and what a random policy draws. So the
-file is the same for any number of workers, whoever played what, and where workers died: their shards are played again.
+A shard depends only on the seed, on its number and on the settings, not on its worker. Shard k has the k-th child of the
+seed. The first child of that seeds the environments, and the second one the random policy. So the file does not depend on
+the number of workers. Shards of workers that die are played again.
 
-Every environment plays the same number of episodes. To stop all after a number of steps instead would count more of the
-short ones.
+Every environment plays the same number of episodes. A limit on steps instead would count too many short episodes.
 """
 
 import argparse
@@ -42,7 +41,7 @@ POLICIES = {
 
 
 class ShardError(Exception):
-    """A shard that cannot be played."""
+    """A shard failed."""
 
 
 class Played(NamedTuple):
@@ -52,17 +51,17 @@ class Played(NamedTuple):
 
 
 def streams(seed, shard):
-    """The seed of a shard's environments, of 256 bits, and the generator of its policy."""
-    starts, draws = np.random.SeedSequence(seed, spawn_key=(shard,)).spawn(2)
-    words = starts.generate_state(8).astype("<u4")
+    """The seed of a shard's environments, 256 bits, and the generator of its policy."""
+    environments, draws = np.random.SeedSequence(seed, spawn_key=(shard,)).spawn(2)
+    words = environments.generate_state(8).astype("<u4")
     return int.from_bytes(words.tobytes(), "little"), np.random.default_rng(draws)
 
 
 def play(seed, shard, environments, episodes, policy):
-    """A row for each episode of a shard, by environment and then by episode: its length in steps, its return, its end."""
-    start, rng = streams(seed, shard)
+    """A row for each episode of a shard, in the order of environments and episodes: its length, its return, its end."""
+    reset_seed, rng = streams(seed, shard)
     envs = AcrobotVectorEnv(environments, copy=False)
-    observations, _ = envs.reset(seed=start)
+    observations, _ = envs.reset(seed=reset_seed)
     done, steps, returns = np.zeros((3, environments), np.int32)
     columns = {
         name: np.empty((environments, episodes), dtype)
@@ -86,7 +85,7 @@ def play(seed, shard, environments, episodes, policy):
 
 
 def work(what, kill, shard, attempt):
-    """What a worker does; one that is to be killed goes half the way."""
+    """Plays a shard on a worker. The worker to be killed plays half of it first."""
     import ray
 
     if shard == kill and attempt == 1:
@@ -100,15 +99,15 @@ def work(what, kill, shard, attempt):
 
 @contextlib.contextmanager
 def cluster(address, cpus):
-    """The CPUs of the cluster at that address, or of one that lives and listens on this machine alone.
+    """The number of CPUs of the cluster at an address, or of a new one that listens on loopback only.
 
-    Ray reads its variables where it is imported, so that it is imported here.
+    Ray reads its environment variables when it is imported, so it is imported here.
     """
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     if address is None:
-        # Off, as it is by default on these two systems, a cluster is on loopback; an address given to `init` is not kept.
+        # 0, the default on these two systems, keeps the cluster on loopback. Ray ignores an address given to `init`.
         os.environ.setdefault("RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER", "0")
-        # Ray would keep a token in the home folder.
+        # Otherwise Ray writes a token into the home folder.
         os.environ.setdefault("RAY_AUTH_MODE", "token")
         os.environ.setdefault("RAY_AUTH_TOKEN", secrets.token_hex(32))
     import ray
@@ -123,10 +122,10 @@ def cluster(address, cpus):
 
 
 def play_all(work, shards, workers):
-    """Yields each shard and what `work(shard, attempt)` made of it on some worker, as they are done.
+    """Yields each shard with the result of `work(shard, attempt)` on a worker, in the order of completion.
 
-    Ray's own retries are off: a shard whose worker died is played again here, up to `TRIES` times in all, so that what
-    kills every worker ends. An exception of a shard's own would come again, and ends the run at once.
+    Ray's own retries are off. A shard whose worker died is played again here, `TRIES` times in all, so that a shard that
+    kills every worker ends the run. An exception in a shard would happen again, so it ends the run immediately.
     """
     import ray
     from ray.exceptions import RayError, RayTaskError
@@ -146,14 +145,14 @@ def play_all(work, shards, workers):
         except RayError as error:
             if attempt == TRIES:
                 raise ShardError(f"shard {shard} was lost {TRIES} times: {error}") from error
-            tqdm.write(f"shard {shard} is lost by a {type(error).__name__}, and played again", file=sys.stderr)
+            tqdm.write(f"shard {shard} is lost ({type(error).__name__}) and played again", file=sys.stderr)
             waiting.append((shard, attempt + 1))
         else:
             yield shard, played
 
 
 def gather(what, shards, workers, kill=None):
-    """All shards as one table, in order, and what each took and on which worker."""
+    """All shards as one table, in order, and the worker and the time of each."""
     results = play_all(lambda shard, attempt: work(what, kill, shard, attempt), shards, workers)
     played = dict(tqdm(results, total=shards, unit="shard"))
     table = pa.concat_tables(played[shard].table for shard in range(shards))
@@ -162,14 +161,14 @@ def gather(what, shards, workers, kill=None):
 
 
 def write(table, path):
-    """A file that is there as a whole or not at all."""
+    """Writes the whole file or none."""
     part = path.with_name(path.name + ".part")
     pq.write_table(table, part)
     part.replace(path)
 
 
 def report(played, seconds):
-    """Steps of counted episodes per second: of each worker while it played, and of all with what Ray took."""
+    """Prints steps of counted episodes per second: of each worker while it plays, and of all with Ray's overhead."""
     shards, steps, busy = Counter(), Counter(), Counter()
     for worker, took, table in played:
         shards[worker] += 1
@@ -182,24 +181,24 @@ def report(played, seconds):
 
 
 def whole(low, high=None):
-    """An integer of these bounds, for argparse."""
+    """A parser of integers within bounds, for argparse."""
 
     def parse(text):
-        allowed = f"an integer, {low} or more" if high is None else f"an integer from {low} to {high}"
+        rule = f"an integer of at least {low}" if high is None else f"an integer from {low} to {high}"
         if not (text.isascii() and text.isdigit() and low <= int(text) and (high is None or int(text) <= high)):
-            raise argparse.ArgumentTypeError(f"{text!r}; allowed is {allowed}")
+            raise argparse.ArgumentTypeError(f"must be {rule}, got {text!r}")
         return int(text)
 
     return parse
 
 
 def listening(text):
-    """An address that somebody listens at, for argparse; Ray would try for ever."""
+    """An address with a listener, for argparse. Ray would try forever."""
     host, _, port = text.rpartition(":")
     try:
         socket.create_connection((host, int(port)), timeout=10).close()
     except (OSError, OverflowError, ValueError) as error:
-        raise argparse.ArgumentTypeError(f"{text!r}; allowed is host:port of a cluster's head: {error}") from error
+        raise argparse.ArgumentTypeError(f"must be host:port of a cluster's head, got {text!r}: {error}") from error
     return text
 
 
@@ -217,11 +216,11 @@ def parse(arguments):
     parser.add_argument("--output", type=Path, default=Path("episodes.parquet"), help="default episodes.parquet")
     options = parser.parse_args(arguments)
     if options.workers and options.workers > options.shards:
-        parser.error(f"--workers is {options.workers}; allowed is 1 to {options.shards}, the number of shards")
+        parser.error(f"--workers must be 1 to {options.shards}, the number of shards, got {options.workers}")
     if options.kill is not None and options.kill >= options.shards:
-        parser.error(f"--kill is {options.kill}; allowed is 0 to {options.shards - 1}, a shard")
+        parser.error(f"--kill must be 0 to {options.shards - 1}, a shard, got {options.kill}")
     if options.output.is_dir() or not options.output.parent.is_dir():
-        parser.error(f"--output is {options.output}; allowed is a file in a folder that exists")
+        parser.error(f"--output must be a file in a folder that exists, got {options.output}")
     return options
 
 
@@ -230,11 +229,11 @@ def main(arguments=None):
     what = {name: getattr(options, name) for name in ("seed", "environments", "episodes", "policy")}
     try:
         with cluster(options.address, options.workers) as cpus:
-            # Ray's own handler would leave the cluster behind.
+            # Ray's own handler would leave the cluster running.
             signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated"))
             workers = options.workers or min(cpus, options.shards)
             if not 1 <= workers <= cpus:
-                sys.exit(f"--workers is {workers}; allowed is 1 to {cpus}, the CPUs of the cluster")
+                sys.exit(f"--workers must be 1 to {cpus}, the CPUs of the cluster, got {workers}")
             start = time.perf_counter()
             table, played = gather(what, options.shards, workers, options.kill)
             seconds = time.perf_counter() - start

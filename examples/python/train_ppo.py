@@ -1,11 +1,11 @@
-"""PPO on the vector environment until the mean return of 100 episodes passes -100: one file, in CleanRL's way, with JAX.
+"""PPO with JAX on the vector environment, in one file as in CleanRL, until the mean return of 100 episodes passes -100.
 
     pip install -r requirements.txt && pip install .
     python train_ppo.py            seeds 1, 2 and 3
     python train_ppo.py 42 --picture curve.png
 
-Prints what each seed took, with what its policy reaches in Gymnasium's own environment, and draws the learning curves.
-Fails where a seed has not learnt after a million steps.
+Prints steps, seconds and mean return of each seed, and the mean return of its policy in Gymnasium's own environment. Draws
+the learning curves. Fails if a seed has not learnt after a million steps.
 """
 
 import argparse
@@ -24,21 +24,21 @@ from tqdm import tqdm
 
 NAME = "acrobot_rs/Acrobot-v1"
 THRESHOLD = gymnasium.spec(NAME).reward_threshold
-ENVS, STEPS = 64, 64  # of one update
+ENVS, STEPS = 64, 64  # per update
 UPDATES = 1_000_000 // (ENVS * STEPS)
 EPOCHS, MINIBATCHES = 4, 4
 LEARNING_RATE, MAX_GRADIENT = 2.5e-3, 0.5
 DISCOUNT, LAMBDA = 0.99, 0.95
 CLIP, ENTROPY, VALUE = 0.2, 0.01, 0.5
-EPISODES, EVALUATE_EVERY = 100, 5  # of an evaluation; updates
-# What observations are divided by: the largest velocities.
+EPISODES, EVALUATE_EVERY = 100, 5  # per evaluation; updates between two
+# Observations are divided by this: their bounds.
 SCALE = jnp.array([1, 1, 1, 1, 4 * jnp.pi, 9 * jnp.pi])
 
 optimizer = optax.chain(optax.clip_by_global_norm(MAX_GRADIENT), optax.adam(LEARNING_RATE, eps=1e-5))
 
 
 def layers(key, outputs, gain):
-    """Weights and biases of a perceptron with two hidden layers of 64, orthogonal as is usual for PPO."""
+    """Weights and biases of a perceptron with two hidden layers of 64. Weights are orthogonal, as is usual for PPO."""
     sizes = [6, 64, 64, outputs]
     gains = [2**0.5, 2**0.5, gain]
     return [
@@ -56,7 +56,7 @@ def perceptron(layers, observations):
 
 
 def initial(key):
-    """The actor and the critic before they have learnt."""
+    """The untrained actor and critic."""
     actor, critic = jax.random.split(key)
     return {"actor": layers(actor, 3, 0.01), "critic": layers(critic, 1, 1.0)}
 
@@ -77,15 +77,15 @@ def act(parameters, key, observations):
 
 
 def roll_out(envs, parameters, key, observations):
-    """STEPS of each environment: observations, actions, what was seen then, rewards, terminations and ends, each of
-    shape (STEPS, ENVS) and more; the observations to go on from; and the key of the next draw."""
+    """STEPS of each environment: observations, actions, the observations that followed, rewards, terminations and ends,
+    each of shape (STEPS, ENVS, ...). Also the last observations, and the key of the next draw."""
     rollout = []
     for _ in range(STEPS):
         actions, key = act(parameters, key, observations)
         actions = np.asarray(actions)
         following, rewards, terminated, truncated, infos = envs.step(actions)
         ended = terminated | truncated
-        # An episode's last observation, and not the start that took its place.
+        # For an episode that ended, its last observation and not the next initial one.
         seen = following.copy()
         if ended.any():
             seen[ended] = np.stack(infos["final_obs"][ended])
@@ -96,7 +96,7 @@ def roll_out(envs, parameters, key, observations):
 
 def advantages(parameters, observations, seen, rewards, terminated, ended):
     """Generalized advantage estimates."""
-    # A truncated episode would have gone on; its last observation's value stands for the rest.
+    # A truncated episode would have gone on: the value of its last observation estimates the rest.
     errors = rewards + DISCOUNT * ~terminated * values(parameters, seen) - values(parameters, observations)
 
     def back(advantage, step):
@@ -108,7 +108,7 @@ def advantages(parameters, observations, seen, rewards, terminated, ended):
 
 
 def loss(parameters, batch):
-    """PPO's clipped loss of a minibatch."""
+    """PPO's clipped loss on a minibatch."""
     observations, actions, old, advantage, targets = batch
     log_all = log_probabilities(parameters, observations)
     log = jnp.take_along_axis(log_all, actions[:, None], axis=1)[:, 0]
@@ -141,7 +141,7 @@ def learn(parameters, state, key, rollout):
 
 
 def evaluate(envs, parameters, key):
-    """The mean return of one new episode of each environment: of all, and not of those that end first."""
+    """The mean return of one new episode of each environment. Playing on until 100 ended would favour short ones."""
     observations, _ = envs.reset()
     returns, running = np.zeros(envs.num_envs), np.ones(envs.num_envs, bool)
     while running.any():
@@ -153,14 +153,14 @@ def evaluate(envs, parameters, key):
 
 
 def train(seed):
-    """The parameters learnt, and (steps, mean return) of each evaluation, of which the last has passed or none."""
+    """The parameters learnt, and (steps, mean return) of each evaluation. Only the last can have passed."""
     envs = gymnasium.make_vec(NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
     others = gymnasium.make_vec(NAME, num_envs=EPISODES)
     of_envs, of_others, of_jax = (int(each) for each in np.random.SeedSequence(seed).generate_state(3))
     observations, _ = envs.reset(seed=of_envs)
     others.reset(seed=of_others)
-    start, key = jax.random.split(jax.random.key(of_jax))
-    parameters = initial(start)
+    init, key = jax.random.split(jax.random.key(of_jax))
+    parameters = initial(init)
     state = optimizer.init(parameters)
     curve = []
     with tqdm(total=UPDATES * ENVS * STEPS, desc=f"seed {seed}", unit="step", unit_scale=True, leave=False) as bar:
@@ -190,15 +190,15 @@ def draw(figure, curves, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition(":")[0])
-    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help="integers of any size, 0 or more")
+    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help="integers of at least 0, of any size")
     parser.add_argument("--picture", type=pathlib.Path, default="train_ppo.png", help="file for the curves, as .png or .svg")
     arguments = parser.parse_args()
     if min(arguments.seeds) < 0:
-        parser.error(f"a seed is {min(arguments.seeds)}; allowed is 0 or more")
+        parser.error(f"a seed must be at least 0, got {min(arguments.seeds)}")
     figure = matplotlib.figure.Figure(figsize=(7, 4), layout="constrained")
     kinds = figure.canvas.get_supported_filetypes()
     if arguments.picture.suffix[1:] not in kinds or not arguments.picture.parent.is_dir():
-        parser.error(f"--picture is {arguments.picture}; allowed is a file in a folder that exists, of {', '.join(kinds)}")
+        parser.error(f"--picture must be a file in a folder that exists, as {', '.join(kinds)}, got {arguments.picture}")
     gymnasiums = gymnasium.make_vec("Acrobot-v1", num_envs=EPISODES, vectorization_mode="sync")
     curves = {}
     for seed in arguments.seeds:

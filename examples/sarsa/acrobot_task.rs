@@ -1,8 +1,9 @@
-//! Acrobot as a task for the learner: included by each program that has both, as `mod acrobot_task`.
+//! Acrobot as a task for the learner. Each program with both includes it as `mod acrobot_task`.
 
 use core::f32::consts::PI;
 
-use acrobot::{Acrobot, Action, Fast, Pcg64, SeedSequence, State, TimeLimit};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 use sarsa::{
     Dimension, Error, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement,
 };
@@ -10,7 +11,7 @@ use sarsa::{
 /// A learner of Acrobot with `T` tilings and `S` slots, which take 8 bytes each.
 pub type Learner<'w, const S: usize, const T: usize> = Sarsa<'w, TileCoder<4, T>, S, 2, 4, T>;
 
-/// What the learner is to be good at.
+/// What the learner is tuned for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
     /// Swinging up after few episodes.
@@ -19,12 +20,12 @@ pub enum Preset {
     Quality,
 }
 
-/// What an angle shares with its velocity or with the other angle is learnt over pairs, within few episodes.
+/// Tilings over pairs learn within few episodes what an angle shares with its velocity or with the other angle.
 const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
 
 impl Preset {
-    /// A learner in this memory, with `T` tilings, of which some go to the pairs. It learns and explores less from
-    /// episode to episode of those that it is to learn in; then it hardly changes.
+    /// A learner in this memory with `T` tilings, some of them over the pairs. Over `episodes` its step size and
+    /// its exploration fall; after that it hardly changes.
     pub fn learner<const S: usize, const T: usize>(
         self,
         episodes: u32,
@@ -57,7 +58,7 @@ impl Preset {
     }
 }
 
-/// The learner's actions 0 and 1: without torque nothing is gained.
+/// The torque of the learner's actions 0 and 1. It never chooses none, because that gains nothing.
 pub fn torque(action: usize) -> Action {
     match action {
         0 => Action::Negative,
@@ -68,26 +69,25 @@ pub fn torque(action: usize) -> Action {
 /// An acrobot with 500 steps an episode.
 pub type Env = TimeLimit<Acrobot<Fast>>;
 
-/// What a training with this seed uses everywhere: the acrobot of that seed, and a generator for the
-/// learner's own choices.
+/// What every program trains with for this seed: an acrobot, and a generator for the learner's own choices.
 pub fn training(seed: SeedSequence) -> (Env, Pcg64) {
-    let choices = Pcg64::new(seed.child(0));
-    (TimeLimit::v1(Acrobot::new(seed)), choices)
+    let choices = seed.child(0).into();
+    (TimeLimit::v1(Acrobot::with_rng(seed.into())), choices)
 }
 
-/// An acrobot with starts that [`training`] with this seed does not have.
+/// An acrobot with other initial states than [`training`] with this seed.
 pub fn evaluation(seed: &SeedSequence) -> Env {
-    TimeLimit::v1(Acrobot::new(seed.child(1)))
+    TimeLimit::v1(Acrobot::with_rng(seed.child(1).into()))
 }
 
-/// A state as the learner sees it, \[θ1, θ2, θ̇1, θ̇1 + θ̇2\] in rad and rad/s: how fast link 2 turns in space says more of it
-/// alone than how fast the joint does.
+/// A state as the learner sees it: \[θ1, θ2, θ̇1, θ̇1 + θ̇2\] in rad and rad/s. Link 2's velocity in space tells more
+/// about it than the velocity of its joint.
 pub fn view(state: &State<f32>) -> [f32; 4] {
     let [theta1, theta2, dtheta1, dtheta2] = (*state).into();
     [theta1, theta2, dtheta1, dtheta1 + dtheta2]
 }
 
-/// The action that the learner holds for the best.
+/// The action that the learner values most.
 pub fn greedy<const S: usize, const T: usize>(
     learner: &Learner<'_, S, T>,
     state: &State<f32>,
@@ -95,7 +95,7 @@ pub fn greedy<const S: usize, const T: usize>(
     torque(learner.greedy(&view(state)))
 }
 
-/// Learns in one episode from a new start, and returns the sum of the rewards.
+/// Learns for one episode from a new initial state. Returns the sum of the rewards.
 pub fn learn<const S: usize, const T: usize>(
     learner: &mut Learner<'_, S, T>,
     env: &mut Env,
@@ -119,14 +119,14 @@ pub fn learn<const S: usize, const T: usize>(
     }
 }
 
-/// Plays an episode from a new start: the sum of the rewards, and whether the goal was reached.
+/// Plays an episode from a new initial state. Returns the sum of the rewards and whether the goal was reached.
 pub fn play(env: &mut Env, mut policy: impl FnMut(&State<f32>) -> Action) -> (f32, bool) {
     env.reset();
     let mut sum = 0.0;
     loop {
         let step = env.step(policy(&env.inner().state()));
         sum += step.reward;
-        if step.ended() {
+        if step.done() {
             return (sum, step.terminated);
         }
     }

@@ -1,9 +1,9 @@
-"""Learns with `swing_up` over seeds, and compares the figures with the table in the crate's README.
+"""Learns with `swing_up` over several seeds, and compares the figures with the table in the crate's README.
 
-    python3 figures.py             fails where they differ: learning is the same to the bit everywhere
-    python3 figures.py --update    writes the table anew
+    python3 figures.py             fails if they differ: learning is bit-identical everywhere
+    python3 figures.py --update    writes the table again
 
-Two minutes on two cores.
+It takes two minutes on two cores.
 """
 
 import concurrent.futures
@@ -32,7 +32,7 @@ HEAD = "| preset | weights | episodes | solved at: median, worst | greedy return
 
 
 def learn(run, seed):
-    """When that seed solved the task, infinity for never; the mean of its greedy returns; its misses."""
+    """The episode at which this seed solved the task (infinity: never), the mean of its greedy returns, its misses."""
     preset, memory, episodes = run
     command = [ROOT / "target/release/examples/swing_up", "--quiet", "--preset", preset, "--memory", memory]
     command += ["--episodes", str(episodes), "--seed", str(seed)]
@@ -73,7 +73,7 @@ def main():
         lines[start:end] = table
         README.write_text("\n".join(lines) + "\n")
     elif lines[start:end] != table:
-        sys.exit("The README's table is another. If that is on purpose: python3 figures.py --update")
+        sys.exit("The README's table differs. If that is intended: python3 figures.py --update")
 
 
 main()

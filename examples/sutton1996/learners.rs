@@ -1,8 +1,9 @@
-//! The two learners, and a run of each in Sutton's simulator: the steps of each episode.
+//! The two learners. Each learns in Sutton's simulator and returns the steps of every episode.
 
 use std::f32::consts::PI;
 
-use acrobot::{Pcg64, SeedSequence, State, uniform};
+use acrobot::State;
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use sarsa::{
     Dimension, Error, Features, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder,
     displacement,
@@ -10,12 +11,12 @@ use sarsa::{
 
 use super::simulator::{decide, is_goal};
 
-/// Tiles of Sutton's learner: 12 tilings of 6×6×7×7, and all the smaller ones.
+/// The tiles of Sutton's learner: 12 tilings of 6×6×7×7, and all the smaller ones.
 const TILES: usize = 25_028;
 
-/// Sutton's, as published: 12 tilings over all four numbers, 3 over each three of them, 2 over each two and 3
-/// over each one, without hashing and each offset at random. Velocities beyond half their bounds count
-/// as half their bounds; a seventh interval of theirs gives the offset room.
+/// Sutton's learner as published: 12 tilings over all four numbers, 3 over each three of them, 2 over each two and 3
+/// over each one, with random offsets and without hashing. Velocities beyond half their bounds count as half their
+/// bounds; they have a seventh interval because tilings are offset.
 pub fn sutton(seed: SeedSequence, episodes: usize) -> Result<Vec<u32>, Error> {
     const SUBSETS: [(&[usize], usize); 15] = [
         (&[0, 1, 2, 3], 12),
@@ -38,7 +39,7 @@ pub fn sutton(seed: SeedSequence, episodes: usize) -> Result<Vec<u32>, Error> {
     let angle = Dimension::cyclic(-PI, PI, 6);
     let [velocity1, velocity2] =
         [2.0 * PI, 4.5 * PI].map(|bound| Dimension::bounded(-bound, bound, 6));
-    let mut random = Pcg64::new(seed);
+    let mut random = Pcg64::from(seed);
     let coder = TileCoder::<4, 48>::new(
         [angle, angle, velocity1, velocity2],
         &groups,
@@ -57,11 +58,11 @@ pub fn sutton(seed: SeedSequence, episodes: usize) -> Result<Vec<u32>, Error> {
     Ok(learn(learner, [-1.0, 0.0, 1.0], &mut random, episodes))
 }
 
-/// This crate's: fewer tilings, offset evenly against each other, of slower velocities; one side of the mirror;
-/// no action without torque; some exploration at first.
+/// This crate's learner: fewer tilings with even offsets, smaller velocity bounds, mirrored states, no action without
+/// torque, and some exploration at first.
 ///
-/// With λ = 0.9, as Sutton has it, the median run settles for some 80 steps in place of 65. The rest
-/// changes the speed of learning, and the steps in the end by some two.
+/// With Sutton's λ = 0.9 the median run ends at about 80 steps instead of 65. The other differences change the speed
+/// of learning, and the final steps by about two.
 pub fn ours(seed: SeedSequence, episodes: usize) -> Result<Vec<u32>, Error> {
     let groups = [
         Group::new(&[0, 1, 2, 3], 12),
@@ -90,11 +91,11 @@ pub fn ours(seed: SeedSequence, episodes: usize) -> Result<Vec<u32>, Error> {
         },
         symmetry: Symmetry::Mirror(2),
     };
-    /// 12 tilings of 7⁴, and of the pairs twice 7² four times.
+    /// 12 tilings of 7⁴ tiles, and 8 of 7².
     const TILES: usize = 29_204;
     let mut weights = zeros::<2, TILES>();
     let learner = Sarsa::new(coder, settings, &mut weights)?;
-    Ok(learn(learner, [-1.0, 1.0], &mut Pcg64::new(seed), episodes))
+    Ok(learn(learner, [-1.0, 1.0], &mut seed.into(), episodes))
 }
 
 /// A random offset, in intervals from 0 to below 1.
@@ -104,10 +105,10 @@ fn fraction(random: &mut Pcg64) -> f32 {
 
 fn zeros<const A: usize, const S: usize>() -> Box<[[f32; A]; S]> {
     let weights = vec![[0.0; A]; S].into_boxed_slice();
-    weights.try_into().expect("as many as were made")
+    weights.try_into().expect("S elements")
 }
 
-/// Learns from rest to the goal, in every episode anew.
+/// Learns. Each episode goes from hanging at rest to the goal.
 fn learn<F: Features<4, T>, const S: usize, const A: usize, const T: usize>(
     mut learner: Sarsa<F, S, A, 4, T>,
     torques: [f64; A],

@@ -1,5 +1,5 @@
-//! Sutton's experiment as published, and this crate's learner beside it in the same simulator: steps to
-//! the goal in each episode, median and quartiles of many runs, as a table, as CSV and as a picture.
+//! Sutton's experiment as published, and this crate's learner beside it in the same simulator. Writes median and
+//! quartiles of the steps to the goal in each episode over many runs, as a table, as CSV and as a picture.
 //!
 //! ```text
 //! cargo run --release --example sutton1996 -- --runs 40 --episodes 500 --seed 0 --csv sutton1996.csv --picture sutton1996.svg
@@ -7,14 +7,14 @@
 //!
 //! R. S. Sutton, *Generalization in Reinforcement Learning: Successful Examples Using Sparse Coarse
 //! Coding*, NIPS 8 (1996); R. S. Sutton and A. G. Barto, *Reinforcement Learning: An Introduction*, 1st
-//! edition (1998), 11.3. Neither prints numbers but in the text, some 75 steps in the end: the table has
-//! those of another replication. What is not published is as in Sutton's Lisp: the goal ends a decision at
-//! any of its time steps. What is not his: traces below 0.05 are cut, after 29 steps. With 64 steps his learner's
-//! last 300 episodes take 84.5 and 81.5 steps with seeds 0 and 1, and with 29 they take 84.5 and 82.5.
+//! edition (1998), 11.3. Both give only one number, in the text: about 75 steps in the end. The table therefore has
+//! the numbers of another replication. Unpublished details follow Sutton's Lisp: the goal ends a decision at any of its
+//! time steps. One detail differs: traces below 0.05 are cut, after 29 steps. With 64 steps his learner's last 300
+//! episodes take 84.5 and 81.5 steps with seeds 0 and 1, and with 29 they take 84.5 and 82.5.
 //!
-//! Every episode starts at rest, and no step is limited or random but by the learner: run `i` has the
-//! `i`-th child of the seed, for offsets in Sutton's learner and for exploration in this crate's. The CSV
-//! is the same whatever the number of threads.
+//! Every episode begins at rest and has no step limit. Only the learners are random: run `i` has the seed's `i`-th
+//! child, for offsets in Sutton's learner and for exploration in this crate's. The CSV is the same for every number of
+//! threads.
 
 #[path = "../common/exit.rs"]
 mod exit;
@@ -31,7 +31,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use acrobot::SeedSequence;
+use acrobot::numpy::SeedSequence;
 use clap::{Parser, value_parser};
 use indicatif::ProgressBar;
 use plotters::coord::combinators::{LogCoord, WithKeyPoints};
@@ -41,24 +41,24 @@ use rayon::prelude::*;
 use files::{cannot_write, file};
 use learners::{ours, sutton};
 
-/// Repeats Sutton's experiment of 1996, and runs this crate's learner beside it.
+/// Repeats Sutton's experiment of 1996 and runs this crate's learner beside it.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Runs of each learner, from nothing.
+    /// Runs of each learner, each untrained at first.
     #[arg(long, default_value_t = 40, value_parser = value_parser!(u16).range(1..=10_000))]
     runs: u16,
     /// Episodes of a run.
     #[arg(long, default_value_t = 500, value_parser = value_parser!(u16).range(2..=10_000))]
     episodes: u16,
-    /// Seed of which the runs' seeds are spawned: a decimal integer of any size.
+    /// Seed whose children seed the runs: a decimal integer of any size.
     #[arg(long, default_value = "0")]
     seed: SeedSequence,
-    /// Where the numbers go.
+    /// The file for the numbers.
     #[arg(long, value_name = "FILE", default_value = "sutton1996.csv")]
     #[arg(value_parser = |path: &str| file(path, "csv"))]
     csv: PathBuf,
-    /// Where the learning curves go.
+    /// The file for the learning curves.
     #[arg(long, value_name = "FILE", default_value = "sutton1996.svg")]
     #[arg(value_parser = |path: &str| file(path, "svg"))]
     picture: PathBuf,
@@ -94,7 +94,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
 struct Experiment(Vec<Vec<u32>>);
 
 impl Experiment {
-    /// Of each episode the quartiles over the runs; the second is the median.
+    /// The quartiles of each episode over the runs. The second is the median.
     fn curve(&self) -> Vec<[f64; 3]> {
         let of = |episode| {
             let mut steps: Vec<u32> = self.0.iter().map(|run| run[episode]).collect();
@@ -104,8 +104,8 @@ impl Experiment {
         (0..self.0[0].len()).map(of).collect()
     }
 
-    /// Mean over the runs of their means from one episode to another, and the standard deviation of these;
-    /// none where the runs end before.
+    /// The mean steps from one episode to another: mean and standard deviation over the runs. None if the runs end
+    /// before.
     fn block(&self, [first, last]: [usize; 2]) -> Option<[f64; 2]> {
         let mean_of = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         let means = self.0.iter().map(|run| {
@@ -119,7 +119,7 @@ impl Experiment {
     }
 }
 
-/// Between two values in proportion, as NumPy has it.
+/// A quantile, interpolated between two values as NumPy does.
 fn quantile(sorted: &[u32], share: f64) -> f64 {
     let place = share * (sorted.len() - 1) as f64;
     let [below, above] = [place.floor(), place.ceil()].map(|i| f64::from(sorted[i as usize]));
@@ -128,7 +128,7 @@ fn quantile(sorted: &[u32], share: f64) -> f64 {
 
 const NAMES: [&str; 2] = ["Sutton's learner", "this crate's"];
 
-/// Episodes whose median is printed, and what the other replication had in 20 runs.
+/// The episodes whose median is printed, and the medians of the other replication in 20 runs.
 const MEDIANS: [(usize, f64); 7] = [
     (1, 602.0),
     (5, 338.0),
@@ -139,7 +139,7 @@ const MEDIANS: [(usize, f64); 7] = [
     (500, 81.5),
 ];
 
-/// Blocks of episodes whose mean is printed, and what the other replication had.
+/// The blocks of episodes whose mean is printed, and the means of the other replication.
 const BLOCKS: [([usize; 2], f64); 5] = [
     ([1, 10], 372.0),
     ([11, 50], 123.0),
@@ -150,7 +150,7 @@ const BLOCKS: [([usize; 2], f64); 5] = [
 
 const REPLICATION: &str = "his, another replication";
 
-/// What is printed.
+/// The printed table.
 fn table(experiments: &[Experiment; 2], curves: &[Vec<[f64; 3]>; 2]) -> String {
     let heads = MEDIANS.map(|(episode, _)| episode.to_string());
     let mut text = line("median steps in episode", &heads);
@@ -182,7 +182,7 @@ fn cell(steps: Option<f64>) -> String {
     steps.map_or("–".into(), |steps| format!("{steps:.1}"))
 }
 
-/// As CSV.
+/// The CSV.
 fn rows(curves: &[Vec<[f64; 3]>; 2]) -> String {
     let mut text = "episode,\
         sutton_lower_quartile,sutton_median,sutton_upper_quartile,\
@@ -190,12 +190,12 @@ fn rows(curves: &[Vec<[f64; 3]>; 2]) -> String {
         .to_owned();
     let [sutton, ours] = curves;
     for (([a, b, c], [d, e, f]), episode) in sutton.iter().zip(ours).zip(1..) {
-        writeln!(text, "{episode},{a},{b},{c},{d},{e},{f}").expect("a String takes all");
+        writeln!(text, "{episode},{a},{b},{c},{d},{e},{f}").expect("a String grows");
     }
     text
 }
 
-/// The learning curves: medians in bands from quartile to quartile.
+/// Draws the learning curves: medians in bands from quartile to quartile.
 fn draw(options: &Options, curves: &[Vec<[f64; 3]>; 2]) -> Result<(), Box<dyn Error>> {
     const BLUE: RGBColor = RGBColor(0, 114, 178);
     const ORANGE: RGBColor = RGBColor(213, 94, 0);

@@ -1,11 +1,11 @@
-//! The learning curve: its running mean, and the chart of it that grows in the terminal.
+//! The learning curve: its running mean, and its chart in the terminal.
 
 use acrobot::REWARD_THRESHOLD;
 
-/// Episodes of a running mean, by which Gymnasium calls a task solved.
+/// The episodes of the running mean that Gymnasium's reward threshold applies to.
 const LATEST: usize = 100;
 
-/// The mean of the latest 100 returns, or of all where there are fewer. Returns are whole numbers: the sum is exact.
+/// The mean of the latest 100 returns, or of all if there are fewer. Returns are integers, so the sum is exact.
 pub fn running_mean(returns: &[f32]) -> f32 {
     mean(&returns[returns.len().saturating_sub(LATEST)..])
 }
@@ -14,15 +14,16 @@ fn mean(returns: &[f32]) -> f32 {
     returns.iter().sum::<f32>() / returns.len() as f32
 }
 
-/// The first episode from which on Gymnasium calls the task solved.
+/// The first episode after which Gymnasium calls the task solved.
 pub fn solved_at(returns: &[f32]) -> Option<usize> {
     (LATEST..=returns.len()).find(|&n| running_mean(&returns[..n]) >= REWARD_THRESHOLD)
 }
 
-/// A row is half a doubling of the steps: what is between −500 and −100 would else hide all that follows.
+/// The rows of the chart, each a factor of √2 in steps: on a linear axis −500 to −100 would hide everything above.
 const ROWS: usize = 6;
 
-/// Bars of mean returns, the better the higher, each of a sixth more episodes than there were: most is learnt early.
+/// Bars of mean returns: better is higher. Each bar covers a sixth of all episodes before it, because most is learnt
+/// early.
 pub fn chart(returns: &[f32]) -> String {
     const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let (mut heights, mut axis) = (Vec::new(), String::new());
@@ -35,7 +36,7 @@ pub fn chart(returns: &[f32]) -> String {
             tick *= 10;
         }
         let rows = (-500.0 / mean(&returns[from..to])).log2() * 2.0;
-        // The worst is seen, too.
+        // The worst return still has a visible bar.
         heights.push(((rows * 8.0) as usize).clamp(1, ROWS * 8));
         from = to;
     }

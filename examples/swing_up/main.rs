@@ -1,19 +1,19 @@
-//! Sutton's Sarsa(λ) learns to swing up, from nothing and within seconds, and its greedy policy is then
-//! evaluated beside two that learn nothing.
+//! Sutton's Sarsa(λ) learns to swing up within seconds. Its greedy policy is then evaluated beside two policies that
+//! do not learn.
 //!
 //! ```text
 //! cargo run --release --example swing_up -- --preset quality --episodes 10000 --save weights.bin
 //! cargo run --release --example swing_up -- --preset quality --episodes 0 --load weights.bin
 //! ```
 //!
-//! The learner and its memory are those of `examples/sarsa`, which microcontrollers and browsers run
-//! to the same bits. `--quiet` prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the
-//! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better; R and S are of
-//! 1,000 greedy episodes from starts that were not trained on, and K of these missed the goal.
-//! Without it, pictures are drawn of how it learnt, of the values, and of the last greedy episode.
+//! The learner is `examples/sarsa`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
+//! `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for which the mean return of episodes
+//! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
+//! states that it was not trained on, and K of these missed the goal. Without `--quiet` it draws the learning curve,
+//! the values and the last greedy episode.
 //!
-//! Nothing learnt is no bad policy: of equal actions the learner takes the first, which its mirror makes
-//! torque against θ̇1. What it has learnt is what it is better by.
+//! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
+//! This is the baseline.
 
 use std::error::Error;
 use std::fmt::{Display, Write as _};
@@ -22,7 +22,8 @@ use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use acrobot::{Action, Pcg64, SeedSequence, State};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Action, State};
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -42,44 +43,44 @@ mod pictures;
 use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 use files::cannot_write;
 
-/// Learns to swing up, and says how well.
+/// Learns to swing up, and evaluates the policy.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// What the learner is to be good at: few episodes, or the best policy after many.
+    /// What the learner is tuned for: few episodes, or the best policy after many.
     #[arg(long, value_enum, default_value_t = Goal::Fast)]
     preset: Goal,
     /// Memory of the weights.
     #[arg(long, value_enum, default_value_t = Memory::K64)]
     memory: Memory,
-    /// Episodes to learn in; towards the last of them less and less is changed and explored.
+    /// Episodes to learn in. Step size and exploration fall until the last.
     #[arg(long, default_value_t = 2000)]
     episodes: u32,
     /// Seed of everything: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// Where the weights go.
+    /// The file to save the weights in.
     #[arg(long, value_name = "FILE", value_parser = file)]
     save: Option<PathBuf>,
-    /// Where the weights come from, in place of zeros.
+    /// The file to load the weights from, instead of zeros.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
-    /// Where the pictures go.
+    /// The folder for the pictures.
     #[arg(long, value_name = "FOLDER", default_value = ".", value_parser = folder)]
     pictures: PathBuf,
-    /// Prints one line only, and draws nothing.
+    /// Prints only one line, and draws nothing.
     #[arg(long)]
     quiet: bool,
 }
 
-/// Refused now, and not after all the episodes.
+/// Parses a file to save. A bad name is rejected before the episodes, not after them.
 fn file(path: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(path);
     let is_file = path.file_name().is_some() && !path.is_dir();
     if is_file && path.with_file_name(".").is_dir() {
         return Ok(path);
     }
-    Err("allowed is a file in a folder that is there".into())
+    Err("must be a file in an existing folder".into())
 }
 
 fn folder(path: &str) -> Result<PathBuf, String> {
@@ -87,7 +88,7 @@ fn folder(path: &str) -> Result<PathBuf, String> {
     if path.is_dir() {
         return Ok(path);
     }
-    Err("allowed is a folder that is there".into())
+    Err("must be an existing folder".into())
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -119,7 +120,7 @@ fn main() -> ExitCode {
     exit::status(done)
 }
 
-/// Learns with `T` tilings in `S` slots, and reports.
+/// Learns with `T` tilings in `S` slots, and prints the results.
 fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut weights = [[0.0; 2]; S];
     let preset = match options.preset {
@@ -151,8 +152,8 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
         return Ok(());
     }
     let against = |state: &State<f32>| torque((state.dtheta1 < 0.0).into());
-    let mut actions = Pcg64::new(options.seed.child(2));
-    // Before anything is printed, for whoever reads may stop; what was learnt is told if it fails, too.
+    let mut actions = Pcg64::from(options.seed.child(2));
+    // Drawn before printing, because the reader may close the pipe. The results are printed even if drawing fails.
     let drawn = draw(&learner, &returns, options);
     let mut out = io::stdout();
     writeln!(out, "solved at episode: {solved_at}\n")?;
@@ -179,7 +180,7 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
     Ok(())
 }
 
-/// Draws the pictures; returns a line for each.
+/// Draws the pictures. Returns a line for each.
 fn draw<const S: usize, const T: usize>(
     learner: &Learner<S, T>,
     returns: &[f32],
@@ -211,7 +212,7 @@ fn draw<const S: usize, const T: usize>(
     let episode = path("swing_up.gif");
     let mut env = evaluation(&options.seed);
     for _ in 1..EVALUATION {
-        // Only starts are drawn from its generator: this is the way to the last of them.
+        // Its generator draws only initial states, so this leads to the last of them.
         env.reset();
     }
     let frames = pictures::draw_episode(&episode, &mut env, |state| greedy(learner, state));
@@ -225,7 +226,7 @@ fn draw<const S: usize, const T: usize>(
     Ok(lines)
 }
 
-/// Learns for so many episodes; returns their returns.
+/// Learns. Returns the return of each episode.
 fn train<const S: usize, const T: usize>(
     learner: &mut Learner<S, T>,
     options: &Options,
@@ -240,7 +241,7 @@ fn train<const S: usize, const T: usize>(
     let style = ProgressStyle::with_template(template).expect("a valid template");
     bar.set_style(style);
 
-    // A hundred times in all, since a chart takes as long as some steps.
+    // A hundred charts in all, because a chart takes as long as some steps.
     let period = (options.episodes as usize).div_ceil(100).max(1);
     let mut returns = Vec::new();
     for _ in 0..options.episodes {
@@ -254,15 +255,15 @@ fn train<const S: usize, const T: usize>(
     returns
 }
 
-/// Episodes of an evaluation.
+/// The episodes of an evaluation.
 const EVALUATION: u32 = 1000;
 
-/// How a policy did.
+/// The returns of a policy.
 #[derive(Default)]
 struct Returns {
     sum: f64,
     squares: f64,
-    /// Episodes that were cut before the goal.
+    /// Episodes that were truncated before the goal.
     misses: u32,
 }
 
@@ -275,7 +276,7 @@ impl Returns {
     }
 }
 
-/// Plays the same starts whatever the policy.
+/// Plays a policy from the same initial states as every other policy.
 fn evaluate(options: &Options, mut policy: impl FnMut(&State<f32>) -> Action) -> Returns {
     let mut env = evaluation(&options.seed);
     let mut returns = Returns::default();

@@ -1,4 +1,4 @@
-//! What was learnt, as pictures: SVG texts, and a GIF.
+//! Pictures of the learning curve, the learnt values and an episode, as SVG and GIF.
 
 use std::error::Error;
 use std::f32::consts::PI;
@@ -6,7 +6,9 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-use acrobot::{Action, Fast, Figure, Params, REWARD_THRESHOLD, State, tip_height};
+use acrobot::physics::tip_height;
+use acrobot::render::Figure;
+use acrobot::{Action, Fast, Params, REWARD_THRESHOLD, State};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -19,7 +21,7 @@ const TITLE: (&str, i32) = ("sans-serif", 24);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The text of a picture with so many pixels, which whoever writes it sees fail.
+/// The text of a picture of this size in pixels. The caller writes it, and so sees the errors of writing.
 pub fn svg(
     size: (u32, u32),
     draw: impl FnOnce(&Area) -> Result<(), Box<dyn Error>>,
@@ -40,7 +42,7 @@ pub fn draw_curve(area: &Area, returns: &[f32]) -> Result<(), Box<dyn Error>> {
     const THRESHOLD: RGBColor = RGBColor(200, 60, 40);
 
     let body = area.titled("Learning to swing up", TITLE)?;
-    // Both axes by doublings: most is learnt in few episodes, and the last steps are the hardest to save.
+    // Both axes are logarithmic: most is learnt in few episodes, and the last steps are the hardest to save.
     let threshold = f64::from(REWARD_THRESHOLD);
     let (worst, best) = (-500_f64, -40_f64);
     let last = (returns.len() as f64).max(2.0);
@@ -100,9 +102,9 @@ pub fn draw_curve(area: &Area, returns: &[f32]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Values over the two angles at rest; where the tip is above the goal there is nothing left to learn.
+/// The values at rest over both angles, except where the tip is above the target height, which ends an episode.
 pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> Result<(), Box<dyn Error>> {
-    /// Cells of a side.
+    /// The number of cells in each direction.
     const SIDE: usize = 72;
     let at = |i: usize| ((i as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0) * PI;
     let cells = (0..SIDE * SIDE).map(|i| {
@@ -112,7 +114,7 @@ pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> Result<()
             theta2,
             ..State::default()
         };
-        let is_goal = tip_height::<Fast>(&Params::default(), &rest) > 1.0;
+        let is_goal = tip_height::<Fast>(&Params::DEFAULT, &rest) > 1.0;
         let value = (!is_goal).then(|| f64::from(value(&rest)));
         (f64::from(theta1), f64::from(theta2), value)
     });
@@ -162,7 +164,7 @@ pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> Result<()
     Ok(())
 }
 
-/// An episode from the next start, as a GIF of its start and every step; returns the number of frames.
+/// Draws an episode from the next initial state as a GIF. Returns the number of frames: the initial state and every step.
 pub fn draw_episode(
     path: &Path,
     env: &mut Env,
@@ -175,7 +177,7 @@ pub fn draw_episode(
         let step = env.step(action);
         let torque = env.inner().params().torque(action);
         figures.push(Figure::new(env.inner()).with_torque(torque));
-        if step.ended() {
+        if step.done() {
             break;
         }
     }

@@ -1,11 +1,10 @@
-//! Steps a second of one core, and their ratio to a bare loop: `name steps_per_second ratio`, a line each.
+//! Steps per second on one core, and their ratio to a bare loop, one line each: `name steps_per_second ratio`.
 //!
-//! A batch plays a random policy with its actions drawn and its episodes reset in the loop. Its yardstick
-//! is a loop over eight lanes of AVX2 by hand that does neither, with FMA (`batch_…`) and without
-//! (`batch_…_nofma`). `scalar_fast`'s is the same equations for one acrobot in f32; that of
-//! `scalar_portable` and `scalar_host` is Gymnasium's order in f64 with the platform's sines. Both play
-//! the actions that ours plays. Each figure is the best of several runs, a run of ours and one of the
-//! yardstick in turn.
+//! A batch plays a random policy, and draws actions and resets episodes in the loop. Its yardstick is a handwritten
+//! loop over eight lanes of AVX2 that does neither, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick
+//! of `scalar_fast` and `scalar_micro` is the same equations for one acrobot in f32. That of `scalar_portable` and
+//! `scalar_host` is Gymnasium's order in f64 with the platform's sines. Both play the same actions as the crate. Each
+//! figure is the best of several runs, interleaved with runs of the yardstick.
 //!
 //! ```text
 //! cargo run --release --example throughput
@@ -16,10 +15,10 @@ pub mod yardsticks;
 use std::hint::black_box;
 use std::time::Instant;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Batch, Block, Error, Fast, Host, Micro, Observations, Output,
-    Pcg64, Portable, TimeLimit, Vectors,
-};
+use acrobot::arithmetic::{Arithmetic, Host, Micro};
+use acrobot::batch::{Batch, Block, Observations, SimdLevel, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Error, Fast, Portable, TimeLimit};
 use yardsticks::{bare_f32, bare_f64};
 
 pub fn main() {
@@ -28,17 +27,17 @@ pub fn main() {
     scalar::<Fast>("scalar_fast", bare_f32);
     scalar::<Micro>("scalar_micro", bare_f32);
     for len in [1024, 1 << 20] {
-        batch::<Fast>("fast", len, Vectors::widest());
+        batch::<Fast>("fast", len, SimdLevel::widest());
     }
-    batch::<Fast>("fast_avx2", 1024, Vectors::Avx2);
-    batch::<Fast>("fast_baseline", 1024, Vectors::Baseline);
-    batch::<Portable>("portable", 1024, Vectors::Baseline);
+    batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
+    batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
+    batch::<Portable>("portable", 1024, SimdLevel::Baseline);
     threads(1 << 20);
 }
 
 const ROUNDS: usize = 7;
 
-/// The best rates of `ours` and `yardstick`, run in turn; each returns how many steps it took.
+/// The best rates of `ours` and `yardstick`, interleaved. Each returns how many steps it took.
 fn compare(mut ours: impl FnMut() -> usize, mut yardstick: impl FnMut() -> usize) -> (f64, f64) {
     let rate = |run: &mut dyn FnMut() -> usize| {
         let start = Instant::now();
@@ -64,7 +63,7 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
     let ours = || {
         for &action in &actions {
-            if black_box(acrobot.step(action)).ended() {
+            if black_box(acrobot.step(action)).done() {
                 acrobot.reset();
             }
         }
@@ -77,7 +76,7 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
     report(name, compare(ours, bare));
 }
 
-/// A batch, the random policy that plays it, and the memory for what its steps return.
+/// A batch, the random policy that plays it, and the buffers of its steps.
 #[derive(Debug)]
 pub struct Play<A: Arithmetic> {
     pub batch: Batch<A, Vec<Block<A::Scalar>>, Vec<Pcg64>>,
@@ -92,7 +91,7 @@ pub struct Play<A: Arithmetic> {
 type Step<A> = fn(
     &mut Batch<A, Vec<Block<<A as Arithmetic>::Scalar>>, Vec<Pcg64>>,
     &[u8],
-    Output<'_>,
+    StepBuffers<'_>,
 ) -> Result<(), Error>;
 
 impl<A: Arithmetic> Play<A> {
@@ -100,7 +99,7 @@ impl<A: Arithmetic> Play<A> {
         let blocks = vec![Block::EMPTY; len.div_ceil(Block::<A::Scalar>::LANES)];
         let generators = vec![Pcg64::UNSEEDED; len];
         Self {
-            batch: Batch::new(0, blocks, generators).expect("memory of its size"),
+            batch: Batch::new(0, blocks, generators).expect("a block for each 16 generators"),
             streams: (0..len as u32)
                 .map(|i| i.wrapping_mul(0x9e37_79b9))
                 .collect(),
@@ -119,9 +118,9 @@ impl<A: Arithmetic> Play<A> {
         }
     }
 
-    /// Steps by `step`, and returns how many acrobots there are.
+    /// Steps with `step`. Returns the number of acrobots.
     pub fn step(&mut self, observe: bool, step: Step<A>) -> usize {
-        let output = Output {
+        let buffers = StepBuffers {
             rewards: &mut self.rewards,
             terminated: &mut self.terminated,
             truncated: &mut self.truncated,
@@ -131,19 +130,19 @@ impl<A: Arithmetic> Play<A> {
             },
             final_observations: Observations::None,
         };
-        step(&mut self.batch, &self.actions, output).expect("slices of its size");
+        step(&mut self.batch, &self.actions, buffers).expect("slices of the batch's length");
         self.batch.len()
     }
 }
 
-fn batch<A: Arithmetic>(arithmetic: &str, len: usize, vectors: Vectors) {
+fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) {
     let steps = (2_000_000 / len).max(2);
     let mut play = Play::<A>::new(len);
-    if !vectors.is_available() {
-        println!("batch_{arithmetic}_{len} is not for this machine, which has no {vectors:?}");
+    if !level.is_available() {
+        println!("batch_{arithmetic}_{len} needs {level:?}, which this machine does not have");
         return;
     }
-    play.batch.set_vectors(vectors);
+    play.batch.set_simd_level(level);
     for (suffix, observe) in [("", false), ("_observations", true)] {
         let mut ours = || {
             for _ in 0..steps {
@@ -157,14 +156,14 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, vectors: Vectors) {
             let name = format!("{name}{flavour}");
             match yardsticks::Lanes::new(fma) {
                 Some(mut bare) => report(&name, compare(&mut ours, || bare.run())),
-                None => println!("{name} has no yardstick here, which is AVX2 and FMA"),
+                None => println!("{name} has no yardstick, because that needs AVX2 and FMA"),
             }
         }
     }
 }
 
-/// One call on all cores, beside the same on one: the ratio is that of the two. The same actions again
-/// and again, for only the step is on all cores.
+/// Steps on all cores; the ratio is to the same steps on one core. The actions stay the same, because only the step
+/// runs on all cores.
 fn threads(len: usize) {
     let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
     let rates = compare(

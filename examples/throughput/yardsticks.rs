@@ -1,15 +1,16 @@
-//! What `throughput` measures against: the barest loops that step an Acrobot. They share no formula with
-//! the crate, so that they do not change with it.
+//! The yardsticks of `throughput`: the barest loops that step an acrobot. They share no formula with the crate, so they
+//! do not change with it.
 
 use std::array::from_fn;
 use std::hint::black_box;
 
-use acrobot::{Action, Real};
+use acrobot::Action;
+use acrobot::arithmetic::Real;
 
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Lanes;
 
-/// Without AVX2 there are none.
+/// Elsewhere there is no AVX2.
 #[cfg(not(target_arch = "x86_64"))]
 #[derive(Debug)]
 pub struct Lanes;
@@ -25,12 +26,12 @@ impl Lanes {
     }
 }
 
-/// Gymnasium's order in f64, `x * x` for its squares. It plays the same policy from end to end as ours,
-/// for the C library's sines branch on their quadrant: under a torque that repeats itself the branches
-/// are foreseen, and the loop takes a third less time.
+/// Gymnasium's order in f64, with `x * x` for its squares. It plays whole episodes of the same policy as the crate,
+/// because the C library's sines branch on the quadrant: with a periodic torque the branches are predicted, and the
+/// loop takes a third less time.
 #[expect(
     clippy::disallowed_methods,
-    reason = "the yardstick has the platform's sines"
+    reason = "the yardstick uses the platform's sines"
 )]
 pub fn bare_f64(actions: &[Action]) {
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -74,7 +75,7 @@ pub fn bare_f64(actions: &[Action]) {
     }
 }
 
-/// The lean equations in f32 with polynomials, without ends and resets.
+/// The lean equations in f32 with polynomials, without episodes.
 pub fn bare_f32(actions: &[Action]) {
     use std::f32::consts::{FRAC_2_PI, PI, TAU};
     let sin_cos = |x: f32| {
@@ -135,7 +136,7 @@ fn rk4<S: Real>(y: [S; 4], dt: f64, derivative: impl Fn([S; 4]) -> [S; 4]) -> [S
     from_fn(|i| y[i] + sixth * (k1[i] + two * k2[i] + two * k3[i] + k4[i]))
 }
 
-/// Eight lanes of AVX2 by hand over 1,024 acrobots, without ends, resets and observations.
+/// Handwritten AVX2 with eight lanes over 1,024 acrobots, without episodes and observations.
 #[cfg(target_arch = "x86_64")]
 mod avx2 {
     use std::arch::x86_64::*;
@@ -148,7 +149,7 @@ mod avx2 {
     }
 
     impl Lanes {
-        /// Where the machine has the instructions.
+        /// None if the machine does not have the instructions.
         pub fn new(fma: bool) -> Option<Self> {
             if !(is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")) {
                 return None;
@@ -163,7 +164,7 @@ mod avx2 {
         pub fn run(&mut self) -> usize {
             let [th1, th2, w1, w2] = &mut self.state;
             for _ in 0..2000 {
-                // SAFETY: `new` has found AVX2 and FMA.
+                // SAFETY: `new` detected AVX2 and FMA.
                 unsafe {
                     if self.fma {
                         with_fma(th1, th2, w1, w2, &self.torques, 0.2);

@@ -1,11 +1,11 @@
-//! Actions as a text.
+//! Actions as text.
 
 use acrobot::Action;
 
-/// White space to Python, and not to Rust.
+/// White space in Python but not in Rust.
 const VERTICAL_TAB: u8 = 0x0b;
 
-/// The actions of an input, or the first byte that is none.
+/// The actions of an input, or an error with the first other byte.
 pub fn parse(input: &[u8]) -> Result<Vec<Action>, String> {
     let bytes = input
         .iter()
@@ -16,7 +16,7 @@ pub fn parse(input: &[u8]) -> Result<Vec<Action>, String> {
             let action = Action::try_from(byte.wrapping_sub(b'0'));
             action.map_err(|_| {
                 let found = byte.escape_ascii();
-                format!("'{found}' at byte {position} of the input; allowed are the actions 0, 1 and 2, and white space")
+                format!("the input must be actions (0, 1 and 2) and white space, got '{found}' as byte {position}")
             })
         })
         .collect()

@@ -1,11 +1,11 @@
-//! The parity tool: replays actions and prints every bit.
+//! The parity tool: replays actions and prints every bit of the states.
 //!
 //! ```text
 //! echo 0 1 2 2 2 | cargo run --release --features std --example trace -- --seed 42
 //! ```
 //!
-//! The first line is the start and each other one a step: the bits of θ1, θ2, θ̇1 and θ̇2 as f64, then
-//! the reward and whether the state is in the goal. Stepping goes on past it.
+//! The first line is the initial state and every other line a step: the bits of θ1, θ2, θ̇1 and θ̇2 as f64, then the
+//! reward and whether the state is in the goal. Steps past the goal continue.
 
 mod actions;
 #[path = "../common/exit.rs"]
@@ -15,10 +15,10 @@ use std::error::Error;
 use std::io::{self, BufWriter, Read, Write};
 use std::process::ExitCode;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Dynamics, Fast, Host, Micro, Params, Portable, SeedSequence,
-    StartBounds, State,
-};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::numpy::SeedSequence;
+use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State};
 use clap::{Parser, ValueEnum};
 
 /// Reads actions (digits 0, 1 and 2; white space is ignored) from standard input and prints the
@@ -26,13 +26,13 @@ use clap::{Parser, ValueEnum};
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Seed of the start and of the torque noise: a decimal integer of any size.
+    /// Seed of the initial state and of the torque noise: a decimal integer of any size.
     #[arg(long)]
     seed: SeedSequence,
-    /// Lower bound of the start, rad and rad/s.
+    /// Lower bound of the initial state, rad and rad/s.
     #[arg(long, default_value_t = StartBounds::DEFAULT.low(), allow_hyphen_values = true)]
     low: f64,
-    /// Upper bound of the start, rad and rad/s.
+    /// Upper bound of the initial state, rad and rad/s.
     #[arg(long, default_value_t = StartBounds::DEFAULT.high(), allow_hyphen_values = true)]
     high: f64,
     /// Equations of motion.
@@ -41,10 +41,10 @@ struct Options {
     /// Torque noise, N m.
     #[arg(long, default_value_t = Params::DEFAULT.torque_noise, allow_hyphen_values = true)]
     noise: f64,
-    /// Time of a step, s.
+    /// Duration of a step, s.
     #[arg(long, default_value_t = Params::DEFAULT.dt, allow_hyphen_values = true)]
     dt: f64,
-    /// What to compute in.
+    /// Arithmetic.
     #[arg(long, value_enum, default_value = "host")]
     arithmetic: ArithmeticName,
 }
@@ -74,7 +74,7 @@ fn main() -> ExitCode {
     exit::status(result)
 }
 
-/// Everything is read and checked before the first line is printed.
+/// Reads and checks everything before it prints the first line.
 fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
     let bounds = StartBounds::new(options.low, options.high)?;
     let params = Params {
@@ -87,8 +87,8 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
         ..Params::DEFAULT
     };
     params.validate()?;
-    let mut acrobot = Acrobot::<A>::new(options.seed.clone());
-    // Once more, because f32 may hold a valid number as 0 or as infinite.
+    let mut acrobot = Acrobot::<A>::new(0);
+    // Checked again, because f32 can round a valid number to 0 or to infinity.
     let rounded = acrobot.set_params(params.cast());
     rounded.map_err(|error| format!("rounded to the arithmetic's f32, {error}"))?;
     let mut input = Vec::new();
@@ -96,8 +96,10 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
     read.map_err(|error| format!("cannot read standard input: {error}"))?;
     let actions = actions::parse(&input)?;
 
-    acrobot.reseed(options.seed.clone());
-    acrobot.reset_within(bounds);
+    acrobot.reset_with(ResetOptions {
+        seed: Some(options.seed.clone()),
+        bounds,
+    });
     let out = BufWriter::new(io::stdout().lock());
     Ok(print(&mut acrobot, &actions, out)?)
 }
@@ -121,13 +123,7 @@ fn print<A: Arithmetic>(
     out.flush()
 }
 
-fn words<S: acrobot::Real>(state: State<S>) -> String {
-    let State {
-        theta1,
-        theta2,
-        dtheta1,
-        dtheta2,
-    } = state.cast::<f64>();
-    let [a, b, c, d] = [theta1, theta2, dtheta1, dtheta2].map(f64::to_bits);
+fn words<S: Real>(state: State<S>) -> String {
+    let [a, b, c, d] = <[S; 4]>::from(state).map(|x| x.to_f64().to_bits());
     format!("{a:016x} {b:016x} {c:016x} {d:016x}")
 }

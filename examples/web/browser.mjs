@@ -5,6 +5,6 @@ import { chromium } from "playwright-core";
 export const launch = () =>
   chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    // Where there is no other user to be, as in CI, Chromium has no sandbox.
+    // As root, as in CI, Chromium has no sandbox.
     args: process.getuid?.() === 0 ? ["--no-sandbox"] : [],
   });

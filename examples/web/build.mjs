@@ -1,4 +1,4 @@
-// Builds the page into dist/: its files as they stand, and three modules.
+// Builds the page into dist/: a copy of its files, and three modules.
 
 import { execFileSync } from "node:child_process";
 import { cpSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
@@ -6,11 +6,11 @@ import { cpSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from
 const run = (command, args, env = {}) =>
   execFileSync(command, args, { cwd: import.meta.dirname, stdio: "inherit", env: { ...process.env, ...env } });
 
-/** For size: no loop is unrolled but whole, and none of more turns than a batch's block has lanes. */
+/** For size: loops are unrolled only as a whole, and only up to 16 turns, the lanes of a batch's block. */
 const SMALL = ["-Cllvm-args=-unroll-full-max-count=16", "-Cllvm-args=-unroll-allow-partial=false"];
-/** Of wasm-opt's passes those for size, and constants that stand often as locals. Rust puts nothing below address 1024. */
+/** wasm-opt's passes for size. Constants that occur often become locals. Rust puts nothing below address 1024. */
 const PASSES = ["--low-memory-unused", "-Os", "--const-hoisting", "-Os", "--strip-debug", "--strip-producers", "--strip-target-features"];
-/** What Rust's compiler takes for granted in WebAssembly, which every browser with modules in workers has. */
+/** The features that Rust's compiler assumes. Every browser with modules in workers has them. */
 const FEATURES = ["bulk-memory", "multivalue", "mutable-globals", "nontrapping-float-to-int", "reference-types", "sign-ext"];
 
 function build(name, { simd128 = false, args = [] }) {
@@ -27,8 +27,9 @@ function build(name, { simd128 = false, args = [] }) {
 }
 
 /**
- * A vector constant takes 18 bytes wherever it stands, and V8 makes it of four instructions each time. One that a function
- * has three times or more becomes a global, of 2 bytes and a load; mutable, lest V8 put the constant back.
+ * A vector constant takes 18 bytes wherever it occurs, and V8 compiles it to four instructions each time. A constant that
+ * occurs three times or more in a function becomes a global: 2 bytes and a load. It is mutable, otherwise V8 puts the
+ * constant back.
  */
 function withVectorsInGlobals(text) {
   const vector = /\(v128\.const [^)]*\)/g;

@@ -1,4 +1,4 @@
-// Measures what the README says of speed, beside the host in the same run: `npm run figures`.
+// Measures the README's figures of the browser, and native speed in the same run: `npm run figures`.
 
 import { execFileSync } from "node:child_process";
 import { statSync } from "node:fs";
@@ -20,7 +20,7 @@ await page.waitForSelector("#app:not([hidden])");
 const firstFrame = await page.evaluate(
   () => new Promise((resolve) => new PerformanceObserver((list) => resolve(list.getEntriesByName("first frame")[0].duration)).observe({ type: "measure", buffered: true })),
 );
-// Two seconds, without anything but the swing.
+// Two seconds of nothing except the swing.
 const frames = await page.evaluate(async () => {
   const start = performance.now();
   let frames = 0;

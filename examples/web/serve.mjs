@@ -1,4 +1,4 @@
-// Serves dist/ as any static server would: `npm run serve`, or `npm run serve -- 8000` for that port.
+// A static server for dist/: `npm run serve`, or `npm run serve -- 8000` for that port.
 
 import { createReadStream, statSync } from "node:fs";
 import { createServer } from "node:http";
@@ -12,7 +12,7 @@ const TYPES = {
   ".wasm": "application/wasm",
 };
 
-/** A server on this machine's own address; port 0 is any that is free. */
+/** A server on this machine's own address. Port 0 takes any free port. */
 export function serve(port) {
   const server = createServer(({ url }, response) => {
     const path = normalize(new URL(url, "http://localhost").pathname);
@@ -34,7 +34,7 @@ if (process.argv[1] === import.meta.filename) {
   const text = process.argv[2] ?? "8080";
   const port = Number(text);
   if (!/^\d+$/.test(text) || port > 65535) {
-    console.error(`error: port is "${text}"; allowed is an integer from 0 to 65535`);
+    console.error(`error: port must be an integer from 0 to 65535, got "${text}"`);
     process.exit(2);
   }
   try {

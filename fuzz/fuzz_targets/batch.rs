@@ -1,13 +1,14 @@
-//! A batch of any length and block, and its acrobots one by one: the same bits, whatever is set.
+//! A batch of any length and block size, bit-identical to its acrobots one by one, with any settings.
 
 #![no_main]
 
 use std::num::NonZeroU32;
 
-use acrobot::{
-    Acrobot, Arithmetic, Autoreset, Batch, Block, Error, Fast, Member, Observations, Output,
-    Params, Pcg64, Portable, SeedSequence, StartBounds, State, Vectors,
-};
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, SimdLevel, StepBuffers};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::StartBounds;
+use acrobot::{Acrobot, Error, Fast, Params, Portable, ResetOptions, State, Step};
 use acrobot_fuzz::{assert_settled, number, params, state};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
@@ -22,51 +23,64 @@ fuzz_target!(|bytes: &[u8]| {
     };
 });
 
-/// One acrobot as a batch has it.
+type Scalar<A> = <A as Arithmetic>::Scalar;
+
+type Many<A, const N: usize> = Batch<A, Vec<Block<Scalar<A>, N>>, Vec<Pcg64>, N>;
+
+/// One acrobot as in a batch.
 struct Alone<A: Arithmetic> {
     acrobot: Acrobot<A>,
     elapsed: u32,
     ended: bool,
 }
 
-/// What a step returns of one, and its last observation where the step ended and reset it.
+/// What a step returns for one acrobot. The last is the final observation of an episode that the step reset.
 type Returned = ([f32; 6], f32, bool, bool, Option<[f32; 6]>);
 
 impl<A: Arithmetic> Alone<A> {
-    /// By the same step none waits for its reset.
+    /// Stops waiting for a reset, except in the mode that waits.
     fn settle(&mut self, settings: &Settings) {
-        if self.ended && settings.autoreset == Autoreset::SameStep {
-            self.acrobot.reset_within(settings.bounds);
-            self.begin();
+        match settings.autoreset {
+            Autoreset::SameStep if self.ended => self.reset(settings.bounds),
+            Autoreset::Disabled => self.ended = false,
+            _ => {}
         }
+    }
+
+    fn reset(&mut self, bounds: StartBounds) {
+        self.acrobot.reset_within(bounds);
+        self.begin();
     }
 
     fn begin(&mut self) {
         (self.elapsed, self.ended) = (0, false);
     }
 
-    fn step(&mut self, action: u8, settings: &Settings) -> std::result::Result<Returned, Error> {
+    fn step(
+        &mut self,
+        settings: &Settings,
+        step: impl FnOnce(&mut Acrobot<A>) -> std::result::Result<Step, Error>,
+    ) -> std::result::Result<Returned, Error> {
         if self.ended && settings.autoreset == Autoreset::NextStep {
-            // The action is ignored, and the noise is not drawn.
-            self.begin();
-            return Ok((
-                *self.acrobot.reset_within(settings.bounds),
-                0.0,
-                false,
-                false,
-                None,
-            ));
+            // This ignores the action and draws no noise.
+            self.reset(settings.bounds);
+            let first = self.acrobot.observation().to_array();
+            return Ok((first, 0.0, false, false, None));
         }
-        let step = self.acrobot.step(action.try_into()?);
+        let step = step(&mut self.acrobot)?;
         self.elapsed = self.elapsed.saturating_add(1);
         let truncated = self.elapsed >= settings.limit.get();
         self.ended = step.terminated || truncated;
-        let mut seen = (*step.observation, None);
-        if self.ended && settings.autoreset == Autoreset::SameStep {
-            seen = (*self.acrobot.reset_within(settings.bounds), Some(seen.0));
-            self.begin();
-        }
-        Ok((seen.0, step.reward, step.terminated, truncated, seen.1))
+        let last = step.observation.to_array();
+        let resets = self.ended && settings.autoreset == Autoreset::SameStep;
+        self.settle(settings);
+        Ok((
+            self.acrobot.observation().to_array(),
+            step.reward,
+            step.terminated,
+            truncated,
+            resets.then_some(last),
+        ))
     }
 
     fn member(&self) -> Member<A::Scalar> {
@@ -91,11 +105,15 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
     let len: usize = u.int_in_range(1..=35)?;
     let seed = u.arbitrary::<u64>()?;
     let blocks = vec![Block::EMPTY; len.div_ceil(N)];
-    let batch = Batch::<A, _, _, N>::new(seed, blocks, vec![Pcg64::UNSEEDED; len]);
+    let batch = Many::<A, N>::new(seed, blocks, vec![Pcg64::UNSEEDED; len]);
     let mut batch = batch.expect("it has a block for each N");
-    let mut alone: Vec<_> = SeedSequence::from(seed)
+    let mut alone: Vec<_> = SeedSequence::new(seed)
         .spawn(len as u64)
-        .map(alone)
+        .map(|seed| Alone {
+            acrobot: Acrobot::<A>::with_rng(seed.into()),
+            elapsed: 0,
+            ended: false,
+        })
         .collect();
     let mut settings = Settings {
         autoreset: *u.choose(&MODES)?,
@@ -104,128 +122,198 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
     };
     batch.set_autoreset(settings.autoreset);
     batch.set_limit(settings.limit);
-    batch.set_vectors(*u.choose(&[Vectors::Baseline, Vectors::Avx2, Vectors::Avx512])?);
+    let levels = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
+    batch.set_simd_level(*u.choose(&levels)?);
     while !u.is_empty() {
-        match u.int_in_range(0..=9)? {
-            0 => {
-                let params: Params<A::Scalar> = params(u)?.cast();
-                let set = batch.set_params(params);
-                for alone in &mut alone {
-                    assert_eq!(alone.acrobot.set_params(params).is_ok(), set.is_ok());
-                }
-            }
-            1 => {
-                if let Ok(bounds) = StartBounds::new(number(u, -0.1)?, number(u, 0.1)?) {
-                    settings.bounds = bounds;
-                    batch.set_start_bounds(bounds);
-                }
-            }
-            2 => {
-                batch.reset();
-                for alone in &mut alone {
-                    alone.acrobot.reset_within(settings.bounds);
-                    alone.begin();
-                }
-            }
-            3 => {
-                let state: State<A::Scalar> = state(u)?.cast();
-                let mut states = vec![state; u.int_in_range(len - 1..=len + 1)?];
-                if let Some(last) = states.last_mut() {
-                    *last = State::default();
-                }
-                let reset = batch.reset_to(&states);
-                let valid = states.iter().all(|state| state.validate().is_ok());
-                assert_eq!(reset.is_ok(), valid && states.len() == len);
-                for (alone, state) in alone.iter_mut().zip(states).filter(|_| reset.is_ok()) {
-                    assert!(alone.acrobot.set_state(state).is_ok());
-                    alone.begin();
-                }
-            }
-            4 => {
-                let member = Member {
-                    state: state(u)?.cast(),
-                    elapsed: u.arbitrary()?,
-                    ended: u.arbitrary()?,
-                    rng: Pcg64::new(u.arbitrary::<u64>()?),
-                };
+        // 241 to 245 are calls of their own. Of all other bytes the last digit decides.
+        match u.arbitrary::<u8>()? {
+            241 => {
                 let index = u.int_in_range(0..=len + N)?;
-                let put = batch.set_member(index, member.clone());
-                assert_eq!(put.is_ok(), member.state.validate().is_ok() && index < len);
-                if let Some(alone) = alone.get_mut(index).filter(|_| put.is_ok()) {
-                    assert!(alone.acrobot.set_state(member.state).is_ok());
-                    *alone.acrobot.rng_mut() = member.rng;
-                    (alone.elapsed, alone.ended) = (member.elapsed, member.ended);
-                    alone.settle(&settings);
+                let state: State<A::Scalar> = state(u)?.cast();
+                let set = batch.set_state(index, state);
+                assert_eq!(set.is_ok(), state.validate().is_ok() && index < len);
+                if let Some(alone) = alone.get_mut(index).filter(|_| set.is_ok()) {
+                    assert!(alone.acrobot.set_state(state).is_ok());
                 }
             }
-            5 => {
-                settings.autoreset = *u.choose(&MODES)?;
-                settings.limit = u.arbitrary()?;
+            242 => {
+                let Ok(bounds) = StartBounds::new(number(u, -0.1)?, number(u, 0.1)?) else {
+                    continue;
+                };
+                let seed = u.arbitrary::<Option<u64>>()?.map(SeedSequence::new);
+                match seed.clone() {
+                    None => batch.reset_within(bounds),
+                    seed => batch.reset_with(ResetOptions { seed, bounds }),
+                }
+                for (alone, index) in alone.iter_mut().zip(0..) {
+                    if let Some(seed) = &seed {
+                        *alone.acrobot.rng_mut() = seed.child(index).into();
+                    }
+                    alone.reset(bounds);
+                }
+            }
+            243 => {
+                let bits: u64 = u.arbitrary()?;
+                let found = u.int_in_range(len - 1..=len + 1)?;
+                let mask: Vec<bool> = (0..found).map(|i| bits >> i & 1 == 1).collect();
+                let reset = batch.reset_masked(&mask);
+                assert_eq!(reset.is_ok(), found == len);
+                let each = alone.iter_mut().zip(mask).filter(|_| reset.is_ok());
+                for (alone, _) in each.filter(|(_, reset)| *reset) {
+                    alone.reset(settings.bounds);
+                }
+            }
+            244 => {
+                settings.autoreset = Autoreset::Disabled;
                 batch.set_autoreset(settings.autoreset);
-                batch.set_limit(settings.limit);
                 alone.iter_mut().for_each(|alone| alone.settle(&settings));
             }
-            _ => step(&mut batch, &mut alone, &settings, u)?,
+            245 => {
+                let mut torques = inputs(len, u, |u| {
+                    Ok(A::Scalar::from_f64(u.arbitrary::<i8>()?.into()))
+                })?;
+                if let Some(torque) = torques.last_mut() {
+                    *torque = A::Scalar::from_f64(number(u, 1.0)?);
+                }
+                let valid = torques.len() == len && torques.iter().all(|torque| torque.is_finite());
+                step(
+                    &mut batch,
+                    &mut alone,
+                    &settings,
+                    valid,
+                    |batch, buffers| batch.step_torques(&torques, buffers),
+                    |acrobot, index| acrobot.step_torque(torques[index]),
+                );
+            }
+            call => match call % 10 {
+                0 => {
+                    let params: Params<A::Scalar> = params(u)?.cast();
+                    let set = batch.set_params(params);
+                    for alone in &mut alone {
+                        assert_eq!(alone.acrobot.set_params(params).is_ok(), set.is_ok());
+                    }
+                }
+                1 => {
+                    if let Ok(bounds) = StartBounds::new(number(u, -0.1)?, number(u, 0.1)?) {
+                        settings.bounds = bounds;
+                        batch.set_start_bounds(bounds);
+                    }
+                }
+                2 => {
+                    batch.reset();
+                    for alone in &mut alone {
+                        alone.reset(settings.bounds);
+                    }
+                }
+                3 => {
+                    let state: State<A::Scalar> = state(u)?.cast();
+                    let mut states = vec![state; u.int_in_range(len - 1..=len + 1)?];
+                    if let Some(last) = states.last_mut() {
+                        *last = State::default();
+                    }
+                    let reset = batch.reset_to(&states);
+                    let valid = states.iter().all(|state| state.validate().is_ok());
+                    assert_eq!(reset.is_ok(), valid && states.len() == len);
+                    for (alone, state) in alone.iter_mut().zip(states).filter(|_| reset.is_ok()) {
+                        assert!(alone.acrobot.set_state(state).is_ok());
+                        alone.begin();
+                    }
+                }
+                4 => {
+                    let member = Member {
+                        state: state(u)?.cast(),
+                        elapsed: u.arbitrary()?,
+                        ended: u.arbitrary()?,
+                        rng: Pcg64::new(u.arbitrary::<u64>()?),
+                    };
+                    let index = u.int_in_range(0..=len + N)?;
+                    let put = batch.set_member(index, member.clone());
+                    assert_eq!(put.is_ok(), member.state.validate().is_ok() && index < len);
+                    if let Some(alone) = alone.get_mut(index).filter(|_| put.is_ok()) {
+                        assert!(alone.acrobot.set_state(member.state).is_ok());
+                        *alone.acrobot.rng_mut() = member.rng;
+                        (alone.elapsed, alone.ended) = (member.elapsed, member.ended);
+                        alone.settle(&settings);
+                    }
+                }
+                5 => {
+                    settings.autoreset = *u.choose(&MODES)?;
+                    settings.limit = u.arbitrary()?;
+                    batch.set_autoreset(settings.autoreset);
+                    batch.set_limit(settings.limit);
+                    alone.iter_mut().for_each(|alone| alone.settle(&settings));
+                }
+                _ => {
+                    // Sometimes an unknown number, or one element too few.
+                    let last = *u.choose(&[0, 1, 2, 0, 1, 2, 0, 1, 2, 3, u8::MAX])?;
+                    let mut actions = inputs(len, u, |u| u.int_in_range(0..=2))?;
+                    if let Some(action) = actions.last_mut() {
+                        *action = last;
+                    }
+                    let valid = actions.len() == len && actions.iter().all(|&action| action < 3);
+                    step(
+                        &mut batch,
+                        &mut alone,
+                        &settings,
+                        valid,
+                        |batch, buffers| batch.step(&actions, buffers),
+                        |acrobot, index| Ok(acrobot.step(actions[index].try_into()?)),
+                    );
+                }
+            },
         }
         for (index, alone) in alone.iter().enumerate() {
             assert_eq!(batch.member(index), Some(alone.member()), "acrobot {index}");
         }
         assert_eq!((batch.member(len), batch.state(len)), (None, None));
+        assert_eq!(batch.autoreset(), settings.autoreset);
+        assert_eq!(batch.start_bounds(), settings.bounds);
     }
     Ok(())
 }
 
-fn alone<A: Arithmetic>(seed: SeedSequence) -> Alone<A> {
-    Alone {
-        acrobot: Acrobot::new(seed),
-        elapsed: 0,
-        ended: false,
-    }
+/// An input for each acrobot. Sometimes the last is missing.
+fn inputs<'a, T>(
+    len: usize,
+    u: &mut Unstructured<'a>,
+    mut input: impl FnMut(&mut Unstructured<'a>) -> Result<T>,
+) -> Result<Vec<T>> {
+    let found = len - usize::from(u.ratio(1, 16)?);
+    (0..found).map(|_| input(u)).collect()
 }
 
 fn step<A: Arithmetic, const N: usize>(
-    batch: &mut Batch<A, Vec<Block<A::Scalar, N>>, Vec<Pcg64>, N>,
+    batch: &mut Many<A, N>,
     alone: &mut [Alone<A>],
     settings: &Settings,
-    u: &mut Unstructured<'_>,
-) -> Result<()> {
-    let len = alone.len();
-    // Now and then a number that is none, or one too few.
-    let last = *u.choose(&[0, 1, 2, 0, 1, 2, 0, 1, 2, 3, u8::MAX])?;
-    let found = len - usize::from(u.ratio(1, 16)?);
-    let mut actions: Vec<u8> = (0..found)
-        .map(|_| u.int_in_range(0..=2))
-        .collect::<Result<_>>()?;
-    if let Some(action) = actions.last_mut() {
-        *action = last;
-    }
+    valid: bool,
+    step: impl FnOnce(&mut Many<A, N>, StepBuffers<'_>) -> std::result::Result<(), Error>,
+    step_one: impl Fn(&mut Acrobot<A>, usize) -> std::result::Result<Step, Error>,
+) {
     const UNTOUCHED: f32 = 9.0;
+    let len = alone.len();
     let (mut rewards, mut terminated, mut truncated) =
         (vec![UNTOUCHED; len], vec![false; len], vec![false; len]);
     let (mut rows, mut finals) = (vec![[UNTOUCHED; 6]; len], vec![[UNTOUCHED; 6]; len]);
-    let output = Output {
+    let buffers = StepBuffers {
         rewards: &mut rewards,
         terminated: &mut terminated,
         truncated: &mut truncated,
         observations: Observations::Rows(&mut rows),
         final_observations: Observations::Rows(&mut finals),
     };
-    let stepped = batch.step(&actions, output);
-    assert_eq!(
-        stepped.is_ok(),
-        found == len && actions.iter().all(|&action| action < 3)
-    );
+    let stepped = step(batch, buffers);
+    assert_eq!(stepped.is_ok(), valid);
     if stepped.is_err() {
         assert_eq!(
             (rewards, rows),
             (vec![UNTOUCHED; len], vec![[UNTOUCHED; 6]; len])
         );
-        return Ok(());
+        return;
     }
     for (index, alone) in alone.iter_mut().enumerate() {
-        let (row, reward, goal, last, final_row) = alone
-            .step(actions[index], settings)
-            .expect("a known action");
+        let returned = alone.step(settings, |acrobot| step_one(acrobot, index));
+        let (row, reward, goal, last, final_row) = returned.expect("a valid input");
         assert_eq!(
             rows[index].map(f32::to_bits),
             row.map(f32::to_bits),
@@ -255,5 +343,4 @@ fn step<A: Arithmetic, const N: usize>(
             row.map(f32::to_bits)
         );
     }
-    Ok(())
 }

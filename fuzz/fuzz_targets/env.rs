@@ -1,11 +1,13 @@
-//! Environments as `make_with` makes them, of any options, and used in any order.
+//! The environments that `make_with` makes, with any options and calls in any order.
 
 #![no_main]
 
 use acrobot::env::{
     ArithmeticKind, Display, DynEnv, Env, Error, Options, RenderMode, Rendering, Space, make_with,
 };
-use acrobot::{Action, SeedSequence, StartBounds};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::StartBounds;
+use acrobot::{Action, ResetOptions};
 use acrobot_fuzz::{number, params, state};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
@@ -32,7 +34,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
         Ok(env) => env,
         Err(error) => {
             assert!(matches!(error, Error::Invalid(_)), "{error}");
-            // Also what is valid may not be so as f32.
+            // Valid parameters can be invalid as f32.
             assert!(
                 !valid || matches!(options.arithmetic, Fast | Micro),
                 "{error}"
@@ -41,7 +43,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
         }
     };
     assert!(valid);
-    let mut rng = acrobot::Pcg64::new(0);
+    let mut rng = Pcg64::new(0);
     // Each shows a frame of 250,000 pixels.
     let calls = match options.render_mode {
         RenderMode::Human(_) => 2,
@@ -56,8 +58,12 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
                 let seed = u.arbitrary::<Option<[u32; 3]>>()?;
                 let bounds = StartBounds::new(number(u, -0.1)?, number(u, 0.1)?);
                 let seed = seed.map(|words| SeedSequence::from_words(&words));
-                let (observation, _) = env.reset(seed, bounds.ok());
-                assert!(observation.iter().all(|x| x.is_finite()), "{observation:?}");
+                let (observation, _) = env.reset_with(ResetOptions {
+                    seed,
+                    bounds: bounds.unwrap_or_default(),
+                });
+                let finite = observation.as_slice().iter().all(|x| x.is_finite());
+                assert!(finite, "{observation:?}");
             }
             1 => {
                 let before = env.unwrapped().params();
@@ -73,7 +79,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
                     assert_eq!(env.unwrapped().state(), before);
                 }
             }
-            // It takes most of the time and changes nothing, so it comes last.
+            // Rendering takes most of the time and changes nothing, so it is last.
             3 => return show(&mut *env),
             4 => env.close(),
             _ => {
@@ -94,7 +100,7 @@ fn show(env: &mut DynEnv) -> Result<()> {
             assert_eq!(text.lines().count(), 21);
             assert!(!text.contains("NaN"), "{text}");
         }
-        Ok(Rendering::Shown) => {}
+        Ok(other) => assert_eq!(other, Rendering::Shown),
         Err(error) => assert_eq!(error, Error::NoRenderMode),
     }
     Ok(())

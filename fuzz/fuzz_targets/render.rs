@@ -1,8 +1,10 @@
-//! Figures of any acrobot on targets of any size, at any place.
+//! Figures of any acrobot on targets of any size and position.
 
 #![no_main]
 
-use acrobot::{Acrobot, Arithmetic, Fast, Figure, Portable, Theme};
+use acrobot::arithmetic::Arithmetic;
+use acrobot::render::{Figure, Theme};
+use acrobot::{Acrobot, Fast, Portable};
 use acrobot_fuzz::{number, params, state};
 use embedded_graphics_core::Pixel;
 use embedded_graphics_core::draw_target::DrawTarget;
@@ -20,10 +22,10 @@ const THEME: Theme<Gray8> = Theme {
     torque: Gray8::new(4),
 };
 
-/// Pixels of the largest target that is drawn to its end.
+/// The pixels of the largest target that is drawn completely.
 const MOST: u64 = 1 << 12;
 
-/// A target that takes pixels within its area alone, each once for a drawing, and no more than [`MOST`].
+/// A target that takes only pixels within its area, each once per drawing, and at most [`MOST`].
 struct Canvas {
     area: Rectangle,
     pixels: Vec<Option<Gray8>>,
@@ -74,7 +76,7 @@ impl DrawTarget for Canvas {
             self.writes += 1;
             let index = row * i64::from(width) + column;
             let pixel = self.pixels.get_mut(index as usize).ok_or(Full)?;
-            assert_ne!(*pixel, Some(color), "{point} is as it was");
+            assert_ne!(*pixel, Some(color), "{point} was written again");
             *pixel = Some(color);
         }
         Ok(())
@@ -123,7 +125,7 @@ fn area(u: &mut Unstructured<'_>) -> Result<Rectangle> {
         1 => Point::new(u.arbitrary::<i8>()?.into(), u.arbitrary::<i8>()?.into()),
         _ => Point::zero(),
     };
-    // What embedded-graphics has points for.
+    // embedded-graphics has no points beyond i32.
     let ends = [(top_left.x, size.width), (top_left.y, size.height)];
     let ends = ends.map(|(start, len)| i64::from(start) + i64::from(len));
     if ends.iter().any(|&end| end > i32::MAX.into()) {
@@ -142,7 +144,7 @@ fn figure(u: &mut Unstructured<'_>) -> Result<Figure> {
 
 fn figure_in<A: Arithmetic>(u: &mut Unstructured<'_>) -> Result<Figure> {
     let mut acrobot = Acrobot::<A>::new(0);
-    // What is refused leaves what was there, which is drawn then.
+    // A rejected state leaves the old one, which is drawn then.
     let _ = acrobot.set_state(state(u)?.cast());
     if u.arbitrary()? {
         let _ = acrobot.set_params(params(u)?.cast());

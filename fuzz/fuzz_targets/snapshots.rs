@@ -1,4 +1,4 @@
-//! Hostile bytes in place of a snapshot: refused, or as good as one that was saved.
+//! Any bytes in place of a snapshot: rejected, or as valid as a saved one.
 
 #![no_main]
 

@@ -1,13 +1,14 @@
-//! An acrobot of any arithmetic, with anything set at any time.
+//! An acrobot in any arithmetic, with any values set at any time, beside a pendulum.
 
 #![no_main]
 
 use std::str::FromStr;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Fast, Host, Micro, Portable, Real, SeedSequence, StartBounds,
-    TimeLimit, Trajectory, wrap,
-};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::numpy::SeedSequence;
+use acrobot::physics::{Pendulum, StartBounds, wrap};
+use acrobot::trajectory::Trajectory;
+use acrobot::{Acrobot, Action, Error, Fast, Portable, ResetOptions, TimeLimit};
 use acrobot_fuzz::{assert_seen, assert_settled, assert_stepped, number, params, state};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
@@ -28,7 +29,7 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
     let mut acrobot = Acrobot::<A>::new(u.arbitrary::<u64>()?);
     while !u.is_empty() {
         let before = acrobot.clone();
-        let refused = match u.int_in_range(0..=7)? {
+        let rejected = match u.int_in_range(0..=7)? {
             0 => {
                 let params = params(u)?.cast();
                 let set = acrobot.set_params(params);
@@ -45,10 +46,19 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
             }
             2 => {
                 let torque = real(number(u, 1.0)?);
+                let pendulum = Pendulum::<A>::new(*acrobot.params(), acrobot.state());
+                let mut pendulum = pendulum.expect("an acrobot's are valid");
+                assert_eq!(pendulum.positions(), acrobot.positions());
                 let step = acrobot.step_torque(torque);
                 assert_eq!(step.is_ok(), torque.is_finite());
                 if let Ok(step) = step {
                     assert_stepped(step, acrobot.state(), acrobot.params());
+                }
+                // A pendulum has no noise.
+                if acrobot.params().torque_noise.to_f64() == 0.0 {
+                    let terminated = step.ok().map(|step| step.terminated);
+                    assert_eq!(pendulum.step(torque).ok(), terminated);
+                    assert_eq!(pendulum.state(), acrobot.state());
                 }
                 step.is_err()
             }
@@ -56,10 +66,10 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
                 let (low, high) = (number(u, -0.1)?, number(u, 0.1)?);
                 let bounds = StartBounds::new(low, high);
                 let in_f32 = |x: f64| (x.abs() <= f32::MAX.into()).then_some(x);
-                let allowed = in_f32(low)
+                let valid = in_f32(low)
                     .zip(in_f32(high))
                     .is_some_and(|(low, high)| low <= high);
-                assert_eq!(bounds.is_ok(), allowed);
+                assert_eq!(bounds.is_ok(), valid);
                 if let Ok(bounds) = bounds {
                     acrobot.reset_within(bounds);
                     let [low, high] = [low, high].map(|bound| f64::from(bound as f32));
@@ -71,7 +81,10 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
             }
             4 => {
                 let words: Vec<u32> = u.arbitrary()?;
-                acrobot.reset_seeded(SeedSequence::from_words(&words));
+                acrobot.reset_with(ResetOptions {
+                    seed: Some(SeedSequence::from_words(&words)),
+                    ..ResetOptions::default()
+                });
                 false
             }
             5 => {
@@ -99,21 +112,22 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
             }
         };
         assert!(
-            !refused || acrobot == before,
-            "a refusal has changed something"
+            !rejected || acrobot == before,
+            "a rejected call has changed something"
         );
         assert_seen(acrobot.observation());
-        // Nothing is promised of these but an end.
+        // These may return anything, also NaN.
         let _ = (
+            acrobot.derivative(A::Scalar::PI),
             acrobot.energy(),
-            acrobot.tip_height(),
             acrobot.mass_matrix(),
+            acrobot.tip_height(),
         );
     }
     Ok(())
 }
 
-/// Some steps that are recorded and written.
+/// Some steps, recorded and written as CSV at once and row by row.
 fn episode<A: Arithmetic<Scalar: FromStr>>(
     acrobot: &mut Acrobot<A>,
     u: &mut Unstructured<'_>,
@@ -137,6 +151,22 @@ fn episode<A: Arithmetic<Scalar: FromStr>>(
     let last: Vec<A::Scalar> = last.flat_map(str::parse).collect();
     let state: [A::Scalar; 4] = limited.inner().state().into();
     assert_eq!(last, state, "{csv}");
+    let mut buffer = [0; 4096];
+    let mut rows = String::new();
+    rows += trajectory.write_header(&mut buffer).expect("it has room");
+    let mut needed = 0;
+    for index in 0..trajectory.len() {
+        let row = trajectory.write_row(index, &mut buffer);
+        let row = row.expect("it has room");
+        needed = row.len();
+        rows += row;
+    }
+    assert_eq!(rows, csv);
+    let (index, len) = (trajectory.len() - 1, needed - 1);
+    assert_eq!(
+        trajectory.write_row(index, &mut buffer[..len]),
+        Err(Error::BufferTooSmall { len, needed })
+    );
     *acrobot = limited.inner().clone();
     Ok(())
 }

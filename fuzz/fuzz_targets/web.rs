@@ -1,7 +1,7 @@
 //! The functions that the page's module exports, called in any order with any numbers.
 //!
-//! The module is compiled for this machine. Its state is global: all but what was trained and loaded, for which it
-//! has memory once, is begun anew with each input.
+//! The module is compiled for this machine. Its state is global, so each input resets it. Only the learners stay, because
+//! the module can make them only once.
 
 #![no_main]
 
@@ -49,7 +49,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
             }
             3 => assert!(simulation::random() < 3),
             4 => set_params(u)?,
-            // Neither too many pixels for one run nor always few.
+            // Seldom a wide picture, so that a run does not take too long.
             5 if u.ratio(1, 16)? => picture::resize(u.arbitrary()?, u.int_in_range(0..=3)?),
             5 => picture::resize(u.int_in_range(0..=70)?, u.int_in_range(0..=70)?),
             6 => picture::paint(
@@ -81,7 +81,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// What JavaScript writes between calls.
+/// Writes into the buffer, as JavaScript does between calls.
 fn write(u: &mut Unstructured<'_>) -> Result<()> {
     let bytes: Vec<u8> = u.arbitrary()?;
     BUFFER.borrow()[..bytes.len()].copy_from_slice(&bytes);
@@ -98,7 +98,7 @@ fn set_params(u: &mut Unstructured<'_>) -> Result<()> {
         let after = simulation::with(|simulation| *simulation.env.inner().params());
         assert_eq!(before, after);
         let buffer = BUFFER.borrow();
-        let text = str::from_utf8(&buffer[8..len]).expect("a name, a unit and what is allowed");
+        let text = str::from_utf8(&buffer[8..len]).expect("a name, a unit and a rule");
         assert_eq!(text.lines().count(), 3, "{text}");
     }
     Ok(())
@@ -111,21 +111,21 @@ fn load(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Memory for a training is there once; the others of a process are that one.
+/// Only the first call in a process begins a training. All others continue it.
 fn train(u: &mut Unstructured<'_>) -> Result<()> {
     learner::begin_training(u.arbitrary()?, u.arbitrary()?, u.arbitrary()?);
     assert!((-500.0..=0.0).contains(&learner::train()));
     assert_eq!(
         learner::load(learner::save()),
         0,
-        "what was saved is refused"
+        "saved weights are rejected"
     );
     Ok(())
 }
 
 fn check_numbers() {
     let address = simulation::numbers();
-    // SAFETY: it is a static's, which nothing else uses between two calls.
+    // SAFETY: it points to a static that nothing else uses between two calls.
     let [theta1, theta2, dtheta1, dtheta2, ..] = unsafe { *address };
     simulation::with(|simulation| {
         let acrobot = simulation.env.inner();

@@ -1,8 +1,9 @@
-//! Hostile bytes in place of a learner's weights: refused, and nothing is changed, or taken as they are.
+//! Any bytes in place of a learner's weights: rejected without a change, or taken as they are.
 
 #![no_main]
 
-use acrobot::{Acrobot, Fast, Pcg64, TimeLimit};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Fast, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 
 #[allow(dead_code, reason = "this program uses a part")]
@@ -11,11 +12,11 @@ mod acrobot_task;
 
 use acrobot_task::{Learner, Preset, greedy, learn};
 
-/// So few that bytes of the right length are found.
+/// So few that libFuzzer finds bytes of the right length.
 const SLOTS: usize = 16;
 type Small<'w> = Learner<'w, SLOTS, 28>;
 
-/// FNV-1a, the checksum, which no search would find.
+/// FNV-1a, the checksum. No search would find it.
 fn checksum(bytes: &[u8]) -> u32 {
     bytes.iter().fold(0x811c_9dc5, |hash, &byte| {
         (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
@@ -29,7 +30,7 @@ fuzz_target!(|bytes: &[u8]| {
     let mut memory = [[0.0; 2]; SLOTS];
     let mut learner: Small = Preset::Fast.learner(1, &mut memory).expect("a preset");
     let before: Vec<u8> = learner.save().collect();
-    // As they are, with the header of this learner, or with its checksum, too.
+    // As they are, with this learner's header, or also with its checksum.
     let mut bytes = bytes.to_vec();
     if kind % 3 > 0 {
         bytes.splice(..bytes.len().min(16), before[..16].iter().copied());

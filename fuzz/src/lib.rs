@@ -1,11 +1,13 @@
-//! What the targets have in common: numbers made of bytes, and what holds after every step.
+//! What the targets share: numbers from bytes, and what holds after every step.
 
 pub mod snapshots;
 
-use acrobot::{Dynamics, Observation, Params, Real, State, Step};
+use acrobot::arithmetic::Real;
+use acrobot::physics::Dynamics;
+use acrobot::{Observation, Params, State, Step};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
-/// What the edges of a range are likely to be wrong at.
+/// Numbers at which ranges are likely to be wrong.
 const EDGES: [f64; 12] = [
     0.0,
     -0.0,
@@ -21,8 +23,8 @@ const EDGES: [f64; 12] = [
     f64::NAN,
 ];
 
-/// A number near the `usual` one, at an edge, or of any bits: of any bits alone, few sequences would
-/// come to a step.
+/// A number near the `usual` one, at an edge, or of any bits. With only the last kind, few sequences would reach a
+/// step.
 pub fn number(u: &mut Unstructured<'_>, usual: f64) -> Result<f64> {
     Ok(match u.int_in_range(0..=7)? {
         0 => f64::from_bits(u.arbitrary()?),
@@ -66,14 +68,14 @@ pub fn state(u: &mut Unstructured<'_>) -> Result<State> {
     Ok(numbers.into())
 }
 
-/// What holds after a step, whatever was stepped from and by what.
+/// What holds after a step from any state with any input.
 pub fn assert_stepped<S: Real>(step: Step, state: State<S>, params: &Params<S>) {
     assert_settled(state, params);
     assert_seen(step.observation);
     assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
 }
 
-/// Angles and velocities are within their bounds, and so none is NaN.
+/// Angles and velocities are within their bounds, so none is NaN.
 pub fn assert_settled<S: Real>(state: State<S>, params: &Params<S>) {
     let limits = [S::PI, S::PI, params.max_velocity1, params.max_velocity2];
     for (x, limit) in <[S; 4]>::from(state).into_iter().zip(limits) {
@@ -81,9 +83,9 @@ pub fn assert_settled<S: Real>(state: State<S>, params: &Params<S>) {
     }
 }
 
-/// Nothing of an observation is NaN, and sines and cosines are such.
-pub fn assert_seen(Observation(numbers): Observation) {
-    let [sines @ .., dtheta1, dtheta2] = numbers;
-    assert!(!dtheta1.is_nan() && !dtheta2.is_nan(), "{numbers:?}");
-    assert!(sines.iter().all(|x| x.abs() <= 1.0), "{numbers:?}");
+/// No number of an observation is NaN, and sines and cosines are within ±1.
+pub fn assert_seen(observation: Observation) {
+    let [sines @ .., dtheta1, dtheta2] = observation.to_array();
+    assert!(!dtheta1.is_nan() && !dtheta2.is_nan(), "{observation:?}");
+    assert!(sines.iter().all(|x| x.abs() <= 1.0), "{observation:?}");
 }

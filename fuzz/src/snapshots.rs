@@ -1,11 +1,12 @@
-//! Everything that can be saved, and what has to hold of whatever is loaded.
+//! Everything that can be saved, and what holds after any of it is loaded.
 
 use std::num::NonZeroU32;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Dynamics, Fast, Host, Member, Micro,
-    Observations, Output, Params, Pcg64, Portable, Real, State, TimeLimit, uniform,
-};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, StepBuffers};
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::physics::Dynamics;
+use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -13,14 +14,14 @@ use crate::{assert_settled, assert_stepped};
 
 /// A type that can be saved.
 trait Snapshot: Serialize + DeserializeOwned {
-    /// What a user might save.
+    /// One that a user might save.
     fn sample() -> Self;
 
-    /// Uses what was loaded, and says whether all of it is valid, as plain data need not be.
+    /// Uses what was loaded. Returns whether it is valid, which plain data need not be.
     fn check(self) -> bool;
 }
 
-/// How one type is loaded from bytes, and its sample in every format.
+/// Loads a type from bytes, and saves its sample in every format.
 type Kind = (fn(&[u8]), fn() -> [Vec<u8>; 2]);
 
 const fn kind<T: Snapshot>() -> Kind {
@@ -44,7 +45,7 @@ const KINDS: [Kind; 14] = [
     kind::<Dynamics>(),
 ];
 
-/// Loads a snapshot of the type that the first byte says, from the other bytes in each format.
+/// The first byte chooses a type. Loads a snapshot of it from the other bytes, in each format.
 pub fn check(input: &[u8]) {
     let Some((kind, bytes)) = input.split_first() else {
         return;
@@ -53,7 +54,7 @@ pub fn check(input: &[u8]) {
     load(bytes);
 }
 
-/// Inputs of [`check`] that are valid, of every type and format.
+/// Valid inputs of [`check`]: every type in every format.
 pub fn samples() -> impl Iterator<Item = Vec<u8>> {
     let kinds = (0_u8..).zip(KINDS);
     kinds.flat_map(|(kind, (_, save))| save().map(|bytes| [vec![kind], bytes].concat()))
@@ -79,7 +80,7 @@ fn load<T: Snapshot>(bytes: &[u8]) {
         let (saved, text) = (binary(&loaded), json(&loaded));
         let again: T = postcard::from_bytes(&saved).expect("it was saved");
         assert_eq!(binary(&again), saved);
-        // JSON has no NaN and no infinity.
+        // JSON has neither NaN nor infinity.
         if loaded.check() {
             let again: T = serde_json::from_slice(&text).expect("it was saved");
             assert_eq!(binary(&again), saved);
@@ -98,7 +99,7 @@ where
             ..Params::default()
         };
         assert!(acrobot.set_params(noisy).is_ok());
-        Action::sample(acrobot.rng_mut()); // leaves half of a draw
+        Action::sample(acrobot.rng_mut()); // leaves half of a draw over
         acrobot.step(Action::Positive);
         acrobot
     }
@@ -158,7 +159,11 @@ impl<S: Real + Serialize + DeserializeOwned> Snapshot for Member<S> {
             ended,
             rng,
         };
-        for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
+        for autoreset in [
+            Autoreset::NextStep,
+            Autoreset::SameStep,
+            Autoreset::Disabled,
+        ] {
             let batch = Batch::<Fast, _, _, 1>::new(0, [Block::EMPTY], [Pcg64::UNSEEDED]);
             let mut batch = batch.expect("a block for one");
             batch.set_autoreset(autoreset);
@@ -170,14 +175,14 @@ impl<S: Real + Serialize + DeserializeOwned> Snapshot for Member<S> {
                 assert_eq!(batch.member(0), before);
                 continue;
             }
-            let output = Output {
+            let buffers = StepBuffers {
                 rewards: &mut [0.0],
                 terminated: &mut [false],
                 truncated: &mut [false],
                 observations: Observations::None,
                 final_observations: Observations::None,
             };
-            assert!(batch.step(&[2_u8], output).is_ok());
+            assert!(batch.step(&[2_u8], buffers).is_ok());
             assert_settled(batch.state(0).expect("it has one"), batch.params());
         }
         true

@@ -1,13 +1,13 @@
-//! f32 with a polynomial kernel of its own, in the lean form: for FPUs of single precision, WASM
-//! and SIMD.
+//! `f32` with polynomials: for single-precision FPUs, WASM and SIMD.
 
-use super::{Arithmetic, FARTHEST, Form, Numbers};
+use super::{Arithmetic, FARTHEST, Lanes, Numbers};
+use crate::physics::Lean;
 
-/// `f32` and polynomial trigonometry, in the lean form: the same bits on every target, from a
-/// single-precision FPU without a fused multiply-add.
+/// `f32`, sines from a polynomial, and the lean form: the same bits on every target, with or without an FPU.
 ///
 /// ```
-/// use acrobot::{Arithmetic, Fast};
+/// use acrobot::Fast;
+/// use acrobot::arithmetic::Arithmetic;
 ///
 /// let (sin, cos) = Fast::sin_cos(1.0);
 /// assert!((sin - 0.84147098).abs() < 1.2e-7 && (cos - 0.54030231).abs() < 1.2e-7);
@@ -18,41 +18,45 @@ pub struct Fast;
 
 impl Arithmetic for Fast {
     type Scalar = f32;
-    const FORM: Form = Form::Lean;
+    type Form = Lean;
 
-    /// Sine and cosine, each within 1.2e-7 (two units in the last place of 1) of the true value for
-    /// |x| ≤ 64 rad: 1.17e-7 is the worst over all those `f32`
-    /// (`cargo test --release --test trigonometry`). Farther out the error is that of an angle in
-    /// `f32`, 1.2e-7 |x|, up to 2¹⁹ rad, whose value stands for all beyond.
+    /// Sine and cosine with an error of at most 1.2e-7 (two units in the last place of 1) for |x| ≤ 64 rad:
+    /// 1.17e-7 is the worst over all these `f32` (`cargo test --release --test trigonometry`). For larger
+    /// angles the error is that of an angle in `f32`, 1.2e-7 |x|. Angles beyond 2¹⁹ rad count as 2¹⁹ rad.
     #[inline]
     fn sin_cos(x: f32) -> (f32, f32) {
-        kernel(x.clamp(-FARTHEST, FARTHEST))
+        sin_cos_kernel(x.clamp(-FARTHEST, FARTHEST))
     }
 
     #[inline(always)]
     fn sin_cos_near(x: f32) -> (f32, f32) {
-        kernel(x)
+        sin_cos_kernel(x)
+    }
+
+    #[inline(always)]
+    fn sin_cos_lanes<const N: usize>(x: [f32; N]) -> ([f32; N], [f32; N]) {
+        let (sin, cos) = sin_cos_kernel(Lanes(x));
+        (sin.0, cos.0)
     }
 }
 
-/// Cody-Waite reduction to a quarter turn about the nearest multiple of π/2, and two polynomials
-/// there. It needs no more than two constants: `quadrant` has at most 6 bits for |x| ≤ 64 and
-/// `PI_2_HIGH` 18, so that their product is exact.
+/// Cody-Waite reduction to the nearest multiple of π/2, then two polynomials. Two constants suffice: for
+/// |x| ≤ 64 the multiple has at most 6 bits and `PI_2_HIGH` has 18, so their product is exact.
 #[inline(always)]
-pub(crate) fn kernel<V: QuarterTurns>(x: V) -> (V, V) {
+fn sin_cos_kernel<V: QuarterTurns>(x: V) -> (V, V) {
     /// The leading 18 bits of π/2, and the rest.
     const PI_2_HIGH: f32 = f32::from_bits(0x3fc9_0fc0);
     const PI_2_LOW: f32 = (core::f64::consts::FRAC_PI_2 - PI_2_HIGH as f64) as f32;
-    /// 1.5 × 2²³: a sum with it is rounded to a whole number, which stands in its lowest bits.
+    /// 1.5 × 2²³: a sum with it is rounded to an integer, which is in its lowest bits.
     const MAGIC: f32 = 12_582_912.0;
-    /// Minimax over |r| ≤ π/4, each rounded to f32 before the next was fitted
-    /// (`tests/data/polynomials.py`): to 1.8e-9 for sin r = r + r³(S0 + S1 r² + S2 r⁴),
+    /// Minimax over |r| ≤ π/4, each coefficient rounded to `f32` before the next was fitted
+    /// (`tests/data/polynomials.py`): error 1.8e-9 for sin r = r + r³(S0 + S1 r² + S2 r⁴)
     const S: [f32; 3] = [
         f32::from_bits(0xbe2a_aaa0),
         f32::from_bits(0x3c08_82df),
         f32::from_bits(0xb94c_6e8b),
     ];
-    /// and to 3.3e-8 for cos r = 1 + C0 r² + C1 r⁴ + C2 r⁶.
+    /// and 3.3e-8 for cos r = 1 + C0 r² + C1 r⁴ + C2 r⁶.
     const C: [f32; 3] = [
         f32::from_bits(0xbeff_ffdd),
         f32::from_bits(0x3d2a_9fd5),
@@ -71,15 +75,15 @@ pub(crate) fn kernel<V: QuarterTurns>(x: V) -> (V, V) {
 }
 
 /// Numbers that can be turned by quarters.
-pub(crate) trait QuarterTurns: Numbers<f32> {
-    /// The sine and cosine of an angle, after so many quarter turns more as the lowest bits of
-    /// `turns` say: each takes (sin, cos) to (cos, −sin).
+trait QuarterTurns: Numbers<f32> {
+    /// Sine and cosine after as many more quarter turns as the two lowest bits of `turns` say. Each takes
+    /// (sin, cos) to (cos, −sin).
     fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self);
 }
 
 impl QuarterTurns for f32 {
-    /// By the sine and the cosine of the quarter turns: exact because they are 0 and ±1, and cheaper
-    /// on a Cortex-M than to pick, swap and negate. No −0 is lost: `sin` is never −0, `cos` never 0.
+    /// By the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and cheaper on a
+    /// Cortex-M than selecting and negating. No −0 is lost: `sin` is never −0, `cos` never 0.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
     fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self) {
@@ -90,5 +94,24 @@ impl QuarterTurns for f32 {
             sin * turned_cos + cos * turned_sin,
             cos * turned_cos - sin * turned_sin,
         )
+    }
+}
+
+impl<const N: usize> QuarterTurns for Lanes<f32, N> {
+    /// By selecting and flipping signs. Where the table of `f32` gives NaN this gives infinity; a step with
+    /// either is not finite.
+    #[inline(always)]
+    fn rotate(turns: Self, mut sin: Self, mut cos: Self) -> (Self, Self) {
+        const SIGN: u32 = 1 << 31;
+        for ((turns, sin), cos) in turns.0.iter().zip(&mut sin.0).zip(&mut cos.0) {
+            let turns = turns.to_bits();
+            let even = (turns & 1).wrapping_sub(1);
+            let kept = (sin.to_bits() ^ cos.to_bits()) & even;
+            let turned_sin = cos.to_bits() ^ kept ^ (turns << 30 & SIGN);
+            let turned_cos = sin.to_bits() ^ kept ^ (turns.wrapping_add(1) << 30 & SIGN);
+            *sin = f32::from_bits(turned_sin);
+            *cos = f32::from_bits(turned_cos);
+        }
+        (sin, cos)
     }
 }

@@ -1,15 +1,16 @@
-//! f64 with the platform's C library, in Gymnasium's order: Gymnasium's own bits.
+//! `f64` with the platform's C library: Gymnasium's own bits.
 
 use core::f64::consts::FRAC_PI_2;
 use core::hint::black_box;
 
-use super::{Arithmetic, Form};
+use super::Arithmetic;
+use crate::physics::Gymnasium;
 
-/// `f64` and the C library's `sin`, `cos` and `pow`, in Gymnasium's order: Gymnasium's bits where
-/// the library is the one that NumPy calls, as on x86-64 Linux with glibc.
+/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: Gymnasium's bits where NumPy calls the
+/// same library, as on x86-64 Linux with glibc.
 ///
 /// ```
-/// use acrobot::{Arithmetic, Host};
+/// use acrobot::arithmetic::{Arithmetic, Host};
 ///
 /// assert_eq!(Host::sin_cos(1.0), 1.0_f64.sin_cos());
 /// ```
@@ -23,7 +24,7 @@ pub struct Host;
 )]
 impl Arithmetic for Host {
     type Scalar = f64;
-    const FORM: Form = Form::Gymnasium;
+    type Form = Gymnasium;
 
     #[inline]
     fn sin_cos(x: f64) -> (f64, f64) {
@@ -40,9 +41,9 @@ impl Arithmetic for Host {
         (x - FRAC_PI_2).cos()
     }
 
-    /// `x**2` of a NumPy scalar is C's `pow`, which glibc rounds differently from `x * x` on one
-    /// argument in a thousand: some of those where the exact square lies about half way between two
-    /// doubles. Elsewhere `pow` is spared, which costs much of a step.
+    /// `x**2` of a NumPy scalar is C's `pow`. glibc's rounds differently from `x * x` for one argument in a
+    /// thousand, where the exact square is about half way between two doubles. Elsewhere this avoids `pow`,
+    /// which would cost much of a step.
     #[inline(always)]
     fn square(x: f64) -> f64 {
         if is_far_from_a_tie(x) {
@@ -57,20 +58,20 @@ impl Arithmetic for Host {
 #[cold]
 #[expect(clippy::disallowed_methods, reason = "as above")]
 fn power(x: f64) -> f64 {
-    // LLVM turns it into `x * x` wherever it sees the exponent.
+    // LLVM turns it into `x * x` if it sees the exponent.
     x.powf(black_box(2.0))
 }
 
-/// Whether x is moderate and its exact square so far from the middle of two doubles that `pow` must
-/// be `x * x`.
+/// Whether x is moderate and its exact square so far from the middle of two doubles that `pow` equals
+/// `x * x`.
 ///
 /// glibc's source (`e_pow.c`) bounds the error of `pow` by 0.511 units in the last place and by
-/// 2⁵³ × 1.5 × 2⁻⁶⁸ |2 ln x|, below 0.004 for |x| of 2⁻⁶⁰ to 2⁶⁰. So it is right where the middle is
-/// farther off than 0.015 units; 0.02 are asked for. The bits of the square beyond its last place come
-/// from whole numbers, which is faster than by floats without a fused multiply-add.
+/// 2⁵³ × 1.5 × 2⁻⁶⁸ |2 ln x|, below 0.004 for |x| of 2⁻⁶⁰ to 2⁶⁰. So `pow` rounds correctly where the middle is
+/// more than 0.015 units away; this asks for 0.02. Integers give the bits of the square beyond its last place,
+/// which is faster than floats without a fused multiply-add.
 #[inline(always)]
 fn is_far_from_a_tie(x: f64) -> bool {
-    /// 0.02 units, where 2⁶⁴ is one.
+    /// 0.02 units, where 2⁶⁴ is one unit.
     const NEAR: u64 = (0.02 * 18_446_744_073_709_551_616.0) as u64;
     const fn mantissa(x: f64) -> u64 {
         (x.to_bits() & ((1 << 52) - 1)) | (1 << 52)
@@ -78,7 +79,7 @@ fn is_far_from_a_tie(x: f64) -> bool {
 
     let is_moderate = (x.to_bits() << 1).wrapping_sub((1023 - 60) << 53) < 120 << 53;
     let mantissa_of_x = mantissa(x);
-    // From √2 on the square has a bit more before its last place.
+    // From √2 on the square has one more bit before its last place.
     let kept = if mantissa_of_x > mantissa(core::f64::consts::SQRT_2) {
         11
     } else {

@@ -1,16 +1,15 @@
-//! f32 with a table of sines, in the lean form: the fewest instructions on a chip.
+//! `f32` with a table of sines: the fewest instructions on a microcontroller.
 
 use core::f32::consts::{FRAC_1_PI, PI};
 
-use super::{Arithmetic, FARTHEST, Form};
+use super::{Arithmetic, FARTHEST};
+use crate::physics::Lean;
 
-/// `f32` and a table of sixteen sines for half a turn, in the lean form: a sixth fewer instructions
-/// than [`Fast`](crate::Fast) on a Cortex-M4, and some seven times its error for |x| ≤ π.
-///
-/// A table does not suit SIMD: a batch computes one acrobot after another.
+/// `f32`, a table of sixteen sines for half a turn, and the lean form: a sixth fewer instructions than
+/// [`Fast`](crate::Fast) on a Cortex-M4, and about seven times its error for |x| ≤ π.
 ///
 /// ```
-/// use acrobot::{Arithmetic, Micro};
+/// use acrobot::arithmetic::{Arithmetic, Micro};
 ///
 /// let (sin, cos) = Micro::sin_cos(1.0);
 /// assert!((sin - 0.84147098).abs() < 8e-7 && (cos - 0.54030231).abs() < 8e-7);
@@ -21,30 +20,31 @@ pub struct Micro;
 
 impl Arithmetic for Micro {
     type Scalar = f32;
-    const FORM: Form = Form::Lean;
+    type Form = Lean;
 
-    /// Sine and cosine, each within 8e-7 of the true value for |x| ≤ π, and within 4e-6 for |x| ≤ 64
-    /// rad (`cargo test --release --test trigonometry`). Farther out the error is that of an angle
-    /// in `f32`, 2e-7 |x|, up to 2¹⁹ rad, whose value stands for all beyond.
+    /// Sine and cosine with an error of at most 8e-7 for |x| ≤ π, and 4e-6 for |x| ≤ 64 rad
+    /// (`cargo test --release --test trigonometry`). For larger angles the error is that of an angle in `f32`,
+    /// 2e-7 |x|. Angles beyond 2¹⁹ rad count as 2¹⁹ rad.
     #[inline]
     fn sin_cos(x: f32) -> (f32, f32) {
-        kernel(x.clamp(-FARTHEST, FARTHEST))
+        sin_cos_kernel(x.clamp(-FARTHEST, FARTHEST))
     }
 
     #[inline(always)]
     fn sin_cos_near(x: f32) -> (f32, f32) {
-        kernel(x)
+        sin_cos_kernel(x)
     }
 }
 
-/// The nearest multiple of π/16, from the table, and by the addition theorem the rest `r`.
+/// Sine and cosine of the nearest multiple of π/16 from the table, of the rest `r` from polynomials, and of
+/// their sum by the addition theorem.
 #[inline(always)]
-fn kernel(x: f32) -> (f32, f32) {
+fn sin_cos_kernel(x: f32) -> (f32, f32) {
     const STEP: f32 = PI / 16.0;
-    /// 1.5 × 2²³: a sum with it is rounded to a whole number, which stands in its lowest bits.
+    /// 1.5 × 2²³: a sum with it is rounded to an integer, which is in its lowest bits.
     const MAGIC: f32 = 12_582_912.0;
-    /// Minimax over |r| ≤ π/32 (`tests/data/polynomials.py`): to 9.9e-9 for sin r = r + S r³ and to
-    /// 6.6e-7 for cos r = 1 + C r².
+    /// Minimax over |r| ≤ π/32 (`tests/data/polynomials.py`): error 9.9e-9 for sin r = r + S r³ and 6.6e-7
+    /// for cos r = 1 + C r².
     const S: f32 = f32::from_bits(0xbe2a_985f);
     const C: f32 = f32::from_bits(0xbeff_d468);
 
@@ -62,17 +62,17 @@ fn kernel(x: f32) -> (f32, f32) {
     )
 }
 
-/// Sine and cosine of that many sixteenths of half a turn.
+/// Sine and cosine of `number` sixteenths of half a turn.
 #[inline(always)]
 #[expect(clippy::indexing_slicing, reason = "the index is 0 to 31")]
 fn sixteenths(number: u32) -> (f32, f32) {
-    /// A turn of sines, and a quarter turn more for the cosines.
+    /// Sines of one turn, and of a quarter turn more for the cosines.
     static SINES: [f32; 40] = sines();
     let i = (number & 31) as usize;
     (SINES[i], SINES[i + 8])
 }
 
-#[expect(clippy::indexing_slicing, reason = "evaluated when compiled")]
+#[expect(clippy::indexing_slicing, reason = "evaluated by the compiler")]
 const fn sines() -> [f32; 40] {
     /// From 0 to a quarter turn, each the `f32` nearest to it (`tests/data/polynomials.py`).
     const QUARTER: [u32; 9] = [

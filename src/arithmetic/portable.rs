@@ -1,13 +1,15 @@
-//! f64 with `libm`, in Gymnasium's order: the reference on every target.
+//! `f64` with the crate `libm`: the same bits on every target.
 
-use super::{Arithmetic, Form};
+use super::Arithmetic;
+use crate::physics::Gymnasium;
 
-/// `f64` and `libm`'s trigonometry, in Gymnasium's order: the same bits on every target, and
-/// within rounding of Gymnasium's, from which it departs in one thing: what is there cos(x − π/2) is
-/// sin x, which costs less where it is known and is rounded once less.
+/// `f64`, sines from the crate `libm`, and Gymnasium's order: the same bits on every target, equal to
+/// Gymnasium's up to rounding. Where Gymnasium takes cos(x − π/2) it takes sin x, which is often known already
+/// and is rounded once less.
 ///
 /// ```
-/// use acrobot::{Arithmetic, Portable};
+/// use acrobot::Portable;
+/// use acrobot::arithmetic::Arithmetic;
 ///
 /// let (sin, cos) = Portable::sin_cos(1.0);
 /// assert_eq!([sin, cos].map(f64::to_bits), [0x3fea_ed54_8f09_0cee, 0x3fe1_4a28_0fb5_068c]);
@@ -18,7 +20,7 @@ pub struct Portable;
 
 impl Arithmetic for Portable {
     type Scalar = f64;
-    const FORM: Form = Form::Gymnasium;
+    type Form = Gymnasium;
 
     #[inline]
     fn sin_cos(x: f64) -> (f64, f64) {

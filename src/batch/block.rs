@@ -1,25 +1,19 @@
 //! Some acrobots side by side, and one step of them.
 
-use core::any::{Any, TypeId};
-use core::array::from_fn;
+use core::marker::PhantomData;
 
-use super::{Autoreset, Observations, Output, Shared};
-use crate::acrobot::transition;
-use crate::arithmetic::{Arithmetic, Fast, Form, Numbers, Real, kernel};
-use crate::dynamics::{Driven, Model, sin_cos};
-use crate::lanes::Lanes;
-use crate::params::Params;
-use crate::rk4::rk4_from;
-use crate::rng::{Pcg64, uniform};
-use crate::state::{StartBounds, State};
+use super::{Autoreset, Observations, Shared, StepBuffers};
+use crate::arithmetic::{Arithmetic, Lanes, Real, SinCos};
+use crate::numpy::{Pcg64, uniform};
+use crate::physics::{Params, StartBounds, State, sin_cos, step};
 
-/// The memory of `N` acrobots that are stepped side by side: what a [`Batch`](crate::Batch) lives in.
+/// The memory of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) consists of these.
 ///
-/// Sixteen suit a machine with vectors. Fewer waste less where there are few acrobots: a `Block<f32, 1>`
-/// takes 64 bytes, one of sixteen 640.
+/// Sixteen suit a machine with vectors. Fewer waste less where there are few acrobots: a `Block<f32, 1>` takes 64
+/// bytes, one of sixteen 640.
 ///
 /// ```
-/// use acrobot::Block;
+/// use acrobot::batch::Block;
 ///
 /// let blocks = vec![Block::<f32>::EMPTY; 1000_usize.div_ceil(Block::<f32>::LANES)];
 /// assert_eq!(size_of_val(&blocks[..]), 63 * 640);
@@ -29,22 +23,22 @@ use crate::state::{StartBounds, State};
 #[repr(C, align(64))]
 pub struct Block<S = f32, const N: usize = 16> {
     /// θ1, θ2, θ̇1 and θ̇2.
-    state: [[S; N]; 4],
-    /// cos θ1, sin θ1, cos θ2 and sin θ2: the order of an observation.
-    cos_sin: [[S; N]; 4],
+    y: [Lanes<S, N>; 4],
+    /// Of θ1 and θ2, for the observation and the next step.
+    sin_cos: [SinCos<Lanes<S, N>>; 2],
     elapsed: [u32; N],
     /// Whether the next step resets.
     ended: [bool; N],
 }
 
 impl<S: Real, const N: usize> Block<S, N> {
-    /// How many acrobots a block holds.
+    /// The number of acrobots in a block.
     pub const LANES: usize = N;
 
-    /// Memory in which no acrobot lives yet.
+    /// A block before its acrobots are placed.
     pub const EMPTY: Self = Self {
-        state: [[S::ZERO; N]; 4],
-        cos_sin: [[S::ZERO; N]; 4],
+        y: [Lanes([S::ZERO; N]); 4],
+        sin_cos: [(Lanes([S::ZERO; N]), Lanes([S::ZERO; N])); 2],
         elapsed: [0; N],
         ended: [false; N],
     };
@@ -57,22 +51,17 @@ impl<S: Real, const N: usize> Block<S, N> {
 impl<S: Real, const N: usize> Block<S, N> {
     #[inline(always)]
     pub(super) fn state(&self, lane: usize) -> State<S> {
-        State::from(self.state.map(|numbers| numbers[lane]))
+        self.y.map(|numbers| numbers.0[lane]).into()
     }
 
-    #[inline(always)]
-    fn place(&mut self, lane: usize, state: State<S>, [(sin1, cos1), (sin2, cos2)]: [(S, S); 2]) {
-        for (numbers, number) in self.state.iter_mut().zip(<[S; 4]>::from(state)) {
-            numbers[lane] = number;
+    /// Places a lane in a state, which leaves its episode as it is.
+    pub(super) fn set_state<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, state: State<S>) {
+        let new = sin_cos::<A>([state.theta1, state.theta2]);
+        for (numbers, number) in self.y.iter_mut().zip(<[S; 4]>::from(state)) {
+            numbers.0[lane] = number;
         }
-        for (numbers, number) in self.cos_sin.iter_mut().zip([cos1, sin1, cos2, sin2]) {
-            numbers[lane] = number;
-        }
-    }
-
-    pub(super) fn reset_to<A: Arithmetic<Scalar = S>>(&mut self, states: &[State<S>]) {
-        for (lane, state) in states.iter().enumerate().take(N) {
-            self.begin::<A>(lane, *state);
+        for ((sines, cosines), (sin, cos)) in self.sin_cos.iter_mut().zip(new) {
+            (sines.0[lane], cosines.0[lane]) = (sin, cos);
         }
     }
 
@@ -88,18 +77,19 @@ impl<S: Real, const N: usize> Block<S, N> {
         state: State<S>,
         (elapsed, ended): (u32, bool),
     ) {
-        self.begin::<A>(lane, state);
+        self.set_state::<A>(lane, state);
         self.elapsed[lane] = elapsed;
         self.ended[lane] = ended;
     }
 
-    fn begin<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, start: State<S>) {
-        self.place(lane, start, sin_cos::<A>(&start));
-        self.elapsed[lane] = 0;
-        self.ended[lane] = false;
+    /// Begins an episode in each of the first lanes.
+    pub(super) fn reset_to<A: Arithmetic<Scalar = S>>(&mut self, states: &[State<S>]) {
+        for (lane, state) in states.iter().enumerate().take(N) {
+            self.resume::<A>(lane, *state, (0, false));
+        }
     }
 
-    /// Resets some, each by its generator. A lane without one holds no acrobot, and hangs at rest.
+    /// Resets some lanes, each with its generator. A lane without one holds no acrobot and hangs at rest.
     #[cold]
     pub(super) fn reset<A: Arithmetic<Scalar = S>>(
         &mut self,
@@ -108,33 +98,37 @@ impl<S: Real, const N: usize> Block<S, N> {
         generators: &mut [Pcg64],
     ) {
         for lane in (0..N).filter(|&lane| some[lane]) {
-            let start = match generators.get_mut(lane) {
+            let state = match generators.get_mut(lane) {
                 Some(rng) => bounds.draw(rng).cast(),
                 None => State::default(),
             };
-            self.begin::<A>(lane, start);
+            self.resume::<A>(lane, state, (0, false));
         }
     }
 
-    /// Resets those that wait for the next step to do it.
-    pub(super) fn reset_ended<A: Arithmetic<Scalar = S>>(
+    /// Makes the lanes that wait for their reset fit a mode in which none waits.
+    pub(super) fn stop_waiting<A: Arithmetic<Scalar = S>>(
         &mut self,
-        bounds: StartBounds,
+        shared: &Shared<A>,
         generators: &mut [Pcg64],
     ) {
         let ended = self.ended;
-        self.reset::<A>(&ended, bounds, generators);
+        match shared.autoreset {
+            Autoreset::NextStep => {}
+            Autoreset::SameStep => self.reset::<A>(&ended, shared.bounds, generators),
+            Autoreset::Disabled => self.ended = [false; N],
+        }
     }
 
-    /// Six times a number of each acrobot.
+    /// Each acrobot's six numbers, lane by lane.
     #[inline(always)]
     fn seen(&self) -> [&[S; N]; 6] {
-        let [cos1, sin1, cos2, sin2] = &self.cos_sin;
-        let [_, _, dtheta1, dtheta2] = &self.state;
-        [cos1, sin1, cos2, sin2, dtheta1, dtheta2]
+        let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
+        let [_, _, dtheta1, dtheta2] = &self.y;
+        [&cos1.0, &sin1.0, &cos2.0, &sin2.0, &dtheta1.0, &dtheta2.0]
     }
 
-    /// What is seen of the block of that number, written where it belongs.
+    /// Writes the observations of this block, which is the one with this number.
     #[inline(always)]
     pub(super) fn observe(&self, number: usize, observations: &mut Observations<'_>) {
         let seen = self.seen();
@@ -157,7 +151,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// The same for some of its lanes.
+    /// [`observe`](Self::observe) for some of its lanes.
     #[cold]
     fn observe_some(&self, number: usize, some: &[bool; N], observations: &mut Observations<'_>) {
         for lane in (0..N).filter(|&lane| some[lane]) {
@@ -169,19 +163,21 @@ impl<S: Real, const N: usize> Block<S, N> {
     #[inline(always)]
     fn step<A: Arithmetic<Scalar = S>>(
         &mut self,
-        shared: &Shared<S>,
+        shared: &Shared<A>,
         number: usize,
-        actions: &[u8; N],
+        mut torques: [S; N],
         generators: &mut [Pcg64],
         final_observations: &mut Observations<'_>,
     ) -> Stepped<N> {
-        let params = &shared.model.params;
-        let torques = if params.torque_noise > S::ZERO {
-            self.noisy_torques(params, actions, generators)
-        } else {
-            actions.map(|action| S::pick(params.torques, action))
-        };
-        let terminated = self.advance::<A>(&shared.model, torques);
+        if shared.model.params.torque_noise > S::ZERO {
+            self.add_noise(&mut torques, shared.model.params.torque_noise, generators);
+        }
+        let terminated = step(
+            &shared.model,
+            &mut self.y,
+            &mut self.sin_cos,
+            Lanes(torques),
+        );
         let mut stepped = Stepped {
             rewards: [-1.0; N],
             terminated,
@@ -200,56 +196,27 @@ impl<S: Real, const N: usize> Block<S, N> {
         let resets = match shared.autoreset {
             Autoreset::NextStep => core::mem::replace(&mut self.ended, ended),
             Autoreset::SameStep => ended,
+            Autoreset::Disabled => [false; N],
         };
         if resets.iter().fold(false, |any, &reset| any | reset) {
-            match shared.autoreset {
-                Autoreset::NextStep => stepped.forget(&resets),
-                Autoreset::SameStep => self.observe_some(number, &resets, final_observations),
+            if shared.autoreset == Autoreset::NextStep {
+                stepped.clear(&resets);
+            } else {
+                self.observe_some(number, &resets, final_observations);
             }
             self.reset::<A>(&resets, shared.bounds, generators);
         }
         stepped
     }
 
-    /// Applies a torque to each for one `dt`, and says which are in the goal.
-    #[inline(always)]
-    fn advance<A: Arithmetic<Scalar = S>>(
-        &mut self,
-        model: &Model<S>,
-        torques: [S; N],
-    ) -> [bool; N] {
-        if TypeId::of::<A>() == TypeId::of::<Fast>() {
-            let all: (&mut dyn Any, &dyn Any) = (self, model);
-            if let (Some(block), Some(model)) = (all.0.downcast_mut(), all.1.downcast_ref()) {
-                return advance_lanes(block, model, torques.map(|torque| torque.to_f64() as f32));
-            }
-        }
-        from_fn(|lane| {
-            let mut state = self.state(lane);
-            let [cos1, sin1, cos2, sin2] = self.cos_sin.map(|numbers| numbers[lane]);
-            let mut sin_cos = [(sin1, cos1), (sin2, cos2)];
-            let terminated = transition::<A>(model, &mut state, &mut sin_cos, torques[lane]);
-            self.place(lane, state, sin_cos);
-            terminated
-        })
-    }
-
-    /// With a draw of the noise for each that is not to be reset.
+    /// Adds a draw of the noise to each torque, except in lanes that this step only resets.
     #[cold]
-    fn noisy_torques(
-        &self,
-        params: &Params<S>,
-        actions: &[u8; N],
-        generators: &mut [Pcg64],
-    ) -> [S; N] {
-        let noise = params.torque_noise.to_f64();
-        from_fn(|lane| {
-            let torque = S::pick(params.torques, actions[lane]);
-            match generators.get_mut(lane) {
-                Some(rng) if !self.ended[lane] => torque + S::from_f64(uniform(rng, -noise, noise)),
-                _ => torque,
-            }
-        })
+    fn add_noise(&self, torques: &mut [S; N], noise: S, generators: &mut [Pcg64]) {
+        let noise = noise.to_f64();
+        let lanes = torques.iter_mut().zip(&self.ended).zip(generators);
+        for ((torque, _), rng) in lanes.filter(|((_, ended), _)| !**ended) {
+            *torque = *torque + S::from_f64(uniform(rng, -noise, noise));
+        }
     }
 }
 
@@ -261,9 +228,9 @@ struct Stepped<const N: usize> {
 }
 
 impl<const N: usize> Stepped<N> {
-    /// What a step that only resets has none of.
+    /// For lanes that the step only resets.
     #[cold]
-    fn forget(&mut self, resets: &[bool; N]) {
+    fn clear(&mut self, resets: &[bool; N]) {
         let each = self.rewards.iter_mut().zip(&mut self.terminated);
         let each = each.zip(&mut self.truncated).zip(resets);
         for (((reward, terminated), truncated), _) in each.filter(|(_, reset)| **reset) {
@@ -272,107 +239,92 @@ impl<const N: usize> Stepped<N> {
     }
 }
 
-/// [`transition`] of all at once, without a branch but for results that are not finite.
-#[inline(always)]
-fn advance_lanes<const N: usize>(
-    block: &mut Block<f32, N>,
-    model: &Model<f32>,
-    torques: [f32; N],
-) -> [bool; N] {
-    let torque = Lanes(torques);
-    let [theta1, theta2, dtheta1, dtheta2] = block.state;
-    let y = [Lanes(theta1), Lanes(theta2), Lanes(dtheta1), Lanes(dtheta2)];
-    let [cos1, sin1, cos2, sin2] = block.cos_sin;
-    let sin_cos = [(Lanes(sin1), Lanes(cos1)), (Lanes(sin2), Lanes(cos2))];
-    let k1 = model.lean(y, sin_cos, torque);
-    let driven = Driven::<Fast, _>::new(model, torque);
-    let next = rk4_from(Form::Lean, y, k1, model.dts, &driven);
+/// What drives a batch for one step.
+pub(super) trait Drive<S> {
+    /// The argument's name, for errors.
+    const NAME: &'static str;
 
-    // 0 times what is not finite is NaN.
-    let zero = Lanes::splat(0.0);
-    let [theta1, theta2, dtheta1, dtheta2] = next;
-    let zeros = ((theta1 * zero + theta2 * zero) + dtheta1 * zero) + dtheta2 * zero;
-    let next = if zeros.0.iter().fold(true, |all, &x| all & (x == 0.0)) {
-        next
-    } else {
-        at_rest(next, zeros, y)
-    };
+    /// What each acrobot is given.
+    type Input: Copy + Sync;
 
-    let [theta1, theta2, dtheta1, dtheta2] = next;
-    let (theta1, theta2) = (theta1.wrap(), theta2.wrap());
-    let dtheta1 = dtheta1.bound(model.params.max_velocity1);
-    let dtheta2 = dtheta2.bound(model.params.max_velocity2);
-    let (sin1, cos1) = kernel(theta1);
-    let (sin2, cos2) = kernel(theta2);
-    block.state = [theta1.0, theta2.0, dtheta1.0, dtheta2.0];
-    block.cos_sin = [cos1.0, sin1.0, cos2.0, sin2.0];
-
-    let cos_sum = cos1 * cos2 - sin1 * sin2;
-    let height = -cos1 - cos_sum;
-    let mut terminated = [false; N];
-    for (terminated, height) in terminated.iter_mut().zip(height.0) {
-        *terminated = height > 1.0;
-    }
-    terminated
+    /// The torques of one block in N m. Lanes without an input get one that is valid.
+    fn torques<const N: usize>(params: &Params<S>, inputs: &[Self::Input]) -> [S; N];
 }
 
-/// Lanes that are not finite keep their angles and stop.
-#[cold]
-fn at_rest<const N: usize>(
-    mut next: [Lanes<N>; 4],
-    zeros: Lanes<N>,
-    [theta1, theta2, ..]: [Lanes<N>; 4],
-) -> [Lanes<N>; 4] {
-    let zero = Lanes::splat(0.0);
-    for (next, kept) in next.iter_mut().zip([theta1, theta2, zero, zero]) {
-        for ((next, kept), zero) in next.0.iter_mut().zip(kept.0).zip(zeros.0) {
-            *next = if zero == 0.0 { *next } else { kept };
-        }
+/// Action numbers, which are 0, 1 and 2.
+pub(super) struct Actions<T>(PhantomData<T>);
+
+impl<S: Real, T: Copy + Into<u8> + Sync> Drive<S> for Actions<T> {
+    const NAME: &'static str = "actions";
+
+    type Input = T;
+
+    #[inline(always)]
+    fn torques<const N: usize>(params: &Params<S>, inputs: &[T]) -> [S; N] {
+        let [_, idle, _] = params.torques;
+        read(inputs, idle, |action| {
+            S::pick(params.torques, action.into())
+        })
     }
-    next
+}
+
+/// Torques in N m, which are finite.
+pub(super) struct Torques;
+
+impl<S: Real> Drive<S> for Torques {
+    const NAME: &'static str = "torques";
+
+    type Input = S;
+
+    #[inline(always)]
+    fn torques<const N: usize>(_: &Params<S>, inputs: &[S]) -> [S; N] {
+        read(inputs, S::ZERO, |torque| torque)
+    }
 }
 
 #[inline(always)]
-pub(super) fn step_blocks<A: Arithmetic, const N: usize>(
-    shared: &Shared<A::Scalar>,
+pub(super) fn step_blocks<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
+    shared: &Shared<A>,
     blocks: &mut [Block<A::Scalar, N>],
     generators: &mut [Pcg64],
-    actions: &[impl Copy + Into<u8>],
-    mut output: Output<'_>,
+    inputs: &[D::Input],
+    mut buffers: StepBuffers<'_>,
 ) {
-    let each = actions
+    let each = inputs
         .chunks(N)
         .zip(generators.chunks_mut(N))
-        .zip(output.rewards.chunks_mut(N))
-        .zip(output.terminated.chunks_mut(N))
-        .zip(output.truncated.chunks_mut(N));
-    for ((number, block), ((((actions, generators), rewards), terminated), truncated)) in
+        .zip(buffers.rewards.chunks_mut(N))
+        .zip(buffers.terminated.chunks_mut(N))
+        .zip(buffers.truncated.chunks_mut(N));
+    for ((number, block), ((((inputs, generators), rewards), terminated), truncated)) in
         blocks.iter_mut().enumerate().zip(each)
     {
-        // What is left of the last block does nothing that is seen.
-        let mut given = [1; N];
-        match actions.first_chunk::<N>() {
-            Some(all) => read(&mut given, all),
-            None => read(&mut given, actions),
-        }
-        let finals = &mut output.final_observations;
-        let stepped = block.step::<A>(shared, number, &given, generators, finals);
+        let torques = D::torques(&shared.model.params, inputs);
+        let finals = &mut buffers.final_observations;
+        let stepped = block.step(shared, number, torques, generators, finals);
         write(rewards, &stepped.rewards);
         write(terminated, &stepped.terminated);
         write(truncated, &stepped.truncated);
-        block.observe(number, &mut output.observations);
+        block.observe(number, &mut buffers.observations);
     }
 }
 
-/// As many as there are.
+/// A block's inputs, converted. The last block may have fewer; the rest of its lanes get `rest`.
 #[inline(always)]
-fn read<const N: usize>(to: &mut [u8; N], from: &[impl Copy + Into<u8>]) {
-    for (to, &from) in to.iter_mut().zip(from) {
-        *to = from.into();
+fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(T) -> U) -> [U; N] {
+    let mut to = [rest; N];
+    // A whole block is a loop of known length, which LLVM turns into vectors.
+    match from.first_chunk::<N>() {
+        Some(all) => to.iter_mut().zip(all).for_each(|(to, &x)| *to = convert(x)),
+        None => to
+            .iter_mut()
+            .zip(from)
+            .for_each(|(to, &x)| *to = convert(x)),
     }
+    to
 }
 
-/// As many as there is room for.
+/// Writes as many as there is room for.
 #[inline(always)]
 fn write<T: Copy, const N: usize>(to: &mut [T], from: &[T; N]) {
     match to.first_chunk_mut() {

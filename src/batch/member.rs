@@ -1,17 +1,18 @@
 //! One acrobot of a batch, to save and to resume.
 
-use super::{Autoreset, Batch, Block};
+use super::{Batch, Block, no_such_member};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
-use crate::rng::Pcg64;
-use crate::state::State;
+use crate::numpy::Pcg64;
+use crate::physics::State;
 
-/// What of one acrobot of a [`Batch`] cannot be derived; those of all are a snapshot of the batch, but
-/// for what its setters set. With the `serde` feature it can be stored, as an
-/// [`Acrobot`](crate::Acrobot#snapshots) can.
+/// One acrobot's saved state. Saving all members saves the batch except its settings. With the `serde` feature it
+/// can be stored, as an [`Acrobot`](crate::Acrobot#snapshots) can.
 ///
 /// ```
-/// use acrobot::{Batch, Block, Fast, Member, Pcg64};
+/// use acrobot::Fast;
+/// use acrobot::batch::{Batch, Block, Member};
+/// use acrobot::numpy::Pcg64;
 ///
 /// let new = |seed| Batch::<Fast, _, _>::new(seed, [Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
 /// let (batch, mut twin) = (new(42)?, new(0)?);
@@ -28,9 +29,9 @@ pub struct Member<S = f32> {
     pub state: State<S>,
     /// The steps since the last reset.
     pub elapsed: u32,
-    /// Whether the next step resets it, as with [`Autoreset::NextStep`].
+    /// Whether the next step resets it, as with [`Autoreset::NextStep`](super::Autoreset::NextStep).
     pub ended: bool,
-    /// The generator that its starts and its torque noise are drawn from.
+    /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
 }
 
@@ -40,7 +41,7 @@ where
     B: AsRef<[Block<A::Scalar, N>]> + AsMut<[Block<A::Scalar, N>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
 {
-    /// The acrobot of that index, if there is one.
+    /// Acrobot `index`, if there is one.
     #[must_use]
     pub fn member(&self, index: usize) -> Option<Member<A::Scalar>> {
         let rng = self.generators.as_ref().get(index)?.clone();
@@ -54,31 +55,26 @@ where
         })
     }
 
-    /// Puts an acrobot in the place of that index, where it goes on to the same bits. One that waits for
-    /// its reset is reset at once with [`Autoreset::SameStep`], with which none waits.
+    /// Replaces acrobot `index`, which resumes to the same bits. If it waits for the next step to reset it,
+    /// [`Autoreset::SameStep`](super::Autoreset::SameStep) resets it immediately, and with
+    /// [`Autoreset::Disabled`](super::Autoreset::Disabled) it steps on.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for an index that is not in the batch, and for a number of the state that is
-    /// not finite; nothing is changed then.
+    /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and [`Error::OutOfRange`] for a number of
+    /// the state that is not finite.
     pub fn set_member(&mut self, index: usize, member: Member<A::Scalar>) -> Result<(), Error> {
         member.state.validate()?;
+        let len = self.len();
         let block = self.blocks.as_mut().get_mut(index / N);
         let generators = self.generators.as_mut().chunks_mut(N).nth(index / N);
         let generators = generators.unwrap_or_default();
         let (Some(block), Some(rng)) = (block, generators.get_mut(index % N)) else {
-            return Err(Error::OutOfRange {
-                name: "index",
-                value: index as f64,
-                unit: "acrobots",
-                allowed: "one below the length of the batch",
-            });
+            return Err(no_such_member(index, len));
         };
         block.resume::<A>(index % N, member.state, (member.elapsed, member.ended));
         *rng = member.rng;
-        if self.shared.autoreset == Autoreset::SameStep {
-            block.reset_ended::<A>(self.shared.bounds, generators);
-        }
+        block.stop_waiting::<A>(&self.shared, generators);
         Ok(())
     }
 }
@@ -121,7 +117,7 @@ mod snapshot {
     }
 
     impl<'de, S: Real + Deserialize<'de>> Deserialize<'de> for Member<S> {
-        /// Refuses what [`set_member`](crate::Batch::set_member) refuses.
+        /// Rejects what [`set_member`](crate::batch::Batch::set_member) rejects.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
             let Snapshot::<Header<Self>, S, Pcg64> {
                 state,

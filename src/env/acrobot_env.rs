@@ -1,26 +1,23 @@
-//! The environment that [`make`](super::make) wraps: an acrobot, how it is seen and how it is shown.
+//! The environment that [`make`](super::make) wraps: an acrobot with a kind of observation and a render mode.
 
 use core::fmt;
 use core::marker::PhantomData;
-use std::sync::{Arc, Mutex, PoisonError};
 
-use super::{BoxSpace, Discrete, Env, EnvStep, Error, Frame, Info, Rendering, frame};
-use crate::acrobot::Acrobot;
+use super::{BoxSpace, Discrete, Env, Error, Info, RenderMode, Rendering};
+use crate::acrobot::{Acrobot, ResetOptions, Step};
+use crate::action::Action;
 use crate::arithmetic::Arithmetic;
-use crate::error::Error as Refusal;
-use crate::params::Params;
+use crate::observation::Observation;
+use crate::physics::{Params, State};
 use crate::render::Figure;
-use crate::seed::SeedSequence;
-use crate::state::{StartBounds, State};
-use crate::{Action, Observation};
 
-/// An observation that an acrobot can be seen as.
+/// A kind of observation of an acrobot.
 ///
 /// ```
-/// use acrobot::env::View;
+/// use acrobot::env::ObservationKind;
 /// use acrobot::{Acrobot, Observation, Portable};
 ///
-/// fn length<O: View>(acrobot: &Acrobot<Portable>) -> usize {
+/// fn length<O: ObservationKind>(acrobot: &Acrobot<Portable>) -> usize {
 ///     O::of(acrobot).as_ref().len()
 /// }
 ///
@@ -28,93 +25,42 @@ use crate::{Action, Observation};
 /// assert_eq!(length::<Observation>(&acrobot), 6);
 /// assert_eq!(length::<Observation<4>>(&acrobot), 4);
 /// ```
-pub trait View: AsRef<[f32]> + AsMut<[f32]> + Clone + fmt::Debug + PartialEq + 'static {
+pub trait ObservationKind:
+    AsRef<[f32]> + AsMut<[f32]> + Clone + fmt::Debug + PartialEq + 'static
+{
     /// What the agent sees.
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self;
 
-    /// The space that it is from; its velocity bounds are those of the parameters.
+    /// The space of these observations, with the velocity bounds of `params`.
     fn space(params: &Params<f32>) -> BoxSpace<Self>;
 }
 
-/// That of `Acrobot-v1`.
-impl View for Observation<6> {
+/// The observation of `Acrobot-v1`.
+impl ObservationKind for Observation<6> {
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self {
         acrobot.observation()
     }
 
     fn space(params: &Params<f32>) -> BoxSpace<Self> {
-        let mut high = Self::HIGH;
-        [high.0[4], high.0[5]] = [params.max_velocity1, params.max_velocity2];
-        BoxSpace::symmetric(high)
+        let [cos1, sin1, cos2, sin2, ..] = Self::HIGH.to_array();
+        let (dtheta1, dtheta2) = (params.max_velocity1, params.max_velocity2);
+        BoxSpace::symmetric([cos1, sin1, cos2, sin2, dtheta1, dtheta2].into())
     }
 }
 
-/// That of `Acrobot-v0`.
-impl View for Observation<4> {
+/// The observation of `Acrobot-v0`.
+impl ObservationKind for Observation<4> {
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self {
         acrobot.state().into()
     }
 
     fn space(params: &Params<f32>) -> BoxSpace<Self> {
-        let mut high = Self::V0_HIGH;
-        [high.0[2], high.0[3]] = [params.max_velocity1, params.max_velocity2];
-        BoxSpace::symmetric(high)
+        let [theta1, theta2, ..] = Self::V0_HIGH.to_array();
+        BoxSpace::symmetric([theta1, theta2, params.max_velocity1, params.max_velocity2].into())
     }
 }
 
-/// Who shows the frames of mode [`RenderMode::Human`]: a window, a web socket, a test.
-///
-/// ```
-/// use acrobot::Fast;
-/// use acrobot::env::{Display, Env, Options, RenderMode, acrobot_v1};
-///
-/// let (sender, frames) = std::sync::mpsc::channel();
-/// let display = Display::new(move |frame| sender.send(frame.clone()).unwrap_or(()));
-/// let options = Options { render_mode: RenderMode::Human(display), ..Options::default() };
-/// let mut env = acrobot_v1::<Fast>(options)?;
-/// env.reset(Some(42.into()), None);
-/// assert_eq!(frames.try_iter().count(), 1);
-/// # Ok::<(), acrobot::env::Error>(())
-/// ```
-#[derive(Clone)]
-pub struct Display(Arc<Mutex<Show>>);
-
-type Show = dyn FnMut(&Frame) + Send;
-
-impl Display {
-    /// A display that hands each frame to `show`; clones share it.
-    pub fn new(show: impl FnMut(&Frame) + Send + 'static) -> Self {
-        Self(Arc::new(Mutex::new(show)))
-    }
-
-    fn show(&self, frame: &Frame) {
-        // One that panicked in another thread can still show this frame.
-        let mut show = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        show(frame);
-    }
-}
-
-impl fmt::Debug for Display {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Display")
-    }
-}
-
-/// What [`Env::render`] returns, chosen when the environment is made.
-#[derive(Clone, Debug, Default)]
-pub enum RenderMode {
-    /// Nothing: `render` is refused.
-    #[default]
-    None,
-    /// A [`Frame`] of 500 × 500 RGB pixels.
-    RgbArray,
-    /// A drawing in braille characters, 40 × 20, and a line of numbers.
-    Ansi,
-    /// Each reset and each step shows a frame on the display.
-    Human(Display),
-}
-
-/// An acrobot as an environment of Gymnasium's: seen as `O`, computed in `A`, rendered by mode.
+/// Gymnasium's Acrobot without its wrappers, with observations `O` and in the arithmetic `A`.
 #[derive(Clone, Debug)]
 pub struct AcrobotEnv<A: Arithmetic, O> {
     acrobot: Acrobot<A>,
@@ -122,31 +68,24 @@ pub struct AcrobotEnv<A: Arithmetic, O> {
     view: PhantomData<O>,
 }
 
-impl<A: Arithmetic, O: View> AcrobotEnv<A, O> {
-    /// One at the start of seed 0.
+impl<A: Arithmetic, O: ObservationKind> AcrobotEnv<A, O> {
+    /// An environment in the initial state of seed 0.
     ///
     /// # Errors
     ///
-    /// The first parameter that is refused, also where it is so only as rounded to `A`'s scalar.
-    pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, Refusal> {
+    /// As [`Params::validate`], for the parameters as they are and as rounded to `A`'s scalar.
+    pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, crate::Error> {
         let mut env = Self {
             render_mode,
             ..Self::default()
         };
-        LiveAcrobot::set_params(&mut env.acrobot, params)?;
+        DynAcrobot::set_params(&mut env.acrobot, params)?;
         Ok(env)
-    }
-
-    /// In mode human every reset and every step is shown, as in Gymnasium.
-    fn show(&self) {
-        if let RenderMode::Human(display) = &self.render_mode {
-            display.show(&Frame::of(&Figure::new(&self.acrobot)));
-        }
     }
 }
 
 impl<A: Arithmetic, O> Default for AcrobotEnv<A, O> {
-    /// Gymnasium's parameters, and nothing to render.
+    /// Gymnasium's parameters, and no render mode.
     fn default() -> Self {
         Self {
             acrobot: Acrobot::new(0),
@@ -156,27 +95,33 @@ impl<A: Arithmetic, O> Default for AcrobotEnv<A, O> {
     }
 }
 
-impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
+impl<A: Arithmetic, O: ObservationKind> Env for AcrobotEnv<A, O> {
     type Observation = O;
     type Action = Action;
     type ObservationSpace = BoxSpace<O>;
     type ActionSpace = Discrete<Action>;
     type Unwrapped = Acrobot<A>;
 
-    fn reset(&mut self, seed: Option<SeedSequence>, bounds: Option<StartBounds>) -> (O, Info) {
-        let (_, info) = Env::reset(&mut self.acrobot, seed, bounds);
-        self.show();
-        (O::of(&self.acrobot), info)
+    fn reset_with(&mut self, options: ResetOptions) -> (O, Info) {
+        self.acrobot.reset_with(options);
+        self.render_mode.show(&self.acrobot);
+        (O::of(&self.acrobot), Info::default())
     }
 
-    fn step(&mut self, action: Action) -> EnvStep<O> {
-        let step = Env::step(&mut self.acrobot, action);
-        self.show();
-        step.map(|_| O::of(&self.acrobot))
+    fn step(&mut self, action: Action) -> Step<O, Info> {
+        let step = self.acrobot.step(action);
+        self.render_mode.show(&self.acrobot);
+        Step {
+            observation: O::of(&self.acrobot),
+            reward: step.reward,
+            terminated: step.terminated,
+            truncated: step.truncated,
+            info: Info::default(),
+        }
     }
 
     fn action_space(&self) -> Discrete<Action> {
-        self.acrobot.action_space()
+        Discrete::ACTIONS
     }
 
     fn observation_space(&self) -> BoxSpace<O> {
@@ -184,26 +129,7 @@ impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
     }
 
     fn render(&mut self) -> Result<Rendering, Error> {
-        match &self.render_mode {
-            RenderMode::None => Err(Error::NoRenderMode),
-            RenderMode::RgbArray => Ok(Rendering::Frame(Frame::of(&Figure::new(&self.acrobot)))),
-            RenderMode::Ansi => {
-                let State {
-                    theta1,
-                    theta2,
-                    dtheta1,
-                    dtheta2,
-                } = self.acrobot.state().cast::<f64>();
-                let drawing = frame::text(&Figure::new(&self.acrobot));
-                Ok(Rendering::Text(std::format!(
-                    "{drawing}\nθ1 {theta1:+.2}  θ2 {theta2:+.2} rad  θ̇1 {dtheta1:+.2}  θ̇2 {dtheta2:+.2} rad/s\n"
-                )))
-            }
-            RenderMode::Human(_) => {
-                self.show();
-                Ok(Rendering::Shown)
-            }
-        }
+        self.render_mode.render(&self.acrobot)
     }
 
     fn close(&mut self) {
@@ -219,13 +145,13 @@ impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
     }
 }
 
-/// An acrobot of any arithmetic, for live changes through [`DynEnv`](super::DynEnv).
+/// An acrobot in any arithmetic, for live changes through [`DynEnv`](super::DynEnv).
 ///
 /// ```
-/// use acrobot::env::{Env, Error, LiveAcrobot, make};
+/// use acrobot::env::{DynAcrobot, Env, Error, make};
 /// use acrobot::{Params, State};
 ///
-/// fn hang_still(acrobot: &mut dyn LiveAcrobot) -> Result<(), Error> {
+/// fn hang_still(acrobot: &mut dyn DynAcrobot) -> Result<(), Error> {
 ///     acrobot.set_params(Params { torque_noise: 0.0, ..acrobot.params() })?;
 ///     Ok(acrobot.set_state(State::default())?)
 /// }
@@ -235,7 +161,7 @@ impl<A: Arithmetic, O: View> Env for AcrobotEnv<A, O> {
 /// assert_eq!(env.unwrapped().state(), State::default());
 /// # Ok::<(), Error>(())
 /// ```
-pub trait LiveAcrobot {
+pub trait DynAcrobot {
     /// The state, exactly.
     fn state(&self) -> State;
 
@@ -244,7 +170,7 @@ pub trait LiveAcrobot {
     /// # Errors
     ///
     /// As there.
-    fn set_state(&mut self, state: State) -> Result<(), Refusal>;
+    fn set_state(&mut self, state: State) -> Result<(), crate::Error>;
 
     /// The parameters, exactly.
     fn params(&self) -> Params;
@@ -253,19 +179,19 @@ pub trait LiveAcrobot {
     ///
     /// # Errors
     ///
-    /// As there, for a parameter that is refused as it is or as rounded.
-    fn set_params(&mut self, params: Params) -> Result<(), Refusal>;
+    /// As there, for the parameters as they are and as rounded.
+    fn set_params(&mut self, params: Params) -> Result<(), crate::Error>;
 
     /// The figure to draw.
     fn figure(&self) -> Figure;
 }
 
-impl<A: Arithmetic> LiveAcrobot for Acrobot<A> {
+impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
     fn state(&self) -> State {
         Self::state(self).cast()
     }
 
-    fn set_state(&mut self, state: State) -> Result<(), Refusal> {
+    fn set_state(&mut self, state: State) -> Result<(), crate::Error> {
         Self::set_state(self, state.cast())
     }
 
@@ -273,7 +199,7 @@ impl<A: Arithmetic> LiveAcrobot for Acrobot<A> {
         Self::params(self).cast()
     }
 
-    fn set_params(&mut self, params: Params) -> Result<(), Refusal> {
+    fn set_params(&mut self, params: Params) -> Result<(), crate::Error> {
         params.validate()?;
         Self::set_params(self, params.cast())
     }

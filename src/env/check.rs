@@ -5,8 +5,9 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use super::{Env, EnvStep, Space};
-use crate::rng::Pcg64;
+use super::{Env, Info, Space};
+use crate::acrobot::Step;
+use crate::numpy::Pcg64;
 
 /// A rule that an environment broke, and how.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,28 +26,33 @@ impl fmt::Display for Violation {
 
 impl core::error::Error for Violation {}
 
-const IN_SPACE: &str = "an observation is in the observation space";
+const IN_SPACE: &str = "observations are in the observation space";
 const ACTIONS: &str = "the action space contains its samples";
-const REWARD: &str = "a reward is finite";
-const SEED: &str = "the same seed and the same actions give the same episode";
-const AFTER_END: &str = "a reset after an end starts a whole new episode";
+const REWARD: &str = "rewards are finite";
+const SEED: &str = "the same seed and actions give the same episode";
+const AFTER_END: &str = "a reset after an end begins a whole new episode";
 const CLONE: &str = "a clone does what its original would have done";
 const RENDER: &str = "rendering changes nothing";
 
-/// Episodes are followed for so many steps at the most.
+/// The most steps of an episode that are played.
 const STEPS: usize = 2000;
 
-/// Plays random episodes and checks the contract: observations and samples lie in their space, rewards are
-/// finite, seeds reproduce, a reset after an end starts anew, seeded or not (so that truncation is reported at the
-/// end of an episode and not again at the start of the next), clones differ only by the
-/// actions they are given, and rendering changes nothing.
+/// Plays random episodes and checks the contract:
+///
+/// - Observations and samples are in their space, and rewards are finite.
+/// - The same seed gives the same episode.
+/// - A reset after an end begins a whole new episode, with or without a seed. So truncation is not reported again at
+///   the start of the next episode.
+/// - Clones differ only by the actions that they are given.
+/// - Rendering changes nothing.
 ///
 /// ```
-/// use acrobot::env::check_env;
-/// use acrobot::{Acrobot, Fast, TimeLimit};
+/// use acrobot::Fast;
+/// use acrobot::env::{acrobot_v1, check_env};
 ///
-/// check_env(&TimeLimit::v1(Acrobot::<Fast>::new(0)), 42)?;
-/// # Ok::<(), acrobot::env::Violation>(())
+/// let env = acrobot_v1::<Fast>(Default::default())?;
+/// assert!(check_env(&env, 42).is_ok());
+/// # Ok::<(), acrobot::env::Error>(())
 /// ```
 ///
 /// # Errors
@@ -63,18 +69,18 @@ where
     if !actions.iter().all(|action| space.contains(action)) {
         return Err(Violation {
             rule: ACTIONS,
-            found: "a sample outside of it".into(),
+            found: "a sample is not".into(),
         });
     }
 
     let mut played = env.clone();
     let mut otherwise_seeded = env.clone();
-    otherwise_seeded.reset(Some(seed.wrapping_add(1).into()), None);
+    otherwise_seeded.reset_with_seed(seed.wrapping_add(1));
     let first = play(&mut played, Some(seed), &actions)?;
     let again = play(&mut otherwise_seeded, Some(seed), &actions)?;
     same(SEED, &first, &again)?;
 
-    // The two have come to the same end, and go on in the same stream.
+    // Both are at the same end and go on in the same stream.
     let next = play(&mut played, None, &actions)?;
     same(SEED, &next, &play(&mut otherwise_seeded, None, &actions)?)?;
     let truncated = |episode: &Episode<_>| episode.steps.last().is_some_and(|step| step.truncated);
@@ -93,7 +99,7 @@ where
 
     let (before, after) = actions.split_at(first.steps.len() / 2);
     let mut original = env.clone();
-    original.reset(Some(seed.into()), None);
+    original.reset_with_seed(seed);
     for action in before {
         original.step(action.clone());
     }
@@ -102,16 +108,15 @@ where
     let expected = follow(&mut original, after)?;
     same_steps(CLONE, &expected, &follow(&mut copy, after)?)?;
 
-    // Rendering may well be refused; it must not matter.
+    // Whether rendering succeeds must not matter.
     let _ = rendered.render();
     same_steps(RENDER, &expected, &follow(&mut rendered, after)?)
 }
 
-/// An episode, up to its end: two with the same steps have the same length, since only an end or
-/// the end of the actions stops one.
+/// An episode, up to its end or to the last action.
 struct Episode<O> {
     start: O,
-    steps: Vec<EnvStep<O>>,
+    steps: Vec<Step<O, Info>>,
 }
 
 fn play<E>(
@@ -122,14 +127,20 @@ fn play<E>(
 where
     E: Env<Observation: Clone + fmt::Debug, Action: Clone>,
 {
-    let (start, _) = env.reset(seed.map(Into::into), None);
+    let (start, _) = match seed {
+        Some(seed) => env.reset_with_seed(seed),
+        None => env.reset(),
+    };
     in_space(env, &start)?;
     let steps = follow(env, actions)?;
     Ok(Episode { start, steps })
 }
 
-/// Steps to the end of the episode, or of the actions.
-fn follow<E>(env: &mut E, actions: &[E::Action]) -> Result<Vec<EnvStep<E::Observation>>, Violation>
+/// Steps to the end of the episode or to the last action.
+fn follow<E>(
+    env: &mut E,
+    actions: &[E::Action],
+) -> Result<Vec<Step<E::Observation, Info>>, Violation>
 where
     E: Env<Observation: Clone + fmt::Debug, Action: Clone>,
 {
@@ -143,9 +154,9 @@ where
                 found: format!("{}", step.reward),
             });
         }
-        let ended = step.ended();
+        let done = step.done();
         steps.push(step);
-        if ended {
+        if done {
             break;
         }
     }
@@ -179,11 +190,11 @@ fn same<O: fmt::Debug + PartialEq>(
 
 fn same_steps<O: fmt::Debug + PartialEq>(
     rule: &'static str,
-    x: &[EnvStep<O>],
-    y: &[EnvStep<O>],
+    x: &[Step<O, Info>],
+    y: &[Step<O, Info>],
 ) -> Result<(), Violation> {
     for (i, (x, y)) in x.iter().zip(y).enumerate() {
-        // The info may hold times.
+        // Infos may contain times, which differ.
         let same = x.observation == y.observation
             && x.reward == y.reward
             && (x.terminated, x.truncated) == (y.terminated, y.truncated);

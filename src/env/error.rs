@@ -1,4 +1,4 @@
-//! What the host's parts refuse.
+//! Errors of environments.
 
 use core::fmt;
 use std::string::String;
@@ -15,33 +15,24 @@ use std::string::String;
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// No environment has this name.
-    UnknownId {
-        /// What was asked for.
-        id: String,
-        /// The known one that is nearest to it.
-        nearest: &'static str,
-        /// All known ones.
-        known: &'static [&'static str],
-    },
-    /// A picture was asked of an environment that was made for none.
+    /// No environment has this id.
+    UnknownId(String),
+    /// The environment was made without a render mode.
     NoRenderMode,
-    /// A parameter that does not fit.
+    /// A parameter was rejected.
     Invalid(crate::Error),
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::UnknownId { id, nearest, known } => write!(
+            Self::UnknownId(id) => write!(
                 f,
-                "there is no environment {id:?}; did you mean {nearest:?}? Known are {}",
-                known.join(" and ")
+                r#"the id must be "Acrobot-v1" or "Acrobot-v0", got {id:?}"#
             ),
             Self::NoRenderMode => write!(
                 f,
-                "the render mode is None; make the environment with the render mode RgbArray, Ansi or \
-                 Human to render it"
+                "the render mode must be RgbArray, Ansi or Human to render, got None"
             ),
             Self::Invalid(error) => error.fmt(f),
         }

@@ -1,24 +1,22 @@
-//! Environments by their names.
+//! Environments by their ids.
 
 use core::fmt;
-use core::ops::Deref;
 use std::borrow::ToOwned;
 use std::boxed::Box;
 
-use super::{
-    AcrobotEnv, BoxSpace, Discrete, Env, EnvStep, Error, Info, LiveAcrobot, RenderMode, Rendering,
-};
+use super::{AcrobotEnv, BoxSpace, Discrete, DynAcrobot, Env, Error, Info, RenderMode, Rendering};
+use crate::acrobot::{ResetOptions, Step};
+use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable};
-use crate::params::Params;
-use crate::seed::SeedSequence;
-use crate::state::StartBounds;
+use crate::observation::Observation;
+use crate::physics::Params;
 use crate::time_limit::TimeLimit;
-use crate::{Action, Observation};
 
-/// Which arithmetic [`make_with`] computes in.
+/// The arithmetic that [`make_with`] computes in.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ArithmeticKind {
-    /// [`Host`]: Gymnasium's episodes.
+    /// [`Host`]: Gymnasium's own bits.
     #[default]
     Host,
     /// [`Portable`].
@@ -29,14 +27,14 @@ pub enum ArithmeticKind {
     Micro,
 }
 
-/// How an environment is made; the default is Gymnasium's `make(id)`.
+/// How an environment is made. The default is Gymnasium's `make(id)`.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// What `render` returns.
     pub render_mode: RenderMode,
-    /// What it computes in; the typed constructors have it as a type.
+    /// The arithmetic. [`acrobot_v1`] and [`acrobot_v0`] have it as a type instead.
     pub arithmetic: ArithmeticKind,
-    /// Dynamics, time step, noise, masses and all the rest.
+    /// The parameters: dynamics, time step, noise, masses and all others.
     pub params: Params,
 }
 
@@ -50,32 +48,32 @@ impl Default for Options {
     }
 }
 
-/// The environment that [`make`] returns, of either version and any arithmetic.
+/// The environment that [`make`] returns, of either version and in any arithmetic.
 ///
 /// ```
-/// use acrobot::env::{DynEnv, Env, Reading, make};
+/// use acrobot::env::{DynEnv, DynObservation, Env, make};
 ///
-/// fn start(env: &mut DynEnv) -> Reading {
-///     env.reset(Some(42.into()), None).0
+/// fn first(env: &mut DynEnv) -> DynObservation {
+///     env.reset_with_seed(42).0
 /// }
 ///
-/// assert!(matches!(start(&mut *make("Acrobot-v0")?), Reading::V0(_)));
-/// assert_eq!(start(&mut *make("Acrobot-v1")?).len(), 6);
+/// assert!(matches!(first(&mut *make("Acrobot-v0")?), DynObservation::V0(_)));
+/// assert_eq!(first(&mut *make("Acrobot-v1")?).as_slice().len(), 6);
 /// # Ok::<(), acrobot::env::Error>(())
 /// ```
 pub type DynEnv = dyn Env<
-        Observation = Reading,
+        Observation = DynObservation,
         Action = Action,
-        ObservationSpace = BoxSpace<Reading>,
+        ObservationSpace = BoxSpace<DynObservation>,
         ActionSpace = Discrete<Action>,
-        Unwrapped = dyn LiveAcrobot,
+        Unwrapped = dyn DynAcrobot,
     > + Send;
 
 /// `Acrobot-v1`: sines and cosines of the angles, and 500 steps.
 ///
 /// # Errors
 ///
-/// [`Error::Invalid`] for parameters that are refused.
+/// [`Error::Invalid`] for parameters that are rejected.
 pub fn acrobot_v1<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, Observation<6>>>, Error> {
@@ -89,7 +87,7 @@ pub fn acrobot_v1<A: Arithmetic>(
 ///
 /// # Errors
 ///
-/// [`Error::Invalid`] for parameters that are refused.
+/// [`Error::Invalid`] for parameters that are rejected.
 pub fn acrobot_v0<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, Observation<4>>>, Error> {
@@ -107,11 +105,11 @@ impl fmt::Debug for DynEnv {
     }
 }
 
-/// Gymnasium's `make(id)`: `"Acrobot-v1"` or `"Acrobot-v0"`. Until it is seeded it is at seed 0.
+/// Gymnasium's `make(id)`: `"Acrobot-v1"` or `"Acrobot-v0"`. It has seed 0 until it is seeded.
 ///
 /// # Errors
 ///
-/// [`Error::UnknownId`] for another name, with the known ones and the nearest.
+/// [`Error::UnknownId`] for another id.
 ///
 /// ```
 /// use acrobot::env::make;
@@ -119,7 +117,7 @@ impl fmt::Debug for DynEnv {
 /// let error = make("Acrobat-v1").unwrap_err();
 /// assert_eq!(
 ///     error.to_string(),
-///     r#"there is no environment "Acrobat-v1"; did you mean "Acrobot-v1"? Known are Acrobot-v0 and Acrobot-v1"#
+///     r#"the id must be "Acrobot-v1" or "Acrobot-v0", got "Acrobat-v1""#
 /// );
 /// ```
 pub fn make(id: &str) -> Result<Box<DynEnv>, Error> {
@@ -129,14 +127,15 @@ pub fn make(id: &str) -> Result<Box<DynEnv>, Error> {
 /// [`make`] with options.
 ///
 /// ```
+/// use acrobot::Params;
 /// use acrobot::env::{Env, Options, RenderMode, Rendering, make_with};
-/// use acrobot::{Dynamics, Params};
+/// use acrobot::physics::Dynamics;
 ///
 /// let mut env = make_with(
 ///     "Acrobot-v1",
 ///     Options { render_mode: RenderMode::RgbArray, ..Options::default() },
 /// )?;
-/// env.reset(Some(42.into()), None);
+/// env.reset_with_seed(42);
 /// assert!(matches!(env.render()?, Rendering::Frame(frame) if frame.width() == 500));
 ///
 /// // env.unwrapped.book_or_nips = "nips"
@@ -147,7 +146,7 @@ pub fn make(id: &str) -> Result<Box<DynEnv>, Error> {
 ///
 /// # Errors
 ///
-/// [`Error::UnknownId`] for another name, [`Error::Invalid`] for parameters that are refused.
+/// [`Error::UnknownId`] for another id, and [`Error::Invalid`] for parameters that are rejected.
 pub fn make_with(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     match options.arithmetic {
         ArithmeticKind::Host => make_in::<Host>(id, options),
@@ -158,54 +157,43 @@ pub fn make_with(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
 }
 
 fn make_in<A: Arithmetic>(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
-    const KNOWN: [&str; 2] = ["Acrobot-v0", "Acrobot-v1"];
     match id {
         "Acrobot-v0" => Ok(Box::new(Erased(acrobot_v0::<A>(options)?))),
         "Acrobot-v1" => Ok(Box::new(Erased(acrobot_v1::<A>(options)?))),
-        _ => {
-            // Of two equally near the newer.
-            let [v0, v1] = KNOWN;
-            let distance = |known| strsim::levenshtein(id, known);
-            let nearest = if distance(v0) < distance(v1) { v0 } else { v1 };
-            Err(Error::UnknownId {
-                id: id.to_owned(),
-                nearest,
-                known: &KNOWN,
-            })
-        }
+        _ => Err(Error::UnknownId(id.to_owned())),
     }
 }
 
-/// What an agent sees of either version: a slice of six or of four numbers.
+/// What an agent sees in either version.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reading {
-    /// Of `Acrobot-v0`.
+pub enum DynObservation {
+    /// Four numbers, in `Acrobot-v0`.
     V0(Observation<4>),
-    /// Of `Acrobot-v1`.
+    /// Six numbers, in `Acrobot-v1`.
     V1(Observation<6>),
 }
 
-impl From<Observation<4>> for Reading {
+impl DynObservation {
+    /// The numbers: six or four.
+    #[must_use]
+    pub fn as_slice(&self) -> &[f32] {
+        self.as_ref()
+    }
+}
+
+impl From<Observation<4>> for DynObservation {
     fn from(observation: Observation<4>) -> Self {
         Self::V0(observation)
     }
 }
 
-impl From<Observation<6>> for Reading {
+impl From<Observation<6>> for DynObservation {
     fn from(observation: Observation<6>) -> Self {
         Self::V1(observation)
     }
 }
 
-impl Deref for Reading {
-    type Target = [f32];
-
-    fn deref(&self) -> &[f32] {
-        self.as_ref()
-    }
-}
-
-impl AsRef<[f32]> for Reading {
+impl AsRef<[f32]> for DynObservation {
     fn as_ref(&self) -> &[f32] {
         match self {
             Self::V0(observation) => observation.as_ref(),
@@ -214,7 +202,7 @@ impl AsRef<[f32]> for Reading {
     }
 }
 
-impl AsMut<[f32]> for Reading {
+impl AsMut<[f32]> for DynObservation {
     fn as_mut(&mut self) -> &mut [f32] {
         match self {
             Self::V0(observation) => observation.as_mut(),
@@ -234,34 +222,37 @@ where
             Action = Action,
             ObservationSpace = BoxSpace<O>,
             ActionSpace = Discrete<Action>,
-            Unwrapped: LiveAcrobot + Sized + 'static,
+            Unwrapped: DynAcrobot + Sized + 'static,
         >,
-    O: AsRef<[f32]> + AsMut<[f32]> + Clone + Into<Reading>,
+    O: AsRef<[f32]> + AsMut<[f32]> + Clone + Into<DynObservation>,
 {
-    type Observation = Reading;
+    type Observation = DynObservation;
     type Action = Action;
-    type ObservationSpace = BoxSpace<Reading>;
+    type ObservationSpace = BoxSpace<DynObservation>;
     type ActionSpace = Discrete<Action>;
-    type Unwrapped = dyn LiveAcrobot;
+    type Unwrapped = dyn DynAcrobot;
 
-    fn reset(
-        &mut self,
-        seed: Option<SeedSequence>,
-        bounds: Option<StartBounds>,
-    ) -> (Reading, Info) {
-        let (observation, info) = self.0.reset(seed, bounds);
+    fn reset_with(&mut self, options: ResetOptions) -> (DynObservation, Info) {
+        let (observation, info) = self.0.reset_with(options);
         (observation.into(), info)
     }
 
-    fn step(&mut self, action: Action) -> EnvStep<Reading> {
-        self.0.step(action).map(Into::into)
+    fn step(&mut self, action: Action) -> Step<DynObservation, Info> {
+        let step = self.0.step(action);
+        Step {
+            observation: step.observation.into(),
+            reward: step.reward,
+            terminated: step.terminated,
+            truncated: step.truncated,
+            info: step.info,
+        }
     }
 
     fn action_space(&self) -> Discrete<Action> {
         self.0.action_space()
     }
 
-    fn observation_space(&self) -> BoxSpace<Reading> {
+    fn observation_space(&self) -> BoxSpace<DynObservation> {
         self.0.observation_space().map(Into::into)
     }
 
@@ -273,11 +264,11 @@ where
         self.0.close();
     }
 
-    fn unwrapped(&self) -> &(dyn LiveAcrobot + 'static) {
+    fn unwrapped(&self) -> &(dyn DynAcrobot + 'static) {
         self.0.unwrapped()
     }
 
-    fn unwrapped_mut(&mut self) -> &mut (dyn LiveAcrobot + 'static) {
+    fn unwrapped_mut(&mut self) -> &mut (dyn DynAcrobot + 'static) {
         self.0.unwrapped_mut()
     }
 }

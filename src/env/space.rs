@@ -1,24 +1,24 @@
-//! The sets that actions and observations are from.
+//! Spaces: the sets that actions and observations are from.
 
 use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
-use crate::Action;
-use crate::rng::{integers, uniform};
+use crate::action::Action;
+use crate::numpy::{integers, uniform};
 
 /// A set that an element can be in and be drawn from.
 ///
-/// A space has no generator of its own, so that no two copies of one draw the same by accident:
-/// what `action_space.seed(s)` is to Gymnasium, [`Pcg64::new(s)`](crate::Pcg64::new) is here.
+/// A space has no generator, so that two copies do not draw the same by accident. Gymnasium's `action_space.seed(s)` is
+/// [`Pcg64::new(s)`](crate::numpy::Pcg64::new) here.
 pub trait Space {
-    /// What it is a set of.
+    /// The type of its elements.
     type Element;
 
     /// Whether `element` is in it.
     fn contains(&self, element: &Self::Element) -> bool;
 
-    /// A random element: what Gymnasium's `sample()` draws, where `rng` is seeded as its space was.
+    /// Draws a random element: Gymnasium's `sample()`, if `rng` has the seed of its space.
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Element;
 }
 
@@ -26,7 +26,8 @@ pub trait Space {
 ///
 /// ```
 /// use acrobot::env::{Discrete, Space};
-/// use acrobot::{Action, Pcg64};
+/// use acrobot::Action;
+/// use acrobot::numpy::Pcg64;
 ///
 /// let space = Discrete::new(&[10, 20, 30]).unwrap();
 /// assert_eq!(space.sample(&mut Pcg64::new(42)), 10);
@@ -48,14 +49,14 @@ impl Discrete<Action> {
 }
 
 impl<T> Discrete<T> {
-    /// A space of these elements; none where there is none, or more than 2³² − 1.
+    /// A space of these elements. `None` for none, and for more than 2³² − 1.
     #[must_use]
     pub fn new(elements: &'static [T]) -> Option<Self> {
         let n = NonZeroU32::new(elements.len().try_into().ok()?)?;
         Some(Self { elements, n })
     }
 
-    /// How many there are.
+    /// The number of elements.
     #[must_use]
     pub fn n(&self) -> NonZeroU32 {
         self.n
@@ -82,7 +83,8 @@ impl<T: Clone + PartialEq> Space for Discrete<T> {
 ///
 /// ```
 /// use acrobot::env::{BoxSpace, Space};
-/// use acrobot::{Observation, Pcg64};
+/// use acrobot::Observation;
+/// use acrobot::numpy::Pcg64;
 ///
 /// let space = BoxSpace::new(Observation::LOW, Observation::HIGH).unwrap();
 /// let sample = space.sample(&mut Pcg64::new(42));
@@ -96,8 +98,8 @@ pub struct BoxSpace<T> {
 }
 
 impl<T: AsRef<[f32]>> BoxSpace<T> {
-    /// The vectors from `low` to `high`; none where the two differ in length, a bound is not finite
-    /// or a lower one is above its upper.
+    /// The vectors from `low` to `high`. `None` if they differ in length, or a bound is not finite, or a lower one is
+    /// above its upper one.
     #[must_use]
     pub fn new(low: T, high: T) -> Option<Self> {
         let (lows, highs) = (low.as_ref(), high.as_ref());
@@ -131,7 +133,7 @@ impl<T> BoxSpace<T> {
 }
 
 impl<T: AsMut<[f32]> + Clone> BoxSpace<T> {
-    /// From −`high` to `high`, which is finite and not negative.
+    /// The vectors from −`high` to `high`, which must be finite and not negative.
     pub(super) fn symmetric(high: T) -> Self {
         let mut low = high.clone();
         low.as_mut().iter_mut().for_each(|x| *x = -*x);

@@ -1,32 +1,32 @@
-//! Records how long episodes last and what they return.
+//! The lengths and returns of episodes.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use super::{Env, EnvStep, Error, Info, Rendering};
-use crate::seed::SeedSequence;
-use crate::state::StartBounds;
+use super::wrapper::forward;
+use super::{Env, Error, Info, Rendering};
+use crate::acrobot::{ResetOptions, Step};
 
-/// How one episode went.
+/// Statistics of one episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EpisodeStatistics {
     /// The sum of its rewards.
     pub episode_return: f32,
-    /// Its steps.
+    /// The number of its steps.
     pub length: u32,
     /// The time from its reset to its end.
     pub elapsed: Duration,
 }
 
-/// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode tells of it in its
-/// [`Info`], and the last hundred are kept.
+/// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode reports its statistics in [`Info`], and those
+/// of the last hundred are kept.
 ///
 /// ```
 /// use acrobot::env::{Env, EpisodeStatistics, RecordEpisodeStatistics, acrobot_v1};
 /// use acrobot::{Action, Fast};
 ///
 /// let mut env = RecordEpisodeStatistics::new(acrobot_v1::<Fast>(Default::default())?);
-/// env.reset(Some(42.into()), None);
+/// env.reset_with_seed(42);
 /// let EpisodeStatistics { length, episode_return, .. } = loop {
 ///     if let Some(episode) = env.step(Action::Zero).info.episode {
 ///         break episode;
@@ -45,7 +45,7 @@ pub struct RecordEpisodeStatistics<E> {
     episodes: VecDeque<EpisodeStatistics>,
 }
 
-/// How many episodes are kept.
+/// The number of episodes that are kept.
 const KEPT: usize = 100;
 
 impl<E> RecordEpisodeStatistics<E> {
@@ -66,46 +66,48 @@ impl<E> RecordEpisodeStatistics<E> {
         self.episodes.iter()
     }
 
-    /// The mean return of these, to compare with [`REWARD_THRESHOLD`](crate::REWARD_THRESHOLD); none
-    /// before the first has ended.
+    /// The mean return of these, to compare with [`REWARD_THRESHOLD`](crate::REWARD_THRESHOLD). `None` before the
+    /// first has ended.
     #[must_use]
     pub fn mean_return(&self) -> Option<f32> {
         let sum: f32 = self.episodes().map(|episode| episode.episode_return).sum();
         (!self.episodes.is_empty()).then(|| sum / self.episodes.len() as f32)
     }
 
-    /// What it wraps.
+    /// The wrapped environment.
     #[must_use]
     pub fn inner(&self) -> &E {
         &self.inner
     }
 
-    /// What it wraps, for live changes; what is done there is not recorded here.
+    /// The wrapped environment, for live changes. Steps there are not recorded here.
     #[must_use]
     pub fn inner_mut(&mut self) -> &mut E {
         &mut self.inner
+    }
+
+    /// The wrapped environment, without its statistics.
+    #[must_use]
+    pub fn into_inner(self) -> E {
+        self.inner
     }
 }
 
 impl<E: Env> Env for RecordEpisodeStatistics<E> {
     forward!(types E);
 
-    fn reset(
-        &mut self,
-        seed: Option<SeedSequence>,
-        bounds: Option<StartBounds>,
-    ) -> (E::Observation, Info) {
+    fn reset_with(&mut self, options: ResetOptions) -> (E::Observation, Info) {
         self.started = Instant::now();
         self.episode_return = 0.0;
         self.length = 0;
-        self.inner.reset(seed, bounds)
+        self.inner.reset_with(options)
     }
 
-    fn step(&mut self, action: E::Action) -> EnvStep<E::Observation> {
+    fn step(&mut self, action: E::Action) -> Step<E::Observation, Info> {
         let mut step = self.inner.step(action);
         self.episode_return += step.reward;
         self.length = self.length.saturating_add(1);
-        if step.ended() {
+        if step.done() {
             let episode = EpisodeStatistics {
                 episode_return: self.episode_return,
                 length: self.length,

@@ -8,7 +8,7 @@ use embedded_graphics::geometry::{Dimensions, Point, Size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::primitives::Rectangle;
 
-/// A target of any place and size that counts what is written to it, and knows nothing else.
+/// A target of any position and size. It counts the pixels that are written.
 pub struct Canvas {
     pub area: Rectangle,
     pub pixels: Vec<Option<BinaryColor>>,
@@ -43,7 +43,7 @@ impl DrawTarget for Canvas {
         for Pixel(point, color) in pixels {
             assert!(
                 self.area.contains(point),
-                "{point} is outside of {:?}",
+                "{point} is outside {:?}",
                 self.area
             );
             let Point { x, y } = point - self.area.top_left;

@@ -1,4 +1,4 @@
-//! A digest of many bits, shared by the host's tests and the crates for other targets.
+//! A digest of many bits, shared by these tests and the crates for other targets.
 
 /// FNV-1a over 64-bit words instead of bytes, as in `data/record.py`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,28 +1,24 @@
-//! Sixteen fixed episodes and a digest of every bit of each. The host's tests, the firmware in
-//! `examples/cortex-m` and the module in `examples/wasm-parity` share this file: promise 2.
+//! Sixteen fixed episodes and a digest of every bit of each. The tests here, the firmware in `examples/cortex-m` and the
+//! module in `examples/wasm-parity` share this file: promise 2.
 
 use super::digest::Digest;
-use acrobot::{
-    Acrobot, Action, Arithmetic, Autoreset, Batch, Block, Fast, Observation, Observations, Output,
-    Pcg64, Real, TimeLimit,
-};
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
 
-/// Adds every bit of a state and of what is seen of it.
-fn add_seen<A: Arithmetic>(
-    digest: &mut Digest,
-    acrobot: &Acrobot<A>,
-    Observation(seen): Observation,
-) {
+/// Adds every bit of the state and of the observation.
+fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: Observation) {
     for x in <[A::Scalar; 4]>::from(acrobot.state()) {
         digest.add(x.to_f64().to_bits());
     }
-    for x in seen {
+    for x in seen.to_array() {
         digest.add(x.to_bits().into());
     }
 }
 
-/// Every bit from the seed through the steps to the end, and of the start after it: random actions
-/// in the even episodes, torque against θ̇1 in the odd ones.
+/// Every bit of one episode, from its initial state to its end, and of the next initial state. Even episodes have random
+/// actions, odd ones torque against θ̇1.
 pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
     let mut digest = Digest::new();
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(episode));
@@ -40,7 +36,7 @@ pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
         add_seen(&mut digest, acrobot.inner(), step.observation);
         digest.add(step.reward.to_bits().into());
         digest.add(u64::from(step.terminated) << 1 | u64::from(step.truncated));
-        if step.ended() {
+        if step.done() {
             let start = acrobot.reset();
             add_seen(&mut digest, acrobot.inner(), start);
             return digest.0;
@@ -48,8 +44,8 @@ pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
     }
 }
 
-/// Every bit that a batch of twenty in `Fast` shows in 200 steps under torques against θ̇1, which end
-/// episodes: the same for any width `N`, in as many blocks as it takes.
+/// Every bit that a batch of twenty in `Fast` returns in 200 steps under torque against θ̇1, which ends episodes. It is
+/// the same for any width `N`.
 pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
     const LEN: usize = 20;
     let (blocks, generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]);
@@ -65,14 +61,14 @@ pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
             true => Action::Negative,
             false => Action::Positive,
         });
-        let output = Output {
+        let buffers = StepBuffers {
             rewards: &mut rewards,
             terminated: &mut terminated,
             truncated: &mut truncated,
             observations: Observations::Rows(&mut rows),
             final_observations: Observations::Rows(&mut finals),
         };
-        if batch.step(&actions, output).is_err() {
+        if batch.step(&actions, buffers).is_err() {
             return 0;
         }
         let seen = rows.iter().chain(&finals).flatten().chain(&rewards);

@@ -1,4 +1,4 @@
-//! What several tests share: the recorded episodes of Gymnasium, and a digest.
+//! Shared by several tests: the recorded episodes of Gymnasium, and a digest.
 
 #![allow(dead_code, reason = "each test uses a part")]
 
@@ -14,10 +14,10 @@ use std::sync::LazyLock;
 
 pub use digest::Digest;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Dynamics, Host, Params, Pcg64, SeedSequence, StartBounds, State,
-    uniform,
-};
+use acrobot::arithmetic::{Arithmetic, Host};
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::{Acrobot, Action, Params, ResetOptions, State};
 
 pub const STEPS: usize = 500;
 
@@ -27,7 +27,7 @@ pub struct Episode {
     pub bounds: StartBounds,
     pub params: Params,
     pub actions: Vec<Action>,
-    /// One more than there are actions.
+    /// The initial state, and the state after each action.
     pub states: Vec<State>,
     pub rewards: Vec<f32>,
     pub terminated: Vec<bool>,
@@ -36,12 +36,14 @@ pub struct Episode {
 }
 
 impl Episode {
-    /// An acrobot at the episode's start.
+    /// An acrobot in the episode's initial state.
     pub fn start<A: Arithmetic>(&self) -> Acrobot<A> {
-        let mut acrobot = Acrobot::<A>::new(self.seed.clone());
+        let mut acrobot = Acrobot::<A>::new(0);
         acrobot.set_params(self.params.cast()).unwrap();
-        acrobot.reseed(self.seed.clone());
-        acrobot.reset_within(self.bounds);
+        acrobot.reset_with(ResetOptions {
+            seed: Some(self.seed.clone()),
+            bounds: self.bounds,
+        });
         acrobot
     }
 }
@@ -73,8 +75,8 @@ pub static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     }
 });
 
-/// Whether this platform's sin, cos and pow are those that the episodes were recorded with, on which
-/// `Host`'s bits hang. Where not it says so past the test harness, which would keep it to itself.
+/// Whether this platform's sin, cos and pow are those that the episodes were recorded with. `Host`'s bits depend on
+/// them. If they differ, this writes to stderr directly, because the test harness captures `eprintln!`.
 pub fn is_recorded_library() -> bool {
     let mut rng = Pcg64::new(0);
     let mut digest = Digest::new();
@@ -90,7 +92,7 @@ pub fn is_recorded_library() -> bool {
         let versions = &RECORDING.versions;
         let _ = writeln!(
             std::io::stderr(),
-            "NO BIT PARITY IS TESTED: sin, cos or pow differ here from those of {versions}"
+            "BIT PARITY IS NOT TESTED: sin, cos or pow differ here from those of {versions}"
         );
     }
     same
@@ -147,7 +149,7 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
     }
 }
 
-/// A single recorded step from a state anywhere within the bounds.
+/// A single recorded step, from a state anywhere within the bounds.
 pub struct RecordedStep {
     pub params: Params,
     pub state: State,
@@ -202,17 +204,17 @@ pub fn distance(x: State, y: State) -> f64 {
         .max((x.dtheta2 - y.dtheta2).abs())
 }
 
-/// Fails with what the README should say; line breaks do not count.
+/// Fails with the text that the README should contain. Line breaks do not count.
 pub fn assert_readme_says(text: &str) {
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     let readme = words(include_str!("../../README.md"));
     assert!(
         readme.contains(&words(text)),
-        "measured, and not what the README says: {text}"
+        "measured, and not in the README: {text}"
     );
 }
 
-/// Compares with a file of `data/`, and writes it anew where the environment says `UPDATE_SNAPSHOTS`.
+/// Compares with a file of `data/`. With `UPDATE_SNAPSHOTS` in the environment it writes the file again.
 pub fn assert_snapshot(name: &str, expected: &str, found: &str) {
     if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -220,6 +222,6 @@ pub fn assert_snapshot(name: &str, expected: &str, found: &str) {
             .join(name);
         std::fs::write(path, found).unwrap();
     } else {
-        assert!(found == expected, "{name} is not what is drawn:\n{found}");
+        assert!(found == expected, "{name} differs from:\n{found}");
     }
 }

@@ -1,11 +1,12 @@
-//! An episode on a 128×64 display of one colour, and a digest of all its frames. The host's tests
-//! and the firmware `oled` in `examples/cortex-m` share this file.
+//! An episode on a 128×64 display of one colour, and a digest of all its frames. The tests here and the firmware `oled`
+//! in `examples/cortex-m` share this file.
 
-use acrobot::{Acrobot, Action, Fast, Figure, Theme, TimeLimit};
+use acrobot::render::{Figure, Theme};
+use acrobot::{Acrobot, Action, Fast, TimeLimit};
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::pixelcolor::BinaryColor;
 
-/// Where the host's episode starts.
+/// The acrobot in its initial state.
 pub fn start() -> TimeLimit<Acrobot<Fast>> {
     TimeLimit::v1(Acrobot::new(42))
 }
@@ -19,7 +20,7 @@ pub fn against(acrobot: &Acrobot<Fast>) -> Action {
     }
 }
 
-/// Draws the rest of an episode and calls `shown` after each frame.
+/// Draws the initial state and every step to the end of the episode. Calls `shown` after each frame.
 pub fn play<D: DrawTarget<Color = BinaryColor>>(
     display: &mut D,
     mut acrobot: TimeLimit<Acrobot<Fast>>,
@@ -37,13 +38,13 @@ pub fn play<D: DrawTarget<Color = BinaryColor>>(
         figure.redraw(&last, display, &Theme::MONOCHROME)?;
         shown(display);
         last = figure;
-        if step.ended() {
+        if step.done() {
             return Ok(());
         }
     }
 }
 
-/// How many frames that are.
+/// The number of frames.
 pub const FRAMES: u32 = 95;
 
 /// The digest of all frames, each as the 1024 bytes in the memory of an SSD1306: eight rows at a time

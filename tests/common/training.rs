@@ -1,7 +1,8 @@
-//! A training from nothing in 16 KiB of weights, and a digest of all of them after 100 episodes. The host's tests, the
-//! firmware `learn` in `examples/cortex-m` and the module in `examples/wasm-parity` share this file: promise 2.
+//! A training from untrained weights (16 KiB), and a digest of all weights after 100 episodes. The tests here, the firmware
+//! `learn` in `examples/cortex-m` and the module in `examples/wasm-parity` share this file: promise 2.
 
 use super::digest::Digest;
+use acrobot::numpy::SeedSequence;
 
 #[allow(dead_code, reason = "each program uses a part")]
 #[path = "../../examples/sarsa/acrobot_task.rs"]
@@ -12,11 +13,11 @@ pub type Weights = [[f32; 2]; 2048];
 pub const UNTRAINED: Weights = [[0.0; 2]; 2048];
 pub type Learner<'w> = acrobot_task::Learner<'w, 2048, 20>;
 
-/// Of the acrobot and of the learner's choices.
+/// The seed of the acrobot and of the learner's choices.
 pub const SEED: u64 = 42;
-/// To learn in.
+/// The episodes that the learner's schedules end with.
 pub const EPISODES: u32 = 200;
-/// After so many the weights are compared.
+/// The episodes after which the weights are compared.
 pub const COMPARED: u32 = 100;
 
 /// A digest of every weight's bits.
@@ -28,17 +29,14 @@ pub fn digest(learner: &Learner) -> u64 {
     digest.0
 }
 
-/// Trains and returns the digest; 0 where the learner is refused.
-#[allow(
-    dead_code,
-    reason = "the firmware has a loop of its own, which reports"
-)]
+/// Trains and returns the digest; 0 if the learner is rejected.
+#[allow(dead_code, reason = "the firmware has its own loop, which reports")]
 pub fn weights() -> u64 {
     let mut weights = UNTRAINED;
     let Ok(mut learner) = acrobot_task::Preset::Fast.learner(EPISODES, &mut weights) else {
         return 0;
     };
-    let (mut env, mut choices) = acrobot_task::training(SEED.into());
+    let (mut env, mut choices) = acrobot_task::training(SeedSequence::new(SEED));
     for _ in 0..COMPARED {
         acrobot_task::learn(&mut learner, &mut env, &mut choices);
     }

@@ -1,11 +1,11 @@
-//! How the examples end when what they print cannot be printed; `throughput` only measures.
+//! How the examples end when they cannot print. `throughput` only measures.
 
 use std::fs::{self, File};
 use std::process::Stdio;
 
 use super::{Folder, command};
 
-/// Each example with little to do, and the files that it leaves in a folder.
+/// Each example with little work, and the files that it writes.
 const EXAMPLES: [(&str, &str, &[&str]); 9] = [
     ("energy_control", "--episodes 1", &[]),
     ("phase_portrait", "--out FOLDER/a.svg", &["a.svg"]),
@@ -30,7 +30,7 @@ const EXAMPLES: [(&str, &str, &[&str]); 9] = [
     ("trace", "--seed 42", &[]),
 ];
 
-/// Runs each with `stdout` as its output; gives name, status and errors, once its files are there.
+/// Runs each example with `stdout` as its output, and checks its files. Returns names, statuses and error messages.
 fn end(name: &str, stdout: impl Fn() -> Stdio) -> Vec<(&'static str, Option<i32>, String)> {
     let ends = EXAMPLES.map(|(example, arguments, files)| {
         let folder = Folder::new(&format!("{name}-{example}"));
@@ -51,7 +51,7 @@ fn end(name: &str, stdout: impl Fn() -> Stdio) -> Vec<(&'static str, Option<i32>
 }
 
 #[test]
-fn whoever_reads_may_stop() {
+fn the_reader_may_close_the_pipe() {
     let closed = || {
         let (_, writer) = std::io::pipe().unwrap();
         writer.into()
@@ -64,7 +64,7 @@ fn whoever_reads_may_stop() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn what_cannot_be_printed_is_an_error() {
+fn a_failed_print_is_an_error() {
     let full = || {
         File::options()
             .write(true)

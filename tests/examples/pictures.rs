@@ -1,10 +1,10 @@
-//! Pictures are what the README shows, and what cannot be drawn or written is refused.
+//! Pictures are those of the README, and bad input and failed writes are errors.
 
 use std::fs;
 
-use super::{Folder, command, gif_frames, png, printed, refused, run};
-use acrobot::env::Frame;
-use acrobot::{Acrobot, Figure, Portable, State};
+use super::{Folder, command, gif_frames, png, printed, rejected, run};
+use acrobot::render::{Figure, Frame};
+use acrobot::{Acrobot, Portable, State};
 
 #[test]
 fn a_state_is_rendered_as_its_frame() {
@@ -27,7 +27,7 @@ fn a_state_is_rendered_as_its_frame() {
     assert_eq!(png(&out), (500, 500, expected.bytes().to_vec()));
 }
 
-/// The README's first picture is what the example draws.
+/// The example draws the README's first picture.
 #[test]
 fn the_episode_is_the_readmes_picture() {
     let folder = Folder::new("episode");
@@ -35,7 +35,7 @@ fn the_episode_is_the_readmes_picture() {
     printed(run("render_episode", &["--out", &gif], ""));
     assert!(
         fs::read(&gif).unwrap() == include_bytes!("../../examples/episode.gif"),
-        "examples/episode.gif is another"
+        "examples/episode.gif differs"
     );
     let (width, height, pixels) = png(&strip);
     assert_eq!((width, height), (8 * 150, 150));
@@ -64,18 +64,18 @@ fn the_portrait_has_its_four_panels() {
 }
 
 #[test]
-fn drawing_examples_refuse_with_a_reason() {
+fn drawing_examples_reject_with_a_reason() {
     for (example, arguments, reason) in [
+        ("render_episode", "--state 1", "must be two numbers in rad"),
         (
             "render_episode",
-            "--state 1",
-            "allowed are two numbers in rad",
+            "--state nan,1",
+            "theta1 must be a finite number of rad, got NaN",
         ),
-        ("render_episode", "--state nan,1", "theta1 is NaN rad"),
         (
             "render_episode",
             "--out picture.png",
-            "--out is picture.png; allowed is a name that ends in .gif",
+            "--out must end in .gif, got picture.png",
         ),
         (
             "render_episode",
@@ -85,32 +85,32 @@ fn drawing_examples_refuse_with_a_reason() {
         (
             "phase_portrait",
             "--out no/such/folder.svg",
-            "cannot write no/such/folder.svg",
+            "must be a name that ends in .svg, in an existing folder",
         ),
         (
             "render_episode",
             "--state 1,1 --out frame.gif",
-            "allowed is a name that ends in .png",
+            "--out must end in .png, got frame.gif",
         ),
         (
             "phase_portrait",
             "--out portrait.png",
-            "allowed is a name that ends in .svg",
+            "must be a name that ends in .svg, in an existing folder",
         ),
         (
             "energy_control",
             "--limit 0",
-            "allowed is a finite number of N m above 0",
+            "must be finite and above 0 N m",
         ),
         ("energy_control", "--episodes 0", "0 is not in 1.."),
     ] {
         let arguments: Vec<&str> = arguments.split(' ').collect();
-        let errors = refused(example, &arguments, "");
+        let errors = rejected(example, &arguments, "");
         assert!(errors.contains(reason), "{errors}");
     }
 }
 
-/// What cannot be written is no success, also where it is little enough to wait in a buffer.
+/// A failed write is an error, also if the bytes fit into a buffer.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk_is_an_error() {
@@ -123,7 +123,7 @@ fn a_full_disk_is_an_error() {
         ["--state", "1,2", "--out", &frame],
         ["--seed", "42", "--out", &episode],
     ] {
-        let errors = refused("render_episode", &arguments, "");
+        let errors = rejected("render_episode", &arguments, "");
         assert!(
             errors.contains("cannot write") && errors.contains("No space left"),
             "{errors}"

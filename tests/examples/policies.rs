@@ -1,7 +1,7 @@
 //! `random_agent` and `energy_control`.
 
 use super::common::is_recorded_library;
-use super::{printed, refused, run};
+use super::{printed, rejected, run};
 
 #[test]
 fn the_random_agent_takes_gymnasiums_episodes() {
@@ -48,16 +48,16 @@ fn the_random_agent_takes_gymnasiums_episodes() {
 }
 
 #[test]
-fn the_random_agent_helps_and_refuses() {
+fn the_random_agent_helps_and_rejects() {
     let help = printed(run("random_agent", &["--help"], ""));
     assert!(
         help.contains("--seed") && help.contains("--steps"),
         "{help}"
     );
     assert!(printed(run("random_agent", &["--steps", "0"], "")).starts_with("0 steps, 0 episodes"));
-    let errors = refused("random_agent", &["--seed", "4x2"], "");
-    assert!(errors.contains("seed has 'x' as character 2"), "{errors}");
-    refused("random_agent", &["--steps", "-1"], "");
+    let errors = rejected("random_agent", &["--seed", "4x2"], "");
+    assert!(errors.contains("got 'x' as character 2"), "{errors}");
+    rejected("random_agent", &["--steps", "-1"], "");
 }
 
 #[test]

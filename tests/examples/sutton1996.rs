@@ -1,7 +1,9 @@
-//! Sutton's experiment: its simulator, its numbers, and what it refuses.
+//! Sutton's experiment: its simulator, its numbers and its errors.
 
-use super::{Folder, command, printed, refused};
-use acrobot::{Params, Portable, SeedSequence, State, derivative, energy};
+use super::{Folder, command, printed, rejected};
+use acrobot::numpy::SeedSequence;
+use acrobot::physics::{derivative, energy};
+use acrobot::{Params, Portable, State};
 use std::f64::consts::PI;
 use std::fs;
 
@@ -14,7 +16,7 @@ use simulator::{advance, decide, is_goal};
 
 const PARAMS: Params = simulator::PARAMS;
 
-/// Both angles by the velocities before the step.
+/// Updates both angles with the old velocities.
 fn explicit_euler(state: &State) -> State {
     let rates = derivative::<Portable>(&PARAMS, state, 0.0);
     let y = <[f64; 4]>::from(*state);
@@ -33,7 +35,7 @@ fn the_simulator_keeps_the_energy_where_explicit_euler_does_not() {
         });
         errors.fold(0.0, f64::max)
     };
-    // Of 39.2 J between hanging and upright, in 100 s without torque.
+    // In 100 s without torque; from hanging to upright are 39.2 J.
     let [kept, fed] = [
         farthest(|state| advance(state, 0.0)),
         farthest(explicit_euler),
@@ -43,7 +45,7 @@ fn the_simulator_keeps_the_energy_where_explicit_euler_does_not() {
 }
 
 #[test]
-fn the_simulators_velocities_go_first_and_are_bounded() {
+fn the_simulator_updates_the_velocities_first_and_bounds_them() {
     let state = State::from([0.3, -0.2, 1.0, -2.0]);
     let [_, _, acceleration1, acceleration2] = derivative::<Portable>(&PARAMS, &state, 1.0);
     let next = advance(&state, 1.0);
@@ -73,7 +75,7 @@ fn the_goal_ends_a_decision_early() {
 }
 
 #[test]
-fn the_experiment_reports_what_was_learnt() {
+fn the_experiment_reports_its_runs() {
     let folder = Folder::new("sutton1996");
     let (csv, picture) = (folder.file("curve.csv"), folder.file("curve.svg"));
     let [one, two] = ["1", "2"].map(|threads| {
@@ -89,7 +91,7 @@ fn the_experiment_reports_what_was_learnt() {
     let (printed, csv, svg) = one;
 
     let runs = [learners::sutton, learners::ours].map(|learner| {
-        [0, 1, 2, 3].map(|run| learner(SeedSequence::from(7).child(run), 12).unwrap())
+        [0, 1, 2, 3].map(|run| learner(SeedSequence::new(7).child(run), 12).unwrap())
     });
     let mut rows = csv.lines();
     assert_eq!(
@@ -165,8 +167,8 @@ fn the_experiment_reports_what_was_learnt() {
 }
 
 #[test]
-fn the_experiment_refuses_before_it_writes() {
-    let folder = Folder::new("refused-sutton1996");
+fn the_experiment_rejects_before_it_writes() {
+    let folder = Folder::new("rejected-sutton1996");
     let (csv, picture) = (folder.file("curve.csv"), folder.file("curve.svg"));
     let missing = folder.file("none/curve.csv");
     for (option, value, reason) in [
@@ -174,14 +176,14 @@ fn the_experiment_refuses_before_it_writes() {
         ("--runs", "-1", "invalid value '-1' for '--runs"),
         ("--episodes", "1", "1 is not in 2..=10000"),
         ("--episodes", "many", "invalid digit"),
-        ("--seed", "1e3", "seed has 'e' as character 2"),
+        ("--seed", "1e3", "got 'e' as character 2"),
         (
             "--csv",
             &missing,
-            "allowed is a name that ends in .csv, in a folder that is there",
+            "must be a name that ends in .csv, in an existing folder",
         ),
-        ("--csv", &picture, "allowed is a name that ends in .csv"),
-        ("--picture", &csv, "allowed is a name that ends in .svg"),
+        ("--csv", &picture, "must be a name that ends in .csv"),
+        ("--picture", &csv, "must be a name that ends in .svg"),
     ] {
         let mut arguments = vec![option, value];
         for (other, valid) in [("--runs", "1"), ("--csv", &csv), ("--picture", &picture)] {
@@ -189,7 +191,7 @@ fn the_experiment_refuses_before_it_writes() {
                 arguments.extend([other, valid]);
             }
         }
-        let errors = refused("sutton1996", &arguments, "");
+        let errors = rejected("sutton1996", &arguments, "");
         assert!(errors.contains(reason), "{errors}");
         assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 0, "{arguments:?}");
     }

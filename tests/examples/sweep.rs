@@ -2,14 +2,15 @@
 
 use std::fs;
 
-use super::{Folder, command, printed, refused, run};
-use acrobot::{Acrobot, Action, Fast, Params, SeedSequence, TimeLimit};
+use super::{Folder, command, printed, rejected, run};
+use acrobot::numpy::SeedSequence;
+use acrobot::{Acrobot, Action, Fast, Params, TimeLimit};
 
-/// The row of a cell, from episodes that acrobots play alone.
+/// The row of a cell, from episodes of single acrobots.
 fn sweep_row(seed: u64, episodes: u64, mass: f32, torque: f32) -> String {
     let (mut reached, mut steps) = (0_u64, 0_u64);
-    for seed in SeedSequence::from(seed).spawn(episodes) {
-        let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(seed));
+    for seed in SeedSequence::new(seed).spawn(episodes) {
+        let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::with_rng(seed.into()));
         let params = Params {
             mass1: mass,
             mass2: mass,
@@ -24,7 +25,7 @@ fn sweep_row(seed: u64, episodes: u64, mass: f32, torque: f32) -> String {
             } else {
                 Action::Positive
             });
-            if step.ended() {
+            if step.done() {
                 break step;
             }
         };
@@ -46,7 +47,7 @@ fn the_sweep_counts_every_episode_once() {
     let folder = Folder::new("sweep");
     let (csv, picture) = (folder.file("sweep.csv"), folder.file("sweep.svg"));
     let [one, two] = ["1", "2"].map(|threads| {
-        // One of these episodes reaches the goal by its very last step.
+        // One of these episodes reaches the goal in its last step.
         let arguments = "--episodes 1800 --seed 7 --masses 0.1,1.5 --torques 0.001,0.1,0.3";
         let mut arguments: Vec<&str> = arguments.split(' ').collect();
         arguments.extend(["--csv", &csv, "--picture", &picture]);
@@ -77,7 +78,7 @@ fn the_sweep_counts_every_episode_once() {
     assert!(
         [0.0, 1.0].iter().all(|share| shares.contains(share))
             && shares.iter().any(|&share| 0.0 < share && share < 1.0),
-        "cells of which none, some and all reach the goal: {shares:?}"
+        "cells in which none, some and all reach the goal: {shares:?}"
     );
 
     // Each cell, sixty shades of the colour bar and the paper.
@@ -96,11 +97,11 @@ fn the_sweep_counts_every_episode_once() {
     }
 }
 
-/// The README's heat map is what the command beside it draws.
+/// The command beside the README's heat map draws it.
 #[test]
 #[cfg_attr(
     debug_assertions,
-    ignore = "a million episodes, which want optimization"
+    ignore = "a million episodes, which need optimization"
 )]
 fn the_sweep_is_the_readmes_picture() {
     let folder = Folder::new("heat-map");
@@ -108,57 +109,53 @@ fn the_sweep_is_the_readmes_picture() {
     printed(run("sweep", &["--csv", &csv, "--picture", &picture], ""));
     assert!(
         fs::read(&picture).unwrap() == include_bytes!("../../examples/sweep.svg"),
-        "examples/sweep.svg is another"
+        "examples/sweep.svg differs"
     );
 }
 
 #[test]
-fn the_sweep_refuses_before_it_writes() {
-    let folder = Folder::new("refused-sweep");
+fn the_sweep_rejects_before_it_writes() {
+    let folder = Folder::new("rejected-sweep");
     let (csv, picture) = (folder.file("sweep.csv"), folder.file("sweep.svg"));
     let missing = folder.file("none/sweep.csv");
     for (option, value, reason) in [
         (
             "--episodes",
             "1001",
-            "--episodes is 1001 episodes; allowed is a multiple of 400, the cells of the grid, up to 400000000",
+            "--episodes must be a multiple of the grid's 400 cells, from 400 to 400000000, got 1001",
         ),
-        (
-            "--episodes",
-            "0",
-            "--episodes is 0 episodes; allowed is a multiple of 400",
-        ),
-        ("--episodes", "400000400", "up to 400000000"),
+        ("--episodes", "0", "from 400 to 400000000, got 0"),
+        ("--episodes", "400000400", "to 400000000, got 400000400"),
         ("--episodes", "-400", "invalid value '-400' for '--episodes"),
         (
             "--seed",
             "-1",
-            "seed has '-' as character 1; allowed is a decimal integer",
+            "seed must be a decimal integer of at least 0, got '-' as character 1",
         ),
         (
             "--masses",
             "1,0",
-            "invalid value '0' for '--masses <KG>': allowed is a number of kg above 0 that f32 holds",
+            "invalid value '0' for '--masses <KG>': must be finite and above 0 kg in f32",
         ),
-        ("--masses", "", "allowed is a number of kg above 0"),
-        ("--masses", "nan", "allowed is a number of kg above 0"),
-        ("--masses", "1e-60", "allowed is a number of kg above 0"),
+        ("--masses", "", "must be finite and above 0 kg"),
+        ("--masses", "nan", "must be finite and above 0 kg"),
+        ("--masses", "1e-60", "must be finite and above 0 kg"),
         (
             "--torques",
             "inf,1",
-            "invalid value 'inf' for '--torques <N_M>': allowed is a number of N m above 0 that f32 holds",
+            "invalid value 'inf' for '--torques <N_M>': must be finite and above 0 N m in f32",
         ),
-        ("--torques", "-1", "allowed is a number of N m above 0"),
+        ("--torques", "-1", "must be finite and above 0 N m"),
         (
             "--csv",
             &missing,
-            "allowed is a name that ends in .csv, in a folder that is there",
+            "must be a name that ends in .csv, in an existing folder",
         ),
-        ("--csv", &picture, "allowed is a name that ends in .csv"),
+        ("--csv", &picture, "must be a name that ends in .csv"),
         (
             "--picture",
             &csv,
-            "allowed is a name that ends in .svg, in a folder that is there",
+            "must be a name that ends in .svg, in an existing folder",
         ),
     ] {
         let mut arguments = vec![option, value];
@@ -171,7 +168,7 @@ fn the_sweep_refuses_before_it_writes() {
                 arguments.extend([other, valid]);
             }
         }
-        let errors = refused("sweep", &arguments, "");
+        let errors = rejected("sweep", &arguments, "");
         assert!(errors.contains(reason), "{errors}");
         assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 0, "{arguments:?}");
     }

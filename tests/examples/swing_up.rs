@@ -1,11 +1,11 @@
-//! `swing_up` learns, and keeps its weights.
+//! `swing_up` learns, and saves and loads its weights.
 
 use std::fs;
 
-use super::{Folder, command, gif_frames, printed, refused, run};
+use super::{Folder, command, gif_frames, printed, rejected, run};
 
-/// The figures of the line that `--quiet` prints: whether and when it was solved, the greedy policy's mean
-/// and standard deviation, and its misses. The line has no other form than theirs.
+/// The figures of the line that `--quiet` prints: when it was solved, the greedy policy's mean and standard deviation,
+/// and its misses. Checks the form of the line.
 fn figures(line: &str) -> (Option<u32>, f64, f64, u32) {
     let words: Vec<&str> = line.split_whitespace().collect();
     let number = |i: usize| words[i].parse::<f64>().unwrap();
@@ -45,10 +45,10 @@ fn swing_up_learns_the_same_from_the_same_seed() {
     swing_up("--quiet --episodes 300 --seed 2", &["--save", &other]);
     assert!(
         fs::read(other).unwrap() != one.1,
-        "the seed changes nothing"
+        "the seed must change the weights"
     );
 
-    // What was learnt is in the file, and nothing is added to it.
+    // Loaded weights give the same figures, and are saved unchanged.
     let (one, again) = (folder.file("one"), folder.file("again"));
     let files = ["--load", &one, "--save", &again];
     let line = swing_up("--quiet --episodes 0 --seed 1", &files);
@@ -56,8 +56,8 @@ fn swing_up_learns_the_same_from_the_same_seed() {
     assert!(fs::read(one).unwrap() == fs::read(again).unwrap());
 }
 
-/// Zeros already are torque against θ̇1: of equal actions the learner takes the first, mirrored with the
-/// state. So what is learnt has to be better than that by more than chance.
+/// Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
+/// Learning must improve on this baseline by more than chance.
 #[test]
 fn swing_up_is_better_than_torque_against_the_velocity() {
     let folder = Folder::new("swing-up");
@@ -70,13 +70,13 @@ fn swing_up_is_better_than_torque_against_the_velocity() {
         numbers.collect::<Vec<f64>>().try_into().unwrap()
     };
     let [learnt, against, random] = ["learnt", "torque against θ̇1", "random"].map(row);
-    // Three standard errors of the difference, of 1,000 episodes each.
+    // Three standard errors of the difference, with 1,000 episodes each.
     let chance = 3.0 * ((learnt[1] * learnt[1] + against[1] * against[1]) / 1000.0).sqrt();
     assert!(learnt[0] - against[0] > chance, "{output}");
     assert_eq!([learnt[2], against[2]], [0.0, 0.0], "{output}");
     assert!(random[0] < -490.0 && random[2] > 900.0, "{output}");
 
-    // The curve from the first to the last episode, and the line at which it is solved.
+    // The curve from the first to the last episode, and the line of the reward threshold.
     let curve = fs::read_to_string(folder.file("learning_curve.svg")).unwrap();
     for text in ["Learning to swing up", "episode", "solved: -100", "1000"] {
         assert!(curve.contains(text), "{text}");
@@ -87,7 +87,7 @@ fn swing_up_is_better_than_torque_against_the_velocity() {
         lines.filter(|&(at, _)| points(curve[at..].split("/>").next().unwrap()) >= Some(2000));
     assert_eq!(long.count(), 2, "returns, and their running mean");
 
-    // Each cell, sixty shades of the colour bar and the paper; the goal is grey on both sides alike.
+    // Each cell, sixty shades of the colour bar and the background. The goal is grey, and symmetric.
     let values = fs::read_to_string(folder.file("values.svg")).unwrap();
     assert_eq!(values.matches("<rect").count(), 72 * 72 + 60 + 1);
     let grey = values.matches("#BEBEBE").count();
@@ -96,7 +96,7 @@ fn swing_up_is_better_than_torque_against_the_velocity() {
         "{grey}"
     );
 
-    // The start and every step; the goal is reached, or there were 501 frames.
+    // The initial state and every step. An episode without the goal has 501 frames.
     let steps = output.split("last greedy episode, ").nth(1).unwrap();
     let steps: usize = steps.split(' ').next().unwrap().parse().unwrap();
     assert_eq!(gif_frames(&folder.file("swing_up.gif")), steps + 1);
@@ -120,8 +120,8 @@ fn swing_up_takes_every_preset_and_memory() {
 }
 
 #[test]
-fn swing_up_refuses_weights_that_are_not_its_own() {
-    let folder = Folder::new("refused-weights");
+fn swing_up_rejects_weights_that_are_not_its_own() {
+    let folder = Folder::new("rejected-weights");
     let weights = folder.file("weights");
     swing_up("--quiet --episodes 3", &["--save", &weights]);
     let bytes = fs::read(&weights).unwrap();
@@ -131,34 +131,34 @@ fn swing_up_refuses_weights_that_are_not_its_own() {
         bytes
     };
     for (bytes, arguments, reason) in [
-        (bytes[1..].to_vec(), "", "these are no weights"),
-        (vec![], "", "these are no weights"),
-        (changed(4), "", "weights of version 3; allowed is 1"),
+        (bytes[1..].to_vec(), "", "weights must begin with"),
+        (vec![], "", "weights must begin with"),
+        (changed(4), "", "weights must be of version 1, got 3"),
         (
             bytes[..65_555].to_vec(),
             "",
-            "weights of 65555 bytes; allowed is 65556",
+            "weights must have 65556 bytes, got 65555",
         ),
         (
             [&bytes[..], &[0]].concat(),
             "",
-            "weights of 65557 bytes; allowed is 65556",
+            "weights must have 65556 bytes, got 65557",
         ),
         (
             bytes.clone(),
             "--memory 16k",
-            "weights of 65556 bytes; allowed is 16404",
+            "weights must have 16404 bytes, got 65556",
         ),
-        (changed(30_000), "", "damaged weights: checksum "),
-        (changed(65_555), "", "damaged weights: checksum "),
-        (bytes.clone(), "--preset quality", "weights of features "),
+        (changed(30_000), "", "damaged weights: "),
+        (changed(65_555), "", "damaged weights: "),
+        (bytes.clone(), "--preset quality", "weights must be of "),
     ] {
         fs::write(&weights, bytes).unwrap();
         let out = folder.file("out");
         let mut all: Vec<&str> = arguments.split_whitespace().collect();
         let pictures = folder.0.to_str().unwrap();
         all.extend(["--load", &weights, "--save", &out, "--pictures", pictures]);
-        let errors = refused("swing_up", &all, "");
+        let errors = rejected("swing_up", &all, "");
         assert!(
             errors.contains(&weights) && errors.contains(reason),
             "{errors}"
@@ -168,8 +168,8 @@ fn swing_up_refuses_weights_that_are_not_its_own() {
 }
 
 #[test]
-fn swing_up_refuses_before_it_learns() {
-    let folder = Folder::new("refused-swing-up");
+fn swing_up_rejects_before_it_learns() {
+    let folder = Folder::new("rejected-swing-up");
     for (arguments, reason) in [
         ("--preset slow", "possible values: fast, quality"),
         ("--memory 12k", "possible values: 8k, 16k, 32k, 64k"),
@@ -178,13 +178,13 @@ fn swing_up_refuses_before_it_learns() {
             "--episodes 4294967296",
             "4294967296 is not in 0..=4294967295",
         ),
-        ("--seed -1", "seed has '-' as character 1"),
+        ("--seed -1", "got '-' as character 1"),
         ("--load none/weights", "none/weights: "),
         (
             "--save none/weights",
-            "allowed is a file in a folder that is there",
+            "must be a file in an existing folder",
         ),
-        ("--pictures none", "allowed is a folder that is there"),
+        ("--pictures none", "must be an existing folder"),
     ] {
         let arguments: Vec<&str> = arguments.split(' ').collect();
         let mut swing_up = command("swing_up", &arguments);

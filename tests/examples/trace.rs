@@ -1,8 +1,9 @@
 //! `trace` prints every bit of an episode.
 
 use super::common::{RECORDING, is_recorded_library};
-use super::{printed, refused, run};
-use acrobot::{Acrobot, Arithmetic, Fast, Host, Micro, Params, Portable, Real, State};
+use super::{printed, rejected, run};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::{Acrobot, Fast, Params, Portable, State};
 
 fn words<S: Real>(state: State<S>) -> String {
     <[S; 4]>::from(state)
@@ -89,27 +90,30 @@ fn trace_takes_every_arithmetic() {
 }
 
 #[test]
-fn trace_refuses_with_a_reason() {
+fn trace_rejects_with_a_reason() {
     for (arguments, reason) in [
         (
             "--seed -5",
-            "seed has '-' as character 1; allowed is a decimal integer",
+            "seed must be a decimal integer of at least 0, got '-' as character 1",
         ),
-        ("--seed 12_000", "seed has '_' as character 3"),
-        ("--seed=", "seed is empty"),
-        ("--seed 1 --low nan", "low is NaN"),
-        ("--seed 1 --low -inf", "low is -inf"),
+        ("--seed 12_000", "got '_' as character 3"),
+        ("--seed=", "got an empty text"),
+        ("--seed 1 --low nan", "3.4e38 rad and rad/s, got NaN"),
+        ("--seed 1 --low -inf", "low must be within -3.4e38 and"),
         (
             "--seed 1 --dt 1e-60 --arithmetic fast",
-            "rounded to the arithmetic's f32, dt is 0 s",
+            "rounded to the arithmetic's f32, dt must be finite and above 0 s, got 0",
         ),
-        ("--seed 1 --high inf", "high is inf"),
-        ("--seed 1 --low 0.2", "low is 0.2 and high is 0.1"),
+        ("--seed 1 --high inf", "rad/s, got inf"),
         (
-            "--seed 1 --dt 0",
-            "dt is 0 s; allowed is a finite number above 0",
+            "--seed 1 --low 0.2",
+            "low must not be above high, got 0.2 and 0.1",
         ),
-        ("--seed 1 --noise nan", "torque_noise is NaN N m"),
+        ("--seed 1 --dt 0", "dt must be finite and above 0 s, got 0"),
+        (
+            "--seed 1 --noise nan",
+            "torque_noise must be finite and at least 0 N m, got NaN",
+        ),
         ("--seed 1 --dynamics film", "possible values: book, nips"),
         (
             "--seed 1 --arithmetic slow",
@@ -117,12 +121,13 @@ fn trace_refuses_with_a_reason() {
         ),
     ] {
         let arguments: Vec<&str> = arguments.split(' ').collect();
-        let errors = refused("trace", &arguments, "012");
+        let errors = rejected("trace", &arguments, "012");
         assert!(errors.contains(reason), "{errors}");
     }
-    let errors = refused("trace", &["--seed", "1"], "0 1\n3 2");
+    let errors = rejected("trace", &["--seed", "1"], "0 1\n3 2");
     assert!(
-        errors.contains("'3' at byte 5 of the input; allowed are the actions 0, 1 and 2"),
+        errors
+            .contains("the input must be actions (0, 1 and 2) and white space, got '3' as byte 5"),
         "{errors}"
     );
 }

@@ -1,15 +1,17 @@
-//! Seeds, generators and what is drawn from them.
+//! Seeds, generators and draws.
 
 use std::num::NonZeroU32;
 
 use acrobot::env::{BoxSpace, Discrete, Space};
-use acrobot::{Acrobot, Pcg64, Portable, SeedSequence, StartBounds, integers, uniform};
+use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
+use acrobot::physics::StartBounds;
+use acrobot::{Acrobot, Portable};
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng, TryRng};
 
 use crate::given::{Range, holds, number, start_bounds};
 
-/// A generator of the user's own, which may be any: these words, again and again.
+/// A custom generator, which repeats these words.
 #[derive(Clone, Debug)]
 struct Repeating(Vec<u64>, usize);
 
@@ -37,7 +39,7 @@ fn generator() -> impl Strategy<Value = Repeating> {
 }
 
 #[test]
-fn integers_are_below_their_number_whatever_draws_them() {
+fn integers_are_below_their_number_with_any_generator() {
     let n = prop_oneof![Just(1), 1..10_u32, any::<u32>()].prop_filter_map("0", NonZeroU32::new);
     holds(2000, (generator(), n), |(mut rng, n)| {
         assert!(integers(&mut rng, n) < n.get());
@@ -61,9 +63,9 @@ fn uniform_draws_are_within_their_bounds() {
     );
 }
 
-/// In `f32`, to which the bounds are rounded with them.
+/// Within the bounds rounded to `f32`, because initial states are `f32`.
 #[test]
-fn starts_are_within_their_bounds() {
+fn initial_states_are_within_their_bounds() {
     holds(1000, (generator(), start_bounds()), |(rng, bounds)| {
         let mut acrobot = Acrobot::<Portable, _>::with_rng(rng);
         acrobot.reset_within(bounds);
@@ -89,7 +91,7 @@ fn start_bounds_are_ordered_and_in_f32() {
 }
 
 #[test]
-fn seeds_are_the_same_however_they_are_written() {
+fn words_decimals_bytes_and_integers_are_the_same_seed() {
     holds(1000, (any::<u128>(), 0..128_u32), |(seed, shift)| {
         let seed = seed >> shift;
         let words = [0, 32, 64, 96].map(|shift| (seed >> shift) as u32);
@@ -98,9 +100,10 @@ fn seeds_are_the_same_however_they_are_written() {
         assert_eq!(format!("000{seed}").parse(), Ok(sequence.clone()));
         let mut bytes = [0; 32];
         bytes[..16].copy_from_slice(&seed.to_le_bytes());
-        assert_eq!(Pcg64::from_seed(bytes), Pcg64::new(sequence.clone()));
+        assert_eq!(Pcg64::from_seed(bytes), Pcg64::from(sequence.clone()));
+        assert_eq!(SeedSequence::from(seed), sequence);
         if let Ok(seed) = u64::try_from(seed) {
-            assert_eq!(SeedSequence::from(seed), sequence);
+            assert_eq!(SeedSequence::new(seed), sequence);
             assert_eq!(Pcg64::seed_from_u64(seed), Pcg64::new(seed));
         }
     });
@@ -132,7 +135,7 @@ fn children_are_numbered_over_all_that_are_spawned() {
             }
             let [first, _, _] = parent.child(far).generate_state();
             assert_eq!(parent.child(far).generate_state(), [first]);
-            // The last of all: there is no other after it.
+            // All children are spawned now.
             assert!(sequence.spawn(u64::MAX).next().is_some());
             assert_eq!(sequence.spawn(1).count(), 0);
         },
@@ -160,9 +163,9 @@ fn spaces_contain_what_they_sample() {
     });
 }
 
-/// Two halves of each word, the low one first, whatever is drawn between them.
+/// Both halves of each word, the low one first, with any draws between them.
 #[test]
-fn halves_of_a_word_outlive_draws_of_whole_ones() {
+fn halves_of_a_word_stay_through_draws_of_whole_words() {
     let draws = prop::collection::vec(any::<bool>(), 0..20);
     holds(500, (any::<u64>(), draws), |(seed, draws)| {
         let (mut rng, mut words) = (Pcg64::new(seed), Pcg64::new(seed));

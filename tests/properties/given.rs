@@ -1,21 +1,24 @@
-//! What the properties are given: numbers of every size, and what is made of them.
+//! Inputs of the properties: numbers of every size, and values made of them.
 
 use std::fmt::Debug;
 
-use acrobot::{Acrobot, Action, Arithmetic, Dynamics, Params, Real, StartBounds, State};
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::numpy::Pcg64;
+use acrobot::physics::{Dynamics, Pendulum, StartBounds};
+use acrobot::{Acrobot, Action, Params, State};
 use proptest::num::{f32, f64};
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed, TestRunner};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Tries a property on so many cases, or as many as the environment says; always the same ones, unless it
-/// says otherwise.
+/// Tries a property on this many cases, which are always the same. `PROPTEST_CASES` and `PROPTEST_RNG_SEED` in the
+/// environment change both.
 pub fn holds<G: Strategy + 'static>(cases: u32, given: G, property: impl Fn(G::Value)) {
     hold(cases, given.boxed(), &property);
 }
 
-/// Apart, for it is large and compiled for each type of what is given.
+/// Separate from [`holds`] because it is large and compiled for each type of input.
 fn hold<T: Debug>(cases: u32, given: BoxedStrategy<T>, property: &dyn Fn(T)) {
     let default = ProptestConfig::default();
     let asked = std::env::var_os("PROPTEST_CASES").is_some();
@@ -43,16 +46,16 @@ fn hold<T: Debug>(cases: u32, given: BoxedStrategy<T>, property: &dyn Fn(T)) {
 /// Calls `check::<A>()` for each arithmetic.
 macro_rules! in_every_arithmetic {
     ($check:ident) => {{
-        $check::<acrobot::Portable>();
-        $check::<acrobot::Host>();
-        $check::<acrobot::Fast>();
-        $check::<acrobot::Micro>();
+        $check::<acrobot::arithmetic::Portable>();
+        $check::<acrobot::arithmetic::Host>();
+        $check::<acrobot::arithmetic::Fast>();
+        $check::<acrobot::arithmetic::Micro>();
     }};
 }
 
-/// A scalar that can be given and compared by its bits.
+/// A scalar that can be generated and compared by its bits.
 pub trait Number: Real + Debug + Serialize + DeserializeOwned {
-    /// Any finite one: each exponent is as likely as any other.
+    /// Any finite number. All exponents are equally likely.
     fn finite() -> BoxedStrategy<Self>;
 
     fn bits(self) -> u64;
@@ -75,21 +78,21 @@ macro_rules! impl_number {
 
 impl_number!(f32, f64);
 
-/// The bits of a state, which tell 0 from −0.
+/// The bits of a state, which distinguish 0 from −0.
 pub fn bits<S: Number>(state: State<S>) -> [u64; 4] {
     <[S; 4]>::from(state).map(S::bits)
 }
 
-/// How far from what is usual.
+/// The size of numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Range {
-    /// Within a factor of thirty of what Gymnasium has.
+    /// Within a factor of thirty of Gymnasium's values.
     Moderate,
-    /// Moderate for the most part, and else whatever is finite.
+    /// Mostly moderate, otherwise any finite number.
     Any,
 }
 
-/// Finite, of either sign.
+/// Finite numbers of either sign.
 pub fn number<S: Number>(range: Range) -> BoxedStrategy<S> {
     let moderate = (-30.0..30.0).prop_map(S::from_f64);
     match range {
@@ -98,7 +101,7 @@ pub fn number<S: Number>(range: Range) -> BoxedStrategy<S> {
     }
 }
 
-/// Above 0, `usual` more often than not.
+/// Numbers above 0, mostly `usual`.
 fn positive<S: Number>(range: Range, usual: f64) -> BoxedStrategy<S> {
     let usual = S::from_f64(usual);
     let moderate = (-3.4..3.4_f64).prop_map(|exponent| S::from_f64(exponent.exp()));
@@ -172,7 +175,7 @@ pub fn action() -> impl Strategy<Value = Action> {
     prop::sample::select(&Action::ALL[..])
 }
 
-/// Any that are valid.
+/// Any valid bounds.
 pub fn start_bounds() -> impl Strategy<Value = StartBounds> {
     let bound = || {
         prop_oneof![
@@ -183,14 +186,11 @@ pub fn start_bounds() -> impl Strategy<Value = StartBounds> {
     (bound(), bound()).prop_map(|(x, y)| StartBounds::new(x.min(y), x.max(y)).unwrap())
 }
 
-/// An acrobot of these parameters in this state.
+/// An acrobot with these parameters in this state.
 pub fn acrobot<A: Arithmetic>(
     params: Params<A::Scalar>,
     state: State<A::Scalar>,
     seed: u64,
 ) -> Acrobot<A> {
-    let mut acrobot = Acrobot::new(seed);
-    acrobot.set_params(params).unwrap();
-    acrobot.set_state(state).unwrap();
-    acrobot
+    Acrobot::from_pendulum(Pendulum::new(params, state).unwrap(), Pcg64::new(seed))
 }

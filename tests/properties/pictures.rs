@@ -1,6 +1,7 @@
-//! Pictures of any acrobot on a target of any place and size.
+//! Pictures of any acrobot on a target of any position and size.
 
-use acrobot::{Arithmetic, Figure, Theme};
+use acrobot::arithmetic::Arithmetic;
+use acrobot::render::{Figure, Theme};
 use embedded_graphics::geometry::{Point, Size};
 use proptest::prelude::*;
 
@@ -14,7 +15,7 @@ fn figure<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = Figure> {
     })
 }
 
-/// The canvas refuses what is outside of it.
+/// The canvas rejects pixels outside it.
 #[test]
 fn every_pixel_is_drawn_once_and_a_redraw_makes_it_another_figures() {
     fn check<A: Arithmetic<Scalar: Number>>() {

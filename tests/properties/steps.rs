@@ -1,13 +1,14 @@
-//! Steps of any acrobot: bounds, mirror symmetry, time limits, and lanes of a batch.
+//! Steps of any acrobot: bounds, mirror symmetry, time limits, and the lanes of a batch.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
 use std::num::NonZeroU32;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Micro, Observation, Observations,
-    Output, Params, Pcg64, Portable, Real, State, Step, TimeLimit, derivative, integers, rk4,
-};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::{Pcg64, integers};
+use acrobot::physics::{Pendulum, derivative, rk4};
+use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, Step, TimeLimit};
 use proptest::prelude::*;
 
 use crate::common::distance;
@@ -15,14 +16,14 @@ use crate::given::{
     Number, Range, acrobot, action, bits, holds, number, params, start_bounds, state,
 };
 
-/// Two of each, for what is set on a running acrobot.
+/// Two inputs, one after the other.
 fn two<G: Strategy>(given: impl Fn() -> G) -> [G; 2] {
     [given(), given()]
 }
 
 fn assert_seen<A: Arithmetic>(acrobot: &Acrobot<A>, observation: Observation) {
     assert_eq!(observation, acrobot.observation());
-    let [trigonometric @ .., dtheta1, dtheta2] = *observation;
+    let [trigonometric @ .., dtheta1, dtheta2] = observation.to_array();
     for x in trigonometric {
         assert!((-1.0..=1.0).contains(&x), "{observation:?}");
     }
@@ -32,7 +33,7 @@ fn assert_seen<A: Arithmetic>(acrobot: &Acrobot<A>, observation: Observation) {
     }
 }
 
-/// Promise 3 for what a step leaves and returns.
+/// Promise 3 for the state after a step and its results.
 fn assert_stepped<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) {
     let Params {
         max_velocity1,
@@ -48,9 +49,9 @@ fn assert_stepped<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) {
     assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
 }
 
-/// Ten million steps where optimized: so many cases of 100 on average in four arithmetics.
+/// With optimization ten million steps: this many cases of 100 steps on average in four arithmetics.
 #[test]
-fn whatever_is_set_and_done_stays_in_bounds() {
+fn any_settings_and_steps_stay_in_bounds() {
     const CASES: u32 = if cfg!(debug_assertions) { 500 } else { 25_500 };
 
     fn check<A: Arithmetic<Scalar: Number>>() {
@@ -73,12 +74,12 @@ fn whatever_is_set_and_done_stays_in_bounds() {
                 for _ in 0..count / 2 {
                     match integers(&mut choices, NonZeroU32::new(32).unwrap()) {
                         0 => {
-                            let start = acrobot.reset();
-                            assert_seen(&acrobot, start);
+                            let observation = acrobot.reset();
+                            assert_seen(&acrobot, observation);
                         }
                         1 => {
-                            let start = acrobot.reset_within(bounds);
-                            assert_seen(&acrobot, start);
+                            let observation = acrobot.reset_within(bounds);
+                            assert_seen(&acrobot, observation);
                         }
                         2 | 3 => {
                             let step = acrobot.step_torque(torque).unwrap();
@@ -132,10 +133,10 @@ fn reach<A: Arithmetic>(
     }
 }
 
-/// `Portable` to the bit, whatever it is given. `Fast` and `Micro` too, up to where their kernels lose
-/// the quadrant: there |x| + 1.5 × 2²³ and −|x| + 1.5 × 2²³ are not rounded alike.
+/// Mirroring state and torque mirrors the result. `Portable` is bit-identical for any input, `Fast` and `Micro` up to
+/// the angle where their kernels lose the quadrant: there |x| + 1.5 × 2²³ and −|x| + 1.5 × 2²³ round differently.
 #[test]
-fn left_is_the_mirror_image_of_right() {
+fn mirrored_steps_are_mirror_images() {
     fn check<A: Arithmetic<Scalar: Number>>(farthest: f64) {
         let checked = Cell::new(0);
         let given = (params(Range::Any), state(Range::Any), action());
@@ -161,10 +162,10 @@ fn left_is_the_mirror_image_of_right() {
     check::<Micro>(5e5);
 }
 
-/// `Host` takes cos(x − π/2) as Gymnasium does, which is not symmetric to the bit.
+/// `Host` takes cos(x − π/2) as Gymnasium does, so its mirror images differ by rounding.
 #[test]
-fn left_is_nearly_the_mirror_image_of_right_in_host() {
-    /// A few roundings of numbers up to 3; faster links would amplify them.
+fn mirrored_steps_are_nearly_mirror_images_in_host() {
+    /// A few roundings of numbers up to 3. Faster links would amplify them.
     const ROUNDING: f64 = 4e-15;
 
     let given = ([-PI..PI, -PI..PI, -3.0..3.0, -3.0..3.0], action());
@@ -203,43 +204,55 @@ fn episodes_are_truncated_from_their_limit_on() {
     });
 }
 
-/// What no lane does to another: each with a state of its own, far out or not, beside the others.
+/// No lane affects another: each has its own state, extreme or not, and is bit-identical to one alone.
 #[test]
 fn lanes_of_a_batch_are_as_one_alone() {
     const LEN: usize = 18;
-    let states = prop::collection::vec(state::<f32>(Range::Any), LEN);
-    let given = (params::<f32>(Range::Any), states, action());
-    holds(1000, given, |(params, states, action)| {
-        let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; LEN]);
-        let mut batch = Batch::<Fast, _, _>::new(0, blocks, generators).unwrap();
-        batch.set_params(params).unwrap();
-        batch.reset_to(&states).unwrap();
-        let alone = states.iter().zip(0..);
-        let mut alone: Vec<_> = alone
-            .map(|(state, i)| {
-                let mut alone = acrobot::<Fast>(params, *state, 0);
-                *alone.rng_mut() = batch.member(i).unwrap().rng;
-                alone
-            })
-            .collect();
-        let mut rows = [[0.0; 6]; LEN];
-        let mut terminated = [false; LEN];
-        let output = Output {
-            rewards: &mut [0.0; LEN],
-            terminated: &mut terminated,
-            truncated: &mut [false; LEN],
-            observations: Observations::Rows(&mut rows),
-            final_observations: Observations::None,
-        };
-        batch.step(&[action; LEN], output).unwrap();
-        for (i, alone) in alone.iter_mut().enumerate() {
-            let step = alone.step(action);
-            assert_eq!(bits(batch.state(i).unwrap()), bits(alone.state()), "{i}");
-            assert_eq!(
-                rows[i].map(f32::to_bits),
-                step.observation.map(f32::to_bits)
-            );
-            assert_eq!(terminated[i], step.terminated);
-        }
-    });
+
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let states = prop::collection::vec(state::<A::Scalar>(Range::Any), LEN);
+        let torques = prop::collection::vec(number::<A::Scalar>(Range::Any), LEN);
+        let given = (params(Range::Any), states, torques);
+        holds(1000, given, |(params, states, torques)| {
+            let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; LEN]);
+            let mut batch = Batch::<A, _, _>::new(0, blocks, generators).unwrap();
+            batch.set_autoreset(Autoreset::Disabled);
+            batch.set_params(params).unwrap();
+            batch.reset_to(&states).unwrap();
+            let mut alone: Vec<_> = (0..LEN)
+                .map(|i| {
+                    let member = batch.member(i).unwrap();
+                    let pendulum = Pendulum::<A>::new(params, member.state).unwrap();
+                    Acrobot::from_pendulum(pendulum, member.rng)
+                })
+                .collect();
+            let mut rows = [[0.0; 6]; LEN];
+            let mut terminated = [false; LEN];
+            // The first step has actions, the second torques.
+            for action in [Some(Action::Positive), None] {
+                let buffers = StepBuffers {
+                    rewards: &mut [0.0; LEN],
+                    terminated: &mut terminated,
+                    truncated: &mut [false; LEN],
+                    observations: Observations::Rows(&mut rows),
+                    final_observations: Observations::None,
+                };
+                match action {
+                    Some(action) => batch.step(&[action; LEN], buffers).unwrap(),
+                    None => batch.step_torques(&torques, buffers).unwrap(),
+                }
+                for (i, alone) in alone.iter_mut().enumerate() {
+                    let step = match action {
+                        Some(action) => alone.step(action),
+                        None => alone.step_torque(torques[i]).unwrap(),
+                    };
+                    assert_eq!(bits(batch.state(i).unwrap()), bits(alone.state()), "{i}");
+                    let observation = step.observation.to_array();
+                    assert_eq!(rows[i].map(f32::to_bits), observation.map(f32::to_bits));
+                    assert_eq!(terminated[i], step.terminated);
+                }
+            }
+        });
+    }
+    in_every_arithmetic!(check);
 }

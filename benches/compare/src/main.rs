@@ -1,5 +1,5 @@
-//! Plays one Rust peer by a random policy for some seconds of processor time, and prints
-//! `name version steps seconds`; or prints how many times longer one peer takes than another.
+//! Plays one Rust peer with a random policy for some seconds of processor time, and prints
+//! `name version steps seconds`. For two peers it prints how many times longer the first takes than the second.
 //!
 //! ```text
 //! cargo run --release -- gmgn 1
@@ -12,10 +12,10 @@ use std::env;
 use std::hint::black_box;
 use std::process::ExitCode;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Batch, Block, Fast, Host, Observations, Output, Pcg64, Portable,
-    TimeLimit,
-};
+use acrobot::arithmetic::{Arithmetic, Host};
+use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use cpu_time::ProcessTime;
 use gmgn::env::Env as _;
 use gmgn::envs::classic_control::AcrobotEnv;
@@ -23,12 +23,12 @@ use rlevo_core::action::DiscreteAction as _;
 use rlevo_core::environment::Environment as _;
 use rlevo_environments::classic::acrobot::{Acrobot as RlevoAcrobot, AcrobotAction};
 
-/// Plays that many steps and returns how many episodes they ended.
+/// Plays a number of steps and returns how many episodes ended.
 type Peer = Box<dyn FnMut(usize) -> usize>;
 
 type New = fn() -> Peer;
 
-/// The name to ask for it by, the package that it measures, and how to make it.
+/// The name of each peer, the package that it measures, and how to make it.
 const PEERS: [(&str, &str, New); 7] = [
     ("host", "acrobot", ours::<Host>),
     ("portable", "acrobot", ours::<Portable>),
@@ -41,9 +41,9 @@ const PEERS: [(&str, &str, New); 7] = [
     ("rlevo", "rlevo-environments", rlevo),
 ];
 
-/// As many as a batch has.
+/// The acrobots of a batch.
 const ACROBOTS: usize = 1024;
-/// Steps between looks at the clock: some milliseconds, and whole steps of a batch.
+/// Steps between two looks at the clock: some milliseconds, and whole steps of a batch.
 const STEPS: usize = 16 * ACROBOTS;
 const LIMIT: u16 = 500;
 
@@ -77,7 +77,7 @@ fn report(arguments: &[String]) -> Option<String> {
     Some(format!("{names} {version} {steps} {seconds}"))
 }
 
-/// The peer of that name and its version.
+/// The peer with this name and its version.
 fn find(name: &str) -> Option<(Peer, &'static str)> {
     let (_, package, new) = PEERS.iter().find(|peer| peer.0 == name)?;
     let lock = include_str!("../Cargo.lock");
@@ -85,7 +85,7 @@ fn find(name: &str) -> Option<(Peer, &'static str)> {
     Some((new(), rest.split_once('"')?.0))
 }
 
-/// Plays in turns until one has had its seconds; how many steps each has played, and how long it took.
+/// Plays all peers interleaved until one has used `seconds`. Returns the steps of each, and the time of each.
 fn time<const N: usize>(mut peers: [Peer; N], seconds: f64) -> (usize, [f64; N]) {
     for play in &mut peers {
         play(STEPS); // warms up
@@ -102,13 +102,13 @@ fn time<const N: usize>(mut peers: [Peer; N], seconds: f64) -> (usize, [f64; N])
     (steps, times)
 }
 
-/// The policy: so cheap that it is the environments that are measured, and vectors can draw too.
+/// The policy. It costs little beside a step, and SIMD can draw, too.
 fn draw(stream: &mut u32) -> u8 {
     *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     (((*stream >> 16) * 3) >> 16) as u8
 }
 
-/// One environment, from a step that resets at ends and says whether this was one.
+/// A peer from a step, which resets after an end and returns whether there was one.
 fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Peer {
     let mut stream = 0;
     Box::new(move |steps| (0..steps).filter(|_| step(draw(&mut stream))).count())
@@ -117,11 +117,11 @@ fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Peer {
 fn ours<A: Arithmetic + 'static>() -> Peer {
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
     alone(move |action| {
-        let ended = black_box(acrobot.step(Action::ALL[usize::from(action)])).ended();
-        if ended {
+        let done = black_box(acrobot.step(Action::ALL[usize::from(action)])).done();
+        if done {
             acrobot.reset();
         }
-        ended
+        done
     })
 }
 
@@ -139,14 +139,14 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Peer {
             for (action, stream) in actions.iter_mut().zip(&mut streams) {
                 *action = draw(stream);
             }
-            let output = Output {
+            let buffers = StepBuffers {
                 rewards: &mut rewards,
                 terminated: &mut terminated,
                 truncated: &mut truncated,
                 observations: observe(&mut rows),
                 final_observations: Observations::None,
             };
-            batch.step(&actions, output).expect("slices of its size");
+            batch.step(&actions, buffers).expect("slices of its size");
             let ended = terminated.iter().zip(&truncated).map(|(a, b)| a | b);
             ends += usize::from(ended.map(u16::from).sum::<u16>());
         }
@@ -155,14 +155,14 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Peer {
 }
 
 fn gmgn() -> Peer {
-    let acrobot = AcrobotEnv::new(Default::default()).expect("its default");
+    let acrobot = AcrobotEnv::new(Default::default()).expect("its default is valid");
     let mut acrobot = gmgn::wrappers::TimeLimit::new(acrobot, LIMIT.into());
-    acrobot.reset(Some(0)).expect("a start");
+    acrobot.reset(Some(0)).expect("it resets");
     alone(move |action| {
-        let step = black_box(acrobot.step(&action.into())).expect("an action");
+        let step = black_box(acrobot.step(&action.into())).expect("a valid action");
         let ended = step.terminated || step.truncated;
         if ended {
-            acrobot.reset(None).expect("a start");
+            acrobot.reset(None).expect("it resets");
         }
         ended
     })
@@ -171,13 +171,13 @@ fn gmgn() -> Peer {
 fn rlevo() -> Peer {
     let acrobot = <RlevoAcrobot>::default();
     let mut acrobot = rlevo_environments::wrappers::TimeLimit::new(acrobot, LIMIT.into());
-    acrobot.reset().expect("a start");
+    acrobot.reset().expect("it resets");
     alone(move |action| {
         let action = AcrobotAction::from_index(action.into());
-        let step = black_box(acrobot.step(action)).expect("an episode that goes on");
+        let step = black_box(acrobot.step(action)).expect("the episode goes on");
         let ended = step.status.is_done();
         if ended {
-            acrobot.reset().expect("a start");
+            acrobot.reset().expect("it resets");
         }
         ended
     })
@@ -188,13 +188,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_peer_steps_and_tells_its_version() {
+    fn every_peer_steps_and_reports_its_version() {
         for (name, package, _) in PEERS {
             let line = report(&[name.into(), "0.01".into()]).unwrap();
-            let [told, version, steps, seconds] = line.split(' ').collect::<Vec<_>>()[..] else {
+            let [reported, version, steps, seconds] = line.split(' ').collect::<Vec<_>>()[..]
+            else {
                 panic!("{line}");
             };
-            assert_eq!(told, name);
+            assert_eq!(reported, name);
             let locked = format!("[[package]]\nname = \"{package}\"\nversion = \"{version}\"\n");
             assert!(include_str!("../Cargo.lock").contains(&locked), "{line}");
             assert!(steps.parse::<usize>().unwrap() >= STEPS, "{line}");
@@ -202,25 +203,25 @@ mod tests {
         }
     }
 
-    /// Few random episodes reach the goal before the limit; none goes on beyond it.
+    /// Few random episodes reach the goal before the limit, and none is longer.
     #[test]
     fn every_peer_plays_episodes_of_almost_500_steps() {
         for (name, _, new) in PEERS {
-            let steps = 1200 * ACROBOTS; // a batch's are all at their third then
+            let steps = 1200 * ACROBOTS; // a batch is in its third episodes then
             let ends = new()(steps);
             assert!((steps / 600..steps / 450).contains(&ends), "{name} {ends}");
         }
     }
 
     #[test]
-    fn compares_two_in_turns() {
+    fn compares_two() {
         let line = report(&["gmgn/gmgn".into(), "0.1".into()]).unwrap();
         let ratio: f64 = line.strip_prefix("gmgn/gmgn ").unwrap().parse().unwrap();
         assert!((0.5..2.0).contains(&ratio), "{line}");
     }
 
     #[test]
-    fn refuses_what_it_does_not_know() {
+    fn rejects_unknown_arguments() {
         for arguments in ["", "fast", "slow 1", "fast/slow 1", "fast soon", "fast 1 1"] {
             let arguments: Vec<String> = arguments.split(' ').map(str::to_owned).collect();
             assert_eq!(report(&arguments), None);

@@ -2,28 +2,29 @@
 
 use std::fmt::Debug;
 
-use acrobot::SeedSequence;
+use acrobot::ResetOptions;
 use acrobot::env::{Env, Info};
+use acrobot::numpy::SeedSequence;
 use anyhow::Context;
 use border_core::record::Record;
 use border_core::{Act, Obs, Step};
 
-/// An environment of ours where border wants one of its own.
+/// An environment of `acrobot` as one of border's.
 #[derive(Clone, Debug)]
 pub struct Adapter<E> {
     env: E,
     seed: SeedSequence,
-    /// The seed, until the first reset has used it; later starts are the next of its stream.
+    /// The seed, until the first reset uses it. Later initial states are the next of its stream.
     unused: Option<SeedSequence>,
 }
 
-/// An observation or an action of ours, marked as one of border's.
+/// An observation or an action of `acrobot`, as one of border's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct One<T>(pub T);
 
 impl<T: Clone + Debug> Obs for One<T> {
     fn len(&self) -> usize {
-        1 // environment, not numbers: border allows for many at once
+        1 // environment: border can step many at once
     }
 }
 
@@ -33,11 +34,21 @@ impl<T: Clone + Debug> Act for One<T> {
     }
 }
 
-/// What a step tells beside the rest.
+/// What a step reports besides the rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Told(pub Info);
 
 impl border_core::Info for Told {}
+
+impl<E: Env> Adapter<E> {
+    fn begin(&mut self, seed: Option<SeedSequence>) -> One<E::Observation> {
+        let (observation, _) = self.env.reset_with(ResetOptions {
+            seed,
+            ..ResetOptions::default()
+        });
+        One(observation)
+    }
+}
 
 impl<E> border_core::Env for Adapter<E>
 where
@@ -51,7 +62,7 @@ where
 
     fn build(env: &E, seed: i64) -> anyhow::Result<Self> {
         let seed =
-            u64::try_from(seed).with_context(|| format!("a seed is not negative: {seed}"))?;
+            u64::try_from(seed).with_context(|| format!("seed must be at least 0, got {seed}"))?;
         Ok(Self {
             env: env.clone(),
             seed: seed.into(),
@@ -68,21 +79,20 @@ where
             vec![step.terminated.into()],
             vec![step.truncated.into()],
             Told(step.info),
-            None, // `step_with_reset` of border fills in the next start
+            None, // border's `step_with_reset` fills in the next initial observation
         );
         (step, Record::empty())
     }
 
-    /// Border asks for it at the beginning and at ends only, so that there is nothing to look up
-    /// in the ends.
+    /// border calls it only at the beginning and at ends, so `_ends` says nothing new.
     fn reset(&mut self, _ends: Option<&Vec<i8>>) -> anyhow::Result<Self::Obs> {
-        let (observation, _) = self.env.reset(self.unused.take(), None);
-        Ok(One(observation))
+        let seed = self.unused.take();
+        Ok(self.begin(seed))
     }
 
-    /// Start number `index` of the seed, whatever was played before: an evaluation's episodes.
+    /// Initial state number `index` of the seed, independent of earlier episodes: for evaluations.
     fn reset_with_index(&mut self, index: usize) -> anyhow::Result<Self::Obs> {
-        let (observation, _) = self.env.reset(Some(self.seed.child(index as u64)), None);
-        Ok(One(observation))
+        let seed = self.seed.child(index as u64);
+        Ok(self.begin(Some(seed)))
     }
 }

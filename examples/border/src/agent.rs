@@ -1,15 +1,15 @@
-//! Q-learning with tile coding, as Sutton & Barto solve Acrobot, behind border's traits: border-core
-//! has the loop, the replay buffer and the evaluation, and leaves the learning to others.
+//! Q-learning with tile coding, as Sutton & Barto solve Acrobot, behind border's traits. border-core has the loop, the replay
+//! buffer and the evaluation, but no learning.
 
 use acrobot::env::{AcrobotEnv, BoxSpace, Discrete, Space};
-use acrobot::{Action, Observation, Pcg64, Portable, TimeLimit, uniform};
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::{Action, Observation, Portable, TimeLimit};
 use acrobot_border::{Adapter, One};
 use border_core::generic_replay_buffer::{BatchBase, SimpleReplayBuffer, SimpleStepProcessor};
 use border_core::record::Record;
 use border_core::{Agent, Policy, ReplayBufferBase, TransitionBatch};
 
-/// The length of `Acrobot-v1`, angles as in `Acrobot-v0` for the tiles, and the same bits on every
-/// machine.
+/// The time limit of `Acrobot-v1`, the angles of `Acrobot-v0` for the tiles, and the same bits on every machine.
 pub type Acrobot = TimeLimit<AcrobotEnv<Portable, Observation<4>>>;
 pub type Env = Adapter<Acrobot>;
 pub type Buffer = SimpleReplayBuffer<Rows<Observation<4>>, Rows<Action>>;
@@ -33,7 +33,7 @@ impl<T: Clone> BatchBase for Rows<T> {
         Self(Vec::with_capacity(capacity))
     }
 
-    /// Border fills the rows in their order, and then the first ones anew.
+    /// border fills the rows in order, then the first ones again.
     fn push(&mut self, row: usize, data: Self) {
         let kept = data.0.len().min(self.0.len() - row);
         self.0.splice(row..row + kept, data.0);
@@ -44,7 +44,7 @@ impl<T: Clone> BatchBase for Rows<T> {
     }
 }
 
-/// The agent to be better than.
+/// The agent to compare with.
 pub struct Random(pub Pcg64);
 
 impl Policy<Env> for Random {
@@ -56,7 +56,7 @@ impl Policy<Env> for Random {
 impl Agent<Env, Buffer> for Random {}
 
 const TILINGS: usize = 8;
-/// Tiles along an axis; an offset tiling sticks out by one.
+/// Tiles along an axis. An offset tiling needs one more.
 const TILES: usize = 7;
 const TILING: usize = TILES.pow(4);
 /// What each sample of a batch moves each of its tiles by, times the error.
@@ -85,13 +85,14 @@ impl Learner {
         }
     }
 
-    /// The tile of each tiling, each shifted by another part of a tile along every axis.
+    /// The tile of each tiling. Each tiling has its own offset along each axis.
     fn tiles(&self, observation: &Observation<4>) -> [usize; TILINGS] {
-        let (lows, highs) = (self.space.low(), self.space.high());
+        let [lows, highs, seen] =
+            [self.space.low(), self.space.high(), observation].map(|x| x.to_array());
         std::array::from_fn(|tiling| {
             (0..4).fold(tiling, |tile, axis| {
                 let (low, high) = (lows[axis], highs[axis]);
-                let place = (observation[axis] - low) / (high - low) * (TILES - 1) as f32;
+                let place = (seen[axis] - low) / (high - low) * (TILES - 1) as f32;
                 // Odd multiples, another for each axis, spread the tilings evenly (Miller & Glanz).
                 let shift = (tiling * (2 * axis + 1) % TILINGS) as f32 / TILINGS as f32;
                 tile * TILES + ((place + shift) as usize).min(TILES - 1)
@@ -141,7 +142,7 @@ impl Agent<Env, Buffer> for Learner {
         let batch = buffer.batch(BATCH).expect("it holds a step by now");
         let (before, actions, after, rewards, terminated, _truncated, ..) = batch.unpack();
         for (i, reward) in rewards.into_iter().enumerate() {
-            // Nothing comes after a termination; after a truncation something would have come.
+            // Only a termination has no future. The episode would go on after a truncation.
             let future = match terminated[i] {
                 0 => {
                     let values = self.values(self.tiles(&after.0[i]));

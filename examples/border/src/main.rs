@@ -1,4 +1,4 @@
-//! Trains an agent on Acrobot in the loop of `border-core`, through the adapter beside it.
+//! Trains an agent on Acrobot in the loop of `border-core`, through the adapter.
 //!
 //! ```text
 //! cargo run -- --seed 42 --steps 100000
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use acrobot::env::Env as _;
-use acrobot::{Pcg64, SeedSequence};
+use acrobot::numpy::{Pcg64, SeedSequence};
 use border_core::generic_replay_buffer::{SimpleReplayBufferConfig, SimpleStepProcessorConfig};
 use border_core::record::{Record, Recorder};
 use border_core::{
@@ -26,24 +26,24 @@ use agent::{Buffer, Env, Learner, Random, Steps};
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Seed of everything: below 2^63, as border's are signed.
+    /// Seed of everything, below 2^63, because border's seeds are signed.
     #[arg(long, default_value_t = 42, value_parser = value_parser!(i64).range(0..))]
     seed: i64,
-    /// How many steps to train for.
+    /// The number of training steps.
     #[arg(long, default_value_t = 100_000, value_parser = value_parser!(u64).range(1..))]
     steps: u64,
 }
 
-/// Episodes that a mean return is of.
+/// The episodes of a mean return.
 const EPISODES: usize = 100;
-/// How often training reports.
+/// The number of reports in a training.
 const REPORTS: usize = 20;
 
 fn main() -> ExitCode {
     let options = Options::parse();
     match run(&options) {
         Ok(()) => ExitCode::SUCCESS,
-        // Whoever reads has read enough.
+        // The reader has closed the pipe.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error:#}");
@@ -60,9 +60,9 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
 fn run(options: &Options) -> anyhow::Result<()> {
     let acrobot = agent::acrobot();
     let steps = usize::try_from(options.steps)?;
-    let seed = SeedSequence::from(u64::try_from(options.seed)?);
-    // The evaluation's episodes have the first children of the seed.
-    let child = |i| Pcg64::new(seed.child(EPISODES as u64 + i));
+    let seed = SeedSequence::new(u64::try_from(options.seed)?);
+    // The evaluation's episodes use the first children of the seed.
+    let child = |i| Pcg64::from(seed.child(EPISODES as u64 + i));
     let mut random: Box<dyn Agent<Env, Buffer>> = Box::new(Random(child(0)));
     let learner = Learner::new(acrobot.observation_space(), child(1));
     let mut learner: Box<dyn Agent<Env, Buffer>> = Box::new(learner);
@@ -107,7 +107,7 @@ fn run(options: &Options) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Tells of each evaluation that the trainer makes on its way.
+/// Prints each evaluation of the trainer.
 struct Progress {
     interval: usize,
     steps: usize,
@@ -125,13 +125,13 @@ impl Recorder<Env, Buffer> for Progress {
         };
         self.reports += 1;
         let (done, steps) = (self.reports * self.interval, self.steps);
-        // Without a standard error there is nobody to tell.
+        // A closed standard error does not stop the training.
         let _ = writeln!(io::stderr(), "{done:>8} of {steps} steps: {score:7.1}");
     }
 
     fn flush(&mut self, _step: i64) {}
 
-    /// The trainer asks for it at each new best; only the last is wanted here.
+    /// The trainer calls it for each new best model. This example saves none.
     fn save_model(&self, _base: &Path, _agent: &Box<dyn Agent<Env, Buffer>>) -> anyhow::Result<()> {
         Ok(())
     }

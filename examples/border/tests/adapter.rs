@@ -1,43 +1,44 @@
-//! What border gets through the adapter is what the environment gives.
+//! The adapter passes border everything that the environment returns.
 
 use std::num::NonZeroU32;
 
-use acrobot::env::{Env as _, EnvStep, RecordEpisodeStatistics};
-use acrobot::{Acrobot, Action, Observation, Portable, SeedSequence, TimeLimit};
+use acrobot::env::{AcrobotEnv, Env as _, RecordEpisodeStatistics};
+use acrobot::numpy::SeedSequence;
+use acrobot::{Action, Observation, Portable, ResetOptions, Step, TimeLimit};
 use acrobot_border::{Adapter, One};
 use border_core::Env as _;
 
-type Env = RecordEpisodeStatistics<TimeLimit<Acrobot<Portable>>>;
+type Env = RecordEpisodeStatistics<TimeLimit<AcrobotEnv<Portable, Observation>>>;
 
 const SEED: i64 = 42;
 
 fn env(limit: u32) -> Env {
     let limit = NonZeroU32::new(limit).unwrap();
-    RecordEpisodeStatistics::new(TimeLimit::new(Acrobot::new(7), limit))
+    RecordEpisodeStatistics::new(TimeLimit::new(AcrobotEnv::default(), limit))
 }
 
-/// Pumps energy: the torque goes with the velocity between the links.
+/// Pumps energy: the torque follows the velocity of link 2.
 fn pump(observation: &Observation) -> Action {
-    match observation[5] {
-        velocity if velocity > 0.0 => Action::Positive,
-        _ => Action::Negative,
+    match observation.dtheta2() > 0.0 {
+        true => Action::Positive,
+        false => Action::Negative,
     }
 }
 
-/// How often an episode was terminated only, truncated only, and both at once.
+/// The numbers of episodes that were only terminated, only truncated, and both.
 type Ends = [u32; 3];
 
-/// Plays `steps` steps beside each other, over ends and resets, and compares them.
+/// Steps an environment and its adapted twin `steps` times, across ends and resets, and compares them.
 fn compare(limit: u32, steps: u32, policy: fn(&Observation) -> Action) -> Ends {
     let mut ours = env(limit);
     let mut theirs = Adapter::build(&env(limit), SEED).unwrap();
 
-    let (mut start, _) = ours.reset(Some(42.into()), None);
-    assert_eq!(theirs.reset(None).unwrap(), One(start));
+    let (mut seen, _) = ours.reset_with_seed(42);
+    assert_eq!(theirs.reset(None).unwrap(), One(seen));
     let mut ends = [0; 3];
     for _ in 0..steps {
-        let action = policy(&start);
-        let EnvStep {
+        let action = policy(&seen);
+        let Step {
             observation,
             reward,
             terminated,
@@ -60,14 +61,14 @@ fn compare(limit: u32, steps: u32, policy: fn(&Observation) -> Action) -> Ends {
             (false, true) => Some(1),
             (true, true) => Some(2),
         };
-        start = match end {
+        seen = match end {
             None => observation,
             Some(end) => {
                 ends[end] += 1;
-                ours.reset(None, None).0
+                ours.reset().0
             }
         };
-        assert_eq!(step.init_obs, end.map(|_| One(start)));
+        assert_eq!(step.init_obs, end.map(|_| One(seen)));
         assert_eq!(step.is_done(), end.is_some());
     }
     ends
@@ -88,7 +89,7 @@ fn passes_truncations_through() {
 #[test]
 fn passes_both_at_once_through() {
     let mut env = env(500);
-    let (mut observation, _) = env.reset(Some(42.into()), None);
+    let (mut observation, _) = env.reset_with_seed(42);
     let length = loop {
         let step = env.step(pump(&observation));
         observation = step.observation;
@@ -101,7 +102,7 @@ fn passes_both_at_once_through() {
 }
 
 #[test]
-fn an_index_is_a_start_whatever_was_played_before() {
+fn an_index_gives_the_same_initial_state_whatever_was_played_before() {
     let mut theirs = Adapter::build(&env(500), SEED).unwrap();
     let first = theirs.reset_with_index(3).unwrap();
     theirs.step(&One(Action::Positive));
@@ -109,12 +110,15 @@ fn an_index_is_a_start_whatever_was_played_before() {
     assert_ne!(first, other);
     assert_eq!(theirs.reset_with_index(3).unwrap(), first);
 
-    let seed = SeedSequence::from(42).child(3);
-    assert_eq!(first, One(env(500).reset(Some(seed), None).0));
+    let options = ResetOptions {
+        seed: Some(SeedSequence::new(42).child(3)),
+        ..ResetOptions::default()
+    };
+    assert_eq!(first, One(env(500).reset_with(options).0));
 }
 
 #[test]
-fn refuses_a_negative_seed() {
+fn rejects_a_negative_seed() {
     let error = Adapter::build(&env(500), -1).unwrap_err();
-    assert_eq!(error.to_string(), "a seed is not negative: -1");
+    assert_eq!(error.to_string(), "seed must be at least 0, got -1");
 }

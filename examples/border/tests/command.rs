@@ -1,4 +1,4 @@
-//! The program trains, says the same again for the same seed, and refuses what it cannot do.
+//! The program trains, repeats itself for the same seed, and rejects invalid arguments.
 
 use std::process::{Command, Output};
 
@@ -9,7 +9,7 @@ fn run(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// The numbers at the ends of the lines: of random, of untrained and of trained.
+/// The numbers at the ends of the lines: random, untrained and trained.
 fn scores(output: &Output) -> Vec<f32> {
     let text = String::from_utf8_lossy(&output.stdout);
     let lines = text.lines().skip(1);
@@ -31,7 +31,7 @@ fn learns_and_repeats_itself() {
 }
 
 #[test]
-fn does_what_the_readme_says() {
+fn has_the_readmes_returns() {
     let readme = include_str!("../README.md").replace('−', "-");
     for score in scores(&run(&["--seed", "42", "--steps", "100000"])) {
         assert!(readme.contains(&format!("{score:.1} ")), "{score}");
@@ -39,7 +39,7 @@ fn does_what_the_readme_says() {
 }
 
 #[test]
-fn refuses_with_status_2() {
+fn rejects_with_status_2() {
     for arguments in [
         ["--steps", "0"],
         ["--steps", "many"],

@@ -1,10 +1,10 @@
-//! Counts instructions: under QEMU's `-icount shift=0` one is one virtual nanosecond, and SysTick, at 25 MHz, ticks once
-//! in 40.
+//! Counts instructions. Under QEMU's `-icount shift=0` one instruction takes one virtual nanosecond, and SysTick, at
+//! 25 MHz, ticks once in 40.
 
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 
-/// SysTick runs down from 2²⁴ − 1, which is 671 million instructions: longer than any figure takes.
+/// SysTick counts down from 2²⁴ − 1: 671 million instructions, longer than any measurement.
 pub struct Counter(SYST);
 
 impl Counter {
@@ -14,7 +14,7 @@ impl Counter {
         Self(syst)
     }
 
-    /// Instructions of one of `times` runs.
+    /// The mean instructions of `times` runs.
     pub fn count(&mut self, times: u32, mut run: impl FnMut()) -> u32 {
         self.0.clear_current();
         self.0.enable_counter();

@@ -1,16 +1,17 @@
-//! The least firmware that uses the crate: an acrobot is seeded, reset and stepped
-//! for ever. What `minimal_without` leaves out is what the crate costs.
+//! The least firmware that uses an `Acrobot`: it seeds one, and steps and resets it forever. The crate costs what this has
+//! above `minimal_without`.
 
 use core::hint::black_box;
 
-use acrobot::{Acrobot, Action, Arithmetic};
+use acrobot::arithmetic::Arithmetic;
+use acrobot::{Acrobot, Action};
 
 pub fn run<A: Arithmetic>() -> ! {
     let mut acrobot = Acrobot::<A>::new(black_box(42));
     loop {
-        // Where `cycles.py` counts a step.
+        // `cycles.py` counts a step here.
         cortex_m::asm::nop();
-        // From the agent and for it, whatever they are.
+        // The compiler does not know what the agent does, nor what it needs.
         if black_box(acrobot.step(black_box(Action::Zero))).terminated {
             black_box(acrobot.reset());
         }

@@ -1,23 +1,21 @@
-//! An SSD1306 for want of a real one, and the bus to it.
-//!
-//! On a board the HAL's I²C takes the place of `Bus`.
+//! A simulated SSD1306 and its bus. On a board the HAL's I²C replaces `Bus`.
 
 use core::cell::RefCell;
 use core::convert::Infallible;
 
 use embedded_hal::i2c::{ErrorType, I2c, Operation};
 
-/// What an SSD1306 makes of what it receives: windows of its memory, written from the left.
+/// An SSD1306's memory, and the window of it that received bytes are written to, from the left.
 pub struct Panel {
     pub memory: [u8; 1024],
     /// First and last column, first and last group of eight rows.
     window: [u8; 4],
-    /// Where the next byte goes.
+    /// The position of the next byte.
     column: u8,
     page: u8,
     /// Bytes on the bus, without addresses.
     pub received: u32,
-    /// Something that this panel does not know was received.
+    /// Whether the panel received something that it does not know.
     pub unknown: bool,
 }
 
@@ -36,7 +34,7 @@ impl Panel {
     fn receive(&mut self, bytes: &[u8]) {
         self.received += bytes.len() as u32;
         match bytes {
-            // A window of columns, and one of pages.
+            // The window's columns, and its pages.
             &[0x00, 0x21, first, last] => {
                 [self.window[0], self.window[1]] = [first, last];
                 self.column = first;
@@ -45,7 +43,7 @@ impl Panel {
                 [self.window[2], self.window[3]] = [first, last];
                 self.page = first;
             }
-            // Settings, and switching on.
+            // Settings, and power on.
             [0x00, ..] => {}
             [0x40, data @ ..] => data.iter().for_each(|&byte| self.write(byte)),
             _ => self.unknown = true,

@@ -2,38 +2,41 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::{
-    Autoreset, Block, Fast, Member, Observations, Output, Params, Pcg64, SeedSequence, StartBounds,
-    State,
-};
+use acrobot::batch::{Autoreset, Block, Member, Observations, StepBuffers};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::StartBounds;
+use acrobot::{Error, Fast, Params, ResetOptions};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadwriteArray1, PyReadwriteArray2};
-use pyo3::exceptions::{PyIndexError, PyMemoryError};
+use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde::{Deserialize, Serialize};
 
-use crate::{InvalidAction, load, positive, refused, render, save, with};
+use crate::{
+    ACTIONS, InvalidAction, load, must_be, positive, rejected, render, save, unknown, with,
+};
 
-type Native = acrobot::Batch<Fast, Vec<Block>, Vec<Pcg64>>;
+type Native = acrobot::batch::Batch<Fast, Vec<Block>, Vec<Pcg64>>;
 
-/// A batch, what was set of it, and memory for the actions.
+/// A batch, and memory for its actions.
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
     batch: Native,
-    settings: Settings,
     actions: Vec<u8>,
 }
 
-/// What a batch does not tell again.
-#[derive(Clone, Copy, Serialize, Deserialize)]
-struct Settings {
-    limit: NonZeroU32,
-    same_step: bool,
-}
+/// All modes, with Gymnasium's names.
+const MODES: [(&str, Autoreset); 3] = [
+    ("NextStep", Autoreset::NextStep),
+    ("SameStep", Autoreset::SameStep),
+    ("Disabled", Autoreset::Disabled),
+];
 
 #[derive(Serialize, Deserialize)]
 struct Snapshot {
-    settings: Settings,
+    limit: NonZeroU32,
+    /// The index in [`MODES`].
+    mode: usize,
     params: Params<f32>,
     members: Vec<Member>,
 }
@@ -41,45 +44,58 @@ struct Snapshot {
 #[pymethods]
 impl Batch {
     #[new]
-    fn new(num_envs: i64, seed: &str, max_episode_steps: i64, same_step: bool) -> PyResult<Self> {
+    fn new(num_envs: i64, seed: &str, max_episode_steps: i64, mode: &str) -> PyResult<Self> {
         let num_envs = positive("num_envs", num_envs)?.get() as usize;
-        let settings = Settings {
-            limit: positive("max_episode_steps", max_episode_steps)?,
-            same_step,
+        let limit = positive("max_episode_steps", max_episode_steps)?;
+        let seed = Some(parse(seed)?);
+        let Some((_, mode)) = MODES.iter().find(|(name, _)| *name == mode) else {
+            let rule = r#""NextStep", "SameStep" or "Disabled""#;
+            return Err(unknown("autoreset_mode", rule, mode));
         };
-        Self::assemble(num_envs, parse(seed)?, settings)
+        let mut batch = Self::assemble(num_envs, limit, *mode)?;
+        batch.batch.reset_with(ResetOptions {
+            seed,
+            ..ResetOptions::default()
+        });
+        Ok(batch)
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let params = with(self.batch.params().cast(), name, value)?;
-        self.batch.set_params(params.cast()).map_err(refused)
+        self.batch.set_params(params.cast()).map_err(rejected)
     }
 
-    /// Begins all episodes anew within these bounds: in the stream that each has, or where there is a seed in
-    /// its children's.
-    fn reset(&mut self, py: Python<'_>, seed: Option<&str>, low: f64, high: f64) -> PyResult<()> {
-        let bounds = StartBounds::new(low, high).map_err(refused)?;
-        let seed = seed.map(parse).transpose()?;
-        py.detach(|| {
-            self.batch.set_start_bounds(bounds);
-            match seed {
-                Some(seed) => self.batch.reset_seeded(seed),
-                None => self.batch.reset(),
-            }
-            // Those of Gymnasium's options hold for this reset alone.
-            self.batch.set_start_bounds(StartBounds::DEFAULT);
-        });
-        Ok(())
+    /// Resets all, or those in a mask, with initial states within these bounds. With a seed each takes the stream of
+    /// its child first.
+    fn reset(
+        &mut self,
+        py: Python<'_>,
+        seed: Option<&str>,
+        low: f64,
+        high: f64,
+        mask: Option<PyReadonlyArray1<'_, bool>>,
+    ) -> PyResult<()> {
+        let options = ResetOptions {
+            seed: seed.map(parse).transpose()?,
+            bounds: StartBounds::new(low, high).map_err(rejected)?,
+        };
+        let Some(mask) = mask else {
+            py.detach(|| self.batch.reset_with(options));
+            return Ok(());
+        };
+        let mask = mask.as_slice()?;
+        py.detach(|| self.reset_masked(mask, options))
+            .map_err(rejected)
     }
 
     fn observe(&self, mut observations: PyReadwriteArray2<'_, f32>) -> PyResult<()> {
         let rows = observations.as_slice_mut()?.as_chunks_mut().0;
         self.batch
             .observe(Observations::Rows(rows))
-            .map_err(refused)
+            .map_err(rejected)
     }
 
-    /// Writes into the arrays, without Python's lock; into `finals` where there is one.
+    /// Writes into the arrays, and into `finals` if given. Releases Python's lock meanwhile.
     #[expect(clippy::too_many_arguments, reason = "an array for each result")]
     fn step(
         &mut self,
@@ -92,7 +108,7 @@ impl Batch {
         mut finals: Option<PyReadwriteArray2<'_, f32>>,
     ) -> PyResult<()> {
         self.read(actions.as_slice()?)?;
-        let output = Output {
+        let buffers = StepBuffers {
             rewards: rewards.as_slice_mut()?,
             terminated: terminated.as_slice_mut()?,
             truncated: truncated.as_slice_mut()?,
@@ -102,11 +118,11 @@ impl Batch {
                 None => Observations::None,
             },
         };
-        py.detach(|| self.batch.step(&self.actions, output))
-            .map_err(refused)
+        py.detach(|| self.batch.step(&self.actions, buffers))
+            .map_err(rejected)
     }
 
-    /// θ1, θ2 and their velocities of one after the other.
+    /// θ1, θ2 and their velocities, one acrobot after the other.
     fn states<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         let states = (0..self.batch.len()).filter_map(|index| self.batch.state(index));
         PyArray1::from_iter(py, states.flat_map(<[f32; 4]>::from))
@@ -118,20 +134,23 @@ impl Batch {
         index: usize,
         mode: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let state: Option<State<f32>> = self.batch.state(index);
+        let state = self.batch.state(index);
         let state = state.ok_or_else(|| PyIndexError::new_err(index))?;
         render(py, self.batch.params().cast(), state.cast(), mode)
     }
 
-    /// Those of the smallest batch: all else is in the state.
-    fn __getnewargs__(&self) -> (i64, &str, i64, bool) {
-        (1, "0", 1, false)
+    /// Makes the smallest batch. `__setstate__` replaces it.
+    fn __getnewargs__(&self) -> (i64, &str, i64, &str) {
+        (1, "0", 1, "NextStep")
     }
 
     fn __getstate__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let autoreset = self.batch.autoreset();
+        let mode = MODES.iter().position(|(_, mode)| *mode == autoreset);
         let members = (0..self.batch.len()).filter_map(|index| self.batch.member(index));
         let bytes = save(&Snapshot {
-            settings: self.settings,
+            limit: self.batch.limit(),
+            mode: mode.unwrap_or_default(),
             params: *self.batch.params(),
             members: members.collect(),
         })?;
@@ -140,14 +159,19 @@ impl Batch {
 
     fn __setstate__(&mut self, bytes: &[u8]) -> PyResult<()> {
         let Snapshot {
-            settings,
+            limit,
+            mode,
             params,
             members,
         } = load(bytes)?;
-        let mut batch = Self::assemble(members.len(), 0.into(), settings)?;
-        batch.batch.set_params(params).map_err(refused)?;
+        let mode = MODES.get(mode).ok_or_else(|| {
+            let rule = format_args!("below {}", MODES.len());
+            PyValueError::new_err(must_be("the snapshot's autoreset mode", rule, mode))
+        });
+        let mut batch = Self::assemble(members.len(), limit, mode?.1)?;
+        batch.batch.set_params(params).map_err(rejected)?;
         for (index, member) in members.into_iter().enumerate() {
-            batch.batch.set_member(index, member).map_err(refused)?;
+            batch.batch.set_member(index, member).map_err(rejected)?;
         }
         *self = batch;
         Ok(())
@@ -155,42 +179,60 @@ impl Batch {
 }
 
 impl Batch {
-    fn assemble(num_envs: usize, seed: SeedSequence, settings: Settings) -> PyResult<Self> {
+    /// A batch with seed 0.
+    fn assemble(num_envs: usize, limit: NonZeroU32, autoreset: Autoreset) -> PyResult<Self> {
         let blocks = memory(Block::EMPTY, num_envs.div_ceil(Block::<f32>::LANES))?;
         let generators = memory(Pcg64::UNSEEDED, num_envs)?;
-        let mut batch = Native::new(seed, blocks, generators).map_err(refused)?;
-        batch.set_limit(settings.limit);
-        batch.set_autoreset(match settings.same_step {
-            true => Autoreset::SameStep,
-            false => Autoreset::NextStep,
-        });
+        let mut batch = Native::new(0, blocks, generators).map_err(rejected)?;
+        batch.set_limit(limit);
+        batch.set_autoreset(autoreset);
         Ok(Self {
             batch,
-            settings,
             actions: memory(0, num_envs)?,
         })
     }
 
-    /// The actions in the width that a batch takes.
+    fn reset_masked(&mut self, mask: &[bool], options: ResetOptions) -> Result<(), Error> {
+        let (len, expected) = (mask.len(), self.batch.len());
+        if len != expected {
+            return Err(Error::WrongLength {
+                name: "reset_mask",
+                len,
+                expected,
+            });
+        }
+        if let Some(seed) = options.seed {
+            for index in (0..len).filter(|&index| mask[index]) {
+                if let Some(member) = self.batch.member(index) {
+                    let rng = seed.child(index as u64).into();
+                    self.batch.set_member(index, Member { rng, ..member })?;
+                }
+            }
+        }
+        self.batch.set_start_bounds(options.bounds);
+        let reset = self.batch.reset_masked(mask);
+        // Gymnasium's options are those of one reset.
+        self.batch.set_start_bounds(StartBounds::DEFAULT);
+        reset
+    }
+
+    /// Reads the actions into the width that a batch takes.
     fn read(&mut self, actions: &[i64]) -> PyResult<()> {
-        if actions.len() != self.actions.len() {
-            let (found, expected) = (actions.len(), self.actions.len());
-            let message = format!("actions has {found} elements; allowed is {expected}");
+        let (len, expected) = (actions.len(), self.actions.len());
+        if len != expected {
+            let message = format!("actions must have {expected} elements, got {len}");
             return Err(InvalidAction::new_err(message));
         }
-        // One pass without an exit, so that it is done by vectors.
-        let known = actions
-            .iter()
-            .fold(true, |all, action| all & (0..3).contains(action));
-        if !known {
+        let known = |action: &i64| (0..3).contains(action);
+        // One pass without an exit, so that the compiler makes SIMD of it.
+        if !actions.iter().fold(true, |all, action| all & known(action)) {
             let unknown = actions
                 .iter()
                 .enumerate()
-                .find(|(_, action)| !(0..3).contains(*action));
+                .find(|(_, action)| !known(action));
             let (index, action) = unknown.unwrap_or((0, &0));
-            return Err(InvalidAction::new_err(format!(
-                "action {index} is {action}; allowed is 0 (negative torque), 1 (none) or 2 (positive)"
-            )));
+            let name = format!("actions[{index}]");
+            return Err(InvalidAction::new_err(must_be(&name, ACTIONS, action)));
         }
         for (to, &action) in self.actions.iter_mut().zip(actions) {
             *to = action as u8;
@@ -199,12 +241,12 @@ impl Batch {
     }
 }
 
-/// A decimal integer, 0 or more, of any size.
+/// The sequence of a decimal integer of at least 0, of any size.
 fn parse(seed: &str) -> PyResult<SeedSequence> {
-    seed.parse::<SeedSequence>().map_err(refused)
+    seed.parse::<SeedSequence>().map_err(rejected)
 }
 
-/// As much memory as was asked for, or a `MemoryError`.
+/// `len` copies of a value, or a `MemoryError`.
 fn memory<T: Clone>(value: T, len: usize) -> PyResult<Vec<T>> {
     let mut memory = Vec::new();
     memory

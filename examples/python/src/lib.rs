@@ -1,12 +1,15 @@
-//! The native part of `acrobot_rs`: numbers in, numbers out. What Gymnasium's users see is in `python/`.
+//! The native part of `acrobot_rs`. Gymnasium's interface is in `python/`.
 
 mod batch;
 mod single;
 
+use std::fmt::Display;
 use std::num::NonZeroU32;
 
+use acrobot::arithmetic::Host;
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::{Dynamics, Host, Observation, Params, State};
+use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyAttributeError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -25,32 +28,41 @@ mod _native {
     use super::single::Acrobot;
 }
 
-/// Refuses bounds that `f32` cannot hold, and a `low` above `high`.
+/// Rejects bounds beyond the range of `f32`, and a `low` above `high`.
 #[pyfunction]
 fn check_start_bounds(low: f64, high: f64) -> PyResult<()> {
-    acrobot::StartBounds::new(low, high).map_err(refused)?;
+    StartBounds::new(low, high).map_err(rejected)?;
     Ok(())
 }
 
-/// What the crate refuses is a `ValueError` that says what is allowed.
-fn refused(error: impl std::error::Error) -> PyErr {
+/// What the crate rejects is a `ValueError`, whose message has the rule.
+fn rejected(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A text from Python that is no name of what there is.
-fn unknown(name: &str, found: &str, allowed: &str) -> PyErr {
-    PyValueError::new_err(format!("{name} is {found:?}; allowed is {allowed}"))
+/// A message like those of the crate.
+fn must_be(name: &str, rule: impl Display, got: impl Display) -> String {
+    format!("{name} must be {rule}, got {got}")
 }
 
-/// A count from Python, which has no types for it.
+/// The rule for an action.
+const ACTIONS: &str = "0 (negative torque), 1 (none) or 2 (positive)";
+
+/// A text from Python that is not one of the names in `rule`.
+fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
+    PyValueError::new_err(must_be(name, rule, format_args!("{got:?}")))
+}
+
+/// A count from Python, whose integers have no bounds.
 fn positive(name: &str, value: i64) -> PyResult<NonZeroU32> {
     let count = u32::try_from(value).ok().and_then(NonZeroU32::new);
     count.ok_or_else(|| {
-        PyValueError::new_err(format!("{name} is {value}; allowed is 1 to {}", u32::MAX))
+        let rule = format_args!("an integer from 1 to {}", u32::MAX);
+        PyValueError::new_err(must_be(name, rule, value))
     })
 }
 
-/// The parameters with one changed, by the name that Gymnasium has for it.
+/// The parameters with one of them changed. `name` is Gymnasium's.
 fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     let mut params = params;
     match name {
@@ -73,16 +85,16 @@ fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params
             params.dynamics = match value.extract()? {
                 "book" => Dynamics::Book,
                 "nips" => Dynamics::Nips,
-                other => return Err(unknown(name, other, r#""book" or "nips""#)),
+                other => return Err(unknown(name, r#""book" or "nips""#, other)),
             }
         }
         _ => return Err(PyAttributeError::new_err(format!("no parameter {name}"))),
     }
-    params.validate().map_err(refused)?;
+    params.validate().map_err(rejected)?;
     Ok(params)
 }
 
-/// What a render mode shows of a state: an array of shape (500, 500, 3), or a text.
+/// A picture of a state: an array of shape (500, 500, 3) or a text, by the render mode.
 fn render<'py>(
     py: Python<'py>,
     params: Params,
@@ -92,22 +104,23 @@ fn render<'py>(
     let mode = match mode {
         "rgb_array" => RenderMode::RgbArray,
         "ansi" => RenderMode::Ansi,
-        other => return Err(unknown("render_mode", other, r#""rgb_array" or "ansi""#)),
+        other => return Err(unknown("render_mode", r#""rgb_array" or "ansi""#, other)),
     };
-    let mut env = AcrobotEnv::<Host, Observation>::new(params, mode).map_err(refused)?;
-    env.unwrapped_mut().set_state(state).map_err(refused)?;
-    match env.render().map_err(refused)? {
+    let mut env = AcrobotEnv::<Host, Observation>::new(params, mode).map_err(rejected)?;
+    env.unwrapped_mut().set_state(state).map_err(rejected)?;
+    match env.render().map_err(rejected)? {
         Rendering::Frame(frame) => {
             let shape = [frame.height() as usize, frame.width() as usize, 3];
             let array = PyArray1::from_slice(py, frame.bytes()).reshape(shape)?;
             Ok(array.into_any())
         }
         Rendering::Text(text) => Ok(text.into_pyobject(py)?.into_any()),
-        Rendering::Shown => Ok(py.None().into_bound(py)),
+        // The other modes show pictures elsewhere.
+        _ => Ok(py.None().into_bound(py)),
     }
 }
 
-/// Of what this package adds to the crate's snapshots, which have a version of their own.
+/// The version of what this package adds to the crate's snapshots. Those have versions of their own.
 const VERSION: u32 = 1;
 
 /// The bytes of a snapshot, for pickle.
@@ -116,16 +129,20 @@ fn save(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
         .map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
-/// The snapshot of such bytes, checked, and nothing after it.
+/// The snapshot in these bytes, checked. Rejects bytes after its end.
 fn load<T: DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
     let damaged = |error| PyValueError::new_err(format!("the snapshot is damaged: {error}"));
     let (version, bytes) = postcard::take_from_bytes::<u32>(bytes).map_err(damaged)?;
     if version != VERSION {
-        let message = format!("the snapshot is of version {version}; allowed is {VERSION}");
+        let message = must_be("the snapshot's version", VERSION, version);
         return Err(PyValueError::new_err(message));
     }
     match postcard::take_from_bytes(bytes).map_err(damaged)? {
         (snapshot, []) => Ok(snapshot),
-        _ => Err(PyValueError::new_err("the snapshot has bytes too many")),
+        (_, rest) => {
+            let count = rest.len();
+            let message = format!("the snapshot must have no bytes after its end, got {count}");
+            Err(PyValueError::new_err(message))
+        }
     }
 }

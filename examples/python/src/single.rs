@@ -1,12 +1,13 @@
-//! One acrobot, with the bits of Gymnasium's.
+//! One acrobot, bit-identical to Gymnasium's.
 
-use acrobot::{Action, Host, Observation, Params, State};
+use acrobot::arithmetic::Host;
+use acrobot::{Action, Observation, Params, State};
 use numpy::PyArray1;
 use pyo3::exceptions::PyAssertionError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use crate::{InvalidAction, load, refused, render, save, with};
+use crate::{ACTIONS, InvalidAction, load, must_be, rejected, render, save, with};
 
 /// What `Env.step` returns: observation, reward, terminated, truncated and info.
 type Step<'py> = (
@@ -17,13 +18,13 @@ type Step<'py> = (
     Bound<'py, PyDict>,
 );
 
-/// Parameters and a state. All draws are NumPy's, of the generator that the environment has.
+/// Parameters and a state. All random numbers are drawn by NumPy, from the environment's generator.
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Acrobot {
     acrobot: acrobot::Acrobot<Host>,
-    /// Whether it is seen as by `Acrobot-v0`.
+    /// Whether observations are those of `Acrobot-v0`.
     angles: bool,
-    /// Gymnasium has no state before the first reset.
+    /// Whether there is a state: Gymnasium has none before the first reset.
     started: bool,
 }
 
@@ -40,12 +41,12 @@ impl Acrobot {
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let params = with(*self.acrobot.params(), name, value)?;
-        // The noise is drawn outside, and comes with each step.
+        // Each step is given its noise.
         let params = Params {
             torque_noise: 0.0,
             ..params
         };
-        self.acrobot.set_params(params).map_err(refused)
+        self.acrobot.set_params(params).map_err(rejected)
     }
 
     #[getter]
@@ -58,20 +59,20 @@ impl Acrobot {
     fn set_state(&mut self, state: [f64; 4]) -> PyResult<()> {
         self.acrobot
             .set_state(State::from(state))
-            .map_err(refused)?;
+            .map_err(rejected)?;
         self.started = true;
         Ok(())
     }
 
     fn observation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
         if self.angles {
-            PyArray1::from_slice(py, &*Observation::<4>::from(self.acrobot.state()))
+            PyArray1::from_slice(py, Observation::<4>::from(self.acrobot.state()).as_ref())
         } else {
-            PyArray1::from_slice(py, &*self.acrobot.observation())
+            PyArray1::from_slice(py, self.acrobot.observation().as_ref())
         }
     }
 
-    /// The torque of an action, N m, where it is one and there is a state to step from.
+    /// The torque of an action, N m. Rejects other actions, and a step before the first reset.
     fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
         if !self.started {
             let message = "the environment has no state yet; call reset before step";
@@ -81,17 +82,14 @@ impl Acrobot {
         let known = number.and_then(|number| Action::try_from(number).ok());
         let known = known.ok_or_else(|| {
             let shown = action.repr().map(|repr| repr.to_string());
-            InvalidAction::new_err(format!(
-                "action is {}; allowed is 0 (negative torque), 1 (none) or 2 (positive)",
-                shown.unwrap_or_default()
-            ))
+            InvalidAction::new_err(must_be("action", ACTIONS, shown.unwrap_or_default()))
         })?;
         Ok(self.acrobot.params().torque(known))
     }
 
     fn step<'py>(&mut self, action: &Bound<'py, PyAny>, noise: f64) -> PyResult<Step<'py>> {
         let torque = self.torque(action)? + noise;
-        let step = self.acrobot.step_torque(torque).map_err(refused)?;
+        let step = self.acrobot.step_torque(torque).map_err(rejected)?;
         let py = action.py();
         Ok((
             self.observation(py),

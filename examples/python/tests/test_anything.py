@@ -1,6 +1,6 @@
-"""Anything at all given to the environments: they refuse it as Gymnasium does, and never panic, nor turn into NaN.
+"""Any objects as arguments: they are rejected as by Gymnasium, change nothing then, and no result is a panic or NaN.
 
-More of it: ``python -m pytest --hypothesis-profile=long tests/test_anything.py``.
+With more examples: ``python -m pytest --hypothesis-profile=long tests/test_anything.py``.
 """
 
 import contextlib
@@ -15,8 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-#: A panic in Rust is none of these, and not even an Exception.
-REFUSALS = (AssertionError, OverflowError, TypeError, ValueError, gymnasium.error.Error)
+#: What a call may raise. A panic in Rust is not even an Exception.
+REJECTIONS = (AssertionError, OverflowError, TypeError, ValueError, gymnasium.error.Error)
 
 NUMBERS = st.one_of(
     st.integers(0, 2),
@@ -39,20 +39,22 @@ ANYTHING = st.recursive(
 )
 NAMES = st.sampled_from(_NAMES)
 VALUES = st.one_of(NUMBERS, st.lists(NUMBERS, min_size=3, max_size=3), st.sampled_from(["book", "nips"]), ANYTHING)
-OPTIONS = st.none() | st.dictionaries(st.sampled_from(["low", "high"]), NUMBERS | ANYTHING)
+MASKS = st.lists(st.booleans(), max_size=4) | ARRAYS
+OPTIONS = st.none() | st.dictionaries(st.sampled_from(["low", "high", "reset_mask"]), MASKS | NUMBERS | ANYTHING)
+MODES = st.sampled_from(["NextStep", "SameStep", "Disabled"])
 SEEDS = st.none() | st.integers(0, 2**200) | ANYTHING
 FEW = st.integers(1, 4)
 
 
 def calls(**methods):
-    """Some calls: a name and arguments each."""
+    """Some calls: each a name and arguments."""
     return st.lists(st.one_of([st.tuples(st.just(name), args) for name, args in methods.items()]), max_size=20)
 
 
 def attempt(function, *args, **kwargs):
     try:
         return function(*args, **kwargs)
-    except REFUSALS:
+    except REJECTIONS:
         return None
 
 
@@ -61,13 +63,13 @@ def assert_numbers(array):
 
 
 def play(env, do, sequence):
-    """The calls of a sequence, whose observations are arrays."""
+    """Makes the calls of a sequence and checks the observations that they return."""
     for name, args in sequence:
         before = env._native.__getstate__()
         try:
             result = do[name](*args)
-        except REFUSALS:
-            assert env._native.__getstate__() == before, "a refusal has changed something"
+        except REJECTIONS:
+            assert env._native.__getstate__() == before, "a rejected call has changed something"
             continue
         if isinstance(result, np.ndarray):
             assert_numbers(result)
@@ -106,7 +108,7 @@ VECTOR = calls(
 )
 
 
-@given(FEW, FEW, st.sampled_from(["NextStep", "SameStep"]), st.booleans(), VECTOR)
+@given(FEW, FEW, MODES, st.booleans(), VECTOR)
 def test_a_vector_environment(num_envs, limit, autoreset, copy, sequence):
     envs = acrobot_rs.AcrobotVectorEnv(num_envs, limit, "ansi", autoreset, copy)
     do = {
@@ -119,16 +121,16 @@ def test_a_vector_environment(num_envs, limit, autoreset, copy, sequence):
     play(envs, do, sequence)
 
 
-@given(FEW | ANYTHING, FEW | ANYTHING, ANYTHING, st.sampled_from(["NextStep", "SameStep"]) | ANYTHING)
+@given(FEW | ANYTHING, FEW | ANYTHING, ANYTHING, MODES | ANYTHING)
 def test_arguments_of_environments(num_envs, limit, mode, autoreset):
-    # What is an integer may be as many as there is no memory for.
+    # A large integer would ask for too much memory.
     if not isinstance(num_envs, int | np.integer) or num_envs < 1000:
         attempt(acrobot_rs.AcrobotVectorEnv, num_envs, limit, mode, autoreset)
     attempt(acrobot_rs.AcrobotEnv, mode)
 
 
 def damaged(good):
-    """Snapshots with some bytes cut off, changed or added, and other bytes."""
+    """Snapshots with bytes removed, changed or added, and other bytes."""
     change = st.tuples(st.integers(0, len(good) - 1), st.integers(1, 255))
 
     def apply(changes, end, more):
@@ -161,7 +163,7 @@ def test_damaged_snapshots_of_one(snapshot):
 
 @given(damaged(acrobot_rs.AcrobotVectorEnv(2, autoreset_mode="SameStep")._native.__getstate__()))
 def test_damaged_snapshots_of_a_batch(snapshot):
-    batch = _native.Batch(2, "2", 5, True)
+    batch = _native.Batch(2, "2", 5, "SameStep")
     before = batch.__getstate__()
     try:
         batch.__setstate__(snapshot)
@@ -175,17 +177,17 @@ def test_damaged_snapshots_of_a_batch(snapshot):
     assert np.isfinite(batch.states()).all()
 
 
-@given(st.lists(ANYTHING | ARRAYS, min_size=6, max_size=6), st.booleans())
-def test_arrays_of_a_batch(arguments, alias):
-    batch = _native.Batch(2, "0", 5, False)
+@given(st.lists(ANYTHING | ARRAYS, min_size=6, max_size=6), MODES, st.booleans())
+def test_arrays_of_a_batch(arguments, mode, alias):
+    batch = _native.Batch(2, "0", 5, mode)
     attempt(batch.step, *arguments)
     attempt(batch.observe, arguments[0])
     with contextlib.suppress(IndexError):
         attempt(batch.render, arguments[0], "ansi")
-    attempt(batch.reset, arguments[0], arguments[1], arguments[2])
-    # The same array twice, or one that is not writable, is no place for results.
+    attempt(batch.reset, *arguments[:4])
+    # Results need arrays that differ and are writable.
     rows, flags = np.zeros((2, 6), np.float32), np.zeros(2, np.bool_)
     if not alias:
         rows.flags.writeable = False
-    with pytest.raises(REFUSALS):
+    with pytest.raises(REJECTIONS):
         batch.step(np.ones(2, np.int64), rows, np.zeros(2, np.float32), flags, flags, rows)

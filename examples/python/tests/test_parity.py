@@ -1,4 +1,4 @@
-"""Gymnasium's environment and ours, side by side in one process: equal to the bit."""
+"""Gymnasium's environment and ours, side by side in one process: bit-identical."""
 
 import acrobot_rs
 import gymnasium
@@ -9,21 +9,21 @@ STEPS = 500
 
 
 def side_by_side(seed, book_or_nips="book", noise=0.0, dt=0.2, options=None):
-    """The same actions for both, whatever they reach, and a reset in the middle that goes on in the stream."""
+    """Both get the same actions, and a reset in the middle that continues their streams."""
     theirs, ours = gymnasium.make("Acrobot-v1").unwrapped, gymnasium.make("acrobot_rs/Acrobot-v1").unwrapped
     for env in (theirs, ours):
         env.book_or_nips, env.torque_noise_max, env.dt = book_or_nips, noise, dt
         env.action_space.seed(seed)
-    starts = [env.reset(seed=seed, options=options) for env in (theirs, ours)]
+    initial = [env.reset(seed=seed, options=options) for env in (theirs, ours)]
     for step in range(STEPS):
         if step == 300:
-            starts = [env.reset(options=options) for env in (theirs, ours)]
-        if starts:
-            (start, _), (our_start, info) = starts
+            initial = [env.reset(options=options) for env in (theirs, ours)]
+        if initial:
+            (first, _), (our_first, info) = initial
             assert (ours.state == theirs.state).all()
-            np.testing.assert_array_max_ulp(our_start, start, maxulp=1)
-            assert our_start.dtype == start.dtype and info == {}
-            starts = None
+            np.testing.assert_array_max_ulp(our_first, first, maxulp=1)
+            assert our_first.dtype == first.dtype and info == {}
+            initial = None
         action = theirs.action_space.sample()
         assert ours.action_space.sample() == action
         observation, *signals = theirs.step(action)
@@ -47,7 +47,7 @@ def test_changes_of_a_live_environment(book_or_nips, noise, dt):
 
 
 def test_other_links():
-    """Masses, lengths, torques and bounds, from states all over."""
+    """Random masses, lengths, torques, bounds and states."""
     rng = np.random.default_rng(0)
     theirs, ours = gymnasium.make("Acrobot-v1").unwrapped, acrobot_rs.AcrobotEnv()
     names = ["LINK_LENGTH_1", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2", "LINK_MOI"]

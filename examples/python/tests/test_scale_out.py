@@ -1,4 +1,4 @@
-"""scale_out.py: one table, however many workers there are and whatever becomes of them."""
+"""scale_out.py: the table depends neither on the number of workers nor on their deaths."""
 
 import os
 import secrets
@@ -30,14 +30,14 @@ with scale_out.cluster(None, 4):
 
 @pytest.fixture(scope="module")
 def address():
-    """Of a cluster with four CPUs, to which this process is connected, too.
+    """The address of a cluster with four CPUs, to which this process is connected.
 
-    A process of its own starts it: Ray forks, which one with the threads of JAX must not.
+    Another process starts it, because Ray forks and a process with JAX's threads must not fork.
     """
     with pytest.MonkeyPatch.context() as patch:
-        # Ray takes the address of another interface for loopback's, unless it is told so before it is imported.
+        # Must be set before Ray is imported. Otherwise Ray takes another interface's address for loopback's.
         patch.setenv("RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER", "0")
-        # Of this cluster alone.
+        # Only for this cluster.
         patch.setenv("RAY_AUTH_MODE", "token")
         patch.setenv("RAY_AUTH_TOKEN", secrets.token_hex(32))
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
@@ -53,12 +53,12 @@ def address():
 
 @pytest.fixture(scope="module")
 def expected():
-    """All shards, played here one after the other."""
+    """All shards, played one after the other in this process."""
     return pa.concat_tables(scale_out.play(shard=shard, **WHAT) for shard in range(SHARDS))
 
 
 def command(*arguments):
-    """In a process of its own, with what is asked for."""
+    """Runs the script in another process, with the settings above."""
     what = [f"--{name}={value}" for name, value in (WHAT | {"shards": SHARDS}).items()]
     return subprocess.run([sys.executable, SCRIPT, *what, *arguments], capture_output=True, text=True, timeout=120)
 
@@ -73,19 +73,19 @@ def test_the_number_of_workers_changes_nothing(address, expected, workers):
 def test_a_killed_worker_changes_nothing(address, expected, capfd):
     table, played = scale_out.gather(WHAT, SHARDS, 2, kill=3)
     assert table.equals(expected)
-    assert "shard 3 is lost by a WorkerCrashedError, and played again" in capfd.readouterr().err
+    assert "shard 3 is lost (WorkerCrashedError) and played again" in capfd.readouterr().err
 
 
 @pytest.mark.parametrize("policy", scale_out.POLICIES)
 def test_rows_are_the_episodes_of_the_vector_environment(policy):
-    """Beside a loop over environments, in the other mode of autoreset."""
+    """Compared with a loop over environments."""
     shard, environments, episodes = 5, 30, 3
     table = scale_out.play(WHAT["seed"], shard, environments, episodes, policy)
     child = np.random.SeedSequence(WHAT["seed"]).spawn(shard + 1)[shard]
-    starts, draws = child.spawn(2)
+    seeds, draws = child.spawn(2)
     rng = np.random.default_rng(draws)
     envs = AcrobotVectorEnv(environments)
-    observations, _ = envs.reset(seed=sum(int(word) << 32 * i for i, word in enumerate(starts.generate_state(8))))
+    observations, _ = envs.reset(seed=sum(int(word) << 32 * i for i, word in enumerate(seeds.generate_state(8))))
     rows = {(i, episode): [] for i in range(environments) for episode in range(episodes)}
     episode, fresh = [0] * environments, [False] * environments
     while min(episode) < episodes:
@@ -121,7 +121,7 @@ def test_streams_differ():
     assert len(seeds) == len(draws) == 300
 
 
-def test_what_kills_every_worker_ends(address):
+def test_a_shard_that_kills_every_worker_ends_the_run(address):
     def die(shard, attempt):
         if shard == 1:
             os.kill(os.getpid(), signal.SIGKILL)
@@ -131,7 +131,7 @@ def test_what_kills_every_worker_ends(address):
         list(scale_out.play_all(die, 3, 2))
 
 
-def test_a_shards_own_error_ends_the_run_at_once(address, tmp_path):
+def test_an_error_in_a_shard_ends_the_run_immediately(address, tmp_path):
     def fail(shard, attempt):
         with open(tmp_path / f"{shard} {attempt}", "x"):
             raise MemoryError("too many environments")
@@ -142,7 +142,7 @@ def test_a_shards_own_error_ends_the_run_at_once(address, tmp_path):
 
 
 def test_on_a_cluster_of_its_own_the_same_file(tmp_path, expected):
-    """The bytes, too, since neither times nor workers are in it."""
+    """Also the same bytes, because the file contains neither times nor workers."""
     one, other = tmp_path / "killed.parquet", tmp_path / "direct.parquet"
     run = command("--workers=2", "--kill=6", f"--output={one}")
     assert run.returncode == 0, run.stderr
@@ -156,36 +156,36 @@ def test_on_a_cluster_of_its_own_the_same_file(tmp_path, expected):
     assert sorted(tmp_path.iterdir()) == sorted([one, other])
 
 
-def test_a_cluster_that_is_there_is_joined(address, tmp_path, expected):
+def test_an_existing_cluster_is_joined(address, tmp_path, expected):
     output = tmp_path / "episodes.parquet"
     run = command(f"--address={address}", f"--output={output}", "--workers=3")
     assert run.returncode == 0, run.stderr
     assert pq.read_table(output).equals(expected)
     run = command(f"--address={address}", f"--output={output}", "--workers=5")
     assert run.returncode == 1
-    assert run.stderr == "--workers is 5; allowed is 1 to 4, the CPUs of the cluster\n"
+    assert run.stderr == "--workers must be 1 to 4, the CPUs of the cluster, got 5\n"
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--shards=0"], "--shards: '0'; allowed is an integer from 1 to 2147483647"),
-        (["--episodes=2147483648"], "--episodes: '2147483648'; allowed is an integer from 1 to 2147483647"),
-        (["--environments=-1"], "--environments: '-1'; allowed is an integer from 1"),
-        (["--seed=-1"], "--seed: '-1'; allowed is an integer, 0 or more"),
-        (["--seed=1.5"], "--seed: '1.5'; allowed is an integer, 0 or more"),
+        (["--shards=0"], "--shards: must be an integer from 1 to 2147483647, got '0'"),
+        (["--episodes=2147483648"], "--episodes: must be an integer from 1 to 2147483647, got '2147483648'"),
+        (["--environments=-1"], "--environments: must be an integer from 1 to 2147483647, got '-1'"),
+        (["--seed=-1"], "--seed: must be an integer of at least 0, got '-1'"),
+        (["--seed=1.5"], "--seed: must be an integer of at least 0, got '1.5'"),
         (["--policy=best"], "--policy: invalid choice: 'best'"),
-        (["--workers=0"], "--workers: '0'; allowed is an integer from 1"),
-        (["--workers=9"], "--workers is 9; allowed is 1 to 8, the number of shards"),
-        (["--kill=8"], "--kill is 8; allowed is 0 to 7, a shard"),
-        (["--output=."], "--output is .; allowed is a file in a folder that exists"),
-        (["--output=nowhere/episodes.parquet"], "allowed is a file in a folder that exists"),
-        (["--address=127.0.0.1:1"], "--address: '127.0.0.1:1'; allowed is host:port of a cluster's head"),
-        (["--address=nonsense"], "--address: 'nonsense'; allowed is host:port of a cluster's head"),
+        (["--workers=0"], "--workers: must be an integer from 1 to 2147483647, got '0'"),
+        (["--workers=9"], "--workers must be 1 to 8, the number of shards, got 9"),
+        (["--kill=8"], "--kill must be 0 to 7, a shard, got 8"),
+        (["--output=."], "--output must be a file in a folder that exists, got ."),
+        (["--output=nowhere/a"], "--output must be a file in a folder that exists, got nowhere/a"),
+        (["--address=127.0.0.1:1"], "--address: must be host:port of a cluster's head, got '127.0.0.1:1'"),
+        (["--address=nonsense"], "--address: must be host:port of a cluster's head, got 'nonsense'"),
     ],
 )
-def test_other_arguments_are_refused(arguments, message, capsys):
-    with pytest.raises(SystemExit) as refused:
+def test_other_arguments_are_rejected(arguments, message, capsys):
+    with pytest.raises(SystemExit) as rejected:
         scale_out.main(arguments)
-    assert refused.value.code == 2
+    assert rejected.value.code == 2
     assert message in capsys.readouterr().err

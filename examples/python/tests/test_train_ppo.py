@@ -1,4 +1,4 @@
-"""PPO: its advantages, its rollouts, and that it learns."""
+"""PPO: its advantages and rollouts are right, and it learns."""
 
 import re
 import subprocess
@@ -38,22 +38,22 @@ def test_advantages_are_the_discounted_errors_until_an_episode_ends():
     np.testing.assert_allclose(advantages, expected, rtol=1e-4, atol=1e-4)
 
 
-def test_a_rollout_sees_how_an_episode_ended_and_goes_on_with_the_next():
+def test_a_rollout_has_the_last_observation_of_an_episode_and_then_the_next_episode():
     mode = gymnasium.vector.AutoresetMode.SAME_STEP
     envs = gymnasium.make_vec(train_ppo.NAME, num_envs=4, autoreset_mode=mode, max_episode_steps=10)
-    start, _ = envs.reset(seed=0)
+    first, _ = envs.reset(seed=0)
     parameters = train_ppo.initial(jax.random.key(0))
-    rollout, last, _ = train_ppo.roll_out(envs, parameters, jax.random.key(0), start)
+    rollout, last, _ = train_ppo.roll_out(envs, parameters, jax.random.key(0), first)
     observations, actions, seen, rewards, terminated, ended = rollout
 
     assert actions.shape == rewards.shape == terminated.shape == (train_ppo.STEPS, 4)
     assert (ended == (np.arange(train_ppo.STEPS) % 10 == 9)[:, None]).all() and not terminated.any()
     before, after = seen[:-1][ended[:-1]], observations[1:][ended[:-1]]
     assert (before != after).any(axis=1).all()
-    # A start: within 0.1 rad/s.
+    # Initial velocities are within 0.1 rad/s.
     assert (np.abs(after[:, 4:]) <= 0.1).all()
     assert (seen[:-1][~ended[:-1]] == observations[1:][~ended[:-1]]).all()
-    assert (observations[0] == start).all() and (seen[-1] == last).all()
+    assert (observations[0] == first).all() and (seen[-1] == last).all()
 
 
 def test_an_evaluation_counts_one_episode_of_each():
@@ -76,11 +76,11 @@ def test_it_learns_and_draws_the_curves(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "reason"),
     [
-        (["--", "-1"], "a seed is -1; allowed is 0 or more"),
-        (["--picture", "missing/curve.png"], "--picture is missing/curve.png; allowed is a file in a folder that exists"),
-        (["--picture", "curve.text"], "--picture is curve.text; allowed"),
+        (["--", "-1"], "a seed must be at least 0, got -1"),
+        (["--picture", "missing/curve.png"], "--picture must be a file in a folder that exists, as "),
+        (["--picture", "curve.text"], ", got curve.text"),
     ],
 )
-def test_bad_arguments_are_refused_first(arguments, reason, tmp_path):
+def test_bad_arguments_are_rejected_first(arguments, reason, tmp_path):
     run = subprocess.run([sys.executable, SCRIPT, *arguments], capture_output=True, text=True, cwd=tmp_path, check=False)
     assert run.returncode == 2 and reason in run.stderr and not run.stdout

@@ -1,4 +1,4 @@
-//! What is refused, and why.
+//! Errors: what was wrong with an input.
 
 use core::fmt;
 
@@ -6,110 +6,104 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// A number outside of what is allowed.
+    /// A number is outside its range or not a number.
     OutOfRange {
-        /// What the number is.
+        /// The field or argument.
         name: &'static str,
-        /// The number itself.
+        /// The value given.
         value: f32,
-        /// Its unit; empty for a pure number.
-        unit: &'static str,
-        /// What is allowed.
-        allowed: &'static str,
+        /// The rule.
+        rule: &'static str,
     },
-    /// A count that does not fit the others.
+    /// A count does not fit the others.
     Count {
         /// What is counted.
         name: &'static str,
-        /// How many there are.
+        /// The count given.
         value: usize,
-        /// What is allowed.
-        allowed: &'static str,
-        /// The number that `allowed` speaks of.
+        /// The rule, to be read before `limit`.
+        rule: &'static str,
+        /// The number that the rule refers to.
         limit: usize,
     },
 }
 
 impl Error {
-    /// Refuses a count unless `fits`.
+    /// Rejects a count unless it `fits`.
     pub(crate) fn unless(
         fits: bool,
         name: &'static str,
         value: usize,
-        allowed: &'static str,
+        rule: &'static str,
         limit: usize,
     ) -> Result<(), Self> {
-        let error = Self::Count {
+        if fits {
+            return Ok(());
+        }
+        Err(Self::Count {
             name,
             value,
-            allowed,
+            rule,
             limit,
-        };
-        if fits { Ok(()) } else { Err(error) }
+        })
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::OutOfRange {
-                name,
-                value,
-                unit,
-                allowed,
-            } => {
-                let space = if unit.is_empty() { "" } else { " " };
-                write!(f, "{name} is {value}{space}{unit}; allowed is {allowed}")
+            Self::OutOfRange { name, value, rule } => {
+                write!(f, "{name} must be {rule}, got {value}")
             }
             Self::Count {
                 name,
                 value,
-                allowed,
+                rule,
                 limit,
-            } => write!(f, "{value} {name}; allowed is {allowed} {limit}"),
+            } => write!(f, "{name} must be {rule} {limit}, got {value}"),
         }
     }
 }
 
 impl core::error::Error for Error {}
 
-/// Why bytes were not taken as weights; the learner is as it was.
+/// Why bytes were rejected as weights. The learner is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// They do not begin as saved weights do.
+    /// The bytes do not begin as saved weights do.
     Magic,
-    /// Saved by another version of the format.
+    /// Another version of the format.
     Version {
-        /// Of the bytes.
+        /// The version in the bytes.
         found: u32,
-        /// That this code reads.
+        /// The version that this code reads.
         expected: u32,
     },
     /// Too few or too many bytes, or a table of another size.
     Size {
-        /// Bytes given, or that the header says there are.
+        /// The bytes given, or that the header counts.
         found: usize,
-        /// Bytes that this learner's weights take, header included.
+        /// The bytes that this learner's weights take, header included.
         expected: usize,
     },
-    /// Of a learner with other features: the same weights would mean something else.
+    /// The weights of a learner with other features, for which they mean something else.
     Features {
-        /// Fingerprint in the bytes.
+        /// The fingerprint in the bytes.
         found: u32,
-        /// Fingerprint of this learner's features.
+        /// The fingerprint of this learner's features.
         expected: u32,
     },
     /// A weight that is infinite or NaN.
     NotFinite {
-        /// Its place among the weights, counted from 0.
+        /// Its index among the weights, counted from 0.
         index: usize,
     },
-    /// Changed since they were saved.
+    /// The bytes changed since they were saved.
     Checksum {
-        /// In the bytes.
+        /// The checksum in the bytes.
         found: u32,
-        /// Computed from the bytes.
+        /// The checksum computed from the bytes.
         expected: u32,
     },
 }
@@ -117,26 +111,23 @@ pub enum LoadError {
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Magic => write!(f, "these are no weights of this learner"),
+            Self::Magic => write!(f, "weights must begin with the bytes TILE"),
             Self::Version { found, expected } => {
-                write!(f, "weights of version {found}; allowed is {expected}")
+                write!(f, "weights must be of version {expected}, got {found}")
             }
             Self::Size { found, expected } => {
-                write!(f, "weights of {found} bytes; allowed is {expected}")
+                write!(f, "weights must have {expected} bytes, got {found}")
             }
-            Self::Features { found, expected } => write!(
-                f,
-                "weights of features {found:08x}; allowed is {expected:08x}"
-            ),
-            Self::NotFinite { index } => {
+            Self::Features { found, expected } => {
                 write!(
                     f,
-                    "weight {index} is not finite; allowed are finite numbers"
+                    "weights must be of features {expected:08x}, got {found:08x}"
                 )
             }
+            Self::NotFinite { index } => write!(f, "weight {index} must be a finite number"),
             Self::Checksum { found, expected } => write!(
                 f,
-                "damaged weights: checksum {found:08x}, computed {expected:08x}"
+                "damaged weights: the checksum must be {expected:08x}, got {found:08x}"
             ),
         }
     }

@@ -6,26 +6,25 @@ use crate::error::Error;
 use crate::schedule::{Schedule, unit_interval};
 use crate::traces::Traces;
 
-/// Turns a state of `D` numbers into `T` binary features, those that are 1.
+/// Turns a state of `D` numbers into the `T` binary features that are 1.
 pub trait Features<const D: usize, const T: usize> {
-    /// Slots that there are, from 1 to 65,536; each holds a weight for every action.
+    /// The number of slots, from 1 to 65,536. Each holds a weight for every action.
     fn slots(&self) -> usize;
 
     /// The `T` slots of a state, each below [`Features::slots`].
     fn active(&self, state: &[f32; D]) -> [u16; T];
 
-    /// Hands `mix` the numbers that make these features what they are, so that saved weights are
-    /// not loaded for others.
+    /// Passes `mix` the numbers that define these features, so that weights saved for others are rejected.
     fn fingerprint(&self, mix: impl FnMut(u32));
 }
 
-/// Whether two states are one to the learner.
+/// Whether the learner treats two states as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
-    /// Each state stands for itself.
+    /// Each state is itself only.
     None,
-    /// Negating all numbers of the state and reversing the order of the actions changes nothing:
-    /// only states that are not negative in this dimension are learnt.
+    /// Negating all numbers of the state and reversing the order of the actions changes nothing. The learner
+    /// replaces states that are negative in this dimension by their mirror image.
     Mirror(usize),
 }
 
@@ -47,8 +46,8 @@ pub struct Settings {
 
 /// A learner with `A` actions, numbered from 0, in borrowed memory of `S` slots.
 ///
-/// Weights start at 0, which is optimistic where rewards are negative: what was not tried looks
-/// best. Between actions of equal value the first is taken.
+/// Weights start at 0, which is optimistic where rewards are negative: untried actions look best. Among
+/// actions of equal value it takes the first.
 #[derive(Debug)]
 pub struct Sarsa<'w, F, const S: usize, const A: usize, const D: usize, const T: usize> {
     pub(crate) features: F,
@@ -66,13 +65,13 @@ pub struct Sarsa<'w, F, const S: usize, const A: usize, const D: usize, const T:
 impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T: usize>
     Sarsa<'w, F, S, A, D, T>
 {
-    /// A learner that knows nothing: the weights become 0.
+    /// An untrained learner: the weights become 0.
     ///
     /// # Errors
     ///
-    /// [`Error`] for a parameter outside of its range, for no actions or more than 256, for no
-    /// tilings, for features that need more slots than `S`, and for a mirror on no dimension. The
-    /// weights are as they were.
+    /// [`Error`] for a parameter outside its range, for no actions or more than 256, for no tilings, for
+    /// features that need more slots than `S`, and for a mirror in a missing dimension. The weights are
+    /// unchanged then.
     pub fn new(
         features: F,
         settings: Settings,
@@ -87,26 +86,18 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
             return Err(Error::OutOfRange {
                 name: "alpha",
                 value: 0.0,
-                unit: "",
-                allowed: "above 0 to 1",
+                rule: "above 0 and at most 1",
             });
         }
         Error::unless(T > 0, "tilings", T, "at least", 1)?;
-        Error::unless((1..=256).contains(&A), "actions", A, "1 to", 256)?;
+        Error::unless((1..=256).contains(&A), "actions", A, "from 1 to", 256)?;
         let slots = features.slots();
-        Error::unless(
-            (1..=S).contains(&slots),
-            "slots of features",
-            slots,
-            "1 to",
-            S,
-        )?;
+        let fits = (1..=S).contains(&slots);
+        Error::unless(fits, "slots of the features", slots, "from 1 to", S)?;
         if let Symmetry::Mirror(d) = settings.symmetry {
-            Error::unless(d < D, "as the mirror's dimension", d, "less than", D)?;
+            Error::unless(d < D, "the mirror's dimension", d, "below", D)?;
         }
-        for w in weights.iter_mut() {
-            *w = [0.0; A];
-        }
+        weights.fill([0.0; A]);
         Ok(Self {
             features,
             settings,
@@ -120,7 +111,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         })
     }
 
-    /// Begins an episode in `state`: no traces. Returns the first action.
+    /// Begins an episode in `state`, without traces. Returns the first action.
     pub fn start<R: Rng + ?Sized>(&mut self, state: &[f32; D], rng: &mut R) -> usize {
         let (state, side) = self.fold(state);
         self.slots = self.features.active(&state);
@@ -133,7 +124,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
     /// Learns from the last action's `reward` and the state that it led to, and returns the next
     /// action: δ = R + γ q(S′, A′) − q(S, A), and w ← w + αδz (Sutton & Barto 12.7).
     ///
-    /// An episode that is cut short ends with this, too, and with [`Sarsa::cut`].
+    /// A truncated episode ends with this and then [`Sarsa::cut`].
     #[inline]
     pub fn step<R: Rng + ?Sized>(&mut self, reward: f32, state: &[f32; D], rng: &mut R) -> usize {
         let (state, side) = self.fold(state);
@@ -156,14 +147,14 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         self.cut();
     }
 
-    /// The episode was cut short after the last [`Sarsa::step`]: the schedules go on.
+    /// Ends an episode that was truncated after the last [`Sarsa::step`]: the schedules advance.
     pub fn cut(&mut self) {
         self.episode = self.episode.saturating_add(1);
         self.alpha = self.settings.alpha.at(self.episode);
         self.epsilon = self.settings.epsilon.at(self.episode);
     }
 
-    /// The action with the highest value, the first of equals.
+    /// The action with the highest value; the first among equals.
     #[must_use]
     #[inline]
     pub fn greedy(&self, state: &[f32; D]) -> usize {
@@ -180,7 +171,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         core::array::from_fn(|action| values[side.action::<A>(action)])
     }
 
-    /// The weights, of each slot one for each action, in units of the reward.
+    /// The weights: in each slot one for each action, in units of the reward.
     #[must_use]
     pub fn weights(&self) -> &[[f32; A]; S] {
         self.weights
@@ -209,19 +200,19 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         values
     }
 
-    /// ε-greedy (Sutton & Barto 2.2); draws nothing where ε is 0.
+    /// ε-greedy (Sutton & Barto 2.2). Draws nothing if ε is 0.
     #[inline]
     fn choose<R: Rng + ?Sized>(&self, values: &[f32; A], rng: &mut R) -> usize {
         if self.epsilon > 0.0 && (rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0) < self.epsilon
         {
             let action = (u64::from(rng.next_u32()) * A as u64) >> 32;
-            // No more than it is; the compiler sees so that no index is out of bounds.
+            // Always below A. `min` lets the compiler see that no index is out of bounds.
             return (action as usize).min(A.saturating_sub(1));
         }
         best(values)
     }
 
-    /// The state that is learnt in place of this one.
+    /// The state that the learner sees instead of this one.
     #[inline]
     fn fold(&self, state: &[f32; D]) -> ([f32; D], Side) {
         match self.settings.symmetry {

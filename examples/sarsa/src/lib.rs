@@ -1,8 +1,8 @@
-//! Sarsa(λ) with tile coding: no heap, `f32`, and the same bits on every machine.
+//! Sarsa(λ) with tile coding: no heap, `f32`, bit-identical on every machine.
 //!
-//! Nothing is computed but sums, differences, products, quotients and comparisons, each rounded once, so that a
-//! laptop, a Cortex-M4F and a browser learn the same weights from the same seed. Sections are those of R. S. Sutton and
-//! A. G. Barto, *Reinforcement Learning: An Introduction*, 2nd edition (2018).
+//! It uses only sums, differences, products, quotients and comparisons, each rounded once, so a laptop, a Cortex-M4F
+//! and a browser learn the same weights from the same seed. Section numbers refer to R. S. Sutton and A. G. Barto,
+//! *Reinforcement Learning: An Introduction*, 2nd edition (2018).
 //!
 //! ```
 //! use rand_pcg::Pcg32;

@@ -5,11 +5,11 @@ use crate::error::Error;
 /// A number that goes evenly from `start` to `end`, and stays there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
-    /// In the first episode, in \[0, 1\].
+    /// The number in the first episode, in \[0, 1\].
     pub start: f32,
-    /// After `episodes`, in \[0, 1\].
+    /// The number after `episodes`, in \[0, 1\].
     pub end: f32,
-    /// Episodes from `start` to `end`; 0 for `end` at once.
+    /// Episodes from `start` to `end`; 0 for `end` immediately.
     pub episodes: u32,
 }
 
@@ -24,7 +24,7 @@ impl Schedule {
         }
     }
 
-    /// The number in an episode, of which the first is 0.
+    /// The number in an episode, counted from 0.
     pub(crate) fn at(&self, episode: u32) -> f32 {
         if episode >= self.episodes {
             return self.end;
@@ -33,14 +33,14 @@ impl Schedule {
         self.start + (self.end - self.start) * passed
     }
 
-    /// Refuses what is not within \[0, 1\].
+    /// Rejects a schedule that leaves \[0, 1\].
     pub(crate) fn check(&self, names: [&'static str; 2]) -> Result<(), Error> {
         unit_interval(names[0], self.start)?;
         unit_interval(names[1], self.end)
     }
 }
 
-/// Refuses what lies outside of \[0, 1\], NaN included.
+/// Rejects a number outside \[0, 1\], also NaN.
 pub(crate) fn unit_interval(name: &'static str, value: f32) -> Result<(), Error> {
     if (0.0..=1.0).contains(&value) {
         return Ok(());
@@ -48,7 +48,6 @@ pub(crate) fn unit_interval(name: &'static str, value: f32) -> Result<(), Error>
     Err(Error::OutOfRange {
         name,
         value,
-        unit: "",
-        allowed: "0 to 1",
+        rule: "between 0 and 1",
     })
 }

@@ -1,4 +1,4 @@
-//! Weights as bytes: magic, version, size, the features' fingerprint, the weights, a checksum; all little-endian.
+//! Weights as little-endian bytes: magic, version, size, the features' fingerprint, the weights and a checksum.
 
 use crate::error::LoadError;
 use crate::learner::{Features, Sarsa};
@@ -11,7 +11,7 @@ const CHECKSUM: usize = 4;
 impl<F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T: usize>
     Sarsa<'_, F, S, A, D, T>
 {
-    /// Bytes that [`Sarsa::save`] gives.
+    /// The number of bytes that [`Sarsa::save`] returns.
     pub const BYTES: usize = HEADER + 4 * S * A + CHECKSUM;
 
     /// The weights as [`Sarsa::BYTES`] bytes, from the first to the last.
@@ -29,12 +29,12 @@ impl<F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T:
             .chain(checksum.to_le_bytes())
     }
 
-    /// Takes weights that [`Sarsa::save`] gave. Traces and schedules stay as they are.
+    /// Loads weights that [`Sarsa::save`] returned. Traces and schedules stay as they are.
     ///
     /// # Errors
     ///
-    /// [`LoadError`] for bytes of another kind, version, size or learner, that were changed, or with a weight that is not finite; the
-    /// weights are as they were.
+    /// [`LoadError`] for bytes of another kind, version, size or learner, for damaged bytes, and for a weight that is
+    /// not finite. The weights are unchanged then.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
         let word = |at: usize| match bytes.get(at..at + 4) {
             Some(&[a, b, c, d]) => u32::from_le_bytes([a, b, c, d]),

@@ -1,4 +1,4 @@
-//! Tile coding (Sutton & Barto 9.5.4): a state becomes one tile of each of several offset grids.
+//! Tile coding (Sutton & Barto 9.5.4): a state activates one tile in each of several offset grids.
 
 use core::iter::repeat_n;
 
@@ -15,9 +15,9 @@ pub struct Dimension {
 }
 
 impl Dimension {
-    /// From `low` to `high` in equal `intervals`; what lies outside counts as the nearest bound.
+    /// From `low` to `high` in equal `intervals`. A number outside counts as the nearest bound.
     ///
-    /// Since tilings are offset, each has one interval more, which sticks out.
+    /// Because tilings are offset, each has one more interval beyond the bounds.
     #[must_use]
     pub const fn bounded(low: f32, high: f32, intervals: u16) -> Self {
         Self {
@@ -28,7 +28,7 @@ impl Dimension {
         }
     }
 
-    /// An angle or the like: `high` is `low` again, and what lies outside is wrapped.
+    /// An angle or another cyclic number: `high` equals `low`, and numbers outside wrap around.
     #[must_use]
     pub const fn cyclic(low: f32, high: f32, intervals: u16) -> Self {
         Self {
@@ -39,42 +39,26 @@ impl Dimension {
         }
     }
 
-    /// Coordinates that a tile can have.
+    /// The number of coordinates that a tile can have.
     const fn tiles(&self) -> u16 {
         self.intervals + !self.cyclic as u16
     }
 
     fn check(&self) -> Result<(), Error> {
-        let refuse = |name, value, allowed| {
-            Err(Error::OutOfRange {
-                name,
-                value,
-                unit: "of the state",
-                allowed,
-            })
-        };
+        let reject = |name, value, rule| Err(Error::OutOfRange { name, value, rule });
         if !self.low.is_finite() {
-            return refuse("a lower bound", self.low, "a finite number");
+            return reject("a lower bound", self.low, "finite");
         }
         if !(self.high > self.low && (self.high - self.low).is_finite()) {
-            return refuse(
-                "an upper bound",
-                self.high,
-                "a finite number above the lower",
-            );
+            return reject("an upper bound", self.high, "finite and above the lower");
         }
         let intervals = usize::from(self.intervals);
-        Error::unless(
-            (1..=256).contains(&intervals),
-            "intervals",
-            intervals,
-            "1 to",
-            256,
-        )
+        let fits = (1..=256).contains(&intervals);
+        Error::unless(fits, "intervals", intervals, "from 1 to", 256)
     }
 
-    /// Where `x` lies: the interval before any offset, the one after it, and how far from the first
-    /// to the second, in 2⁻¹⁶ intervals.
+    /// The interval of `x` before any offset, the next one, and how far `x` is between them, in 2⁻¹⁶
+    /// intervals.
     #[inline]
     fn locate(&self, x: f32, per_unit: f32) -> [u16; 3] {
         let mut x = (x - self.low) * per_unit;
@@ -91,7 +75,7 @@ impl Dimension {
     }
 }
 
-/// The remainder in \[0, `n`) of a rounded-down division; 0 for what is not finite.
+/// The remainder in \[0, `n`) of a rounded-down division; 0 for infinities and NaN.
 #[cold]
 fn wrap(x: f32, n: f32) -> f32 {
     let turns = x / n;
@@ -111,7 +95,7 @@ pub struct Group<'a> {
 }
 
 impl<'a> Group<'a> {
-    /// So many `tilings` over these dimensions of the state, numbered from 0.
+    /// A number of `tilings` over these dimensions of the state, counted from 0.
     #[must_use]
     pub const fn new(dimensions: &'a [usize], tilings: usize) -> Self {
         Self {
@@ -121,56 +105,54 @@ impl<'a> Group<'a> {
     }
 }
 
-/// Where tiles find their slots.
+/// How tiles find their slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Table {
-    /// Each tile has a slot of its own; [`Features::slots`] says how many that takes.
+    /// Each tile has its own slot. [`Features::slots`] returns how many there are.
     Direct,
-    /// All tiles share so many slots, a power of two from 2 to 65,536.
+    /// All tiles share this many slots, a power of two from 2 to 65,536.
     Hashed(usize),
 }
 
 /// Slots that 16 bits can number.
 const MAX_SLOTS: usize = 1 << 16;
 
-/// From tile to tile of a tiling: multiples of it modulo 2¹⁶ lie far apart, as those of the golden ratio
-/// do (Knuth 6.4), since no quotient of the continued fraction of it over 2¹⁶ is above 2, which holds
-/// for no other factor.
+/// The stride from tile to tile of a tiling. Its multiples modulo 2¹⁶ lie far apart, as those of the golden
+/// ratio do (Knuth 6.4): it is the only factor whose continued fraction over 2¹⁶ has no quotient above 2.
 const FACTOR: u16 = 0xb3f9;
 
-/// From tiling to tiling: 2¹⁶ over the golden ratio.
+/// The stride from tiling to tiling: 2¹⁶ over the golden ratio.
 const GOLDEN: u16 = 0x9e37;
 
 /// `T` tilings over a state of `D` numbers.
 ///
-/// A tile's slot is linear in its coordinates: one product and one comparison for each dimension,
-/// in 16 bits, so that eight tilings fit in the smallest vector register. Hashing is a matter of
-/// other factors and of a shift at the end.
+/// A tile's slot is linear in its coordinates: one product and one comparison for each dimension, in 16 bits, so
+/// that eight tilings fit in the smallest vector register. Hashing only changes the factors and shifts at the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileCoder<const D: usize, const T: usize> {
     dimensions: [Dimension; D],
     /// Intervals for each unit of the state.
     per_unit: [f32; D],
-    /// By which each tiling is moved, in 2⁻¹⁶ intervals.
+    /// The offset of each tiling, in 2⁻¹⁶ intervals.
     offsets: [[u16; T]; D],
-    /// By which the slot grows from one coordinate to the next; 0 where a tiling does not look.
+    /// How much the slot grows from one coordinate to the next; 0 in dimensions that a tiling ignores.
     strides: [[u16; T]; D],
-    /// Slot of each tiling's first tile.
+    /// The slot of each tiling's first tile.
     bases: [u16; T],
-    /// Bits of the sum that are no part of the slot.
+    /// The low bits of the sum that are not part of the slot.
     shift: u32,
     slots: usize,
 }
 
 impl<const D: usize, const T: usize> TileCoder<D, T> {
-    /// Tilings in these groups, `T` in all, each moved in each dimension by what `offset` says, in
-    /// intervals from 0 to below 1; [`displacement`] is the usual one.
+    /// Tilings in these groups, `T` in all. `offset` returns the offset of each in each dimension, from 0 to below
+    /// 1 intervals; [`displacement`] is the usual function.
     ///
     /// # Errors
     ///
-    /// [`Error`] for dimensions without extent or with other than 1 to 256 intervals, for other than
-    /// `T` tilings in all, 0 included, for an offset outside of \[0, 1), for a hashed table whose slots
-    /// are no power of two from 2 to 65,536, and for more than 65,536 slots without hashing.
+    /// [`Error`] for dimensions without extent or with other than 1 to 256 intervals, for no tilings or other than
+    /// `T` in all, for an offset outside \[0, 1), for a hashed table whose slots are not a power of two from 2 to
+    /// 65,536, and for more than 65,536 slots without hashing.
     pub fn new(
         dimensions: [Dimension; D],
         groups: &[Group],
@@ -185,7 +167,7 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         Ok(coder)
     }
 
-    /// Puts one tiling behind the other.
+    /// Places one tiling after the other.
     fn place(&mut self, groups: &[Group]) -> Result<(), Error> {
         let dimensions = &self.dimensions;
         let tiles = groups.iter().flat_map(|group| {
@@ -198,13 +180,8 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         for (base, tiles) in self.bases.iter_mut().zip(tiles) {
             *base = self.slots as u16;
             self.slots += tiles;
-            Error::unless(
-                self.slots <= MAX_SLOTS,
-                "slots",
-                self.slots,
-                "at most",
-                MAX_SLOTS,
-            )?;
+            let fits = self.slots <= MAX_SLOTS;
+            Error::unless(fits, "slots", self.slots, "at most", MAX_SLOTS)?;
         }
         Ok(())
     }
@@ -229,10 +206,11 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         groups: &[Group],
         mut offset: impl FnMut(Place) -> f32,
     ) -> Result<Self, Error> {
-        // Saturating: a sum that wrapped to T would pass.
+        // Saturating: a sum that wraps around to T would pass.
         let each = groups.iter().map(|group| group.tilings);
         let tilings = each.fold(0, usize::saturating_add);
-        Error::unless(T > 0 && tilings == T, "tilings", tilings, "above 0, and", T)?;
+        let fits = T > 0 && tilings == T;
+        Error::unless(fits, "tilings", tilings, "above 0 and equal to", T)?;
         for dimension in &dimensions {
             dimension.check()?;
         }
@@ -251,9 +229,9 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
             for (place, &d) in group.dimensions.iter().enumerate() {
                 let Some(dimension) = dimensions.get(d) else {
                     return Err(Error::Count {
-                        name: "as a dimension's number",
+                        name: "a dimension's number",
                         value: d,
-                        allowed: "less than",
+                        rule: "below",
                         limit: D,
                     });
                 };
@@ -268,8 +246,7 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
                         return Err(Error::OutOfRange {
                             name: "an offset",
                             value: offset,
-                            unit: "intervals",
-                            allowed: "0 to below 1",
+                            rule: "at least 0 and below 1 interval",
                         });
                     }
                     let t = first + tiling;
@@ -281,13 +258,8 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
                     }
                 }
                 stride *= usize::from(dimension.tiles());
-                Error::unless(
-                    stride <= 1 << 16,
-                    "tiles of a tiling",
-                    stride,
-                    "at most",
-                    1 << 16,
-                )?;
+                let fits = stride <= 1 << 16;
+                Error::unless(fits, "tiles of a tiling", stride, "at most", 1 << 16)?;
             }
             first += group.tilings;
         }
@@ -295,20 +267,20 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
     }
 }
 
-/// Of which tiling and dimension an offset is asked.
+/// The tiling and the dimension of an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// The group's place among the groups.
+    /// The group's index.
     pub group: usize,
-    /// The tiling's place in the group.
+    /// The tiling's index in the group.
     pub tiling: usize,
-    /// Tilings in the group.
+    /// The number of tilings in the group.
     pub tilings: usize,
-    /// The dimension's place in the group.
+    /// The dimension's index in the group.
     pub dimension: usize,
 }
 
-/// Displacement by the first odd integers (Sutton & Barto 9.5.4): among n tilings, tiling j is moved by
+/// Displacement by the first odd integers (Sutton & Barto 9.5.4): among n tilings, the offset of tiling j is
 /// j (1, 3, 5, 7, …) / n intervals, modulo 1.
 #[must_use]
 pub fn displacement(place: Place) -> f32 {

@@ -1,31 +1,31 @@
-//! Replacing eligibility traces (Sutton & Barto 12.5, there for linear methods with binary features) as a ring of the
-//! latest tile sets: a trace is known from its age, and nothing is stored for a weight that has none. Where hashing makes
-//! two tilings share a slot, each has a trace of its own for it, and the two add up.
+//! Replacing eligibility traces (Sutton & Barto 12.5, for linear methods with binary features) as a ring of the latest
+//! tile sets. A trace follows from its age, so a weight without a trace takes no memory. Where hashing makes two tilings
+//! share a slot, each has its own trace for it, and the two add up.
 
-/// Sets that the ring holds.
+/// The number of sets in the ring.
 const LENGTH: usize = 64;
 
-/// Traces below this are cut.
+/// Smaller traces are cut.
 const CUT: f32 = 0.05;
 
 /// The traces of `T` tilings.
 #[derive(Clone, Debug)]
 pub(crate) struct Traces<const T: usize> {
-    /// (γλ)ᵏ for sets of age k.
+    /// (γλ)ᵏ, the trace of a set of age k.
     decay: [f32; LENGTH],
-    /// Ages that have a trace, from 1 to `LENGTH`.
+    /// The number of ages that have a trace, from 1 to `LENGTH`.
     ages: usize,
-    /// Place of the latest set.
+    /// The index of the latest set.
     head: usize,
     actions: [u8; LENGTH],
     slots: [[u16; LENGTH]; T],
-    /// Of each tiling, the places that have a trace: those visited again since have none, and a
-    /// tile has one place at most.
+    /// For each tiling, a bit for each set in the ring whose tile has a trace. A tile that was visited again has its
+    /// trace in the later set only.
     live: [u64; T],
 }
 
 impl<const T: usize> Traces<T> {
-    /// None yet, which will decay by `gamma_lambda` a step.
+    /// No traces. They will decay by `gamma_lambda` in each step.
     pub fn new(gamma_lambda: f32) -> Self {
         let mut decay = [0.0; LENGTH];
         let (mut ages, mut trace) = (0, 1.0);
@@ -48,7 +48,7 @@ impl<const T: usize> Traces<T> {
         self.live = [0; T];
     }
 
-    /// The latest set: its tiles' traces become 1, and all others a step older.
+    /// Adds the latest set. The traces of its tiles become 1, and all others are one step older.
     #[inline]
     pub fn push(&mut self, slots: &[u16; T], action: usize) {
         let head = (self.head + 1) % LENGTH;
@@ -61,7 +61,7 @@ impl<const T: usize> Traces<T> {
         }
     }
 
-    /// w ← w + αδz, where `step` is αδ. Then drops the traces of the tiles that come `next`.
+    /// w ← w + αδz, where `step` is αδ. Then drops the traces of the tiles of the `next` set.
     #[inline]
     pub fn update<const A: usize>(
         &mut self,
@@ -74,7 +74,7 @@ impl<const T: usize> Traces<T> {
             steps[(self.head + LENGTH - age) % LENGTH] = step * decay;
         }
         for (t, (slots, live)) in self.slots.iter().zip(&mut self.live).enumerate() {
-            // By the machine's words: a Cortex-M takes half as long again for 64 bits at once.
+            // In machine words: with 64 bits at once a Cortex-M takes 1.5 times as long.
             for low in (0..LENGTH).step_by(usize::BITS as usize) {
                 let (mut rest, mut again) = ((*live >> low) as usize, 0);
                 while rest != 0 {

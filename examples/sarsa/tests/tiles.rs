@@ -1,4 +1,4 @@
-//! A tile coder's promises: which tiles change, and how many.
+//! Properties of a tile coder: which tiles change, and how many.
 
 use std::collections::BTreeSet;
 
@@ -24,14 +24,14 @@ fn anywhere(rng: &mut Pcg32) -> [f32; 4] {
     [2.0 * draw() - 1.0, draw(), draw(), draw()]
 }
 
-/// Each odd displacement is coprime to eight tilings, so that their borders are an eighth of an
-/// interval apart in each dimension.
+/// Each odd displacement is coprime to 8, so the borders of eight tilings are an eighth of an interval apart in
+/// each dimension.
 #[test]
 fn an_eighth_of_an_interval_changes_one_tile_of_eight() {
     let coder = eight(Table::Direct);
     let mut rng = Pcg32::new(1, 1);
     for _ in 0..1000 {
-        // In the middle between borders, where rounding decides nothing.
+        // In the middle between borders, where rounding changes nothing.
         let mut x = anywhere(&mut rng).map(|x| ((x * 32.0).floor() + 0.5) / 32.0);
         x[0] = (rng.next_u32() % 40) as f32 / 20.0 - 1.0 + 0.025;
         for (d, eighth) in [0.05, 1.0 / 32.0, 1.0 / 32.0, 1.0 / 32.0]
@@ -83,7 +83,7 @@ fn a_circle_is_closed() {
         }
     }
     assert_eq!(at(-1.0), at(1.0));
-    // Five intervals on: the same tile again, and no sixth.
+    // After five intervals the first tile comes again, not a sixth.
     let distinct: BTreeSet<_> = (0..1000).map(|n| at(n as f32 / 500.0 - 1.0)[3]).collect();
     assert_eq!(distinct.len(), 5);
 }
@@ -124,7 +124,7 @@ fn every_tile_has_a_slot_of_its_own_and_no_slot_is_left_over() {
             owners[usize::from(slot)] = Some(tiling);
         }
     }
-    // The tilings that are not moved in a bounded dimension never need the interval that sticks out.
+    // Tilings without an offset in a bounded dimension never need the interval beyond the bounds.
     let unused = owners.iter().filter(|owner| owner.is_none()).count();
     assert_eq!(unused, 5 * 5 + 1, "never used");
 }
@@ -141,7 +141,7 @@ fn a_tiling_sees_its_own_dimensions_only() {
     assert!(a != d && b != e && c == f);
 }
 
-/// Thrown at random, the 320 to 625 tiles of a tiling would lose a seventh to a quarter to others.
+/// With random slots, a seventh to a quarter of the 320 to 625 tiles of a tiling would share one.
 #[test]
 fn hashing_spreads_the_tiles() {
     let coders = [eight(Table::Direct), eight(Table::Hashed(1024))];
@@ -164,7 +164,7 @@ fn hashing_spreads_the_tiles() {
         );
     }
     assert!(slots.iter().flatten().all(|&slot| slot < 1024));
-    // And all of them share all of the table.
+    // All tilings together use the whole table.
     assert!(slots.iter().flatten().collect::<BTreeSet<_>>().len() > 900);
 }
 

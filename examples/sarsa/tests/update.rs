@@ -1,4 +1,4 @@
-//! The update is the textbook's, and what it learns is right.
+//! The update is the textbook's, and it learns the right values.
 
 use rand_core::Rng;
 use rand_pcg::Pcg32;
@@ -28,7 +28,7 @@ fn coder() -> TileCoder<2, 9> {
     TileCoder::new(dimensions, &groups, Table::Direct, displacement).unwrap()
 }
 
-/// Steps of a walk that three actions push, and that ends beyond a speed: the reward and the next state.
+/// A step of a walk that three actions push, and that ends above a speed: the reward and the next state.
 fn walk([x, v]: [f32; 2], action: usize, rng: &mut Pcg32) -> (f32, [f32; 2]) {
     let noise = (rng.next_u32() >> 8) as f32 / 16_777_216.0 - 0.5;
     let v = v + 0.1 * (action as f32 - 1.0) + 0.1 * noise;
@@ -43,8 +43,8 @@ fn walk([x, v]: [f32; 2], action: usize, rng: &mut Pcg32) -> (f32, [f32; 2]) {
     (-1.0 - x, [x, v])
 }
 
-/// Sarsa(λ) with binary features and replacing traces, line by line as in the box of Sutton & Barto
-/// 12.7, with a trace for every weight; traces below 0.05 are cut.
+/// Sarsa(λ) with binary features and replacing traces, line by line as in the box of Sutton & Barto 12.7, with a
+/// trace for every weight. Traces below 0.05 are cut.
 struct Textbook {
     w: Vec<[f32; 3]>,
     z: Vec<[f32; 3]>,
@@ -82,7 +82,7 @@ impl Textbook {
     }
 }
 
-/// Bit for bit, since each weight is added to in the same order: once a step.
+/// Bit-identical, because each weight has the same additions in the same order: one in each step.
 #[test]
 fn the_weights_are_those_of_the_textbook() {
     for (lambda, gamma) in [
@@ -143,11 +143,11 @@ fn the_weights_are_those_of_the_textbook() {
     }
 }
 
-/// A corridor of five cells, −1 a step, the goal behind the last: q(cell, onward) = −Σ γᵏ over the
-/// steps that remain, whatever λ is.
+/// A corridor of five cells with a reward of −1 a step and the goal behind the last cell: q(cell, onward) = −Σ γᵏ
+/// over the remaining steps, for every λ.
 #[test]
 fn a_corridor_is_as_long_as_it_is() {
-    /// The corridor ends with a cell, so that float comparisons decide nothing.
+    /// Cells are counted as integers, so that no float comparison decides about the end.
     fn learn(gamma: f32, lambda: f32) -> [f32; 5] {
         let cells = [Dimension::cyclic(0.0, 5.0, 5)];
         let coder =
@@ -179,7 +179,7 @@ fn a_corridor_is_as_long_as_it_is() {
         }
         std::array::from_fn(|cell| agent.values(&[cell as f32 + 0.5])[1])
     }
-    // Each visit halves the error, so that only rounding is left.
+    // Each visit halves the error, so only rounding remains.
     const TOLERANCE: f32 = 1e-5;
     for (gamma, expected) in [
         (1.0, [-5.0, -4.0, -3.0, -2.0, -1.0]),
@@ -196,7 +196,7 @@ fn a_corridor_is_as_long_as_it_is() {
     }
 }
 
-/// The same walk and its mirror image: opposite actions, equal weights.
+/// The same walk and its mirror image give opposite actions and equal weights.
 #[test]
 fn a_mirrored_world_is_the_same_world() {
     let play = |sign: f32| {
@@ -241,7 +241,7 @@ fn schedules_go_evenly_from_episode_to_episode_and_stay_at_their_end() {
     let mut agent = Sarsa::new(coder(), settings, &mut weights).unwrap();
     let mut rng = Pcg32::new(1, 1);
     let mut value = 0.0_f32;
-    // One state whose reward is −1: what an update leaves of the error is 1 − α.
+    // One state with a reward of −1: an update keeps 1 − α of the error.
     for alpha in [0.5, 0.4, 0.3, 0.2, 0.1, 0.1] {
         agent.start(&[0.0, 0.0], &mut rng);
         agent.end(-1.0);
@@ -253,7 +253,7 @@ fn schedules_go_evenly_from_episode_to_episode_and_stay_at_their_end() {
     }
 }
 
-/// ε of the actions are drawn at random, a third of them the greedy one of three.
+/// A share ε of the actions is random, and a third of those is the greedy one of three.
 #[test]
 fn epsilon_is_the_share_of_random_actions() {
     const N: u32 = 100_000;
@@ -272,7 +272,7 @@ fn epsilon_is_the_share_of_random_actions() {
         let random = N as f32 * epsilon / 3.0;
         let expected = [N as f32 - 2.0 * random, random, random];
         for (count, expected) in counts.into_iter().zip(expected) {
-            // Five standard deviations of so many draws; none where nothing is drawn.
+            // Five standard deviations of this many draws; 0 where nothing is drawn.
             let tolerance = 5.0 * (N as f32 * epsilon * 0.25).sqrt();
             assert!(
                 (count as f32 - expected).abs() <= tolerance,

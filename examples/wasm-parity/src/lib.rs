@@ -1,4 +1,4 @@
-//! Plays and learns what the host's tests do; `parity.mjs` beside it compares the digests.
+//! Plays and trains as the crate's tests do. `parity.mjs` compares the digests.
 
 #![no_std]
 
@@ -9,7 +9,8 @@ mod episodes;
 #[path = "../../../tests/common/training.rs"]
 mod training;
 
-use acrobot::{Fast, Micro, Portable};
+use acrobot::arithmetic::Micro;
+use acrobot::{Fast, Portable};
 
 /// The digest of an episode in `portable` (0), `fast` (1) or `micro` (2).
 #[unsafe(no_mangle)]
@@ -22,7 +23,7 @@ pub extern "C" fn found(arithmetic: u32, episode: u32) -> u64 {
     digest(episode.into())
 }
 
-/// What the host's tests assert it to be.
+/// The digest that the crate's tests assert.
 #[unsafe(no_mangle)]
 pub extern "C" fn expected(arithmetic: u32, episode: u32) -> u64 {
     let digests = match arithmetic {
@@ -33,13 +34,13 @@ pub extern "C" fn expected(arithmetic: u32, episode: u32) -> u64 {
     digests[episode as usize]
 }
 
-/// Whether a batch is equal to what the host's tests assert.
+/// Whether a batch has the digest that the crate's tests assert.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_is_equal() -> bool {
     episodes::batch::<4, 5>() == episodes::BATCH && episodes::batch::<16, 2>() == episodes::BATCH
 }
 
-/// Whether a training ends in the weights that the host's tests assert.
+/// Whether a training ends with the weights that the crate's tests assert.
 #[unsafe(no_mangle)]
 pub extern "C" fn training_is_equal() -> bool {
     training::weights() == training::WEIGHTS

@@ -1,4 +1,4 @@
-// One episode: its seed, parameters and actions, and what came of them.
+// One episode: its seed, parameters and actions, and its states.
 
 import { LIMIT } from "./module.js";
 
@@ -7,9 +7,9 @@ export class Game {
   seed;
   params;
   actions = [];
-  /** Six numbers a state, of the start and after each step. */
+  /** Six numbers of each state: the initial one, and after each step. */
   #rows = [];
-  /** `"goal"` or `"limit"` at its end. */
+  /** `"goal"` or `"limit"` once the episode has ended. */
   end = null;
 
   constructor(acrobot, seed, params) {
@@ -17,7 +17,7 @@ export class Game {
     this.begin(seed, params);
   }
 
-  /** Begins anew; throws where the crate refuses the parameters, and goes on as before. */
+  /** Begins an episode. If the crate rejects the parameters it throws, and the current episode goes on. */
   begin(seed, params = this.params) {
     this.#acrobot.setParams(params);
     this.#acrobot.reset(seed);
@@ -38,22 +38,22 @@ export class Game {
     return this.actions.length;
   }
 
-  /** −1 for each step but the one that reaches the goal. */
+  /** −1 for each step except the one that reaches the goal. */
   get return() {
     return (this.end === "goal" ? 1 : 0) - this.steps;
   }
 
-  /** The state, its energy and its height. */
+  /** The state, its energy and the tip's height. */
   get numbers() {
     return this.#rows.at(-1);
   }
 
-  /** One of the six numbers, of the start and after each step. */
+  /** One of the six numbers, of the initial state and after each step. */
   column(index) {
     return Array.from(this.#rows, (row) => row[index]);
   }
 
-  /** The transitions with the columns of the crate's own CSV. */
+  /** The transitions, with the columns of the crate's CSV. */
   csv() {
     const state = ["theta1 (rad)", "theta2 (rad)", "dtheta1 (rad/s)", "dtheta2 (rad/s)"];
     const next = state.map((name) => `next ${name}`);
@@ -69,7 +69,7 @@ export class Game {
   }
 }
 
-/** The fewest digits that read back to a number of single precision. */
+/** The fewest digits that read back to the same number in single precision. */
 export function shortest(number) {
   for (let digits = 1; ; digits++) {
     const text = String(Number(number.toPrecision(digits)));

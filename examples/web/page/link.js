@@ -1,8 +1,8 @@
-// A run in an address: seed, parameters that are not Gymnasium's, and actions, after the #.
+// A run in an address, after the #: seed, parameters other than Gymnasium's, and actions.
 
 import { DEFAULTS, LIMIT, PARAMETERS, parseSeed } from "./module.js";
 
-/** Fills up the last byte; not an action. */
+/** Fills the last byte. It is no action. */
 const PADDING = 3;
 
 /** Actions as base64url, two bits each and the first in the highest. */
@@ -17,14 +17,14 @@ export function encodeActions(actions) {
 
 export function decodeActions(text) {
   const wrong = text.search(/[^A-Za-z0-9_-]/);
-  if (wrong >= 0) throw new Error(`actions has '${text[wrong]}' as character ${wrong + 1}; allowed are letters, digits, - and _`);
-  if (text.length % 4 === 1) throw new Error(`actions has ${text.length} characters; allowed is a length that is not 1 more than a multiple of 4`);
+  if (wrong >= 0) throw new Error(`actions must be letters, digits, - and _, got '${text[wrong]}' as character ${wrong + 1}`);
+  if (text.length % 4 === 1) throw new Error(`actions must not have 1 character more than a multiple of 4, got ${text.length} characters`);
   const binary = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
   const actions = Array.from(binary, (byte) => [6, 4, 2, 0].map((shift) => (byte.charCodeAt(0) >> shift) & 3)).flat();
   while (actions.at(-1) === PADDING) actions.pop();
   const unknown = actions.indexOf(PADDING);
-  if (unknown >= 0) throw new Error(`action ${unknown + 1} is 3; allowed is 0, 1 or 2`);
-  if (actions.length > LIMIT) throw new Error(`actions has ${actions.length} actions; allowed are ${LIMIT}`);
+  if (unknown >= 0) throw new Error(`action ${unknown + 1} must be 0, 1 or 2, got 3`);
+  if (actions.length > LIMIT) throw new Error(`actions must be at most ${LIMIT}, got ${actions.length}`);
   return actions;
 }
 
@@ -37,24 +37,24 @@ export function encodeRun({ seed, params, actions }) {
   return `#${fields}`;
 }
 
-/** The run of an address, its parameters unchecked; an `Error` with the reason where it is none. */
+/** The run in an address, with unchecked parameters. Throws an `Error` with the reason for an address without a run. */
 export function decodeRun(hash) {
   const fields = new URLSearchParams(hash.slice(1));
   const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
-  if (unknown !== undefined) throw new Error(`the link has "${unknown}"; allowed are ${known.join(", ")}`);
+  if (unknown !== undefined) throw new Error(`names in the link must be ${known.join(", ")}, got "${unknown}"`);
   const params = { ...DEFAULTS };
   for (const { name } of PARAMETERS) {
     if (fields.has(name)) params[name] = parseNumber(fields.get(name));
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
   if (!["book", "nips"].includes(params.dynamics)) {
-    throw new Error(`dynamics is "${params.dynamics}"; allowed is book or nips`);
+    throw new Error(`dynamics must be book or nips, got "${params.dynamics}"`);
   }
   return { seed: parseSeed(fields.get("seed") ?? "42"), params, actions: decodeActions(fields.get("actions") ?? "") };
 }
 
-/** A number as it was written; NaN for what is none. */
+/** The number in a text; NaN for a text that is no number. */
 export function parseNumber(text) {
   return text.trim() === "" ? NaN : Number(text);
 }

@@ -1,4 +1,4 @@
-// Loads the module that this browser can run, and ties the page to it.
+// Loads the module that this browser can run, and connects the page to it.
 
 import { Game } from "./game.js";
 import { decodeRun, encodeRun } from "./link.js";
@@ -11,7 +11,7 @@ import { download, trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
-/** How long the end of an episode is shown before a policy begins the next, ms. */
+/** The time that the end of an episode is shown before a policy begins the next, ms. */
 const INTERVAL = 1500;
 
 async function load() {
@@ -23,7 +23,7 @@ async function load() {
   const kib = (bytes.byteLength / 1024).toFixed(1);
   $("module").textContent = simd
     ? `WebAssembly with simd128, ${kib} KiB.`
-    : `WebAssembly, ${kib} KiB. This browser has no simd128: all is the same to the bit, but a batch is no faster than one.`;
+    : `WebAssembly, ${kib} KiB. This browser has no simd128: results are bit-identical, but a batch is no faster than one acrobot.`;
   $("vectors").textContent = simd ? ", by simd128" : ", without simd128";
   const module = await WebAssembly.compile(bytes);
   start(module, await Acrobot.load(module));
@@ -37,11 +37,11 @@ function start(module, acrobot) {
   const stage = new Stage(acrobot);
 
   let playing = !calm.matches;
-  /** How long the last step has been shown, s; as long as dt before the first. */
+  /** The time that the last step has been shown, s; dt before the first step. */
   let shown = game.params.dt;
-  /** When the next episode begins; none while nobody waits for it. */
+  /** When the next episode begins; infinite if it does not begin by itself. */
   let nextAt = Infinity;
-  /** Actions of a link that are to come, the next first. */
+  /** The actions of a link. */
   let recorded = [];
   let best = null;
   const held = { left: false, right: false };
@@ -61,7 +61,7 @@ function start(module, acrobot) {
     shown = 0;
     if (game.end === null) return;
     if (game.end === "goal" && (best === null || game.steps < best)) best = game.steps;
-    const goal = `The tip is over the line, after ${game.steps} steps.`;
+    const goal = `The tip is above the line, after ${game.steps} steps.`;
     say(game.end === "goal" ? goal : `Out of time, after ${LIMIT} steps.`);
     if (!["keys", "link"].includes($("policy").value)) nextAt = performance.now() + INTERVAL;
   };
@@ -80,7 +80,7 @@ function start(module, acrobot) {
 
   const reset = () => {
     begin(game.seed);
-    say(`Reset to the start of seed ${name(game.seed)}.`);
+    say(`Reset to the initial state of seed ${name(game.seed)}.`);
   };
   const next = () => {
     begin(game.seed + 1n);
@@ -108,7 +108,7 @@ function start(module, acrobot) {
     changed();
   };
 
-  /** Of a seed of any size, what fits a sentence. */
+  /** A seed of any size, shortened to fit a sentence. */
   const name = (seed) => (`${seed}`.length > 24 ? `${`${seed}`.slice(0, 20)}…` : `${seed}`);
   const say = (message) => ($("status").textContent = message);
 
@@ -171,7 +171,7 @@ function start(module, acrobot) {
   };
 
   let dirty = true;
-  /** Something but the picture is to be shown anew. */
+  /** Something except the picture has changed. */
   const changed = () => (dirty = true);
 
   const update = () => {
@@ -196,14 +196,14 @@ function start(module, acrobot) {
   const cost = { frames: 0, physics: 0, drawing: 0 };
   let last = performance.now();
   const frame = (now) => {
-    // A page in the background has no frames; what it missed is not made up for.
+    // A page in the background has no frames. It does not catch up.
     const elapsed = Math.min(Math.max(now - last, 0), 100) / 1000;
     last = now;
     const { dt } = game.params;
     const before = performance.now();
     if (playing && game.end === null) {
       shown += elapsed * Number($("pace").value);
-      // However small dt is, the episode's limit ends this.
+      // However small dt is, the episode's limit ends this loop.
       while (shown >= dt && playing && game.end === null) {
         const over = shown - dt;
         step();
@@ -248,7 +248,7 @@ function start(module, acrobot) {
     event.preventDefault();
   });
   document.addEventListener("keyup", ({ key }) => key in sides && hold(sides[key], false));
-  // Whoever has the keyboard now is told of the keys that are released.
+  // Another window gets the event when a key is released.
   addEventListener("blur", () => ["left", "right"].forEach((side) => hold(side, false)));
   for (const side of ["left", "right"]) {
     const button = $(side);
@@ -266,7 +266,7 @@ function start(module, acrobot) {
   Object.entries({ pause: toggle, single, reset, next }).forEach(([id, act]) => ($(id).onclick = act));
   $("policy").onchange = ({ target }) => choose(target.value);
 
-  // ---- what can be set, and refused
+  // ---- settings
 
   $("seed").value = game.seed;
   $("seed").oninput = ({ target }) => {
@@ -297,7 +297,7 @@ function start(module, acrobot) {
   addEventListener("hashchange", open);
   $("share").onclick = async () => {
     const hash = encodeRun(game);
-    // Not through `location`, which would open it.
+    // `location` would open it.
     history.replaceState(null, "", hash);
     $("link").value = location.href;
     $("link-field").hidden = false;
@@ -348,5 +348,5 @@ if (typeof WebAssembly === "object") {
     notice.textContent = `The page could not start: ${error.message}.`;
   });
 } else {
-  notice.textContent = "This browser has no WebAssembly, or does not allow it here, and the acrobot is computed in it.";
+  notice.textContent = "This browser has no WebAssembly, or does not allow it here. The page needs it.";
 }

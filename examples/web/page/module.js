@@ -1,16 +1,16 @@
-// The module's functions over numbers, as methods over JavaScript's values. The page has one, and each worker its own.
+// The module's functions over numbers, as methods over JavaScript's values. The page has one module, and each worker its own.
 
 /** Bytes of a module that uses simd128: `i32.const 0`, `i8x16.splat`, `drop`. */
 const SIMD128 = Uint8Array.of(
   0, 97, 115, 109, 1, 0, 0, 0, // magic and version
   1, 4, 1, 96, 0, 0, // a type: () -> ()
-  3, 2, 1, 0, // a function of it
+  3, 2, 1, 0, // a function of that type
   10, 9, 1, 7, 0, 65, 0, 253, 15, 26, 11, // its body
 );
 
 export const hasSimd128 = () => WebAssembly.validate(SIMD128);
 
-/** Steps of an episode at the most. */
+/** The most steps of an episode. */
 export const LIMIT = 500;
 
 /** The parameters that can be set: name, label, unit, Gymnasium's value, and the slider's end and step. */
@@ -28,18 +28,18 @@ export const DEFAULTS = {
   ...Object.fromEntries(PARAMETERS.map(({ name, value }) => [name, value])),
 };
 
-/** Bytes of the module's buffer, and words of 32 bits that the module takes of a seed. */
+/** Bytes of the module's buffer, and the most 32-bit words that it reads of a seed. */
 const BUFFER = 1 << 17;
 const SEED_WORDS = 64;
 
-/** The seed that a text is; an `Error` with the reason for another. */
+/** The seed in a text. Throws an `Error` with the reason for a text that is no seed. */
 export function parseSeed(text) {
   const digits = text.trim();
-  const allowed = "allowed is a decimal integer, 0 or more, of up to 600 digits";
-  if (digits === "") throw new Error(`seed is empty; ${allowed}`);
+  const rule = "seed must be a decimal integer of at least 0 with at most 600 digits";
+  if (digits === "") throw new Error(`${rule}, got an empty text`);
   const wrong = digits.search(/[^0-9]/);
-  if (wrong >= 0) throw new Error(`seed has '${digits[wrong]}' as character ${wrong + 1}; ${allowed}`);
-  if (digits.length > 600) throw new Error(`seed has ${digits.length} digits; ${allowed}`);
+  if (wrong >= 0) throw new Error(`${rule}, got '${digits[wrong]}' as character ${wrong + 1}`);
+  if (digits.length > 600) throw new Error(`${rule}, got ${digits.length} digits`);
   return BigInt(digits);
 }
 
@@ -69,7 +69,7 @@ export class Acrobot {
     return new TextDecoder().decode(this.#bytes(length).slice(start));
   }
 
-  /** Writes a seed where the module reads it; returns how many words it has. */
+  /** Writes a seed into the module's buffer. Returns the number of its words. */
   #seed(seed) {
     const words = new DataView(this.#exports.memory.buffer, this.#buffer);
     let count = 0;
@@ -83,7 +83,7 @@ export class Acrobot {
     this.#exports.reset(this.#seed(seed));
   }
 
-  /** Steps; returns whether the goal or the limit of steps was reached. */
+  /** Steps. Returns whether the goal or the limit of steps was reached. */
   step(action) {
     const flags = this.#exports.step(action);
     return { terminated: (flags & 1) !== 0, truncated: (flags & 2) !== 0 };
@@ -94,16 +94,16 @@ export class Acrobot {
     return this.#floats(this.#exports.numbers(), 6).slice();
   }
 
-  /** Sets the parameters, or throws an `Error` with the crate's reason and changes nothing. */
+  /** Sets the parameters. If they are rejected it throws an `Error` with the crate's reason and changes nothing. */
   setParams(params) {
     const { dynamics, dt, mass1, mass2, length1, length2, gravity } = params;
     const length = this.#exports.set_params(dynamics === "nips", dt, mass1, mass2, length1, length2, gravity);
     if (length === 0) return;
-    const [name, unit, allowed] = this.#text(length, 8).split("\n");
+    const [name, unit, rule] = this.#text(length, 8).split("\n");
     const rounded = new DataView(this.#exports.memory.buffer, this.#buffer).getFloat64(0, true);
-    // As it was written, where single precision has something like it.
+    // The number as the user wrote it, unless single precision has nothing like it.
     const value = params[name] * rounded > 0 && Number.isFinite(rounded) ? params[name] : rounded;
-    throw new Error(`${name} is ${String(value).replace("Infinity", "inf")} ${unit}; allowed is ${allowed}`);
+    throw new Error(`${name} must be ${rule} ${unit}, got ${String(value).replace("Infinity", "inf")}`);
   }
 
   /** The energy of standing upright, J. */
@@ -126,14 +126,14 @@ export class Acrobot {
     this.#exports.paint(...colors);
   }
 
-  /** Draws a part of the last step, from 0 to 1; returns where the tip is, m to the right and above. */
+  /** Draws a part of the last step, from 0 to 1. Returns the tip's position [x, y] in m, x to the right and y up. */
   draw(part) {
     return this.#floats(this.#exports.draw(part), 2);
   }
 
-  /** Takes weights as the policy `learnt`, or throws an `Error` with the reason and changes nothing. */
+  /** Loads weights as the policy `learnt`. If they are rejected it throws an `Error` with the reason and changes nothing. */
   load(weights) {
-    if (weights.length > BUFFER) throw new Error(`weights of ${weights.length} bytes; allowed are ${BUFFER} at the most`);
+    if (weights.length > BUFFER) throw new Error(`weights must have at most ${BUFFER} bytes, got ${weights.length}`);
     this.#bytes(weights.length).set(weights);
     const length = this.#exports.load(weights.length);
     if (length !== 0) throw new Error(this.#text(length));
@@ -143,7 +143,7 @@ export class Acrobot {
     this.#exports.begin_training(preset === "quality", episodes, this.#seed(seed));
   }
 
-  /** Trains for an episode; returns its return. */
+  /** Trains for an episode. Returns the sum of its rewards. */
   train() {
     return this.#exports.train();
   }

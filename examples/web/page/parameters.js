@@ -1,11 +1,11 @@
-// The panel of the physics: equations, and a slider and a field for each parameter, where bad values are refused in place.
+// The panel of the physics: equations, and a slider and a field for each parameter, which shows why a value is rejected.
 
 import { parseNumber } from "./link.js";
 import { DEFAULTS, PARAMETERS } from "./module.js";
 
 const $ = (id) => document.getElementById(id);
 
-/** Runs `set`; where it throws, the field is marked and the reason stands at it. */
+/** Runs `set`. If it throws, marks the field and shows the reason. */
 export function attempt(field, reason, set) {
   try {
     set();
@@ -17,7 +17,7 @@ export function attempt(field, reason, set) {
   }
 }
 
-/** `get` gives the parameters, and `set` takes them or throws. Returns what shows the parameters that there are now. */
+/** `get` returns the parameters, and `set` takes them or throws. Returns a function that shows the current parameters. */
 export function parametersPanel(get, set) {
   const fields = PARAMETERS.map(({ name, label, unit, end, step }) => {
     const field = document.createElement("div");

@@ -1,15 +1,15 @@
-// Lines over the steps of an episode or over episodes, on a canvas as sharp as the display.
+// Lines over the steps of an episode or over episodes, at the display's resolution.
 
 const MARGIN = { left: 40, right: 8, top: 6, bottom: 18 };
 
-/** The colours that the style sheet has for an element: those of its custom properties. */
+/** A colour of the style sheet, by the name of its custom property. */
 export function color(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
 /**
- * Draws `series`, each with `values` and a `color`, the first value at x = `start`. `marks` are values of their own
- * with a line across; `jump` is how far apart two values may be for a line between them.
+ * Draws `series`, each with `values` and a `color`, the first value at x = `start`. Each of `marks` is a value with a
+ * line across. Values that differ by more than `jump` are not connected.
  */
 export function plot(canvas, { series, range, start = 0, end, marks = [], jump = Infinity }) {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -55,7 +55,7 @@ export function plot(canvas, { series, range, start = 0, end, marks = [], jump =
   }
 }
 
-/** Round numbers from `low` to `high`, about as many as asked for. */
+/** About `count` round numbers from `low` to `high`. */
 function ticks(low, high, count) {
   const raw = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(raw));
@@ -66,7 +66,7 @@ function ticks(low, high, count) {
 
 const label = (value) => String(Number(value.toPrecision(3))).replace("-", "−");
 
-/** The range of some values, a little wider, and never of no width. */
+/** The range of some values, a little wider, and never empty. */
 export function rangeOf(values) {
   const low = Math.min(...values), high = Math.max(...values);
   const room = (high - low || 1) * 0.06;

@@ -2,9 +2,9 @@
 
 import { color } from "./plot.js";
 
-/** Pixels of the picture's side at the most: the module has memory for these. */
+/** The most pixels of the picture's side, for which the module has memory. */
 const SIDE = 1024;
-/** Drawings that a tip's place is shown for. */
+/** The number of drawings after which a part of the trail disappears. */
 const TRAIL = 90;
 
 export class Stage {
@@ -12,7 +12,7 @@ export class Stage {
   #picture = document.querySelector("#picture");
   #trail = document.querySelector("#trail");
   #pixels;
-  /** Where the tip was, m to the right and above. */
+  /** Former positions of the tip, [x, y] in m. */
   #tips = [];
 
   constructor(acrobot) {
@@ -22,7 +22,7 @@ export class Stage {
     new ResizeObserver(() => this.#fit()).observe(this.#picture);
   }
 
-  /** At least two pixels for each that the page counts, so that edges are smooth on any display. */
+  /** At least two pixels for each CSS pixel, for smooth edges on any display. */
   #fit() {
     const side = Math.min(Math.max(Math.round(this.#picture.clientWidth * Math.max(devicePixelRatio, 2)), 1), SIDE);
     if (side === this.#pixels?.width) return;
@@ -30,7 +30,7 @@ export class Stage {
     for (const canvas of [this.#picture, this.#trail]) canvas.width = canvas.height = side;
   }
 
-  /** Takes the colours that the style sheet has now. */
+  /** Takes the current colours of the style sheet. */
   repaint() {
     const colors = ["--line", "--link", "--joint", "--torque"].map((name) => {
       const [red, green, blue] = color(name).match(/\w\w/g).map((digits) => parseInt(digits, 16));
@@ -43,10 +43,10 @@ export class Stage {
     this.#tips = [];
   }
 
-  /** Draws a part of the last step, from 0 to 1, of an acrobot whose links are `reach` m long in all. */
+  /** Draws a part of the last step, from 0 to 1. `reach` is the length of both links, m. */
   draw(part, reach, withTrail) {
     const half = this.#pixels.width / 2;
-    // As the crate scales its picture.
+    // The crate scales its picture like this.
     const metre = half / (reach + 0.2);
     const [x, y] = this.#acrobot.draw(part);
     this.#picture.getContext("2d").putImageData(this.#pixels, 0, 0);

@@ -3,14 +3,14 @@
 import { parseSeed } from "./module.js";
 import { color, plot, rangeOf } from "./plot.js";
 
-/** Episodes that a mean is of, as where Gymnasium calls the task solved. */
+/** Episodes of a mean, as in Gymnasium's definition of solved. */
 const WINDOW = 100;
 const SOLVED = -100;
 const EPISODES = 1_000_000;
 
 const $ = (id) => document.getElementById(id);
 
-/** `ready` is called when a policy is there; `drive` when it is to drive. */
+/** Calls `ready` when there is a policy, and `drive` when the user lets it drive. */
 export function trainingPanel(acrobot, module, { ready, drive }) {
   let worker = null;
   let weights = null;
@@ -22,7 +22,7 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
     plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), marks: [SOLVED] });
   };
 
-  /** Lets the page's module have weights; throws with the reason where they are none of its. */
+  /** Loads weights into the page's module. Throws with the reason if they are rejected. */
   const take = (bytes) => {
     acrobot.load(bytes);
     weights = bytes;
@@ -44,7 +44,7 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
     let seed;
     try {
       if (!Number.isInteger(episodes) || episodes < 1 || episodes > EPISODES) {
-        throw new Error(`episodes is ${$("episodes").value || "empty"}; allowed is an integer from 1 to 1,000,000`);
+        throw new Error(`episodes must be an integer from 1 to 1,000,000, got ${$("episodes").value || "an empty text"}`);
       }
       seed = parseSeed($("training-seed").value);
     } catch (error) {
@@ -82,12 +82,12 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
     $("training-status").textContent = "Training";
   };
 
-  $("train").onclick = () => (worker ? stop("Stopped; what it has learnt is kept.") : train());
+  $("train").onclick = () => (worker ? stop("Stopped. The weights are kept.") : train());
   $("drive").onclick = drive;
   $("save").onclick = () => download("weights.bin", weights);
   $("load").onchange = async ({ target }) => {
     const [file] = target.files;
-    // So that the same file can be chosen again.
+    // Otherwise the same file could not be chosen again.
     target.value = "";
     $("weights-reason").textContent = "";
     if (file === undefined) return;

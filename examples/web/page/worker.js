@@ -1,8 +1,8 @@
-// One task in a module of its own, away from the page: { module, task, … } in, reports out. To stop it, end the worker.
+// One task with its own module, outside the page's thread: { module, task, … } in, reports out. Terminate the worker to stop it.
 
 import { Acrobot } from "./module.js";
 
-/** How often it reports, ms. */
+/** The time between two reports, ms. */
 const PERIOD = 150;
 
 const tasks = {
@@ -27,7 +27,7 @@ const tasks = {
   },
 };
 
-/** Steps a second in the best of several runs, the first of which the browser may still be compiling in. */
+/** Steps a second in the best of ten runs. During the first the browser may still compile. */
 function fastest(steps, run) {
   let best = Infinity;
   for (let round = 0; round < 10; round++) {

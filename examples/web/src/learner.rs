@@ -1,9 +1,10 @@
-//! The learner of `swing_up` with its 64 KiB of weights: training, in a worker's module, and what was learnt as a policy,
-//! in the page's.
+//! The learner of `swing_up` with its 64 KiB of weights: training, in a worker's module, and the learnt policy, in the
+//! page's.
 
 use core::fmt::{self, Write};
 
-use acrobot::{Action, Pcg64, State};
+use acrobot::numpy::Pcg64;
+use acrobot::{Action, State};
 use sarsa::LoadError;
 
 use crate::memory::{BUFFER, Shared};
@@ -24,15 +25,15 @@ const fn memory() -> Memory {
     Once::new([[0.0; 2]; SLOTS])
 }
 
-/// A learner that knows nothing; none where its memory was taken before.
+/// An untrained learner, or none if its memory was taken before.
 fn learner(preset: Preset, episodes: u32, memory: &'static Memory) -> Option<Learner> {
     preset.learner(episodes, memory.take()?).ok()
 }
 
 static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);
 
-/// Begins to train the preset `fast`, or `quality` where that is not 0, in so many episodes and with the seed in the buffer, as
-/// `swing_up` does. False where this module has begun one before: each has memory for one.
+/// Begins to train with the seed in the buffer, as `swing_up` does: the preset `fast`, or `quality` if that is not 0. Returns
+/// false if this module has begun a training before, because it has memory for one.
 #[unsafe(no_mangle)]
 pub extern "C" fn begin_training(quality: u32, episodes: u32, words: usize) -> bool {
     static WEIGHTS: Memory = memory();
@@ -49,7 +50,7 @@ pub extern "C" fn begin_training(quality: u32, episodes: u32, words: usize) -> b
     true
 }
 
-/// Trains for an episode; returns the sum of its rewards, or NaN where no training has begun.
+/// Trains for an episode. Returns the sum of its rewards, or NaN if no training has begun.
 #[unsafe(no_mangle)]
 pub extern "C" fn train() -> f32 {
     match &mut *TRAINING.borrow() {
@@ -58,7 +59,7 @@ pub extern "C" fn train() -> f32 {
     }
 }
 
-/// Writes the weights of the training into the buffer, as `swing_up --save` does; returns how many bytes.
+/// Writes the weights of the training into the buffer, as `swing_up --save` does. Returns the number of bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn save() -> usize {
     let Some((learner, ..)) = &*TRAINING.borrow() else {
@@ -70,16 +71,17 @@ pub extern "C" fn save() -> usize {
     Learner::BYTES
 }
 
-/// What was loaded last, of either preset.
+/// A learner for each preset, one of which has the loaded weights.
 struct Policy {
     presets: [Learner; 2],
+    /// The one that loaded weights last.
     last: usize,
 }
 
 static POLICY: Shared<Option<Policy>> = Shared::new(None);
 
 impl Policy {
-    /// One that knows nothing; none where there was one before.
+    /// Untrained, or none if there was one before.
     fn new() -> Option<Self> {
         static FAST: Memory = memory();
         static QUALITY: Memory = memory();
@@ -93,17 +95,17 @@ impl Policy {
     }
 
     fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
-        let mut refused = LoadError::Magic;
+        let mut rejected = LoadError::Magic;
         for (number, learner) in self.presets.iter_mut().enumerate() {
             match learner.load(bytes) {
                 Ok(()) => {
                     self.last = number;
                     return Ok(());
                 }
-                Err(error) => refused = error,
+                Err(error) => rejected = error,
             }
         }
-        Err(refused)
+        Err(rejected)
     }
 
     fn action(&self, state: &State<f32>) -> Action {
@@ -112,8 +114,8 @@ impl Policy {
     }
 }
 
-/// Takes the weights in the buffer's first `len` bytes as the policy, of whichever preset they are. Not 0 where they are
-/// refused: the length of the reason, which is in the buffer. The policy is as it was then.
+/// Takes the weights in the buffer's first `len` bytes as the policy, of either preset. If they are rejected the policy
+/// stays, and the result is the length of the reason in the buffer; otherwise it is 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn load(len: usize) -> usize {
     let mut policy = POLICY.borrow();
@@ -130,12 +132,12 @@ pub extern "C" fn load(len: usize) -> usize {
         bytes: &mut *buffer,
         len: 0,
     };
-    // It has room for a hundred times as much.
+    // The buffer is a hundred times as long.
     let _ = write!(text, "{error}");
     text.len
 }
 
-/// The action of the loaded policy; no torque before one was loaded.
+/// The action of the loaded policy, or no torque before weights were loaded.
 #[unsafe(no_mangle)]
 pub extern "C" fn learnt() -> u8 {
     let policy = POLICY.borrow();
@@ -145,7 +147,7 @@ pub extern "C" fn learnt() -> u8 {
     action.into()
 }
 
-/// Writes into bytes, and ends with an error where they are full.
+/// Writes into bytes. Fails if they are full.
 struct Text<'a> {
     bytes: &'a mut [u8],
     len: usize,

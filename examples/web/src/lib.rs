@@ -1,7 +1,7 @@
-//! The module behind the page: what JavaScript calls, as plain functions over numbers.
+//! The module of the page: plain functions over numbers, which JavaScript calls.
 //!
-//! Longer things pass through the one buffer of `memory`: a seed's words in, reasons out, weights both ways. Without the
-//! `page` feature only `simulation` is left.
+//! Longer data passes through the buffer in `memory`: seeds in, reasons out, weights both ways. Without the `page`
+//! feature there is only `simulation`.
 
 #![no_std]
 

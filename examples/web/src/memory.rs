@@ -1,11 +1,11 @@
-//! What the exported functions share, and most of the crate's `unsafe`.
+//! State that the exported functions share. Most of the crate's `unsafe` is here.
 
 use core::cell::{RefCell, RefMut};
 
 #[cfg(target_feature = "atomics")]
-compile_error!("the statics here are for a module with one thread");
+compile_error!("the statics here need a module with one thread");
 
-/// A value that all exported functions see.
+/// A value that all exported functions share.
 pub struct Shared<T>(RefCell<T>);
 
 // SAFETY: a module without atomics has one thread.
@@ -20,13 +20,13 @@ impl<T> Shared<T> {
         self.0.borrow_mut()
     }
 
-    /// Where JavaScript reads and writes between calls.
+    /// The address for JavaScript, which reads and writes between calls.
     pub fn address(&self) -> *mut T {
         self.0.as_ptr()
     }
 }
 
-/// What is too long for a number passes here; the longest are the learner's weights, 64 KiB.
+/// For data that is longer than a number. The longest are the learner's weights, 64 KiB.
 pub static BUFFER: Shared<[u8; 1 << 17]> = Shared::new([0; 1 << 17]);
 
 #[unsafe(no_mangle)]

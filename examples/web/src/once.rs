@@ -1,8 +1,8 @@
-//! Memory for what has to live as long as the module.
+//! Memory that lives as long as the module.
 
 use core::cell::{Cell, UnsafeCell};
 
-/// Memory that is handed out once, for good.
+/// Memory that is handed out once.
 pub struct Once<T> {
     taken: Cell<bool>,
     value: UnsafeCell<T>,
@@ -24,7 +24,7 @@ impl<T> Once<T> {
         if self.taken.replace(true) {
             return None;
         }
-        // SAFETY: nobody took it before, and nobody will again.
+        // SAFETY: it is taken for the first time, and never again.
         Some(unsafe { &mut *self.value.get() })
     }
 }

@@ -1,9 +1,10 @@
-//! The acrobot in pixels, by the crate's own drawing, between two steps where the display is faster than the physics.
+//! The acrobot in pixels, drawn by the crate, also between two steps, because a display is faster than the physics.
 
 use core::convert::Infallible;
-use core::f32::consts::FRAC_PI_2;
 
-use acrobot::{Fast, Figure, State, Theme, wrap};
+use acrobot::physics::wrap;
+use acrobot::render::{Figure, Theme};
+use acrobot::{Fast, State};
 use embedded_graphics_core::pixelcolor::PixelColor;
 use embedded_graphics_core::pixelcolor::raw::RawU32;
 use embedded_graphics_core::prelude::{DrawTarget, OriginDimensions, Pixel, Size};
@@ -12,7 +13,7 @@ use embedded_graphics_core::primitives::Rectangle;
 use crate::memory::Shared;
 use crate::simulation;
 
-/// Pixels in each direction that there is memory for.
+/// The most pixels in each direction: the memory is static.
 const SIDE: usize = 1024;
 
 /// A pixel as a canvas has it: red in the lowest byte, opacity in the highest.
@@ -39,11 +40,11 @@ static CANVAS: Shared<Canvas> = Shared::new(Canvas {
 struct Canvas {
     size: Size,
     theme: Theme<Rgba>,
-    /// What the pixels show; none where they show nothing yet.
+    /// What the pixels show, if they show anything.
     shown: Option<Figure>,
 }
 
-/// The pixels of one row after the other.
+/// Pixels in rows.
 struct Frame<'a> {
     size: Size,
     pixels: &'a mut [Rgba],
@@ -63,7 +64,7 @@ impl DrawTarget for Frame<'_> {
         &mut self,
         pixels: I,
     ) -> Result<(), Infallible> {
-        // A figure draws nothing outside of its target.
+        // A figure draws nothing outside its target.
         for Pixel(point, color) in pixels {
             let index = point.y as usize * self.size.width as usize + point.x as usize;
             if let Some(pixel) = self.pixels.get_mut(index) {
@@ -73,7 +74,7 @@ impl DrawTarget for Frame<'_> {
         Ok(())
     }
 
-    /// A figure fills its whole target at once.
+    /// A figure only calls this for its whole target.
     fn fill_contiguous<I: IntoIterator<Item = Rgba>>(
         &mut self,
         _: &Rectangle,
@@ -91,7 +92,7 @@ pub extern "C" fn pixels() -> *mut u8 {
     PIXELS.address().cast()
 }
 
-/// Sets the picture's width and height, at most 1024 each. The next drawing is of all pixels.
+/// Sets the picture's width and height, at most 1024 each. The next drawing writes all pixels.
 #[unsafe(no_mangle)]
 pub extern "C" fn resize(width: u32, height: u32) {
     let mut canvas = CANVAS.borrow();
@@ -99,7 +100,8 @@ pub extern "C" fn resize(width: u32, height: u32) {
     canvas.shown = None;
 }
 
-/// Sets the colours as bytes of red, green, blue and opacity; the ground is clear. The next drawing is of all pixels.
+/// Sets the colours as bytes of red, green, blue and opacity; the background is transparent. The next drawing
+/// writes all pixels.
 #[unsafe(no_mangle)]
 pub extern "C" fn paint(line: u32, link: u32, joint: u32, torque: u32) {
     let mut canvas = CANVAS.borrow();
@@ -113,8 +115,8 @@ pub extern "C" fn paint(line: u32, link: u32, joint: u32, torque: u32) {
     canvas.shown = None;
 }
 
-/// Draws the acrobot at a part of its last step, from 0 (before) to 1 (after), with the step's torque. Returns where
-/// the tip is: to the right of the fixed joint and above it, m.
+/// Draws the acrobot at a part of its last step, from 0 (before) to 1 (after), with the step's torque. Returns the tip's
+/// position: \[x, y\] in m from the fixed joint, x to the right and y up.
 #[unsafe(no_mangle)]
 pub extern "C" fn draw(part: f32) -> *const [f32; 2] {
     static TIP: Shared<[f32; 2]> = Shared::new([0.0; 2]);
@@ -122,7 +124,7 @@ pub extern "C" fn draw(part: f32) -> *const [f32; 2] {
         let mut acrobot = simulation.env.inner().clone();
         let dt = acrobot.params().dt;
         let state = between(simulation.before, acrobot.state(), dt, part);
-        // What overflowed on the way stays at the step's end.
+        // If the interpolation overflowed, the state stays that after the step.
         let _ = acrobot.set_state(state);
 
         let mut canvas = CANVAS.borrow();
@@ -138,26 +140,18 @@ pub extern "C" fn draw(part: f32) -> *const [f32; 2] {
             None => figure.draw(&mut frame, &canvas.theme),
         };
         canvas.shown = Some(figure);
-
-        let height = acrobot.tip_height();
-        // Turned by a quarter, what was to the right is above.
-        let turned = State {
-            theta1: state.theta1 + FRAC_PI_2,
-            ..state
-        };
-        let _ = acrobot.set_state(turned);
-        *TIP.borrow() = [acrobot.tip_height(), height];
+        [_, *TIP.borrow()] = acrobot.positions();
     });
     TIP.address()
 }
 
-/// The state at a `part` of the step from `a` to `b`: the angles by the cubic that has both states' angles and
-/// velocities (Hermite's), the velocities in proportion.
+/// The state at a `part` of the step from `a` to `b`. Angles follow the cubic with the angles and velocities of both
+/// states (Hermite's); velocities are interpolated linearly.
 fn between(a: State<f32>, b: State<f32>, dt: f32, part: f32) -> State<f32> {
     let [part2, part3] = [part * part, part * part * part];
     let angle = |theta: [f32; 2], dtheta: [f32; 2]| {
         let [start, end] = dtheta.map(|dtheta| dtheta * dt);
-        // Of the turns that lead from one angle to the other, those nearest to the mean velocity's.
+        // Of all turns from one angle to the other, the one closest to the mean velocity's.
         let mean = (start + end) * 0.5;
         let turned = mean + wrap::<Fast>(theta[1] - theta[0] - mean);
         theta[0]

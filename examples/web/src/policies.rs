@@ -1,8 +1,9 @@
-//! Two policies that learn nothing.
+//! Two policies that do not learn.
 
 use core::f32::consts::PI;
 
-use acrobot::{Action, State};
+use acrobot::physics::energy;
+use acrobot::{Action, Fast, State};
 
 use crate::simulation;
 
@@ -20,8 +21,8 @@ pub extern "C" fn bang_bang() -> u8 {
     })
 }
 
-/// The law of `energy_control`, −(E↑ − E) θ̇1 with E↑ the energy of standing upright, rounded to an action: it adds what
-/// energy is missing, and takes away what is too much.
+/// The law of `energy_control`, −(E↑ − E) θ̇1 with E↑ the energy of standing upright, rounded to an action. It adds
+/// energy where there is too little, and removes it where there is too much.
 #[unsafe(no_mangle)]
 pub extern "C" fn energy_law() -> u8 {
     let standing = standing();
@@ -40,14 +41,9 @@ pub extern "C" fn energy_law() -> u8 {
 /// The energy of standing upright, J.
 #[unsafe(no_mangle)]
 pub extern "C" fn standing() -> f32 {
-    simulation::with(|simulation| {
-        let mut acrobot = simulation.env.inner().clone();
-        let upright = State {
-            theta1: PI,
-            ..State::default()
-        };
-        // It is finite.
-        let _ = acrobot.set_state(upright);
-        acrobot.energy()
-    })
+    let upright = State {
+        theta1: PI,
+        ..State::default()
+    };
+    simulation::with(|simulation| energy::<Fast>(simulation.env.inner().params(), &upright))
 }

@@ -1,48 +1,39 @@
 //! One acrobot in `Fast` with Gymnasium's limit of 500 steps.
 
-use acrobot::{
-    Acrobot, Action, Dynamics, Error, Fast, Params, Pcg64, SeedSequence, State, TimeLimit,
-};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::Dynamics;
+use acrobot::{Acrobot, Action, Error, Fast, Params, ResetOptions, State, TimeLimit};
 
 use crate::memory::{BUFFER, Shared};
 
 pub struct Simulation {
     pub env: TimeLimit<Acrobot<Fast>>,
-    /// Gymnasium's `action_space` of the same seed.
+    /// Gymnasium's `action_space` with the same seed.
     action_space: Pcg64,
     /// The state before the last step, and its torque in N m.
     pub before: State<f32>,
     pub torque: f32,
 }
 
-impl Simulation {
-    fn new(seed: SeedSequence, params: Params<f32>) -> Self {
-        let mut acrobot = Acrobot::<Fast>::new(seed.clone());
-        // They are those of an acrobot, or the default: valid.
-        let _ = acrobot.set_params(params);
-        Self {
-            before: acrobot.state(),
-            env: TimeLimit::v1(acrobot),
-            action_space: Pcg64::new(seed),
-            torque: 0.0,
-        }
-    }
+/// It hangs at rest until the first [`reset`].
+static SIMULATION: Shared<Simulation> = Shared::new(Simulation {
+    env: TimeLimit::v1(Acrobot::hanging(Pcg64::new(0))),
+    action_space: Pcg64::new(0),
+    before: State {
+        theta1: 0.0,
+        theta2: 0.0,
+        dtheta1: 0.0,
+        dtheta2: 0.0,
+    },
+    torque: 0.0,
+});
 
-    fn params(&self) -> Params<f32> {
-        *self.env.inner().params()
-    }
-}
-
-static SIMULATION: Shared<Option<Simulation>> = Shared::new(None);
-
-/// Calls `f` with the simulation: of seed 0 before the first [`reset`].
+/// Calls `f` with the simulation.
 pub fn with<R>(f: impl FnOnce(&mut Simulation) -> R) -> R {
-    f(SIMULATION
-        .borrow()
-        .get_or_insert_with(|| Simulation::new(0.into(), Params::default())))
+    f(&mut SIMULATION.borrow())
 }
 
-/// The seed in the buffer: so many words of 32 bits, the lowest first.
+/// The seed in the first `words` 32-bit words of the buffer, the lowest first.
 pub fn seed_in_buffer(words: usize) -> SeedSequence {
     let mut seed = [0; 64];
     let buffer = BUFFER.borrow();
@@ -55,15 +46,23 @@ pub fn seed_in_buffer(words: usize) -> SeedSequence {
     SeedSequence::from_words(seed.get(..len).unwrap_or(&seed))
 }
 
-/// Gymnasium's `reset(seed=seed)` and `action_space.seed(seed)`, for the seed in the buffer of up to 64 words.
+/// Gymnasium's `reset(seed=seed)` and `action_space.seed(seed)`, with the seed in the buffer of up to 64 words.
 #[unsafe(no_mangle)]
 pub extern "C" fn reset(words: usize) {
     let seed = seed_in_buffer(words);
-    with(|simulation| *simulation = Simulation::new(seed, simulation.params()));
+    with(|simulation| {
+        simulation.action_space = seed.clone().into();
+        simulation.env.reset_with(ResetOptions {
+            seed: Some(seed),
+            ..ResetOptions::default()
+        });
+        simulation.before = simulation.env.inner().state();
+        simulation.torque = 0.0;
+    });
 }
 
-/// Steps by an action's number. Bit 0 says whether the goal was reached, bit 1 whether it was the last step of the
-/// limit; bit 2 refuses the action.
+/// Steps with an action's number. Bit 0 of the result says whether the goal was reached, bit 1 whether the episode was
+/// truncated, and bit 2 that the number is no action and nothing was stepped.
 #[unsafe(no_mangle)]
 pub extern "C" fn step(action: u32) -> u32 {
     let number = u8::try_from(action).unwrap_or(u8::MAX);
@@ -72,7 +71,7 @@ pub extern "C" fn step(action: u32) -> u32 {
     };
     with(|simulation| {
         simulation.before = simulation.env.inner().state();
-        simulation.torque = simulation.params().torque(action);
+        simulation.torque = simulation.env.inner().params().torque(action);
         let step = simulation.env.step(action);
         u32::from(step.terminated) | u32::from(step.truncated) << 1
     })
@@ -97,8 +96,9 @@ pub extern "C" fn numbers() -> *const [f32; 6] {
     NUMBERS.address()
 }
 
-/// Sets the equations, those of the book where `nips` is 0, and parameters in SI units; all others are Gymnasium's. Not 0 where they are refused: the length of the reason,
-/// which is in the buffer. Nothing is changed then.
+/// Sets parameters in SI units, and the equations: those of the book if `nips` is 0. Other parameters become
+/// Gymnasium's. If a parameter is rejected nothing changes, and the result is the length of the reason in the buffer;
+/// otherwise it is 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn set_params(
     nips: u32,
@@ -121,20 +121,20 @@ pub extern "C" fn set_params(
         } else {
             Dynamics::Book
         },
-        ..Params::default()
+        ..Params::DEFAULT
     };
     let set = with(|simulation| simulation.env.inner_mut().set_params(params));
     set.map_or_else(reason, |()| 0)
 }
 
-/// Writes the parts of a message into the buffer, for JavaScript to put together: the value in 8 bytes, then its name,
-/// its unit and what is allowed, a line each. Rust's own way of writing a float would take 16 KB.
+/// Writes the parts of a message into the buffer, from which JavaScript writes the message: the value in 8 bytes, then
+/// name, unit and rule, a line each. Rust's own formatting of floats would take 16 KB.
 fn reason(error: Error) -> usize {
     let Error::OutOfRange {
         name,
         value,
         unit,
-        allowed,
+        rule,
     } = error
     else {
         return 0;
@@ -147,7 +147,7 @@ fn reason(error: Error) -> usize {
         b"\n",
         unit.as_bytes(),
         b"\n",
-        allowed.as_bytes(),
+        rule.as_bytes(),
     ];
     let mut len = 0;
     for (to, &byte) in buffer.iter_mut().zip(parts.into_iter().flatten()) {

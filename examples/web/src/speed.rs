@@ -1,10 +1,12 @@
-//! Loops to time: a random policy, with its actions drawn and its episodes reset within.
+//! Loops to time, with a random policy: they draw the actions and reset ended episodes.
 
 use core::hint::black_box;
 
-use acrobot::{Acrobot, Action, Batch, Block, Fast, Observations, Output, Pcg64, TimeLimit};
+use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
-/// A linear congruential generator that costs next to nothing beside a step.
+/// A linear congruential generator, which takes little time compared with a step.
 struct Actions(u32);
 
 impl Actions {
@@ -14,20 +16,20 @@ impl Actions {
     }
 }
 
-/// One acrobot for so many steps.
+/// Steps one acrobot.
 #[unsafe(no_mangle)]
 pub extern "C" fn scalar_steps(steps: u32) {
     let mut actions = Actions(0);
     let mut env = TimeLimit::v1(Acrobot::<Fast>::new(0));
     for _ in 0..steps {
         let action = Action::try_from(actions.draw()).unwrap_or(Action::Zero);
-        if black_box(env.step(action)).ended() {
+        if black_box(env.step(action)).done() {
             env.reset();
         }
     }
 }
 
-/// Acrobots of the batch.
+/// The acrobots of the batch.
 const LEN: usize = 1024;
 const LANES: usize = if cfg!(target_feature = "simd128") {
     16
@@ -35,7 +37,7 @@ const LANES: usize = if cfg!(target_feature = "simd128") {
     1
 };
 
-/// The batch for so many steps of each acrobot.
+/// Steps the batch.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_steps(steps: u32) {
     let mut blocks = [Block::EMPTY; LEN / LANES];
@@ -52,14 +54,14 @@ pub extern "C" fn batch_steps(steps: u32) {
         for (action, stream) in actions.iter_mut().zip(&mut streams) {
             *action = stream.draw();
         }
-        let output = Output {
+        let buffers = StepBuffers {
             rewards: &mut rewards,
             terminated: &mut terminated,
             truncated: &mut truncated,
             observations: Observations::None,
             final_observations: Observations::None,
         };
-        if batch.step(&actions, output).is_err() {
+        if batch.step(&actions, buffers).is_err() {
             return;
         }
     }

@@ -1,14 +1,14 @@
-// The page in Chromium, and what it computes beside what the host does.
+// The page in Chromium. Its results are compared with native ones.
 
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { ACTIONS, refusal, swingUp, trace } from "./host.mjs";
+import { ACTIONS, rejection, swingUp, trace } from "./native.mjs";
 import { bits, dist, downloaded, folder, linkedActions, open, paused, press, text } from "./player.mjs";
 
-test("the page loads, swings by itself, and has a strict policy", () =>
+test("the page loads, swings by itself, and has a strict content security policy", () =>
   open(async (page) => {
     const policy = await page.getAttribute("meta[http-equiv]", "content");
     assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
@@ -23,7 +23,7 @@ test("the page loads, swings by itself, and has a strict policy", () =>
     assert.equal(await drawn(), 5);
   }));
 
-test("keys move it, to the host's bits", () =>
+test("keys move it, bit-identical to native", () =>
   open(async (page) => {
     await paused(page, 42);
     await press(page, ACTIONS);
@@ -31,7 +31,7 @@ test("keys move it, to the host's bits", () =>
     assert.equal(await text(page, "#step"), String(ACTIONS.length));
     assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
 
-    // In the page's own time: which actions were taken is in the link.
+    // The page decides when to step; the link has the actions.
     await page.keyboard.press("Space");
     await page.keyboard.down("ArrowRight");
     await page.waitForTimeout(700);
@@ -46,20 +46,20 @@ test("keys move it, to the host's bits", () =>
     assert.deepEqual(await bits(page), trace("42", actions).at(-1));
   }));
 
-test("seeds are Gymnasium's, of any size, and others are refused", () =>
+test("seeds are Gymnasium's, of any size, and others are rejected", () =>
   open(async (page) => {
     const seed = "123456789012345678901234567890";
     await paused(page, seed);
     const [start] = trace(seed, []);
     assert.deepEqual(await bits(page), start);
-    for (const [bad, reason] of [
-      ["", "seed is empty"],
-      ["-1", "seed has '-' as character 1"],
-      ["12x", "seed has 'x' as character 3"],
-      ["9".repeat(601), "seed has 601 digits"],
+    for (const [bad, got] of [
+      ["", "an empty text"],
+      ["-1", "'-' as character 1"],
+      ["12x", "'x' as character 3"],
+      ["9".repeat(601), "601 digits"],
     ]) {
       await page.fill("#seed", bad);
-      assert.equal(await text(page, "#seed-reason"), `${reason}; allowed is a decimal integer, 0 or more, of up to 600 digits`);
+      assert.equal(await text(page, "#seed-reason"), `seed must be a decimal integer of at least 0 with at most 600 digits, got ${got}`);
       assert.equal(await page.getAttribute("#seed", "aria-invalid"), "true");
       assert.deepEqual(await bits(page), start);
     }
@@ -90,7 +90,7 @@ test("reset, pause and the next seed", () =>
     assert.equal(await text(page, "#pause"), "Pause");
   }));
 
-test("parameters change the physics as on the host, and bad ones are refused in the crate's words", () =>
+test("parameters change the physics as in the crate, and bad ones are rejected in its words", () =>
   open(async (page) => {
     await paused(page, 42);
     await page.fill("#dt", "0.05");
@@ -99,16 +99,16 @@ test("parameters change the physics as on the host, and bad ones are refused in 
     const state = await bits(page);
     assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--dynamics", "nips").at(-1));
 
-    for (const [value, host] of [["-0.1"], ["0"], ["abc", "NaN"], ["", "NaN"], ["1e999", "inf"]]) {
+    for (const [value, native] of [["-0.1"], ["0"], ["abc", "NaN"], ["", "NaN"], ["1e999", "inf"]]) {
       await page.fill("#dt", value);
-      assert.equal(await text(page, "#dt-reason"), refusal("--dt", host ?? value));
+      assert.equal(await text(page, "#dt-reason"), rejection("--dt", native ?? value));
     }
     assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
     assert.deepEqual(await bits(page), state);
 
     const slider = page.locator(".parameter", { hasText: "Mass of link 1" }).locator("[type=range]");
     await slider.fill("0");
-    assert.equal(await text(page, "#mass1-reason"), "mass1 is 0 kg; allowed is a finite number above 0");
+    assert.equal(await text(page, "#mass1-reason"), "mass1 must be finite and above 0 kg, got 0");
     assert.deepEqual(await bits(page), state);
     await slider.fill("2");
     assert.equal(await text(page, "#mass1-reason"), "");
@@ -123,14 +123,14 @@ test("parameters change the physics as on the host, and bad ones are refused in 
     assert.deepEqual(await bits(page), trace("42", ACTIONS).at(-1));
   }));
 
-test("a time step of nearly nothing does not freeze the page", () =>
+test("a tiny time step does not freeze the page", () =>
   open(async (page) => {
     await page.fill("#dt", "1e-9");
     await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 500);
     assert.match(await text(page, "#status"), /^Out of time/);
   }));
 
-test("a link reproduces a run, and a bad one is refused", async () => {
+test("a link reproduces a run, and a bad one is rejected", async () => {
   let link, state;
   await open(async (page) => {
     await paused(page, 7);
@@ -155,14 +155,14 @@ test("a link reproduces a run, and a bad one is refused", async () => {
     { hash },
   );
   for (const [bad, reason] of [
-    ["#seed=4&actions=a*", /^actions has '\*' as character 2; allowed/],
-    ["#seed=4&actions=abcde", /^actions has 5 characters; allowed/],
-    ["#seed=4&actions=wAAA", /^action 1 is 3; allowed is 0, 1 or 2/],
-    [`#seed=4&actions=${"A".repeat(700)}`, /^actions has 2100 actions; allowed are 500/],
-    ["#seed=-4", /^seed has '-' as character 1; allowed/],
-    ["#seed=4&mass1=0", /^mass1 is 0 kg; allowed is a finite number above 0/],
-    ["#seed=4&dynamics=other", /^dynamics is "other"; allowed is book or nips/],
-    ["#sed=4", /^the link has "sed"; allowed are seed/],
+    ["#seed=4&actions=a*", /^actions must be .*, got '\*' as character 2$/],
+    ["#seed=4&actions=abcde", /^actions must not have .*, got 5 characters$/],
+    ["#seed=4&actions=wAAA", /^action 1 must be 0, 1 or 2, got 3$/],
+    [`#seed=4&actions=${"A".repeat(700)}`, /^actions must be at most 500, got 2100$/],
+    ["#seed=-4", /^seed must be .*, got '-' as character 1$/],
+    ["#seed=4&mass1=0", /^mass1 must be finite and above 0 kg, got 0$/],
+    ["#seed=4&dynamics=other", /^dynamics must be book or nips, got "other"$/],
+    ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
   ]) {
     await open(
       async (page) => {
@@ -175,12 +175,12 @@ test("a link reproduces a run, and a bad one is refused", async () => {
   }
 });
 
-test("the CSV has the episode, to the bit", () =>
+test("the CSV has every bit of the episode", () =>
   open(async (page) => {
     await paused(page, 42);
     await press(page, ACTIONS);
     const [names, ...lines] = (await downloaded(page, "#csv")).toString().trimEnd().split("\n");
-    // The names that the crate's own `Trajectory::write_csv` has.
+    // The column names of the crate's `Trajectory::write_csv`.
     assert.equal(names.split(",").length, 13);
     assert.ok(readFileSync(join(import.meta.dirname, "../../../src/trajectory.rs"), "utf8").replace(/\\\n\s*/g, "").includes(names));
     const bitsOf = (cells) => Array.from(new Uint32Array(Float32Array.from(cells).buffer), (word) => word.toString(16).padStart(8, "0"));
@@ -211,7 +211,7 @@ test("policies drive: Gymnasium's samples, and two that reach the line", () =>
     }
   }));
 
-test("training ends in the host's weights, and weights go both ways", () =>
+test("training ends with native weights, and weights go both ways", () =>
   open(async (page) => {
     for (const [preset, seed] of [["fast", "42"], ["quality", "123456789012345678901"]]) {
       await page.selectOption("#preset", preset);
@@ -220,10 +220,10 @@ test("training ends in the host's weights, and weights go both ways", () =>
       await page.click("#train");
       await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
       assert.match(await text(page, "#training-status"), /^100 of 100 episodes/);
-      const host = join(folder, `${preset}.bin`);
-      assert.equal(swingUp("--preset", preset, "--episodes", "100", "--seed", seed, "--save", host), null);
+      const native = join(folder, `${preset}.bin`);
+      assert.equal(swingUp("--preset", preset, "--episodes", "100", "--seed", seed, "--save", native), null);
       const weights = await downloaded(page, "#save");
-      assert.ok(weights.equals(readFileSync(host)), `${preset}: other weights than the host's`);
+      assert.ok(weights.equals(readFileSync(native)), `${preset}: the weights differ from native ones`);
 
       const own = join(folder, "page.bin");
       writeFileSync(own, weights);
@@ -231,20 +231,20 @@ test("training ends in the host's weights, and weights go both ways", () =>
     }
   }));
 
-test("weights of a host drive, and bad ones are refused in its words", () =>
+test("native weights drive, and bad ones are rejected in the learner's words", () =>
   open(async (page) => {
-    const host = join(folder, "host.bin");
-    assert.equal(swingUp("--preset", "quality", "--episodes", "300", "--save", host), null);
+    const native = join(folder, "native.bin");
+    assert.equal(swingUp("--preset", "quality", "--episodes", "300", "--save", native), null);
     await paused(page, 42);
-    await page.setInputFiles("#load", host);
+    await page.setInputFiles("#load", native);
     await page.waitForFunction(() => document.querySelector("#training-status").textContent.endsWith("is loaded."));
-    assert.ok((await downloaded(page, "#save")).equals(readFileSync(host)));
+    assert.ok((await downloaded(page, "#save")).equals(readFileSync(native)));
     await page.click("#drive");
     await page.click("#pause");
     for (let step = 0; step < 200; step++) await page.keyboard.press("s");
     assert.match(await text(page, "#verdict"), /^\d+ steps$/);
 
-    const good = readFileSync(host);
+    const good = readFileSync(native);
     for (const [name, bytes] of Object.entries({
       "empty.bin": good.subarray(0, 0),
       "short.bin": good.subarray(0, 1000),
@@ -256,21 +256,21 @@ test("weights of a host drive, and bad ones are refused in its words", () =>
       await page.setInputFiles("#load", path);
       await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
       const reason = await text(page, "#weights-reason");
-      const refused = swingUp("--preset", "quality", "--episodes", "0", "--load", path);
-      assert.equal(refused, `error: ${folder}/${reason}`);
+      const error = swingUp("--preset", "quality", "--episodes", "0", "--load", path);
+      assert.equal(error, `error: ${folder}/${reason}`);
     }
     const huge = join(folder, "huge.bin");
     writeFileSync(huge, Buffer.alloc(1e6));
     await page.setInputFiles("#load", huge);
     await page.waitForFunction(() => document.querySelector("#weights-reason").textContent.startsWith("huge"));
-    assert.equal(await text(page, "#weights-reason"), "huge.bin: weights of 1000000 bytes; allowed are 131072 at the most");
-    // Those before are as they were.
+    assert.equal(await text(page, "#weights-reason"), "huge.bin: weights must have at most 131072 bytes, got 1000000");
+    // The weights before are kept.
     assert.ok((await downloaded(page, "#save")).equals(good));
     for (const [id, value] of [["episodes", "0"], ["episodes", "1.5"], ["episodes", "1e9"], ["training-seed", "x"]]) {
       await page.fill("#episodes", "10");
       await page.fill(`#${id}`, value);
       await page.click("#train");
-      assert.match(await text(page, "#training-reason"), /allowed is/);
+      assert.match(await text(page, "#training-reason"), / must be /);
       assert.equal(await text(page, "#train"), "Train");
     }
   }));

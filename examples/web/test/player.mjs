@@ -1,4 +1,4 @@
-// Opens the page in Chromium and plays with it, for the tests of a file that imports this.
+// Opens the page in Chromium and plays with it, for the tests in a file that imports this.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -11,7 +11,7 @@ import { decodeActions } from "../page/link.js";
 import { serve } from "../serve.mjs";
 
 export const dist = join(import.meta.dirname, "../dist");
-/** What a test writes goes here. */
+/** Tests write their files here. */
 export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
 let server, browser, origin;
 
@@ -27,7 +27,8 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Opens the page, plays with it once it has started, and finds no error in its console and no request but for its own files. */
+/** Opens the page and plays with it once it has started. Asserts that there are no errors in its console, and no requests except
+ * for its own files. */
 export async function open(play, { hash = "", prepare, starts = true, ...options } = {}) {
   const context = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
   const page = await context.newPage();
@@ -49,7 +50,7 @@ export async function open(play, { hash = "", prepare, starts = true, ...options
   }
 }
 
-/** Once what was done is shown. */
+/** Resolves when the page has drawn its current state. */
 const shown = (page) =>
   page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
 
@@ -63,7 +64,7 @@ export const bits = async (page) => {
   return page.locator("#state code").allTextContents();
 };
 
-/** At the start of a seed, paused, and played by keys. */
+/** Pauses the page in the initial state of a seed, with the keys as policy. */
 export async function paused(page, seed) {
   await page.selectOption("#policy", "keys");
   if ((await text(page, "#pause")) === "Pause") await page.click("#pause");
@@ -81,7 +82,7 @@ export async function press(page, actions) {
   }
 }
 
-/** The actions of the run that the page has a link to. */
+/** The actions in the page's link to its run. */
 export async function linkedActions(page) {
   await page.click("#share");
   const fields = new URLSearchParams(new URL(await page.inputValue("#link")).hash.slice(1));

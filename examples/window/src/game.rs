@@ -1,33 +1,35 @@
-//! The game: Acrobot-v1 in its human mode, and the overlay over what that shows.
+//! The game: Acrobot-v1 in human mode, and an overlay over its frames.
 
 use std::sync::mpsc::{self, Receiver};
 
-use acrobot::env::{AcrobotEnv, Display, Env, Error, Frame, Options, RenderMode, acrobot_v1};
-use acrobot::{
-    Action, Dynamics, Figure, Host, Observation, Params, SeedSequence, Theme, TimeLimit,
-};
+use acrobot::arithmetic::Host;
+use acrobot::env::{AcrobotEnv, Display, Env, Error, Options, RenderMode, acrobot_v1};
+use acrobot::numpy::SeedSequence;
+use acrobot::physics::Dynamics;
+use acrobot::render::{Figure, Frame, Theme};
+use acrobot::{Action, Observation, Params, ResetOptions, TimeLimit};
 use embedded_graphics::Drawable;
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_9X18_BOLD};
 use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::Point;
 use embedded_graphics::text::{Baseline, Text};
 
-/// The overlay's colour, which nothing else in the picture has.
+/// The overlay's colour. Nothing else in the picture has it.
 const INK: Rgb888 = Rgb888::new(68, 68, 68);
 
-/// For how many ticks an episode that has ended stays on the screen: two seconds.
+/// The ticks that an ended episode stays on the screen: two seconds.
 const PAUSE: u32 = 30;
 
 pub struct Game {
-    env: TimeLimit<AcrobotEnv<Host, Observation<6>>>,
-    /// What the environment has shown.
+    env: TimeLimit<AcrobotEnv<Host, Observation>>,
+    /// The frames that the environment has shown.
     shown: Receiver<Frame>,
     picture: Frame,
     episode_return: f32,
     end: Option<End>,
 }
 
-/// How the episode ended, and how many ticks of its pause are left.
+/// How the episode ended, and the remaining ticks of its pause.
 struct End {
     text: &'static str,
     pause: u32,
@@ -37,7 +39,7 @@ impl Game {
     pub fn new(seed: SeedSequence, dynamics: Dynamics) -> Result<Self, Error> {
         let (sender, shown) = mpsc::channel();
         let display = Display::new(move |frame| {
-            // Nobody receives only where the game is gone, and then nobody steps either.
+            // Sending fails only if the game is gone.
             let _ = sender.send(frame.clone());
         });
         let mut game = Self {
@@ -54,23 +56,26 @@ impl Game {
             episode_return: 0.0,
             end: None,
         };
-        game.start(Some(seed));
+        game.begin(Some(seed));
         Ok(game)
     }
 
-    /// Starts the next episode of the same stream.
+    /// Begins the next episode of the same stream.
     pub fn reset(&mut self) {
-        self.start(None);
+        self.begin(None);
     }
 
-    fn start(&mut self, seed: Option<SeedSequence>) {
-        self.env.reset(seed, None);
+    fn begin(&mut self, seed: Option<SeedSequence>) {
+        self.env.reset_with(ResetOptions {
+            seed,
+            ..ResetOptions::default()
+        });
         self.episode_return = 0.0;
         self.end = None;
         self.draw(Action::Zero);
     }
 
-    /// One step of the environment or, after an episode's end, of the pause until the next.
+    /// One step of the environment or, after an episode's end, one tick of the pause.
     pub fn tick(&mut self, action: Action) {
         match &mut self.end {
             Some(End { pause: 0, .. }) => self.reset(),
@@ -78,7 +83,7 @@ impl Game {
             None => {
                 let step = self.env.step(action);
                 self.episode_return += step.reward;
-                self.end = step.ended().then_some(End {
+                self.end = step.done().then_some(End {
                     text: if step.terminated {
                         "Goal! R: again"
                     } else {
@@ -101,7 +106,7 @@ impl Game {
             self.picture = frame;
         }
 
-        // Human mode shows Gymnasium's picture, without the torque: only its arrow is missing.
+        // Human mode shows Gymnasium's picture. It has no arrow for the torque, so this draws one.
         let figure = Figure::new(self.env.unwrapped());
         let torque = self.env.unwrapped().params().torque(action) as f32;
         let Ok(()) =
@@ -134,8 +139,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_episode_that_has_ended_pauses_and_starts_anew() {
-        let mut game = Game::new(42.into(), Dynamics::Book).unwrap();
+    fn an_ended_episode_pauses_and_the_next_begins() {
+        let mut game = Game::new(SeedSequence::new(42), Dynamics::Book).unwrap();
         for _ in 0..500 {
             assert!(game.end.is_none());
             game.tick(Action::Zero);

@@ -1,4 +1,4 @@
-//! Acrobot in a window, played with the arrow keys: the README beside it says how.
+//! Acrobot in a window, played with the arrow keys. See the README in this folder.
 
 mod game;
 mod screen;
@@ -12,8 +12,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use acrobot::env::Frame;
-use acrobot::{Action, Dynamics, SeedSequence};
+use acrobot::Action;
+use acrobot::numpy::SeedSequence;
+use acrobot::physics::Dynamics;
+use acrobot::render::Frame;
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use winit::application::ApplicationHandler;
@@ -32,13 +34,13 @@ const FRAME_TIME: Duration = Duration::from_nanos(1_000_000_000 / 15);
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Seed of the starts: a decimal integer of any size.
+    /// Seed of the initial states: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
     /// Equations of motion: those of the book or those of the NIPS paper.
     #[arg(long, default_value = "book", value_parser = dynamics())]
     dynamics: Dynamics,
-    /// Quit after that many frames instead of when the window is closed.
+    /// Quit after this many frames.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     frames: Option<u64>,
     /// On quitting, write the last picture to this PNG file.
@@ -67,7 +69,7 @@ fn run(options: Options) -> Result<(), String> {
     let game = Game::new(options.seed, options.dynamics).map_err(|error| error.to_string())?;
     let event_loop = event_loop().map_err(no_window)?;
 
-    // Opened before the game, so that nobody plays for a file that cannot be written.
+    // Opened before the game, so an error comes before the player plays.
     let screenshot = match options.screenshot.as_deref() {
         Some(path) => Some((path, File::create(path).map_err(|e| unwritable(path, e))?)),
         None => None,
@@ -96,7 +98,7 @@ fn run(options: Options) -> Result<(), String> {
     }
 }
 
-/// winit's event loop; winit panics where it finds no libxkbcommon.
+/// winit's event loop. winit panics if it finds no libxkbcommon.
 fn event_loop() -> Result<EventLoop<()>, Box<dyn Error>> {
     panic::set_hook(Box::new(|_| ()));
     let made = panic::catch_unwind(EventLoop::new);
@@ -117,7 +119,7 @@ fn no_window(cause: impl Display) -> String {
 
 fn unwritable(path: &Path, error: io::Error) -> String {
     let path = path.display();
-    format!("cannot write {path}: {error}. Name a PNG file that can be written for --screenshot")
+    format!("cannot write {path}: {error}. --screenshot must be a PNG file that can be written")
 }
 
 fn write_png(file: File, picture: &Frame) -> io::Result<()> {
@@ -137,7 +139,7 @@ struct App {
     left: bool,
     right: bool,
     next_tick: Instant,
-    /// How many frames are left to show.
+    /// The remaining frames.
     frames: Option<u64>,
     /// Why the window had to close.
     failure: Option<String>,
@@ -191,7 +193,7 @@ impl ApplicationHandler for App {
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::KeyboardInput { event, .. } => self.key(event_loop, &event),
-            // Whoever has the keyboard now is told of the keys that are released.
+            // Another window gets the event when a key is released.
             WindowEvent::Focused(false) => (self.left, self.right) = (false, false),
             WindowEvent::Resized(_) => self.redraw(),
             WindowEvent::RedrawRequested => {

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::num::NonZeroU32;
 use std::rc::Rc;
 
-use acrobot::env::Frame;
+use acrobot::render::Frame;
 use softbuffer::{Context, SoftBufferError, Surface};
 use winit::dpi::LogicalSize;
 use winit::event_loop::{ActiveEventLoop, OwnedDisplayHandle};
@@ -30,7 +30,7 @@ impl Screen {
         self.window.request_redraw();
     }
 
-    /// Shows the picture in the middle of the window, as large as fits; around it is white.
+    /// Shows the picture in the middle of the window, as large as fits, on white.
     pub fn show(&mut self, picture: &Frame) -> Result<(), SoftBufferError> {
         let size = self.window.inner_size();
         let (Some(width), Some(height)) =

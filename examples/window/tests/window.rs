@@ -1,5 +1,5 @@
-//! The window as a player meets it: keys go in through a real X server, and what its screen then
-//! shows is compared pixel by pixel with the states that these keys lead to.
+//! The window as a player sees it. Keys go in through a real X server, and its screen is compared pixel by pixel with the
+//! states that these keys lead to.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Cursor};
@@ -8,8 +8,9 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use acrobot::env::Frame;
-use acrobot::{Acrobot, Action, Figure, Host, Theme};
+use acrobot::arithmetic::Host;
+use acrobot::render::{Figure, Frame, Theme};
+use acrobot::{Acrobot, Action};
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_9X18_BOLD};
 use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::{Drawable, Point};
@@ -25,8 +26,8 @@ fn keys_steer_what_the_screen_shows() {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("last.png");
     let mut game = screen.play(&["--seed", "42", "--screenshot", file.to_str().unwrap()]);
 
-    // The picture is there, with its overlay, and nobody touches the acrobot.
-    let steps = screen.wait_for("the start", |picture| {
+    // The picture is there, with its overlay, and no key is pressed.
+    let steps = screen.wait_for("the initial state", |picture| {
         let steps = picture.steps()?;
         picture.shows(0, &[(Action::Zero, steps)]).then_some(steps)
     });
@@ -50,7 +51,7 @@ fn keys_steer_what_the_screen_shows() {
     screen.xdotool(&["keyup", "Right"]);
 
     screen.xdotool(&["key", "r"]);
-    screen.wait_for("the second start", |picture| {
+    screen.wait_for("the second initial state", |picture| {
         let now = picture.steps()?;
         (now < steps && picture.shows(1, &[(Action::Zero, now)])).then_some(())
     });
@@ -96,15 +97,15 @@ fn errors_say_what_is_wrong() {
         (&["--frames", "0"], 2, "0 is not in 1.."),
         (&["--screenshot", "no/such/folder.png"], 1, "cannot write"),
     ] {
-        refused(&screen.run(arguments), status, words);
+        rejected(&screen.run(arguments), status, words);
     }
     let unset = game(&[]).env_remove("DISPLAY").output().unwrap();
-    refused(&unset, 1, "DISPLAY");
+    rejected(&unset, 1, "DISPLAY");
     let wrong = game(&[]).env("DISPLAY", ":65000").output().unwrap();
-    refused(&wrong, 1, "cannot open a window");
+    rejected(&wrong, 1, "cannot open a window");
 }
 
-fn refused(output: &Output, status: i32, words: &str) {
+fn rejected(output: &Output, status: i32, words: &str) {
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(status), "{message}");
     assert!(message.contains(words), "{message}");
@@ -120,7 +121,7 @@ fn game(arguments: &[&str]) -> Command {
     command
 }
 
-/// Ends with the test, also where that fails.
+/// Ends with the test, also if that fails.
 struct Process(Child);
 
 impl Drop for Process {
@@ -192,7 +193,7 @@ impl Screen {
         Picture::decode(self.screenshot())
     }
 
-    /// Keeps a screenshot below `target/tmp` for whoever wants to look at it.
+    /// Keeps a screenshot in `target/tmp`.
     fn keep(&self, name: &str) {
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         fs::write(file, self.screenshot()).unwrap();
@@ -221,10 +222,10 @@ fn eventually<T>(what: &str, mut found: impl FnMut() -> Option<T>) -> T {
         }
         sleep(Duration::from_millis(50));
     }
-    panic!("20 s have passed without {what}");
+    panic!("20 s passed without {what}");
 }
 
-/// What a screen or a PNG file shows.
+/// The pixels of a screen or a PNG file.
 struct Picture {
     width: usize,
     rgb: Vec<u8>,
@@ -252,7 +253,7 @@ impl Picture {
         pixels.filter(|&pixel| pixel == color).count()
     }
 
-    /// The number that the overlay shows behind the word "step".
+    /// The number after the word "step" in the overlay.
     fn steps(&self) -> Option<u32> {
         let [red, green, blue] = INK;
         let style = MonoTextStyle::new(&FONT_9X18_BOLD, Rgb888::new(red, green, blue));
@@ -265,7 +266,7 @@ impl Picture {
         })
     }
 
-    /// Whether it shows, under the overlay, where these actions lead in that episode of seed 42.
+    /// Whether it shows, under the overlay, the state that these actions lead to in this episode of seed 42.
     fn shows(&self, episode: u32, actions: &[(Action, u32)]) -> bool {
         let mut acrobot = Acrobot::<Host>::new(42);
         for _ in 0..episode {

@@ -1,4 +1,4 @@
-//! Counts instructions and bytes of stack, one figure a line: `arithmetic figure value`. Two runs print the same.
+//! Counts instructions and bytes of stack and prints one figure a line: `arithmetic figure value`. Every run prints the same.
 
 #![no_std]
 #![no_main]
@@ -8,10 +8,11 @@ mod counter;
 
 use core::hint::black_box;
 
-use acrobot::{
-    Acrobot, Action, Arithmetic, Fast, Figure, Form, LimitedStep, Micro, Pcg64, Portable, Real,
-    Theme, TimeLimit,
-};
+use acrobot::arithmetic::{Arithmetic, Micro, Real};
+use acrobot::numpy::Pcg64;
+use acrobot::physics::Lean;
+use acrobot::render::{Figure, Theme};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use cortex_m::Peripherals;
 use cortex_m::register::msp;
 use cortex_m_rt::entry;
@@ -22,16 +23,16 @@ use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
 use micromath::F32Ext;
 use semihosting::{println, process};
 
-/// For comparison: the sines of the library of that name, 1.1e-3 off.
+/// For comparison: micromath's sine and cosine, with an error of 1.1e-3.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Micromath;
 
 impl Arithmetic for Micromath {
     type Scalar = f32;
-    const FORM: Form = Form::Lean;
+    type Form = Lean;
 
     fn sin_cos(x: f32) -> (f32, f32) {
-        // By path, for `x.sin()` would be the platform's wherever std is linked.
+        // By path, because `x.sin()` is the platform's where std is linked.
         (F32Ext::sin(x), F32Ext::cos(x))
     }
 }
@@ -60,7 +61,7 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     let mut action = || actions.next().unwrap_or(Action::Zero);
 
     let count = counter.count(4000, || {
-        if black_box(&step(&mut acrobot, action())).ended() {
+        if black_box(&step(&mut acrobot, action())).done() {
             black_box(acrobot.reset());
         }
     });
@@ -95,10 +96,10 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     });
     println!("{name} redraw {count}");
 
-    // Through every branch: the noise's, the bounds', the goal's.
+    // Noise this large takes the steps through every branch: noise, bounds and goal.
     let params = *acrobot.inner().params();
     let noise = A::Scalar::from_f64(20.0);
-    let changed = acrobot.inner_mut().set_params(acrobot::Params {
+    let changed = acrobot.inner_mut().set_params(Params {
         torque_noise: noise,
         ..params
     });
@@ -117,19 +118,19 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
 }
 
 #[inline(never)]
-fn step<A: Arithmetic>(acrobot: &mut TimeLimit<Acrobot<A>>, action: Action) -> LimitedStep {
+fn step<A: Arithmetic>(acrobot: &mut TimeLimit<Acrobot<A>>, action: Action) -> Step {
     acrobot.step(action)
 }
 
-/// How many bytes of stack `run` takes: paints those below, runs, and looks which are left.
+/// The bytes of stack that `run` takes. Paints the stack below, runs, and finds the deepest word that changed.
 #[inline(never)]
 fn stack(run: impl FnOnce()) -> usize {
     const PAINT: u32 = 0xa5c3_9617;
     const WORDS: usize = 512;
-    // What is painted ends below this function's own frame, whose size the compiler decides.
+    // Paints below this function's own frame, whatever its size.
     let end = msp::read() as usize as *mut u32;
     for i in 1..=WORDS {
-        // SAFETY: the 2 KiB below the stack pointer are stack, and nobody's: no interrupt is on.
+        // SAFETY: the 2 KiB below the stack pointer are unused stack, because no interrupt is enabled.
         unsafe { end.sub(i).write_volatile(PAINT) };
     }
     run();

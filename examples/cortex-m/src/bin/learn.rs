@@ -1,7 +1,7 @@
-//! Learns to swing up on the chip, in 32 KiB of RAM of which half are weights: to the same bits as the host, until the
-//! mean of 100 episodes is −100 or better. Then it plays what it has learnt on an OLED.
+//! Learns to swing up on the microcontroller until the mean return of 100 episodes is at least −100. It takes 32 KiB of
+//! RAM, of which half are weights, and the weights are bit-identical to a desktop's. Then it plays an episode on an OLED.
 //!
-//! The last lines are figures as those of `bench`: `fast figure value`.
+//! It prints figures in the format of `bench`: `fast figure value`.
 
 #![no_std]
 #![no_main]
@@ -10,7 +10,7 @@
 mod counter;
 #[path = "../../../../tests/common/digest.rs"]
 mod digest;
-#[allow(dead_code, reason = "the episode here is another")]
+#[allow(dead_code, reason = "this plays another episode")]
 #[path = "../../../../tests/common/oled.rs"]
 mod oled;
 #[path = "../panel.rs"]
@@ -20,6 +20,7 @@ mod training;
 
 use core::cell::RefCell;
 
+use acrobot::numpy::SeedSequence;
 use acrobot::{Action, REWARD_THRESHOLD, State};
 use cortex_m::Peripherals;
 use cortex_m_rt::{STACK_PAINT_VALUE, entry, heap_start};
@@ -42,7 +43,7 @@ fn main() -> ! {
         process::exit(1)
     };
     let solved = train(&mut learner, &mut Counter::start(peripherals.SYST));
-    let mut env = evaluation(&training::SEED.into());
+    let mut env = evaluation(&SeedSequence::new(training::SEED));
     let policy = |state: &State<f32>| greedy(&learner, state);
     let sum: f32 = (0..100).map(|_| play(&mut env, policy).0).sum();
     println!("mean return of 100 greedy episodes: {}", sum as i32 / 100);
@@ -52,14 +53,15 @@ fn main() -> ! {
     process::exit(if solved && swung_up { 0 } else { 1 })
 }
 
-/// Whether the task was solved and the weights were the host's on the way.
+/// Returns whether the task was solved with the expected weights on the way.
 fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
-    let (mut env, mut choices) = training::acrobot_task::training(training::SEED.into());
+    let (mut env, mut choices) =
+        training::acrobot_task::training(SeedSequence::new(training::SEED));
     let mut returns = HistoryBuf::<f32, 100>::new();
     let (mut steps, mut instructions) = (0, 0);
     let mut equal = false;
     for episode in 1..=EPISODES {
-        // Where `cycles.py` begins to count.
+        // `cycles.py` begins to count here.
         cortex_m::asm::nop();
         let mut gained = 0.0;
         instructions += u64::from(counter.count(1, || {
@@ -75,7 +77,7 @@ fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
             let found = training::digest(learner);
             equal = found == training::WEIGHTS;
             if !equal {
-                println!("not the host's weights: digest {found:#018x}");
+                println!("the weights differ: digest {found:#018x}");
             }
         }
         if returns.is_full() && returns.iter().sum::<f32>() >= REWARD_THRESHOLD * 100.0 {
@@ -89,13 +91,13 @@ fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
     false
 }
 
-/// Plays an episode on a display, and returns whether the goal was reached.
+/// Plays an episode on a display. Returns whether it reached the goal.
 fn draw(env: Env, policy: impl Fn(&State<f32>) -> Action) -> bool {
     let panel = RefCell::new(Panel::new());
     let interface = I2CDisplayInterface::new(Bus(&panel));
     let mut display = Ssd1306::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
         .into_buffered_graphics_mode();
-    let mut refused = display.init().is_err();
+    let mut failed = display.init().is_err();
     let mut frames = 0;
     let drawn = oled::play(
         &mut display,
@@ -103,23 +105,23 @@ fn draw(env: Env, policy: impl Fn(&State<f32>) -> Action) -> bool {
         |acrobot| policy(&acrobot.state()),
         |display| {
             frames += 1;
-            refused |= display.flush().is_err();
+            failed |= display.flush().is_err();
         },
     );
-    // The first frame is the start.
+    // The first frame shows the initial state.
     let steps = frames - 1;
     println!("swings up in {steps} steps");
-    !refused && !panel.borrow().unknown && drawn.is_ok() && steps < 500
+    !failed && !panel.borrow().unknown && drawn.is_ok() && steps < 500
 }
 
-/// Bytes of RAM in all: what was painted at the start and never written is free.
+/// Bytes of RAM in use. What still has the paint of the start-up code was never written.
 fn ram() -> usize {
     unsafe extern "C" {
         static _ram_start: u32;
         static _ram_end: u32;
     }
     let mut deepest = heap_start();
-    // SAFETY: the stack begins there, and this function's own frame ends the search.
+    // SAFETY: the paint begins there, and this function's own frame ends the search.
     while unsafe { deepest.read_volatile() } == STACK_PAINT_VALUE {
         deepest = deepest.wrapping_add(1);
     }

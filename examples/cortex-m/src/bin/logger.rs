@@ -1,4 +1,4 @@
-//! Logs an episode of five steps through defmt: `./logger` decodes it.
+//! Logs an episode of five steps through defmt. `./logger` decodes it.
 
 #![no_std]
 #![no_main]
@@ -6,7 +6,8 @@
 use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use acrobot::{Acrobot, Action, Fast, Params, StartBounds, TimeLimit};
+use acrobot::physics::StartBounds;
+use acrobot::{Acrobot, Action, Fast, Params, TimeLimit};
 use cortex_m_rt::entry;
 use semihosting::process;
 // The transport, and the critical section that it needs.
@@ -14,7 +15,7 @@ use {cortex_m as _, defmt_semihosting as _};
 
 const STEPS: NonZeroU32 = NonZeroU32::new(5).unwrap();
 
-/// The log's clock: the steps taken.
+/// The log's clock: steps taken.
 static CLOCK: AtomicU32 = AtomicU32::new(0);
 defmt::timestamp!("{=u32}", CLOCK.load(Ordering::Relaxed));
 
@@ -23,11 +24,11 @@ fn main() -> ! {
     let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(42), STEPS);
     defmt::info!("start {}", acrobot.inner().state());
 
-    let refused = Params {
+    let rejected = Params {
         dt: 0.0,
-        ..*acrobot.inner().params()
+        ..Params::DEFAULT
     };
-    if let Err(error) = acrobot.inner_mut().set_params(refused) {
+    if let Err(error) = acrobot.inner_mut().set_params(rejected) {
         defmt::warn!("{}", error);
     }
     if let Err(error) = StartBounds::new(0.1, -0.1) {
@@ -42,7 +43,7 @@ fn main() -> ! {
         let step = acrobot.step(action);
         CLOCK.store(acrobot.elapsed(), Ordering::Relaxed);
         defmt::debug!("{} {}", action, step);
-        if step.ended() {
+        if step.done() {
             defmt::info!("end {}", acrobot.inner());
             process::exit(0)
         }

@@ -1,4 +1,4 @@
-//! The flash that an `Acrobot<Fast>` takes, above that of `minimal_without`.
+//! The flash that an `Acrobot<Fast>` takes above that of `minimal_without`.
 
 #![no_std]
 #![no_main]

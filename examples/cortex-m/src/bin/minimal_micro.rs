@@ -1,4 +1,4 @@
-//! The flash that an `Acrobot<Micro>` takes, above that of `minimal_without`.
+//! The flash that an `Acrobot<Micro>` takes above that of `minimal_without`.
 
 #![no_std]
 #![no_main]
@@ -6,7 +6,7 @@
 #[path = "../minimal.rs"]
 mod minimal;
 
-use acrobot::Micro;
+use acrobot::arithmetic::Micro;
 use panic_halt as _;
 
 #[cortex_m_rt::entry]

@@ -1,4 +1,4 @@
-//! The firmware of the others called `minimal` without an acrobot.
+//! The firmware of the other binaries called `minimal`, without an acrobot.
 
 #![no_std]
 #![no_main]
@@ -11,7 +11,7 @@ use panic_halt as _;
 #[cortex_m_rt::entry]
 fn main() -> ! {
     loop {
-        // Where `cycles.py` counts a step.
+        // `cycles.py` counts a step here.
         cortex_m::asm::nop();
         black_box(black_box(Action::Zero));
     }

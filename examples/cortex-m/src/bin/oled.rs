@@ -1,5 +1,5 @@
-//! Draws an episode on an SSD1306 through its driver and a bus that counts bytes, and compares the
-//! display's memory with the host's drawing after each frame.
+//! Draws an episode on an SSD1306 through its driver and a bus that counts bytes. Compares the display's memory after each
+//! frame with the digest of the crate's tests.
 
 #![no_std]
 #![no_main]
@@ -28,11 +28,11 @@ fn main() -> ! {
     let mut display = Ssd1306::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
         .into_buffered_graphics_mode();
     let mut digest = Digest::new();
-    let (mut frames, mut first, mut refused) = (0, 0, display.init().is_err());
+    let (mut frames, mut first, mut failed) = (0, 0, display.init().is_err());
 
     let drawn = oled::play(&mut display, oled::start(), oled::against, |display| {
         let before = panel.borrow().received;
-        refused |= display.flush().is_err();
+        failed |= display.flush().is_err();
         let panel = panel.borrow();
         if frames == 0 {
             first = panel.received - before;
@@ -41,18 +41,18 @@ fn main() -> ! {
         for word in panel.memory.chunks_exact(8) {
             digest.add(u64::from_le_bytes(word.try_into().unwrap_or_default()));
         }
-        refused |= panel.unknown;
+        failed |= panel.unknown;
     });
 
     let all = panel.borrow().received;
-    let equal = !refused && drawn.is_ok() && (frames, digest.0) == (oled::FRAMES, oled::DIGEST);
+    let equal = !failed && drawn.is_ok() && (frames, digest.0) == (oled::FRAMES, oled::DIGEST);
     println!(
         "{frames} frames; bytes on the bus: {first} for the first, {} on average",
         all / frames
     );
     if !equal {
         println!(
-            "not the host's {} frames: digest {:#018x}",
+            "the frames differ: expected {}, got digest {:#018x}",
             oled::FRAMES,
             digest.0
         );

@@ -1,4 +1,5 @@
-//! Plays the sixteen episodes that the host's tests play, and compares every digest; and a batch, one at a time and sixteen side by side.
+//! Plays the sixteen episodes of the crate's tests and compares every digest. Then it steps a batch, one acrobot at a time
+//! and sixteen side by side.
 
 #![no_std]
 #![no_main]
@@ -8,7 +9,8 @@ mod digest;
 #[path = "../../../../tests/common/episodes.rs"]
 mod episodes;
 
-use acrobot::{Arithmetic, Fast, Micro, Portable};
+use acrobot::arithmetic::{Arithmetic, Micro};
+use acrobot::{Fast, Portable};
 use cortex_m_rt::entry;
 use semihosting::{println, process};
 
@@ -16,10 +18,7 @@ use semihosting::{println, process};
 fn main() -> ! {
     let batch = episodes::batch::<1, 20>() == episodes::BATCH
         && episodes::batch::<16, 2>() == episodes::BATCH;
-    println!(
-        "batch: {}",
-        if batch { "equal to the bit" } else { "differs" }
-    );
+    println!("batch: {}", if batch { "bit-identical" } else { "differs" });
     let equal = [
         check::<Portable>("portable", &episodes::PORTABLE),
         check::<Fast>("fast", &episodes::FAST),
@@ -36,9 +35,11 @@ fn check<A: Arithmetic>(name: &str, expected: &[u64; 16]) -> bool {
         if found == expected {
             equal += 1;
         } else {
-            println!("{name} differs in episode {episode}: {found:016x} and not {expected:016x}");
+            println!(
+                "{name} differs in episode {episode}: got {found:016x}, expected {expected:016x}"
+            );
         }
     }
-    println!("{name}: {equal} of 16 episodes are equal to the bit");
+    println!("{name}: {equal} of 16 episodes are bit-identical");
     equal == 16
 }

@@ -1,4 +1,4 @@
-"""Gymnasium's Acrobot in Rust: the same episodes to the bit, and vectors a thousand times as fast.
+"""Gymnasium's Acrobot in Rust: bit-identical episodes, and a vector environment a thousand times as fast.
 
 Importing it registers ``acrobot_rs/Acrobot-v1`` and ``acrobot_rs/Acrobot-v0``:
 
@@ -7,7 +7,7 @@ Importing it registers ``acrobot_rs/Acrobot-v1`` and ``acrobot_rs/Acrobot-v0``:
     >>> env = gym.make("acrobot_rs/Acrobot-v1", render_mode="rgb_array")
     >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024)
 
-Where nothing else is imported, ``gym.make("acrobot_rs:acrobot_rs/Acrobot-v1")`` does both.
+Without that import, ``gym.make("acrobot_rs:acrobot_rs/Acrobot-v1")`` imports and makes.
 """
 
 from gymnasium.envs.registration import register

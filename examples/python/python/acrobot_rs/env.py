@@ -1,4 +1,4 @@
-"""The single environment, with the bits of Gymnasium's."""
+"""The single environment, bit-identical to Gymnasium's."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from acrobot_rs.parameters import Parameters, start_bounds
 
 
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
-    """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between them is to swing them up.
+    """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between the links must swing them up.
 
     ## Description
 
-    Starts, noise and ends of a seed are those of Gymnasium's environment, and on x86-64 Linux with glibc states,
-    rewards and observations are equal to the bit, but for the observation of a start, which may be one unit in
-    the last place off.
+    A seed gives the same initial states, torque noise and episode ends as in Gymnasium's environment. On x86-64 Linux
+    with glibc, states, rewards and observations are bit-identical, except that the observation of an initial state may
+    differ by one unit in the last place.
 
     ## Action Space
 
@@ -39,11 +39,11 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     | 4   | angular velocity of theta1, rad/s  | -4 pi | 4 pi |
     | 5   | angular velocity of theta2, rad/s  | -9 pi | 9 pi |
 
-    theta1 is the angle of link 1, 0 where it hangs straight down; theta2 that of link 2 relative to link 1.
+    theta1 is the angle of link 1, 0 hanging straight down. theta2 is the angle of link 2 relative to link 1.
 
     ## Rewards
 
-    -1 for each step, and 0 for the one that reaches the goal. The threshold is -100.
+    -1 for each step, and 0 for the step that reaches the goal. The threshold is -100.
 
     ## Starting State
 
@@ -52,13 +52,13 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     ## Episode End
 
-    1. Termination: ``-cos(theta1) - cos(theta1 + theta2) > 1``, the tip is higher than one link above the joint.
-    2. Truncation, by ``gymnasium.make``: 500 steps.
+    1. Termination: ``-cos(theta1) - cos(theta1 + theta2) > 1``. The tip is then more than one link above the joint.
+    2. Truncation by ``gymnasium.make``: 500 steps.
 
     ## Arguments
 
     ``render_mode``: ``None``, ``"rgb_array"`` (an array of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines
-    of braille characters, and one of numbers).
+    of braille characters and a line of numbers).
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -75,10 +75,10 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     _ANGLES = False
 
     def __init__(self, render_mode: str | None = None) -> None:
-        """An environment that is to be reset first.
+        """Make an environment, which must be reset before its first step.
 
         Raises:
-            ValueError: For another render mode, and for a parameter of a subclass that is refused.
+            ValueError: For another render mode, and for an invalid parameter of a subclass.
         """
         super().__init__(Acrobot(self._ANGLES), render_mode)
         self.action_space = spaces.Discrete(3)
@@ -88,7 +88,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     def state(self) -> NDArray[np.float64] | None:
         """theta1, theta2 (rad) and their velocities (rad/s), of shape ``(4,)``; ``None`` before the first reset.
 
-        A copy, and not writable, since writing into it would change nothing: assign four finite numbers to set it.
+        It is a read-only copy. Assign four finite numbers to set the state.
         """
         state = self._native.state
         if state is not None:
@@ -105,18 +105,18 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         """Begin an episode.
 
         Args:
-            seed: Of the generator, an integer of any size, 0 or more; by ``None`` it goes on.
-            options: ``"low"`` and ``"high"``, the bounds of the start, rad and rad/s; -0.1 and 0.1 if not given.
+            seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its stream goes on.
+            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by default -0.1 and 0.1.
 
         Returns:
-            The observation of the start, and an empty info.
+            The observation of the initial state, and an empty info.
 
         Raises:
-            ValueError: For bounds that are no finite numbers in order; nothing is changed then.
+            ValueError: For bounds that are not finite numbers in order. Nothing changes then.
         """
         low, high = start_bounds(options)
         super().reset(seed=seed)
-        # Gymnasium keeps a start in float32.
+        # Gymnasium rounds initial states to float32.
         self.state = self.np_random.uniform(low, high, 4).astype(np.float32)
         return self._native.observation(), {}
 
@@ -127,8 +127,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             action: 0, 1 or 2: a torque of -1, 0 or 1 N m.
 
         Returns:
-            The observation; the reward, -1.0, or 0.0 in the goal; whether the goal is reached; ``False``, since it
-            is ``gymnasium.make`` that counts the steps; and an empty info.
+            The observation; the reward, -1.0, or 0.0 in the goal; whether the goal is reached; ``False``, because
+            ``gymnasium.make`` counts the steps; and an empty info.
 
         Raises:
             gymnasium.error.InvalidAction: For another action.
@@ -136,13 +136,13 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         """
         noise = self.torque_noise_max
         if noise:
-            # Refuses an action before anything is drawn.
+            # Rejects an action before it draws.
             self._native.torque(action)
             noise = self.np_random.uniform(-noise, noise)
         return self._native.step(action, noise)
 
     def render(self) -> NDArray[np.uint8] | str | None:
-        """What the render mode asks for: an array of shape ``(500, 500, 3)``, a text, or with a warning nothing."""
+        """An array of shape ``(500, 500, 3)`` or a text, by the render mode. Without a mode it warns."""
         if self.render_mode is None:
             self._warn_of_no_render_mode()
             return None
@@ -150,10 +150,10 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
 
 class AcrobotV0Env(AcrobotEnv):
-    """``Acrobot-v0``, which Gymnasium has no more: :class:`AcrobotEnv`, seen as the state itself.
+    """``Acrobot-v0``, which Gymnasium has removed: :class:`AcrobotEnv` with the state as its observation.
 
-    The observation is theta1, theta2 (within pi, rad) and their velocities (within 4 pi and 9 pi, rad/s), ``float32`` of shape
-    ``(4,)``. ``gymnasium.make`` truncates it after 200 steps.
+    The observation is theta1, theta2 (within pi, rad) and their velocities (within 4 pi and 9 pi, rad/s), ``float32`` of
+    shape ``(4,)``. ``gymnasium.make`` truncates episodes after 200 steps.
     """
 
     _ANGLES = True

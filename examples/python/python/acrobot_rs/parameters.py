@@ -1,4 +1,4 @@
-"""What the single and the vector environment have in common: parameters, spaces, bounds of a start, actions."""
+"""What the single and the vector environment share: parameters, the observation space and reset bounds."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from acrobot_rs._native import Acrobot, Batch, check_start_bounds
 
 
 class Parameters:
-    """The physics, by Gymnasium's names, to be set on a class or at any time on an environment.
+    """The physics, by Gymnasium's names. Set them on an environment at any time, or in a subclass.
 
-    A value is checked where it is set, and refused with a ``ValueError`` that says what is allowed. Those set on an
-    environment hold from its next step on; those set on a class, as in a subclass, from the next environment on.
+    A value that is set on an environment is checked and acts from its next step on. A value that is set on a class is
+    checked and acts from the next environment on. An invalid value raises a ``ValueError`` with the rule.
     """
 
-    #: Time that one step lasts, s; above 0.
+    #: Duration of one step, s; above 0.
     dt: float = 0.2
     #: Length of link 1, m; above 0.
     LINK_LENGTH_1: float = 1.0
-    #: Length of link 2, m; above 0. It is only drawn: the equations of motion and the goal do not contain it.
+    #: Length of link 2, m; above 0. It only enters pictures: neither the equations of motion nor the goal contain it.
     LINK_LENGTH_2: float = 1.0
     #: Mass of link 1, kg; above 0.
     LINK_MASS_1: float = 1.0
@@ -44,7 +44,7 @@ class Parameters:
     AVAIL_TORQUE: Sequence[float] = (-1.0, 0.0, 1.0)
     #: Each step adds a uniform draw from [-torque_noise_max, torque_noise_max) to the torque, N m; 0 draws nothing.
     torque_noise_max: float = 0.0
-    #: The equations of motion: those of Sutton and Barto's book, or those printed in the paper of 1996.
+    #: The equations of motion: those of Sutton and Barto's book, or those printed in the 1996 paper.
     book_or_nips: Literal["book", "nips"] = "book"
 
     metadata: dict[str, Any]
@@ -53,26 +53,26 @@ class Parameters:
     _native: Acrobot | Batch
 
     def __init__(self, native: Acrobot | Batch, render_mode: str | None) -> None:
-        """Take over what a subclass may have set."""
+        """Read the parameters, which a subclass may have set."""
         modes = self.metadata["render_modes"]
         if render_mode is not None and render_mode not in modes:
-            raise ValueError(f"render_mode is {render_mode!r}; allowed is None or one of {modes}")
+            raise ValueError(f"render_mode must be None or one of {modes}, got {render_mode!r}")
         self.render_mode = render_mode
         self._native = native
         for name in _NAMES:
             native.set(name, getattr(self, name))
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Check a parameter and hand it on."""
+        """Check a parameter and set it."""
         if name in _NAMES:
-            # A list that is changed in place would not be noticed.
+            # A change of a list's elements would not be noticed.
             value = tuple(value) if name == "AVAIL_TORQUE" else value
             self._native.set(name, value)
         super().__setattr__(name, value)
 
     def _warn_of_no_render_mode(self) -> None:
         logger.warn(
-            "render was called without a render mode, and shows nothing; choose one when the environment is made, as "
+            "render was called without a render mode and returns None. Choose a mode when the environment is made: "
             f'gymnasium.make("{self.spec.id if self.spec else "acrobot_rs/Acrobot-v1"}", render_mode="rgb_array")'
         )
 
@@ -86,10 +86,10 @@ _NAMES = tuple(name for name in Parameters.__annotations__ if hasattr(Parameters
 
 
 def start_bounds(options: dict[str, Any] | None) -> tuple[float, float]:
-    """The bounds of a start, rad and rad/s, that ``options`` may have as ``low`` and ``high``.
+    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1.
 
     Raises:
-        ValueError: For what is no number that float32 holds, and for a low above high.
+        ValueError: For a bound that is not a number in the range of float32, and for a low above high.
     """
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
     check_start_bounds(low, high)

@@ -19,14 +19,14 @@ Bools = NDArray[np.bool_]
 
 
 class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], np.ndarray]):
-    """As many ``Acrobot-v1`` as wanted, some thousand times as fast as ``SyncVectorEnv``.
+    """Many ``Acrobot-v1``, a thousand times as fast as ``SyncVectorEnv``.
 
-    They have the parameters of all, and are computed in ``float32``, to the same bits on every machine: step by step as
-    close to Gymnasium's as that is, but since an acrobot is chaotic not the same episodes.
+    All have the same parameters. They are computed in ``float32``, with the same bits on every machine. Each step is as
+    close to Gymnasium's as ``float32`` is, but episodes differ because an acrobot is chaotic.
 
-    Environment ``i`` draws from the ``i``-th child of the seed, ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``:
-    the first environments of more are those of fewer, and no streams of two seeds are the same, as they are for
-    ``SyncVectorEnv``, which takes ``seed + i``.
+    Environment ``i`` draws from the ``i``-th child of the seed, ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
+    So the number of environments does not change the first ones, and two seeds share no stream. ``SyncVectorEnv`` seeds
+    environment ``i`` with ``seed + i``.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -51,24 +51,23 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         copy: bool = True,
     ) -> None:
-        """Environments at the first starts of a random seed, which ``np_random_seed`` tells.
+        """Make environments, in the initial states of a random seed, ``np_random_seed``.
 
         Args:
-            num_envs: How many, 1 or more.
-            max_episode_steps: The steps after which an episode is truncated, 1 or more.
+            num_envs: The number of environments, at least 1.
+            max_episode_steps: The steps after which an episode is truncated, at least 1.
             render_mode: ``None``, ``"rgb_array"`` or ``"ansi"``.
             autoreset_mode: ``NextStep``: the step after an end resets, ignores its action and returns a reward of 0.
-                ``SameStep``: the step that ends resets, and ``infos["final_obs"]`` has what was seen last.
-            copy: Whether each call returns observations in an array of its own. Otherwise all return the same array.
+                ``SameStep``: the step that ends an episode resets, and ``infos["final_obs"]`` has its last observation.
+                ``Disabled``: environments step on after an end, until a reset with a ``"reset_mask"`` or of all.
+            copy: Whether each call returns observations in a new array. Otherwise all return the same array.
 
         Raises:
-            ValueError: For numbers out of their range, another render mode, and ``AutoresetMode.DISABLED``.
+            ValueError: For numbers out of their range, and for other modes.
         """
         autoreset_mode = AutoresetMode(autoreset_mode)
-        if autoreset_mode is AutoresetMode.DISABLED:
-            raise ValueError("autoreset_mode is Disabled; allowed is NextStep or SameStep")
         self._same_step = autoreset_mode is AutoresetMode.SAME_STEP
-        native = Batch(num_envs, str(self.np_random_seed), max_episode_steps, self._same_step)
+        native = Batch(num_envs, str(self.np_random_seed), max_episode_steps, autoreset_mode.value)
         super().__init__(native, render_mode)
         self.metadata = {**self.metadata, "autoreset_mode": autoreset_mode}
         self.num_envs = num_envs
@@ -82,29 +81,30 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
 
     @property
     def state(self) -> Floats:
-        """theta1, theta2 (rad) and their velocities (rad/s) of each, of shape ``(num_envs, 4)``; a copy."""
+        """theta1, theta2 (rad) and their velocities (rad/s) of each, of shape ``(num_envs, 4)``. It is a copy."""
         return self._native.states().reshape(self.num_envs, 4)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode of each.
 
         Args:
-            seed: An integer of up to 4,300 digits, 0 or more, whose children are the streams; by ``None`` they go on.
-            options: ``"low"`` and ``"high"``, the bounds of these starts, rad and rad/s; -0.1 and 0.1 if not given,
-                and for starts by autoreset.
+            seed: An integer of at least 0 and up to 4,300 digits, whose children seed the streams. With ``None`` the
+                streams go on.
+            options: ``"low"`` and ``"high"``, the bounds of these initial states, rad and rad/s; by default, and for
+                autoresets, -0.1 and 0.1. ``"reset_mask"``, an array of ``bool`` of shape ``(num_envs,)``: environments
+                whose element is false are neither seeded nor reset.
 
         Returns:
-            The observations, of shape ``(num_envs, 6)``, and empty infos.
+            The observations of all, of shape ``(num_envs, 6)``, and empty infos.
 
         Raises:
-            ValueError: For bounds that are no finite numbers in order, and for a ``"reset_mask"``, which goes with
-                ``AutoresetMode.DISABLED``; nothing is changed then.
+            ValueError: For bounds that are not finite numbers in order, and for another mask or one without a true
+                element. Nothing changes then.
         """
-        if options is not None and "reset_mask" in options:
-            raise ValueError('options has "reset_mask"; allowed is "low" and "high": ended episodes reset themselves')
         low, high = start_bounds(options)
+        mask = self._mask(options)
         super().reset(seed=seed)
-        self._native.reset(None if seed is None else str(int(seed)), low, high)  # True is a seed, too
+        self._native.reset(None if seed is None else str(int(seed)), low, high, mask)  # True is a seed, too
         observations = self._empty() if self.copy else self._observations
         self._native.observe(observations)
         return observations, {}
@@ -113,20 +113,20 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         """Apply a torque to each for ``dt``. Other threads of Python run meanwhile.
 
         Args:
-            actions: 0, 1 or 2 for each, integers of shape ``(num_envs,)``.
+            actions: 0, 1 or 2 for each: integers of shape ``(num_envs,)``.
 
         Returns:
-            Observations, of shape ``(num_envs, 6)``; rewards, -1, or 0 in the goal; whether each goal was
-            reached; whether each episode had its steps; and infos, empty or of ``"final_obs"`` and ``"final_info"``
-            as ``SyncVectorEnv`` has them.
+            Observations, of shape ``(num_envs, 6)``; rewards, -1, or 0 in the goal; whether each reached its goal;
+            whether each reached its last step; and infos, empty or with ``"final_obs"`` and ``"final_info"`` as in
+            ``SyncVectorEnv``.
 
         Raises:
-            gymnasium.error.InvalidAction: For other actions; nothing is stepped then.
+            gymnasium.error.InvalidAction: For other actions. Nothing is stepped then.
         """
         actions = np.asarray(actions)
         if actions.dtype.kind not in "iu" or actions.shape != (self.num_envs,):
             raise InvalidAction(
-                f"actions are {actions.dtype} of shape {actions.shape}; allowed are integers of shape ({self.num_envs},)"
+                f"actions must be integers of shape ({self.num_envs},), got {actions.dtype} of shape {actions.shape}"
             )
         observations = self._empty() if self.copy else self._observations
         rewards = np.empty(self.num_envs, np.float32)
@@ -138,18 +138,28 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         return observations, rewards, terminated, truncated, infos
 
     def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
-        """What the render mode asks for, of each: arrays of shape ``(500, 500, 3)``, texts, or with a warning nothing."""
+        """An array of shape ``(500, 500, 3)`` or a text for each, by the render mode. Without a mode it warns."""
         if self.render_mode is None:
             self._warn_of_no_render_mode()
             return None
         return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
+
+    def _mask(self, options: dict[str, Any] | None) -> Bools | None:
+        if options is None or "reset_mask" not in options:
+            return None
+        mask = np.asarray(options["reset_mask"])
+        if mask.dtype != np.bool_ or mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(
+                f"reset_mask must be an array of bool of shape ({self.num_envs},) with a true element, got {mask!r}"
+            )
+        return np.ascontiguousarray(mask)
 
     def _empty(self) -> Floats:
         return np.empty((self.num_envs, 6), np.float32)
 
 
 def _final_infos(finals: Floats, ended: Bools) -> dict[str, Any]:
-    """As ``SyncVectorEnv`` has them: an array of arrays, ``None`` where no episode ended, and which did."""
+    """As in ``SyncVectorEnv``: an array of arrays, with ``None`` where no episode ended, and which episodes ended."""
     if not ended.any():
         return {}
     final_obs = np.full(len(ended), None, dtype=object)

@@ -1,4 +1,4 @@
-//! What is refused is refused with its reason, and changes nothing.
+//! Bad input is rejected with its reason, and changes nothing.
 
 use rand_pcg::Pcg32;
 use sarsa::{
@@ -48,70 +48,70 @@ fn settings() {
                 gamma: 1.01,
                 ..SETTINGS
             },
-            "gamma is 1.01; allowed is 0 to 1",
+            "gamma must be between 0 and 1, got 1.01",
         ),
         (
             Settings {
                 lambda: -0.5,
                 ..SETTINGS
             },
-            "lambda is -0.5; allowed is 0 to 1",
+            "lambda must be between 0 and 1, got -0.5",
         ),
         (
             Settings {
                 lambda: f32::NAN,
                 ..SETTINGS
             },
-            "lambda is NaN; allowed is 0 to 1",
+            "lambda must be between 0 and 1, got NaN",
         ),
         (
             Settings {
                 alpha: Schedule::constant(0.0),
                 ..SETTINGS
             },
-            "alpha is 0; allowed is above 0 to 1",
+            "alpha must be above 0 and at most 1, got 0",
         ),
         (
             Settings {
                 alpha: Schedule::constant(1.5),
                 ..SETTINGS
             },
-            "alpha is 1.5; allowed is 0 to 1",
+            "alpha must be between 0 and 1, got 1.5",
         ),
         (
             Settings {
                 alpha: ending(1.5),
                 ..SETTINGS
             },
-            "alpha's end is 1.5; allowed is 0 to 1",
+            "alpha's end must be between 0 and 1, got 1.5",
         ),
         (
             Settings {
                 epsilon: Schedule::constant(-1.0),
                 ..SETTINGS
             },
-            "epsilon is -1; allowed is 0 to 1",
+            "epsilon must be between 0 and 1, got -1",
         ),
         (
             Settings {
                 epsilon: ending(-1.0),
                 ..SETTINGS
             },
-            "epsilon's end is -1; allowed is 0 to 1",
+            "epsilon's end must be between 0 and 1, got -1",
         ),
         (
             Settings {
                 epsilon: ending(f32::NAN),
                 ..SETTINGS
             },
-            "epsilon's end is NaN; allowed is 0 to 1",
+            "epsilon's end must be between 0 and 1, got NaN",
         ),
         (
             Settings {
                 symmetry: Symmetry::Mirror(1),
                 ..SETTINGS
             },
-            "1 as the mirror's dimension; allowed is less than 1",
+            "the mirror's dimension must be below 1, got 1",
         ),
     ];
     for (settings, reason) in cases {
@@ -134,11 +134,11 @@ fn sizes() {
     let error = Sarsa::new(direct.clone(), SETTINGS, &mut few).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "20 slots of features; allowed is 1 to 19"
+        "slots of the features must be from 1 to 19, got 20"
     );
     let mut none = [[0.0; 0]; 32];
     let error = Sarsa::new(direct, SETTINGS, &mut none).unwrap_err();
-    assert_eq!(error.to_string(), "0 actions; allowed is 1 to 256");
+    assert_eq!(error.to_string(), "actions must be from 1 to 256, got 0");
 }
 
 #[test]
@@ -147,52 +147,55 @@ fn coders() {
     for slots in [0, 1, 48, 1 << 17] {
         assert_eq!(
             reason(LINE, 4, Table::Hashed(slots)),
-            format!("{slots} slots; allowed is a power of two from 2 to 65536")
+            format!("slots must be a power of two from 2 to 65536, got {slots}")
         );
     }
     assert_eq!(
         reason(LINE, 0, Table::Direct),
-        "0 tilings; allowed is above 0, and 4"
+        "tilings must be above 0 and equal to 4, got 0"
     );
     assert_eq!(
         reason(LINE, 5, Table::Direct),
-        "5 tilings; allowed is above 0, and 4"
+        "tilings must be above 0 and equal to 4, got 5"
     );
     assert_eq!(
         reason([Dimension::bounded(0.0, 1.0, 0)], 4, Table::Direct),
-        "0 intervals; allowed is 1 to 256"
+        "intervals must be from 1 to 256, got 0"
     );
     assert_eq!(
         reason([Dimension::bounded(2.0, 1.0, 4)], 4, Table::Direct),
-        "an upper bound is 1 of the state; allowed is a finite number above the lower"
+        "an upper bound must be finite and above the lower, got 1"
     );
     assert_eq!(
         reason([Dimension::cyclic(f32::NAN, 1.0, 4)], 4, Table::Direct),
-        "a lower bound is NaN of the state; allowed is a finite number"
+        "a lower bound must be finite, got NaN"
     );
     let none = TileCoder::<1, 0>::new(LINE, &[], Table::Direct, displacement).unwrap_err();
-    assert_eq!(none.to_string(), "0 tilings; allowed is above 0, and 0");
+    assert_eq!(
+        none.to_string(),
+        "tilings must be above 0 and equal to 0, got 0"
+    );
     let beyond = TileCoder::<1, 4>::new(LINE, &[Group::new(&[1], 4)], Table::Direct, displacement);
     assert_eq!(
         beyond.unwrap_err().to_string(),
-        "1 as a dimension's number; allowed is less than 1"
+        "a dimension's number must be below 1, got 1"
     );
     let far = TileCoder::<1, 4>::new(LINE, &[Group::new(&[0], 4)], Table::Direct, |_| 1.0);
     assert_eq!(
         far.unwrap_err().to_string(),
-        "an offset is 1 intervals; allowed is 0 to below 1"
+        "an offset must be at least 0 and below 1 interval, got 1"
     );
     let wide = [Dimension::bounded(0.0, 1.0, 256); 2];
     let many = TileCoder::<2, 1>::new(wide, &[Group::new(&[0, 1], 1)], Table::Direct, displacement);
     assert_eq!(
         many.unwrap_err().to_string(),
-        "66049 tiles of a tiling; allowed is at most 65536"
+        "tiles of a tiling must be at most 65536, got 66049"
     );
     let wide = [Dimension::cyclic(0.0, 1.0, 256); 2];
     let many = TileCoder::<2, 2>::new(wide, &[Group::new(&[0, 1], 2)], Table::Direct, displacement);
     assert_eq!(
         many.unwrap_err().to_string(),
-        "131072 slots; allowed is at most 65536"
+        "slots must be at most 65536, got 131072"
     );
 }
 
@@ -223,10 +226,10 @@ fn what_was_saved_is_loaded() {
 fn bytes() {
     let mut weights = [[0.0; 2]; 32];
     let good = learnt(&mut weights);
-    let refuse = |bytes: &[u8]| {
+    let rejected = |bytes: &[u8]| {
         let mut weights = [[0.0; 2]; 32];
         let mut agent = agent(&mut weights);
-        let error = agent.load(bytes).expect_err("refused");
+        let error = agent.load(bytes).expect_err("rejected");
         assert_eq!(agent.weights(), &[[0.0; 2]; 32], "{error}");
         error
     };
@@ -235,30 +238,30 @@ fn bytes() {
         bytes[at] = value;
         bytes
     };
-    assert_eq!(refuse(&[]), LoadError::Magic);
-    assert_eq!(refuse(&good[..3]), LoadError::Magic);
-    assert_eq!(refuse(&with(0, b'X')), LoadError::Magic);
-    let version = refuse(&with(4, 2));
-    assert_eq!(version.to_string(), "weights of version 2; allowed is 1");
+    assert_eq!(rejected(&[]), LoadError::Magic);
+    assert_eq!(rejected(&good[..3]), LoadError::Magic);
+    assert_eq!(rejected(&with(0, b'X')), LoadError::Magic);
+    let version = rejected(&with(4, 2));
+    assert_eq!(version.to_string(), "weights must be of version 1, got 2");
     for length in [4, 7, 8, 15, 16, 20, good.len() - 1] {
-        let size = refuse(&good[..length]);
+        let size = rejected(&good[..length]);
         assert_eq!(
             size.to_string(),
-            format!("weights of {length} bytes; allowed is 276")
+            format!("weights must have 276 bytes, got {length}")
         );
     }
     let longer = [&good[..], &[0]].concat();
     assert_eq!(
-        refuse(&longer).to_string(),
-        "weights of 277 bytes; allowed is 276"
+        rejected(&longer).to_string(),
+        "weights must have 276 bytes, got 277"
     );
     assert_eq!(
-        refuse(&with(9, 2)).to_string(),
-        "weights of 532 bytes; allowed is 276"
+        rejected(&with(9, 2)).to_string(),
+        "weights must have 276 bytes, got 532"
     );
     // Any other byte, in the weights and in the checksum itself.
     for (at, byte) in good.iter().enumerate().skip(16) {
-        let error = refuse(&with(at, byte ^ 1));
+        let error = rejected(&with(at, byte ^ 1));
         assert!(
             matches!(error, LoadError::Checksum { .. }),
             "byte {at}: {error}"
@@ -266,7 +269,7 @@ fn bytes() {
     }
 }
 
-/// The same size, but what a weight stands for is another tile.
+/// The same size, but the weights belong to other tiles.
 #[test]
 fn weights_of_other_tiles() {
     let mut weights = [[0.0; 2]; 32];
@@ -285,7 +288,7 @@ fn weights_of_other_tiles() {
     }
 }
 
-/// Damaged before the checksum was made, which is therefore right.
+/// Damaged before the checksum was computed, so the checksum is right.
 #[test]
 fn weights_that_are_not_finite() {
     let mut weights = [[0.0; 2]; 32];
@@ -296,15 +299,12 @@ fn weights_that_are_not_finite() {
         let mut untouched = [[0.0; 2]; 32];
         let mut agent = agent(&mut untouched);
         let Err(LoadError::Checksum { expected, .. }) = agent.load(&bytes) else {
-            panic!("the checksum was not made for {number}")
+            panic!("the checksum matches {number}")
         };
         let end = bytes.len() - 4;
         bytes[end..].copy_from_slice(&expected.to_le_bytes());
         let error = agent.load(&bytes).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "weight 5 is not finite; allowed are finite numbers"
-        );
+        assert_eq!(error.to_string(), "weight 5 must be a finite number");
         assert_eq!(*agent.weights(), [[0.0; 2]; 32]);
     }
 }
@@ -315,6 +315,6 @@ fn tilings_whose_sum_wraps() {
     let coder = TileCoder::<1, 4>::new(LINE, &groups, Table::Direct, displacement);
     assert_eq!(
         coder.unwrap_err().to_string(),
-        format!("{} tilings; allowed is above 0, and 4", usize::MAX)
+        format!("tilings must be above 0 and equal to 4, got {}", usize::MAX)
     );
 }

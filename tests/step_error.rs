@@ -1,18 +1,18 @@
-//! Promise 1, Gymnasium's numbers: how close `Portable`, `Fast` and `Micro` come to them.
+//! Promise 1, Gymnasium's numbers: the error of `Portable`, `Fast` and `Micro` against them.
 
 mod common;
 
-use acrobot::{Acrobot, Arithmetic, Fast, Micro, Portable, State};
 use std::f64::consts::PI;
 
+use acrobot::arithmetic::{Arithmetic, Micro};
+use acrobot::{Acrobot, Fast, Portable, State};
 use common::{RECORDING, RecordedStep, assert_readme_says, distance, recorded_steps};
 
-/// Upper ends of the bands of max(|θ̇1|, |θ̇2|) before a step, rad/s. The last holds all the rest:
-/// up to the velocity bounds, and the few starts beyond.
+/// Upper ends of the bands of max(|θ̇1|, |θ̇2|) before a step, rad/s. The last band has all remaining steps: up to the
+/// velocity bounds, and from the few initial states beyond them.
 const BANDS: [f64; 5] = [3.0, 6.0, 12.0, 20.0, f64::INFINITY];
 
-/// What is promised of a step in the slowest band: some ten roundings of numbers about 3, in f64
-/// and in f32.
+/// The promised error of a step in the slowest band: about ten roundings of numbers near 3, in `f64` and in `f32`.
 const PORTABLE_SLOW: f64 = 4e-15;
 const FAST_SLOW: f64 = 4e-6;
 
@@ -37,7 +37,7 @@ fn step_errors<A: Arithmetic>() -> [Vec<f64>; 5] {
             );
         }
     }
-    // Those from angles of many turns are for `wrap` alone: f32 does not hold such a state.
+    // Steps from angles of many turns test `wrap` only, because `f32` cannot represent such a state.
     let within_a_turn =
         |step: &RecordedStep| step.state.theta1.abs().max(step.state.theta2.abs()) <= PI;
     for step in recorded_steps().into_iter().filter(within_a_turn) {
@@ -59,7 +59,7 @@ fn percentile_99_9(sorted: &[f64]) -> f64 {
     sorted[sorted.len() * 999 / 1000]
 }
 
-/// The README's table is what is measured here; its bits are the same on every machine.
+/// This measures the README's table, which is the same on every machine.
 #[test]
 fn single_steps_are_as_close_as_the_readme_says() {
     let errors = [

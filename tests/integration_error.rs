@@ -1,14 +1,16 @@
-//! Promise 1, Gymnasium's numbers: what they are worth, by an integrator of another project. `data/truth.py` ran it.
+//! Promise 1, Gymnasium's numbers: their error against the solution of another integrator, which `data/truth.py` ran.
 
 mod common;
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use acrobot::{Acrobot, Arithmetic, Dynamics, Fast, Params, Portable, State};
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::physics::{Dynamics, Pendulum};
+use acrobot::{Fast, Params, Portable, State};
 use common::{assert_readme_says, distance};
 
-/// A run under torques that are held for 0.2 s each.
+/// A run under torques that last 0.2 s each.
 struct Run {
     dynamics: Dynamics,
     start: &'static str,
@@ -20,7 +22,7 @@ struct Run {
 struct Row {
     seconds: u32,
     state: State,
-    /// How far off it may be itself.
+    /// The error that the recorded state itself can have.
     uncertainty: f64,
 }
 
@@ -63,29 +65,25 @@ static RUNS: LazyLock<Vec<Run>> = LazyLock::new(|| {
 });
 
 impl Run {
-    /// The error at each of its rows, of an acrobot whose step lasts 0.2 s / `parts`.
+    /// The error at each row of a pendulum whose step lasts 0.2 s / `parts`.
     fn errors<A: Arithmetic>(&self, parts: u32) -> Vec<f64> {
-        let mut acrobot = Acrobot::<A>::new(0);
         let params = Params {
             dt: 0.2 / f64::from(parts),
-            // The integration alone is judged.
+            // No bounds: only the integration is measured.
             max_velocity1: f32::MAX.into(),
             max_velocity2: f32::MAX.into(),
             dynamics: self.dynamics,
             ..Params::DEFAULT
         };
-        acrobot.set_params(params.cast()).unwrap();
-        acrobot.set_state(self.state.cast()).unwrap();
+        let mut pendulum = Pendulum::<A>::new(params.cast(), self.state.cast()).unwrap();
         let mut errors = Vec::new();
         let mut rows = self.after.iter().peekable();
         for (held, &torque) in (1..).zip(self.torques) {
             for _ in 0..parts {
-                acrobot
-                    .step_torque(acrobot::Real::from_f64(torque))
-                    .unwrap();
+                pendulum.step(Real::from_f64(torque)).unwrap();
             }
             if let Some(row) = rows.next_if(|row| row.seconds * 5 == held) {
-                errors.push(distance(acrobot.state().cast(), row.state));
+                errors.push(distance(pendulum.state().cast(), row.state));
             }
         }
         assert!(rows.next().is_none());
@@ -93,7 +91,7 @@ impl Run {
     }
 }
 
-/// The larger errors of the two runs, under either kind of torques.
+/// The larger error of the two runs, which differ in their torques.
 fn worst<A: Arithmetic>(dynamics: Dynamics, start: &str, parts: u32) -> Vec<f64> {
     RUNS.iter()
         .filter(|run| run.dynamics == dynamics && run.start == start)
@@ -102,10 +100,10 @@ fn worst<A: Arithmetic>(dynamics: Dynamics, start: &str, parts: u32) -> Vec<f64>
         .unwrap()
 }
 
-/// In how many parts the 0.2 s of a torque are stepped: dt is 0.2, 0.1, 0.05 and 0.01 s.
+/// The number of steps for each torque of 0.2 s: dt is 0.2, 0.1, 0.05 and 0.01 s.
 const PARTS: [u32; 4] = [1, 2, 4, 20];
 
-/// The README's table is what is measured here; its bits are the same on every machine.
+/// This measures the README's table, which is the same on every machine.
 #[test]
 fn errors_are_as_the_readme_says() {
     let mut rows = Vec::new();
@@ -125,7 +123,7 @@ fn errors_are_as_the_readme_says() {
     assert_readme_says(&table);
 }
 
-/// So the digits of an error are the method's, and not those of the truth's own error.
+/// So the measured errors are those of the method, not those of the recorded states.
 #[test]
 fn the_truth_is_known_far_better_than_the_error() {
     let mut worst = 0.0_f64;
@@ -148,7 +146,7 @@ fn errors_shrink_with_the_fourth_power_of_dt() {
                 "{:?} {} {} s: {order:.2}",
                 run.dynamics, run.start, row.seconds
             );
-            // Later the fast ones are chaotic: an error does not stay small enough to have an order.
+            // After 1 s the fast runs are chaotic: errors grow too large to have an order.
             if run.start == "rest" || row.seconds == 1 {
                 assert!((3.85..4.3).contains(&order));
             }
@@ -156,7 +154,7 @@ fn errors_shrink_with_the_fourth_power_of_dt() {
     }
 }
 
-/// In `f32` rounding is small beside the method's error at Gymnasium's dt, and is all that is left at 0.01 s.
+/// In `f32` rounding is small beside the method's error at Gymnasium's dt, and dominates at 0.01 s.
 #[test]
 fn single_precision_is_as_good_as_the_readme_says() {
     let (mut excess, mut least, mut most) = (0.0_f64, f64::INFINITY, 0.0_f64);

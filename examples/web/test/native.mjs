@@ -1,12 +1,12 @@
-// What the host computes: the examples of the repository, with these arguments.
+// Native results: the repository's examples, run with these arguments.
 
 import { spawnSync } from "node:child_process";
 import { resolve } from "node:path";
 
-// Not from here, where cargo is told to build for WebAssembly.
+// Not this folder, whose configuration builds for WebAssembly.
 const root = resolve(import.meta.dirname, "../../..");
 
-/** What several tests do, on the host and here. */
+/** The actions of several tests. */
 export const ACTIONS = [2, 2, 2, 0, 0, 1, 2, 2, 0, 0, 0, 1, 1, 2, 0, 2, 2, 2, 0, 0, 0];
 
 function example(name, args, input) {
@@ -16,7 +16,7 @@ function example(name, args, input) {
   return { status, stdout, stderr };
 }
 
-/** The bits of θ1, θ2, θ̇1 and θ̇2 in single precision, at the start and after each action. */
+/** The bits of θ1, θ2, θ̇1 and θ̇2 in single precision, initially and after each action. */
 export function trace(seed, actions, ...args) {
   const { status, stdout, stderr } = example("trace", ["--arithmetic", "fast", "--seed", seed, ...args], actions.join(""));
   if (status !== 0) throw new Error(stderr);
@@ -30,12 +30,12 @@ export function trace(seed, actions, ...args) {
   );
 }
 
-/** Why the host refuses arguments of `trace`. */
-export function refusal(...args) {
+/** Why `trace` rejects its arguments. */
+export function rejection(...args) {
   return example("trace", ["--seed", "0", ...args], "").stderr.trim().replace(/^error: /, "");
 }
 
-/** Learns, saves and loads as `args` say; what it wrote to standard error, if it failed. */
+/** Runs `swing_up` with `args`. Returns its standard error if it failed, otherwise null. */
 export function swingUp(...args) {
   const { status, stderr } = example("swing_up", ["--quiet", ...args], "");
   return status === 0 ? null : stderr.trim();

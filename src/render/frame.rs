@@ -1,4 +1,4 @@
-//! Pictures in memory: RGB bytes, and text.
+//! Pictures in memory: RGB bytes and text.
 
 use core::convert::Infallible;
 use std::string::String;
@@ -9,14 +9,13 @@ use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{Dimensions, OriginDimensions, Size};
 use embedded_graphics_core::pixelcolor::{BinaryColor, Rgb888, RgbColor};
 
-use crate::render::{Figure, Theme};
+use super::{Figure, Theme};
 
-/// A picture of RGB bytes, Gymnasium's `rgb_array`; it can be drawn on as any embedded-graphics
-/// target.
+/// A picture of RGB bytes: Gymnasium's `rgb_array`, and an embedded-graphics target.
 ///
 /// ```
-/// use acrobot::env::Frame;
-/// use acrobot::{Acrobot, Figure, Portable};
+/// use acrobot::render::{Figure, Frame};
+/// use acrobot::{Acrobot, Portable};
 ///
 /// let frame = Frame::of(&Figure::new(&Acrobot::<Portable>::new(42)));
 /// assert_eq!(frame.bytes().len(), 500 * 500 * 3);
@@ -35,7 +34,7 @@ pub struct Frame {
     bytes: Vec<u8>,
 }
 
-/// Gymnasium's frames are squares of so many pixels.
+/// The width and height of Gymnasium's frames, pixels.
 const SIZE: u32 = 500;
 
 impl Frame {
@@ -47,11 +46,11 @@ impl Frame {
         frame
     }
 
-    /// A black frame of that many pixels.
+    /// A black frame of this size in pixels.
     ///
     /// # Panics
     ///
-    /// Where no memory can hold so many.
+    /// If it does not fit into memory.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = (width as usize).saturating_mul(height as usize);
@@ -59,13 +58,13 @@ impl Frame {
         Self { width, bytes }
     }
 
-    /// In pixels.
+    /// The width, pixels.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// In pixels.
+    /// The height, pixels.
     #[must_use]
     pub fn height(&self) -> u32 {
         let pixels = self.bytes.len() / 3;
@@ -107,7 +106,7 @@ impl DrawTarget for Frame {
 }
 
 /// The figure in 20 lines of 40 braille characters, each of 2 × 4 dots.
-pub(super) fn text(figure: &Figure) -> String {
+pub(crate) fn text(figure: &Figure) -> String {
     const COLUMNS: usize = 40;
     const LINES: usize = 20;
 

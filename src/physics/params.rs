@@ -1,10 +1,11 @@
-//! The parameters of an acrobot, in SI units, and which of them are valid.
+//! The parameters, in SI units, and their ranges.
 
 use crate::action::Action;
 use crate::arithmetic::Real;
-use crate::error::{Allowed, Error};
+use crate::error::{Error, Range};
 
-/// Which equations of motion: those of the book, or those printed in the 1996 paper.
+/// The equations of motion: those of the book, or those printed in the 1996 paper.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -12,20 +13,21 @@ pub enum Dynamics {
     /// Sutton & Barto, *Reinforcement Learning: An Introduction*: the physical double pendulum.
     #[default]
     Book,
-    /// Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996): the same without the
-    /// centrifugal term in θ̇1² of the second joint. It does not conserve energy.
+    /// Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996): without the centrifugal term in θ̇1²
+    /// of the second joint. Energy is not conserved.
     Nips,
 }
 
-/// Everything about an acrobot that a user may change; [`Params::DEFAULT`] is Gymnasium's.
+/// The parameters of an acrobot. [`Params::DEFAULT`] has Gymnasium's values.
 ///
-/// All fields are in SI units. Link 1 hangs from the fixed joint and link 2 from the tip of link 1;
-/// the motor sits between the two.
+/// All fields are in SI units. Link 1 hangs from the fixed joint and link 2 from the tip of link 1. The motor is
+/// between the two links.
 ///
 /// ```
-/// use acrobot::{Dynamics, Params};
+/// use acrobot::Params;
+/// use acrobot::physics::Dynamics;
 ///
-/// let params: Params<f32> = Params { dt: 0.05, dynamics: Dynamics::Nips, ..Params::default() };
+/// let params = Params::<f32> { dt: 0.05, dynamics: Dynamics::Nips, ..Params::DEFAULT };
 /// assert!(params.validate().is_ok());
 /// assert!(Params { mass1: 0.0, ..params }.validate().is_err());
 /// ```
@@ -35,8 +37,8 @@ pub enum Dynamics {
 pub struct Params<S = f64> {
     /// Length of link 1, m; above 0.
     pub length1: S,
-    /// Length of link 2, m; above 0. The equations of motion do not contain it, and Gymnasium's
-    /// goal does not either: only [`tip_height`](crate::tip_height) and drawings do.
+    /// Length of link 2, m; above 0. It only enters [`positions`](super::positions) and drawings: neither
+    /// the equations of motion nor Gymnasium's goal contain it.
     pub length2: S,
     /// Mass of link 1, kg; above 0.
     pub mass1: S,
@@ -46,16 +48,16 @@ pub struct Params<S = f64> {
     pub center_of_mass1: S,
     /// Distance of link 2's centre of mass from its joint, m; 0 or more.
     pub center_of_mass2: S,
-    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 where
-    /// the centre of mass lies on the joint.
+    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 where the centre
+    /// of mass is on the joint.
     pub inertia1: S,
     /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
     pub inertia2: S,
-    /// Acceleration of gravity, m/s², downwards; finite, 0 switches it off.
+    /// Acceleration of gravity, m/s², downwards; finite, 0 for none.
     pub gravity: S,
-    /// Time that one step lasts, s; above 0.
+    /// Duration of one step, s; above 0.
     pub dt: S,
-    /// Bound of |θ̇1| after a step, rad/s; above 0, and within `f32` as observations are.
+    /// Bound of |θ̇1| after a step, rad/s; above 0, and at most the largest `f32`, as observations are `f32`.
     pub max_velocity1: S,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
@@ -64,40 +66,42 @@ pub struct Params<S = f64> {
     /// Torque noise, N m: each step adds a uniform draw from [−noise, noise) to the torque; 0 or
     /// more, 0 draws nothing.
     pub torque_noise: S,
-    /// Which equations of motion.
+    /// The equations of motion.
     pub dynamics: Dynamics,
 }
 
-impl Params<f64> {
-    /// The parameters of Gymnasium's `Acrobot-v1`.
-    pub const DEFAULT: Self = Self {
-        length1: 1.0,
-        length2: 1.0,
-        mass1: 1.0,
-        mass2: 1.0,
-        center_of_mass1: 0.5,
-        center_of_mass2: 0.5,
-        inertia1: 1.0,
-        inertia2: 1.0,
-        gravity: 9.8,
-        dt: 0.2,
-        max_velocity1: 4.0 * core::f64::consts::PI,
-        max_velocity2: 9.0 * core::f64::consts::PI,
-        torques: [-1.0, 0.0, 1.0],
-        torque_noise: 0.0,
-        dynamics: Dynamics::Book,
-    };
-}
-
 impl<S: Real> Default for Params<S> {
-    /// [`Params::DEFAULT`], rounded to the scalar.
+    /// [`Params::DEFAULT`], made field by field: as a whole it would be copied by `memcpy`, which takes 1 KB of flash
+    /// where nothing else needs it.
     #[inline]
     fn default() -> Self {
-        Params::DEFAULT.cast()
+        Params::<f64>::DEFAULT.cast()
     }
 }
 
 impl<S: Real> Params<S> {
+    /// The parameters of Gymnasium's `Acrobot-v1`, each rounded to the scalar.
+    pub const DEFAULT: Self = {
+        let [gravity, dt, max_velocity1, max_velocity2] = S::GYMNASIUM;
+        Self {
+            length1: S::ONE,
+            length2: S::ONE,
+            mass1: S::ONE,
+            mass2: S::ONE,
+            center_of_mass1: S::HALF,
+            center_of_mass2: S::HALF,
+            inertia1: S::ONE,
+            inertia2: S::ONE,
+            gravity,
+            dt,
+            max_velocity1,
+            max_velocity2,
+            torques: [S::MINUS_ONE, S::ZERO, S::ONE],
+            torque_noise: S::ZERO,
+            dynamics: Dynamics::Book,
+        }
+    };
+
     /// The same parameters in another scalar, each rounded to the nearest.
     #[must_use]
     #[inline]
@@ -133,27 +137,28 @@ impl<S: Real> Params<S> {
         self.torques[action as usize]
     }
 
-    /// Checks every field against the range that its documentation gives.
+    /// Checks every field against the range in its documentation.
     ///
-    /// Valid parameters may still be extreme enough for a step to leave the range of the scalar;
-    /// what happens then stands at [`Acrobot`](crate::Acrobot#what-cannot-be-represented).
+    /// Valid parameters can still be so extreme that a step overflows the scalar. [`Pendulum`](super::Pendulum)
+    /// says what happens then.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] with the first field that is out of its range.
+    /// [`Error::OutOfRange`] with the first field outside its range, and [`Error::NoInertia`] for a link without
+    /// inertia about its joint.
     pub fn validate(&self) -> Result<(), Error> {
-        use Allowed::{AboveZero, AboveZeroInF32, Finite, ZeroOrMore};
+        use Range::{AboveZero, AboveZeroInF32, AtLeastZero, Finite};
 
         let [negative, zero, positive] = self.torques;
-        for (name, value, unit, allowed) in [
+        for (name, value, unit, range) in [
             ("length1", self.length1, "m", AboveZero),
             ("length2", self.length2, "m", AboveZero),
             ("mass1", self.mass1, "kg", AboveZero),
             ("mass2", self.mass2, "kg", AboveZero),
-            ("center_of_mass1", self.center_of_mass1, "m", ZeroOrMore),
-            ("center_of_mass2", self.center_of_mass2, "m", ZeroOrMore),
-            ("inertia1", self.inertia1, "kg m²", ZeroOrMore),
-            ("inertia2", self.inertia2, "kg m²", ZeroOrMore),
+            ("center_of_mass1", self.center_of_mass1, "m", AtLeastZero),
+            ("center_of_mass2", self.center_of_mass2, "m", AtLeastZero),
+            ("inertia1", self.inertia1, "kg m²", AtLeastZero),
+            ("inertia2", self.inertia2, "kg m²", AtLeastZero),
             ("gravity", self.gravity, "m/s²", Finite),
             ("dt", self.dt, "s", AboveZero),
             ("max_velocity1", self.max_velocity1, "rad/s", AboveZeroInF32),
@@ -161,23 +166,19 @@ impl<S: Real> Params<S> {
             ("torques[0]", negative, "N m", Finite),
             ("torques[1]", zero, "N m", Finite),
             ("torques[2]", positive, "N m", Finite),
-            ("torque_noise", self.torque_noise, "N m", ZeroOrMore),
+            ("torque_noise", self.torque_noise, "N m", AtLeastZero),
         ] {
-            allowed.check(name, value, unit)?;
+            range.check(name, value.to_f64(), unit)?;
         }
 
-        // Without a moment of inertia about its joint a link has no determined acceleration.
+        // Without inertia about its joint a link has no determined acceleration.
         for (name, inertia, mass, center) in [
             ("inertia1", self.inertia1, self.mass1, self.center_of_mass1),
             ("inertia2", self.inertia2, self.mass2, self.center_of_mass2),
         ] {
             if inertia + mass * center * center <= S::ZERO {
-                return Err(Error::OutOfRange {
-                    name,
-                    value: inertia.to_f64(),
-                    unit: "kg m²",
-                    allowed: "a finite number above 0 where the centre of mass lies on the joint",
-                });
+                let value = inertia.to_f64();
+                return Err(Error::NoInertia { name, value });
             }
         }
         Ok(())

@@ -1,15 +1,15 @@
-//! The state of an acrobot, and the bounds that a start is drawn from.
+//! The state, and the bounds of initial states.
 
 use rand_core::Rng;
 
 use crate::arithmetic::Real;
-use crate::error::{Allowed, Error};
-use crate::rng::uniform;
+use crate::error::{Error, Range};
+use crate::numpy::uniform;
 
 /// Two angles and their velocities.
 ///
-/// After a step the angles lie in \[−π, π\] and the velocities within their bounds. A start and a
-/// state that was set may lie outside, as Gymnasium's may.
+/// After a step the angles are within \[−π, π\] and the velocities within their bounds. An initial state, and
+/// one that is set, may be outside, as in Gymnasium. The default hangs at rest.
 ///
 /// ```
 /// use acrobot::State;
@@ -67,17 +67,30 @@ impl<S: Real> State<S> {
     ///
     /// [`Error::OutOfRange`] with the first that is not.
     pub fn validate(&self) -> Result<(), Error> {
-        Allowed::Finite.check("theta1", self.theta1, "rad")?;
-        Allowed::Finite.check("theta2", self.theta2, "rad")?;
-        Allowed::Finite.check("dtheta1", self.dtheta1, "rad/s")?;
-        Allowed::Finite.check("dtheta2", self.dtheta2, "rad/s")
+        self.cast::<f64>().check()
     }
 }
 
-/// The bounds within which a reset draws all four numbers of the state, rad and rad/s.
+impl State<f64> {
+    /// [`State::validate`], also in a `const`.
+    pub(super) const fn check(&self) -> Result<(), Error> {
+        // `?` is not allowed in a `const fn`.
+        if let Err(error) = Range::Finite.check("theta1", self.theta1, "rad") {
+            return Err(error);
+        }
+        if let Err(error) = Range::Finite.check("theta2", self.theta2, "rad") {
+            return Err(error);
+        }
+        if let Err(error) = Range::Finite.check("dtheta1", self.dtheta1, "rad/s") {
+            return Err(error);
+        }
+        Range::Finite.check("dtheta2", self.dtheta2, "rad/s")
+    }
+}
+
+/// The bounds within which a reset draws all four numbers of the initial state, rad and rad/s.
 ///
-/// The two are private so that they are always finite, in order, and within the range of `f32`,
-/// in which starts are drawn.
+/// They are always finite, in order and within the range of `f32`, to which initial states are rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct StartBounds {
@@ -92,13 +105,13 @@ impl StartBounds {
         high: 0.1,
     };
 
-    /// Bounds from `low` to `high`, rad and rad/s; equal ones fix the start.
+    /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state.
     ///
-    /// Bounds beyond ±π, or beyond the velocity bounds, give starts beyond them; the first step
-    /// wraps and bounds them.
+    /// Bounds beyond ±π or beyond the velocity bounds give initial states beyond them. The first step wraps and
+    /// bounds these.
     ///
     /// ```
-    /// use acrobot::StartBounds;
+    /// use acrobot::physics::StartBounds;
     ///
     /// assert!(StartBounds::new(-0.2, 0.2).is_ok());
     /// assert!(StartBounds::new(0.2, -0.2).is_err());
@@ -107,19 +120,23 @@ impl StartBounds {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a bound that `f32` cannot hold as a finite number, and
-    /// [`Error::ReversedBounds`] for a `low` above `high`.
-    pub fn new(low: f64, high: f64) -> Result<Self, Error> {
-        Allowed::InF32.check("low", low, "rad and rad/s")?;
-        Allowed::InF32.check("high", high, "rad and rad/s")?;
+    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedBounds`] for a `low`
+    /// above `high`.
+    pub const fn new(low: f64, high: f64) -> Result<Self, Error> {
+        if let Err(error) = Range::InF32.check("low", low, "rad and rad/s") {
+            return Err(error);
+        }
+        if let Err(error) = Range::InF32.check("high", high, "rad and rad/s") {
+            return Err(error);
+        }
         if low > high {
             return Err(Error::ReversedBounds { low, high });
         }
         Ok(Self { low, high })
     }
 
-    /// Draws a start. Gymnasium keeps it in f32, whatever it computes in afterwards.
-    #[inline(never)] // for flash: it stands at each reset
+    /// Draws an initial state, which is `f32` in Gymnasium, whatever it computes in afterwards.
+    #[inline(never)] // saves flash: each kind of reset calls it
     pub(crate) fn draw<R: Rng>(&self, rng: &mut R) -> State<f32> {
         [(); 4]
             .map(|()| uniform(rng, self.low, self.high) as f32)
@@ -129,14 +146,14 @@ impl StartBounds {
     /// The lower bound, rad and rad/s.
     #[must_use]
     #[inline]
-    pub fn low(&self) -> f64 {
+    pub const fn low(&self) -> f64 {
         self.low
     }
 
     /// The upper bound, rad and rad/s.
     #[must_use]
     #[inline]
-    pub fn high(&self) -> f64 {
+    pub const fn high(&self) -> f64 {
         self.high
     }
 }

@@ -1,0 +1,146 @@
+//! What a form of the equations of motion provides, for one number or for many at once.
+
+use core::fmt;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Arithmetic, Real, SinCos};
+use crate::physics::{FromParams, Params};
+
+/// The parameters, and what the form of the equations computes from them once.
+#[derive(Clone, Copy, Debug)]
+pub struct Model<A: Arithmetic> {
+    pub(crate) params: Params<A::Scalar>,
+    pub(crate) constants: <A::Form as Equations<A::Scalar>>::Constants,
+}
+
+impl<A: Arithmetic> Model<A> {
+    /// The model of [`Params::DEFAULT`], computed by the compiler.
+    pub(crate) const DEFAULT: Self = Self {
+        params: Params::DEFAULT,
+        constants: FromParams::DEFAULT,
+    };
+
+    #[inline]
+    pub(crate) fn new(params: Params<A::Scalar>) -> Self {
+        let lengths = [
+            params.length1,
+            params.center_of_mass1,
+            params.center_of_mass2,
+        ];
+        Self {
+            constants: FromParams::new(&params, lengths.map(A::square)),
+            params,
+        }
+    }
+}
+
+/// A form of the equations, in `S`.
+pub trait Equations<S: Real>: Copy + fmt::Debug {
+    /// What depends on the parameters alone.
+    type Constants: FromParams<S>;
+
+    /// Whether the Runge-Kutta step adds its stages up at once instead of in Gymnasium's order.
+    const COMPACT: bool;
+
+    /// The derivative at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque in N m. `sin_cos` are the sines and cosines of θ1
+    /// and θ2 where they are known.
+    fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
+        model: &Model<A>,
+        y: [V; 4],
+        sin_cos: Option<[SinCos<V>; 2]>,
+        torque: V,
+    ) -> [V; 4];
+
+    /// The angle `x` rad brought to \[−π, π\] by whole turns.
+    fn wrap<V: Numbers<S>>(x: V) -> V;
+
+    /// Whether −cos θ1 − cos(θ1 + θ2) > 1: Gymnasium's goal, whatever the lengths of the links.
+    fn reaches_goal<A: Arithmetic<Scalar = S>, V: Numbers<S>>(
+        angles: [V; 2],
+        sin_cos: [SinCos<V>; 2],
+    ) -> V::Mask;
+}
+
+/// One number, or many that are computed side by side. The step is written in these, once.
+pub trait Numbers<S: Real>:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A truth value for each number.
+    type Mask;
+
+    /// Whether this is a single number.
+    const IS_ONE: bool;
+
+    /// `x` in each place.
+    fn splat(x: S) -> Self;
+
+    /// `f` of each number.
+    fn map(self, f: impl FnMut(S) -> S) -> Self;
+
+    /// `f` of each pair of numbers.
+    fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
+
+    /// Whether |x| ≤ `limit` for all; false for NaN.
+    fn all_within(self, limit: S) -> bool;
+
+    /// `inside` where |x| ≤ `limit`, `outside` elsewhere and for NaN.
+    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self;
+
+    /// Which are above `limit`.
+    fn above(self, limit: S) -> Self::Mask;
+
+    /// [`Arithmetic::sin_cos_near`] of each number.
+    fn sin_cos<A: Arithmetic<Scalar = S>>(self) -> SinCos<Self>;
+
+    /// Each number brought to \[−`limit`, `limit`\]; NaN stays NaN.
+    #[inline(always)]
+    fn bound(self, limit: S) -> Self {
+        self.map(|x| if x > limit { limit } else { x })
+            .map(|x| if x < -limit { -limit } else { x })
+    }
+}
+
+impl<S: Real> Numbers<S> for S {
+    type Mask = bool;
+    const IS_ONE: bool = true;
+
+    #[inline(always)]
+    fn splat(x: S) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn map(self, mut f: impl FnMut(S) -> S) -> Self {
+        f(self)
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, mut f: impl FnMut(S, S) -> S) -> Self {
+        f(self, other)
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: S) -> bool {
+        self.abs() <= limit
+    }
+
+    #[inline(always)]
+    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self {
+        if self.abs() <= limit { inside } else { outside }
+    }
+
+    #[inline(always)]
+    fn above(self, limit: S) -> bool {
+        self > limit
+    }
+
+    #[inline(always)]
+    fn sin_cos<A: Arithmetic<Scalar = S>>(self) -> SinCos<Self> {
+        A::sin_cos_near(self)
+    }
+}

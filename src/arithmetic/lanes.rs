@@ -1,0 +1,89 @@
+//! `N` numbers side by side, which a batch computes in.
+//!
+//! These are plain arrays and loops over them, which LLVM turns into the vectors that the target has.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Arithmetic, Numbers, Real, SinCos};
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lanes<S, const N: usize>(pub(crate) [S; N]);
+
+macro_rules! lane_by_lane {
+    ($($trait:ident $method:ident),*) => {$(
+        impl<S: Real, const N: usize> $trait for Lanes<S, N> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, S::$method)
+            }
+        }
+    )*};
+}
+
+lane_by_lane!(Add add, Sub sub, Mul mul, Div div);
+
+impl<S: Real, const N: usize> Neg for Lanes<S, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(S::neg)
+    }
+}
+
+// Loops and not `array::map`, which LLVM keeps out of line, where it may not use its caller's vectors.
+impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
+    type Mask = [bool; N];
+    const IS_ONE: bool = false;
+
+    #[inline(always)]
+    fn splat(x: S) -> Self {
+        Self([x; N])
+    }
+
+    #[inline(always)]
+    fn map(mut self, mut f: impl FnMut(S) -> S) -> Self {
+        for x in &mut self.0 {
+            *x = f(*x);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn zip(mut self, other: Self, mut f: impl FnMut(S, S) -> S) -> Self {
+        for (x, y) in self.0.iter_mut().zip(other.0) {
+            *x = f(*x, y);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: S) -> bool {
+        self.0.iter().fold(true, |all, x| all & (x.abs() <= limit))
+    }
+
+    #[inline(always)]
+    fn select_within(self, limit: S, inside: Self, mut outside: Self) -> Self {
+        for ((x, inside), outside) in self.0.iter().zip(inside.0).zip(&mut outside.0) {
+            *outside = if x.abs() <= limit { inside } else { *outside };
+        }
+        outside
+    }
+
+    #[inline(always)]
+    fn above(self, limit: S) -> [bool; N] {
+        let mut above = [false; N];
+        for (above, x) in above.iter_mut().zip(self.0) {
+            *above = x > limit;
+        }
+        above
+    }
+
+    #[inline(always)]
+    fn sin_cos<A: Arithmetic<Scalar = S>>(self) -> SinCos<Self> {
+        let (sin, cos) = A::sin_cos_lanes(self.0);
+        (Self(sin), Self(cos))
+    }
+}

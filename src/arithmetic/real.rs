@@ -1,0 +1,145 @@
+//! The scalars: `f32` and `f64`.
+
+use core::fmt;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A scalar that the physics can be computed in: `f32` or `f64`.
+///
+/// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so that every machine
+/// agrees.
+pub trait Real:
+    Copy
+    + fmt::Debug
+    + fmt::Display
+    + Default
+    + PartialOrd
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + sealed::Sealed
+{
+    /// 0.
+    const ZERO: Self;
+    /// π, rounded to the scalar.
+    const PI: Self;
+    /// 2π, rounded to the scalar.
+    const TAU: Self;
+
+    /// The scalar nearest to `x`.
+    fn from_f64(x: f64) -> Self;
+
+    /// The same number, exactly.
+    fn to_f64(self) -> f64;
+
+    /// Neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+
+    /// The nearest integer, ties to even. Exact for |self| up to 2²² in `f32` and 2⁵¹ in `f64`, finite
+    /// beyond.
+    ///
+    /// It takes two additions because a Cortex-M4F has no instruction for it.
+    fn round_small(self) -> Self;
+
+    /// The exact remainder of the division by `divisor`, with the sign of `self`.
+    fn remainder(self, divisor: Self) -> Self;
+}
+
+/// Sine and cosine of one angle.
+pub type SinCos<V> = (V, V);
+
+macro_rules! impl_real {
+    ($scalar:ident, $bits:ident) => {
+        impl sealed::Sealed for $scalar {
+            const NAME: &'static str = stringify!($scalar);
+            const ONE: Self = 1.0;
+            const MINUS_ONE: Self = -1.0;
+            const HALF: Self = 0.5;
+            const GYMNASIUM: [Self; 4] = {
+                use core::f64::consts::PI;
+                [9.8, 0.2, (4.0 * PI) as $scalar, (9.0 * PI) as $scalar]
+            };
+
+            #[inline]
+            fn pick([first, second, third]: [Self; 3], index: u8) -> Self {
+                let mask = |i| u64::from(index == i).wrapping_neg() as $bits;
+                $scalar::from_bits(
+                    (first.to_bits() & mask(0))
+                        | (second.to_bits() & mask(1))
+                        | (third.to_bits() & mask(2)),
+                )
+            }
+
+            #[inline]
+            fn abs(self) -> Self {
+                self.abs()
+            }
+        }
+
+        impl Real for $scalar {
+            const ZERO: Self = 0.0;
+            const PI: Self = core::$scalar::consts::PI;
+            const TAU: Self = core::$scalar::consts::TAU;
+
+            #[inline]
+            fn from_f64(x: f64) -> Self {
+                x as Self
+            }
+
+            #[inline]
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
+
+            #[inline]
+            fn is_finite(self) -> bool {
+                self.is_finite()
+            }
+
+            #[inline]
+            fn round_small(self) -> Self {
+                // 1.5 / ε: the sum's last place is 1, so that the addition itself rounds.
+                const MAGIC: $scalar = 1.5 / $scalar::EPSILON;
+                (self + MAGIC) - MAGIC
+            }
+
+            #[inline]
+            fn remainder(self, divisor: Self) -> Self {
+                self % divisor
+            }
+        }
+    };
+}
+
+impl_real!(f32, u32);
+impl_real!(f64, u64);
+
+pub(crate) mod sealed {
+    /// What only this crate needs of a scalar.
+    pub trait Sealed: Sized {
+        /// Its name in Rust.
+        const NAME: &'static str;
+
+        /// 1.
+        const ONE: Self;
+
+        /// −1.
+        const MINUS_ONE: Self;
+
+        /// 1/2.
+        const HALF: Self;
+
+        /// Gymnasium's gravity in m/s², time step in s, and both velocity bounds in rad/s.
+        const GYMNASIUM: [Self; 4];
+
+        /// The element with an index of 0 to 2, without a branch or an address that depends on the index.
+        fn pick(three: [Self; 3], index: u8) -> Self;
+
+        /// The absolute value.
+        fn abs(self) -> Self;
+    }
+}

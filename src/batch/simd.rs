@@ -1,0 +1,140 @@
+//! The SIMD instructions that a batch is stepped with.
+
+use super::block::{Block, Drive, step_blocks};
+use super::{Shared, StepBuffers};
+use crate::arithmetic::Arithmetic;
+use crate::numpy::Pcg64;
+
+/// The SIMD instructions that a [`Batch`](super::Batch) is stepped with. They change no bit.
+///
+/// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there is only the
+/// baseline: what the crate is compiled for, such as WASM's simd128 or NEON.
+///
+/// ```
+/// use acrobot::Fast;
+/// use acrobot::batch::{Batch, Block, SimdLevel};
+/// use acrobot::numpy::Pcg64;
+///
+/// let mut batch = Batch::<Fast, _, _>::new(42, [Block::EMPTY; 1], [Pcg64::UNSEEDED; 16])?;
+/// assert_eq!(batch.simd_level(), SimdLevel::widest());
+/// batch.set_simd_level(SimdLevel::Baseline); // to compare their speed
+/// # assert!(SimdLevel::widest().is_available());
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum SimdLevel {
+    /// What the crate is compiled for.
+    Baseline,
+    /// AVX2: eight `f32` at once.
+    Avx2,
+    /// AVX-512 with its extensions F, BW, DQ and VL: sixteen `f32` at once.
+    Avx512,
+}
+
+impl SimdLevel {
+    /// The widest that this machine has.
+    #[must_use]
+    pub fn widest() -> Self {
+        [Self::Avx512, Self::Avx2]
+            .into_iter()
+            .find(|level| level.is_available())
+            .unwrap_or(Self::Baseline)
+    }
+
+    /// Whether this machine has it. Without `std`, and on other machines than x86-64, only the baseline is.
+    #[must_use]
+    pub fn is_available(self) -> bool {
+        match self {
+            Self::Baseline => true,
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
+            Self::Avx2 => std::arch::is_x86_feature_detected!("avx2"),
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
+            Self::Avx512 => {
+                std::arch::is_x86_feature_detected!("avx512f")
+                    && std::arch::is_x86_feature_detected!("avx512bw")
+                    && std::arch::is_x86_feature_detected!("avx512dq")
+                    && std::arch::is_x86_feature_detected!("avx512vl")
+            }
+            #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
+            Self::Avx2 | Self::Avx512 => false,
+        }
+    }
+
+    /// Steps all blocks; with the baseline where the machine does not have this level.
+    #[allow(
+        unsafe_code,
+        reason = "the one place that uses instructions which the machine has and the build does not know of"
+    )]
+    pub(super) fn step<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
+        self,
+        shared: &Shared<A>,
+        blocks: &mut [Block<A::Scalar, N>],
+        generators: &mut [Pcg64],
+        inputs: &[D::Input],
+        buffers: StepBuffers<'_>,
+    ) {
+        #[cfg(all(feature = "std", target_arch = "x86_64"))]
+        {
+            macro_rules! compiled_for {
+                ($name:ident, $features:literal) => {
+                    #[target_feature(enable = $features)]
+                    fn $name<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
+                        shared: &Shared<A>,
+                        blocks: &mut [Block<A::Scalar, N>],
+                        generators: &mut [Pcg64],
+                        inputs: &[D::Input],
+                        buffers: StepBuffers<'_>,
+                    ) {
+                        step_blocks::<A, D, N>(shared, blocks, generators, inputs, buffers);
+                    }
+                };
+            }
+            compiled_for!(with_avx2, "avx2");
+            compiled_for!(with_avx512, "avx512f,avx512bw,avx512dq,avx512vl");
+            // SAFETY: the machine has the features that the function was compiled for.
+            unsafe {
+                match self {
+                    Self::Avx2 if self.is_available() => {
+                        return with_avx2::<A, D, N>(shared, blocks, generators, inputs, buffers);
+                    }
+                    Self::Avx512 if self.is_available() => {
+                        return with_avx512::<A, D, N>(shared, blocks, generators, inputs, buffers);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        step_blocks::<A, D, N>(shared, blocks, generators, inputs, buffers);
+    }
+
+    /// [`step`](Self::step) on all cores: halves in parallel, down to what is worth a task.
+    #[cfg(feature = "rayon")]
+    pub(super) fn par_step<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
+        self,
+        shared: &Shared<A>,
+        blocks: &mut [Block<A::Scalar, N>],
+        generators: &mut [Pcg64],
+        inputs: &[D::Input],
+        buffers: StepBuffers<'_>,
+    ) {
+        // About a hundred microseconds of work in `f32` and in `f64`: waking a thread takes ten.
+        let acrobots_of_a_task = match size_of::<A::Scalar>() {
+            4 => 16_384,
+            _ => 1024,
+        };
+        if blocks.len() * N <= acrobots_of_a_task {
+            return self.step::<A, D, N>(shared, blocks, generators, inputs, buffers);
+        }
+        let middle = blocks.len() / 2;
+        let (blocks1, blocks2) = blocks.split_at_mut(middle);
+        let (generators1, generators2) = generators.split_at_mut(middle * N);
+        let (inputs1, inputs2) = inputs.split_at(middle * N);
+        let (buffers1, buffers2) = buffers.split_at(middle * N);
+        rayon::join(
+            || self.par_step::<A, D, N>(shared, blocks1, generators1, inputs1, buffers1),
+            || self.par_step::<A, D, N>(shared, blocks2, generators2, inputs2, buffers2),
+        );
+    }
+}

@@ -1,0 +1,86 @@
+//! Environments around environments: a time limit, a reference, a box.
+
+use std::boxed::Box;
+
+use super::{Env, Error, Info, Rendering};
+use crate::acrobot::{ResetOptions, Step};
+use crate::time_limit::TimeLimit;
+
+/// The parts of [`Env`] that a wrapper hands on: its types, its episodes, and all the rest.
+macro_rules! forward {
+    (types $inner:ident) => {
+        type Observation = $inner::Observation;
+        type Action = $inner::Action;
+        type ObservationSpace = $inner::ObservationSpace;
+        type ActionSpace = $inner::ActionSpace;
+        type Unwrapped = $inner::Unwrapped;
+    };
+    (episode $self:ident, $inner:expr) => {
+        fn reset_with(&mut $self, options: ResetOptions) -> (Self::Observation, Info) {
+            $inner.reset_with(options)
+        }
+
+        fn step(&mut $self, action: Self::Action) -> Step<Self::Observation, Info> {
+            $inner.step(action)
+        }
+    };
+    ($self:ident, $inner:expr) => {
+        fn action_space(&$self) -> Self::ActionSpace {
+            $inner.action_space()
+        }
+
+        fn observation_space(&$self) -> Self::ObservationSpace {
+            $inner.observation_space()
+        }
+
+        fn render(&mut $self) -> Result<Rendering, Error> {
+            $inner.render()
+        }
+
+        fn close(&mut $self) {
+            $inner.close();
+        }
+
+        fn unwrapped(&$self) -> &Self::Unwrapped {
+            $inner.unwrapped()
+        }
+
+        fn unwrapped_mut(&mut $self) -> &mut Self::Unwrapped {
+            $inner.unwrapped_mut()
+        }
+    };
+}
+
+pub(super) use forward;
+
+/// Sets `truncated` from the limit on. It stays set where the wrapped environment sets it.
+impl<E: Env> Env for TimeLimit<E> {
+    forward!(types E);
+
+    fn reset_with(&mut self, options: ResetOptions) -> (E::Observation, Info) {
+        self.restart();
+        self.inner.reset_with(options)
+    }
+
+    fn step(&mut self, action: E::Action) -> Step<E::Observation, Info> {
+        let mut step = self.inner.step(action);
+        step.truncated |= self.count();
+        step
+    }
+
+    forward!(self, self.inner);
+}
+
+/// A borrowed environment.
+impl<E: Env + ?Sized> Env for &mut E {
+    forward!(types E);
+    forward!(episode self, (**self));
+    forward!(self, (**self));
+}
+
+/// A boxed environment, so that what [`make`](super::make) returns can be wrapped and passed to generic code.
+impl<E: Env + ?Sized> Env for Box<E> {
+    forward!(types E);
+    forward!(episode self, (**self));
+    forward!(self, (**self));
+}

@@ -1,0 +1,219 @@
+//! NumPy's `SeedSequence`: turns a seed into the words that a generator starts with.
+//!
+//! The algorithm is M. E. O'Neill's `seed_seq_fe`
+//! (<https://www.pcg-random.org/posts/developing-a-seed_seq-alternative.html>), with NumPy's constants
+//! and order (<https://numpy.org/doc/stable/reference/random/bit_generators/>).
+
+/// A hashed seed: NumPy's `SeedSequence` of any non-negative integer, and its children.
+///
+/// NumPy keeps the seed and hashes it again for each child. Hashing is sequential, so this keeps the hashed
+/// pool instead: 32 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the same
+/// children by accident.
+///
+/// ```
+/// use acrobot::numpy::SeedSequence;
+///
+/// let mut seed = SeedSequence::new(42);
+/// assert_eq!(seed.generate_state(), [0x9f1e_2e6d_cd54_0ab7, 0xd578_73dc_79fb_94b6]);
+///
+/// // An independent stream for each of a thousand workers.
+/// let workers: Vec<SeedSequence> = seed.spawn(1000).collect();
+/// assert_eq!(workers[7], seed.child(7));
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct SeedSequence {
+    pool: [u32; 4],
+    /// The multiplier of the next `hash`, which changes it.
+    hash_multiplier: u32,
+    /// How many children were spawned.
+    spawned: u64,
+}
+
+const SHIFT: u32 = 16;
+
+impl SeedSequence {
+    /// The sequence of `seed`. Longer seeds: [`from_words`](Self::from_words), `From<u128>` and, with `std`,
+    /// a decimal text can be parsed.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self::from_words(&[seed as u32, (seed >> 32) as u32])
+    }
+
+    /// The sequence of the integer with these 32-bit digits, the lowest first. No digits are 0, and leading
+    /// zeros do not count.
+    ///
+    /// ```
+    /// use acrobot::numpy::SeedSequence;
+    ///
+    /// assert_eq!(SeedSequence::from_words(&[7, 1]), SeedSequence::new((1 << 32) + 7));
+    /// assert_eq!(SeedSequence::from_words(&[]), SeedSequence::new(0));
+    /// ```
+    #[must_use]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "the pool has four words, and 0..4 is below"
+    )]
+    #[inline(never)] // saves flash, as in `hash`, which it calls sixteen times
+    pub const fn from_words(mut words: &[u32]) -> Self {
+        while let [rest @ .., 0] = words {
+            words = rest;
+        }
+        let mut sequence = Self {
+            pool: [0; 4],
+            hash_multiplier: 0x43b0_d7e5,
+            spawned: 0,
+        };
+        let mut i = 0;
+        while i < 4 {
+            let mut word = 0;
+            if let [first, rest @ ..] = words {
+                (word, words) = (*first, rest);
+            }
+            sequence.pool[i] = sequence.hash(word);
+            i += 1;
+        }
+        let mut source = 0;
+        while source < 4 {
+            let mut target = 0;
+            while target < 4 {
+                if source != target {
+                    let hashed = sequence.hash(sequence.pool[source]);
+                    sequence.pool[target] = mix(sequence.pool[target], hashed);
+                }
+                target += 1;
+            }
+            source += 1;
+        }
+        while let [word, rest @ ..] = words {
+            sequence.absorb(*word);
+            words = rest;
+        }
+        sequence
+    }
+
+    /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call gives other
+    /// children. There are 2⁶⁴ − 1 in all.
+    pub fn spawn(&mut self, n: u64) -> impl Iterator<Item = Self> + use<> {
+        let parent = self.clone();
+        self.spawned = parent.spawned.saturating_add(n);
+        (parent.spawned..self.spawned).map(move |index| parent.child(index))
+    }
+
+    /// The child with this index, counted from 0 over all calls of [`spawn`](Self::spawn): for a worker that
+    /// knows only its own number.
+    #[must_use]
+    pub fn child(&self, index: u64) -> Self {
+        let mut child = Self {
+            spawned: 0,
+            ..self.clone()
+        };
+        let [low, high] = [index as u32, (index >> 32) as u32];
+        child.absorb(low);
+        if high != 0 {
+            child.absorb(high);
+        }
+        child
+    }
+
+    /// The first `N` 64-bit words that the sequence generates. They are always the same.
+    #[must_use]
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "i is below N, and the pool's index below 4"
+    )]
+    pub const fn generate_state<const N: usize>(&self) -> [u64; N] {
+        let mut state = [0; N];
+        let mut multiplier = 0x8b51_f9dd_u32;
+        let mut half = 0;
+        while half < 2 * N {
+            let mut word = self.pool[half % 4] ^ multiplier;
+            multiplier = multiplier.wrapping_mul(0x58f3_8ded);
+            word = word.wrapping_mul(multiplier);
+            word ^= word >> SHIFT;
+            state[half / 2] |= (word as u64) << (32 * (half % 2));
+            half += 1;
+        }
+        state
+    }
+
+    /// Mixes one more word of entropy into the whole pool.
+    const fn absorb(&mut self, word: u32) {
+        let [a, b, c, d] = self.pool;
+        self.pool = [
+            mix(a, self.hash(word)),
+            mix(b, self.hash(word)),
+            mix(c, self.hash(word)),
+            mix(d, self.hash(word)),
+        ];
+    }
+
+    #[inline(never)]
+    const fn hash(&mut self, word: u32) -> u32 {
+        let word = word ^ self.hash_multiplier;
+        self.hash_multiplier = self.hash_multiplier.wrapping_mul(0x931e_8875);
+        let word = word.wrapping_mul(self.hash_multiplier);
+        word ^ (word >> SHIFT)
+    }
+}
+
+const fn mix(x: u32, y: u32) -> u32 {
+    let mixed = x
+        .wrapping_mul(0xca01_f9dd)
+        .wrapping_sub(y.wrapping_mul(0x4973_f715));
+    mixed ^ (mixed >> SHIFT)
+}
+
+macro_rules! from_integers {
+    ($($integer:ident)*) => {$(
+        impl From<$integer> for SeedSequence {
+            fn from(seed: $integer) -> Self {
+                Self::new(seed.into())
+            }
+        }
+    )*};
+}
+
+from_integers!(u8 u16 u32 u64);
+
+impl From<u128> for SeedSequence {
+    fn from(seed: u128) -> Self {
+        Self::from_words(&[0, 32, 64, 96].map(|shift| (seed >> shift) as u32))
+    }
+}
+
+#[cfg(feature = "std")]
+impl std::str::FromStr for SeedSequence {
+    type Err = crate::Error;
+
+    /// The sequence of a decimal integer with any number of digits.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::MalformedSeed`](crate::Error::MalformedSeed) with the first character that is not a digit.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let mut words = std::vec::Vec::new();
+        for (found, position) in text.chars().zip(1..) {
+            let malformed = crate::Error::MalformedSeed {
+                found: Some(found),
+                position,
+            };
+            let mut carry = u64::from(found.to_digit(10).ok_or(malformed)?);
+            for word in &mut words {
+                carry += u64::from(*word) * 10;
+                *word = carry as u32;
+                carry >>= 32;
+            }
+            if carry != 0 {
+                words.push(carry as u32);
+            }
+        }
+        if text.is_empty() {
+            return Err(crate::Error::MalformedSeed {
+                found: None,
+                position: 1,
+            });
+        }
+        Ok(Self::from_words(&words))
+    }
+}

@@ -1,0 +1,57 @@
+//! The pendulum alone: equations of motion, integrator and bounds, without a generator or an environment.
+//!
+//! [`Pendulum`] is the fast way to simulate: it keeps what depends on the parameters and the sines and cosines of
+//! its angles. It needs no random numbers and has no code for them, so it takes about a third of the flash of an
+//! [`Acrobot`](crate::Acrobot).
+//!
+//! ```
+//! use acrobot::Fast;
+//! use acrobot::physics::Pendulum;
+//!
+//! let mut pendulum = Pendulum::<Fast>::hanging();
+//! for _ in 0..50 {
+//!     let torque = if pendulum.state().dtheta1 > 0.0 { -1.0 } else { 1.0 }; // N m
+//!     pendulum.step(torque)?;
+//! }
+//! assert!(pendulum.tip_height() > -2.0); // m
+//! # Ok::<(), acrobot::Error>(())
+//! ```
+//!
+//! The functions [`derivative`], [`energy`], [`mass_matrix`], [`positions`] and [`tip_height`] take any parameters and any state,
+//! for integrators and controllers of your own; [`rk4`] integrates any derivative. The book explains
+//! [the equations](crate::guide::equations).
+
+/// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
+macro_rules! for_f32_and_f64 {
+    ($($item:item)*) => {
+        const _: () = {
+            type S = f32;
+            $($item)*
+        };
+        const _: () = {
+            type S = f64;
+            $($item)*
+        };
+    };
+}
+
+mod bounds;
+mod gymnasium;
+mod lean;
+mod model;
+mod params;
+mod pendulum;
+mod rk4;
+mod state;
+mod step;
+
+pub use bounds::{bound, wrap};
+pub use gymnasium::Gymnasium;
+pub use lean::Lean;
+pub(crate) use model::FromParams;
+pub use params::{Dynamics, Params};
+pub use pendulum::{Pendulum, derivative, energy, mass_matrix, positions, tip_height};
+pub(crate) use pendulum::{check_torque, sin_cos};
+pub use rk4::rk4;
+pub use state::{StartBounds, State};
+pub(crate) use step::step;

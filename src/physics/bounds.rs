@@ -1,0 +1,30 @@
+//! The bounds of a state: angles wrap around, velocities stop.
+
+use crate::arithmetic::{Arithmetic, Equations, Numbers, Real};
+
+/// The angle `x` rad brought to \[−π, π\] by whole turns, as a step of `A` does.
+///
+/// [`Gymnasium`](super::Gymnasium) subtracts turn by turn, up to 64 turns, and takes the remainder beyond.
+/// [`Lean`](super::Lean) subtracts one rounded quotient, which is right to the spacing of `f32` at `x`,
+/// 1.2e-7 |x|. Both take −x to the mirror image, in `f32` up to 2²² turns. An infinite angle or NaN gives NaN.
+///
+/// ```
+/// use acrobot::physics::wrap;
+/// use acrobot::{Fast, Portable};
+///
+/// assert_eq!(wrap::<Portable>(4.0), 4.0 - core::f64::consts::TAU);
+/// assert_eq!(wrap::<Fast>(4.0), 4.0 - core::f32::consts::TAU);
+/// assert!(wrap::<Fast>(1e30).abs() <= core::f32::consts::PI);
+/// ```
+#[must_use]
+#[inline]
+pub fn wrap<A: Arithmetic>(x: A::Scalar) -> A::Scalar {
+    A::Form::wrap(x)
+}
+
+/// `x` brought to \[−`limit`, `limit`\], for a `limit` of at least 0. NaN stays NaN.
+#[must_use]
+#[inline]
+pub fn bound<S: Real>(x: S, limit: S) -> S {
+    Numbers::bound(x, limit)
+}

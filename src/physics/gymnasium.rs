@@ -1,0 +1,168 @@
+//! Gymnasium's expressions, operation by operation.
+
+use super::model::{Common, FromParams};
+use super::{Dynamics, Params};
+use crate::arithmetic::{Arithmetic, Equations, Model, Numbers, Real, SinCos};
+
+/// The form of the equations that Gymnasium's source has: four divisions and four trigonometric calls for each
+/// evaluation.
+#[derive(Clone, Copy, Debug)]
+pub struct Gymnasium;
+
+#[derive(Clone, Copy, Debug)]
+pub struct Constants<S> {
+    common: Common<S>,
+    /// m1 lc1², kg m².
+    link1: S,
+    /// l1² + lc2², m².
+    arms_squared: S,
+    /// l1 lc2, m².
+    arms_product: S,
+    /// lc2², m².
+    lc2_squared: S,
+}
+
+for_f32_and_f64! {
+    impl FromParams<S> for Constants<S> {
+        const DEFAULT: Self = constants(&Params::DEFAULT, [1.0, 0.25, 0.25]);
+
+        fn new(params: &Params<S>, squares: [S; 3]) -> Self {
+            constants(params, squares)
+        }
+
+        #[inline(always)]
+        fn common(&self) -> &Common<S> {
+            &self.common
+        }
+    }
+
+    const fn constants(
+        params: &Params<S>,
+        [l1_squared, lc1_squared, lc2_squared]: [S; 3],
+    ) -> Constants<S> {
+        Constants {
+            common: Common::<S>::new(params, lc2_squared),
+            link1: params.mass1 * lc1_squared,
+            arms_squared: l1_squared + lc2_squared,
+            arms_product: params.length1 * params.center_of_mass2,
+            lc2_squared,
+        }
+    }
+}
+
+/// The turns after which `wrap` stops following Gymnasium's and takes the remainder.
+const MAX_TURNS: u32 = 64;
+
+impl<S: Real> Equations<S> for Gymnasium
+where
+    Constants<S>: FromParams<S>,
+{
+    type Constants = Constants<S>;
+    const COMPACT: bool = false;
+
+    /// `AcrobotEnv._dsdt`, except that it may multiply by 2 elsewhere, which is exact.
+    // With `std` because `Host` takes a tenth longer otherwise; on a microcontroller it would cost `Portable` flash and
+    // gain nothing.
+    #[cfg_attr(feature = "std", inline(always))]
+    fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
+        model: &Model<A>,
+        [theta1, theta2, dtheta1, dtheta2]: [V; 4],
+        sin_cos: Option<[SinCos<V>; 2]>,
+        torque: V,
+    ) -> [V; 4] {
+        let Params {
+            mass2,
+            inertia1,
+            inertia2,
+            dynamics,
+            ..
+        } = &model.params;
+        let Constants {
+            common,
+            link1,
+            arms_squared,
+            arms_product,
+            lc2_squared,
+        } = &model.constants;
+        let sin1 = sin_cos.map(|[(sin1, _), _]| sin1);
+        let (sin2, cos2) = match sin_cos {
+            Some([_, second]) => second,
+            None => theta2.sin_cos::<A>(),
+        };
+        let [m2, inertia1, inertia2] = [*mass2, *inertia1, *inertia2].map(V::splat);
+        let [coupling, link2] = [common.coupling, common.link2].map(V::splat);
+        let [gravity1, gravity2] = [common.gravity1, common.gravity2].map(V::splat);
+        let [link1, arms_squared] = [*link1, *arms_squared].map(V::splat);
+        let [arms_product, lc2_squared] = [*arms_product, *lc2_squared].map(V::splat);
+        let two = V::splat(S::from_f64(2.0));
+        let square = |x: V| x.map(A::square);
+
+        // First, because calls keep no floats in registers on x86-64.
+        let phi2 = gravity2 * (theta1 + theta2).map(|x| A::cos_from_horizontal(x, None));
+        let cos1 = match sin1 {
+            Some(sin1) => theta1.zip(sin1, |x, sin| A::cos_from_horizontal(x, Some(sin))),
+            None => theta1.map(|x| A::cos_from_horizontal(x, None)),
+        };
+        let arm = arms_product * cos2;
+        let d1 = link1 + m2 * (arms_squared + two * arm) + inertia1 + inertia2;
+        let d2 = m2 * (lc2_squared + arm) + inertia2;
+        let phi1 = -coupling * square(dtheta2) * sin2 - two * coupling * dtheta2 * dtheta1 * sin2
+            + gravity1 * cos1
+            + phi2;
+        let driven = torque + d2 / d1 * phi1;
+        let driven = match dynamics {
+            Dynamics::Book => driven - coupling * square(dtheta1) * sin2,
+            Dynamics::Nips => driven,
+        };
+        let ddtheta2 = (driven - phi2) / (link2 - square(d2) / d1);
+        let ddtheta1 = -(d2 * ddtheta2 + phi1) / d1;
+        [dtheta1, dtheta2, ddtheta1, ddtheta2]
+    }
+
+    /// Subtracts turn by turn, as Gymnasium does. Where Gymnasium would take ever longer or never return, it
+    /// takes the remainder.
+    #[inline(always)]
+    fn wrap<V: Numbers<S>>(x: V) -> V {
+        x.map(|mut x| {
+            for _ in 0..MAX_TURNS {
+                if x > S::PI {
+                    x = x - S::TAU;
+                } else if x < -S::PI {
+                    x = x + S::TAU;
+                } else {
+                    return x;
+                }
+            }
+            wrap_by_remainder(x)
+        })
+    }
+
+    #[inline(always)]
+    fn reaches_goal<A: Arithmetic<Scalar = S>, V: Numbers<S>>(
+        [theta1, theta2]: [V; 2],
+        [(_, cos1), _]: [SinCos<V>; 2],
+    ) -> V::Mask {
+        let height = cos1.zip(theta2 + theta1, |cos1, sum| {
+            // While link 1 points down, link 2 cannot reach: its cosine, at most 1, is not computed.
+            if cos1 >= S::ZERO {
+                S::ZERO
+            } else {
+                -cos1 - A::cos(sum)
+            }
+        });
+        height.above(S::ONE)
+    }
+}
+
+#[cold]
+fn wrap_by_remainder<S: Real>(x: S) -> S {
+    let x = x.remainder(S::TAU);
+    let turn = if x > S::PI {
+        -S::TAU
+    } else if x < -S::PI {
+        S::TAU
+    } else {
+        S::ZERO
+    };
+    (x + turn).bound(S::PI)
+}

@@ -1,0 +1,131 @@
+//! The lean form: one division and the sines and cosines of θ1 and θ2 for each evaluation.
+
+use super::model::{Common, FromParams};
+use super::{Dynamics, Params};
+use crate::arithmetic::{Arithmetic, Equations, Model, Numbers, Real, SinCos};
+
+/// The form of the equations that solves them by Cramer's rule, with one division: for all arithmetics that
+/// need not have Gymnasium's bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Lean;
+
+/// The equations for the absolute angles θ1 and θ1 + θ2 have the mass matrix
+/// \[\[upper, c\], \[c, link2\]\] with c = coupling cos θ2.
+#[derive(Clone, Copy, Debug)]
+pub struct Constants<S> {
+    common: Common<S>,
+    /// m1 lc1² + I1 + m2 l1², kg m².
+    upper: S,
+    /// The determinant at θ2 = ±π/2, where c is 0, kg² m⁴.
+    determinant: S,
+    /// 1 for the equations of the book, otherwise 0.
+    book: S,
+    /// 1 for those of the paper, otherwise 0.
+    nips: S,
+}
+
+for_f32_and_f64! {
+    impl FromParams<S> for Constants<S> {
+        const DEFAULT: Self = constants(&Params::DEFAULT, [1.0, 0.25, 0.25]);
+
+        fn new(params: &Params<S>, squares: [S; 3]) -> Self {
+            constants(params, squares)
+        }
+
+        #[inline(always)]
+        fn common(&self) -> &Common<S> {
+            &self.common
+        }
+    }
+
+    const fn constants(
+        params: &Params<S>,
+        [l1_squared, lc1_squared, lc2_squared]: [S; 3],
+    ) -> Constants<S> {
+        let Params { mass1: m1, mass2: m2, inertia1, inertia2, dynamics, .. } = *params;
+        let common = Common::<S>::new(params, lc2_squared);
+        let link1 = m1 * lc1_squared;
+        let m2_l1_squared = m2 * l1_squared;
+        let (book, nips) = match dynamics {
+            Dynamics::Book => (1.0, 0.0),
+            Dynamics::Nips => (0.0, 1.0),
+        };
+        Constants {
+            common,
+            upper: link1 + inertia1 + m2_l1_squared,
+            determinant: (link1 + inertia1) * common.link2 + m2_l1_squared * inertia2,
+            book,
+            nips,
+        }
+    }
+}
+
+impl<S: Real> Equations<S> for Lean
+where
+    Constants<S>: FromParams<S>,
+{
+    type Constants = Constants<S>;
+    const COMPACT: bool = true;
+
+    /// The determinant is a sum of squares and positive constants, so nothing cancels. The angles to the
+    /// horizontal, θ1 − π/2 and θ1 + θ2 − π/2, enter by the addition theorem.
+    #[inline(always)]
+    fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
+        model: &Model<A>,
+        [theta1, theta2, dtheta1, dtheta2]: [V; 4],
+        sin_cos: Option<[SinCos<V>; 2]>,
+        torque: V,
+    ) -> [V; 4] {
+        let [(sin1, cos1), (sin2, cos2)] = match sin_cos {
+            Some(sin_cos) => sin_cos,
+            None => [theta1.sin_cos::<A>(), theta2.sin_cos::<A>()],
+        };
+        let Constants {
+            common,
+            upper,
+            determinant,
+            book,
+            nips,
+        } = &model.constants;
+        let [upper, determinant] = [*upper, *determinant].map(V::splat);
+        let [book, nips] = [*book, *nips].map(V::splat);
+        let [coupling, link2] = [common.coupling, common.link2].map(V::splat);
+        let [gravity1, gravity2] = [common.gravity1, common.gravity2].map(V::splat);
+        let coupling_cos = coupling * cos2;
+        let coupling_sin = coupling * sin2;
+        let sin_sum = sin1 * cos2 + cos1 * sin2;
+        let dtheta_sum = dtheta1 + dtheta2;
+        let square = dtheta1 * dtheta1;
+
+        // The force on θ1 with its sign changed, and the force on θ1 + θ2.
+        let force1 =
+            (gravity1 * sin1 - coupling_sin * (dtheta_sum * dtheta_sum - nips * square)) + torque;
+        let force2 = torque - gravity2 * sin_sum - coupling_sin * (book * square);
+        let inverse = V::splat(S::ONE) / (determinant + coupling_sin * coupling_sin);
+        let common = link2 * force1 + coupling_cos * force2;
+        let ddtheta1 = -(common * inverse);
+        let ddtheta2 = (common + upper * force2 + coupling_cos * force1) * inverse;
+        [dtheta1, dtheta2, ddtheta1, ddtheta2]
+    }
+
+    /// Subtracts one rounded quotient of turns.
+    #[inline(always)]
+    fn wrap<V: Numbers<S>>(x: V) -> V {
+        let turns = x * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
+        let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
+        // The bound is for angles so large that neighbouring numbers are more than a turn apart. An angle within ±π
+        // stays as it is, also one next to ±π.
+        x.zip(turned.bound(S::PI), |x, turned| {
+            if x.abs() <= S::PI { x } else { turned }
+        })
+    }
+
+    #[inline(always)]
+    fn reaches_goal<A: Arithmetic<Scalar = S>, V: Numbers<S>>(
+        _: [V; 2],
+        [(sin1, cos1), (sin2, cos2)]: [SinCos<V>; 2],
+    ) -> V::Mask {
+        let cos_sum = cos1 * cos2 - sin1 * sin2;
+        (-cos1 - cos_sum).above(S::ONE)
+    }
+}

@@ -1,0 +1,110 @@
+//! What both forms of the equations share.
+//!
+//! M(θ2) θ̈ = f(θ, θ̇, torque), with the mass matrix M = \[\[d1, d2\], \[d2, m2 lc2² + I2\]\] and the names of
+//! Sutton & Barto, *Reinforcement Learning: An Introduction* (1998), section 11.3: d1, d2, phi1 and phi2.
+
+use core::fmt;
+
+use super::Params;
+use crate::arithmetic::{Real, SinCos};
+
+/// The constants of a form of the equations.
+pub trait FromParams<S>: Copy + fmt::Debug + Send + Sync {
+    /// Those of [`Params::DEFAULT`], computed by the compiler.
+    const DEFAULT: Self;
+
+    /// Those of `params`, given l1², lc1² and lc2², because `Host` squares with the platform's `pow`.
+    fn new(params: &Params<S>, squares: [S; 3]) -> Self;
+
+    /// Those that both forms need.
+    fn common(&self) -> &Common<S>;
+}
+
+/// What both forms need.
+#[derive(Clone, Copy, Debug)]
+pub struct Common<S> {
+    /// m2 l1 lc2, kg m²: how strongly the links accelerate each other.
+    pub coupling: S,
+    /// m2 lc2² + I2, kg m²: the inertia of link 2 about its joint.
+    pub link2: S,
+    /// (m1 lc1 + m2 l1) g, N m.
+    pub gravity1: S,
+    /// m2 lc2 g, N m.
+    pub gravity2: S,
+    /// dt/2, s.
+    pub half_dt: S,
+    /// dt/6, s.
+    pub sixth_dt: S,
+}
+
+for_f32_and_f64! {
+    impl Common<S> {
+        pub(super) const fn new(params: &Params<S>, lc2_squared: S) -> Self {
+            let Params {
+                length1: l1,
+                mass1: m1,
+                mass2: m2,
+                center_of_mass1: lc1,
+                center_of_mass2: lc2,
+                inertia2,
+                gravity,
+                dt,
+                ..
+            } = *params;
+            Self {
+                coupling: m2 * l1 * lc2,
+                link2: m2 * lc2_squared + inertia2,
+                gravity1: (m1 * lc1 + m2 * l1) * gravity,
+                gravity2: m2 * lc2 * gravity,
+                half_dt: dt * 0.5,
+                sixth_dt: dt / 6.0,
+            }
+        }
+    }
+}
+
+impl<S: Real> Common<S> {
+    pub(super) fn mass_matrix(&self, params: &Params<S>, cos2: S) -> [[S; 2]; 2] {
+        let Params {
+            length1: l1,
+            mass1: m1,
+            mass2: m2,
+            center_of_mass1: lc1,
+            inertia1,
+            ..
+        } = *params;
+        let upper = m1 * (lc1 * lc1) + inertia1 + m2 * (l1 * l1);
+        let coupling = self.coupling * cos2;
+        let d2 = self.link2 + coupling;
+        [[upper + coupling + d2, d2], [d2, self.link2]]
+    }
+
+    pub(super) fn energy(
+        &self,
+        params: &Params<S>,
+        [dtheta1, dtheta2]: [S; 2],
+        sin_cos: [SinCos<S>; 2],
+    ) -> S {
+        let [[m11, m12], [_, m22]] = self.mass_matrix(params, sin_cos[1].1);
+        let momentum1 = m11 * dtheta1 + m12 * dtheta2;
+        let momentum2 = m12 * dtheta1 + m22 * dtheta2;
+        let kinetic = S::HALF * (momentum1 * dtheta1 + momentum2 * dtheta2);
+        let [(_, cos1), (_, cos_sum)] = directions(sin_cos);
+        kinetic - self.gravity1 * cos1 - self.gravity2 * cos_sum
+    }
+}
+
+/// Elbow and tip as \[x, y\], m.
+pub(super) fn positions<S: Real>(params: &Params<S>, sin_cos: [SinCos<S>; 2]) -> [[S; 2]; 2] {
+    let (l1, l2) = (params.length1, params.length2);
+    let [(sin1, cos1), (sin_sum, cos_sum)] = directions(sin_cos);
+    let elbow = [l1 * sin1, -l1 * cos1];
+    let tip = [elbow[0] + l2 * sin_sum, elbow[1] - l2 * cos_sum];
+    [elbow, tip]
+}
+
+/// Sines and cosines of θ1 and θ1 + θ2, the angles of both links to the vertical.
+fn directions<S: Real>([(sin1, cos1), (sin2, cos2)]: [SinCos<S>; 2]) -> [SinCos<S>; 2] {
+    let sum = (sin1 * cos2 + cos1 * sin2, cos1 * cos2 - sin1 * sin2);
+    [(sin1, cos1), sum]
+}

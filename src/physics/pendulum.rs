@@ -1,0 +1,363 @@
+//! The pendulum: parameters, a state, and what they determine.
+
+use super::model::{self, FromParams};
+use super::{Params, State, step};
+#[cfg(feature = "std")]
+use crate::arithmetic::Host;
+use crate::arithmetic::{Arithmetic, Equations, Fast, Micro, Model, Portable, Real, SinCos};
+use crate::error::{Error, Range};
+
+/// A double pendulum with a motor between its links.
+///
+/// `A` is the [arithmetic](crate::arithmetic) and decides the bits. A pendulum can be made in a `const`, so it can
+/// be a `static`:
+///
+/// ```
+/// use std::sync::Mutex;
+///
+/// use acrobot::Fast;
+/// use acrobot::physics::Pendulum;
+///
+/// static PENDULUM: Mutex<Pendulum<Fast>> = Mutex::new(Pendulum::hanging());
+///
+/// let mut pendulum = PENDULUM.lock().unwrap();
+/// pendulum.step(1.0)?; // N m
+/// assert!(pendulum.state().dtheta2 > 0.0);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// # Results that are not finite
+///
+/// Extreme but valid parameters, states and torques can take a step's result beyond the range of the scalar. A step
+/// whose result is not finite keeps the angles and sets both velocities to 0, in every arithmetic and in batches. An
+/// initial state far outside ±π is valid: the first step wraps the angles and bounds the velocities. No step hangs,
+/// panics or returns NaN.
+#[derive(Clone, Debug)]
+pub struct Pendulum<A: Arithmetic> {
+    /// θ1, θ2, θ̇1 and θ̇2.
+    y: [A::Scalar; 4],
+    model: Model<A>,
+    /// Of θ1 and θ2, for the observation and the next step.
+    sin_cos: [SinCos<A::Scalar>; 2],
+    /// Whether `sin_cos` is up to date. It is not where a `const` made the pendulum: no arithmetic can compute sines
+    /// there.
+    is_current: bool,
+}
+
+impl<A: Arithmetic> Pendulum<A> {
+    /// A pendulum with the default parameters that hangs at rest.
+    #[must_use]
+    pub const fn hanging() -> Self {
+        Self {
+            model: Model::DEFAULT,
+            y: [A::Scalar::ZERO; 4],
+            sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2],
+            is_current: false,
+        }
+    }
+
+    /// A pendulum with these parameters in this state.
+    ///
+    /// # Errors
+    ///
+    /// As [`Params::validate`] and [`State::validate`].
+    pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
+        params.validate()?;
+        state.validate()?;
+        Ok(Self::unchecked(params, state))
+    }
+
+    /// [`new`](Self::new) with parameters and a state that are known to be valid.
+    #[inline]
+    pub(crate) fn unchecked(params: Params<A::Scalar>, state: State<A::Scalar>) -> Self {
+        Self {
+            model: Model::new(params),
+            sin_cos: sin_cos::<A>([state.theta1, state.theta2]),
+            is_current: true,
+            y: state.into(),
+        }
+    }
+
+    /// Applies a torque in N m for one dt. Returns whether the new state is in Gymnasium's goal:
+    /// −cos θ1 − cos(θ1 + θ2) > 1.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a torque that is not finite.
+    #[inline]
+    pub fn step(&mut self, torque: A::Scalar) -> Result<bool, Error> {
+        check_torque(torque)?;
+        Ok(self.advance(torque))
+    }
+
+    /// [`step`](Self::step) with a torque that is known to be finite.
+    #[inline]
+    pub(crate) fn advance(&mut self, torque: A::Scalar) -> bool {
+        if !self.is_current {
+            self.compute_sines();
+        }
+        step::<A, A::Scalar>(&self.model, &mut self.y, &mut self.sin_cos, torque)
+    }
+
+    /// The state.
+    #[must_use]
+    #[inline]
+    pub fn state(&self) -> State<A::Scalar> {
+        self.y.into()
+    }
+
+    /// Sets the state. Angles and velocities may be outside their bounds until the next step.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a number that is not finite.
+    pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
+        state.validate()?;
+        self.place(state);
+        Ok(())
+    }
+
+    /// [`set_state`](Self::set_state) with a state that is known to be finite.
+    pub(crate) fn place(&mut self, state: State<A::Scalar>) {
+        self.y = state.into();
+        self.compute_sines();
+    }
+
+    #[inline(never)] // saves registers: a step seldom calls it
+    fn compute_sines(&mut self) {
+        self.sin_cos = sin_cos::<A>(self.angles());
+        self.is_current = true;
+    }
+
+    /// The parameters.
+    #[must_use]
+    #[inline]
+    pub fn params(&self) -> &Params<A::Scalar> {
+        &self.model.params
+    }
+
+    /// Sets the parameters, from the next step on. A pendulum ignores `torques` and `torque_noise`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Params::validate`].
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        self.model = Model::new(params);
+        Ok(())
+    }
+
+    /// Sine and cosine of θ1, and those of θ2, which the pendulum keeps from its last step.
+    #[must_use]
+    #[inline]
+    pub fn sin_cos(&self) -> [(A::Scalar, A::Scalar); 2] {
+        if self.is_current {
+            self.sin_cos
+        } else {
+            sin_cos::<A>(self.angles())
+        }
+    }
+
+    /// [`sin_cos`](Self::sin_cos) after a step or a reset, when it is known to be current.
+    #[inline]
+    pub(crate) fn current_sin_cos(&self) -> [SinCos<A::Scalar>; 2] {
+        self.sin_cos
+    }
+
+    /// [`derivative`] at the state under a torque in N m, from the sines and constants that the pendulum keeps.
+    #[must_use]
+    pub fn derivative(&self, torque: A::Scalar) -> [A::Scalar; 4] {
+        A::Form::derivative(&self.model, self.y, Some(self.sin_cos()), torque)
+    }
+
+    /// [`energy`] of the state, J.
+    #[must_use]
+    pub fn energy(&self) -> A::Scalar {
+        let [_, _, dtheta1, dtheta2] = self.y;
+        let Model { params, constants } = &self.model;
+        let common = constants.common();
+        common.energy(params, [dtheta1, dtheta2], self.sin_cos())
+    }
+
+    /// [`mass_matrix`] at the state, kg m².
+    #[must_use]
+    pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
+        let [_, (_, cos2)] = self.sin_cos();
+        let Model { params, constants } = &self.model;
+        constants.common().mass_matrix(params, cos2)
+    }
+
+    /// [`positions`] of elbow and tip, m.
+    #[must_use]
+    pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
+        model::positions(self.params(), self.sin_cos())
+    }
+
+    /// The height of the tip above the fixed joint, m.
+    #[must_use]
+    pub fn tip_height(&self) -> A::Scalar {
+        let [_, [_, height]] = self.positions();
+        height
+    }
+
+    #[inline]
+    fn angles(&self) -> [A::Scalar; 2] {
+        let [theta1, theta2, ..] = self.y;
+        [theta1, theta2]
+    }
+}
+
+macro_rules! at {
+    ($($(#[$attribute:meta])* $arithmetic:ident: $scalar:ident),*) => {$(
+        $(#[$attribute])*
+        impl Pendulum<$arithmetic> {
+            /// A pendulum with the default parameters in this state, also in a `const`.
+            ///
+            /// # Errors
+            ///
+            /// [`Error::OutOfRange`] for a number that is not finite.
+            pub const fn at(state: State<$scalar>) -> Result<Self, Error> {
+                let State { theta1, theta2, dtheta1, dtheta2 } = state;
+                let wide = State {
+                    theta1: theta1 as f64,
+                    theta2: theta2 as f64,
+                    dtheta1: dtheta1 as f64,
+                    dtheta2: dtheta2 as f64,
+                };
+                if let Err(error) = wide.check() {
+                    return Err(error);
+                }
+                let mut pendulum = Self::hanging();
+                pendulum.y = [theta1, theta2, dtheta1, dtheta2];
+                Ok(pendulum)
+            }
+        }
+    )*};
+}
+
+at!(Portable: f64, Fast: f32, Micro: f32, #[cfg(feature = "std")] Host: f64);
+
+impl<A: Arithmetic> PartialEq for Pendulum<A> {
+    /// Compares parameters and state. Extreme parameters can make constants NaN, which does not equal itself.
+    fn eq(&self, other: &Self) -> bool {
+        self.params() == other.params() && self.y == other.y
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl<A: Arithmetic<Scalar: defmt::Format>> defmt::Format for Pendulum<A> {
+    /// Parameters and state.
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (params, state) = (self.params(), self.state());
+        defmt::write!(f, "Pendulum {{ params: {}, state: {} }}", params, state);
+    }
+}
+
+/// Rejects a torque that is not finite.
+pub(crate) fn check_torque<S: Real>(torque: S) -> Result<(), Error> {
+    Range::Finite.check("torque", torque.to_f64(), "N m")
+}
+
+/// Sines and cosines of angles of any size.
+pub(crate) fn sin_cos<A: Arithmetic>(angles: [A::Scalar; 2]) -> [SinCos<A::Scalar>; 2] {
+    /// Out of line, to save flash: initial states are few.
+    #[inline(never)]
+    fn apart<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
+        A::sin_cos(x)
+    }
+    let [theta1, theta2] = angles;
+    [apart::<A>(theta1), apart::<A>(theta2)]
+}
+
+/// The equations of motion: \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², at a state and under a torque between the
+/// links in N m.
+///
+/// The arithmetic's form decides the order of evaluation, and `params.dynamics` between the equations of the book
+/// and of the paper. Nothing is checked: values out of range give what IEEE 754 gives. Constants that depend only on
+/// the parameters are computed again in each call; [`Pendulum::derivative`] keeps them.
+///
+/// ```
+/// use acrobot::physics::derivative;
+/// use acrobot::{Params, Portable, State};
+///
+/// let hanging = derivative::<Portable>(&Params::DEFAULT, &State::default(), 0.0);
+/// assert!(hanging.iter().all(|rate| rate.abs() < 1e-15));
+/// ```
+#[must_use]
+pub fn derivative<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: &State<A::Scalar>,
+    torque: A::Scalar,
+) -> [A::Scalar; 4] {
+    Pendulum::<A>::unchecked(*params, *state).derivative(torque)
+}
+
+/// The mass matrix M at a state, kg m². The kinetic energy is θ̇ᵀ M θ̇ / 2. M is symmetric and positive definite.
+/// Extreme parameters can make its numbers infinite or NaN.
+///
+/// ```
+/// use acrobot::physics::mass_matrix;
+/// use acrobot::{Params, Portable, State};
+///
+/// let stretched = mass_matrix::<Portable>(&Params::DEFAULT, &State::default());
+/// assert_eq!(stretched, [[4.5, 1.75], [1.75, 1.25]]);
+/// ```
+#[must_use]
+pub fn mass_matrix<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: &State<A::Scalar>,
+) -> [[A::Scalar; 2]; 2] {
+    Pendulum::<A>::unchecked(*params, *state).mass_matrix()
+}
+
+/// The total mechanical energy of a state, J. The potential energy is 0 at the height of the fixed joint, so the
+/// least energy is that of hanging at rest.
+///
+/// The equations of the book conserve it without a torque; those of the paper do not. Extreme velocities or parameters
+/// can make it infinite or NaN.
+///
+/// ```
+/// use acrobot::physics::energy;
+/// use acrobot::{Params, Portable, State};
+///
+/// let hanging = energy::<Portable>(&Params::DEFAULT, &State::default());
+/// assert!((hanging + 9.8 * (0.5 + 1.5)).abs() < 1e-12);
+/// ```
+#[must_use]
+pub fn energy<A: Arithmetic>(params: &Params<A::Scalar>, state: &State<A::Scalar>) -> A::Scalar {
+    Pendulum::<A>::unchecked(*params, *state).energy()
+}
+
+/// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the right and y up.
+///
+/// ```
+/// use acrobot::physics::positions;
+/// use acrobot::{Params, Portable, State};
+///
+/// let [elbow, tip] = positions::<Portable>(&Params::DEFAULT, &State::default());
+/// assert_eq!((elbow, tip), ([0.0, -1.0], [0.0, -2.0]));
+/// ```
+#[must_use]
+pub fn positions<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: &State<A::Scalar>,
+) -> [[A::Scalar; 2]; 2] {
+    Pendulum::<A>::unchecked(*params, *state).positions()
+}
+
+/// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from −(l1 + l2) hanging to
+/// l1 + l2 upright.
+///
+/// ```
+/// use acrobot::physics::tip_height;
+/// use acrobot::{Params, Portable, State};
+///
+/// assert_eq!(tip_height::<Portable>(&Params::DEFAULT, &State::default()), -2.0);
+/// ```
+#[must_use]
+pub fn tip_height<A: Arithmetic>(
+    params: &Params<A::Scalar>,
+    state: &State<A::Scalar>,
+) -> A::Scalar {
+    Pendulum::<A>::unchecked(*params, *state).tip_height()
+}

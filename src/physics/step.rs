@@ -1,0 +1,100 @@
+//! One step, of one acrobot or of many side by side.
+
+use super::rk4::{Derivative, classical, compact};
+use super::{FromParams, Params};
+use crate::arithmetic::{Arithmetic, Equations, Model, Numbers, Real, SinCos};
+
+/// Takes `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 through one dt under a constant torque
+/// in N m. Returns whether the new state is in the goal.
+#[inline(always)]
+pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<A>,
+    y: &mut [V; 4],
+    sin_cos: &mut [SinCos<V>; 2],
+    torque: V,
+) -> V::Mask {
+    let Model { params, constants } = model;
+    let dts = [
+        constants.common().half_dt,
+        params.dt,
+        constants.common().sixth_dt,
+    ];
+    let k1 = A::Form::derivative(model, *y, Some(*sin_cos), torque);
+    let forced = Forced { model, torque };
+    let angles = [y[0], y[1]];
+    *y = if A::Form::COMPACT {
+        compact(*y, k1, dts, &forced)
+    } else {
+        classical(*y, k1, dts, &forced)
+    };
+    // Few results of one number need it, so it is out of line, which saves flash. Of many lanes one often does. They
+    // inline it, because a function out of line may not use the vectors that its caller may use.
+    if !V::IS_ONE {
+        enforce_bounds::<A, V>(params, y, angles);
+    } else if !is_within_bounds::<A, V>(params, y) {
+        enforce_bounds_apart::<A, V>(params, y, angles);
+    }
+    *sin_cos = [y[0].sin_cos::<A>(), y[1].sin_cos::<A>()];
+    A::Form::reaches_goal::<A, V>([y[0], y[1]], *sin_cos)
+}
+
+/// The equations under a torque that is constant for a step.
+struct Forced<'a, A: Arithmetic, V> {
+    model: &'a Model<A>,
+    torque: V,
+}
+
+impl<A: Arithmetic, V: Numbers<A::Scalar>> Derivative<V, 4> for Forced<'_, A, V> {
+    #[inline(always)]
+    fn at(&self, y: [V; 4]) -> [V; 4] {
+        A::Form::derivative(self.model, y, None, self.torque)
+    }
+}
+
+/// Whether all angles are within ±π and all velocities within their bounds; false for NaN.
+#[inline(always)]
+fn is_within_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
+    params: &Params<A::Scalar>,
+    [theta1, theta2, dtheta1, dtheta2]: &[V; 4],
+) -> bool {
+    let pi = A::Scalar::PI;
+    theta1.all_within(pi)
+        && theta2.all_within(pi)
+        && dtheta1.all_within(params.max_velocity1)
+        && dtheta2.all_within(params.max_velocity2)
+}
+
+#[inline(never)]
+fn enforce_bounds_apart<A: Arithmetic, V: Numbers<A::Scalar>>(
+    params: &Params<A::Scalar>,
+    y: &mut [V; 4],
+    angles: [V; 2],
+) {
+    enforce_bounds::<A, V>(params, y, angles);
+}
+
+/// Wraps the angles and bounds the velocities. A result that is not finite becomes the angles before the step, at
+/// rest.
+#[inline(always)]
+fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
+    params: &Params<A::Scalar>,
+    y: &mut [V; 4],
+    [before1, before2]: [V; 2],
+) {
+    let zero = V::splat(A::Scalar::ZERO);
+    let [theta1, theta2, dtheta1, dtheta2] = *y;
+    // 0 times a number that is not finite is NaN.
+    let zeros = ((theta1 * zero + theta2 * zero) + dtheta1 * zero) + dtheta2 * zero;
+    if !zeros.all_within(A::Scalar::ZERO) {
+        for (y, otherwise) in y.iter_mut().zip([before1, before2, zero, zero]) {
+            *y = zeros.select_within(A::Scalar::ZERO, *y, otherwise);
+        }
+    }
+    let [theta1, theta2, dtheta1, dtheta2] = *y;
+    *y = [
+        A::Form::wrap(theta1),
+        A::Form::wrap(theta2),
+        dtheta1.bound(params.max_velocity1),
+        dtheta2.bound(params.max_velocity2),
+    ];
+}

@@ -1,0 +1,198 @@
+//! The geometry of a drawing in pixels.
+
+use embedded_graphics_core::geometry::{Point, Size};
+use embedded_graphics_core::pixelcolor::PixelColor;
+use embedded_graphics_core::primitives::Rectangle;
+
+use super::{Figure, Theme};
+
+/// A figure in the pixels of one target. The parts overlap as in Gymnasium, the lower link over the upper.
+pub(super) struct Scene {
+    /// Around all parts except the line: pixels outside need no test against parts.
+    bounds: Rectangle,
+    /// The row of the target height.
+    pub(super) line: i32,
+    links: [Bar; 2],
+    joints: [Disc; 2],
+    arrow: Option<[Bar; 8]>,
+}
+
+/// Targets with fewer pixels in one direction show no arrow.
+const ROOM_FOR_ARROW: u32 = 48;
+
+/// A pixel belongs to a part within half a pixel of its centre, as in Gymnasium, which truncates the corners of a
+/// link to whole pixels and includes them.
+const TOLERANCE: f32 = 0.5;
+
+impl Scene {
+    pub(super) fn new(figure: &Figure, area: Rectangle) -> Self {
+        let Size { width, height } = area.size;
+        // Half the picture in pixels; the fixed joint is in the middle of the area.
+        let half = width.min(height) as f32 / 2.0;
+        let metre = figure.metre * half;
+        let thickness = 0.1 * metre;
+        let center = Vector {
+            x: area.top_left.x as f32 + width as f32 / 2.0,
+            y: area.top_left.y as f32 + height as f32 / 2.0,
+        };
+
+        let [(sin1, cos1), (sin2, cos2)] = figure.directions;
+        let [length1, length2] = figure.lengths.map(|length| length * half);
+        // Rows count downwards, as the cosine of an angle against the hanging vertical does.
+        let elbow = center.plus(length1 * sin1, length1 * cos1);
+        let tip = elbow.plus(length2 * sin2, length2 * cos2);
+
+        let room = width.min(height) >= ROOM_FOR_ARROW && figure.torque != 0;
+        // An arrow reaches 0.4 m from the elbow, and a link's corner √2 of its half width.
+        let margin = if room { 0.5 * metre } else { 1.5 * thickness } + 2.0;
+        let corner = |pick: fn(f32, f32) -> f32, margin| {
+            let x = pick(pick(center.x, elbow.x), tip.x) + margin;
+            let y = pick(pick(center.y, elbow.y), tip.y) + margin;
+            Point::new(x as i32, y as i32)
+        };
+        Self {
+            bounds: Rectangle::with_corners(corner(f32::min, -margin), corner(f32::max, margin)),
+            // Gymnasium counts rows upwards and truncates: between two rows, the upper one.
+            line: libm::ceilf(center.y - metre) as i32 - 1,
+            links: [
+                Bar::new(center, elbow, thickness),
+                Bar::new(elbow, tip, thickness),
+            ],
+            joints: [Disc::new(center, thickness), Disc::new(elbow, thickness)],
+            arrow: room.then(|| arrow(elbow, 0.3 * metre, f32::from(figure.torque))),
+        }
+    }
+
+    /// Around the parts of both scenes.
+    pub(super) fn bounds_with(&self, other: &Self) -> Rectangle {
+        let end = |scene: &Self| scene.bounds.top_left + scene.bounds.size;
+        Rectangle::with_corners(
+            self.bounds.top_left.component_min(other.bounds.top_left),
+            end(self).component_max(end(other)),
+        )
+    }
+
+    pub(super) fn color<C: PixelColor>(&self, point: Point, theme: &Theme<C>) -> C {
+        let [link1, link2] = &self.links;
+        let [joint1, joint2] = &self.joints;
+        let line_or_ground = if point.y == self.line {
+            theme.line
+        } else {
+            theme.ground
+        };
+        if !self.bounds.contains(point) {
+            line_or_ground
+        } else if self.arrow.iter().flatten().any(|bar| bar.covers(point)) {
+            theme.torque
+        } else if joint2.covers(point) {
+            theme.joint
+        } else if link2.covers(point) {
+            theme.link
+        } else if joint1.covers(point) {
+            theme.joint
+        } else if link1.covers(point) {
+            theme.link
+        } else {
+            line_or_ground
+        }
+    }
+}
+
+/// Three quarters of a turn around `center`, open below, with two barbs at the end. A positive `direction` is
+/// counter-clockwise.
+fn arrow(center: Vector, radius: f32, direction: f32) -> [Bar; 8] {
+    const DIAGONAL: f32 = core::f32::consts::FRAC_1_SQRT_2;
+    const END: (f32, f32) = (-DIAGONAL, DIAGONAL);
+    [
+        ((DIAGONAL, DIAGONAL), (1.0, 0.0)),
+        ((1.0, 0.0), (DIAGONAL, -DIAGONAL)),
+        ((DIAGONAL, -DIAGONAL), (0.0, -1.0)),
+        ((0.0, -1.0), (-DIAGONAL, -DIAGONAL)),
+        ((-DIAGONAL, -DIAGONAL), (-1.0, 0.0)),
+        ((-1.0, 0.0), END),
+        // The barbs, 40° to either side of the last piece of the arc.
+        (END, (END.0 - 0.49, END.1 - 0.25)),
+        (END, (END.0 + 0.17, END.1 - 0.52)),
+    ]
+    .map(|(from, to)| {
+        let at = |(x, y)| center.plus(direction * radius * x, radius * y);
+        Bar::new(at(from), at(to), radius / 12.0)
+    })
+}
+
+/// A position on the target in pixels, to the right and downwards; pixel (0, 0) reaches to (1, 1).
+#[derive(Clone, Copy)]
+struct Vector {
+    x: f32,
+    y: f32,
+}
+
+impl Vector {
+    fn plus(self, x: f32, y: f32) -> Self {
+        Self {
+            x: self.x + x,
+            y: self.y + y,
+        }
+    }
+
+    /// The vector from here to the centre of a pixel.
+    fn to(self, point: Point) -> Self {
+        Self {
+            x: point.x as f32 + 0.5 - self.x,
+            y: point.y as f32 + 0.5 - self.y,
+        }
+    }
+}
+
+/// A rectangle along a line.
+struct Bar {
+    from: Vector,
+    /// A unit vector.
+    along: Vector,
+    length: f32,
+    half_width: f32,
+}
+
+impl Bar {
+    fn new(from: Vector, to: Vector, half_width: f32) -> Self {
+        let (x, y) = (to.x - from.x, to.y - from.y);
+        let length = libm::sqrtf(x * x + y * y);
+        // A bar of length 0 has a NaN direction and covers nothing.
+        let along = Vector {
+            x: x / length,
+            y: y / length,
+        };
+        Self {
+            from,
+            along,
+            length,
+            half_width,
+        }
+    }
+
+    fn covers(&self, point: Point) -> bool {
+        let Vector { x, y } = self.from.to(point);
+        let along = x * self.along.x + y * self.along.y;
+        let across = y * self.along.x - x * self.along.y;
+        across.abs() <= self.half_width + TOLERANCE
+            && -TOLERANCE <= along
+            && along <= self.length + TOLERANCE
+    }
+}
+
+/// A circle as wide as a link.
+struct Disc {
+    center: Vector,
+    radius: f32,
+}
+
+impl Disc {
+    fn new(center: Vector, radius: f32) -> Self {
+        Self { center, radius }
+    }
+
+    fn covers(&self, point: Point) -> bool {
+        let Vector { x, y } = self.center.to(point);
+        x * x + y * y <= self.radius * self.radius
+    }
+}

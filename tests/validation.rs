@@ -1,0 +1,328 @@
+//! Promise 3: input out of range is rejected before anything changes. Extreme but valid input neither hangs nor panics
+//! nor gives NaN.
+
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::batch::{Batch, Block};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::{Pendulum, StartBounds};
+use acrobot::trajectory::Trajectory;
+use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
+
+const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+/// Every rule of every [`Error`]: the message names the value, its unit and what it must be.
+#[test]
+fn errors_say_what_was_wrong_and_what_is_valid() {
+    fn params(change: fn(&mut Params)) -> Result<(), Error> {
+        let mut params = Params::DEFAULT;
+        change(&mut params);
+        params.validate()
+    }
+    fn bounds(low: f64, high: f64) -> Result<(), Error> {
+        StartBounds::new(low, high).map(drop)
+    }
+    fn batch<const LEN: usize>() -> Result<Batch<Fast, [Block; 3], [Pcg64; LEN]>, Error> {
+        Batch::new(1, [Block::EMPTY; 3], [Pcg64::UNSEEDED; LEN])
+    }
+    fn seed(text: &str) -> Result<(), Error> {
+        text.parse::<SeedSequence>().map(drop)
+    }
+    let mut members = batch::<35>().unwrap();
+    let mut trajectory = Trajectory::<f32, 4>::new();
+    trajectory.step(&mut Acrobot::<Fast>::new(1), Action::Zero);
+    for (result, message) in [
+        (
+            params(|params| params.gravity = f64::NAN),
+            "gravity must be a finite number of m/s², got NaN",
+        ),
+        (
+            params(|params| params.torque_noise = -0.5),
+            "torque_noise must be finite and at least 0 N m, got -0.5",
+        ),
+        (
+            params(|params| params.dt = 0.0),
+            "dt must be finite and above 0 s, got 0",
+        ),
+        (
+            params(|params| params.max_velocity2 = f64::INFINITY),
+            "max_velocity2 must be above 0 and at most 3.4e38 rad/s, got inf",
+        ),
+        (
+            bounds(f64::NEG_INFINITY, 0.0),
+            "low must be within -3.4e38 and 3.4e38 rad and rad/s, got -inf",
+        ),
+        (
+            bounds(0.2, -0.2),
+            "low must not be above high, got 0.2 and -0.2 rad and rad/s",
+        ),
+        (
+            params(|params| (params.inertia1, params.center_of_mass1) = (0.0, 0.0)),
+            "inertia1 must be above 0 kg m² where the centre of mass is on the joint, got 0",
+        ),
+        (
+            batch::<0>().map(drop),
+            "a batch must have at least 1 acrobot, got 0 generators",
+        ),
+        (
+            batch::<17>().map(drop),
+            "blocks must have 2 elements, got 3",
+        ),
+        (
+            members.set_state(35, State::default()),
+            "member must be below the length 35, got 35",
+        ),
+        (
+            trajectory.write_row(1, &mut [0; 200]).map(drop),
+            "row must be below the length 1, got 1",
+        ),
+        (
+            trajectory.write_header(&mut [0; 10]).map(drop),
+            "buffer must have at least 182 bytes, got 10",
+        ),
+        (
+            Action::try_from(3).map(drop),
+            "action must be 0 (negative torque), 1 (none) or 2 (positive), got 3",
+        ),
+        (
+            seed("12x"),
+            "seed must be a decimal integer of at least 0, got 'x' as character 3",
+        ),
+        (
+            seed(""),
+            "seed must be a decimal integer of at least 0, got an empty text",
+        ),
+    ] {
+        assert_eq!(result.unwrap_err().to_string(), message);
+    }
+}
+
+/// Every field of the parameters: its name, how to set it, and whether 0 and −1 are valid.
+#[expect(clippy::type_complexity, reason = "a table")]
+fn fields() -> [(&'static str, fn(&mut Params, f64), bool, bool); 16] {
+    [
+        ("length1", |p, x| p.length1 = x, false, false),
+        ("length2", |p, x| p.length2 = x, false, false),
+        ("mass1", |p, x| p.mass1 = x, false, false),
+        ("mass2", |p, x| p.mass2 = x, false, false),
+        ("center_of_mass1", |p, x| p.center_of_mass1 = x, true, false),
+        ("center_of_mass2", |p, x| p.center_of_mass2 = x, true, false),
+        ("inertia1", |p, x| p.inertia1 = x, true, false),
+        ("inertia2", |p, x| p.inertia2 = x, true, false),
+        ("gravity", |p, x| p.gravity = x, true, true),
+        ("dt", |p, x| p.dt = x, false, false),
+        ("max_velocity1", |p, x| p.max_velocity1 = x, false, false),
+        ("max_velocity2", |p, x| p.max_velocity2 = x, false, false),
+        ("torques[0]", |p, x| p.torques[0] = x, true, true),
+        ("torques[1]", |p, x| p.torques[1] = x, true, true),
+        ("torques[2]", |p, x| p.torques[2] = x, true, true),
+        ("torque_noise", |p, x| p.torque_noise = x, true, false),
+    ]
+}
+
+#[test]
+fn parameters_out_of_range_are_rejected_by_name() {
+    let mut acrobot = Acrobot::<Portable>::new(1);
+    for (field, set, zero, negative) in fields() {
+        for value in NOT_FINITE.into_iter().chain([0.0, -1.0, 2.0]) {
+            let before = acrobot.clone();
+            let mut params = Params::DEFAULT;
+            set(&mut params, value);
+            let valid = value == 2.0 || (value == 0.0 && zero) || (value == -1.0 && negative);
+            match acrobot.set_params(params) {
+                Ok(()) => {
+                    assert!(valid, "{field} = {value} was accepted");
+                    assert_eq!(*acrobot.params(), params);
+                }
+                Err(error) => {
+                    assert!(!valid, "{error}");
+                    let text = error.to_string();
+                    assert!(
+                        text.starts_with(&format!("{field} must be "))
+                            && text.ends_with(&format!(", got {value}")),
+                        "{text}"
+                    );
+                    assert_eq!(acrobot, before);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_link_needs_inertia_about_its_joint() {
+    for point in [
+        Params {
+            inertia1: 0.0,
+            center_of_mass1: 0.0,
+            ..Params::DEFAULT
+        },
+        Params {
+            inertia2: 0.0,
+            center_of_mass2: 0.0,
+            ..Params::DEFAULT
+        },
+        // Their squares vanish in f64.
+        Params {
+            inertia2: 0.0,
+            center_of_mass2: 1e-170,
+            ..Params::DEFAULT
+        },
+    ] {
+        let error = point.validate().unwrap_err();
+        assert!(
+            matches!(error, Error::NoInertia { value: 0.0, .. }),
+            "{error}"
+        );
+    }
+    // Point masses at the tips are a pendulum.
+    let points = Params {
+        inertia1: 0.0,
+        inertia2: 0.0,
+        center_of_mass1: 1.0,
+        center_of_mass2: 1.0,
+        ..Params::DEFAULT
+    };
+    points.validate().unwrap();
+}
+
+#[test]
+fn states_and_torques_that_are_not_finite_are_rejected() {
+    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(1));
+    let before = acrobot.clone();
+    let mut pendulum = Pendulum::<Portable>::new(Params::DEFAULT, before.inner().state()).unwrap();
+    let pendulum_before = pendulum.clone();
+    for value in NOT_FINITE {
+        for (i, name) in ["theta1", "theta2", "dtheta1", "dtheta2"]
+            .into_iter()
+            .enumerate()
+        {
+            let mut numbers = [0.0; 4];
+            numbers[i] = value;
+            let unit = if i < 2 { "rad" } else { "rad/s" };
+            let message = format!("{name} must be a finite number of {unit}, got {value}");
+            let state = State::from(numbers);
+            for result in [
+                acrobot.inner_mut().set_state(state),
+                pendulum.set_state(state),
+                Pendulum::<Portable>::new(Params::DEFAULT, state).map(drop),
+                Pendulum::<Portable>::at(state).map(drop),
+                Pendulum::<Fast>::at(state.cast()).map(drop),
+            ] {
+                assert_eq!(result.unwrap_err().to_string(), message);
+            }
+        }
+        let message = format!("torque must be a finite number of N m, got {value}");
+        for error in [
+            acrobot.step_torque(value).unwrap_err(),
+            acrobot.inner_mut().step_torque(value).unwrap_err(),
+            pendulum.step(value).unwrap_err(),
+        ] {
+            assert_eq!(error.to_string(), message);
+        }
+    }
+    assert_eq!(acrobot, before);
+    assert_eq!(pendulum, pendulum_before);
+    assert_eq!(pendulum.sin_cos(), pendulum_before.sin_cos());
+}
+
+/// A pendulum rejects the parameters that an acrobot rejects, and steps on as before.
+#[test]
+fn parameters_that_a_pendulum_rejects_change_nothing() {
+    let massless = Params {
+        mass1: 0.0,
+        ..Params::DEFAULT
+    };
+    let expected = massless.validate().unwrap_err();
+    let made = Pendulum::<Portable>::new(massless, State::default());
+    assert_eq!(made, Err(expected));
+    let mut pendulum = Pendulum::<Portable>::hanging();
+    assert_eq!(pendulum.set_params(massless), Err(expected));
+    assert_eq!(pendulum, Pendulum::hanging());
+    // The constants stay, too.
+    let mut twin = Pendulum::<Portable>::hanging();
+    assert_eq!(pendulum.step(1.0), twin.step(1.0));
+    assert_eq!(pendulum, twin);
+}
+
+#[test]
+fn bad_start_bounds_and_actions_are_rejected() {
+    for value in NOT_FINITE.into_iter().chain([1e39, -1e39]) {
+        for (name, bounds) in [
+            ("low", StartBounds::new(value, 0.1)),
+            ("high", StartBounds::new(-0.1, value)),
+        ] {
+            let text = bounds.unwrap_err().to_string();
+            let start = format!("{name} must be within -3.4e38 and 3.4e38 rad");
+            assert!(
+                text.starts_with(&start) && text.ends_with(&format!(", got {value}")),
+                "{text}"
+            );
+        }
+    }
+    assert_eq!(
+        StartBounds::new(0.2, 0.1),
+        Err(Error::ReversedBounds {
+            low: 0.2,
+            high: 0.1
+        })
+    );
+    for (number, action) in (0..3).zip(Action::ALL) {
+        assert_eq!(Action::try_from(number), Ok(action));
+        assert_eq!(u8::from(action), number);
+    }
+    for number in 3..=u8::MAX {
+        assert_eq!(Action::try_from(number), Err(Error::UnknownAction(number)));
+    }
+}
+
+#[test]
+fn results_that_are_not_finite_keep_the_angles_and_stop() {
+    fn check<A: Arithmetic>() {
+        let number = A::Scalar::from_f64;
+        let mut acrobot = Acrobot::<A>::new(3);
+        let huge = number(if number(1e300).is_finite() {
+            1e300
+        } else {
+            1e38
+        });
+        let state = State::from([0.5, -0.25, 1.0, 2.0]).cast::<A::Scalar>();
+        // The angles stay and the velocities are 0.
+        acrobot
+            .set_params(Params {
+                dt: huge,
+                ..Params::default()
+            })
+            .unwrap();
+        acrobot.set_state(state).unwrap();
+        acrobot.step(Action::Positive);
+        assert_eq!(
+            acrobot.state(),
+            State {
+                dtheta1: A::Scalar::ZERO,
+                dtheta2: A::Scalar::ZERO,
+                ..state
+            }
+        );
+        // Later steps are as usual.
+        acrobot.set_params(Params::default()).unwrap();
+        acrobot.step(Action::Positive);
+        assert_ne!(acrobot.state().dtheta1, A::Scalar::ZERO);
+    }
+    check::<Portable>();
+    check::<Host>();
+    check::<Fast>();
+    check::<Micro>();
+}
+
+/// These parameters make a constant of the equations NaN, which does not equal itself.
+#[test]
+fn an_acrobot_with_extreme_parameters_equals_its_clone() {
+    let mut acrobot = Acrobot::<Fast>::new(0);
+    let params = Params {
+        length1: 1e38,
+        inertia2: 0.0,
+        ..Params::default()
+    };
+    acrobot.set_params(params).unwrap();
+    assert_eq!(acrobot, acrobot.clone());
+}
