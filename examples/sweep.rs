@@ -30,7 +30,7 @@ use std::time::Instant;
 
 use acrobot::batch::{Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::{Action, Fast, Params, ResetOptions};
+use acrobot::{Action, Fast, Params};
 use clap::Parser;
 use indicatif::ProgressBar;
 use plotters::prelude::*;
@@ -103,11 +103,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let episodes = episodes_of_a_cell(options.episodes, grid.len())?;
     let blocks = vec![Block::EMPTY; episodes.div_ceil(Block::<f32>::LANES)];
     let generators = vec![Pcg64::UNSEEDED; episodes];
-    let mut seeded = Batch::new(0, blocks, generators)?;
-    seeded.reset_with(ResetOptions {
-        seed: Some(options.seed.clone()),
-        ..ResetOptions::default()
-    });
+    let seeded = Batch::with_seed(options.seed.clone(), blocks, generators)?;
 
     let began = Instant::now();
     let progress = ProgressBar::new(options.episodes as u64);

@@ -50,7 +50,7 @@ impl<O, I> Step<O, I> {
 /// // env.reset(seed=42, options={"low": -0.2, "high": 0.2})
 /// acrobot.reset_with(ResetOptions {
 ///     seed: Some(SeedSequence::new(42)),
-///     bounds: StartBounds::new(-0.2, 0.2)?,
+///     bounds: Some(StartBounds::new(-0.2, 0.2)?),
 /// });
 /// # Ok::<(), acrobot::Error>(())
 /// ```
@@ -59,8 +59,9 @@ impl<O, I> Step<O, I> {
 pub struct ResetOptions {
     /// Seeds the generator. Without a seed the current stream goes on.
     pub seed: Option<SeedSequence>,
-    /// The bounds that the initial state is drawn from.
-    pub bounds: StartBounds,
+    /// The bounds that the initial state is drawn from. Without any, the environment's own: Gymnasium's, except for a
+    /// [`Batch`](crate::batch::Batch) with others.
+    pub bounds: Option<StartBounds>,
 }
 
 /// One Acrobot: Gymnasium's environment without its wrappers.
@@ -133,7 +134,7 @@ impl<A: Arithmetic> Acrobot<A> {
         if let Some(seed) = options.seed {
             self.rng = seed.into();
         }
-        self.reset_within(options.bounds)
+        self.reset_within(options.bounds.unwrap_or_default())
     }
 }
 

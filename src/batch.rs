@@ -27,22 +27,25 @@
 //! ```
 
 mod block;
+mod buffers;
 mod member;
 mod simd;
 
 use core::num::NonZeroU32;
 
 pub use block::Block;
+pub use buffers::{Observations, StepBuffers};
 pub use member::Member;
 pub use simd::SimdLevel;
 
 use crate::acrobot::ResetOptions;
-use crate::arithmetic::{Arithmetic, Model, Real};
+use crate::arithmetic::{Arithmetic, Model};
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::physics::{Params, StartBounds, State, check_torque};
+use crate::physics::{Params, StartBounds, State};
 use crate::time_limit::V1;
 use block::{Actions, Drive, Torques};
+use buffers::check_length;
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
@@ -58,33 +61,6 @@ pub enum Autoreset {
     /// Never. Acrobots step on after their ends, as an [`Acrobot`](crate::Acrobot) does, until
     /// [`Batch::reset_masked`] or another reset.
     Disabled,
-}
-
-/// Where a step of a [`Batch`] writes its results. Each slice has one element for each acrobot.
-#[derive(Debug)]
-pub struct StepBuffers<'a> {
-    /// −1, or 0 for the step that reaches the goal and for one that only resets.
-    pub rewards: &'a mut [f32],
-    /// Whether the new state is in the goal.
-    pub terminated: &'a mut [bool],
-    /// Whether the time limit is reached.
-    pub truncated: &'a mut [bool],
-    /// What the agents see of the new states.
-    pub observations: Observations<'a>,
-    /// The last observations of the episodes that this step ended, with [`Autoreset::SameStep`] only. Elements of
-    /// other acrobots stay as they are.
-    pub final_observations: Observations<'a>,
-}
-
-/// Where a [`Batch`] writes [observations](crate::Observation).
-#[derive(Debug)]
-pub enum Observations<'a> {
-    /// Nowhere: they are not computed.
-    None,
-    /// Six numbers for each acrobot.
-    Rows(&'a mut [[f32; 6]]),
-    /// Six slices with one number for each acrobot.
-    Columns([&'a mut [f32]; 6]),
 }
 
 /// Many acrobots with the same parameters, each with its own stream of random numbers.
@@ -118,14 +94,23 @@ where
     B: AsRef<[Block<A::Scalar, N>]> + AsMut<[Block<A::Scalar, N>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
 {
-    /// A batch of as many acrobots as `generators`, which it seeds. It has the default parameters, a limit of 500
-    /// steps and [`Autoreset::NextStep`].
+    /// A batch of as many acrobots as `generators`, which it seeds: acrobot `i` with the `i`-th child of `seed`. It has
+    /// the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
     ///
     /// # Errors
     ///
     /// [`Error::EmptyBatch`] without generators, and [`Error::WrongLength`] unless there is one block for each `N`
     /// generators; the last may be filled in part.
     pub fn new(seed: u64, blocks: B, generators: G) -> Result<Self, Error> {
+        Self::with_seed(SeedSequence::new(seed), blocks, generators)
+    }
+
+    /// [`new`](Self::new) with a seed of any type.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with_seed(seed: SeedSequence, blocks: B, generators: G) -> Result<Self, Error> {
         const { assert!(N > 0, "a block holds at least one acrobot") };
         let len = generators.as_ref().len();
         if len == 0 {
@@ -143,7 +128,10 @@ where
             blocks,
             generators,
         };
-        batch.reset_with_seed(seed);
+        batch.reset_with(ResetOptions {
+            seed: Some(seed),
+            bounds: None,
+        });
         Ok(batch)
     }
 
@@ -156,53 +144,59 @@ where
 
     /// Resets all acrobots, each with the next draws of its own stream.
     pub fn reset(&mut self) {
-        self.reset_within(self.shared.bounds);
+        self.reset_with(ResetOptions::default());
     }
 
     /// Resets all acrobots, with initial states from `bounds`. Later resets draw from
     /// [`start_bounds`](Self::start_bounds) again.
     pub fn reset_within(&mut self, bounds: StartBounds) {
-        for (block, generators) in self.each_block() {
-            block.reset::<A>(&[true; N], bounds, generators);
-        }
+        self.reset_with(ResetOptions {
+            seed: None,
+            bounds: Some(bounds),
+        });
     }
 
     /// Seeds acrobot `i` with the `i`-th child of `seed`, and resets all.
     pub fn reset_with_seed(&mut self, seed: u64) {
-        self.seed(SeedSequence::new(seed));
-        self.reset();
+        self.reset_with(ResetOptions {
+            seed: Some(SeedSequence::new(seed)),
+            bounds: None,
+        });
     }
 
-    /// Gymnasium's `reset(seed=…, options=…)`: seeds as [`reset_with_seed`](Self::reset_with_seed) if there is a
-    /// seed, and resets all within `options.bounds`.
+    /// Gymnasium's `reset(seed=…, options=…)` of all acrobots. A seed seeds acrobot `i` with its `i`-th child; without
+    /// bounds [`start_bounds`](Self::start_bounds) are used.
     pub fn reset_with(&mut self, options: ResetOptions) {
-        if let Some(seed) = options.seed {
-            self.seed(seed);
-        }
-        self.reset_within(options.bounds);
+        self.reset_some(core::iter::repeat(true), options);
     }
 
-    fn seed(&mut self, mut seed: SeedSequence) {
-        let children = seed.spawn(u64::MAX);
-        for (rng, seed) in self.generators.as_mut().iter_mut().zip(children) {
-            *rng = seed.into();
-        }
-    }
-
-    /// Resets the acrobots whose element of `mask` is true: Gymnasium's `reset(options={"reset_mask": mask})`.
+    /// [`reset_with`](Self::reset_with) of the acrobots whose element of `mask` is true: Gymnasium's
+    /// `reset(options={"reset_mask": mask})`. The others stay as they are.
     ///
     /// # Errors
     ///
     /// [`Error::WrongLength`] unless `mask` has one element for each acrobot.
-    pub fn reset_masked(&mut self, mask: &[bool]) -> Result<(), Error> {
+    pub fn reset_masked(&mut self, mask: &[bool], options: ResetOptions) -> Result<(), Error> {
         check_length("mask", mask.len(), self.len())?;
-        let bounds = self.shared.bounds;
-        for ((block, generators), mask) in self.each_block().zip(mask.chunks(N)) {
-            let mut some = [false; N];
-            some.iter_mut().zip(mask).for_each(|(to, from)| *to = *from);
+        self.reset_some(mask.iter().copied(), options);
+        Ok(())
+    }
+
+    fn reset_some(&mut self, mut mask: impl Iterator<Item = bool>, options: ResetOptions) {
+        let bounds = options.bounds.unwrap_or(self.shared.bounds);
+        let mut children = options.seed.map(|mut seed| seed.spawn(u64::MAX));
+        let blocks = self.blocks.as_mut().iter_mut();
+        for (block, generators) in blocks.zip(self.generators.as_mut().chunks_mut(N)) {
+            let mut some = [true; N];
+            for (some, rng) in some.iter_mut().zip(&mut *generators) {
+                *some = mask.next().unwrap_or(true);
+                let child = children.as_mut().and_then(Iterator::next);
+                if let Some(child) = child.filter(|_| *some) {
+                    *rng = child.into();
+                }
+            }
             block.reset::<A>(&some, bounds, generators);
         }
-        Ok(())
     }
 
     /// Begins an episode of each acrobot in a given state: for searches on the model.
@@ -232,7 +226,6 @@ where
         actions: &[T],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        check_actions(actions)?;
         self.drive::<Actions<T>>(actions, buffers)
     }
 
@@ -247,7 +240,6 @@ where
         torques: &[A::Scalar],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        check_torques(torques)?;
         self.drive::<Torques>(torques, buffers)
     }
 
@@ -262,7 +254,6 @@ where
         actions: &[T],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        check_actions(actions)?;
         self.par_drive::<Actions<T>>(actions, buffers)
     }
 
@@ -277,7 +268,6 @@ where
         torques: &[A::Scalar],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        check_torques(torques)?;
         self.par_drive::<Torques>(torques, buffers)
     }
 
@@ -286,8 +276,7 @@ where
         inputs: &[D::Input],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        check_length(D::NAME, inputs.len(), self.len())?;
-        buffers.check(self.len())?;
+        self.check::<D>(inputs, &buffers)?;
         let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
         self.simd_level
             .step::<A, D, N>(&self.shared, blocks, generators, inputs, buffers);
@@ -300,12 +289,21 @@ where
         inputs: &[D::Input],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        check_length(D::NAME, inputs.len(), self.len())?;
-        buffers.check(self.len())?;
+        self.check::<D>(inputs, &buffers)?;
         let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
         self.simd_level
             .par_step::<A, D, N>(&self.shared, blocks, generators, inputs, buffers);
         Ok(())
+    }
+
+    fn check<D: Drive<A::Scalar>>(
+        &self,
+        inputs: &[D::Input],
+        buffers: &StepBuffers<'_>,
+    ) -> Result<(), Error> {
+        check_length(D::NAME, inputs.len(), self.len())?;
+        D::check(inputs)?;
+        buffers.check(self.len())
     }
 
     /// Writes what the agents see of the states.
@@ -412,36 +410,6 @@ where
             block.stop_waiting::<A>(&self.shared, generators);
         }
     }
-
-    /// Each block with its generators.
-    fn each_block(&mut self) -> impl Iterator<Item = (&mut Block<A::Scalar, N>, &mut [Pcg64])> {
-        let blocks = self.blocks.as_mut().iter_mut();
-        blocks.zip(self.generators.as_mut().chunks_mut(N))
-    }
-}
-
-fn check_actions(actions: &[impl Copy + Into<u8>]) -> Result<(), Error> {
-    let numbers = actions.iter().map(|&action| action.into());
-    match numbers.fold(0, u8::max) {
-        0..=2 => Ok(()),
-        highest => Err(Error::UnknownAction(highest)),
-    }
-}
-
-fn check_torques<S: Real>(torques: &[S]) -> Result<(), Error> {
-    torques.iter().try_for_each(|torque| check_torque(*torque))
-}
-
-fn check_length(name: &'static str, len: usize, expected: usize) -> Result<(), Error> {
-    if len == expected {
-        Ok(())
-    } else {
-        Err(Error::WrongLength {
-            name,
-            len,
-            expected,
-        })
-    }
 }
 
 fn no_such_member(index: usize, len: usize) -> Error {
@@ -449,88 +417,5 @@ fn no_such_member(index: usize, len: usize) -> Error {
         name: "member",
         index,
         len,
-    }
-}
-
-impl StepBuffers<'_> {
-    /// The buffers of the acrobots before an index, and of the others.
-    #[cfg(feature = "rayon")]
-    fn split_at(self, index: usize) -> (Self, Self) {
-        let (rewards1, rewards2) = self.rewards.split_at_mut(index);
-        let (terminated1, terminated2) = self.terminated.split_at_mut(index);
-        let (truncated1, truncated2) = self.truncated.split_at_mut(index);
-        let (observations1, observations2) = self.observations.split_at(index);
-        let (finals1, finals2) = self.final_observations.split_at(index);
-        let before = Self {
-            rewards: rewards1,
-            terminated: terminated1,
-            truncated: truncated1,
-            observations: observations1,
-            final_observations: finals1,
-        };
-        let after = Self {
-            rewards: rewards2,
-            terminated: terminated2,
-            truncated: truncated2,
-            observations: observations2,
-            final_observations: finals2,
-        };
-        (before, after)
-    }
-
-    fn check(&self, len: usize) -> Result<(), Error> {
-        check_length("rewards", self.rewards.len(), len)?;
-        check_length("terminated", self.terminated.len(), len)?;
-        check_length("truncated", self.truncated.len(), len)?;
-        self.observations.check("observations", len)?;
-        self.final_observations.check("final_observations", len)
-    }
-}
-
-impl Observations<'_> {
-    #[cfg(feature = "rayon")]
-    fn split_at(self, index: usize) -> (Self, Self) {
-        match self {
-            Self::None => (Self::None, Self::None),
-            Self::Rows(rows) => {
-                let (before, after) = rows.split_at_mut(index);
-                (Self::Rows(before), Self::Rows(after))
-            }
-            Self::Columns(columns) => {
-                let mut halves = columns.map(|column| column.split_at_mut(index));
-                let before = halves.each_mut().map(|(before, _)| core::mem::take(before));
-                let after = halves.map(|(_, after)| after);
-                (Self::Columns(before), Self::Columns(after))
-            }
-        }
-    }
-
-    fn check(&self, name: &'static str, len: usize) -> Result<(), Error> {
-        match self {
-            Self::None => Ok(()),
-            Self::Rows(rows) => check_length(name, rows.len(), len),
-            Self::Columns(columns) => columns
-                .iter()
-                .try_for_each(|column| check_length(name, column.len(), len)),
-        }
-    }
-
-    /// Writes the six numbers of one acrobot, if it is in the batch.
-    fn write(&mut self, index: usize, row: [f32; 6]) {
-        match self {
-            Self::None => {}
-            Self::Rows(rows) => {
-                if let Some(to) = rows.get_mut(index) {
-                    *to = row;
-                }
-            }
-            Self::Columns(columns) => {
-                for (column, x) in columns.iter_mut().zip(row) {
-                    if let Some(to) = column.get_mut(index) {
-                        *to = x;
-                    }
-                }
-            }
-        }
     }
 }

@@ -35,6 +35,32 @@ macro_rules! for_f32_and_f64 {
     };
 }
 
+/// Implements `FromParams` for the `Constants` of a form, given how they follow from the parameters and l1², lc1², lc2².
+macro_rules! constants_of_form {
+    (|$params:ident, $squares:pat_param| $constants:block) => {
+        for_f32_and_f64! {
+            impl FromParams<S> for Constants<S> {
+                const DEFAULT: Self = Self::compute(&Params::DEFAULT, [1.0, 0.25, 0.25]);
+
+                fn new(params: &Params<S>, squares: [S; 3]) -> Self {
+                    Self::compute(params, squares)
+                }
+
+                #[inline(always)]
+                fn common(&self) -> &Common<S> {
+                    &self.common
+                }
+            }
+
+            impl Constants<S> {
+                const fn compute($params: &Params<S>, $squares: [S; 3]) -> Self {
+                    $constants
+                }
+            }
+        }
+    };
+}
+
 mod bounds;
 mod gymnasium;
 mod lean;

@@ -255,13 +255,19 @@ fn resets_with_options_are_seeded_resets_within_bounds() {
     assert_eq!(acrobot, TimeLimit::v1(Acrobot::new(7)));
 
     acrobot.step(Action::Zero);
-    let observation = acrobot.reset_with(ResetOptions { bounds, ..options });
+    let observation = acrobot.reset_with(ResetOptions {
+        bounds: Some(bounds),
+        ..options
+    });
     let mut expected = TimeLimit::v1(Acrobot::hanging(Pcg64::new(7)));
     assert_eq!(observation, expected.reset_within(bounds));
     assert_eq!(acrobot, expected);
 
     acrobot.step(Action::Zero);
-    acrobot.reset_with(ResetOptions { seed: None, bounds });
+    acrobot.reset_with(ResetOptions {
+        seed: None,
+        bounds: Some(bounds),
+    });
     expected.reset_within(bounds);
     assert_eq!(acrobot, expected, "without a seed the stream goes on");
 }

@@ -387,10 +387,14 @@ fn resets_as_one_alone() {
 
         twins.play_randomly(steps);
         for seed in [Some(SeedSequence::new(8)), None] {
-            let options = ResetOptions { seed, bounds };
+            let options = ResetOptions {
+                seed,
+                bounds: Some(bounds),
+            };
             twins.batch.reset_with(options.clone());
             twins.reset_alone(|i, alone| {
                 let seed = options.seed.as_ref().map(|seed| seed.child(i));
+                let bounds = options.bounds;
                 alone.reset_with(ResetOptions { seed, bounds });
             });
         }
@@ -443,7 +447,7 @@ fn masked_resets_are_resets_by_hand() {
         let mut rng = Pcg64::new(7);
         let (mut ends, mut past) = (0, 0);
         let mut before = vec![false; 35];
-        for _ in 0..700 {
+        for step in 0..700 {
             let done = twins.step(&twins.swinging());
             ends += done.iter().filter(|done| **done).count();
             // Some that ended step on, and some that did not end are reset.
@@ -453,10 +457,15 @@ fn masked_resets_are_resets_by_hand() {
                 .collect();
             past += before.iter().zip(&mask).filter(|(x, y)| **x && **y).count();
             before = done.iter().zip(&mask).map(|(x, y)| *x && !y).collect();
-            twins.batch.reset_masked(&mask).unwrap();
+            // Now and then with a seed, whose i-th child acrobot i takes.
+            let seed = (step % 50 == 0).then(|| SeedSequence::new(step));
+            let options = ResetOptions { seed, bounds: None };
+            twins.batch.reset_masked(&mask, options.clone()).unwrap();
             twins.reset_alone(|i, alone| {
                 if mask[i as usize] {
-                    alone.reset_within(bounds);
+                    let seed = options.seed.as_ref().map(|seed| seed.child(i));
+                    let bounds = Some(bounds);
+                    alone.reset_with(ResetOptions { seed, bounds });
                 }
             });
         }

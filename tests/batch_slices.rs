@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::StartBounds;
-use acrobot::{Acrobot, Error, Fast, Params, State};
+use acrobot::{Acrobot, Error, Fast, Params, ResetOptions, State};
 
 type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
 
@@ -241,11 +241,11 @@ fn rejected_changes_change_nothing() {
     let uneven = Observations::Columns([first, second, third, fourth, fifth, &mut long]);
     for (result, message) in [
         (
-            batch.reset_masked(&[true; 2]),
+            batch.reset_masked(&[true; 2], ResetOptions::default()),
             "mask must have 3 elements, got 2",
         ),
         (
-            batch.reset_masked(&[true; 4]),
+            batch.reset_masked(&[true; 4], ResetOptions::default()),
             "mask must have 3 elements, got 4",
         ),
         (

@@ -61,7 +61,7 @@ fn make_plays_gymnasiums_runs() {
 /// The first observation of a reset whose bounds are both `x`.
 fn reset_to(mut env: impl Env<Observation = DynObservation>, x: f64) -> Vec<f32> {
     let (observation, _) = env.reset_with(ResetOptions {
-        bounds: StartBounds::new(x, x).unwrap(),
+        bounds: Some(StartBounds::new(x, x).unwrap()),
         ..ResetOptions::default()
     });
     observation.as_slice().to_vec()

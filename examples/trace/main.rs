@@ -98,7 +98,7 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
 
     acrobot.reset_with(ResetOptions {
         seed: Some(options.seed.clone()),
-        bounds,
+        bounds: Some(bounds),
     });
     let out = BufWriter::new(io::stdout().lock());
     Ok(print(&mut acrobot, &actions, out)?)

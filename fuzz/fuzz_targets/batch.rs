@@ -143,7 +143,10 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                 let seed = u.arbitrary::<Option<u64>>()?.map(SeedSequence::new);
                 match seed.clone() {
                     None => batch.reset_within(bounds),
-                    seed => batch.reset_with(ResetOptions { seed, bounds }),
+                    seed => batch.reset_with(ResetOptions {
+                        seed,
+                        bounds: Some(bounds),
+                    }),
                 }
                 for (alone, index) in alone.iter_mut().zip(0..) {
                     if let Some(seed) = &seed {
@@ -156,7 +159,7 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                 let bits: u64 = u.arbitrary()?;
                 let found = u.int_in_range(len - 1..=len + 1)?;
                 let mask: Vec<bool> = (0..found).map(|i| bits >> i & 1 == 1).collect();
-                let reset = batch.reset_masked(&mask);
+                let reset = batch.reset_masked(&mask, ResetOptions::default());
                 assert_eq!(reset.is_ok(), found == len);
                 let each = alone.iter_mut().zip(mask).filter(|_| reset.is_ok());
                 for (alone, _) in each.filter(|(_, reset)| *reset) {

@@ -60,7 +60,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
                 let seed = seed.map(|words| SeedSequence::from_words(&words));
                 let (observation, _) = env.reset_with(ResetOptions {
                     seed,
-                    bounds: bounds.unwrap_or_default(),
+                    bounds: bounds.ok(),
                 });
                 let finite = observation.as_slice().iter().all(|x| x.is_finite());
                 assert!(finite, "{observation:?}");

@@ -4,8 +4,9 @@ use core::marker::PhantomData;
 
 use super::{Autoreset, Observations, Shared, StepBuffers};
 use crate::arithmetic::{Arithmetic, Lanes, Real, SinCos};
+use crate::error::Error;
 use crate::numpy::{Pcg64, uniform};
-use crate::physics::{Params, StartBounds, State, sin_cos, step};
+use crate::physics::{Params, StartBounds, State, check_torque, sin_cos, step};
 
 /// The memory of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) consists of these.
 ///
@@ -247,6 +248,9 @@ pub(super) trait Drive<S> {
     /// What each acrobot is given.
     type Input: Copy + Sync;
 
+    /// Rejects an input that is not valid.
+    fn check(inputs: &[Self::Input]) -> Result<(), Error>;
+
     /// The torques of one block in N m. Lanes without an input get one that is valid.
     fn torques<const N: usize>(params: &Params<S>, inputs: &[Self::Input]) -> [S; N];
 }
@@ -258,6 +262,13 @@ impl<S: Real, T: Copy + Into<u8> + Sync> Drive<S> for Actions<T> {
     const NAME: &'static str = "actions";
 
     type Input = T;
+
+    fn check(inputs: &[T]) -> Result<(), Error> {
+        match inputs.iter().map(|&action| action.into()).fold(0, u8::max) {
+            0..=2 => Ok(()),
+            highest => Err(Error::UnknownAction(highest)),
+        }
+    }
 
     #[inline(always)]
     fn torques<const N: usize>(params: &Params<S>, inputs: &[T]) -> [S; N] {
@@ -275,6 +286,10 @@ impl<S: Real> Drive<S> for Torques {
     const NAME: &'static str = "torques";
 
     type Input = S;
+
+    fn check(inputs: &[S]) -> Result<(), Error> {
+        inputs.iter().try_for_each(|torque| check_torque(*torque))
+    }
 
     #[inline(always)]
     fn torques<const N: usize>(_: &Params<S>, inputs: &[S]) -> [S; N] {

@@ -22,33 +22,15 @@ pub struct Constants<S> {
     lc2_squared: S,
 }
 
-for_f32_and_f64! {
-    impl FromParams<S> for Constants<S> {
-        const DEFAULT: Self = constants(&Params::DEFAULT, [1.0, 0.25, 0.25]);
-
-        fn new(params: &Params<S>, squares: [S; 3]) -> Self {
-            constants(params, squares)
-        }
-
-        #[inline(always)]
-        fn common(&self) -> &Common<S> {
-            &self.common
-        }
+constants_of_form!(|params, [l1_squared, lc1_squared, lc2_squared]| {
+    Self {
+        common: Common::<S>::new(params, lc2_squared),
+        link1: params.mass1 * lc1_squared,
+        arms_squared: l1_squared + lc2_squared,
+        arms_product: params.length1 * params.center_of_mass2,
+        lc2_squared,
     }
-
-    const fn constants(
-        params: &Params<S>,
-        [l1_squared, lc1_squared, lc2_squared]: [S; 3],
-    ) -> Constants<S> {
-        Constants {
-            common: Common::<S>::new(params, lc2_squared),
-            link1: params.mass1 * lc1_squared,
-            arms_squared: l1_squared + lc2_squared,
-            arms_product: params.length1 * params.center_of_mass2,
-            lc2_squared,
-        }
-    }
-}
+});
 
 /// The turns after which `wrap` stops following Gymnasium's and takes the remainder.
 const MAX_TURNS: u32 = 64;

@@ -24,41 +24,22 @@ pub struct Constants<S> {
     nips: S,
 }
 
-for_f32_and_f64! {
-    impl FromParams<S> for Constants<S> {
-        const DEFAULT: Self = constants(&Params::DEFAULT, [1.0, 0.25, 0.25]);
-
-        fn new(params: &Params<S>, squares: [S; 3]) -> Self {
-            constants(params, squares)
-        }
-
-        #[inline(always)]
-        fn common(&self) -> &Common<S> {
-            &self.common
-        }
+constants_of_form!(|params, [l1_squared, lc1_squared, lc2_squared]| {
+    let common = Common::<S>::new(params, lc2_squared);
+    let link1 = params.mass1 * lc1_squared + params.inertia1;
+    let m2_l1_squared = params.mass2 * l1_squared;
+    let (book, nips) = match params.dynamics {
+        Dynamics::Book => (1.0, 0.0),
+        Dynamics::Nips => (0.0, 1.0),
+    };
+    Self {
+        common,
+        upper: link1 + m2_l1_squared,
+        determinant: link1 * common.link2 + m2_l1_squared * params.inertia2,
+        book,
+        nips,
     }
-
-    const fn constants(
-        params: &Params<S>,
-        [l1_squared, lc1_squared, lc2_squared]: [S; 3],
-    ) -> Constants<S> {
-        let Params { mass1: m1, mass2: m2, inertia1, inertia2, dynamics, .. } = *params;
-        let common = Common::<S>::new(params, lc2_squared);
-        let link1 = m1 * lc1_squared;
-        let m2_l1_squared = m2 * l1_squared;
-        let (book, nips) = match dynamics {
-            Dynamics::Book => (1.0, 0.0),
-            Dynamics::Nips => (0.0, 1.0),
-        };
-        Constants {
-            common,
-            upper: link1 + inertia1 + m2_l1_squared,
-            determinant: (link1 + inertia1) * common.link2 + m2_l1_squared * inertia2,
-            book,
-            nips,
-        }
-    }
-}
+});
 
 impl<S: Real> Equations<S> for Lean
 where

@@ -42,7 +42,7 @@ impl Episode {
         acrobot.set_params(self.params.cast()).unwrap();
         acrobot.reset_with(ResetOptions {
             seed: Some(self.seed.clone()),
-            bounds: self.bounds,
+            bounds: Some(self.bounds),
         });
         acrobot
     }

@@ -87,6 +87,7 @@ fn any_calls_in_any_order_keep_observations_in_their_space() {
             match call {
                 Call::Reset(seed, bounds) => {
                     let seed = seed.map(SeedSequence::new);
+                    let bounds = Some(bounds);
                     let (observation, _) = env.reset_with(ResetOptions { seed, bounds });
                     assert!(observation.as_slice().iter().all(|x| x.is_finite()));
                     elapsed = 0;

@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use acrobot::batch::{Autoreset, Block, Member, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::StartBounds;
-use acrobot::{Error, Fast, Params, ResetOptions};
+use acrobot::{Fast, Params, ResetOptions};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadwriteArray1, PyReadwriteArray2};
 use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
@@ -47,17 +47,12 @@ impl Batch {
     fn new(num_envs: i64, seed: &str, max_episode_steps: i64, mode: &str) -> PyResult<Self> {
         let num_envs = positive("num_envs", num_envs)?.get() as usize;
         let limit = positive("max_episode_steps", max_episode_steps)?;
-        let seed = Some(parse(seed)?);
+        let seed = parse(seed)?;
         let Some((_, mode)) = MODES.iter().find(|(name, _)| *name == mode) else {
             let rule = r#""NextStep", "SameStep" or "Disabled""#;
             return Err(unknown("autoreset_mode", rule, mode));
         };
-        let mut batch = Self::assemble(num_envs, limit, *mode)?;
-        batch.batch.reset_with(ResetOptions {
-            seed,
-            ..ResetOptions::default()
-        });
-        Ok(batch)
+        Self::assemble(num_envs, seed, limit, *mode)
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -77,14 +72,14 @@ impl Batch {
     ) -> PyResult<()> {
         let options = ResetOptions {
             seed: seed.map(parse).transpose()?,
-            bounds: StartBounds::new(low, high).map_err(rejected)?,
+            bounds: Some(StartBounds::new(low, high).map_err(rejected)?),
         };
         let Some(mask) = mask else {
             py.detach(|| self.batch.reset_with(options));
             return Ok(());
         };
         let mask = mask.as_slice()?;
-        py.detach(|| self.reset_masked(mask, options))
+        py.detach(|| self.batch.reset_masked(mask, options))
             .map_err(rejected)
     }
 
@@ -168,7 +163,7 @@ impl Batch {
             let rule = format_args!("below {}", MODES.len());
             PyValueError::new_err(must_be("the snapshot's autoreset mode", rule, mode))
         });
-        let mut batch = Self::assemble(members.len(), limit, mode?.1)?;
+        let mut batch = Self::assemble(members.len(), SeedSequence::new(0), limit, mode?.1)?;
         batch.batch.set_params(params).map_err(rejected)?;
         for (index, member) in members.into_iter().enumerate() {
             batch.batch.set_member(index, member).map_err(rejected)?;
@@ -179,41 +174,21 @@ impl Batch {
 }
 
 impl Batch {
-    /// A batch with seed 0.
-    fn assemble(num_envs: usize, limit: NonZeroU32, autoreset: Autoreset) -> PyResult<Self> {
+    fn assemble(
+        num_envs: usize,
+        seed: SeedSequence,
+        limit: NonZeroU32,
+        autoreset: Autoreset,
+    ) -> PyResult<Self> {
         let blocks = memory(Block::EMPTY, num_envs.div_ceil(Block::<f32>::LANES))?;
         let generators = memory(Pcg64::UNSEEDED, num_envs)?;
-        let mut batch = Native::new(0, blocks, generators).map_err(rejected)?;
+        let mut batch = Native::with_seed(seed, blocks, generators).map_err(rejected)?;
         batch.set_limit(limit);
         batch.set_autoreset(autoreset);
         Ok(Self {
             batch,
             actions: memory(0, num_envs)?,
         })
-    }
-
-    fn reset_masked(&mut self, mask: &[bool], options: ResetOptions) -> Result<(), Error> {
-        let (len, expected) = (mask.len(), self.batch.len());
-        if len != expected {
-            return Err(Error::WrongLength {
-                name: "reset_mask",
-                len,
-                expected,
-            });
-        }
-        if let Some(seed) = options.seed {
-            for index in (0..len).filter(|&index| mask[index]) {
-                if let Some(member) = self.batch.member(index) {
-                    let rng = seed.child(index as u64).into();
-                    self.batch.set_member(index, Member { rng, ..member })?;
-                }
-            }
-        }
-        self.batch.set_start_bounds(options.bounds);
-        let reset = self.batch.reset_masked(mask);
-        // Gymnasium's options are those of one reset.
-        self.batch.set_start_bounds(StartBounds::DEFAULT);
-        reset
     }
 
     /// Reads the actions into the width that a batch takes.

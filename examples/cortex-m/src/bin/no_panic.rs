@@ -112,7 +112,7 @@ fn environment<A: Arithmetic>() {
         let _ = black_box(inner.set_state(state()));
         if let Ok(bounds) = StartBounds::new(black_box(-0.2), black_box(0.2)) {
             black_box(acrobot.reset_within(bounds));
-            let seed = Some(seed);
+            let (seed, bounds) = (Some(seed), Some(bounds));
             black_box(acrobot.reset_with(ResetOptions { seed, bounds }));
         }
         black_box(acrobot.reset_with_seed(black_box(7)));
@@ -176,7 +176,7 @@ fn batch<A: Arithmetic>() {
         });
         black_box((&rewards, &terminated, &truncated, &rows, &finals));
         let _ = black_box(batch.observe(Observations::Rows(&mut rows)));
-        let _ = black_box(batch.reset_masked(&black_box([true; LEN])));
+        let _ = black_box(batch.reset_masked(&black_box([true; LEN]), ResetOptions::default()));
         let _ = black_box(batch.reset_to(&black_box([State::default(); LEN])));
         let _ = black_box(batch.set_state(black_box(3), state()));
         black_box((&rows, batch.state(black_box(3))));
