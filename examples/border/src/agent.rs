@@ -62,8 +62,8 @@ const TILING: usize = TILES.pow(4);
 /// What each sample of a batch moves each of its tiles by, times the error.
 const RATE: f32 = 0.1 / TILINGS as f32;
 const BATCH: usize = 32;
-/// How often an action is random while training. The values start at 0, above all that is true of
-/// them, so that greed explores as well.
+/// The share of random actions in training. Few are enough: the values start at 0, above every return, so the agent explores
+/// by itself.
 const EPSILON: f64 = 0.02;
 const DISCOUNT: f32 = 0.99;
 
