@@ -186,6 +186,7 @@ fn a_row_of_csv_reads_back_as_its_transition() {
         let numbers = [&before[..], &[transition.torque, transition.reward], &after].concat();
         for (text, number) in row[1..11].iter().zip(numbers) {
             assert_eq!(text.parse(), Ok(number));
+            assert_eq!(*text, number.to_string(), "the shortest text");
         }
         assert_eq!(row[11], u8::from(transition.terminated).to_string());
         assert_eq!(row[12], u8::from(transition.truncated).to_string());

@@ -54,6 +54,14 @@ impl<S> From<State<S>> for [S; 4] {
 }
 
 impl<S: Real> State<S> {
+    /// Hanging at rest: all four numbers are 0. The default, for a `const`.
+    pub const HANGING: Self = Self {
+        theta1: S::ZERO,
+        theta2: S::ZERO,
+        dtheta1: S::ZERO,
+        dtheta2: S::ZERO,
+    };
+
     /// The same state in another scalar, each number rounded to the nearest.
     #[must_use]
     #[inline]

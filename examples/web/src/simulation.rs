@@ -19,12 +19,7 @@ pub struct Simulation {
 static SIMULATION: Shared<Simulation> = Shared::new(Simulation {
     env: TimeLimit::v1(Acrobot::hanging(Pcg64::new(0))),
     action_space: Pcg64::new(0),
-    before: State {
-        theta1: 0.0,
-        theta2: 0.0,
-        dtheta1: 0.0,
-        dtheta2: 0.0,
-    },
+    before: State::HANGING,
     torque: 0.0,
 });
 

@@ -47,9 +47,7 @@ fn an_interrupt_steps_a_static() {
 fn a_controller_steps_the_pendulum() {
     static RAISED: Pendulum<Fast> = match Pendulum::<Fast>::at(State {
         theta1: 1.5,
-        theta2: 0.0,
-        dtheta1: 0.0,
-        dtheta2: 0.0,
+        ..State::HANGING
     }) {
         Ok(pendulum) => pendulum,
         Err(_) => panic!("the state must be finite"),
