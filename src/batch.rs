@@ -29,6 +29,7 @@
 mod block;
 mod buffers;
 mod member;
+mod settings;
 mod simd;
 
 use core::num::NonZeroU32;
@@ -42,7 +43,7 @@ use crate::acrobot::ResetOptions;
 use crate::arithmetic::{Arithmetic, Model};
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::physics::{Params, StartBounds, State};
+use crate::physics::{StartBounds, State};
 use crate::time_limit::V1;
 use block::{Actions, Drive, Torques};
 use buffers::check_length;
@@ -142,7 +143,7 @@ where
         self.generators.as_ref().len()
     }
 
-    /// Resets all acrobots, each with the next draws of its own stream.
+    /// Resets all acrobots, each with the next draws of its stream.
     pub fn reset(&mut self) {
         self.reset_with(ResetOptions::default());
     }
@@ -343,72 +344,6 @@ where
             _ => return Err(no_such_member(index, len)),
         }
         Ok(())
-    }
-
-    /// The parameters of all acrobots.
-    #[must_use]
-    pub fn params(&self) -> &Params<A::Scalar> {
-        &self.shared.model.params
-    }
-
-    /// Sets the parameters of all acrobots, from the next step on.
-    ///
-    /// # Errors
-    ///
-    /// As [`Params::validate`].
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
-        params.validate()?;
-        self.shared.model = Model::new(params);
-        Ok(())
-    }
-
-    /// The SIMD instructions to step with.
-    #[must_use]
-    pub fn simd_level(&self) -> SimdLevel {
-        self.simd_level
-    }
-
-    /// Sets the SIMD instructions to step with. A level that the machine does not have acts as the baseline.
-    pub fn set_simd_level(&mut self, level: SimdLevel) {
-        self.simd_level = level;
-    }
-
-    /// The bounds of initial states.
-    #[must_use]
-    pub fn start_bounds(&self) -> StartBounds {
-        self.shared.bounds
-    }
-
-    /// Sets the bounds of initial states, from the next reset on.
-    pub fn set_start_bounds(&mut self, bounds: StartBounds) {
-        self.shared.bounds = bounds;
-    }
-
-    /// The steps after which episodes are truncated.
-    #[must_use]
-    pub fn limit(&self) -> NonZeroU32 {
-        self.shared.limit
-    }
-
-    /// Sets the steps after which episodes are truncated.
-    pub fn set_limit(&mut self, limit: NonZeroU32) {
-        self.shared.limit = limit;
-    }
-
-    /// When ended episodes are reset.
-    #[must_use]
-    pub fn autoreset(&self) -> Autoreset {
-        self.shared.autoreset
-    }
-
-    /// Sets when ended episodes are reset. Of the acrobots that wait for the next step to reset them,
-    /// [`Autoreset::SameStep`] resets all immediately, and with [`Autoreset::Disabled`] all step on.
-    pub fn set_autoreset(&mut self, autoreset: Autoreset) {
-        self.shared.autoreset = autoreset;
-        let blocks = self.blocks.as_mut().iter_mut();
-        for (block, generators) in blocks.zip(self.generators.as_mut().chunks_mut(N)) {
-            block.stop_waiting::<A>(&self.shared, generators);
-        }
     }
 }
 
