@@ -221,7 +221,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         Ok(())
     }
 
-    /// Writes the line of column names of [`write_csv`](Self::write_csv) into `buffer` and returns it: 185 bytes.
+    /// Writes the line of column names of [`write_csv`](Self::write_csv) into `buffer` and returns it: 182 bytes.
     ///
     /// # Errors
     ///

@@ -115,6 +115,24 @@ fn settings_are_returned_as_set() {
     }
 }
 
+/// A batch with a seed of any size equals one that is reset with that seed, also if the seed has spawned before.
+#[test]
+fn a_batch_takes_seeds_of_any_size() {
+    let mut seed: SeedSequence = "340282366920938463463374607431768211456".parse().unwrap();
+    let _ = seed.spawn(3);
+    let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
+    let batch = Small::<2, 20>::with_seed(seed.clone(), blocks, generators).unwrap();
+    let mut reset = small::<2, 20>().unwrap();
+    assert_ne!(members(&batch), members(&reset));
+    reset.reset_with(ResetOptions {
+        seed: Some(seed.clone()),
+        ..ResetOptions::default()
+    });
+    assert_eq!(members(&batch), members(&reset));
+    let alone = Acrobot::<Fast>::with_rng(seed.child(19).into());
+    assert_eq!(batch.state(19), Some(alone.state()));
+}
+
 /// `reset_within` draws from its own bounds once, and `reset` from the batch's again.
 #[test]
 fn resets_within_bounds_leave_the_batchs_bounds() {
