@@ -185,16 +185,16 @@ where
 
     fn reset_some(&mut self, mut mask: impl Iterator<Item = bool>, options: ResetOptions) {
         let bounds = options.bounds.unwrap_or(self.shared.bounds);
-        let mut index = 0;
+        let mut children = options.seed.map(|mut seed| seed.spawn(u64::MAX));
         let blocks = self.blocks.as_mut().iter_mut();
         for (block, generators) in blocks.zip(self.generators.as_mut().chunks_mut(N)) {
             let mut some = [true; N];
             for (some, rng) in some.iter_mut().zip(&mut *generators) {
                 *some = mask.next().unwrap_or(true);
-                if let Some(seed) = options.seed.as_ref().filter(|_| *some) {
-                    *rng = seed.child(index).into();
+                let child = children.as_mut().and_then(Iterator::next);
+                if let Some(child) = child.filter(|_| *some) {
+                    *rng = child.into();
                 }
-                index += 1;
             }
             block.reset::<A>(&some, bounds, generators);
         }
