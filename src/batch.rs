@@ -106,7 +106,8 @@ where
         Self::with_seed(SeedSequence::new(seed), blocks, generators)
     }
 
-    /// [`new`](Self::new) with a seed of any type.
+    /// [`new`](Self::new) with a seed of any size. Acrobot `i` takes the `i`-th of the children that `seed` has not yet
+    /// spawned.
     ///
     /// # Errors
     ///
@@ -165,8 +166,8 @@ where
         });
     }
 
-    /// Gymnasium's `reset(seed=…, options=…)` of all acrobots. A seed seeds acrobot `i` with its `i`-th child; without
-    /// bounds [`start_bounds`](Self::start_bounds) are used.
+    /// Gymnasium's `reset(seed=…, options=…)` of all acrobots. A seed seeds acrobot `i` with the `i`-th
+    /// of its children that it has not yet spawned. Without bounds [`start_bounds`](Self::start_bounds) are used.
     pub fn reset_with(&mut self, options: ResetOptions) {
         self.reset_some(core::iter::repeat(true), options);
     }
