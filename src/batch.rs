@@ -46,7 +46,7 @@ use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{StartBounds, State};
 use crate::time_limit::V1;
 use block::{Actions, Drive, Torques};
-use buffers::check_length;
+use buffers::{check_length, take, take_mut};
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
@@ -187,8 +187,7 @@ where
     fn reset_some(&mut self, mut mask: impl Iterator<Item = bool>, options: ResetOptions) {
         let bounds = options.bounds.unwrap_or(self.shared.bounds);
         let mut children = options.seed.map(|mut seed| seed.spawn(u64::MAX));
-        let blocks = self.blocks.as_mut().iter_mut();
-        for (block, generators) in blocks.zip(self.generators.as_mut().chunks_mut(N)) {
+        for (block, generators) in each_block(self.blocks.as_mut(), self.generators.as_mut()) {
             let mut some = [true; N];
             for (some, rng) in some.iter_mut().zip(&mut *generators) {
                 *some = mask.next().unwrap_or(true);
@@ -210,9 +209,9 @@ where
     pub fn reset_to(&mut self, states: &[State<A::Scalar>]) -> Result<(), Error> {
         check_length("states", states.len(), self.len())?;
         states.iter().try_for_each(State::validate)?;
-        let blocks = self.blocks.as_mut().iter_mut();
-        for (block, states) in blocks.zip(states.chunks(N)) {
-            block.reset_to::<A>(states);
+        let mut states = states;
+        for block in self.blocks.as_mut() {
+            block.reset_to::<A>(take(&mut states, N));
         }
         Ok(())
     }
@@ -315,8 +314,8 @@ where
     /// [`Error::WrongLength`] unless each slice has one element for each acrobot.
     pub fn observe(&self, mut observations: Observations<'_>) -> Result<(), Error> {
         observations.check("observations", self.len())?;
-        for (number, block) in self.blocks.as_ref().iter().enumerate() {
-            block.observe(number, &mut observations);
+        for block in self.blocks.as_ref() {
+            block.observe(&mut observations);
         }
         Ok(())
     }
@@ -327,8 +326,7 @@ where
         if index >= self.len() {
             return None;
         }
-        let block = self.blocks.as_ref().get(index / N)?;
-        Some(block.state(index % N))
+        self.blocks.as_ref().get(index / N)?.state(index % N)
     }
 
     /// Sets the state of acrobot `index`. Its episode goes on: its steps, and a reset that it waits for, stay.
@@ -346,6 +344,15 @@ where
         }
         Ok(())
     }
+}
+
+/// Each block with its generators. The last may have fewer than `N`.
+fn each_block<'a, S, const N: usize>(
+    blocks: &'a mut [Block<S, N>],
+    mut generators: &'a mut [Pcg64],
+) -> impl Iterator<Item = (&'a mut Block<S, N>, &'a mut [Pcg64])> {
+    let blocks = blocks.iter_mut();
+    blocks.map(move |block| (block, take_mut(&mut generators, N)))
 }
 
 fn no_such_member(index: usize, len: usize) -> Error {

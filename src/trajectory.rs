@@ -313,7 +313,8 @@ impl fmt::Write for Buffer<'_> {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         let end = self.needed + text.len();
         if let Some(room) = self.bytes.get_mut(self.needed..end) {
-            room.copy_from_slice(text.as_bytes());
+            let each = room.iter_mut().zip(text.bytes());
+            each.for_each(|(to, byte)| *to = byte);
         }
         self.needed = end;
         Ok(())

@@ -2,6 +2,7 @@
 
 use core::marker::PhantomData;
 
+use super::buffers::{take, take_mut};
 use super::{Autoreset, Observations, Shared, StepBuffers};
 use crate::arithmetic::{Arithmetic, Lanes, Real, SinCos};
 use crate::error::Error;
@@ -45,30 +46,33 @@ impl<S: Real, const N: usize> Block<S, N> {
     };
 }
 
-#[expect(
-    clippy::indexing_slicing,
-    reason = "lanes count up to N, and a batch has checked its slices"
-)]
+// Each lane is reached by an iterator or by `get`, so that no compiler has a panic to prove away.
 impl<S: Real, const N: usize> Block<S, N> {
-    #[inline(always)]
-    pub(super) fn state(&self, lane: usize) -> State<S> {
-        self.y.map(|numbers| numbers.0[lane]).into()
+    pub(super) fn state(&self, lane: usize) -> Option<State<S>> {
+        let [theta1, theta2, dtheta1, dtheta2] = &self.y;
+        Some(State {
+            theta1: *theta1.0.get(lane)?,
+            theta2: *theta2.0.get(lane)?,
+            dtheta1: *dtheta1.0.get(lane)?,
+            dtheta2: *dtheta2.0.get(lane)?,
+        })
     }
 
     /// Places a lane in a state, which leaves its episode as it is.
     pub(super) fn set_state<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, state: State<S>) {
         let new = sin_cos::<A>([state.theta1, state.theta2]);
         for (numbers, number) in self.y.iter_mut().zip(<[S; 4]>::from(state)) {
-            numbers.0[lane] = number;
+            set(&mut numbers.0, lane, number);
         }
         for ((sines, cosines), (sin, cos)) in self.sin_cos.iter_mut().zip(new) {
-            (sines.0[lane], cosines.0[lane]) = (sin, cos);
+            set(&mut sines.0, lane, sin);
+            set(&mut cosines.0, lane, cos);
         }
     }
 
     /// The steps of a lane's episode, and whether the next one resets it.
-    pub(super) fn progress(&self, lane: usize) -> (u32, bool) {
-        (self.elapsed[lane], self.ended[lane])
+    pub(super) fn progress(&self, lane: usize) -> Option<(u32, bool)> {
+        Some((*self.elapsed.get(lane)?, *self.ended.get(lane)?))
     }
 
     /// Continues an episode in a lane.
@@ -79,13 +83,13 @@ impl<S: Real, const N: usize> Block<S, N> {
         (elapsed, ended): (u32, bool),
     ) {
         self.set_state::<A>(lane, state);
-        self.elapsed[lane] = elapsed;
-        self.ended[lane] = ended;
+        set(&mut self.elapsed, lane, elapsed);
+        set(&mut self.ended, lane, ended);
     }
 
     /// Begins an episode in each of the first lanes.
     pub(super) fn reset_to<A: Arithmetic<Scalar = S>>(&mut self, states: &[State<S>]) {
-        for (lane, state) in states.iter().enumerate().take(N) {
+        for (lane, state) in states.iter().enumerate() {
             self.resume::<A>(lane, *state, (0, false));
         }
     }
@@ -98,12 +102,13 @@ impl<S: Real, const N: usize> Block<S, N> {
         bounds: StartBounds,
         generators: &mut [Pcg64],
     ) {
-        for lane in (0..N).filter(|&lane| some[lane]) {
-            let state = match generators.get_mut(lane) {
-                Some(rng) => bounds.draw(rng).cast(),
-                None => State::default(),
-            };
-            self.resume::<A>(lane, state, (0, false));
+        let mut generators = generators.iter_mut();
+        for (lane, resets) in some.iter().enumerate() {
+            let rng = generators.next();
+            if *resets {
+                let state = rng.map_or(State::HANGING, |rng| bounds.draw(rng).cast());
+                self.resume::<A>(lane, state, (0, false));
+            }
         }
     }
 
@@ -123,75 +128,85 @@ impl<S: Real, const N: usize> Block<S, N> {
 
     /// Each acrobot's six numbers, lane by lane.
     #[inline(always)]
-    fn seen(&self) -> [&[S; N]; 6] {
+    fn columns(&self) -> [&[S; N]; 6] {
         let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
         let [_, _, dtheta1, dtheta2] = &self.y;
         [&cos1.0, &sin1.0, &cos2.0, &sin2.0, &dtheta1.0, &dtheta2.0]
     }
 
-    /// Writes the observations of this block, which is the one with this number.
+    /// Each acrobot's six numbers, acrobot by acrobot.
     #[inline(always)]
-    pub(super) fn observe(&self, number: usize, observations: &mut Observations<'_>) {
-        let seen = self.seen();
-        let start = number * N;
-        match observations {
+    fn rows(&self) -> impl Iterator<Item = [f32; 6]> {
+        let [cos1, sin1, cos2, sin2, dtheta1, dtheta2] = self.columns();
+        let angles = cos1.iter().zip(sin1).zip(cos2.iter().zip(sin2));
+        let all = angles.zip(dtheta1.iter().zip(dtheta2));
+        all.map(|(((cos1, sin1), (cos2, sin2)), (dtheta1, dtheta2))| {
+            [cos1, sin1, cos2, sin2, dtheta1, dtheta2].map(|x| x.to_f64() as f32)
+        })
+    }
+
+    /// Writes the observations, and takes off what is written to.
+    #[inline(always)]
+    pub(super) fn observe(&self, to: &mut Observations<'_>) {
+        match to {
             Observations::None => {}
             Observations::Rows(rows) => {
-                let rows = rows.iter_mut().skip(start).take(N);
-                for (lane, row) in rows.enumerate() {
-                    *row = seen.map(|numbers| numbers[lane].to_f64() as f32);
+                for (to, row) in take_mut(rows, N).iter_mut().zip(self.rows()) {
+                    *to = row;
                 }
             }
             Observations::Columns(columns) => {
-                for (column, numbers) in columns.iter_mut().zip(seen) {
-                    for (cell, x) in column.iter_mut().skip(start).zip(numbers) {
-                        *cell = x.to_f64() as f32;
+                for (to, column) in columns.iter_mut().zip(self.columns()) {
+                    for (to, x) in take_mut(to, N).iter_mut().zip(column) {
+                        *to = x.to_f64() as f32;
                     }
                 }
             }
         }
     }
 
-    /// [`observe`](Self::observe) for some of its lanes.
+    /// [`observe`](Self::observe) for some of the lanes.
     #[cold]
-    fn observe_some(&self, number: usize, some: &[bool; N], observations: &mut Observations<'_>) {
-        for lane in (0..N).filter(|&lane| some[lane]) {
-            let row = self.seen().map(|numbers| numbers[lane].to_f64() as f32);
-            observations.write(number * N + lane, row);
+    fn observe_some(&self, some: &[bool; N], to: &mut Observations<'_>) {
+        for ((lane, row), _) in self
+            .rows()
+            .enumerate()
+            .zip(some)
+            .filter(|(_, is_one)| **is_one)
+        {
+            to.write(lane, row);
         }
     }
 
+    /// One step of all lanes. Writes the results, and takes off what is written to.
     #[inline(always)]
     fn step<A: Arithmetic<Scalar = S>>(
         &mut self,
         shared: &Shared<A>,
-        number: usize,
         mut torques: [S; N],
         generators: &mut [Pcg64],
-        final_observations: &mut Observations<'_>,
-    ) -> Stepped<N> {
+        buffers: &mut StepBuffers<'_>,
+    ) {
         if shared.model.params.torque_noise > S::ZERO {
             self.add_noise(&mut torques, shared.model.params.torque_noise, generators);
         }
-        let terminated = step(
+        let mut terminated = step(
             &shared.model,
             &mut self.y,
             &mut self.sin_cos,
             Lanes(torques),
         );
-        let mut stepped = Stepped {
-            rewards: [-1.0; N],
-            terminated,
-            truncated: [false; N],
-        };
-        let mut ended = [false; N];
-        for lane in 0..N {
-            self.elapsed[lane] = self.elapsed[lane].saturating_add(1);
-            stepped.truncated[lane] = self.elapsed[lane] >= shared.limit.get();
-            if terminated[lane] {
-                stepped.rewards[lane] = 0.0;
+        let (mut rewards, mut truncated, mut ended) = ([-1.0; N], [false; N], [false; N]);
+        let results = rewards.iter_mut().zip(&mut truncated).zip(&mut ended);
+        for ((elapsed, terminated), ((reward, truncated), ended)) in
+            self.elapsed.iter_mut().zip(&terminated).zip(results)
+        {
+            *elapsed = elapsed.saturating_add(1);
+            *truncated = *elapsed >= shared.limit.get();
+            if *terminated {
+                *reward = 0.0;
             }
-            ended[lane] = terminated[lane] | stepped.truncated[lane];
+            *ended = *terminated | *truncated;
         }
 
         let resets = match shared.autoreset {
@@ -201,13 +216,17 @@ impl<S: Real, const N: usize> Block<S, N> {
         };
         if resets.iter().fold(false, |any, &reset| any | reset) {
             if shared.autoreset == Autoreset::NextStep {
-                stepped.clear(&resets);
+                clear(&resets, &mut rewards, &mut terminated, &mut truncated);
             } else {
-                self.observe_some(number, &resets, final_observations);
+                self.observe_some(&resets, &mut buffers.final_observations);
             }
             self.reset::<A>(&resets, shared.bounds, generators);
         }
-        stepped
+        buffers.final_observations.take(N);
+        write(&mut buffers.rewards, &rewards);
+        write(&mut buffers.terminated, &terminated);
+        write(&mut buffers.truncated, &truncated);
+        self.observe(&mut buffers.observations);
     }
 
     /// Adds a draw of the noise to each torque, except in lanes that this step only resets.
@@ -221,22 +240,23 @@ impl<S: Real, const N: usize> Block<S, N> {
     }
 }
 
-/// What a step of one block returns.
-struct Stepped<const N: usize> {
-    rewards: [f32; N],
-    terminated: [bool; N],
-    truncated: [bool; N],
+/// The results of lanes that the step only resets.
+#[cold]
+fn clear<const N: usize>(
+    resets: &[bool; N],
+    rewards: &mut [f32; N],
+    terminated: &mut [bool; N],
+    truncated: &mut [bool; N],
+) {
+    let results = rewards.iter_mut().zip(terminated).zip(truncated);
+    for (((reward, terminated), truncated), _) in results.zip(resets).filter(|(_, reset)| **reset) {
+        (*reward, *terminated, *truncated) = (0.0, false, false);
+    }
 }
 
-impl<const N: usize> Stepped<N> {
-    /// For lanes that the step only resets.
-    #[cold]
-    fn clear(&mut self, resets: &[bool; N]) {
-        let each = self.rewards.iter_mut().zip(&mut self.terminated);
-        let each = each.zip(&mut self.truncated).zip(resets);
-        for (((reward, terminated), truncated), _) in each.filter(|(_, reset)| **reset) {
-            (*reward, *terminated, *truncated) = (0.0, false, false);
-        }
+fn set<T>(lanes: &mut [T], lane: usize, x: T) {
+    if let Some(to) = lanes.get_mut(lane) {
+        *to = x;
     }
 }
 
@@ -301,26 +321,14 @@ impl<S: Real> Drive<S> for Torques {
 pub(super) fn step_blocks<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
     shared: &Shared<A>,
     blocks: &mut [Block<A::Scalar, N>],
-    generators: &mut [Pcg64],
-    inputs: &[D::Input],
+    mut generators: &mut [Pcg64],
+    mut inputs: &[D::Input],
     mut buffers: StepBuffers<'_>,
 ) {
-    let each = inputs
-        .chunks(N)
-        .zip(generators.chunks_mut(N))
-        .zip(buffers.rewards.chunks_mut(N))
-        .zip(buffers.terminated.chunks_mut(N))
-        .zip(buffers.truncated.chunks_mut(N));
-    for ((number, block), ((((inputs, generators), rewards), terminated), truncated)) in
-        blocks.iter_mut().enumerate().zip(each)
-    {
-        let torques = D::torques(&shared.model.params, inputs);
-        let finals = &mut buffers.final_observations;
-        let stepped = block.step(shared, number, torques, generators, finals);
-        write(rewards, &stepped.rewards);
-        write(terminated, &stepped.terminated);
-        write(truncated, &stepped.truncated);
-        block.observe(number, &mut buffers.observations);
+    for block in blocks {
+        let torques = D::torques(&shared.model.params, take(&mut inputs, N));
+        let generators = take_mut(&mut generators, N);
+        block.step(shared, torques, generators, &mut buffers);
     }
 }
 
@@ -328,22 +336,15 @@ pub(super) fn step_blocks<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
 #[inline(always)]
 fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(T) -> U) -> [U; N] {
     let mut to = [rest; N];
-    // A whole block is a loop of known length, which LLVM turns into vectors.
-    match from.first_chunk::<N>() {
-        Some(all) => to.iter_mut().zip(all).for_each(|(to, &x)| *to = convert(x)),
-        None => to
-            .iter_mut()
-            .zip(from)
-            .for_each(|(to, &x)| *to = convert(x)),
+    for (to, &x) in to.iter_mut().zip(from) {
+        *to = convert(x);
     }
     to
 }
 
-/// Writes as many as there is room for.
+/// Writes as many as there is room for, and takes off what is written to.
 #[inline(always)]
-fn write<T: Copy, const N: usize>(to: &mut [T], from: &[T; N]) {
-    match to.first_chunk_mut() {
-        Some(to) => *to = *from,
-        None => to.iter_mut().zip(from).for_each(|(to, &from)| *to = from),
-    }
+fn write<T: Copy, const N: usize>(to: &mut &mut [T], from: &[T; N]) {
+    let to = take_mut(to, N);
+    to.iter_mut().zip(from).for_each(|(to, &from)| *to = from);
 }

@@ -30,29 +30,16 @@ pub enum Observations<'a> {
 }
 
 impl StepBuffers<'_> {
-    /// The buffers of the acrobots before an index, and of the others.
+    /// Takes off the buffers of the first `n` acrobots, or of all if there are fewer.
     #[cfg(feature = "rayon")]
-    pub(super) fn split_at(self, index: usize) -> (Self, Self) {
-        let (rewards1, rewards2) = self.rewards.split_at_mut(index);
-        let (terminated1, terminated2) = self.terminated.split_at_mut(index);
-        let (truncated1, truncated2) = self.truncated.split_at_mut(index);
-        let (observations1, observations2) = self.observations.split_at(index);
-        let (finals1, finals2) = self.final_observations.split_at(index);
-        let before = Self {
-            rewards: rewards1,
-            terminated: terminated1,
-            truncated: truncated1,
-            observations: observations1,
-            final_observations: finals1,
-        };
-        let after = Self {
-            rewards: rewards2,
-            terminated: terminated2,
-            truncated: truncated2,
-            observations: observations2,
-            final_observations: finals2,
-        };
-        (before, after)
+    pub(super) fn take(&mut self, n: usize) -> Self {
+        Self {
+            rewards: take_mut(&mut self.rewards, n),
+            terminated: take_mut(&mut self.terminated, n),
+            truncated: take_mut(&mut self.truncated, n),
+            observations: self.observations.take(n),
+            final_observations: self.final_observations.take(n),
+        }
     }
 
     pub(super) fn check(&self, len: usize) -> Result<(), Error> {
@@ -65,19 +52,14 @@ impl StepBuffers<'_> {
 }
 
 impl Observations<'_> {
-    #[cfg(feature = "rayon")]
-    pub(super) fn split_at(self, index: usize) -> (Self, Self) {
+    /// Takes off those of the first `n` acrobots, or of all if there are fewer.
+    #[inline(always)]
+    pub(super) fn take(&mut self, n: usize) -> Self {
         match self {
-            Self::None => (Self::None, Self::None),
-            Self::Rows(rows) => {
-                let (before, after) = rows.split_at_mut(index);
-                (Self::Rows(before), Self::Rows(after))
-            }
+            Self::None => Self::None,
+            Self::Rows(rows) => Self::Rows(take_mut(rows, n)),
             Self::Columns(columns) => {
-                let mut halves = columns.map(|column| column.split_at_mut(index));
-                let before = halves.each_mut().map(|(before, _)| core::mem::take(before));
-                let after = halves.map(|(_, after)| after);
-                (Self::Columns(before), Self::Columns(after))
+                Self::Columns(columns.each_mut().map(|column| take_mut(column, n)))
             }
         }
     }
@@ -92,7 +74,7 @@ impl Observations<'_> {
         }
     }
 
-    /// Writes the six numbers of one acrobot, if it is in the batch.
+    /// Writes the six numbers of one acrobot, if there is room for it.
     pub(super) fn write(&mut self, index: usize, row: [f32; 6]) {
         match self {
             Self::None => {}
@@ -110,6 +92,21 @@ impl Observations<'_> {
             }
         }
     }
+}
+
+/// Takes the first `n` elements off a slice, or all if there are fewer. `chunks` would divide by `n`, and some
+/// compilers keep the panic of that division by zero.
+#[inline(always)]
+pub(super) fn take<'a, T>(rest: &mut &'a [T], n: usize) -> &'a [T] {
+    let first = rest.split_off(..n);
+    first.unwrap_or_else(|| core::mem::take(rest))
+}
+
+/// [`take`] of a slice that can be changed.
+#[inline(always)]
+pub(super) fn take_mut<'a, T>(rest: &mut &'a mut [T], n: usize) -> &'a mut [T] {
+    let first = rest.split_off_mut(..n);
+    first.unwrap_or_else(|| core::mem::take(rest))
 }
 
 /// Rejects a slice of another length.

@@ -1,5 +1,6 @@
 //! One acrobot of a batch, to save and to resume.
 
+use super::buffers::take_mut;
 use super::{Batch, Block, no_such_member};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
@@ -46,9 +47,9 @@ where
     pub fn member(&self, index: usize) -> Option<Member<A::Scalar>> {
         let rng = self.generators.as_ref().get(index)?.clone();
         let block = self.blocks.as_ref().get(index / N)?;
-        let (elapsed, ended) = block.progress(index % N);
+        let (elapsed, ended) = block.progress(index % N)?;
         Some(Member {
-            state: block.state(index % N),
+            state: block.state(index % N)?,
             elapsed,
             ended,
             rng,
@@ -67,8 +68,8 @@ where
         member.state.validate()?;
         let len = self.len();
         let block = self.blocks.as_mut().get_mut(index / N);
-        let generators = self.generators.as_mut().chunks_mut(N).nth(index / N);
-        let generators = generators.unwrap_or_default();
+        let mut generators = self.generators.as_mut().get_mut(index - index % N..);
+        let generators = take_mut(generators.get_or_insert_default(), N);
         let (Some(block), Some(rng)) = (block, generators.get_mut(index % N)) else {
             return Err(no_such_member(index, len));
         };

@@ -2,7 +2,7 @@
 
 use core::num::NonZeroU32;
 
-use super::{Autoreset, Batch, Block, SimdLevel};
+use super::{Autoreset, Batch, Block, SimdLevel, each_block};
 use crate::arithmetic::{Arithmetic, Model};
 use crate::error::Error;
 use crate::numpy::Pcg64;
@@ -74,8 +74,7 @@ where
     /// [`Autoreset::SameStep`] resets all immediately, and with [`Autoreset::Disabled`] all step on.
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.shared.autoreset = autoreset;
-        let blocks = self.blocks.as_mut().iter_mut();
-        for (block, generators) in blocks.zip(self.generators.as_mut().chunks_mut(N)) {
+        for (block, generators) in each_block(self.blocks.as_mut(), self.generators.as_mut()) {
             block.stop_waiting::<A>(&self.shared, generators);
         }
     }

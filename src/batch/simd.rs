@@ -117,7 +117,7 @@ impl SimdLevel {
         blocks: &mut [Block<A::Scalar, N>],
         generators: &mut [Pcg64],
         inputs: &[D::Input],
-        buffers: StepBuffers<'_>,
+        mut buffers: StepBuffers<'_>,
     ) {
         // About a hundred microseconds of work in `f32` and in `f64`: waking a thread takes ten.
         let acrobots_of_a_task = match size_of::<A::Scalar>() {
@@ -128,13 +128,14 @@ impl SimdLevel {
             return self.step::<A, D, N>(shared, blocks, generators, inputs, buffers);
         }
         let middle = blocks.len() / 2;
+        let acrobots = middle * N;
         let (blocks1, blocks2) = blocks.split_at_mut(middle);
-        let (generators1, generators2) = generators.split_at_mut(middle * N);
-        let (inputs1, inputs2) = inputs.split_at(middle * N);
-        let (buffers1, buffers2) = buffers.split_at(middle * N);
+        let (generators1, generators2) = generators.split_at_mut(acrobots);
+        let (inputs1, inputs2) = inputs.split_at(acrobots);
+        let buffers1 = buffers.take(acrobots);
         rayon::join(
             || self.par_step::<A, D, N>(shared, blocks1, generators1, inputs1, buffers1),
-            || self.par_step::<A, D, N>(shared, blocks2, generators2, inputs2, buffers2),
+            || self.par_step::<A, D, N>(shared, blocks2, generators2, inputs2, buffers),
         );
     }
 }

@@ -2,7 +2,6 @@
 
 use core::convert::Infallible;
 
-use rand_core::utils::{fill_bytes_via_next_word, read_words};
 use rand_core::{Rng, SeedableRng, TryRng};
 
 use super::SeedSequence;
@@ -105,8 +104,17 @@ impl TryRng for Pcg64 {
         Ok(folded.rotate_right((self.state >> 122) as u32))
     }
 
+    // rand_core's `fill_bytes_via_next_word` has a division that panics by zero, which some compilers keep.
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        fill_bytes_via_next_word(bytes, || self.try_next_u64())
+        let (words, rest) = bytes.as_chunks_mut();
+        for word in words {
+            *word = self.next_u64().to_le_bytes();
+        }
+        if !rest.is_empty() {
+            let last = self.next_u64().to_le_bytes();
+            rest.iter_mut().zip(last).for_each(|(to, byte)| *to = byte);
+        }
+        Ok(())
     }
 }
 
@@ -115,7 +123,10 @@ impl SeedableRng for Pcg64 {
 
     /// The generator of the integer with these bytes, the lowest first.
     fn from_seed(seed: Self::Seed) -> Self {
-        let words: [u32; 8] = read_words(&seed);
+        let mut words = [0; 8];
+        for (word, bytes) in words.iter_mut().zip(seed.as_chunks().0) {
+            *word = u32::from_le_bytes(*bytes);
+        }
         Self::from_sequence(&SeedSequence::from_words(&words))
     }
 

@@ -131,10 +131,8 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         let slots = self.features.active(&state);
         let values = self.at(&slots);
         let action = self.choose(&values, rng);
-        self.learn(
-            reward + self.settings.gamma * values[action],
-            Some((&slots, action)),
-        );
+        let value = value_of(&values, action);
+        self.learn(reward + self.settings.gamma * value, Some((&slots, action)));
         self.traces.push(&slots, action);
         (self.slots, self.action) = (slots, action);
         side.action::<A>(action)
@@ -168,7 +166,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
     pub fn values(&self, state: &[f32; D]) -> [f32; A] {
         let (state, side) = self.fold(state);
         let values = self.at(&self.features.active(&state));
-        core::array::from_fn(|action| values[side.action::<A>(action)])
+        core::array::from_fn(|action| value_of(&values, side.action::<A>(action)))
     }
 
     /// The weights: in each slot one for each action, in units of the reward.
@@ -180,8 +178,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
     /// The update towards `target`.
     #[inline]
     fn learn(&mut self, target: f32, next: Option<(&[u16; T], usize)>) {
-        let value = self.at(&self.slots).get(self.action).copied();
-        let delta = target - value.unwrap_or(0.0);
+        let delta = target - value_of(&self.at(&self.slots), self.action);
         let step = self.alpha / T as f32 * delta;
         self.traces.update(self.weights, step, next);
     }
@@ -206,8 +203,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         if self.epsilon > 0.0 && (rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0) < self.epsilon
         {
             let action = (u64::from(rng.next_u32()) * A as u64) >> 32;
-            // Always below A. `min` lets the compiler see that no index is out of bounds.
-            return (action as usize).min(A.saturating_sub(1));
+            return action as usize;
         }
         best(values)
     }
@@ -244,11 +240,17 @@ impl Side {
 
 #[inline]
 fn best<const A: usize>(values: &[f32; A]) -> usize {
-    let mut best = 0;
-    for (action, value) in values.iter().enumerate() {
-        if *value > values[best] {
-            best = action;
+    let (mut best, mut highest) = (0, f32::NEG_INFINITY);
+    for (action, &value) in values.iter().enumerate() {
+        if value > highest {
+            (best, highest) = (action, value);
         }
     }
     best
+}
+
+/// Every action has a value. This is not an index because that could panic, for all that some compilers see.
+#[inline]
+fn value_of<const A: usize>(values: &[f32; A], action: usize) -> f32 {
+    values.get(action).copied().unwrap_or_default()
 }

@@ -191,11 +191,11 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         Error::unless(fits, "slots", slots, "a power of two from 2 to", MAX_SLOTS)?;
         self.slots = slots;
         self.shift = 16 - slots.trailing_zeros();
-        for t in 0..T {
-            self.bases[t] = (t as u16).wrapping_mul(GOLDEN);
-            for strides in &mut self.strides {
-                strides[t] = strides[t].wrapping_mul(FACTOR);
-            }
+        for (t, base) in self.bases.iter_mut().enumerate() {
+            *base = (t as u16).wrapping_mul(GOLDEN);
+        }
+        for stride in self.strides.as_flattened_mut() {
+            *stride = stride.wrapping_mul(FACTOR);
         }
         Ok(())
     }
@@ -227,7 +227,11 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         for (number, group) in groups.iter().enumerate() {
             let mut stride = 1;
             for (place, &d) in group.dimensions.iter().enumerate() {
-                let Some(dimension) = dimensions.get(d) else {
+                let (Some(dimension), Some(offsets), Some(strides)) = (
+                    dimensions.get(d),
+                    coder.offsets.get_mut(d),
+                    coder.strides.get_mut(d),
+                ) else {
                     return Err(Error::Count {
                         name: "a dimension's number",
                         value: d,
@@ -250,10 +254,10 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
                         });
                     }
                     let t = first + tiling;
-                    if let Some(moved) = coder.offsets[d].get_mut(t) {
+                    if let Some(moved) = offsets.get_mut(t) {
                         *moved = (offset * 65536.0) as u16;
                     }
-                    if let Some(factor) = coder.strides[d].get_mut(t) {
+                    if let Some(factor) = strides.get_mut(t) {
                         *factor = stride as u16;
                     }
                 }
@@ -296,10 +300,13 @@ impl<const D: usize, const T: usize> Features<D, T> for TileCoder<D, T> {
     #[inline]
     fn active(&self, state: &[f32; D]) -> [u16; T] {
         let mut slots = self.bases;
-        for (d, &x) in state.iter().enumerate() {
-            let [whole, next, fraction] = self.dimensions[d].locate(x, self.per_unit[d]);
-            let moved = self.offsets[d].iter().zip(&self.strides[d]);
-            for (slot, (&offset, &stride)) in slots.iter_mut().zip(moved) {
+        let scales = self.dimensions.iter().zip(&self.per_unit);
+        let tilings = self.offsets.iter().zip(&self.strides);
+        for ((x, (dimension, per_unit)), (offsets, strides)) in
+            state.iter().zip(scales).zip(tilings)
+        {
+            let [whole, next, fraction] = dimension.locate(*x, *per_unit);
+            for (slot, (&offset, &stride)) in slots.iter_mut().zip(offsets.iter().zip(strides)) {
                 let (_, carried) = fraction.overflowing_add(offset);
                 let coordinate = if carried { next } else { whole };
                 *slot = slot.wrapping_add(coordinate.wrapping_mul(stride));
@@ -309,13 +316,13 @@ impl<const D: usize, const T: usize> Features<D, T> for TileCoder<D, T> {
     }
 
     fn fingerprint(&self, mut mix: impl FnMut(u32)) {
-        for d in 0..D {
-            let dimension = &self.dimensions[d];
+        let tilings = self.offsets.iter().zip(&self.strides);
+        for (dimension, (offsets, strides)) in self.dimensions.iter().zip(tilings) {
             mix(dimension.low.to_bits());
             mix(dimension.high.to_bits());
             mix(u32::from(dimension.intervals) << 1 | u32::from(dimension.cyclic));
-            for t in 0..T {
-                mix(u32::from(self.offsets[d][t]) << 16 | u32::from(self.strides[d][t]));
+            for (&offset, &stride) in offsets.iter().zip(strides) {
+                mix(u32::from(offset) << 16 | u32::from(stride));
             }
         }
         self.bases.iter().for_each(|&base| mix(u32::from(base)));

@@ -29,8 +29,11 @@ impl<const T: usize> Traces<T> {
     pub fn new(gamma_lambda: f32) -> Self {
         let mut decay = [0.0; LENGTH];
         let (mut ages, mut trace) = (0, 1.0);
-        while ages < LENGTH && trace >= CUT {
-            decay[ages] = trace;
+        for decay in &mut decay {
+            if trace < CUT {
+                break;
+            }
+            *decay = trace;
             trace *= gamma_lambda;
             ages += 1;
         }
@@ -73,7 +76,11 @@ impl<const T: usize> Traces<T> {
         for (age, decay) in self.decay.iter().take(self.ages).enumerate() {
             steps[(self.head + LENGTH - age) % LENGTH] = step * decay;
         }
-        for (t, (slots, live)) in self.slots.iter().zip(&mut self.live).enumerate() {
+        let mut next = next
+            .into_iter()
+            .flat_map(|(slots, action)| slots.iter().map(move |slot| (*slot, action)));
+        for (slots, live) in self.slots.iter().zip(&mut self.live) {
+            let next = next.next();
             // In machine words: with 64 bits at once a Cortex-M takes 1.5 times as long.
             for low in (0..LENGTH).step_by(usize::BITS as usize) {
                 let (mut rest, mut again) = ((*live >> low) as usize, 0);
@@ -85,7 +92,7 @@ impl<const T: usize> Traces<T> {
                     if let Some(w) = weights.and_then(|w| w.get_mut(action)) {
                         *w += steps[place];
                     }
-                    if next.is_some_and(|(next, chosen)| slot == next[t] && action == chosen) {
+                    if next == Some((slot, action)) {
                         again = bit;
                     }
                     rest ^= bit;

@@ -27,6 +27,7 @@ use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
+use rand_core::{Rng as _, SeedableRng as _};
 use training::acrobot_task::{Preset, greedy, learn};
 
 unsafe extern "C" {
@@ -195,6 +196,9 @@ fn numbers() {
     if let Some(n) = NonZeroU32::new(black_box(3)) {
         black_box(integers(&mut rng, n));
     }
+    let mut bytes = [0; 9];
+    rng.fill_bytes(black_box(&mut bytes[..]));
+    black_box((bytes, Pcg64::from_seed(black_box([7; 32]))));
     black_box(SeedSequence::from_words(&black_box([7; 9])));
 }
 
