@@ -137,8 +137,9 @@ pub(crate) enum Range {
     Finite,
     AtLeastZero,
     AboveZero,
-    /// Observations are `f32` and contain velocities, so velocity bounds must fit.
-    AboveZeroInF32,
+    /// Observations are `f32` and contain velocities, so velocity bounds must fit. NEON of 32-bit ARM takes subnormal
+    /// numbers for 0.
+    NormalF32,
     /// Initial states are rounded to `f32`, so reset bounds must fit.
     InF32,
 }
@@ -156,7 +157,10 @@ impl Range {
             Self::Finite => (true, "a finite number of"),
             Self::AtLeastZero => (value >= 0.0, "finite and at least 0"),
             Self::AboveZero => (value > 0.0, "finite and above 0"),
-            Self::AboveZeroInF32 => (value > 0.0 && in_f32, "above 0 and at most 3.4e38"),
+            Self::NormalF32 => (
+                value >= f32::MIN_POSITIVE as f64 && in_f32,
+                "from 1.2e-38 to 3.4e38",
+            ),
             Self::InF32 => (in_f32, "within -3.4e38 and 3.4e38"),
         };
         if holds && value.is_finite() {

@@ -139,8 +139,6 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
 
     /// Compares every bit of the states, the steps since the last reset, and the generators.
     fn assert_equal(&self) {
-        let bits =
-            |state: State<A::Scalar>| <[A::Scalar; 4]>::from(state).map(|x| x.to_f64().to_bits());
         for (i, alone) in self.alone.iter().enumerate() {
             let member = self.batch.member(i).unwrap();
             let inner = alone.inner();
@@ -176,6 +174,11 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
             self.step(&random.collect::<Vec<_>>());
         }
     }
+}
+
+/// The bits of a state, which distinguish 0 from −0.
+fn bits<S: Real>(state: State<S>) -> [u64; 4] {
+    <[S; 4]>::from(state).map(|x| x.to_f64().to_bits())
 }
 
 const MODES: [Autoreset; 3] = [
@@ -316,7 +319,9 @@ fn threads_change_no_bit() {
             ),
         };
         step(batch, buffers).unwrap();
-        (rewards, terminated, truncated, columns, finals)
+        let bits = |xs: Vec<f32>| xs.into_iter().map(f32::to_bits).collect::<Vec<_>>();
+        let seen = [columns, finals].map(|columns| columns.map(bits));
+        (bits(rewards), terminated, truncated, seen)
     };
     // Past two limits, optimized past eight.
     for _ in 0..if cfg!(debug_assertions) { 16 } else { 60 } {
@@ -337,7 +342,42 @@ fn threads_change_no_bit() {
         });
         assert!(alone == shared);
     }
-    assert!((0..len).all(|i| one.state(i) == many.state(i)));
+    for i in 0..len {
+        let [one, many] = [&one, &many].map(|batch| batch.state(i).unwrap());
+        assert_eq!(bits(one), bits(many), "acrobot {i}");
+    }
+}
+
+/// Also the sign of a zero: here every force is 0 or −0, and beyond 2¹⁹ rad sines can be 0.
+#[test]
+fn zeros_have_the_sign_of_one_alone() {
+    for autoreset in MODES {
+        let mut twins = Twins::<Fast>::new(20, autoreset);
+        twins.set_params(Params {
+            gravity: -0.0,
+            torques: [-0.0; 3],
+            ..Params::DEFAULT
+        });
+        let far = [18_800_440.0, -18_800_440.0, 6_597_069_800_000.0, 1e30];
+        for (theta1, theta2) in far
+            .into_iter()
+            .flat_map(|x| [(0.0, x), (x, 0.0), (-0.0, x), (x, x)])
+        {
+            let state = State {
+                theta1,
+                theta2,
+                dtheta1: -0.0,
+                dtheta2: -0.0,
+            };
+            twins.batch.reset_to(&[state; 20]).unwrap();
+            twins.reset_alone(|_, alone| {
+                let mut inner = alone.inner().clone();
+                inner.set_state(state).unwrap();
+                *alone = TimeLimit::v1(inner);
+            });
+            twins.swing(2);
+        }
+    }
 }
 
 #[test]
@@ -521,7 +561,8 @@ fn one_state_is_set_as_one_alone() {
             let mut rows = [[0.0; 6]; 35];
             twins.batch.observe(Observations::Rows(&mut rows)).unwrap();
             let observation = twins.alone[index].inner().observation();
-            assert_eq!(rows[index], observation.to_array());
+            let [row, alone] = [rows[index], observation.to_array()];
+            assert_eq!(row.map(f32::to_bits), alone.map(f32::to_bits));
         }
         twins.swing(100);
     }

@@ -5,6 +5,10 @@ use std::f32::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Real};
 
+fn bits<S: Real>(x: S) -> u64 {
+    x.to_f64().to_bits()
+}
+
 const EVERY: usize = if cfg!(debug_assertions) { 257 } else { 1 };
 
 /// The largest errors of sine and cosine over each `stride`-th `f32` from `start` to `end`. The negative arguments must
@@ -91,13 +95,39 @@ fn the_error_far_outside_is_that_of_the_angle() {
 fn near_the_origin_nothing_differs() {
     fn check<A: Arithmetic>() {
         for x in (-1000..1000).map(|i| A::Scalar::from_f64(f64::from(i).powi(3) / 1908.0)) {
-            assert_eq!(A::sin_cos(x), A::sin_cos_near(x));
+            let [(sin, cos), (near_sin, near_cos)] = [A::sin_cos(x), A::sin_cos_near(x)];
+            assert_eq!([sin, cos].map(bits), [near_sin, near_cos].map(bits));
         }
     }
     check::<Fast>();
     check::<Micro>();
     check::<Portable>();
     check::<Host>();
+}
+
+/// A batch's sines have the bits of one acrobot's, at any distance. Where they overflow, both have a number that is not
+/// finite, which ends the step alike.
+#[test]
+fn lanes_have_the_bits_of_one() {
+    fn check<A: Arithmetic<Scalar = f32>>() {
+        for first in (0..f32::INFINITY.to_bits()).step_by(16 * EVERY.max(17)) {
+            for sign in [1.0, -1.0] {
+                let x: [f32; 16] = std::array::from_fn(|i| sign * f32::from_bits(first + i as u32));
+                let (sin, cos) = A::sin_cos_lanes(x);
+                for (x, lane) in x.into_iter().zip(sin.into_iter().zip(cos)) {
+                    let one = A::sin_cos_near(x);
+                    let is_finite = |(sin, cos): (f32, f32)| sin.is_finite() && cos.is_finite();
+                    let bits = |(sin, cos): (f32, f32)| [bits(sin), bits(cos)];
+                    assert!(
+                        bits(one) == bits(lane) || !is_finite(one) && !is_finite(lane),
+                        "{x:e}: {one:?} {lane:?}"
+                    );
+                }
+            }
+        }
+    }
+    check::<Fast>();
+    check::<Micro>();
 }
 
 /// So any finite state has an observation.

@@ -45,7 +45,12 @@ fn errors_say_what_was_wrong_and_what_is_valid() {
         ),
         (
             params(|params| params.max_velocity2 = f64::INFINITY),
-            "max_velocity2 must be above 0 and at most 3.4e38 rad/s, got inf",
+            "max_velocity2 must be from 1.2e-38 to 3.4e38 rad/s, got inf",
+        ),
+        (
+            // Subnormal in `f32`: NEON of 32-bit ARM would take it for 0.
+            params(|params| params.max_velocity1 = 1.1754942e-38),
+            "max_velocity1 must be from 1.2e-38 to 3.4e38 rad/s, got 0.000000000000000000000000000000000000011754942",
         ),
         (
             bounds(f64::NEG_INFINITY, 0.0),

@@ -9,7 +9,7 @@ use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, SimdLevel, S
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::StartBounds;
 use acrobot::{Acrobot, Error, Fast, Params, Portable, ResetOptions, State, Step};
-use acrobot_fuzz::{assert_settled, number, params, state};
+use acrobot_fuzz::{assert_settled, bits, number, params, state};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 
@@ -266,6 +266,8 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
             },
         }
         for (index, alone) in alone.iter().enumerate() {
+            let state = batch.state(index).map(bits);
+            assert_eq!(state, Some(bits(alone.acrobot.state())), "acrobot {index}");
             assert_eq!(batch.member(index), Some(alone.member()), "acrobot {index}");
         }
         assert_eq!((batch.member(len), batch.state(len)), (None, None));
@@ -323,8 +325,8 @@ fn step<A: Arithmetic, const N: usize>(
             "acrobot {index}"
         );
         assert_eq!(
-            finals[index],
-            final_row.unwrap_or([UNTOUCHED; 6]),
+            finals[index].map(f32::to_bits),
+            final_row.unwrap_or([UNTOUCHED; 6]).map(f32::to_bits),
             "acrobot {index}"
         );
         assert_eq!(

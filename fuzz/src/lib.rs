@@ -68,6 +68,11 @@ pub fn state(u: &mut Unstructured<'_>) -> Result<State> {
     Ok(numbers.into())
 }
 
+/// The bits of a state, which distinguish 0 from −0.
+pub fn bits<S: Real>(state: State<S>) -> [u64; 4] {
+    <[S; 4]>::from(state).map(|x| x.to_f64().to_bits())
+}
+
 /// What holds after a step from any state with any input.
 pub fn assert_stepped<S: Real>(step: Step, state: State<S>, params: &Params<S>) {
     assert_settled(state, params);

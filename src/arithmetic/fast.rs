@@ -98,8 +98,8 @@ impl QuarterTurns for f32 {
 }
 
 impl<const N: usize> QuarterTurns for Lanes<f32, N> {
-    /// By selecting and flipping signs. Where the table of `f32` gives NaN this gives infinity; a step with
-    /// either is not finite.
+    /// By selecting and flipping signs. The sum with 0 turns −0 to 0, which the table of `f32` gives. Where that gives
+    /// NaN this gives infinity; a step with either is not finite.
     #[inline(always)]
     fn rotate(turns: Self, mut sin: Self, mut cos: Self) -> (Self, Self) {
         const SIGN: u32 = 1 << 31;
@@ -109,8 +109,8 @@ impl<const N: usize> QuarterTurns for Lanes<f32, N> {
             let kept = (sin.to_bits() ^ cos.to_bits()) & even;
             let turned_sin = cos.to_bits() ^ kept ^ (turns << 30 & SIGN);
             let turned_cos = sin.to_bits() ^ kept ^ (turns.wrapping_add(1) << 30 & SIGN);
-            *sin = f32::from_bits(turned_sin);
-            *cos = f32::from_bits(turned_cos);
+            *sin = f32::from_bits(turned_sin) + 0.0;
+            *cos = f32::from_bits(turned_cos) + 0.0;
         }
         (sin, cos)
     }
