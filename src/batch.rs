@@ -72,6 +72,18 @@ pub enum Autoreset {
 ///
 /// `B` holds a [`Block`] for each `N` acrobots, and `G` a generator for each acrobot: arrays, slices or `Vec`s. They
 /// are separate because a step seldom draws. [An example](self).
+///
+/// `N` must be from 1 to 32. A step keeps arrays of `N` numbers on the stack, and 64 `f64` each would take more than a
+/// thread's 2 MiB in a debug build.
+///
+/// ```compile_fail,E0080
+/// use acrobot::Fast;
+/// use acrobot::batch::{Batch, Block};
+/// use acrobot::numpy::Pcg64;
+///
+/// let block = vec![Block::EMPTY];
+/// let batch = Batch::<Fast, _, _, 33>::new(42, block, vec![Pcg64::UNSEEDED; 33]);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Batch<A: Arithmetic, B, G, const N: usize = 16> {
     shared: Shared<A>,
@@ -113,7 +125,7 @@ where
     ///
     /// As [`new`](Self::new).
     pub fn with_seed(seed: SeedSequence, blocks: B, generators: G) -> Result<Self, Error> {
-        const { assert!(N > 0, "a block holds at least one acrobot") };
+        const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
         let len = generators.as_ref().len();
         if len == 0 {
             return Err(Error::EmptyBatch);

@@ -256,6 +256,7 @@ fn any_width_plays_as_one_alone() {
     play::<Portable, 4>();
     play::<Portable, 7>();
     play::<Portable, 16>();
+    play::<Portable, 32>();
     play::<Host, 1>();
     play::<Host, 4>();
     play::<Host, 16>();

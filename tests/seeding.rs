@@ -4,6 +4,7 @@ use std::fmt::Debug;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
+use acrobot::batch::{Batch, Block};
 use acrobot::env::{AcrobotEnv, Env, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::StartBounds;
@@ -125,6 +126,26 @@ fn a_later_spawn_gives_the_next_children() {
         parent.generate_state::<4>(),
         "spawning does not change the parent's stream"
     );
+}
+
+/// Children do not run out. A batch then takes the next ones, not unseeded generators.
+#[test]
+fn there_is_always_a_next_child() {
+    let mut seed = SeedSequence::new(42);
+    let mut all = seed.spawn(u64::MAX);
+    assert_eq!(all.next(), Some(seed.child(0)));
+    let last = seed.spawn(1).next().unwrap();
+    assert_eq!(last, seed.child(u64::MAX));
+    assert_eq!(seed.spawn(5).count(), 5);
+    let next = seed.clone().spawn(1).next().unwrap();
+    // np.random.SeedSequence(42, spawn_key=(2**64 + 5,)).generate_state(2, np.uint64)
+    let words = [0xc75e_27e1_5183_9fa7, 0x22de_3ff0_2e47_cbe8];
+    assert_eq!(next.generate_state(), words);
+
+    let (blocks, generators) = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 1]);
+    let batch = Batch::<Fast, _, _>::with_seed(seed, blocks, generators).unwrap();
+    let alone = Acrobot::<Fast>::with_rng(next.into());
+    assert_eq!(batch.state(0), Some(alone.state()));
 }
 
 #[test]

@@ -26,8 +26,8 @@ pub struct SeedSequence {
     pool: [u32; 4],
     /// The multiplier of the next `hash`, which changes it.
     hash_multiplier: u32,
-    /// How many children were spawned.
-    spawned: u64,
+    /// How many children were spawned. 128 bits never run out: one call spawns less than 2⁶⁴.
+    spawned: u128,
 }
 
 const SHIFT: u32 = 16;
@@ -93,27 +93,32 @@ impl SeedSequence {
     }
 
     /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call gives other
-    /// children. There are 2⁶⁴ − 1 in all.
+    /// children.
     pub fn spawn(&mut self, n: u64) -> impl Iterator<Item = Self> + use<> {
         let parent = self.clone();
-        self.spawned = parent.spawned.saturating_add(n);
-        (parent.spawned..self.spawned).map(move |index| parent.child(index))
+        self.spawned = parent.spawned.saturating_add(n.into());
+        (0..n).map(move |i| parent.descend(parent.spawned.saturating_add(i.into())))
     }
 
     /// The child with this index, counted from 0 over all calls of [`spawn`](Self::spawn): for a worker that
     /// knows only its own number.
     #[must_use]
     pub fn child(&self, index: u64) -> Self {
+        self.descend(index.into())
+    }
+
+    fn descend(&self, mut index: u128) -> Self {
         let mut child = Self {
             spawned: 0,
             ..self.clone()
         };
-        let [low, high] = [index as u32, (index >> 32) as u32];
-        child.absorb(low);
-        if high != 0 {
-            child.absorb(high);
+        loop {
+            child.absorb(index as u32);
+            index >>= 32;
+            if index == 0 {
+                return child;
+            }
         }
-        child
     }
 
     /// The first `N` 64-bit words that the sequence generates. They are always the same.
