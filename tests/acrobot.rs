@@ -26,7 +26,7 @@ const _: () = {
     assert!(size_of::<Observation>() == 24);
     assert!(size_of::<Action>() == 1);
     assert!(size_of::<Fast>() == 0);
-    assert!(size_of::<SeedSequence>() == 32);
+    assert!(size_of::<SeedSequence>() == 48);
     assert!(size_of::<Transition<f32>>() <= 44);
     is_send_sync_clone::<Acrobot<Fast>>();
     is_send_sync_clone::<Pendulum<Fast>>();
