@@ -7,7 +7,7 @@
 /// A hashed seed: NumPy's `SeedSequence` of any non-negative integer, and its children.
 ///
 /// NumPy keeps the seed and hashes it again for each child. Hashing is sequential, so this keeps the hashed
-/// pool instead: 48 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the same
+/// pool instead: at most 48 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the same
 /// children by accident.
 ///
 /// ```
