@@ -2,6 +2,8 @@
 //! `PROPTEST_CASES=60000 PROPTEST_RNG_SEED=7 cargo test --release --test properties` tries more and other cases.
 
 mod common;
+#[path = "common/formats.rs"]
+mod formats;
 #[path = "properties/given.rs"]
 #[macro_use]
 mod given;

@@ -26,51 +26,53 @@ use super::SeedSequence;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Pcg64 {
     state: u128,
     /// Odd, otherwise the period is short.
     increment: u128,
     /// The high half of a 64-bit draw whose low half was used.
     half: Option<u32>,
+    #[cfg(feature = "serde")]
+    origin: snapshot::Origin,
 }
 
 impl Pcg64 {
     /// A placeholder that a [`Batch`](crate::batch::Batch) seeds. Its own stream is of low quality.
-    pub const UNSEEDED: Self = Self {
-        state: 0,
-        increment: 1,
-        half: None,
-    };
+    pub const UNSEEDED: Self = Self::from_hash([0; 4]);
 
     /// NumPy's `default_rng(seed)`. For other seeds: `Pcg64::from` a [`SeedSequence`].
     #[must_use]
     pub const fn new(seed: u64) -> Self {
-        Self::from_sequence(&SeedSequence::new(seed))
+        Self::from_hash(SeedSequence::new(seed).generate_state())
     }
 
-    const fn from_sequence(sequence: &SeedSequence) -> Self {
-        let [state1, state0, stream1, stream0] = sequence.generate_state();
+    /// The generator of a seed with this hash. Any hash makes a valid generator.
+    const fn from_hash(hash: [u64; 4]) -> Self {
+        let [state1, state0, stream1, stream0] = hash;
         let increment = (join(stream1, stream0) << 1) | 1;
-        let mut pcg = Self {
-            state: increment.wrapping_add(join(state1, state0)),
+        let state = increment.wrapping_add(join(state1, state0));
+        Self {
+            state: state.wrapping_mul(MULTIPLIER).wrapping_add(increment),
             increment,
             half: None,
-        };
-        pcg.advance();
-        pcg
+            #[cfg(feature = "serde")]
+            origin: snapshot::Origin { hash, position: 0 },
+        }
     }
 
     /// One step of the underlying linear congruential generator.
     #[inline]
-    const fn advance(&mut self) {
-        const MULTIPLIER: u128 = 0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645;
+    fn advance(&mut self) {
         self.state = self
             .state
             .wrapping_mul(MULTIPLIER)
             .wrapping_add(self.increment);
+        #[cfg(feature = "serde")]
+        self.origin.advance(1);
     }
 }
+
+const MULTIPLIER: u128 = 0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645;
 
 const fn join(high: u64, low: u64) -> u128 {
     ((high as u128) << 64) | low as u128
@@ -79,7 +81,7 @@ const fn join(high: u64, low: u64) -> u128 {
 impl From<SeedSequence> for Pcg64 {
     /// NumPy's `default_rng(sequence)`.
     fn from(sequence: SeedSequence) -> Self {
-        Self::from_sequence(&sequence)
+        Self::from_hash(sequence.generate_state())
     }
 }
 
@@ -127,7 +129,7 @@ impl SeedableRng for Pcg64 {
         for (word, bytes) in words.iter_mut().zip(seed.as_chunks().0) {
             *word = u32::from_le_bytes(*bytes);
         }
-        Self::from_sequence(&SeedSequence::from_words(&words))
+        SeedSequence::from_words(&words).into()
     }
 
     /// [`Pcg64::new`]: NumPy's stream of this seed, not the one that `rand_core` would derive.
@@ -137,32 +139,85 @@ impl SeedableRng for Pcg64 {
 }
 
 #[cfg(feature = "serde")]
-impl<'de> serde::Deserialize<'de> for Pcg64 {
-    /// Rejects an even increment.
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(serde::Deserialize)]
-        #[serde(rename = "Pcg64")]
-        struct Snapshot {
-            state: u128,
-            increment: u128,
-            // Must be present: without it the stream would be another.
-            #[serde(deserialize_with = "Option::deserialize")]
-            half: Option<u32>,
-        }
+mod snapshot {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-        let Snapshot {
-            state,
-            increment,
-            half,
-        } = Snapshot::deserialize(deserializer)?;
-        if increment % 2 == 0 {
-            let reason = format_args!("increment must be odd, got {increment}");
-            return Err(serde::de::Error::custom(reason));
+    use super::{MULTIPLIER, Pcg64};
+
+    /// Where a generator comes from. It is what a snapshot holds, because any of these makes a valid generator.
+    #[derive(Clone, Debug, PartialEq, Eq)]
+    #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+    pub struct Origin {
+        /// The hash of the seed.
+        pub hash: [u64; 4],
+        /// How many 64-bit draws were made since.
+        pub position: u64,
+    }
+
+    impl Origin {
+        #[inline]
+        pub fn advance(&mut self, draws: u64) {
+            self.position = self.position.wrapping_add(draws);
         }
-        Ok(Self {
-            state,
-            increment,
-            half,
-        })
+    }
+
+    /// Only numbers that every format holds: TOML has no integers above 2⁶³, JavaScript none above 2⁵³, and others no
+    /// 128 bits. No field is optional, because some formats leave those out.
+    #[derive(Serialize, Deserialize)]
+    #[serde(rename = "Pcg64")]
+    struct Snapshot {
+        /// The hash of the seed, in halves: the lower before the upper.
+        seed: [u32; 8],
+        position: u64,
+        has_half: bool,
+        half: u32,
+    }
+
+    impl Serialize for Pcg64 {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            let [a, b, c, d] = self
+                .origin
+                .hash
+                .map(|word| [word as u32, (word >> 32) as u32]);
+            Snapshot {
+                seed: [a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]],
+                position: self.origin.position,
+                has_half: self.half.is_some(),
+                half: self.half.unwrap_or_default(),
+            }
+            .serialize(serializer)
+        }
+    }
+
+    impl<'de> Deserialize<'de> for Pcg64 {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let Snapshot {
+                seed: [a, b, c, d, e, f, g, h],
+                position,
+                has_half,
+                half,
+            } = Snapshot::deserialize(deserializer)?;
+            let hash = [[a, b], [c, d], [e, f], [g, h]];
+            let mut pcg =
+                Self::from_hash(hash.map(|[low, high]| u64::from(high) << 32 | u64::from(low)));
+            pcg.skip(position);
+            pcg.half = has_half.then_some(half);
+            Ok(pcg)
+        }
+    }
+
+    impl Pcg64 {
+        /// Advances by many draws at once. x → a x + c, applied twice, is x → a² x + (a + 1) c.
+        fn skip(&mut self, draws: u64) {
+            let (mut a, mut c) = (MULTIPLIER, self.increment);
+            for bit in 0..u64::BITS {
+                if draws >> bit & 1 == 1 {
+                    self.state = self.state.wrapping_mul(a).wrapping_add(c);
+                }
+                c = a.wrapping_add(1).wrapping_mul(c);
+                a = a.wrapping_mul(a);
+            }
+            self.origin.advance(draws);
+        }
     }
 }

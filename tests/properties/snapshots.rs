@@ -6,9 +6,8 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Params, State, TimeLimit};
 use proptest::prelude::*;
 use rand_core::Rng;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 
+use crate::formats::again;
 use crate::given::{Number, Range, acrobot, bits, holds, params, state};
 
 /// An acrobot after some steps and draws, with any time limit.
@@ -25,24 +24,18 @@ fn running<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = TimeLimit<A
     })
 }
 
-/// The value stored and loaded again, as text and as bytes.
-fn again<T: Serialize + DeserializeOwned>(original: &T) -> [T; 2] {
-    let text = serde_json::to_string(original).unwrap();
-    let bytes = postcard::to_stdvec(original).unwrap();
-    [
-        serde_json::from_str(&text).unwrap(),
-        postcard::from_bytes(&bytes).unwrap(),
-    ]
-}
-
 #[test]
 fn snapshots_resume_to_the_same_bits() {
     fn check<A: Arithmetic<Scalar: Number>>() {
         holds(500, running::<A>(), |original| {
             let expected = serde_json::to_string(&original).unwrap();
-            for mut resumed in again(&original) {
+            for (format, mut resumed) in again(&original) {
                 let mut original = original.clone();
-                assert_eq!(serde_json::to_string(&resumed).unwrap(), expected);
+                assert_eq!(
+                    serde_json::to_string(&resumed).unwrap(),
+                    expected,
+                    "{format}"
+                );
                 for _ in 0..3 {
                     assert_eq!(resumed, original);
                     let [state, other] =
@@ -72,14 +65,19 @@ fn members_and_parts_are_loaded_as_they_were_stored() {
             ended,
             rng,
         };
-        for loaded in again(&member) {
+        for (_, loaded) in again(&member) {
             assert_eq!(bits(loaded.state), bits(member.state));
             assert_eq!(loaded, member);
         }
     });
     let given = (params::<f64>(Range::Any), state::<f64>(Range::Any));
-    holds(500, given, |parts: (Params, State)| {
-        assert_eq!(again(&parts), [parts; 2]);
+    holds(500, given, |(params, state): (Params, State)| {
+        for (_, loaded) in again(&params) {
+            assert_eq!(loaded, params);
+        }
+        for (_, loaded) in again(&state) {
+            assert_eq!(bits(loaded), bits(state));
+        }
     });
 }
 
@@ -104,8 +102,8 @@ fn damaged_snapshots_are_rejected_or_valid() {
                 loaded.inner().state().validate().unwrap();
                 let observation = loaded.step(Action::Positive).observation;
                 assert!(observation.as_ref().iter().all(|x| x.is_finite()));
-                let [again, _] = again(&loaded);
-                assert_eq!(again, loaded);
+                let bytes = postcard::to_stdvec(&loaded).unwrap();
+                assert_eq!(postcard::from_bytes(&bytes), Ok(loaded));
             }
         });
     }

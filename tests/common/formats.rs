@@ -1,0 +1,80 @@
+//! A value stored and loaded again in many formats of serde's.
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+#[derive(Serialize, Deserialize)]
+struct Flattened<T> {
+    name: String,
+    #[serde(flatten)]
+    value: T,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(tag = "type")]
+enum Tagged<T> {
+    One(T),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Untagged<T> {
+    One(T),
+}
+
+/// What comes back from each format, with the format's name. `value` is a struct.
+pub fn again<T: Serialize + DeserializeOwned>(value: &T) -> Vec<(&'static str, T)> {
+    let flattened = Flattened {
+        name: "a".into(),
+        value,
+    };
+    let json = |text: String| serde_json::from_str(&text).unwrap();
+    let mut cbor = Vec::new();
+    ciborium::into_writer(value, &mut cbor).unwrap();
+    let yaml = serde_yaml_ng::to_string(value).unwrap();
+    let named = rmp_serde::to_vec_named(value).unwrap();
+    let flattened_json = serde_json::to_string(&flattened).unwrap();
+    let tagged = serde_json::to_string(&Tagged::One(value)).unwrap();
+    let untagged = serde_json::to_string(&Untagged::One(value)).unwrap();
+    let Flattened { value: flat, .. } =
+        serde_json::from_str::<Flattened<T>>(&flattened_json).unwrap();
+    let flattened_toml = toml::to_string(&flattened).unwrap();
+    let Flattened {
+        value: flat_toml, ..
+    } = toml::from_str::<Flattened<T>>(&flattened_toml).unwrap();
+    let Tagged::One(tagged) = serde_json::from_str::<Tagged<T>>(&tagged).unwrap();
+    let Untagged::One(untagged) = serde_json::from_str::<Untagged<T>>(&untagged).unwrap();
+    vec![
+        ("JSON", json(serde_json::to_string(value).unwrap())),
+        (
+            "a JSON value",
+            serde_json::from_value(serde_json::to_value(value).unwrap()).unwrap(),
+        ),
+        (
+            "postcard",
+            postcard::from_bytes(&postcard::to_stdvec(value).unwrap()).unwrap(),
+        ),
+        ("CBOR", ciborium::from_reader(&cbor[..]).unwrap()),
+        (
+            "MessagePack",
+            rmp_serde::from_slice(&rmp_serde::to_vec(value).unwrap()).unwrap(),
+        ),
+        (
+            "MessagePack with names",
+            rmp_serde::from_slice(&named).unwrap(),
+        ),
+        (
+            "TOML",
+            toml::from_str(&toml::to_string(value).unwrap()).unwrap(),
+        ),
+        (
+            "RON",
+            ron::from_str(&ron::to_string(value).unwrap()).unwrap(),
+        ),
+        ("YAML", serde_yaml_ng::from_str(&yaml).unwrap()),
+        ("flattened JSON", flat),
+        ("flattened TOML", flat_toml),
+        ("a tagged enum", tagged),
+        ("an untagged enum", untagged),
+    ]
+}
