@@ -305,6 +305,14 @@ fn rejections_say_what_is_valid() {
         assert_eq!(error.to_string(), expected);
         assert_eq!(error, Error::UnknownId(id.to_owned()));
     }
+    // A long id is cut after 64 characters, whatever these are.
+    for letter in ["x", "é", "\0"] {
+        let error = make(&letter.repeat(1_000_000)).unwrap_err();
+        assert_eq!(error, Error::UnknownId(letter.repeat(64) + "…"));
+    }
+    let exact = "x".repeat(64);
+    assert_eq!(make(&exact).unwrap_err(), Error::UnknownId(exact));
+
     let rejected = |params, arithmetic| {
         let options = Options {
             params,

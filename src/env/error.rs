@@ -15,7 +15,7 @@ use std::string::String;
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// No environment has this id.
+    /// No environment has this id. An id of more than 64 characters is cut there and ends in `…`.
     UnknownId(String),
     /// The environment was made without a render mode.
     NoRenderMode,
