@@ -108,7 +108,7 @@ pub trait Env {
     ///
     /// # Errors
     ///
-    /// [`Error::NoRenderMode`] if it was made with none.
+    /// [`Error::NoRenderMode`] if it was made with none, and [`Error::DisplayBusy`] if a [`Display`] renders on itself.
     fn render(&mut self) -> Result<Rendering, Error> {
         Err(Error::NoRenderMode)
     }

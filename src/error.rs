@@ -80,6 +80,14 @@ pub enum Error {
         /// Its position, counted from 1.
         position: usize,
     },
+    /// The text of a seed has too many digits.
+    #[cfg(feature = "std")]
+    SeedTooLong {
+        /// The length of the text, bytes.
+        len: usize,
+        /// The largest number of digits.
+        limit: usize,
+    },
 }
 
 impl fmt::Display for Error {
@@ -124,6 +132,10 @@ impl fmt::Display for Error {
                     Some(found) => write!(f, "{found:?} as character {position}"),
                     None => write!(f, "an empty text"),
                 }
+            }
+            #[cfg(feature = "std")]
+            Self::SeedTooLong { len, limit } => {
+                write!(f, "seed must have at most {limit} digits, got {len} bytes")
             }
         }
     }

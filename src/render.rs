@@ -110,8 +110,8 @@ impl<C> Theme<C> {
 /// A drawing: the positions of an acrobot's parts.
 ///
 /// It is scaled to the target's bounding box as Gymnasium scales its window: both links and 0.2 m more in each
-/// direction fit into the shorter side. Any target size is drawn, also 0×0, and nothing outside it.
-/// [An example](self).
+/// direction fit into the shorter side. Any target size is drawn, also 0×0, and nothing outside it. Nothing is drawn on
+/// a target whose width, height, right end or bottom end is above `i32::MAX`. [An example](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Figure {
@@ -163,7 +163,9 @@ impl Figure {
         theme: &Theme<D::Color>,
     ) -> Result<(), D::Error> {
         let area = target.bounding_box();
-        let scene = Scene::new(self, area);
+        let Some(scene) = Scene::new(self, area) else {
+            return Ok(());
+        };
         target.fill_contiguous(&area, area.points().map(|point| scene.color(point, theme)))
     }
 
@@ -185,10 +187,12 @@ impl Figure {
             return Ok(());
         }
         let area = target.bounding_box();
-        let (old, new) = (Scene::new(previous, area), Scene::new(self, area));
+        let (Some(old), Some(new)) = (Scene::new(previous, area), Scene::new(self, area)) else {
+            return Ok(());
+        };
         // A line that moved did so across the whole area.
         let changed = if old.line == new.line {
-            old.bounds_with(&new).intersection(&area)
+            old.bounds_with(&new)
         } else {
             area
         };

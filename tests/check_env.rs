@@ -50,6 +50,25 @@ fn our_environments_keep_the_contract() {
     );
 }
 
+/// Initial velocities of up to 0.1 rad/s are in the observation space, whatever the velocity bounds.
+#[test]
+fn slow_environments_keep_the_contract() {
+    for (max_velocity1, max_velocity2) in [(0.05, 0.05), (1e-30, 30.0), (30.0, 1e-30), (0.1, 0.1)] {
+        let options = || Options {
+            params: Params {
+                max_velocity1,
+                max_velocity2,
+                ..Params::DEFAULT
+            },
+            ..Options::default()
+        };
+        for seed in 0..10 {
+            check_env(&acrobot_v0::<Fast>(options()).unwrap(), seed).unwrap();
+            check_env(&acrobot_v1::<Host>(options()).unwrap(), seed).unwrap();
+        }
+    }
+}
+
 /// How an environment can break the contract.
 #[derive(Clone)]
 enum Flaw {

@@ -2,12 +2,14 @@
 
 mod common;
 
-use std::sync::{Arc, Mutex};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, mpsc};
+use std::time::Duration;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro};
 use acrobot::env::{
-    AcrobotEnv, ArithmeticKind, BoxSpace, Discrete, Display, DynObservation, Env, Error, Options,
-    RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make, make_with,
+    AcrobotEnv, ArithmeticKind, BoxSpace, Discrete, Display, DynEnv, DynObservation, Env, Error,
+    Options, RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make, make_with,
 };
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, StartBounds};
@@ -253,6 +255,70 @@ fn each_render_mode_returns_its_kind() {
     assert_eq!(shown[2], Frame::of(&Figure::new(human.unwrapped())));
 }
 
+fn human(display: &Display) -> Options {
+    Options {
+        render_mode: RenderMode::Human(display.clone()),
+        ..Options::default()
+    }
+}
+
+/// A display that is asked from within itself to show a frame reports an error and does not deadlock. It shows the
+/// next frame, also after a panic.
+#[test]
+fn a_display_rejects_frames_from_within_itself() {
+    let nested: Arc<Mutex<Option<[Box<DynEnv>; 2]>>> = Arc::default();
+    let (other_sender, other_frames) = mpsc::channel();
+    let other = Display::new(move |_| other_sender.send(()).unwrap());
+    let (sender, results) = mpsc::channel();
+    let slot = Arc::clone(&nested);
+    let display = Display::new(move |_| {
+        let Some([mut same, mut other]) = slot.lock().unwrap().take() else {
+            return sender.send(None).unwrap();
+        };
+        same.reset();
+        same.step(Action::Zero);
+        sender.send(Some((same.render(), other.render()))).unwrap();
+        panic!("while the display shows a frame");
+    });
+    let make = |display| make_with("Acrobot-v1", human(display)).unwrap();
+    *nested.lock().unwrap() = Some([make(&display), make(&other)]);
+    let mut env = make(&display);
+    drop((display, other));
+    // In a thread of its own, so that a deadlock fails.
+    std::thread::spawn(move || {
+        assert!(catch_unwind(AssertUnwindSafe(|| env.reset())).is_err());
+        assert_eq!(env.render(), Ok(Rendering::Shown));
+    });
+    let next = || results.recv_timeout(Duration::from_secs(10));
+    let (busy, shown) = (Err(Error::DisplayBusy), Ok(Rendering::Shown));
+    assert_eq!(next(), Ok(Some((busy, shown))));
+    assert_eq!(next(), Ok(None));
+    assert!(next().is_err(), "the sender is dropped");
+    assert_eq!(other_frames.try_iter().count(), 1);
+    assert_eq!(
+        Error::DisplayBusy.to_string(),
+        "the function of a display must not render on that display"
+    );
+}
+
+/// Two threads that share a display take turns: it shows every frame.
+#[test]
+fn threads_share_a_display() {
+    let (sender, frames) = mpsc::channel();
+    let display = Display::new(move |_| {
+        std::thread::sleep(Duration::from_millis(1));
+        sender.send(()).unwrap();
+    });
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            let mut env = make_with("Acrobot-v0", human(&display)).unwrap();
+            scope.spawn(move || (0..20).for_each(|_| assert!(env.render().is_ok())));
+        }
+    });
+    drop(display);
+    assert_eq!(frames.iter().count(), 40);
+}
+
 #[test]
 fn statistics_are_of_each_episode() {
     let env = AcrobotEnv::<Fast, Observation>::default();
@@ -305,6 +371,14 @@ fn rejections_say_what_is_valid() {
         assert_eq!(error.to_string(), expected);
         assert_eq!(error, Error::UnknownId(id.to_owned()));
     }
+    // A long id is cut after 64 characters, whatever these are.
+    for letter in ["x", "é", "\0"] {
+        let error = make(&letter.repeat(1_000_000)).unwrap_err();
+        assert_eq!(error, Error::UnknownId(letter.repeat(64) + "…"));
+    }
+    let exact = "x".repeat(64);
+    assert_eq!(make(&exact).unwrap_err(), Error::UnknownId(exact));
+
     let rejected = |params, arithmetic| {
         let options = Options {
             params,

@@ -10,7 +10,7 @@ use common::canvas::Canvas;
 use common::{Digest, oled};
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
-use embedded_graphics::geometry::{Point, Size};
+use embedded_graphics::geometry::{OriginDimensions, Point, Size};
 use embedded_graphics::pixelcolor::{BinaryColor, Rgb888, RgbColor};
 
 fn figure(theta1: f64, theta2: f64) -> Figure {
@@ -257,10 +257,22 @@ fn a_frame_ignores_pixels_outside_it() {
     frame.draw_iter([Pixel(Point::new(2, 1), white)]).unwrap();
     assert_eq!(frame.bytes()[15..], [255; 3]);
     assert_eq!((frame.width(), frame.height()), (3, 2));
-    assert_eq!(
-        (Frame::new(0, 5).height(), Frame::new(5, 0).height()),
-        (0, 0)
-    );
+}
+
+/// A frame has the size that it was made with, also without pixels.
+#[test]
+fn empty_frames_keep_their_size() {
+    for (width, height) in [(0, 10), (10, 0), (0, 0), (0, u32::MAX), (u32::MAX, 0)] {
+        let mut frame = Frame::new(width, height);
+        assert_eq!((frame.width(), frame.height()), (width, height));
+        assert_eq!(frame.size(), Size::new(width, height));
+        assert!(frame.bytes().is_empty());
+        let pixel = Pixel(Point::zero(), Theme::GYMNASIUM.line);
+        frame.draw_iter([pixel]).unwrap();
+        figure(0.6, -1.5)
+            .draw(&mut frame, &Theme::GYMNASIUM)
+            .unwrap();
+    }
 }
 
 #[test]

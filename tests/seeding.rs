@@ -8,7 +8,7 @@ use acrobot::batch::{Batch, Block};
 use acrobot::env::{AcrobotEnv, Env, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::StartBounds;
-use acrobot::{Acrobot, Fast, Observation, Portable};
+use acrobot::{Acrobot, Error, Fast, Observation, Portable};
 use rand_core::{Rng, SeedableRng};
 
 /// The rows of `data/seeds.txt` of one kind, without the kind.
@@ -195,6 +195,51 @@ fn integers_of_every_width_are_seeds() {
         Pcg64::from_seed(bytes),
         generator("340282366920938463463374607431768211456")
     );
+}
+
+/// The decimal digits of 2 to the power of `exponent`, by doubling.
+fn power_of_two(exponent: usize) -> String {
+    let mut digits = vec![1_u8]; // the lowest first
+    for _ in 0..exponent {
+        let mut carry = 0;
+        for digit in &mut digits {
+            let doubled = *digit * 2 + carry;
+            (*digit, carry) = (doubled % 10, doubled / 10);
+        }
+        if carry != 0 {
+            digits.push(carry);
+        }
+    }
+    digits
+        .iter()
+        .rev()
+        .map(|digit| char::from(b'0' + digit))
+        .collect()
+}
+
+/// A text of up to 4300 digits is a seed. A longer one is rejected at once.
+#[test]
+fn long_texts_are_seeds_up_to_a_limit() {
+    let exponent = if cfg!(miri) { 320 } else { 14_000 };
+    let mut words = vec![0; exponent / 32];
+    words.push(1 << (exponent % 32));
+    let decimal = power_of_two(exponent);
+    assert_eq!(seed(&decimal), SeedSequence::from_words(&words));
+    assert_eq!(seed(&format!("{decimal:0>4300}")), seed(&decimal));
+    let limit = 4300;
+    for len in [4301, 50_000_000] {
+        let error = "9".repeat(len).parse::<SeedSequence>().unwrap_err();
+        assert_eq!(error, Error::SeedTooLong { len, limit });
+        let expected = format!("seed must have at most 4300 digits, got {len} bytes");
+        assert_eq!(error.to_string(), expected);
+    }
+}
+
+/// The sum that NumPy takes can round to the upper bound.
+#[test]
+fn uniform_draws_can_round_to_the_upper_bound() {
+    // np.random.default_rng(42).uniform(1e16, 1e16 + 2)
+    assert_eq!(uniform(&mut Pcg64::new(42), 1e16, 1e16 + 2.0), 1e16 + 2.0);
 }
 
 /// A sequence, a generator and reset bounds that the compiler makes equal those made at run time.

@@ -12,7 +12,7 @@ fn bits<S: Real>(x: S) -> u64 {
 const EVERY: usize = if cfg!(debug_assertions) { 257 } else { 1 };
 
 /// The largest errors of sine and cosine over each `stride`-th `f32` from `start` to `end`. The negative arguments must
-/// give the exact mirror image.
+/// give the exact mirror image, except for the sign of zero.
 fn largest_errors<A: Arithmetic<Scalar = f32>>(start: f32, end: f32, stride: usize) -> [f64; 2] {
     let (start, end) = (start.to_bits(), end.to_bits());
     let threads = std::thread::available_parallelism().map_or(1, usize::from);

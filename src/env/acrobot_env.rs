@@ -8,7 +8,7 @@ use crate::acrobot::{Acrobot, ResetOptions, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::observation::Observation;
-use crate::physics::{Params, State};
+use crate::physics::{Params, StartBounds, State};
 use crate::render::Figure;
 
 /// A kind of observation of an acrobot.
@@ -31,7 +31,8 @@ pub trait ObservationKind:
     /// What the agent sees.
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self;
 
-    /// The space of these observations, with the velocity bounds of `params`.
+    /// The space of these observations. Its velocity bounds are those of `params`, but at least 0.1 rad/s, so that it
+    /// contains Gymnasium's initial states.
     fn space(params: &Params<f32>) -> BoxSpace<Self>;
 }
 
@@ -43,7 +44,7 @@ impl ObservationKind for Observation<6> {
 
     fn space(params: &Params<f32>) -> BoxSpace<Self> {
         let [cos1, sin1, cos2, sin2, ..] = Self::HIGH.to_array();
-        let (dtheta1, dtheta2) = (params.max_velocity1, params.max_velocity2);
+        let [dtheta1, dtheta2] = highest_velocities(params);
         BoxSpace::symmetric([cos1, sin1, cos2, sin2, dtheta1, dtheta2].into())
     }
 }
@@ -56,8 +57,15 @@ impl ObservationKind for Observation<4> {
 
     fn space(params: &Params<f32>) -> BoxSpace<Self> {
         let [theta1, theta2, ..] = Self::V0_HIGH.to_array();
-        BoxSpace::symmetric([theta1, theta2, params.max_velocity1, params.max_velocity2].into())
+        let [dtheta1, dtheta2] = highest_velocities(params);
+        BoxSpace::symmetric([theta1, theta2, dtheta1, dtheta2].into())
     }
+}
+
+/// The largest velocities after a step or a reset with the default bounds, rad/s.
+fn highest_velocities(params: &Params<f32>) -> [f32; 2] {
+    let initial = StartBounds::DEFAULT.high() as f32;
+    [params.max_velocity1, params.max_velocity2].map(|limit| limit.max(initial))
 }
 
 /// Gymnasium's Acrobot without its wrappers, with observations `O` and in the arithmetic `A`.

@@ -15,10 +15,12 @@ use std::string::String;
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// No environment has this id.
+    /// No environment has this id. An id of more than 64 characters is cut there and ends in `…`.
     UnknownId(String),
     /// The environment was made without a render mode.
     NoRenderMode,
+    /// The function of a [`Display`](super::Display) renders on that display.
+    DisplayBusy,
     /// A parameter was rejected.
     Invalid(crate::Error),
 }
@@ -33,6 +35,10 @@ impl fmt::Display for Error {
             Self::NoRenderMode => write!(
                 f,
                 "the render mode must be RgbArray, Ansi or Human to render, got None"
+            ),
+            Self::DisplayBusy => write!(
+                f,
+                "the function of a display must not render on that display"
             ),
             Self::Invalid(error) => error.fmt(f),
         }

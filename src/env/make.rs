@@ -1,8 +1,8 @@
 //! Environments by their ids.
 
 use core::fmt;
-use std::borrow::ToOwned;
 use std::boxed::Box;
+use std::string::String;
 
 use super::{AcrobotEnv, BoxSpace, Discrete, DynAcrobot, Env, Error, Info, RenderMode, Rendering};
 use crate::acrobot::{ResetOptions, Step};
@@ -156,11 +156,20 @@ pub fn make_with(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     }
 }
 
+/// The characters of an unknown id that an error repeats: it can be any text, of any length.
+const LONGEST_ID: usize = 64;
+
 fn make_in<A: Arithmetic>(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     match id {
         "Acrobot-v0" => Ok(Box::new(Erased(acrobot_v0::<A>(options)?))),
         "Acrobot-v1" => Ok(Box::new(Erased(acrobot_v1::<A>(options)?))),
-        _ => Err(Error::UnknownId(id.to_owned())),
+        _ => {
+            let mut start: String = id.chars().take(LONGEST_ID).collect();
+            if start.len() < id.len() {
+                start.push('…');
+            }
+            Err(Error::UnknownId(start))
+        }
     }
 }
 

@@ -2,8 +2,10 @@
 
 use core::fmt;
 use std::format;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::string::String;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, ThreadId};
 
 use super::Error;
 use crate::acrobot::Acrobot;
@@ -26,21 +28,45 @@ use crate::render::{self, Figure, Frame};
 /// # Ok::<(), acrobot::env::Error>(())
 /// ```
 #[derive(Clone)]
-pub struct Display(Arc<Mutex<Show>>);
+pub struct Display(Arc<Shared<Show>>);
 
 type Show = dyn FnMut(&Frame) + Send;
 
+struct Shared<F: ?Sized> {
+    /// The thread that is in `show`.
+    thread: Mutex<Option<ThreadId>>,
+    show: Mutex<F>,
+}
+
 impl Display {
-    /// A display that passes each frame to `show`. Clones share it.
+    /// A display that passes each frame to `show`. Clones share it: while one shows a frame, other threads wait.
+    ///
+    /// `show` cannot show frames on its own display. An environment that it resets or steps is not shown there, and
+    /// [`render`](super::Env::render) returns [`Error::DisplayBusy`]. `show` must not wait for a thread that shows
+    /// frames there: both would wait forever.
     pub fn new(show: impl FnMut(&Frame) + Send + 'static) -> Self {
-        Self(Arc::new(Mutex::new(show)))
+        Self(Arc::new(Shared {
+            thread: Mutex::new(None),
+            show: Mutex::new(show),
+        }))
     }
 
-    fn show(&self, frame: &Frame) {
-        // A display that panicked in another thread can still show this frame.
-        let mut show = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        show(frame);
+    fn show(&self, frame: &Frame) -> Result<(), Error> {
+        let this = Some(thread::current().id());
+        if *lock(&self.0.thread) == this {
+            return Err(Error::DisplayBusy);
+        }
+        let mut show = lock(&self.0.show);
+        *lock(&self.0.thread) = this;
+        let outcome = catch_unwind(AssertUnwindSafe(|| show(frame)));
+        *lock(&self.0.thread) = None;
+        outcome.map_err(|panic| resume_unwind(panic))
     }
+}
+
+/// A display that panicked can still show the next frame.
+fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl fmt::Debug for Display {
@@ -68,7 +94,8 @@ impl RenderMode {
     /// Shows the acrobot if the mode is `Human`, as Gymnasium does in each reset and each step.
     pub(super) fn show<A: Arithmetic>(&self, acrobot: &Acrobot<A>) {
         if let Self::Human(display) = self {
-            display.show(&Frame::of(&Figure::new(acrobot)));
+            // A reset or a step from within the display is not shown.
+            let _ = display.show(&Frame::of(&Figure::new(acrobot)));
         }
     }
 
@@ -88,8 +115,8 @@ impl RenderMode {
                     "{drawing}\nθ1 {theta1:+.2}  θ2 {theta2:+.2} rad  θ̇1 {dtheta1:+.2}  θ̇2 {dtheta2:+.2} rad/s\n"
                 )))
             }
-            Self::Human(_) => {
-                self.show(acrobot);
+            Self::Human(display) => {
+                display.show(&Frame::of(&Figure::new(acrobot)))?;
                 Ok(Rendering::Shown)
             }
         }

@@ -191,12 +191,20 @@ impl From<u128> for SeedSequence {
 impl std::str::FromStr for SeedSequence {
     type Err = crate::Error;
 
-    /// The sequence of a decimal integer with any number of digits.
+    /// The sequence of a decimal integer with up to 4300 digits, as many as Python's `int` parses by default. For a
+    /// larger one: [`from_words`](Self::from_words).
     ///
     /// # Errors
     ///
+    /// [`Error::SeedTooLong`](crate::Error::SeedTooLong) for a longer text, and
     /// [`Error::MalformedSeed`](crate::Error::MalformedSeed) with the first character that is not a digit.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
+        // The time is quadratic in the length.
+        const LIMIT: usize = 4300;
+        if text.len() > LIMIT {
+            let (len, limit) = (text.len(), LIMIT);
+            return Err(crate::Error::SeedTooLong { len, limit });
+        }
         let mut words = std::vec::Vec::new();
         for (found, position) in text.chars().zip(1..) {
             let malformed = crate::Error::MalformedSeed {

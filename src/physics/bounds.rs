@@ -6,7 +6,8 @@ use crate::arithmetic::{Arithmetic, Equations, Numbers, Real};
 ///
 /// [`Gymnasium`](super::Gymnasium) subtracts turn by turn, up to 64 turns, and takes the remainder beyond.
 /// [`Lean`](super::Lean) subtracts one rounded quotient, which is right to the spacing of `f32` at `x`,
-/// 1.2e-7 |x|. Both take −x to the mirror image, in `f32` up to 2²² turns. An infinite angle or NaN gives NaN.
+/// 1.2e-7 |x|. Both take −x to the mirror image, in `f32` up to 2²² turns, except for the sign of zero. An infinite
+/// angle or NaN gives NaN.
 ///
 /// ```
 /// use acrobot::physics::wrap;

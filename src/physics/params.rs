@@ -63,8 +63,8 @@ pub struct Params<S = f64> {
     pub max_velocity2: S,
     /// Torques of the three actions, N m, in the order of their numbers; finite.
     pub torques: [S; 3],
-    /// Torque noise, N m: each step adds a uniform draw from [−noise, noise) to the torque; 0 or
-    /// more, 0 draws nothing.
+    /// Torque noise, N m: each step adds a uniform draw from [−noise, noise), rounded to the scalar, to the
+    /// torque; 0 or more, 0 draws nothing.
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,

@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use embedded_graphics_core::Pixel;
 use embedded_graphics_core::draw_target::DrawTarget;
-use embedded_graphics_core::geometry::{Dimensions, OriginDimensions, Size};
+use embedded_graphics_core::geometry::{OriginDimensions, Point, Size};
 use embedded_graphics_core::pixelcolor::{BinaryColor, Rgb888, RgbColor};
 
 use super::{Figure, Theme};
@@ -31,6 +31,7 @@ use super::{Figure, Theme};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
     width: u32,
+    height: u32,
     bytes: Vec<u8>,
 }
 
@@ -55,7 +56,11 @@ impl Frame {
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = (width as usize).saturating_mul(height as usize);
         let bytes = std::vec![0; pixels.saturating_mul(3)];
-        Self { width, bytes }
+        Self {
+            width,
+            height,
+            bytes,
+        }
     }
 
     /// The width, pixels.
@@ -67,8 +72,7 @@ impl Frame {
     /// The height, pixels.
     #[must_use]
     pub fn height(&self) -> u32 {
-        let pixels = self.bytes.len() / 3;
-        pixels.checked_div(self.width as usize).unwrap_or(0) as u32
+        self.height
     }
 
     /// Red, green and blue of each pixel, row by row from the top left: `height` × `width` × 3.
@@ -80,7 +84,7 @@ impl Frame {
 
 impl OriginDimensions for Frame {
     fn size(&self) -> Size {
-        Size::new(self.width, self.height())
+        Size::new(self.width, self.height)
     }
 }
 
@@ -92,10 +96,12 @@ impl DrawTarget for Frame {
         &mut self,
         pixels: I,
     ) -> Result<(), Infallible> {
-        let area = self.bounding_box();
-        for Pixel(point, color) in pixels {
-            if area.contains(point) {
-                let start = (point.y as usize * self.width as usize + point.x as usize) * 3;
+        for Pixel(Point { x, y }, color) in pixels {
+            if let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y))
+                && x < self.width
+                && y < self.height
+            {
+                let start = (y as usize * self.width as usize + x as usize) * 3;
                 if let Some(pixel) = self.bytes.get_mut(start..start + 3) {
                     pixel.copy_from_slice(&[color.r(), color.g(), color.b()]);
                 }

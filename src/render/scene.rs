@@ -8,8 +8,8 @@ use super::{Figure, Theme};
 
 /// A figure in the pixels of one target. The parts overlap as in Gymnasium, the lower link over the upper.
 pub(super) struct Scene {
-    /// Around all parts except the line: pixels outside need no test against parts.
-    bounds: Rectangle,
+    /// The corners of the pixels of all parts except the line: pixels outside need no test against parts.
+    corners: [Point; 2],
     /// The row of the target height.
     pub(super) line: i32,
     links: [Bar; 2],
@@ -25,8 +25,17 @@ const ROOM_FOR_ARROW: u32 = 48;
 const TOLERANCE: f32 = 0.5;
 
 impl Scene {
-    pub(super) fn new(figure: &Figure, area: Rectangle) -> Self {
+    /// `None` for an area without pixels, and for one beyond `i32::MAX`, where embedded-graphics would overflow.
+    pub(super) fn new(figure: &Figure, area: Rectangle) -> Option<Self> {
         let Size { width, height } = area.size;
+        let last = |start: i32, side: u32| {
+            let end = start.checked_add(side.try_into().ok()?)?;
+            (end > start).then(|| end - 1)
+        };
+        let last = Point::new(
+            last(area.top_left.x, width)?,
+            last(area.top_left.y, height)?,
+        );
         // Half the picture in pixels; the fixed joint is in the middle of the area.
         let half = width.min(height) as f32 / 2.0;
         let metre = figure.metre * half;
@@ -48,27 +57,28 @@ impl Scene {
         let corner = |pick: fn(f32, f32) -> f32, margin| {
             let x = pick(pick(center.x, elbow.x), tip.x) + margin;
             let y = pick(pick(center.y, elbow.y), tip.y) + margin;
-            Point::new(x as i32, y as i32)
+            let corner = Point::new(x as i32, y as i32);
+            corner.component_max(area.top_left).component_min(last)
         };
-        Self {
-            bounds: Rectangle::with_corners(corner(f32::min, -margin), corner(f32::max, margin)),
+        Some(Self {
+            corners: [corner(f32::min, -margin), corner(f32::max, margin)],
             // Gymnasium counts rows upwards and truncates: between two rows, the upper one.
-            line: libm::ceilf(center.y - metre) as i32 - 1,
+            line: (libm::ceilf(center.y - metre) as i32).saturating_sub(1),
             links: [
                 Bar::new(center, elbow, thickness),
                 Bar::new(elbow, tip, thickness),
             ],
             joints: [Disc::new(center, thickness), Disc::new(elbow, thickness)],
             arrow: room.then(|| arrow(elbow, 0.3 * metre, f32::from(figure.torque))),
-        }
+        })
     }
 
     /// Around the parts of both scenes.
     pub(super) fn bounds_with(&self, other: &Self) -> Rectangle {
-        let end = |scene: &Self| scene.bounds.top_left + scene.bounds.size;
+        let ([first, last], [other_first, other_last]) = (self.corners, other.corners);
         Rectangle::with_corners(
-            self.bounds.top_left.component_min(other.bounds.top_left),
-            end(self).component_max(end(other)),
+            first.component_min(other_first),
+            last.component_max(other_last),
         )
     }
 
@@ -80,7 +90,10 @@ impl Scene {
         } else {
             theme.ground
         };
-        if !self.bounds.contains(point) {
+        let [first, last] = self.corners;
+        let inside =
+            first.x <= point.x && first.y <= point.y && point.x <= last.x && point.y <= last.y;
+        if !inside {
             line_or_ground
         } else if self.arrow.iter().flatten().any(|bar| bar.covers(point)) {
             theme.torque

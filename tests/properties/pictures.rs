@@ -1,8 +1,14 @@
 //! Pictures of any acrobot on a target of any position and size.
 
-use acrobot::arithmetic::Arithmetic;
+use std::convert::Infallible;
+
+use acrobot::arithmetic::{Arithmetic, Portable};
 use acrobot::render::{Figure, Theme};
-use embedded_graphics::geometry::{Point, Size};
+use embedded_graphics::Pixel;
+use embedded_graphics::draw_target::DrawTarget;
+use embedded_graphics::geometry::{Dimensions, Point, Size};
+use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::primitives::Rectangle;
 use proptest::prelude::*;
 
 use crate::common::canvas::Canvas;
@@ -38,4 +44,82 @@ fn every_pixel_is_drawn_once_and_a_redraw_makes_it_another_figures() {
         });
     }
     in_every_arithmetic!(check);
+}
+
+/// A target of any area, which takes the first pixels of a drawing.
+struct Far {
+    area: Rectangle,
+    /// The most pixels that are taken.
+    most: usize,
+    written: usize,
+}
+
+impl Dimensions for Far {
+    fn bounding_box(&self) -> Rectangle {
+        self.area
+    }
+}
+
+impl DrawTarget for Far {
+    type Color = BinaryColor;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
+        &mut self,
+        pixels: I,
+    ) -> Result<(), Infallible> {
+        for Pixel(Point { x, y }, _) in pixels.into_iter().take(self.most) {
+            let Rectangle { top_left, size } = self.area;
+            let column = i64::from(x) - i64::from(top_left.x);
+            let row = i64::from(y) - i64::from(top_left.y);
+            assert!((0..size.width.into()).contains(&column), "{x}");
+            assert!((0..size.height.into()).contains(&row), "{y}");
+            self.written += 1;
+        }
+        Ok(())
+    }
+}
+
+/// No overflow for any bounding box. A box beyond `i32` stays empty.
+#[test]
+fn targets_at_the_ends_of_the_grid_do_not_overflow() {
+    let coordinate = || {
+        const ENDS: &[i32] = &[i32::MIN, -1 << 30, -1 << 23, 0, 1 << 23, 1 << 30, i32::MAX];
+        let near = (prop::sample::select(ENDS), -600..=600)
+            .prop_map(|(end, offset)| end.saturating_add(offset));
+        prop_oneof![2 => near, 1 => any::<i32>()]
+    };
+    let side = || {
+        const ENDS: &[u32] = &[0, 1, 10, 1 << 30, i32::MAX as u32, 1 << 31, u32::MAX];
+        prop_oneof![2 => prop::sample::select(ENDS), 2 => 0..600_u32, 1 => any::<u32>()]
+    };
+    let place = (coordinate(), coordinate(), side(), side());
+    let given = (figure::<Portable>(), figure::<Portable>(), place);
+    holds(4000, given, |(before, after, (x, y, width, height))| {
+        let area = Rectangle::new(Point::new(x, y), Size::new(width, height));
+        let mut target = Far {
+            area,
+            most: 1000,
+            written: 0,
+        };
+        before.draw(&mut target, &Theme::MONOCHROME).unwrap();
+        let fits = |start: i32, side: u32| {
+            let end = i64::from(start) + i64::from(side);
+            i64::from(side) <= i32::MAX.into() && end <= i32::MAX.into()
+        };
+        let pixels = u64::from(width) * u64::from(height);
+        let drawn = if fits(x, width) && fits(y, height) {
+            pixels.min(1000)
+        } else {
+            0
+        };
+        assert_eq!(target.written as u64, drawn);
+        // A redraw compares all pixels, which takes too long on a large target.
+        if drawn == 1000 {
+            target.most = 0;
+        }
+        after
+            .redraw(&before, &mut target, &Theme::MONOCHROME)
+            .unwrap();
+    });
 }
