@@ -94,7 +94,8 @@ pub struct ResetOptions {
 /// the version of the acrobot inside. The parts of a snapshot (`Params`, `State`, `Pcg64`) can be saved alone, without a
 /// version or a check. Any snapshot of a [`Pcg64`] is a valid generator: the hash of a seed and a position in its stream.
 ///
-/// ```
+#[cfg_attr(feature = "serde", doc = "```")]
+#[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
 /// use acrobot::{Acrobot, Fast, Portable};
 ///
 /// let acrobot = Acrobot::<Portable>::new(42);
