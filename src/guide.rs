@@ -35,5 +35,7 @@ pub mod numbers {}
 #[doc = include_str!("../ARCHITECTURE.md")]
 pub mod architecture {}
 
-#[cfg_attr(any(not(doctest), feature = "std"), doc = include_str!("../README.md"))]
+// For its tests only: its links and pictures lead into the repository.
+#[cfg(doctest)]
+#[cfg_attr(feature = "std", doc = include_str!("../README.md"))]
 pub mod readme {}

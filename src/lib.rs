@@ -17,7 +17,7 @@
 //!   [`numpy`] has Gymnasium's random numbers, [`trajectory`] records steps, `render` (feature `graphics`) draws, and `env`
 //!   (feature `std`) has Gymnasium's `make`, spaces and wrappers.
 //! - Understand: [the equations](guide::equations), [determinism](guide::determinism), [numbers](guide::numbers).
-//! - All figures, [features](guide::readme#features) and [examples](guide::readme#examples): [the README](guide::readme).
+//! - All figures, the features and the examples: the repository's README.
 //! - Contribute: [the architecture](guide::architecture).
 #![no_std]
 #![deny(missing_docs, unsafe_code)]
