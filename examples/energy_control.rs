@@ -56,7 +56,7 @@ const HELD: u32 = 50;
 type Pendulum = physics::Pendulum<Portable>;
 
 fn main() -> ExitCode {
-    exit::status(compare(&Options::parse(), &mut io::stdout().lock()))
+    exit::run(|options| compare(options, &mut io::stdout().lock()))
 }
 
 fn compare(options: &Options, out: &mut impl Write) -> io::Result<()> {
