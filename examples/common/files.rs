@@ -7,7 +7,7 @@ use std::process;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
-/// Parses the argument that names one. A bad name is rejected before the work, not after it.
+/// Parses the name of a file to write. A bad name is rejected before the work, not after it.
 #[allow(dead_code, reason = "each example uses a part")]
 pub fn named(extension: &'static str) -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(move |path| {
@@ -21,10 +21,29 @@ pub fn named(extension: &'static str) -> impl TypedValueParser<Value = PathBuf> 
     })
 }
 
+/// Fails if the file cannot be written, and changes nothing. A link, a device or a pipe is only tried by [`write()`].
+#[allow(dead_code, reason = "each example uses a part")]
+pub fn check(path: &Path) -> Result<(), String> {
+    let tried = match fs::symlink_metadata(path) {
+        Ok(old) if old.is_file() || old.is_dir() => open(path),
+        Ok(_) => Ok(()),
+        Err(_) => File::create_new(path).and_then(|_| fs::remove_file(path)),
+    };
+    tried.map_err(|error| cannot_write(path, error))
+}
+
+/// Fails if an existing file cannot be written.
+fn open(path: &Path) -> io::Result<()> {
+    File::options().append(true).open(path).map(drop)
+}
+
+fn cannot_write(path: &Path, error: io::Error) -> String {
+    format!("cannot write {}: {error}", path.display())
+}
+
 /// Writes a whole file, or leaves the old one. A program that is killed leaves no part of a file under this path.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), String> {
-    replace(path, bytes.as_ref())
-        .map_err(|error| format!("cannot write {}: {error}", path.display()))
+    replace(path, bytes.as_ref()).map_err(|error| cannot_write(path, error))
 }
 
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -35,11 +54,11 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
     if old.is_some() {
         // A file that is protected from writing is protected from being replaced.
-        File::options().append(true).open(path)?;
+        open(path)?;
     }
     let temporary = path.with_file_name(format!(".acrobot-{}.tmp", process::id()));
     let Ok(mut file) = File::create_new(&temporary) else {
-        // The folder may be protected and the file not. Other reasons come again, with this path.
+        // A protected folder can have a file that is not. Any other error occurs again here.
         return fs::write(path, bytes);
     };
     let replaced = file.write_all(bytes).and_then(|()| {
@@ -48,10 +67,10 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         }
         // Some file systems notice only here that they are full.
         file.sync_all()?;
-        fs::rename(&temporary, path)
+        // A mount point can be written but not replaced.
+        fs::rename(&temporary, path).or_else(|_| fs::write(path, bytes))
     });
-    if replaced.is_err() {
-        let _ = fs::remove_file(&temporary);
-    }
+    // After a rename nothing has this name.
+    let _ = fs::remove_file(&temporary);
     replaced
 }
