@@ -4,6 +4,7 @@
 #[path = "../examples/throughput/main.rs"]
 mod throughput;
 
+use std::process::ExitCode;
 use std::time::Duration;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro};
@@ -14,14 +15,15 @@ use divan::counter::ItemsCount;
 use divan::{Bencher, Divan, black_box};
 use throughput::{Play, yardsticks};
 
-fn main() {
+fn main() -> ExitCode {
     Divan::from_args()
         .max_time(Duration::from_millis(500))
         .main();
     // Not in `cargo test`, which runs each benchmark once.
     if std::env::args().any(|argument| argument == "--bench") {
-        throughput::main();
+        return throughput::main();
     }
+    ExitCode::SUCCESS
 }
 
 /// From one acrobot to a million.

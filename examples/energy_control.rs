@@ -56,7 +56,7 @@ const HELD: u32 = 50;
 type Pendulum = physics::Pendulum<Portable>;
 
 fn main() -> ExitCode {
-    exit::status(compare(&Options::parse(), &mut io::stdout().lock()))
+    exit::run(|options| compare(options, &mut io::stdout().lock()))
 }
 
 fn compare(options: &Options, out: &mut impl Write) -> io::Result<()> {
@@ -93,7 +93,8 @@ fn report(
         catches.extend(catch);
     }
     let of = |steps: &[u32]| {
-        let mean = steps.iter().sum::<u32>() as f64 / steps.len() as f64;
+        let sum: u64 = steps.iter().copied().map(u64::from).sum();
+        let mean = sum as f64 / steps.len() as f64;
         let share = format!("{} of {}", steps.len(), options.episodes);
         if steps.is_empty() {
             share

@@ -8,21 +8,22 @@
 use std::error::Error;
 use std::io::{self, Write};
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use acrobot::numpy::SeedSequence;
 use acrobot::{Acrobot, Action, Portable, State, TimeLimit};
 use clap::Parser;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 
 #[path = "common/exit.rs"]
 mod exit;
 #[path = "common/files.rs"]
 mod files;
+#[path = "common/svg.rs"]
+mod svg;
 
-use files::{cannot_write, file};
+use svg::{Area, svg};
 
 /// Plots an episode as SVG.
 #[derive(Parser)]
@@ -32,7 +33,7 @@ struct Options {
     seed: SeedSequence,
     /// The picture to write.
     #[arg(long, value_name = "FILE", default_value = "portrait.svg")]
-    #[arg(value_parser = |path: &str| file(path, "svg"))]
+    #[arg(value_parser = files::named("svg"))]
     out: PathBuf,
 }
 
@@ -46,13 +47,13 @@ struct Sample {
 }
 
 fn main() -> ExitCode {
-    exit::status(run(&Options::parse()))
+    exit::run(run)
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let out = &options.out;
     let samples = record(&options.seed);
-    plot(out, &samples).map_err(|error| cannot_write(out, error))?;
+    files::write(out, svg((1000, 700), |area| plot(area, &samples))?)?;
     let (out, steps) = (out.display(), samples.len() - 1);
     writeln!(io::stdout(), "{out}: {steps} steps")?;
     Ok(())
@@ -80,10 +81,9 @@ fn record(seed: &SeedSequence) -> Vec<Sample> {
     }
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Line<'a> = (&'a str, RGBColor, Vec<(f64, f64)>);
 
-fn plot(out: &Path, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
+fn plot(area: &Area, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
     const BLUE: RGBColor = RGBColor(0, 114, 178);
     const ORANGE: RGBColor = RGBColor(213, 94, 0);
 
@@ -93,9 +93,7 @@ fn plot(out: &Path, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
             .map(|sample| (sample.time, of(sample)))
             .collect()
     };
-    let root = SVGBackend::new(out, (1000, 700)).into_drawing_area();
-    root.fill(&WHITE)?;
-    let panels = root.split_evenly((2, 2));
+    let panels = area.split_evenly((2, 2));
     let [angles, velocities, energy, portrait] = &panels[..] else {
         unreachable!("2 × 2 panels")
     };
@@ -135,9 +133,7 @@ fn plot(out: &Path, samples: &[Sample]) -> Result<(), Box<dyn Error>> {
         "θ1 (rad)",
         "dθ1/dt (rad/s)",
         vec![("θ1", BLUE, path.collect())],
-    )?;
-    root.present()?;
-    Ok(())
+    )
 }
 
 /// Draws one panel, with a legend if there are several lines.

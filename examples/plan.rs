@@ -16,8 +16,6 @@
 //! give nearly all of the gain. Sixty give half a step more, and most searches end earlier.
 
 use std::error::Error;
-use std::fmt::Display;
-use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -33,6 +31,8 @@ use indicatif::ProgressIterator;
 mod acrobot_task;
 #[path = "common/exit.rs"]
 mod exit;
+#[path = "common/weights.rs"]
+mod weights;
 
 use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 
@@ -61,7 +61,7 @@ const SLOTS: usize = 8192;
 const TILINGS: usize = 28;
 
 fn main() -> ExitCode {
-    exit::status(run(&Options::parse()))
+    exit::run(run)
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
@@ -69,11 +69,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut learner: Learner<SLOTS, TILINGS> =
         Preset::Quality.learner(options.learn, &mut weights)?;
     match &options.load {
-        Some(path) => {
-            let named = |reason: &dyn Display| format!("{}: {reason}", path.display());
-            let bytes = fs::read(path).map_err(|error| named(&error))?;
-            learner.load(&bytes).map_err(|error| named(&error))?;
-        }
+        Some(path) => weights::load(&mut learner, path)?,
         None => {
             let (mut env, mut choices) = training(options.seed.clone());
             for _ in (0..options.learn).progress() {

@@ -40,8 +40,7 @@ struct Options {
 }
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    exit::status(play(&options, &mut io::stdout().lock()))
+    exit::run(|options| play(options, &mut io::stdout().lock()))
 }
 
 fn play(options: &Options, out: &mut impl Write) -> io::Result<()> {

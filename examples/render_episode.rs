@@ -7,8 +7,7 @@
 //! ```
 
 use std::error::Error;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -24,8 +23,6 @@ mod animation;
 mod exit;
 #[path = "common/files.rs"]
 mod files;
-
-use files::cannot_write;
 
 /// Draws an episode as FILE.gif and a strip of its frames as FILE.png, or one state as a PNG.
 #[derive(Parser)]
@@ -57,18 +54,19 @@ fn state(text: &str) -> Result<State, String> {
 }
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    let result = match options.state {
-        Some(state) => draw_state(state, &options.out.unwrap_or("frame.png".into())),
-        None => draw_episode(options.seed, &options.out.unwrap_or("episode.gif".into())),
-    };
-    exit::status(result)
+    exit::run(|options: &Options| {
+        let out = |default| options.out.as_deref().unwrap_or(Path::new(default));
+        match options.state {
+            Some(state) => draw_state(state, out("frame.png")),
+            None => draw_episode(&options.seed, out("episode.gif")),
+        }
+    })
 }
 
 fn draw_state(state: State, out: &Path) -> Result<(), Box<dyn Error>> {
     expect_extension(out, "png")?;
     let acrobot = Acrobot::from_pendulum(Pendulum::<Portable>::at(state)?, ());
-    write_png(out, &Frame::of(&Figure::new(&acrobot)))?;
+    files::write(out, png(&Frame::of(&Figure::new(&acrobot)))?)?;
     writeln!(io::stdout(), "{}: the frame", out.display())?;
     Ok(())
 }
@@ -77,20 +75,20 @@ fn draw_state(state: State, out: &Path) -> Result<(), Box<dyn Error>> {
 const STRIP_SIDE: u32 = 150;
 const STRIP_FRAMES: usize = 8;
 
-fn draw_episode(seed: SeedSequence, out: &Path) -> Result<(), Box<dyn Error>> {
+fn draw_episode(seed: &SeedSequence, out: &Path) -> Result<(), Box<dyn Error>> {
     expect_extension(out, "gif")?;
     let strip = out.with_extension("png");
     let figures = figures(seed);
-    animation::write_gif(create(out)?, &figures).map_err(|error| cannot_write(out, error))?;
-    write_png(&strip, &draw_strip(&figures))?;
+    files::write(out, animation::gif(&figures)?)?;
+    files::write(&strip, png(&draw_strip(&figures))?)?;
     writeln!(io::stdout(), "{}: {} frames", out.display(), figures.len())?;
     writeln!(io::stdout(), "{}: {STRIP_FRAMES} of them", strip.display())?;
     Ok(())
 }
 
 /// The initial state and every step of the episode.
-fn figures(seed: SeedSequence) -> Vec<Figure> {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(seed.into()));
+fn figures(seed: &SeedSequence) -> Vec<Figure> {
+    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(seed.clone().into()));
     let mut figures = vec![Figure::new(acrobot.inner())];
     loop {
         let against = acrobot.inner().state().dtheta1 > 0.0;
@@ -124,16 +122,14 @@ fn draw_strip(figures: &[Figure]) -> Frame {
     strip
 }
 
-fn write_png(out: &Path, frame: &Frame) -> Result<(), Box<dyn Error>> {
-    let mut file = create(out)?;
-    let mut encoder = png::Encoder::new(&mut file, frame.width(), frame.height());
+fn png(frame: &Frame) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, frame.width(), frame.height());
     encoder.set_color(png::ColorType::Rgb);
-    let written = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(frame.bytes())?;
-        writer.finish()
-    });
-    written.map_err(|error| cannot_write(out, error))?;
-    Ok(file.flush().map_err(|error| cannot_write(out, error))?)
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(frame.bytes())?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 fn expect_extension(out: &Path, extension: &str) -> Result<(), String> {
@@ -144,9 +140,4 @@ fn expect_extension(out: &Path, extension: &str) -> Result<(), String> {
         "--out must end in .{extension}, got {}",
         out.display()
     ))
-}
-
-fn create(path: &Path) -> Result<BufWriter<File>, String> {
-    let file = File::create(path).map_err(|error| cannot_write(path, error))?;
-    Ok(BufWriter::new(file))
 }

@@ -21,7 +21,6 @@
 
 use std::error::Error;
 use std::fmt::Write as _;
-use std::fs;
 use std::io::{self, Write as _};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -42,9 +41,11 @@ mod exit;
 mod files;
 #[path = "common/heat_map.rs"]
 mod heat_map;
+#[path = "common/svg.rs"]
+mod svg;
 
-use files::{cannot_write, file};
 use heat_map::{LABEL, NAME, color, draw_bar};
+use svg::{Area, svg};
 
 /// Sweeps link masses and torques, and writes the steps to the goal as CSV and as a picture.
 #[derive(Parser)]
@@ -66,11 +67,11 @@ struct Options {
     torques: Vec<f32>,
     /// The file for the numbers.
     #[arg(long, value_name = "FILE", default_value = "sweep.csv")]
-    #[arg(value_parser = |path: &str| file(path, "csv"))]
+    #[arg(value_parser = files::named("csv"))]
     csv: PathBuf,
     /// The file for the heat map.
     #[arg(long, value_name = "FILE", default_value = "sweep.svg")]
-    #[arg(value_parser = |path: &str| file(path, "svg"))]
+    #[arg(value_parser = files::named("svg"))]
     picture: PathBuf,
 }
 
@@ -95,7 +96,7 @@ struct Cell {
 }
 
 fn main() -> ExitCode {
-    exit::status(run(&Options::parse()))
+    exit::run(run)
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
@@ -117,8 +118,9 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let seconds = began.elapsed().as_secs_f64();
 
     let (csv, picture) = (&options.csv, &options.picture);
-    fs::write(csv, table(&cells)).map_err(|error| cannot_write(csv, error))?;
-    draw(options, &cells, episodes).map_err(|error| cannot_write(picture, error))?;
+    files::write(csv, table(&cells))?;
+    let map = svg((780, 720), |area| draw(area, options, &cells, episodes))?;
+    files::write(picture, map)?;
     let reached: usize = cells.iter().map(|cell| cell.reached).sum();
     writeln!(
         io::stdout(),
@@ -259,13 +261,16 @@ fn table(cells: &[Cell]) -> String {
 const DOUBLINGS: Range<f64> = 3.0..9.0;
 
 /// Draws the heat map and its colour bar.
-fn draw(options: &Options, cells: &[Cell], episodes: usize) -> Result<(), Box<dyn Error>> {
-    let root = SVGBackend::new(&options.picture, (780, 720)).into_drawing_area();
-    root.fill(&WHITE)?;
+fn draw(
+    area: &Area,
+    options: &Options,
+    cells: &[Cell],
+    episodes: usize,
+) -> Result<(), Box<dyn Error>> {
     let caption = format!(
         "{episodes} episodes a cell; means of those that reach it within {LIMIT} steps; grey: fewer than half do"
     );
-    let body = root
+    let body = area
         .titled(
             "Steps to the goal, torque against the first link's velocity",
             ("sans-serif", 24),
@@ -304,9 +309,7 @@ fn draw(options: &Options, cells: &[Cell], episodes: usize) -> Result<(), Box<dy
         &DOUBLINGS,
         "mean steps, of 0.2 s each",
         &|doublings| doublings.exp2().to_string(),
-    )?;
-    root.present()?;
-    Ok(())
+    )
 }
 
 /// An axis with one unit for each value, labelled in its middle.

@@ -3,6 +3,9 @@
 mod common;
 #[path = "examples/exit.rs"]
 mod exit;
+#[cfg(target_os = "linux")]
+#[path = "examples/files.rs"]
+mod files;
 #[path = "examples/pictures.rs"]
 mod pictures;
 #[path = "examples/plan.rs"]
@@ -24,15 +27,28 @@ use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
 fn command(example: &str, arguments: &[&str]) -> Command {
+    let mut cargo = cargo(example);
+    cargo.arg("--").args(arguments);
+    cargo
+}
+
+/// As `command`, in a shell with these limits.
+#[cfg(target_os = "linux")]
+fn limited(limits: &str, example: &str, arguments: &[&str]) -> Command {
+    let mut cargo = cargo(example);
+    let script = format!(r#"{limits}; exec "$0" "$@""#);
+    let runner = format!("target.'cfg(unix)'.runner = ['sh', '-c', {script:?}]");
+    cargo.args(["--config", &runner, "--"]).args(arguments);
+    cargo
+}
+
+fn cargo(example: &str) -> Command {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["run", "--quiet", "--example", example]);
     if !cfg!(debug_assertions) {
         cargo.arg("--release");
     }
-    cargo
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .arg("--")
-        .args(arguments);
+    cargo.current_dir(env!("CARGO_MANIFEST_DIR"));
     cargo
 }
 

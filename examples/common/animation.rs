@@ -1,8 +1,5 @@
 //! Figures as an animated GIF. Each example that writes one includes this file.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
-
 use acrobot::render::{Figure, Frame, Theme};
 use indicatif::ProgressBar;
 
@@ -11,8 +8,8 @@ const SIDE: u16 = 300;
 /// How long a step of 0.2 s is shown, in 1/100 s: about three times as fast as real time.
 const DELAY: u16 = 7;
 
-pub fn write_gif(file: BufWriter<File>, figures: &[Figure]) -> Result<(), gif::EncodingError> {
-    let mut encoder = gif::Encoder::new(file, SIDE, SIDE, &[])?;
+pub fn gif(figures: &[Figure]) -> Result<Vec<u8>, gif::EncodingError> {
+    let mut encoder = gif::Encoder::new(Vec::new(), SIDE, SIDE, &[])?;
     encoder.set_repeat(gif::Repeat::Infinite)?;
     let progress = ProgressBar::new(figures.len() as u64);
     for (i, figure) in figures.iter().enumerate() {
@@ -25,5 +22,5 @@ pub fn write_gif(file: BufWriter<File>, figures: &[Figure]) -> Result<(), gif::E
         progress.inc(1);
     }
     progress.finish_and_clear();
-    Ok(encoder.into_inner()?.flush()?)
+    encoder.into_inner()
 }

@@ -22,10 +22,11 @@ mod exit;
 mod files;
 mod learners;
 mod simulator;
+#[path = "../common/svg.rs"]
+mod svg;
 
 use std::error::Error;
 use std::fmt::Write as _;
-use std::fs;
 use std::io::{self, Write as _};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -38,8 +39,8 @@ use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use rayon::prelude::*;
 
-use files::{cannot_write, file};
 use learners::{ours, sutton};
+use svg::{Area, svg};
 
 /// Repeats Sutton's experiment of 1996 and runs this crate's learner beside it.
 #[derive(Parser)]
@@ -56,16 +57,16 @@ struct Options {
     seed: SeedSequence,
     /// The file for the numbers.
     #[arg(long, value_name = "FILE", default_value = "sutton1996.csv")]
-    #[arg(value_parser = |path: &str| file(path, "csv"))]
+    #[arg(value_parser = files::named("csv"))]
     csv: PathBuf,
     /// The file for the learning curves.
     #[arg(long, value_name = "FILE", default_value = "sutton1996.svg")]
-    #[arg(value_parser = |path: &str| file(path, "svg"))]
+    #[arg(value_parser = files::named("svg"))]
     picture: PathBuf,
 }
 
 fn main() -> ExitCode {
-    exit::status(run(&Options::parse()))
+    exit::run(run)
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
@@ -83,9 +84,9 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     progress.finish_and_clear();
 
     let curves = experiments.each_ref().map(Experiment::curve);
-    let (csv, picture) = (&options.csv, &options.picture);
-    fs::write(csv, rows(&curves)).map_err(|error| cannot_write(csv, error))?;
-    draw(options, &curves).map_err(|error| cannot_write(picture, error))?;
+    files::write(&options.csv, rows(&curves))?;
+    let picture = svg((900, 600), |area| draw(area, options, &curves))?;
+    files::write(&options.picture, picture)?;
     write!(io::stdout(), "{}", table(&experiments, &curves))?;
     Ok(())
 }
@@ -196,14 +197,12 @@ fn rows(curves: &[Vec<[f64; 3]>; 2]) -> String {
 }
 
 /// Draws the learning curves: medians in bands from quartile to quartile.
-fn draw(options: &Options, curves: &[Vec<[f64; 3]>; 2]) -> Result<(), Box<dyn Error>> {
+fn draw(area: &Area, options: &Options, curves: &[Vec<[f64; 3]>; 2]) -> Result<(), Box<dyn Error>> {
     const BLUE: RGBColor = RGBColor(0, 114, 178);
     const ORANGE: RGBColor = RGBColor(213, 94, 0);
     const LABEL: (&str, i32) = ("sans-serif", 15);
     const NAME: (&str, i32) = ("sans-serif", 18);
 
-    let root = SVGBackend::new(&options.picture, (900, 600)).into_drawing_area();
-    root.fill(&WHITE)?;
     let caption = format!(
         "Sutton's experiment: median and quartiles of {} runs",
         options.runs
@@ -211,7 +210,7 @@ fn draw(options: &Options, curves: &[Vec<[f64; 3]>; 2]) -> Result<(), Box<dyn Er
     let all = || curves.iter().flatten().flatten();
     let least = all().copied().fold(f64::INFINITY, f64::min);
     let most = all().copied().fold(0.0, f64::max);
-    let mut chart = ChartBuilder::on(&root)
+    let mut chart = ChartBuilder::on(area)
         .caption(caption, ("sans-serif", 24))
         .margin(14)
         .x_label_area_size(44)
@@ -254,7 +253,6 @@ fn draw(options: &Options, curves: &[Vec<[f64; 3]>; 2]) -> Result<(), Box<dyn Er
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK)
         .draw()?;
-    root.present()?;
     Ok(())
 }
 

@@ -16,14 +16,14 @@
 //! This is the baseline.
 
 use std::error::Error;
-use std::fmt::{Display, Write as _};
-use std::fs;
+use std::fmt::Write as _;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, State};
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -39,9 +39,13 @@ mod files;
 #[path = "../common/heat_map.rs"]
 mod heat_map;
 mod pictures;
+#[path = "../common/svg.rs"]
+mod svg;
+#[path = "../common/weights.rs"]
+mod weights;
 
 use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
-use files::cannot_write;
+use svg::svg;
 
 /// Learns to swing up, and evaluates the policy.
 #[derive(Parser)]
@@ -60,13 +64,14 @@ struct Options {
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
     /// The file to save the weights in.
-    #[arg(long, value_name = "FILE", value_parser = file)]
+    #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(file))]
     save: Option<PathBuf>,
     /// The file to load the weights from, instead of zeros.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
     /// The folder for the pictures.
-    #[arg(long, value_name = "FOLDER", default_value = ".", value_parser = folder)]
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    #[arg(value_parser = PathBufValueParser::new().try_map(folder))]
     pictures: PathBuf,
     /// Prints only one line, and draws nothing.
     #[arg(long)]
@@ -74,21 +79,19 @@ struct Options {
 }
 
 /// Parses a file to save. A bad name is rejected before the episodes, not after them.
-fn file(path: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(path);
+fn file(path: PathBuf) -> Result<PathBuf, &'static str> {
     let is_file = path.file_name().is_some() && !path.is_dir();
     if is_file && path.with_file_name(".").is_dir() {
         return Ok(path);
     }
-    Err("must be a file in an existing folder".into())
+    Err("must be a file in an existing folder")
 }
 
-fn folder(path: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(path);
+fn folder(path: PathBuf) -> Result<PathBuf, &'static str> {
     if path.is_dir() {
         return Ok(path);
     }
-    Err("must be an existing folder".into())
+    Err("must be an existing folder")
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -110,14 +113,12 @@ enum Memory {
 }
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    let done = match options.memory {
-        Memory::K64 => run::<8192, 28>(&options),
-        Memory::K32 => run::<4096, 20>(&options),
-        Memory::K16 => run::<2048, 20>(&options),
-        Memory::K8 => run::<1024, 16>(&options),
-    };
-    exit::status(done)
+    exit::run(|options: &Options| match options.memory {
+        Memory::K64 => run::<8192, 28>(options),
+        Memory::K32 => run::<4096, 20>(options),
+        Memory::K16 => run::<2048, 20>(options),
+        Memory::K8 => run::<1024, 16>(options),
+    })
 }
 
 /// Learns with `T` tilings in `S` slots, and prints the results.
@@ -129,15 +130,13 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
     };
     let mut learner: Learner<S, T> = preset.learner(options.episodes, &mut weights)?;
     if let Some(path) = &options.load {
-        let named = |reason: &dyn Display| format!("{}: {reason}", path.display());
-        let bytes = fs::read(path).map_err(|e| named(&e))?;
-        learner.load(&bytes).map_err(|e| named(&e))?;
+        weights::load(&mut learner, path)?;
     }
 
     let returns = train(&mut learner, options);
     if let Some(path) = &options.save {
         let bytes: Vec<u8> = learner.save().collect();
-        fs::write(path, bytes).map_err(|e| cannot_write(path, e))?;
+        files::write(path, bytes)?;
     }
 
     let learnt = evaluate(options, |state| greedy(&learner, state));
@@ -190,8 +189,8 @@ fn draw<const S: usize, const T: usize>(
     let path = |name| options.pictures.join(name);
     if !returns.is_empty() {
         let curve = path("learning_curve.svg");
-        let svg = pictures::svg((900, 480), |area| pictures::draw_curve(area, returns))?;
-        fs::write(&curve, svg).map_err(|e| cannot_write(&curve, e))?;
+        let svg = svg((900, 480), |area| pictures::draw_curve(area, returns))?;
+        files::write(&curve, svg)?;
         writeln!(
             lines,
             "{}: the returns of {} episodes",
@@ -205,8 +204,8 @@ fn draw<const S: usize, const T: usize>(
         let values = learner.values(&view(state));
         values.into_iter().fold(f32::MIN, f32::max)
     };
-    let svg = pictures::svg((780, 720), |area| pictures::draw_values(area, value))?;
-    fs::write(&values, svg).map_err(|e| cannot_write(&values, e))?;
+    let svg = svg((780, 720), |area| pictures::draw_values(area, value))?;
+    files::write(&values, svg)?;
     writeln!(lines, "{}: the values at rest", values.display())?;
 
     let episode = path("swing_up.gif");
@@ -215,13 +214,13 @@ fn draw<const S: usize, const T: usize>(
         // Its generator draws only initial states, so this leads to the last of them.
         env.reset();
     }
-    let frames = pictures::draw_episode(&episode, &mut env, |state| greedy(learner, state));
-    let frames = frames.map_err(|e| cannot_write(&episode, e))?;
+    let figures = pictures::figures(&mut env, |state| greedy(learner, state));
+    files::write(&episode, animation::gif(&figures)?)?;
     writeln!(
         lines,
         "{}: the last greedy episode, {} steps",
         episode.display(),
-        frames - 1
+        figures.len() - 1
     )?;
     Ok(lines)
 }

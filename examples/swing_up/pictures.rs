@@ -1,40 +1,19 @@
-//! Pictures of the learning curve, the learnt values and an episode, as SVG and GIF.
+//! Pictures of the learning curve, the learnt values and an episode.
 
 use std::error::Error;
 use std::f32::consts::PI;
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
 
 use acrobot::physics::tip_height;
 use acrobot::render::Figure;
 use acrobot::{Action, Fast, Params, REWARD_THRESHOLD, State};
-use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use crate::acrobot_task::Env;
-use crate::animation;
 use crate::curve::running_mean;
 use crate::heat_map::{LABEL, NAME, color, draw_bar};
+use crate::svg::Area;
 
 const TITLE: (&str, i32) = ("sans-serif", 24);
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-
-/// The text of a picture of this size in pixels. The caller writes it, and so sees the errors of writing.
-pub fn svg(
-    size: (u32, u32),
-    draw: impl FnOnce(&Area) -> Result<(), Box<dyn Error>>,
-) -> Result<String, Box<dyn Error>> {
-    let mut text = String::new();
-    {
-        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        area.fill(&WHITE)?;
-        draw(&area)?;
-        area.present()?;
-    }
-    Ok(text)
-}
 
 /// The return of each episode, and the running mean.
 pub fn draw_curve(area: &Area, returns: &[f32]) -> Result<(), Box<dyn Error>> {
@@ -164,12 +143,8 @@ pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> Result<()
     Ok(())
 }
 
-/// Draws an episode from the next initial state as a GIF. Returns the number of frames: the initial state and every step.
-pub fn draw_episode(
-    path: &Path,
-    env: &mut Env,
-    policy: impl Fn(&State<f32>) -> Action,
-) -> Result<usize, Box<dyn Error>> {
+/// The figures of an episode from the next initial state: that state and every step.
+pub fn figures(env: &mut Env, policy: impl Fn(&State<f32>) -> Action) -> Vec<Figure> {
     env.reset();
     let mut figures = vec![Figure::new(env.inner())];
     loop {
@@ -178,9 +153,7 @@ pub fn draw_episode(
         let torque = env.inner().params().torque(action);
         figures.push(Figure::new(env.inner()).with_torque(torque));
         if step.done() {
-            break;
+            return figures;
         }
     }
-    animation::write_gif(BufWriter::new(File::create(path)?), &figures)?;
-    Ok(figures.len())
 }

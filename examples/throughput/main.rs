@@ -10,9 +10,13 @@
 //! cargo run --release --example throughput
 //! ```
 
+#[path = "../common/exit.rs"]
+mod exit;
 pub mod yardsticks;
 
 use std::hint::black_box;
+use std::io::{self, Write};
+use std::process::ExitCode;
 use std::time::Instant;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro};
@@ -21,18 +25,22 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Error, Fast, Portable, TimeLimit};
 use yardsticks::{bare_f32, bare_f64};
 
-pub fn main() {
-    scalar::<Host>("scalar_host", bare_f64);
-    scalar::<Portable>("scalar_portable", bare_f64);
-    scalar::<Fast>("scalar_fast", bare_f32);
-    scalar::<Micro>("scalar_micro", bare_f32);
+pub fn main() -> ExitCode {
+    exit::status(measure())
+}
+
+fn measure() -> io::Result<()> {
+    scalar::<Host>("scalar_host", bare_f64)?;
+    scalar::<Portable>("scalar_portable", bare_f64)?;
+    scalar::<Fast>("scalar_fast", bare_f32)?;
+    scalar::<Micro>("scalar_micro", bare_f32)?;
     for len in [1024, 1 << 20] {
-        batch::<Fast>("fast", len, SimdLevel::widest());
+        batch::<Fast>("fast", len, SimdLevel::widest())?;
     }
-    batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
-    batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
-    batch::<Portable>("portable", 1024, SimdLevel::Baseline);
-    threads(1 << 20);
+    batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2)?;
+    batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline)?;
+    batch::<Portable>("portable", 1024, SimdLevel::Baseline)?;
+    threads(1 << 20)
 }
 
 const ROUNDS: usize = 7;
@@ -52,11 +60,11 @@ fn compare(mut ours: impl FnMut() -> usize, mut yardstick: impl FnMut() -> usize
     })
 }
 
-fn report(name: &str, (rate, yardstick): (f64, f64)) {
-    println!("{name} {rate:.0} {:.2}", rate / yardstick);
+fn report(name: &str, (rate, yardstick): (f64, f64)) -> io::Result<()> {
+    writeln!(io::stdout(), "{name} {rate:.0} {:.2}", rate / yardstick)
 }
 
-fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
+fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) -> io::Result<()> {
     const STEPS: usize = 200_000;
     let mut rng = Pcg64::new(0);
     let actions: Vec<Action> = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
@@ -73,7 +81,7 @@ fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
         yardstick(&actions);
         STEPS
     };
-    report(name, compare(ours, bare));
+    report(name, compare(ours, bare))
 }
 
 /// A batch, the random policy that plays it, and the buffers of its steps.
@@ -135,12 +143,14 @@ impl<A: Arithmetic> Play<A> {
     }
 }
 
-fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) {
+fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) -> io::Result<()> {
     let steps = (2_000_000 / len).max(2);
     let mut play = Play::<A>::new(len);
     if !level.is_available() {
-        println!("batch_{arithmetic}_{len} needs {level:?}, which this machine does not have");
-        return;
+        return writeln!(
+            io::stdout(),
+            "batch_{arithmetic}_{len} needs {level:?}, which this machine does not have"
+        );
     }
     play.batch.set_simd_level(level);
     for (suffix, observe) in [("", false), ("_observations", true)] {
@@ -155,21 +165,25 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) {
         for (fma, flavour) in [(true, ""), (false, "_nofma")] {
             let name = format!("{name}{flavour}");
             match yardsticks::Lanes::new(fma) {
-                Some(mut bare) => report(&name, compare(&mut ours, || bare.run())),
-                None => println!("{name} has no yardstick, because that needs AVX2 and FMA"),
+                Some(mut bare) => report(&name, compare(&mut ours, || bare.run()))?,
+                None => writeln!(
+                    io::stdout(),
+                    "{name} has no yardstick, because that needs AVX2 and FMA"
+                )?,
             }
         }
     }
+    Ok(())
 }
 
 /// Steps on all cores; the ratio is to the same steps on one core. The actions stay the same, because only the step
 /// runs on all cores.
-fn threads(len: usize) {
+fn threads(len: usize) -> io::Result<()> {
     let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
     let rates = compare(
         || many.step(false, Batch::par_step),
         || one.step(false, Batch::step),
     );
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    report(&format!("batch_fast_{len}_threads_{threads}"), rates);
+    report(&format!("batch_fast_{len}_threads_{threads}"), rates)
 }

@@ -64,15 +64,16 @@ enum ArithmeticName {
 }
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    let result = match options.arithmetic {
-        ArithmeticName::Host => trace::<Host>(&options),
-        ArithmeticName::Portable => trace::<Portable>(&options),
-        ArithmeticName::Fast => trace::<Fast>(&options),
-        ArithmeticName::Micro => trace::<Micro>(&options),
-    };
-    exit::status(result)
+    exit::run(|options: &Options| match options.arithmetic {
+        ArithmeticName::Host => trace::<Host>(options),
+        ArithmeticName::Portable => trace::<Portable>(options),
+        ArithmeticName::Fast => trace::<Fast>(options),
+        ArithmeticName::Micro => trace::<Micro>(options),
+    })
 }
+
+/// The bytes of the longest input, which is kept in memory.
+const MOST: u64 = 1 << 26;
 
 /// Reads and checks everything before it prints the first line.
 fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
@@ -92,8 +93,11 @@ fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
     let rounded = acrobot.set_params(params.cast());
     rounded.map_err(|error| format!("rounded to the arithmetic's f32, {error}"))?;
     let mut input = Vec::new();
-    let read = io::stdin().read_to_end(&mut input);
+    let read = io::stdin().take(MOST + 1).read_to_end(&mut input);
     read.map_err(|error| format!("cannot read standard input: {error}"))?;
+    if input.len() as u64 > MOST {
+        return Err(format!("the input must have at most {MOST} bytes, got more").into());
+    }
     let actions = actions::parse(&input)?;
 
     acrobot.reset_with(ResetOptions {

@@ -2,9 +2,10 @@
 
 import { execFileSync } from "node:child_process";
 import { cpSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
 
 const run = (command, args, env = {}) =>
-  execFileSync(command, args, { cwd: import.meta.dirname, stdio: "inherit", env: { ...process.env, ...env } });
+  execFileSync(command, args, { stdio: "inherit", env: { ...process.env, ...env } });
 
 /** For size: loops are unrolled only as a whole, and only up to 16 turns, the lanes of a batch's block. */
 const SMALL = ["-Cllvm-args=-unroll-full-max-count=16", "-Cllvm-args=-unroll-allow-partial=false"];
@@ -23,7 +24,7 @@ function build(name, { simd128 = false, args = [] }) {
   run("node_modules/.bin/wasm-opt", [module, "-S", "-o", text, ...features, ...PASSES]);
   writeFileSync(text, withVectorsInGlobals(readFileSync(text, "utf8")));
   run("node_modules/.bin/wasm-as", [text, "-o", `dist/${name}.wasm`, ...features]);
-  console.log(`${name}.wasm: ${statSync(new URL(`dist/${name}.wasm`, import.meta.url)).size} bytes`);
+  console.log(`${name}.wasm: ${statSync(`dist/${name}.wasm`).size} bytes`);
 }
 
 /**
@@ -46,7 +47,7 @@ function withVectorsInGlobals(text) {
   return functions.join("").replace(" (global ", `${declared.join("")} (global `);
 }
 
-process.chdir(import.meta.dirname);
+process.chdir(fileURLToPath(new URL(".", import.meta.url)));
 rmSync("dist", { recursive: true, force: true });
 mkdirSync("dist");
 cpSync("page", "dist", { recursive: true });

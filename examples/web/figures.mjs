@@ -2,12 +2,11 @@
 
 import { execFileSync } from "node:child_process";
 import { statSync } from "node:fs";
-import { resolve } from "node:path";
 
 import { launch } from "./browser.mjs";
 import { serve } from "./serve.mjs";
 
-const root = resolve(import.meta.dirname, "../..");
+const root = new URL("../..", import.meta.url);
 const args = ["run", "--release", "--quiet", "--locked", "--example", "throughput"];
 const throughput = execFileSync("cargo", args, { cwd: root, encoding: "utf8" });
 const native = (name) => Number(new RegExp(`^${name} (\\d+)`, "m").exec(throughput)[1]);
@@ -43,7 +42,7 @@ await browser.close();
 server.close();
 
 const million = (rate) => `${(rate / 1e6).toFixed(1)} million steps a second`;
-const size = (name) => `${statSync(resolve(import.meta.dirname, `dist/${name}.wasm`)).size} bytes`;
+const size = (name) => `${statSync(new URL(`dist/${name}.wasm`, import.meta.url)).size} bytes`;
 const nativeScalar = native("scalar_fast");
 for (const [name, value] of Object.entries({
   "the page's module, with simd128": size("acrobot-simd128"),

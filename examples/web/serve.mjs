@@ -1,8 +1,11 @@
 // A static server for dist/: `npm run serve`, or `npm run serve -- 8000` for that port.
 
-import { createReadStream, statSync } from "node:fs";
+import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
-import { extname, join, normalize } from "node:path";
+import { extname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const DIST = fileURLToPath(new URL("dist", import.meta.url));
 
 const TYPES = {
   ".css": "text/css",
@@ -12,17 +15,32 @@ const TYPES = {
   ".wasm": "application/wasm",
 };
 
+/** The file for an address, or undefined if the address is invalid. It is in dist/, because URL resolves every "..". */
+function fileOf(address) {
+  try {
+    // A path that begins with two slashes would name another host.
+    const { pathname } = new URL(address.replace(/^[/\\]+/, "/"), "http://localhost");
+    return join(DIST, pathname.endsWith("/") ? `${pathname}index.html` : pathname);
+  } catch {
+    return undefined;
+  }
+}
+
 /** A server on this machine's own address. Port 0 takes any free port. */
 export function serve(port) {
-  const server = createServer(({ url }, response) => {
-    const path = normalize(new URL(url, "http://localhost").pathname);
-    const file = join(import.meta.dirname, "dist", path.endsWith("/") ? `${path}index.html` : path);
-    if (!statSync(file, { throwIfNoEntry: false })?.isFile()) {
-      response.writeHead(404).end("not found");
-      return;
+  const server = createServer(async ({ method, url }, response) => {
+    const fail = (status, reason, headers) => response.writeHead(status, headers).end(reason);
+    if (method !== "GET" && method !== "HEAD") return fail(405, "the method must be GET or HEAD", { allow: "GET, HEAD" });
+    const file = fileOf(url);
+    if (!file) return fail(400, "the address must be a path");
+    try {
+      // Read before the answer begins, because a file can be missing, a folder, or replaced by a build.
+      const content = await readFile(file);
+      response.setHeader("content-type", TYPES[extname(file)] ?? "application/octet-stream");
+      response.end(content);
+    } catch {
+      fail(404, "not found");
     }
-    response.writeHead(200, { "content-type": TYPES[extname(file)] ?? "application/octet-stream" });
-    createReadStream(file).pipe(response);
   });
   return new Promise((resolve, reject) => {
     server.on("error", reject);
@@ -30,7 +48,7 @@ export function serve(port) {
   });
 }
 
-if (process.argv[1] === import.meta.filename) {
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const text = process.argv[2] ?? "8080";
   const port = Number(text);
   if (!/^\d+$/.test(text) || port > 65535) {

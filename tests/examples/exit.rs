@@ -1,4 +1,4 @@
-//! How the examples end when they cannot print. `throughput` only measures.
+//! How the examples end when they cannot print.
 
 use std::fs::{self, File};
 use std::process::Stdio;
@@ -6,11 +6,12 @@ use std::process::Stdio;
 use super::{Folder, command};
 
 /// Each example with little work, and the files that it writes.
-const EXAMPLES: [(&str, &str, &[&str]); 9] = [
+const EXAMPLES: [(&str, &str, &[&str]); 11] = [
     ("energy_control", "--episodes 1", &[]),
     ("phase_portrait", "--out FOLDER/a.svg", &["a.svg"]),
     ("plan", "--learn 10 --episodes 1 --depth 2", &[]),
     ("random_agent", "", &[]),
+    ("random_agent", "--help", &[]),
     ("render_episode", "--out FOLDER/a.gif", &["a.gif", "a.png"]),
     (
         "sutton1996",
@@ -27,6 +28,7 @@ const EXAMPLES: [(&str, &str, &[&str]); 9] = [
         "--episodes 10 --save FOLDER/a.bin --pictures FOLDER",
         &["a.bin", "learning_curve.svg", "values.svg", "swing_up.gif"],
     ),
+    ("throughput", "", &[]),
     ("trace", "--seed 42", &[]),
 ];
 
@@ -62,16 +64,27 @@ fn the_reader_may_close_the_pipe() {
     }
 }
 
+#[cfg(target_os = "linux")]
+fn full() -> Stdio {
+    let full = File::options().write(true).open("/dev/full");
+    full.unwrap().into()
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_error_that_cannot_be_printed_keeps_its_status() {
+    for arguments in ["--state 1,2 --out no.gif", "--state 1", "--out no/such.gif"] {
+        let arguments: Vec<&str> = arguments.split(' ').collect();
+        let status = command("render_episode", &arguments)
+            .stderr(full())
+            .status();
+        assert_eq!(status.unwrap().code(), Some(2), "{arguments:?}");
+    }
+}
+
 #[test]
 #[cfg(target_os = "linux")]
 fn a_failed_print_is_an_error() {
-    let full = || {
-        File::options()
-            .write(true)
-            .open("/dev/full")
-            .unwrap()
-            .into()
-    };
     for (example, status, errors) in end("unprinted", full) {
         assert_eq!(status, Some(2), "{example}: {errors}");
         assert!(

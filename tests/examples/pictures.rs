@@ -115,19 +115,33 @@ fn drawing_examples_reject_with_a_reason() {
 #[cfg(target_os = "linux")]
 fn a_full_disk_is_an_error() {
     let folder = Folder::new("full");
-    for name in ["frame.png", "episode.gif"] {
+    for name in ["full.csv", "full.gif", "full.png", "full.svg"] {
         std::os::unix::fs::symlink("/dev/full", folder.file(name)).unwrap();
     }
-    let (frame, episode) = (folder.file("frame.png"), folder.file("episode.gif"));
-    for arguments in [
-        ["--state", "1,2", "--out", &frame],
-        ["--seed", "42", "--out", &episode],
+    for (example, arguments, name) in [
+        ("render_episode", "--state 1,2 --out", "full.png"),
+        ("render_episode", "--seed 42 --out", "full.gif"),
+        ("phase_portrait", "--out", "full.svg"),
+        (
+            "sutton1996",
+            "--runs 1 --episodes 9 --csv FOLDER/a.csv --picture",
+            "full.svg",
+        ),
+        ("sutton1996", "--runs 1 --episodes 9 --csv", "full.csv"),
+        (
+            "sweep",
+            "--episodes 4 --masses 1,2 --torques 1,2 --csv FOLDER/a.csv --picture",
+            "full.svg",
+        ),
+        ("sweep", "--episodes 400 --csv", "full.csv"),
     ] {
-        let errors = rejected("render_episode", &arguments, "");
-        assert!(
-            errors.contains("cannot write") && errors.contains("No space left"),
-            "{errors}"
-        );
+        let path = folder.file(name);
+        let arguments = arguments.replace("FOLDER", folder.0.to_str().unwrap());
+        let mut arguments: Vec<&str> = arguments.split(' ').collect();
+        arguments.push(&path);
+        let errors = rejected(example, &arguments, "");
+        let reason = format!("cannot write {path}: No space left");
+        assert!(errors.contains(&reason), "{example}: {errors}");
     }
     for name in [
         "learning_curve.svg",

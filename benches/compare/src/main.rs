@@ -10,6 +10,7 @@
 
 use std::env;
 use std::hint::black_box;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use acrobot::arithmetic::{Arithmetic, Host};
@@ -48,18 +49,21 @@ const STEPS: usize = 16 * ACROBOTS;
 const LIMIT: u16 = 500;
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = env::args().skip(1).collect();
-    match report(&arguments) {
-        Some(line) => {
-            println!("{line}");
-            ExitCode::SUCCESS
-        }
-        None => {
-            let names = PEERS.map(|(name, ..)| name).join(", ");
-            eprintln!("usage: acrobot-compare NAME[/NAME] SECONDS, where a name is one of {names}");
-            ExitCode::from(2)
-        }
-    }
+    // No peer has a name that is not Unicode, so the lossy one is rejected too.
+    let arguments = env::args_os().map(|argument| argument.to_string_lossy().into_owned());
+    let message = match report(&arguments.skip(1).collect::<Vec<_>>()) {
+        Some(line) => match writeln!(io::stdout(), "{line}") {
+            Ok(()) => return ExitCode::SUCCESS,
+            Err(error) => format!("error: cannot print: {error}"),
+        },
+        None => format!(
+            "usage: acrobot-compare NAME[/NAME] SECONDS, where a name is one of {}, and seconds are finite and above 0",
+            PEERS.map(|(name, ..)| name).join(", ")
+        ),
+    };
+    // The status must be right also where the message cannot be printed.
+    let _ = writeln!(io::stderr(), "{message}");
+    ExitCode::from(2)
 }
 
 fn report(arguments: &[String]) -> Option<String> {
@@ -67,6 +71,9 @@ fn report(arguments: &[String]) -> Option<String> {
         return None;
     };
     let seconds = seconds.parse().ok()?;
+    if !(seconds > 0.0 && f64::is_finite(seconds)) {
+        return None;
+    }
     if let Some((slow, quick)) = names.split_once('/') {
         let [(slow, _), (quick, _)] = [find(slow)?, find(quick)?];
         let [slow, quick] = time([slow, quick], seconds).1;
@@ -222,7 +229,18 @@ mod tests {
 
     #[test]
     fn rejects_unknown_arguments() {
-        for arguments in ["", "fast", "slow 1", "fast/slow 1", "fast soon", "fast 1 1"] {
+        for arguments in [
+            "",
+            "fast",
+            "slow 1",
+            "fast/slow 1",
+            "fast soon",
+            "fast 1 1",
+            "fast nan",
+            "fast -1",
+            "fast 0",
+            "fast inf",
+        ] {
             let arguments: Vec<String> = arguments.split(' ').map(str::to_owned).collect();
             assert_eq!(report(&arguments), None);
         }

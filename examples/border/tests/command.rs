@@ -39,6 +39,22 @@ fn has_the_readmes_returns() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn errors_that_cannot_be_printed_keep_their_status() {
+    let full = || std::fs::File::options().write(true).open("/dev/full");
+    let mut border = Command::new(env!("CARGO_BIN_EXE_acrobot-border"));
+    border.stdout(full().unwrap()).stderr(full().unwrap());
+    assert_eq!(border.status().unwrap().code(), Some(1));
+}
+
+/// Sums of the largest numbers do not overflow.
+#[test]
+fn takes_the_largest_seed() {
+    let output = run(&["--seed", "9223372036854775807", "--steps", "1"]);
+    assert!(output.status.success(), "{output:?}");
+}
+
+#[test]
 fn rejects_with_status_2() {
     for arguments in [
         ["--steps", "0"],

@@ -2,7 +2,6 @@
 
 import assert from "node:assert/strict";
 import { readFileSync, statSync } from "node:fs";
-import { join } from "node:path";
 import { test } from "node:test";
 
 import { shortest } from "../page/game.js";
@@ -10,17 +9,17 @@ import { decodeActions, decodeRun, encodeActions, encodeRun } from "../page/link
 import { Acrobot, DEFAULTS } from "../page/module.js";
 import { ACTIONS, trace } from "./native.mjs";
 
-const dist = join(import.meta.dirname, "../dist");
+const dist = new URL("../dist/", import.meta.url);
 
 test("the modules are within their limits", () => {
   for (const [name, kib] of [["acrobot-simd128", 48], ["acrobot", 48], ["simulation", 12]]) {
-    const { size } = statSync(join(dist, `${name}.wasm`));
+    const { size } = statSync(new URL(`${name}.wasm`, dist));
     assert.ok(size <= kib * 1024, `${name}.wasm must have at most ${kib * 1024} bytes, got ${size}`);
   }
 });
 
 test("the plain simulation is bit-identical to native", async () => {
-  const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(join(dist, "simulation.wasm"))));
+  const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(new URL("simulation.wasm", dist))));
   const now = () => Array.from(new Uint32Array(acrobot.numbers().buffer, 0, 4), (word) => word.toString(16).padStart(8, "0"));
   acrobot.setParams({ ...DEFAULTS, dynamics: "nips" });
   acrobot.reset(7n);
@@ -42,7 +41,7 @@ test("a link keeps the actions", () => {
 });
 
 test("any link is a run or is rejected with the rule", async () => {
-  const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(join(dist, "simulation.wasm"))));
+  const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(new URL("simulation.wasm", dist))));
   const link = encodeRun({ seed: 42n, params: { ...DEFAULTS, mass1: 1.5, dt: 0.05, dynamics: "nips" }, actions: ACTIONS });
   const others = "#&=%+-_.,09eEnaAzZ \u00e9\u{1f600}";
   // A linear congruential generator, for the same links in each run.

@@ -1,10 +1,9 @@
 // Native results: the repository's examples, run with these arguments.
 
 import { spawnSync } from "node:child_process";
-import { resolve } from "node:path";
 
 // Not this folder, whose configuration builds for WebAssembly.
-const root = resolve(import.meta.dirname, "../../..");
+const root = new URL("../../..", import.meta.url);
 
 /** The actions of several tests. */
 export const ACTIONS = [2, 2, 2, 0, 0, 1, 2, 2, 0, 0, 0, 1, 1, 2, 0, 2, 2, 2, 0, 0, 0];

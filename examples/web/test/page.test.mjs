@@ -182,7 +182,7 @@ test("the CSV has every bit of the episode", () =>
     const [names, ...lines] = (await downloaded(page, "#csv")).toString().trimEnd().split("\n");
     // The column names of the crate's `Trajectory::write_csv`.
     assert.equal(names.split(",").length, 13);
-    assert.ok(readFileSync(join(import.meta.dirname, "../../../src/trajectory.rs"), "utf8").replace(/\\\n\s*/g, "").includes(names));
+    assert.ok(readFileSync(new URL("../../../src/trajectory.rs", import.meta.url), "utf8").replace(/\\\n\s*/g, "").includes(names));
     const bitsOf = (cells) => Array.from(new Uint32Array(Float32Array.from(cells).buffer), (word) => word.toString(16).padStart(8, "0"));
     const states = trace("42", ACTIONS);
     lines.forEach((line, i) => {

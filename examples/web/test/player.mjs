@@ -5,12 +5,13 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before } from "node:test";
+import { fileURLToPath } from "node:url";
 
 import { launch } from "../browser.mjs";
 import { decodeActions } from "../page/link.js";
 import { serve } from "../serve.mjs";
 
-export const dist = join(import.meta.dirname, "../dist");
+export const dist = fileURLToPath(new URL("../dist", import.meta.url));
 /** Tests write their files here. */
 export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
 let server, browser, origin;

@@ -1,14 +1,15 @@
 //! Acrobot in a window, played with the arrow keys. See the README in this folder.
 
+#[path = "../../common/files.rs"]
+mod files;
 mod game;
 mod screen;
 
 use std::error::Error;
 use std::fmt::Display;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::panic;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -59,7 +60,8 @@ fn main() -> ExitCode {
     match run(Options::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            eprintln!("error: {message}");
+            // The status must be right also where the message cannot be printed.
+            let _ = writeln!(io::stderr(), "error: {message}");
             ExitCode::FAILURE
         }
     }
@@ -69,11 +71,10 @@ fn run(options: Options) -> Result<(), String> {
     let game = Game::new(options.seed, options.dynamics).map_err(|error| error.to_string())?;
     let event_loop = event_loop().map_err(no_window)?;
 
-    // Opened before the game, so an error comes before the player plays.
-    let screenshot = match options.screenshot.as_deref() {
-        Some(path) => Some((path, File::create(path).map_err(|e| unwritable(path, e))?)),
-        None => None,
-    };
+    // Before the game, so an error comes before the player plays.
+    if let Some(path) = &options.screenshot {
+        files::check(path)?;
+    }
 
     let mut app = App {
         game,
@@ -90,9 +91,10 @@ fn run(options: Options) -> Result<(), String> {
     }
     result.map_err(|error| format!("the window has failed: {error}"))?;
 
-    match screenshot {
-        Some((path, file)) => {
-            write_png(file, app.game.picture()).map_err(|error| unwritable(path, error))
+    match &options.screenshot {
+        Some(path) => {
+            let picture = png(app.game.picture()).map_err(|error| error.to_string())?;
+            files::write(path, picture)
         }
         None => Ok(()),
     }
@@ -117,19 +119,14 @@ fn no_window(cause: impl Display) -> String {
     )
 }
 
-fn unwritable(path: &Path, error: io::Error) -> String {
-    let path = path.display();
-    format!("cannot write {path}: {error}. --screenshot must be a PNG file that can be written")
-}
-
-fn write_png(file: File, picture: &Frame) -> io::Result<()> {
-    let mut file = BufWriter::new(file);
-    let mut encoder = png::Encoder::new(&mut file, picture.width(), picture.height());
+fn png(picture: &Frame) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, picture.width(), picture.height());
     encoder.set_color(png::ColorType::Rgb);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(picture.bytes())?;
     writer.finish()?;
-    file.flush()
+    Ok(bytes)
 }
 
 struct App {

@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::io::{BufRead, BufReader, Cursor};
+use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -103,6 +104,45 @@ fn errors_say_what_is_wrong() {
     rejected(&unset, 1, "DISPLAY");
     let wrong = game(&[]).env("DISPLAY", ":65000").output().unwrap();
     rejected(&wrong, 1, "cannot open a window");
+}
+
+#[test]
+fn a_killed_game_leaves_no_screenshot() {
+    let screen = Screen::start();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("killed");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir(&folder).unwrap();
+    let file = folder.join("last.png");
+    for old in [None, Some("old")] {
+        if let Some(old) = old {
+            fs::write(&file, old).unwrap();
+        }
+        let game = screen.play(&["--screenshot", file.to_str().unwrap()]);
+        screen.wait_for("the picture", Picture::steps);
+        drop(game);
+        assert_eq!(fs::read_to_string(&file).ok().as_deref(), old);
+    }
+    fs::remove_file(&file).unwrap();
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+}
+
+#[test]
+fn a_screenshot_that_cannot_be_written_is_an_error() {
+    let screen = Screen::start();
+    let full = Path::new(env!("CARGO_TARGET_TMPDIR")).join("full.png");
+    let _ = fs::remove_file(&full);
+    symlink("/dev/full", &full).unwrap();
+    let arguments = ["--frames", "1", "--screenshot", full.to_str().unwrap()];
+    rejected(&screen.run(&arguments), 1, "No space left on device");
+    assert!(full.is_symlink());
+
+    let folder = env!("CARGO_TARGET_TMPDIR");
+    rejected(&screen.run(&["--screenshot", folder]), 1, "Is a directory");
+
+    let mut unprinted = game(&["--screenshot", "no/such/folder.png"]);
+    unprinted.env("DISPLAY", &screen.display);
+    let stderr = fs::File::options().write(true).open("/dev/full").unwrap();
+    assert_eq!(unprinted.stderr(stderr).status().unwrap().code(), Some(1));
 }
 
 fn rejected(output: &Output, status: i32, words: &str) {
