@@ -7,7 +7,7 @@ use super::Arithmetic;
 use crate::physics::Gymnasium;
 
 /// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: Gymnasium's bits where NumPy calls the
-/// same library, as on x86-64 Linux with glibc.
+/// same library, as on x86-64 Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
 ///
 /// ```
 /// use acrobot::arithmetic::{Arithmetic, Host};

@@ -87,15 +87,16 @@ pub fn is_recorded_library() -> bool {
             digest.add(y.to_bits());
         }
     }
-    let same = digest == RECORDING.library;
-    if !same {
-        let versions = &RECORDING.versions;
-        let _ = writeln!(
-            std::io::stderr(),
-            "BIT PARITY IS NOT TESTED: sin, cos or pow differ here from those of {versions}"
-        );
+    if digest == RECORDING.library {
+        return true;
     }
-    same
+    let message = format!(
+        "BIT PARITY IS NOT TESTED: sin, cos or pow differ here from those of {}",
+        RECORDING.versions
+    );
+    assert!(std::env::var_os("REQUIRE_PARITY").is_none(), "{message}");
+    let _ = writeln!(std::io::stderr(), "{message}");
+    false
 }
 
 fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
