@@ -59,10 +59,10 @@ fn recorded_frames() -> Vec<([f64; 4], Vec<u8>)> {
 /// The mean column and row of the pixels of a joint's colour around a position, and their number.
 fn joint(frame: &[u8], (column, row): (f64, f64)) -> (f64, f64, usize) {
     let places = (0..SIDE * SIDE).map(|i| ((i % SIDE) as f64, (i / SIDE) as f64));
-    let pixels = frame.chunks_exact(3).zip(places);
+    let pixels = frame.as_chunks().0.iter().zip(places);
     let near = |x: f64, y: f64| (x - column).abs() <= 18.0 && (y - row).abs() <= 18.0;
     let pixels: Vec<_> = pixels
-        .filter(|(pixel, (x, y))| *pixel == [204, 204, 0] && near(*x, *y))
+        .filter(|(pixel, (x, y))| **pixel == [204, 204, 0] && near(*x, *y))
         .collect();
     let mean = |sum: f64| sum / pixels.len() as f64;
     (
@@ -83,8 +83,11 @@ fn frames_are_gymnasiums() {
     let mut joints = 0;
     for (row, theirs) in &frames {
         let ours = Frame::of(&figure_of(*row));
-        let close = ours.bytes().chunks_exact(3).zip(theirs.chunks_exact(3));
-        let close = close
+        let [ours_pixels, their_pixels] =
+            [ours.bytes(), theirs].map(|bytes| bytes.as_chunks::<3>().0);
+        let close = ours_pixels
+            .iter()
+            .zip(their_pixels)
             .filter(|(x, y)| x.iter().zip(*y).all(|(x, y)| x.abs_diff(*y) <= 32))
             .count();
         let share = close as f64 / (SIDE * SIDE) as f64;

@@ -110,17 +110,9 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
         *bytes = tail;
         head
     };
-    let f64s = |bytes: &[u8]| -> Vec<f64> {
-        bytes
-            .chunks_exact(8)
-            .map(|x| f64::from_le_bytes(x.try_into().unwrap()))
-            .collect()
-    };
     let f32s = |bytes: &[u8]| -> Vec<f32> {
-        bytes
-            .chunks_exact(4)
-            .map(|x| f32::from_le_bytes(x.try_into().unwrap()))
-            .collect()
+        let words = bytes.as_chunks().0.iter();
+        words.map(|x| f32::from_le_bytes(*x)).collect()
     };
     Episode {
         seed: decimal.parse().unwrap(),
@@ -140,14 +132,21 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
             .map(|&n| Action::try_from(n).unwrap())
             .collect(),
         states: f64s(take((STEPS + 1) * 32))
-            .chunks_exact(4)
-            .map(|y| State::from(<[f64; 4]>::try_from(y).unwrap()))
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|y| State::from(*y))
             .collect(),
         rewards: take(STEPS).iter().map(|&x| f32::from(x as i8)).collect(),
         terminated: take(STEPS).iter().map(|&x| x == 1).collect(),
         start_observation: f32s(take(24)).try_into().unwrap(),
         observations: Digest(u64::from_le_bytes(take(8).try_into().unwrap())),
     }
+}
+
+fn f64s(bytes: &[u8]) -> Vec<f64> {
+    let words = bytes.as_chunks().0.iter();
+    words.map(|x| f64::from_le_bytes(*x)).collect()
 }
 
 /// A single recorded step, from a state anywhere within the bounds.
@@ -159,16 +158,13 @@ pub struct RecordedStep {
 }
 
 pub fn recorded_steps() -> Vec<RecordedStep> {
-    let numbers: Vec<f64> = include_bytes!("../data/steps.bin")
-        .chunks_exact(8)
-        .map(|x| f64::from_le_bytes(x.try_into().unwrap()))
-        .collect();
-    let records = numbers.chunks_exact(23);
-    assert!(records.remainder().is_empty());
-    records.map(read_step).collect()
+    let numbers = f64s(include_bytes!("../data/steps.bin"));
+    let (records, rest) = numbers.as_chunks();
+    assert!(rest.is_empty());
+    records.iter().map(read_step).collect()
 }
 
-fn read_step(record: &[f64]) -> RecordedStep {
+fn read_step(record: &[f64; 23]) -> RecordedStep {
     let state = |y: &[f64]| State::from(<[f64; 4]>::try_from(y).unwrap());
     RecordedStep {
         params: Params {
