@@ -115,7 +115,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
     pub fn start<R: Rng + ?Sized>(&mut self, state: &[f32; D], rng: &mut R) -> usize {
         let (state, side) = self.fold(state);
         self.slots = self.features.active(&state);
-        self.action = self.choose(&self.at(&self.slots), rng);
+        (self.action, _) = self.choose(&self.at(&self.slots), rng);
         self.traces.clear();
         self.traces.push(&self.slots, self.action);
         side.action::<A>(self.action)
@@ -129,9 +129,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
     pub fn step<R: Rng + ?Sized>(&mut self, reward: f32, state: &[f32; D], rng: &mut R) -> usize {
         let (state, side) = self.fold(state);
         let slots = self.features.active(&state);
-        let values = self.at(&slots);
-        let action = self.choose(&values, rng);
-        let value = value_of(&values, action);
+        let (action, value) = self.choose(&self.at(&slots), rng);
         self.learn(reward + self.settings.gamma * value, Some((&slots, action)));
         self.traces.push(&slots, action);
         (self.slots, self.action) = (slots, action);
@@ -157,7 +155,8 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
     #[inline]
     pub fn greedy(&self, state: &[f32; D]) -> usize {
         let (state, side) = self.fold(state);
-        side.action::<A>(best(&self.at(&self.features.active(&state))))
+        let (action, _) = best(&self.at(&self.features.active(&state)));
+        side.action::<A>(action)
     }
 
     /// q of each action, in units of the reward.
@@ -197,13 +196,13 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         values
     }
 
-    /// ε-greedy (Sutton & Barto 2.2). Draws nothing if ε is 0.
+    /// ε-greedy (Sutton & Barto 2.2): an action and its value. Draws nothing if ε is 0.
     #[inline]
-    fn choose<R: Rng + ?Sized>(&self, values: &[f32; A], rng: &mut R) -> usize {
+    fn choose<R: Rng + ?Sized>(&self, values: &[f32; A], rng: &mut R) -> (usize, f32) {
         if self.epsilon > 0.0 && (rng.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0) < self.epsilon
         {
             let action = (u64::from(rng.next_u32()) * A as u64) >> 32;
-            return action as usize;
+            return (action as usize, value_of(values, action as usize));
         }
         best(values)
     }
@@ -238,12 +237,13 @@ impl Side {
     }
 }
 
+/// The first of the actions with the highest value, and that value.
 #[inline]
-fn best<const A: usize>(values: &[f32; A]) -> usize {
-    let (mut best, mut highest) = (0, f32::NEG_INFINITY);
+fn best<const A: usize>(values: &[f32; A]) -> (usize, f32) {
+    let mut best = (0, f32::NEG_INFINITY);
     for (action, &value) in values.iter().enumerate() {
-        if value > highest {
-            (best, highest) = (action, value);
+        if value > best.1 {
+            best = (action, value);
         }
     }
     best
