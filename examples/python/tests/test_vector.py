@@ -261,6 +261,15 @@ def test_more_than_memory_is_rejected():
     assert "MemoryError: num_envs must be so few that they fit into memory, got 4294967295" in run.stderr
 
 
+def test_the_limit_is_chosen_when_made():
+    """An assignment would have no effect."""
+    envs = make_vec(2, max_episode_steps=3)
+    with pytest.raises(AttributeError):
+        envs.max_episode_steps = 5
+    assert envs.max_episode_steps == 3
+    assert [envs.step([1, 1])[3].all() for _ in range(3)] == [False, False, True]
+
+
 def test_a_rejected_seed_changes_nothing():
     envs = make_vec(2)
     envs.reset(seed=1)

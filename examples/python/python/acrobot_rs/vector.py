@@ -71,13 +71,18 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         super().__init__(native, render_mode)
         self.metadata = {**self.metadata, "autoreset_mode": autoreset_mode}
         self.num_envs = num_envs
-        self.max_episode_steps = max_episode_steps
+        self._max_episode_steps = max_episode_steps
         self.copy = copy
         self.single_action_space = spaces.Discrete(3)
         self.single_observation_space = self._observation_space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._observations = self._empty()
+
+    @property
+    def max_episode_steps(self) -> int:
+        """The steps after which an episode is truncated. They are chosen when the environments are made."""
+        return self._max_episode_steps
 
     @property
     def state(self) -> Floats:
