@@ -85,6 +85,9 @@ def main():
             for shard in shards:
                 became |= shard.result()
 
+    # Where cargo-mutants was killed, or what is committed has other mutants than the files here.
+    if unknown := files.keys() - became.keys():
+        sys.exit(f"each mutant must have an outcome, {len(unknown)} of {len(files)} have none: {min(unknown)} …")
     counts = Counter(became.values())
     caught, missed = counts["CaughtMutant"] + counts["Timeout"], counts["MissedMutant"]
     print(f"{caught} of {caught + missed} mutants were noticed, {caught / max(caught + missed, 1):.1%}; {counts['Unviable']} did not compile")

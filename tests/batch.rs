@@ -349,6 +349,66 @@ fn threads_change_no_bit() {
     }
 }
 
+/// A user's slices can differ in length from one call to the next. Steps on all cores then do what those on one do.
+#[test]
+fn slices_that_change_their_length_cannot_panic() {
+    #[derive(Clone)]
+    struct Fickle<T> {
+        all: Vec<T>,
+        changed: usize,
+    }
+
+    impl<T> AsRef<[T]> for Fickle<T> {
+        fn as_ref(&self) -> &[T] {
+            &self.all
+        }
+    }
+
+    impl<T> AsMut<[T]> for Fickle<T> {
+        fn as_mut(&mut self) -> &mut [T] {
+            &mut self.all[..self.changed]
+        }
+    }
+
+    let len = 5000_usize;
+    let all = len.div_ceil(Block::<f64>::LANES);
+    for (blocks, generators) in [(all, 17), (all, 0), (100, len), (0, len), (all, len)] {
+        let blocks = Fickle {
+            all: vec![Block::EMPTY; all],
+            changed: blocks,
+        };
+        let generators = Fickle {
+            all: vec![Pcg64::UNSEEDED; len],
+            changed: generators,
+        };
+        let mut one = Batch::<Portable, _, _>::new(3, blocks, generators).unwrap();
+        one.set_limit(NonZeroU32::MIN);
+        let mut many = one.clone();
+        for _ in 0..2 {
+            let step = |batch: &mut Batch<Portable, Fickle<_>, Fickle<_>>, parallel| {
+                let (mut rewards, mut terminated, mut truncated) =
+                    (vec![9.0; len], vec![true; len], vec![true; len]);
+                let mut rows = vec![[9.0; 6]; len];
+                let buffers = StepBuffers {
+                    rewards: &mut rewards,
+                    terminated: &mut terminated,
+                    truncated: &mut truncated,
+                    observations: Observations::Rows(&mut rows),
+                    final_observations: Observations::None,
+                };
+                let torques = &vec![1.0; len];
+                if parallel {
+                    batch.par_step_torques(torques, buffers).unwrap();
+                } else {
+                    batch.step_torques(torques, buffers).unwrap();
+                }
+                (rewards, terminated, truncated, rows)
+            };
+            assert!(step(&mut one, false) == step(&mut many, true));
+        }
+    }
+}
+
 /// Also the sign of a zero: here every force is 0 or −0, and beyond 2¹⁹ rad sines can be 0.
 #[test]
 fn zeros_have_the_sign_of_one_alone() {

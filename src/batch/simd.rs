@@ -1,6 +1,8 @@
 //! The SIMD instructions that a batch is stepped with.
 
 use super::block::{Block, Drive, step_blocks};
+#[cfg(feature = "rayon")]
+use super::buffers::{take, take_mut};
 use super::{Shared, StepBuffers};
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
@@ -115,8 +117,8 @@ impl SimdLevel {
         self,
         shared: &Shared<A>,
         blocks: &mut [Block<A::Scalar, N>],
-        generators: &mut [Pcg64],
-        inputs: &[D::Input],
+        mut generators: &mut [Pcg64],
+        mut inputs: &[D::Input],
         mut buffers: StepBuffers<'_>,
     ) {
         // About a hundred microseconds of work in `f32` and in `f64`: waking a thread takes ten.
@@ -130,12 +132,13 @@ impl SimdLevel {
         let middle = blocks.len() / 2;
         let acrobots = middle * N;
         let (blocks1, blocks2) = blocks.split_at_mut(middle);
-        let (generators1, generators2) = generators.split_at_mut(acrobots);
-        let (inputs1, inputs2) = inputs.split_at(acrobots);
+        // Unlike `split_at`, these cannot panic, whatever length a user's `AsMut` returns.
+        let generators1 = take_mut(&mut generators, acrobots);
+        let inputs1 = take(&mut inputs, acrobots);
         let buffers1 = buffers.take(acrobots);
         rayon::join(
             || self.par_step::<A, D, N>(shared, blocks1, generators1, inputs1, buffers1),
-            || self.par_step::<A, D, N>(shared, blocks2, generators2, inputs2, buffers),
+            || self.par_step::<A, D, N>(shared, blocks2, generators, inputs, buffers),
         );
     }
 }

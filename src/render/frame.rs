@@ -51,7 +51,7 @@ impl Frame {
     ///
     /// # Panics
     ///
-    /// If it does not fit into memory.
+    /// If it takes more than `isize::MAX` bytes. Like any `Vec`, one that the allocator has no memory for ends the process.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = (width as usize).saturating_mul(height as usize);

@@ -85,7 +85,7 @@ def main():
         torques = TORQUES[plan][: round(times[-1] / HOLD)]
         found, finer = (integrate(dynamics, y, torques, tolerance) for tolerance in (TOLERANCE, FINER))
         balance = [energy(*row[:4]) - energy(*y) - row[4] for row in found]
-        worst = max(worst, np.abs(balance).max())
+        worst = np.maximum(worst, np.abs(balance).max())  # unlike `max` it keeps NaN
         lines.append(f"start {dynamics} {start} {plan} {hexes(y)}")
         for time in times:
             after = round(time / HOLD)

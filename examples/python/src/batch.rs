@@ -180,15 +180,19 @@ impl Batch {
         limit: NonZeroU32,
         autoreset: Autoreset,
     ) -> PyResult<Self> {
-        let blocks = memory(Block::EMPTY, num_envs.div_ceil(Block::<f32>::LANES))?;
-        let generators = memory(Pcg64::UNSEEDED, num_envs)?;
+        let blocks = num_envs.div_ceil(Block::<f32>::LANES);
+        let (Some(blocks), Some(generators), Some(actions)) = (
+            memory(Block::EMPTY, blocks),
+            memory(Pcg64::UNSEEDED, num_envs),
+            memory(0, num_envs),
+        ) else {
+            let message = must_be("num_envs", "so few that they fit into memory", num_envs);
+            return Err(PyMemoryError::new_err(message));
+        };
         let mut batch = Native::with_seed(seed, blocks, generators).map_err(rejected)?;
         batch.set_limit(limit);
         batch.set_autoreset(autoreset);
-        Ok(Self {
-            batch,
-            actions: memory(0, num_envs)?,
-        })
+        Ok(Self { batch, actions })
     }
 
     /// Reads the actions into the width that a batch takes.
@@ -221,12 +225,10 @@ fn parse(seed: &str) -> PyResult<SeedSequence> {
     seed.parse::<SeedSequence>().map_err(rejected)
 }
 
-/// `len` copies of a value, or a `MemoryError`.
-fn memory<T: Clone>(value: T, len: usize) -> PyResult<Vec<T>> {
+/// `len` copies of a value, if they fit into memory.
+fn memory<T: Clone>(value: T, len: usize) -> Option<Vec<T>> {
     let mut memory = Vec::new();
-    memory
-        .try_reserve_exact(len)
-        .map_err(|error| PyMemoryError::new_err(error.to_string()))?;
+    memory.try_reserve_exact(len).ok()?;
     memory.resize(len, value);
-    Ok(memory)
+    Some(memory)
 }

@@ -1,7 +1,9 @@
 """The single environment passes Gymnasium's own checks, and rejects what Gymnasium's environment rejects."""
 
 import copy
+import itertools
 import pickle
+import unittest.mock
 
 import acrobot_rs
 import gymnasium
@@ -31,6 +33,11 @@ def make(name, **kwargs):
 @pytest.mark.parametrize("name", [V1, V0])
 def test_gymnasium_checks_pass_without_a_warning(name):
     check_env(make(name, render_mode="rgb_array").unwrapped)
+
+
+@pytest.mark.parametrize("base", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env])
+def test_slow_environments_contain_their_initial_states(base):
+    check_env(type("Slow", (base,), {"MAX_VEL_1": 1e-30, "MAX_VEL_2": 0.05})(), skip_render_check=True)
 
 
 @pytest.mark.parametrize(("name", "limit"), [(V1, 500), (V0, 200)])
@@ -109,6 +116,25 @@ def test_other_values_are_rejected(env, name, value):
     with pytest.raises(ValueError):
         setattr(env, name, value)
     assert (getattr(env, name) == before).all()
+
+
+@pytest.mark.parametrize("torques", [{-1.0, 0.0, 1.0}, iter([-1.0, 0.0, 1.0]), itertools.repeat(0.0, 10**6)])
+def test_torques_are_a_sequence(env, torques):
+    """A set has no order, and an iterator may have no end."""
+    with pytest.raises(TypeError):
+        env.AVAIL_TORQUE = torques
+    assert env.AVAIL_TORQUE == (-1.0, 0.0, 1.0)
+
+
+def test_a_deleted_parameter_is_that_of_the_class(env):
+    twin = acrobot_rs.AcrobotEnv()
+    twin.state = env.state
+    with unittest.mock.patch.object(env, "dt", 0.05):
+        assert env.dt == 0.05
+    assert env.dt == 0.2
+    assert (env.step(2)[0] == twin.step(2)[0]).all()
+    with pytest.raises(AttributeError):
+        del env.dt
 
 
 @pytest.mark.parametrize(

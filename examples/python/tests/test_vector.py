@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import subprocess
 import sys
 import threading
 import time
@@ -220,6 +221,17 @@ def test_actions_are_integers_of_any_kind(dtype):
     np.testing.assert_equal(one, other)
 
 
+def test_actions_may_be_in_packed_bytes():
+    """Numbers after a header are not aligned. Gymnasium takes them."""
+    envs, twin = make_vec(4), make_vec(4)
+    for each in (envs, twin):
+        each.reset(seed=1)
+    actions = np.array([0, 1, 2, 0])
+    packed = np.frombuffer(b"h" + actions.tobytes(), np.int64, offset=1)
+    assert not packed.flags.aligned
+    np.testing.assert_equal(envs.step(packed), twin.step(actions))
+
+
 @pytest.mark.parametrize(
     "kwargs",
     [
@@ -235,6 +247,37 @@ def test_actions_are_integers_of_any_kind(dtype):
 def test_other_arguments_are_rejected(kwargs):
     with pytest.raises(ValueError):
         acrobot_rs.AcrobotVectorEnv(**kwargs)
+
+
+def test_more_than_memory_is_rejected():
+    """In a process that may take 8 GiB."""
+    code = """if True:
+        import resource
+        import acrobot_rs
+        resource.setrlimit(resource.RLIMIT_AS, (2**33, 2**33))
+        acrobot_rs.AcrobotVectorEnv(2**32 - 1)
+    """
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert "MemoryError: num_envs must be so few that they fit into memory, got 4294967295" in run.stderr
+
+
+def test_the_limit_is_chosen_when_made():
+    """An assignment would have no effect."""
+    envs = make_vec(2, max_episode_steps=3)
+    with pytest.raises(AttributeError):
+        envs.max_episode_steps = 5
+    assert envs.max_episode_steps == 3
+    assert [envs.step([1, 1])[3].all() for _ in range(3)] == [False, False, True]
+
+
+def test_a_rejected_seed_changes_nothing():
+    envs = make_vec(2)
+    envs.reset(seed=1)
+    before = envs._native.__getstate__(), envs.np_random_seed, envs.np_random.bit_generator.state
+    for seed in [10**5000, -1, 1.0, "1", np.int64(1)]:
+        with pytest.raises((ValueError, gymnasium.error.Error)):
+            envs.reset(seed=seed)
+        assert (envs._native.__getstate__(), envs.np_random_seed, envs.np_random.bit_generator.state) == before
 
 
 @pytest.mark.parametrize("options", [{"low": 1, "high": 0}, {"high": np.inf}, {"low": 1, "reset_mask": [True, False]}])
@@ -268,6 +311,12 @@ def test_a_mask_chooses_what_is_seeded_and_reset(mode):
     assert infos == {}
     assert (envs.state == np.where(mask[::2, None], seeded, before)).all()
     assert (observations[:, 4:] == envs.state[:, 2:]).all()
+
+
+def test_a_mask_of_other_bytes_is_one_of_bools():
+    """NumPy takes any byte for a bool. In Rust another byte than 0 and 1 is undefined behaviour."""
+    mask = make_vec(4)._mask({"reset_mask": np.array([2, 0, 255, 0], np.uint8).view(np.bool_)})
+    assert mask.tobytes() == b"\1\0\1\0"
 
 
 def test_disabled_environments_step_on_after_their_ends():

@@ -7,6 +7,7 @@ import { test } from "node:test";
 import { shortest } from "../page/game.js";
 import { decodeActions, decodeRun, encodeActions, encodeRun } from "../page/link.js";
 import { Acrobot, DEFAULTS } from "../page/module.js";
+import { rangeOf } from "../page/plot.js";
 import { ACTIONS, trace } from "./native.mjs";
 
 const dist = new URL("../dist/", import.meta.url);
@@ -31,6 +32,11 @@ test("numbers have the fewest digits of single precision", () => {
   for (const text of ["0", "0.1", "-0.054791212", "3.1415927", "1e-7", "16777216"]) {
     assert.equal(shortest(Math.fround(Number(text))), text);
   }
+});
+
+test("a plot has room for the longest training", () => {
+  const [low, high] = rangeOf(Array.from({ length: 1_000_000 }, (_, i) => -(i % 501)));
+  assert.deepEqual([low, high], [-530, 30]);
 });
 
 test("a link keeps the actions", () => {

@@ -160,5 +160,5 @@ class AcrobotV0Env(AcrobotEnv):
 
     @property
     def _observation_space(self) -> spaces.Box[np.float32]:
-        high = np.array([np.pi, np.pi, self.MAX_VEL_1, self.MAX_VEL_2], dtype=np.float32)
+        high = np.array([np.pi, np.pi, *self._highest_velocities], dtype=np.float32)
         return spaces.Box(-high, high, dtype=np.float32)

@@ -65,10 +65,16 @@ class Parameters:
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a parameter and set it."""
         if name in _NAMES:
+            self._native.set(name, value)
             # A change of a list's elements would not be noticed.
             value = tuple(value) if name == "AVAIL_TORQUE" else value
-            self._native.set(name, value)
         super().__setattr__(name, value)
+
+    def __delattr__(self, name: str) -> None:
+        """Return a parameter to the value of its class, as ``unittest.mock.patch.object`` does at its end."""
+        if name in _NAMES and name in vars(self):
+            self._native.set(name, getattr(type(self), name))
+        super().__delattr__(name)
 
     def _warn_of_no_render_mode(self) -> None:
         logger.warn(
@@ -77,8 +83,13 @@ class Parameters:
         )
 
     @property
+    def _highest_velocities(self) -> tuple[float, float]:
+        """The largest velocities after a step or a reset with the default bounds, rad/s."""
+        return max(self.MAX_VEL_1, 0.1), max(self.MAX_VEL_2, 0.1)
+
+    @property
     def _observation_space(self) -> spaces.Box[np.float32]:
-        high = np.array([1.0, 1.0, 1.0, 1.0, self.MAX_VEL_1, self.MAX_VEL_2], dtype=np.float32)
+        high = np.array([1.0, 1.0, 1.0, 1.0, *self._highest_velocities], dtype=np.float32)
         return spaces.Box(-high, high, dtype=np.float32)
 
 

@@ -71,13 +71,18 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         super().__init__(native, render_mode)
         self.metadata = {**self.metadata, "autoreset_mode": autoreset_mode}
         self.num_envs = num_envs
-        self.max_episode_steps = max_episode_steps
+        self._max_episode_steps = max_episode_steps
         self.copy = copy
         self.single_action_space = spaces.Discrete(3)
         self.single_observation_space = self._observation_space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self._observations = self._empty()
+
+    @property
+    def max_episode_steps(self) -> int:
+        """The steps after which an episode is truncated. They are chosen when the environments are made."""
+        return self._max_episode_steps
 
     @property
     def state(self) -> Floats:
@@ -103,8 +108,10 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         """
         low, high = start_bounds(options)
         mask = self._mask(options)
+        # True is a seed, too. Python rejects too many digits here, and Gymnasium other types below.
+        digits = str(int(seed)) if isinstance(seed, int) else None
         super().reset(seed=seed)
-        self._native.reset(None if seed is None else str(int(seed)), low, high, mask)  # True is a seed, too
+        self._native.reset(digits, low, high, mask)
         observations = self._empty() if self.copy else self._observations
         self._native.observe(observations)
         return observations, {}
@@ -130,9 +137,11 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
             )
         observations = self._empty() if self.copy else self._observations
         rewards = np.empty(self.num_envs, np.float32)
-        terminated, truncated = np.empty((2, self.num_envs), np.bool_)
+        # NumPy takes any byte for a bool, Rust only 0 and 1.
+        terminated, truncated = np.zeros((2, self.num_envs), np.bool_)
         finals = self._empty() if self._same_step else None
-        actions = np.ascontiguousarray(actions, np.int64)
+        # Numbers within packed bytes are not aligned.
+        actions = np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.int64)
         self._native.step(actions, observations, rewards, terminated, truncated, finals)
         infos = {} if finals is None else _final_infos(finals, terminated | truncated)
         return observations, rewards, terminated, truncated, infos
@@ -152,7 +161,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
             raise ValueError(
                 f"reset_mask must be an array of bool of shape ({self.num_envs},) with a true element, got {mask!r}"
             )
-        return np.ascontiguousarray(mask)
+        return mask.view(np.uint8) != 0  # NumPy takes any byte for a bool, Rust only 0 and 1
 
     def _empty(self) -> Floats:
         return np.empty((self.num_envs, 6), np.float32)
