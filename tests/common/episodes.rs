@@ -46,6 +46,7 @@ pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
 
 /// Every bit that a batch of twenty in `Fast` returns in 200 steps under torque against θ̇1, which ends episodes. It is
 /// the same for any width `N`.
+#[inline(never)] // one after the other, in 16 KiB
 pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
     const LEN: usize = 20;
     let (blocks, generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]);
