@@ -284,7 +284,7 @@ fn a_display_rejects_frames_from_within_itself() {
     *nested.lock().unwrap() = Some([make(&display), make(&other)]);
     let mut env = make(&display);
     drop((display, other));
-    // In a thread of its own, so that a deadlock fails.
+    // In another thread, so that a deadlock fails the test.
     std::thread::spawn(move || {
         assert!(catch_unwind(AssertUnwindSafe(|| env.reset())).is_err());
         assert_eq!(env.render(), Ok(Rendering::Shown));
