@@ -43,6 +43,7 @@ mod lanes;
 mod micro;
 mod portable;
 mod real;
+mod reference;
 
 use core::fmt;
 
@@ -55,6 +56,7 @@ pub use micro::Micro;
 pub use portable::Portable;
 pub use real::Real;
 pub(crate) use real::SinCos;
+pub use reference::Reference;
 
 /// A scalar, its trigonometry and the form of the equations: everything that decides an acrobot's bits.
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
