@@ -6,10 +6,11 @@
 //!
 //! | type | scalar | sine and cosine | equations | use |
 //! |---|---|---|---|---|
-//! | [`Portable`] | `f64` | the crate `libm` | Gymnasium's order | the same `f64` bits everywhere |
+//! | [`Reference`] | `f64` | correctly rounded | Gymnasium's | bits defined by mathematics, and nearest to Gymnasium's |
+//! | `Host` (feature `std`) | `f64` | the platform's C library | Gymnasium's | Gymnasium's own bits |
+//! | [`Portable`] | `f64` | the crate `libm` | lean | the fastest `f64` with the same bits everywhere |
 //! | [`Fast`] | `f32` | polynomial | lean | single-precision FPUs, WASM, SIMD batches |
 //! | [`Micro`] | `f32` | table | lean | the fewest instructions on a microcontroller |
-//! | `Host` (feature `std`) | `f64` | the platform's C library | Gymnasium's order | Gymnasium's own bits |
 //!
 //! For a hardware sine unit, implement [`Arithmetic`]:
 //!
@@ -94,14 +95,6 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     #[inline]
     fn cos(x: Self::Scalar) -> Self::Scalar {
         Self::sin_cos(x).1
-    }
-
-    /// cos(x − π/2), the cosine of a link's angle to the horizontal, which its weight acts by. By default it
-    /// is sin x; `sin` is that sine where a step knows it already. Only the form
-    /// [`Gymnasium`](crate::physics::Gymnasium) calls it.
-    #[inline]
-    fn cos_from_horizontal(x: Self::Scalar, sin: Option<Self::Scalar>) -> Self::Scalar {
-        sin.unwrap_or_else(|| Self::sin_cos(x).0)
     }
 
     /// The square of `x`.

@@ -2,8 +2,6 @@
 
 mod common;
 
-use std::f64::consts::FRAC_PI_2;
-
 use acrobot::arithmetic::{Arithmetic, Host};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Gymnasium;
@@ -26,10 +24,6 @@ impl Arithmetic for Libm {
 
     fn sin_cos(x: f64) -> (f64, f64) {
         libm::sincos(x)
-    }
-
-    fn cos_from_horizontal(x: f64, _: Option<f64>) -> f64 {
-        libm::cos(x - FRAC_PI_2)
     }
 }
 

@@ -1,6 +1,5 @@
 //! `f64` with the platform's C library: Gymnasium's own bits.
 
-use core::f64::consts::FRAC_PI_2;
 use core::hint::black_box;
 
 use super::Arithmetic;
@@ -34,11 +33,6 @@ impl Arithmetic for Host {
     #[inline]
     fn cos(x: f64) -> f64 {
         x.cos()
-    }
-
-    #[inline]
-    fn cos_from_horizontal(x: f64, _: Option<f64>) -> f64 {
-        (x - FRAC_PI_2).cos()
     }
 
     /// `x**2` of a NumPy scalar is C's `pow`. glibc's rounds differently from `x * x` for one argument in a

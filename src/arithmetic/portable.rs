@@ -1,11 +1,12 @@
 //! `f64` with the crate `libm`: the same bits on every target.
 
 use super::Arithmetic;
-use crate::physics::Gymnasium;
+use crate::physics::Lean;
 
-/// `f64`, sines from the crate `libm`, and Gymnasium's order: the same bits on every target, equal to
-/// Gymnasium's up to rounding. Where Gymnasium takes cos(x − π/2) it takes sin x, which is often known already
-/// and is rounded once less.
+/// `f64`, sines from the crate `libm`, and the lean form: the fastest `f64` with the same bits on every target.
+///
+/// Its bits are those of `libm`'s sines, so a release of `libm` could change them;
+/// [what to do about that](crate::guide::determinism#where-it-ends). [`Reference`](super::Reference) depends on no library.
 ///
 /// ```
 /// use acrobot::Portable;
@@ -20,7 +21,7 @@ pub struct Portable;
 
 impl Arithmetic for Portable {
     type Scalar = f64;
-    type Form = Gymnasium;
+    type Form = Lean;
 
     #[inline]
     fn sin_cos(x: f64) -> (f64, f64) {
@@ -30,10 +31,5 @@ impl Arithmetic for Portable {
     #[inline]
     fn cos(x: f64) -> f64 {
         libm::cos(x)
-    }
-
-    #[inline]
-    fn cos_from_horizontal(x: f64, sin: Option<f64>) -> f64 {
-        sin.unwrap_or_else(|| libm::sin(x))
     }
 }

@@ -20,15 +20,19 @@ pub struct Constants<S> {
     arms_product: S,
     /// lc2², m².
     lc2_squared: S,
+    /// 2 m2 l1 lc2, kg m².
+    twice_coupling: S,
 }
 
 constants_of_form!(|params, [l1_squared, lc1_squared, lc2_squared]| {
+    let common = Common::<S>::new(params, lc2_squared);
     Self {
-        common: Common::<S>::new(params, lc2_squared),
+        common,
         link1: params.mass1 * lc1_squared,
         arms_squared: l1_squared + lc2_squared,
         arms_product: params.length1 * params.center_of_mass2,
         lc2_squared,
+        twice_coupling: 2.0 * common.coupling,
     }
 });
 
@@ -65,8 +69,8 @@ where
             arms_squared,
             arms_product,
             lc2_squared,
+            twice_coupling,
         } = &model.constants;
-        let sin1 = sin_cos.map(|[(sin1, _), _]| sin1);
         let (sin2, cos2) = match sin_cos {
             Some([_, second]) => second,
             None => theta2.sin_cos::<A>(),
@@ -76,19 +80,17 @@ where
         let [gravity1, gravity2] = [common.gravity1, common.gravity2].map(V::splat);
         let [link1, arms_squared] = [*link1, *arms_squared].map(V::splat);
         let [arms_product, lc2_squared] = [*arms_product, *lc2_squared].map(V::splat);
-        let two = V::splat(S::from_f64(2.0));
+        let twice_coupling = V::splat(*twice_coupling);
+        let [quarter, two] = [S::PI * S::HALF, S::from_f64(2.0)].map(V::splat);
         let square = |x: V| x.map(A::square);
 
         // First, because calls keep no floats in registers on x86-64.
-        let phi2 = gravity2 * (theta1 + theta2).map(|x| A::cos_from_horizontal(x, None));
-        let cos1 = match sin1 {
-            Some(sin1) => theta1.zip(sin1, |x, sin| A::cos_from_horizontal(x, Some(sin))),
-            None => theta1.map(|x| A::cos_from_horizontal(x, None)),
-        };
+        let phi2 = gravity2 * (theta1 + theta2 - quarter).map(A::cos);
+        let cos1 = (theta1 - quarter).map(A::cos);
         let arm = arms_product * cos2;
         let d1 = link1 + m2 * (arms_squared + two * arm) + inertia1 + inertia2;
         let d2 = m2 * (lc2_squared + arm) + inertia2;
-        let phi1 = -coupling * square(dtheta2) * sin2 - two * coupling * dtheta2 * dtheta1 * sin2
+        let phi1 = -coupling * square(dtheta2) * sin2 - twice_coupling * dtheta2 * dtheta1 * sin2
             + gravity1 * cos1
             + phi2;
         let driven = torque + d2 / d1 * phi1;

@@ -4,7 +4,9 @@ use super::model::{self, FromParams};
 use super::{Params, State, step};
 #[cfg(feature = "std")]
 use crate::arithmetic::Host;
-use crate::arithmetic::{Arithmetic, Equations, Fast, Micro, Model, Portable, Real, SinCos};
+use crate::arithmetic::{
+    Arithmetic, Equations, Fast, Micro, Model, Portable, Real, Reference, SinCos,
+};
 use crate::error::{Error, Range};
 
 /// A double pendulum with a motor between its links.
@@ -235,7 +237,7 @@ macro_rules! at {
     )*};
 }
 
-at!(Portable: f64, Fast: f32, Micro: f32, #[cfg(feature = "std")] Host: f64);
+at!(Reference: f64, Portable: f64, Fast: f32, Micro: f32, #[cfg(feature = "std")] Host: f64);
 
 impl<A: Arithmetic> PartialEq for Pendulum<A> {
     /// Compares parameters and state. Extreme parameters can make constants NaN, which does not equal itself.
