@@ -7,7 +7,7 @@ mod throughput;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::batch::{Batch, Block};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
 const SIZES: [usize; 6] = [1, 16, 128, 1024, 32_768, 1 << 20];
 
 /// With and without the observation: one that is not read need not be computed.
-#[divan::bench(types = [Host, Portable, Fast, Micro], args = ["observed", "unobserved"])]
+#[divan::bench(types = [Host, Reference, Portable, Fast, Micro], args = ["observed", "unobserved"])]
 fn alone<A: Arithmetic>(bencher: Bencher, how: &str) {
     let actions = actions();
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
@@ -62,7 +62,7 @@ fn bare(bencher: Bencher, bits: u32) {
         .bench_local(|| bare(&actions));
 }
 
-#[divan::bench(types = [Host, Portable, Fast, Micro], args = SIZES)]
+#[divan::bench(types = [Host, Reference, Portable, Fast, Micro], args = SIZES)]
 fn batch<A: Arithmetic>(bencher: Bencher, len: usize) {
     let mut play = Play::<A>::new(len);
     bencher.counter(ItemsCount::new(len)).bench_local(|| {
@@ -71,7 +71,7 @@ fn batch<A: Arithmetic>(bencher: Bencher, len: usize) {
     });
 }
 
-#[divan::bench(types = [Host, Portable, Fast, Micro], args = SIZES)]
+#[divan::bench(types = [Host, Reference, Portable, Fast, Micro], args = SIZES)]
 fn batch_with_observations<A: Arithmetic>(bencher: Bencher, len: usize) {
     let mut play = Play::<A>::new(len);
     bencher.counter(ItemsCount::new(len)).bench_local(|| {
@@ -100,7 +100,7 @@ fn batch_bare(bencher: Bencher, flavour: &str) {
     }
 }
 
-#[divan::bench(types = [Host, Portable, Fast, Micro])]
+#[divan::bench(types = [Host, Reference, Portable, Fast, Micro])]
 fn reset<A: Arithmetic>(bencher: Bencher) {
     let mut acrobot = Acrobot::<A>::new(0);
     bencher

@@ -3,10 +3,10 @@
 
 use std::convert::Infallible;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::{
-    Dynamics, Gymnasium, Pendulum, StartBounds, derivative, energy, mass_matrix, positions,
+    Dynamics, Gymnasium, Lean, Pendulum, StartBounds, derivative, energy, mass_matrix, positions,
     tip_height, wrap,
 };
 use acrobot::trajectory::{Trajectory, Transition};
@@ -21,6 +21,7 @@ const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 
 /// Firmware relies on these. The compiler checks them.
 const _: () = {
     assert!(size_of::<Acrobot<Micro>>() == size_of::<Acrobot<Fast>>());
+    assert!(size_of::<Acrobot<Reference>>() <= 400);
     assert!(size_of::<Acrobot<Portable>>() <= 400);
     assert!(size_of::<State<f32>>() == 16);
     assert!(size_of::<Observation>() == 24);
@@ -76,7 +77,7 @@ struct Least;
 
 impl Arithmetic for Least {
     type Scalar = f64;
-    type Form = Gymnasium;
+    type Form = Lean;
 
     fn sin_cos(x: f64) -> (f64, f64) {
         Portable::sin_cos(x)
@@ -135,6 +136,7 @@ fn assert_goal_is_by_height<A: Arithmetic>() {
 fn the_goal_is_by_height_in_every_arithmetic() {
     assert_goal_is_by_height::<Fast>();
     assert_goal_is_by_height::<Micro>();
+    assert_goal_is_by_height::<Reference>();
     assert_goal_is_by_height::<Portable>();
     assert_goal_is_by_height::<Host>();
 }
@@ -334,7 +336,7 @@ fn acrobots_made_by_the_compiler_step_as_those_made_at_run_time() {
             check(&PLACED, State::from([2.5, -4.0, 3.0, -30.0]));
         })*};
     }
-    check_static!(Portable, Host, Fast, Micro);
+    check_static!(Reference, Portable, Host, Fast, Micro);
 }
 
 /// A pendulum steps bit-identically to an acrobot without noise, and returns whether the acrobot terminates.
@@ -369,6 +371,7 @@ fn a_pendulum_steps_as_a_noiseless_acrobot() {
         }
         assert!(terminated > 10, "{terminated}");
     }
+    check::<Reference>();
     check::<Portable>();
     check::<Host>();
     check::<Fast>();
@@ -410,6 +413,7 @@ fn methods_are_the_functions_of_physics() {
             }
         }
     }
+    check::<Reference>();
     check::<Portable>();
     check::<Host>();
     check::<Fast>();

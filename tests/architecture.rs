@@ -85,7 +85,7 @@ fn files_import_only_from_their_own_row_or_above() {
         let exact = rows
             .iter()
             .position(|row| row.iter().any(|name| name == file));
-        let folder = file.split('/').next().unwrap();
+        let folder = file.rsplit_once('/').map_or(file, |(folder, _)| folder);
         let by_folder = rows
             .iter()
             .position(|row| row.iter().any(|name| name == folder));

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, Observations, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::{Dynamics, StartBounds};
@@ -205,6 +205,7 @@ fn fast_plays_as_one_alone() {
 
 #[test]
 fn other_arithmetics_play_as_one_alone() {
+    plays_as_one_alone::<Reference>(17, 600);
     plays_as_one_alone::<Portable>(17, 600);
     plays_as_one_alone::<Micro>(17, 600);
     plays_as_one_alone::<Host>(17, 600);
@@ -255,6 +256,7 @@ fn any_width_plays_as_one_alone() {
     play::<Micro, 16>();
     play::<Portable, 4>();
     play::<Portable, 7>();
+    play::<Reference, 7>();
     play::<Portable, 16>();
     play::<Portable, 32>();
     play::<Host, 1>();
@@ -630,6 +632,7 @@ fn one_state_is_set_as_one_alone() {
     check::<Fast, 16>();
     check::<Micro, 7>();
     check::<Portable, 16>();
+    check::<Reference, 16>();
     check::<Host, 1>();
 }
 

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::env::{
     AcrobotEnv, ArithmeticKind, BoxSpace, Discrete, Display, DynEnv, DynObservation, Env, Error,
     Options, RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make, make_with,
@@ -198,6 +198,7 @@ fn every_arithmetic_can_be_made() {
     }
     for (arithmetic, expected) in [
         (ArithmeticKind::Host, after_a_step::<Host>()),
+        (ArithmeticKind::Reference, after_a_step::<Reference>()),
         (ArithmeticKind::Portable, after_a_step::<Portable>()),
         (ArithmeticKind::Fast, after_a_step::<Fast>()),
         (ArithmeticKind::Micro, after_a_step::<Micro>()),

@@ -3,7 +3,7 @@
 
 use std::f32::consts::PI;
 
-use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Real};
+use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Real, Reference};
 
 fn bits<S: Real>(x: S) -> u64 {
     x.to_f64().to_bits()
@@ -101,6 +101,7 @@ fn near_the_origin_nothing_differs() {
     }
     check::<Fast>();
     check::<Micro>();
+    check::<Reference>();
     check::<Portable>();
     check::<Host>();
 }

@@ -1,7 +1,7 @@
 //! Promise 3: input out of range is rejected before anything changes. Extreme but valid input neither hangs nor panics
 //! nor gives NaN.
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Batch, Block};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Pendulum, StartBounds};
@@ -313,6 +313,7 @@ fn results_that_are_not_finite_keep_the_angles_and_stop() {
         acrobot.step(Action::Positive);
         assert_ne!(acrobot.state().dtheta1, A::Scalar::ZERO);
     }
+    check::<Reference>();
     check::<Portable>();
     check::<Host>();
     check::<Fast>();

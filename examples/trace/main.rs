@@ -15,7 +15,7 @@ use std::error::Error;
 use std::io::{self, BufWriter, Read, Write};
 use std::process::ExitCode;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::{Dynamics, StartBounds};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State};
@@ -58,6 +58,7 @@ enum DynamicsName {
 #[derive(Clone, Copy, ValueEnum)]
 enum ArithmeticName {
     Host,
+    Reference,
     Portable,
     Fast,
     Micro,
@@ -66,6 +67,7 @@ enum ArithmeticName {
 fn main() -> ExitCode {
     exit::run(|options: &Options| match options.arithmetic {
         ArithmeticName::Host => trace::<Host>(options),
+        ArithmeticName::Reference => trace::<Reference>(options),
         ArithmeticName::Portable => trace::<Portable>(options),
         ArithmeticName::Fast => trace::<Fast>(options),
         ArithmeticName::Micro => trace::<Micro>(options),

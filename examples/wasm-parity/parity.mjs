@@ -5,7 +5,7 @@ const file = new URL("target/wasm32-unknown-unknown/release/acrobot_wasm_parity.
 const { instance } = await WebAssembly.instantiate(await readFile(file));
 const { found, expected, batch_is_equal, training_is_equal } = instance.exports;
 
-for (const [arithmetic, name] of ["portable", "fast", "micro"].entries()) {
+for (const [arithmetic, name] of ["reference", "portable", "fast", "micro"].entries()) {
   let equal = 0;
   for (let episode = 0; episode < 16; episode++) {
     if (found(arithmetic, episode) === expected(arithmetic, episode)) {

@@ -18,7 +18,7 @@ fuzz_target!(|bytes: &[u8]| {
 });
 
 fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
-    use ArithmeticKind::{Fast, Host, Micro, Portable};
+    use ArithmeticKind::{Fast, Host, Micro, Portable, Reference};
     let options = Options {
         render_mode: match u.arbitrary()? {
             0_u8..=250 => RenderMode::Ansi,
@@ -26,7 +26,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
             252 => RenderMode::Human(Display::new(|frame| assert_eq!(frame.height(), 500))),
             _ => RenderMode::None,
         },
-        arithmetic: *u.choose(&[Host, Portable, Fast, Micro])?,
+        arithmetic: *u.choose(&[Host, Reference, Portable, Fast, Micro])?,
         params: params(u)?,
     };
     let valid = options.params.validate().is_ok();

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Dynamics;
@@ -29,6 +29,7 @@ const fn kind<T: Snapshot>() -> Kind {
 }
 
 const KINDS: [Kind; 14] = [
+    kind::<Acrobot<Reference>>(),
     kind::<Acrobot<Portable>>(),
     kind::<Acrobot<Fast>>(),
     kind::<Acrobot<Micro>>(),

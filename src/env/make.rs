@@ -7,7 +7,7 @@ use std::string::String;
 use super::{AcrobotEnv, BoxSpace, Discrete, DynAcrobot, Env, Error, Info, RenderMode, Rendering};
 use crate::acrobot::{ResetOptions, Step};
 use crate::action::Action;
-use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable};
+use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Reference};
 use crate::observation::Observation;
 use crate::physics::Params;
 use crate::time_limit::TimeLimit;
@@ -19,6 +19,8 @@ pub enum ArithmeticKind {
     /// [`Host`]: Gymnasium's own bits.
     #[default]
     Host,
+    /// [`Reference`].
+    Reference,
     /// [`Portable`].
     Portable,
     /// [`Fast`].
@@ -150,6 +152,7 @@ pub fn make(id: &str) -> Result<Box<DynEnv>, Error> {
 pub fn make_with(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     match options.arithmetic {
         ArithmeticKind::Host => make_in::<Host>(id, options),
+        ArithmeticKind::Reference => make_in::<Reference>(id, options),
         ArithmeticKind::Portable => make_in::<Portable>(id, options),
         ArithmeticKind::Fast => make_in::<Fast>(id, options),
         ArithmeticKind::Micro => make_in::<Micro>(id, options),

@@ -1,4 +1,4 @@
-"""Records what Gymnasium's Acrobot does: writes episodes.txt, episodes.bin, steps.bin and seeds.txt beside itself.
+"""Records what Gymnasium's Acrobot does: writes episodes.txt, episodes.bin, steps.bin, free.txt and seeds.txt beside itself.
 
     pip install -r tests/data/requirements.txt
     python tests/data/record.py
@@ -104,6 +104,23 @@ def write_episodes():
     (HERE / "episodes.txt").write_text("\n".join(lines) + "\n")
 
 
+def write_free():
+    """Sixty episodes under random actions that nothing corrects: digests of all states up to some steps."""
+    lines = [f"# {VERSIONS}", "# SEED, and digests of the states' bits after each of 65, 100 and 200 random steps, with no reset"]
+    env = gymnasium.make("Acrobot-v1").unwrapped
+    for seed in range(60):
+        env.reset(seed=seed)
+        env.action_space.seed(seed)
+        words, digests = [], []
+        for step in range(1, 201):
+            env.step(env.action_space.sample())
+            words += bits(env.state).tolist()
+            if step in (65, 100, 200):
+                digests.append(digest(words))
+        lines.append(f"{seed} {hexes(digests, 16)}")
+    (HERE / "free.txt").write_text("\n".join(lines) + "\n")
+
+
 def write_steps():
     """Single steps from states all over the bounds: two thousand with the default parameters, four hundred with
     others, and two hundred from angles that take up to 64 turns to wrap, which rounds differently from one remainder.
@@ -204,5 +221,6 @@ def write_seeds():
 if __name__ == "__main__":
     write_episodes()
     write_steps()
+    write_free()
     write_seeds()
     print(VERSIONS)

@@ -2,7 +2,7 @@
 
 use super::common::{RECORDING, is_recorded_library};
 use super::{printed, rejected, run};
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
 
 fn words<S: Real>(state: State<S>) -> String {
@@ -80,6 +80,7 @@ fn trace_takes_every_arithmetic() {
     }
     for (name, expected) in [
         ("host", expected::<Host>()),
+        ("reference", expected::<Reference>()),
         ("portable", expected::<Portable>()),
         ("fast", expected::<Fast>()),
         ("micro", expected::<Micro>()),

@@ -46,6 +46,7 @@ fn hold<T: Debug>(cases: u32, given: BoxedStrategy<T>, property: &dyn Fn(T)) {
 /// Calls `check::<A>()` for each arithmetic.
 macro_rules! in_every_arithmetic {
     ($check:ident) => {{
+        $check::<acrobot::arithmetic::Reference>();
         $check::<acrobot::arithmetic::Portable>();
         $check::<acrobot::arithmetic::Host>();
         $check::<acrobot::arithmetic::Fast>();

@@ -8,7 +8,7 @@ mod counter;
 
 use core::hint::black_box;
 
-use acrobot::arithmetic::{Arithmetic, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Lean;
 use acrobot::render::{Figure, Theme};
@@ -46,6 +46,7 @@ fn main() -> ! {
     measure::<Fast>("fast", &mut counter);
     measure::<Micro>("micro", &mut counter);
     measure::<Micromath>("micromath", &mut counter);
+    measure::<Reference>("reference", &mut counter);
     measure::<Portable>("portable", &mut counter);
     process::exit(0)
 }
@@ -67,11 +68,11 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     });
     println!("{name} step {count}");
 
-    let mut angle = A::Scalar::ZERO;
-    let delta = A::Scalar::from_f64(0.001);
-    let count = counter.count(10_000, || {
-        angle = angle + delta;
-        black_box(A::sin_cos(black_box(angle)));
+    // More than a turn to either side.
+    let angles: [A::Scalar; 64] = core::array::from_fn(|i| A::Scalar::from_f64(i as f64 * 0.25 - 8.0));
+    let mut angles = angles.iter().copied().cycle();
+    let count = counter.count(6400, || {
+        black_box(A::sin_cos(angles.next().unwrap_or_default()));
     });
     println!("{name} sin_cos {count}");
 

@@ -9,7 +9,7 @@ mod digest;
 #[path = "../../../../tests/common/episodes.rs"]
 mod episodes;
 
-use acrobot::arithmetic::{Arithmetic, Micro};
+use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::{Fast, Portable};
 use cortex_m_rt::entry;
 use semihosting::{println, process};
@@ -20,12 +20,13 @@ fn main() -> ! {
         && episodes::batch::<16, 2>() == episodes::BATCH;
     println!("batch: {}", if batch { "bit-identical" } else { "differs" });
     let equal = [
+        check::<Reference>("reference", &episodes::REFERENCE),
         check::<Portable>("portable", &episodes::PORTABLE),
         check::<Fast>("fast", &episodes::FAST),
         check::<Micro>("micro", &episodes::MICRO),
         batch,
     ];
-    process::exit(if equal == [true; 4] { 0 } else { 1 })
+    process::exit(if equal == [true; 5] { 0 } else { 1 })
 }
 
 fn check<A: Arithmetic>(name: &str, expected: &[u64; 16]) -> bool {
