@@ -11,6 +11,9 @@
 //! | [`Micro`] | `f32` | table | lean | the fewest instructions on a microcontroller |
 //! | `Host` (feature `std`) | `f64` | the platform's C library | Gymnasium's order | Gymnasium's own bits |
 //!
+//! No arithmetic has the sines of the crate `micromath`: with them an acrobot takes 7,048 bytes of flash and 622 instructions a
+//! step of a Cortex-M4F, with [`Fast`] 6,060 and 568, and their error is 1.1e-3.
+//!
 //! For a hardware sine unit, implement [`Arithmetic`]:
 //!
 //! ```
