@@ -12,6 +12,9 @@
 //! | [`Fast`] | `f32` | polynomial | lean | single-precision FPUs, WASM, SIMD batches |
 //! | [`Micro`] | `f32` | table | lean | the fewest instructions on a microcontroller |
 //!
+//! No arithmetic has the sines of the crate `micromath`: with them an acrobot takes 7,048 bytes of flash and 622 instructions a
+//! step of a Cortex-M4F, with [`Fast`] 6,060 and 568, and their error is 1.1e-3.
+//!
 //! For a hardware sine unit, implement [`Arithmetic`]:
 //!
 //! ```

@@ -241,6 +241,24 @@ fn the_arrow_shows_the_torques_direction_if_there_is_room() {
     );
 }
 
+/// A link too short to see has no direction: only the other link and the joints are drawn.
+#[test]
+fn a_link_of_hardly_any_length_is_not_drawn() {
+    // Around the origin, where floats are dense enough for such a link to end in another place than it starts.
+    let columns = |figure: Figure| {
+        let mut canvas = Canvas::new(Point::new(-64, -32), Size::new(128, 64));
+        figure.draw(&mut canvas, &THEME).unwrap();
+        let rows = canvas.pixels.chunks(128).skip(32);
+        let lit = rows.flat_map(|row| (0..128).filter(|&x| row[x] == Some(BinaryColor::On)));
+        lit.fold((128, 0), |(first, last), x| (first.min(x), last.max(x)))
+    };
+    let hanging = columns(figure_of([0.0, 0.0, 1e-300, 1.0]));
+    assert_eq!(hanging, (61, 66));
+    for length in [1e-40, 1e-30, 1e-20, 1e-17] {
+        assert_eq!(columns(figure_of([0.6, -0.6, length, 1.0])), hanging);
+    }
+}
+
 /// `Theme::default()` is Gymnasium's in RGB, and monochrome on displays of one colour.
 #[test]
 fn default_themes_are_those_of_their_colours() {

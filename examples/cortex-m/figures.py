@@ -63,15 +63,16 @@ def bench(features="", rustflags="", binary="bench"):
         yield arithmetic, figure, int(value)
 
 
-def image(binary, rustflags=""):
+def image(binary, features="", rustflags=""):
     """The path of that firmware."""
-    run("cargo", "build", "--quiet", "--locked", "--release", "--bin", binary, rustflags=rustflags)
+    options = ["--quiet", "--locked", "--release", "--features", features, "--bin", binary]
+    run("cargo", "build", *options, rustflags=rustflags)
     return f"target/thumbv7em-none-eabihf/release/{binary}"
 
 
-def flash(name):
+def flash(name, features=""):
     """Bytes of code, constants and initial values."""
-    sections = run("size", "-A", image(f"minimal_{name}"))
+    sections = run("size", "-A", image(f"minimal_{name}", features))
     return sum(int(size) for size in re.findall(r"^\.(?:text|rodata|data)\s+(\d+)", sections, re.MULTILINE))
 
 
@@ -81,12 +82,14 @@ def measure():
     without = flash("without")
     figures["fast", "physics"] = flash("physics") - without
     tuned = "-C target-cpu=cortex-m4"
-    for arithmetic in ["fast", "micro", "portable"]:
-        figures[arithmetic, "flash"] = flash(arithmetic) - without
-        figures[arithmetic, "cycles"] = round(figures[arithmetic, "step"] * cycles.per_instruction(image(f"minimal_{arithmetic}")))
+    for column in ["fast", "micro", "portable", "portable_libgcc"]:
+        arithmetic, _, features = column.partition("_")
+        figures[column, "flash"] = flash(arithmetic, features) - without
+        each = cycles.per_instruction(image(f"minimal_{arithmetic}", features))
+        figures[column, "cycles"] = round(figures[column, "step"] * each)
     for arithmetic, figure, value in bench(rustflags=tuned):
         if figure == "step" and arithmetic != "micromath":
-            figures[arithmetic, "tuned"] = round(value * cycles.per_instruction(image(f"minimal_{arithmetic}", tuned)))
+            figures[arithmetic, "tuned"] = round(value * cycles.per_instruction(image(f"minimal_{arithmetic}", rustflags=tuned)))
     figures |= {(arithmetic, figure): value for arithmetic, figure, value in bench(binary="learn")}
     # A hundred steps. From step 58 on there are as many traces as there will be.
     each = cycles.per_instruction(image("learn"), most=3_000_000)

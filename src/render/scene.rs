@@ -3,6 +3,7 @@
 use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::pixelcolor::PixelColor;
 use embedded_graphics_core::primitives::Rectangle;
+use micromath::F32Ext;
 
 use super::{Figure, Theme};
 
@@ -63,7 +64,7 @@ impl Scene {
         Some(Self {
             corners: [corner(f32::min, -margin), corner(f32::max, margin)],
             // Gymnasium counts rows upwards and truncates: between two rows, the upper one.
-            line: (libm::ceilf(center.y - metre) as i32).saturating_sub(1),
+            line: (F32Ext::ceil(center.y - metre) as i32).saturating_sub(1),
             links: [
                 Bar::new(center, elbow, thickness),
                 Bar::new(elbow, tip, thickness),
@@ -167,10 +168,12 @@ struct Bar {
 }
 
 impl Bar {
+    /// Not inlined, because a picture has ten: that would take 400 bytes of a chip's flash.
+    #[inline(never)]
     fn new(from: Vector, to: Vector, half_width: f32) -> Self {
         let (x, y) = (to.x - from.x, to.y - from.y);
-        let length = libm::sqrtf(x * x + y * y);
-        // A bar of length 0 has a NaN direction and covers nothing.
+        let length = sqrt(x * x + y * y);
+        // A bar of length 0 has an infinite or NaN direction and covers nothing.
         let along = Vector {
             x: x / length,
             y: y / length,
@@ -208,4 +211,23 @@ impl Disc {
         let Vector { x, y } = self.center.to(point);
         x * x + y * y <= self.radius * self.radius
     }
+}
+
+/// The square root of `x`: the nearest number, or just below a power of 4 the one above it. Below 1e-30, where the
+/// remainder would be subnormal, it is 0.
+fn sqrt(x: f32) -> f32 {
+    if x < 1e-30 {
+        return 0.0;
+    }
+    // By path, because `x.sqrt()` is the platform's where std is linked.
+    let mut root = F32Ext::sqrt(x);
+    // The estimate is up to 6 % off. Each of Newton's steps doubles the number of right digits.
+    for _ in 0..3 {
+        root = 0.5 * (root + x / root);
+    }
+    // The last step knows x − root² without rounding, because half as many digits have exact products.
+    let high = f32::from_bits(root.to_bits() & 0xffff_f000);
+    let low = root - high;
+    let remainder = x - high * high - 2.0 * high * low - low * low;
+    root + 0.5 * remainder / root
 }
