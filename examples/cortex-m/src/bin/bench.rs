@@ -69,7 +69,8 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     println!("{name} step {count}");
 
     // More than a turn to either side.
-    let angles: [A::Scalar; 64] = core::array::from_fn(|i| A::Scalar::from_f64(i as f64 * 0.25 - 8.0));
+    let angles: [A::Scalar; 64] =
+        core::array::from_fn(|i| A::Scalar::from_f64(i as f64 * 0.25 - 8.0));
     let mut angles = angles.iter().copied().cycle();
     let count = counter.count(6400, || {
         black_box(A::sin_cos(angles.next().unwrap_or_default()));
