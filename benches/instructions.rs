@@ -14,7 +14,7 @@ mod throughput;
 
 use std::hint::black_box;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::batch::{Batch, SimdLevel};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
@@ -76,7 +76,12 @@ fn host(alone: Alone<Host>) -> Alone<Host> {
     play_alone(alone)
 }
 
-#[library_benchmark(config = limit(1162.0, 1), setup = alone::<Portable>)]
+#[library_benchmark(config = limit(1930.0, 1), setup = alone::<Reference>)]
+fn reference(alone: Alone<Reference>) -> Alone<Reference> {
+    play_alone(alone)
+}
+
+#[library_benchmark(config = limit(974.0, 1), setup = alone::<Portable>)]
 fn portable(alone: Alone<Portable>) -> Alone<Portable> {
     play_alone(alone)
 }
@@ -106,7 +111,7 @@ fn batch_fast_with_observations(play: Play<Fast>) -> Play<Fast> {
 }
 
 #[library_benchmark(setup = batch::<Portable>)]
-#[bench::baseline(args = (SimdLevel::Baseline), config = limit(1043.0, ACROBOTS))]
+#[bench::baseline(args = (SimdLevel::Baseline), config = limit(911.0, ACROBOTS))]
 fn batch_portable(play: Play<Portable>) -> Play<Portable> {
     play_batch(play, false)
 }
@@ -115,6 +120,7 @@ library_benchmark_group!(
     name = steps,
     benchmarks = [
         host,
+        reference,
         portable,
         fast,
         micro,

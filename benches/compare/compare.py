@@ -36,6 +36,7 @@ PEERS = {
     "gmgn": "gmgn, f64",
     "rlevo": "rlevo-environments, f32",
     "host": "acrobot, `Host`",
+    "reference": "acrobot, `Reference`",
     "portable": "acrobot, `Portable`",
     "fast": "acrobot, `Fast`",
     "batch": "acrobot, batch of 1,024 `Fast`, without observations",

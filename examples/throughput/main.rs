@@ -2,8 +2,8 @@
 //!
 //! A batch plays a random policy, and draws actions and resets episodes in the loop. Its yardstick is a handwritten
 //! loop over eight lanes of AVX2 that does neither, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick
-//! of `scalar_fast` and `scalar_micro` is the same equations for one acrobot in f32. That of `scalar_portable` and
-//! `scalar_host` is Gymnasium's order in f64 with the platform's sines. Both play the same actions as the crate. Each
+//! of `scalar_fast` and `scalar_micro` is the same equations for one acrobot in f32. That of the others alone is
+//! Gymnasium's order in f64 with the platform's sines. Both play the same actions as the crate. Each
 //! figure is the best of several runs, interleaved with runs of the yardstick.
 //!
 //! ```text
@@ -19,7 +19,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::batch::{Batch, Block, Observations, SimdLevel, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Error, Fast, Portable, TimeLimit};
@@ -31,6 +31,7 @@ pub fn main() -> ExitCode {
 
 fn measure() -> io::Result<()> {
     scalar::<Host>("scalar_host", bare_f64)?;
+    scalar::<Reference>("scalar_reference", bare_f64)?;
     scalar::<Portable>("scalar_portable", bare_f64)?;
     scalar::<Fast>("scalar_fast", bare_f32)?;
     scalar::<Micro>("scalar_micro", bare_f32)?;

@@ -118,7 +118,7 @@ fn trace_rejects_with_a_reason() {
         ("--seed 1 --dynamics film", "possible values: book, nips"),
         (
             "--seed 1 --arithmetic slow",
-            "possible values: host, portable, fast, micro",
+            "possible values: host, reference, portable, fast, micro",
         ),
     ] {
         let arguments: Vec<&str> = arguments.split(' ').collect();

@@ -13,7 +13,7 @@ use std::hint::black_box;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use acrobot::arithmetic::{Arithmetic, Host};
+use acrobot::arithmetic::{Arithmetic, Host, Reference};
 use acrobot::batch::{Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
@@ -30,8 +30,9 @@ type Peer = Box<dyn FnMut(usize) -> usize>;
 type New = fn() -> Peer;
 
 /// The name of each peer, the package that it measures, and how to make it.
-const PEERS: [(&str, &str, New); 7] = [
+const PEERS: [(&str, &str, New); 8] = [
     ("host", "acrobot", ours::<Host>),
+    ("reference", "acrobot", ours::<Reference>),
     ("portable", "acrobot", ours::<Portable>),
     ("fast", "acrobot", ours::<Fast>),
     ("batch", "acrobot", || batch(|_| Observations::None)),
