@@ -17,7 +17,7 @@ use core::hint::black_box;
 use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
-use acrobot::arithmetic::{Arithmetic, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::{self, Pendulum, StartBounds};
@@ -46,12 +46,15 @@ fn main() -> ! {
         pendulum::<Fast>();
         pendulum::<Micro>();
         pendulum::<Portable>();
+        pendulum::<Reference>();
         environment::<Fast>();
         environment::<Micro>();
         environment::<Portable>();
+        environment::<Reference>();
         batch::<Fast>();
         batch::<Micro>();
         batch::<Portable>();
+        batch::<Reference>();
         numbers();
         learner();
     }
