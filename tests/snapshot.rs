@@ -13,6 +13,7 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use common::Digest;
 use formats::again;
+use rand_core::Rng;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -99,6 +100,20 @@ fn snapshots_that_are_not_valid_are_rejected() {
     member.state.theta2 = f32::INFINITY;
     let bytes = postcard::to_stdvec(&member).unwrap();
     assert!(postcard::from_bytes::<Member>(&bytes).is_err());
+}
+
+/// Loading starts a generator and advances it to its position. A new one starts with its first draw.
+#[test]
+fn a_loaded_generator_equals_one_that_drew() {
+    let mut drawn = Pcg64::new(42);
+    for draws in [0, 1, 2, 247] {
+        for _ in 0..draws {
+            drawn.next_u64();
+        }
+        let text = serde_json::to_string(&drawn).unwrap();
+        assert_eq!(serde_json::from_str::<Pcg64>(&text).unwrap(), drawn);
+    }
+    assert_ne!(drawn, Pcg64::new(42));
 }
 
 /// A member of a batch, in the middle of an episode.
