@@ -21,6 +21,7 @@ const OTHER_SINES: f64 = 2.4e-13;
 struct Libm;
 
 impl Arithmetic for Libm {
+    const NAME: &'static str = "libm";
     type Scalar = f64;
     type Form = Gymnasium;
 

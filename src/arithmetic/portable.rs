@@ -19,6 +19,7 @@ use crate::physics::Gymnasium;
 pub struct Portable;
 
 impl Arithmetic for Portable {
+    const NAME: &'static str = "portable";
     type Scalar = f64;
     type Form = Gymnasium;
 
