@@ -89,22 +89,23 @@ pub struct ResetOptions {
 /// bits and no optional field, so that any serde format can hold it. The tests use JSON, postcard, CBOR, MessagePack, TOML,
 /// RON and YAML, also in flattened structs and in tagged enums.
 ///
-/// The first field says what is saved, its version (1) and its scalar. Loading rejects anything else and names both. It also
-/// rejects parameters and states that the setters reject. postcard drops the reason. A [`TimeLimit`](crate::TimeLimit) has
-/// the version of the acrobot inside. The parts of a snapshot (`Params`, `State`, `Pcg64`) can be saved alone, without a
+/// The first field says what is saved, its version (1) and the [name of the arithmetic](Arithmetic::NAME). Loading rejects
+/// anything else and names both. It also rejects parameters and states that the setters reject. postcard drops the reason. A
+/// [`TimeLimit`](crate::TimeLimit) has the version of the acrobot inside. The parts of a snapshot (`Params`, `State`, `Pcg64`) can be saved alone, without a
 /// version or a check. Any snapshot of a [`Pcg64`] is a valid generator: the hash of a seed and a position in its stream.
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::{Acrobot, Fast, Portable};
+/// use acrobot::arithmetic::Micro;
+/// use acrobot::{Acrobot, Fast};
 ///
-/// let acrobot = Acrobot::<Portable>::new(42);
+/// let acrobot = Acrobot::<Fast>::new(42);
 /// let text = serde_json::to_string(&acrobot)?;
-/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":1,"scalar":"f64"}"#));
-/// assert_eq!(serde_json::from_str::<Acrobot<Portable>>(&text)?, acrobot);
+/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":1,"arithmetic":"fast"}"#));
+/// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
 ///
-/// let error = serde_json::from_str::<Acrobot<Fast>>(&text).unwrap_err().to_string();
-/// assert!(error.contains(r#"must be "acrobot", version 1, f32, got "acrobot", version 1, f64"#));
+/// let error = serde_json::from_str::<Acrobot<Micro>>(&text).unwrap_err().to_string();
+/// assert!(error.contains(r#"must be "acrobot", version 1, arithmetic "micro", got"#));
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -354,7 +355,7 @@ mod snapshot {
 
     impl<A: Arithmetic, R> Subject for Acrobot<A, R> {
         const NAME: &'static str = "acrobot";
-        type Scalar = A::Scalar;
+        type Arithmetic = A;
     }
 
     #[derive(serde::Serialize, serde::Deserialize)]

@@ -27,6 +27,7 @@
 //! struct Table;
 //!
 //! impl Arithmetic for Table {
+//!     const NAME: &'static str = "table";
 //!     type Scalar = f32;
 //!     type Form = Lean;
 //!     fn sin_cos(x: f32) -> (f32, f32) {
@@ -64,6 +65,10 @@ pub use reference::Reference;
 
 /// A scalar, its trigonometry and the form of the equations: everything that decides an acrobot's bits.
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
+    /// A short name in lower case, of at most 16 bytes. Snapshots carry it, so that no other arithmetic loads them. The
+    /// crate's are "reference", "portable", "fast", "micro" and "host". With a longer name, code that saves or loads does not compile.
+    const NAME: &'static str;
+
     /// The type of angles, velocities, torques and parameters.
     type Scalar: Real;
 

@@ -1,73 +1,114 @@
-//! The header of a snapshot: type, version and scalar.
+//! The header of a snapshot: type, version and arithmetic.
 
+use core::fmt;
 use core::marker::PhantomData;
 
 use heapless::String;
 use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
-use crate::arithmetic::Real;
+use crate::arithmetic::Arithmetic;
 
 /// Incremented whenever the fields of any snapshot change.
 const VERSION: u32 = 1;
 
+/// The longest text in a header, bytes. An arithmetic with a longer name would have snapshots that do not load, so saving
+/// one does not compile:
+///
+/// ```compile_fail,E0080
+/// use acrobot::arithmetic::Arithmetic;
+/// use acrobot::physics::Lean;
+/// use acrobot::{Acrobot, Fast};
+///
+/// #[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// struct Named;
+///
+/// impl Arithmetic for Named {
+///     const NAME: &'static str = "seventeen letters";
+///     type Scalar = f32;
+///     type Form = Lean;
+///     fn sin_cos(x: f32) -> (f32, f32) {
+///         Fast::sin_cos(x)
+///     }
+/// }
+///
+/// serde_json::to_string(&Acrobot::<Named>::new(42)).unwrap();
+/// ```
+const LIMIT: usize = 16;
+
 /// A type that has snapshots.
 pub(crate) trait Subject {
     const NAME: &'static str;
-    type Scalar: Real;
-}
-
-/// The scalar's name in Rust.
-fn name<S: Real>() -> &'static str {
-    S::NAME
+    type Arithmetic: Arithmetic;
 }
 
 /// The first field of a snapshot of a `T`. Zero-sized: its contents are constants, checked when loaded. Binary
 /// formats have no other way to tell one snapshot from another, and other bytes do not begin with the name.
 pub(crate) struct Header<T>(PhantomData<T>);
 
-impl<T> Header<T> {
-    pub(crate) const NEW: Self = Self(PhantomData);
-}
-
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Header")]
 struct Fields<Text> {
     of: Text,
     version: u32,
-    scalar: Text,
+    arithmetic: Text,
+}
+
+impl<Text: fmt::Debug> fmt::Display for Fields<Text> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            of,
+            version,
+            arithmetic,
+        } = self;
+        write!(f, "{of:?}, version {version}, arithmetic {arithmetic:?}")
+    }
+}
+
+impl<T> Header<T> {
+    pub(crate) const NEW: Self = Self(PhantomData);
+}
+
+impl<T: Subject> Header<T> {
+    const FIELDS: Fields<&'static str> = {
+        let arithmetic = T::Arithmetic::NAME;
+        assert!(
+            arithmetic.len() <= LIMIT,
+            "an arithmetic's NAME must have at most 16 bytes"
+        );
+        Fields {
+            of: T::NAME,
+            version: VERSION,
+            arithmetic,
+        }
+    };
 }
 
 impl<T: Subject> Serialize for Header<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Fields {
-            of: T::NAME,
-            version: VERSION,
-            scalar: name::<T::Scalar>(),
-        }
-        .serialize(serializer)
+        Self::FIELDS.serialize(serializer)
     }
 }
 
 impl<'de, T: Subject> Deserialize<'de> for Header<T> {
     /// Rejects any other header.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let Fields {
-            of,
-            version,
-            scalar,
-        }: Fields<String<16>> = Fields::deserialize(deserializer).map_err(|error| {
+        let found: Fields<String<LIMIT>> = Fields::deserialize(deserializer).map_err(|error| {
             D::Error::custom(format_args!(
                 "{error}; must be a snapshot of version {VERSION}"
             ))
         })?;
-        if (&*of, version, &*scalar) == (T::NAME, VERSION, name::<T::Scalar>()) {
+        let Fields {
+            of,
+            version,
+            arithmetic,
+        } = Self::FIELDS;
+        if (&*found.of, found.version, &*found.arithmetic) == (of, version, arithmetic) {
             return Ok(Self::NEW);
         }
         Err(D::Error::custom(format_args!(
-            "the snapshot must be {:?}, version {VERSION}, {}, got {of:?}, version {version}, {scalar}",
-            T::NAME,
-            name::<T::Scalar>()
+            "the snapshot must be {}, got {found}",
+            Self::FIELDS
         )))
     }
 }

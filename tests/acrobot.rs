@@ -63,6 +63,7 @@ fn the_goal_ends_with_a_reward_of_zero_and_stepping_goes_on() {
 struct AtTheTarget;
 
 impl Arithmetic for AtTheTarget {
+    const NAME: &'static str = "at the target";
     type Scalar = f64;
     type Form = Gymnasium;
 
@@ -76,6 +77,7 @@ impl Arithmetic for AtTheTarget {
 struct Least;
 
 impl Arithmetic for Least {
+    const NAME: &'static str = "least";
     type Scalar = f64;
     type Form = Lean;
 

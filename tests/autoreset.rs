@@ -20,7 +20,7 @@ fn one(autoreset: Autoreset) -> One {
     batch
 }
 
-fn waiting() -> Member {
+fn waiting() -> Member<Fast> {
     Member {
         ended: true,
         elapsed: 7,

@@ -151,7 +151,7 @@ fn resets_within_bounds_leave_the_batchs_bounds() {
     assert!(within(&batch, 1.0, 2.0));
 }
 
-fn members<const BLOCKS: usize, const LEN: usize>(batch: &Small<BLOCKS, LEN>) -> Vec<Member> {
+fn members<const BLOCKS: usize, const LEN: usize>(batch: &Small<BLOCKS, LEN>) -> Vec<Member<Fast>> {
     (0..LEN).map(|i| batch.member(i).unwrap()).collect()
 }
 

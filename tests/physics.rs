@@ -14,6 +14,7 @@ use common::distance;
 struct LeanF64;
 
 impl Arithmetic for LeanF64 {
+    const NAME: &'static str = "lean f64";
     type Scalar = f64;
     type Form = Lean;
 

@@ -308,16 +308,23 @@ fn a_constant_generator_draws_the_lowest_state_and_does_not_hang() {
     assert_eq!(integers(&mut Constant(0), NonZeroU32::new(3).unwrap()), 0);
 }
 
-/// Equal to another implementation of PCG64, over draws of every width.
+/// Equal to PCG XSL-RR 128/64 as O'Neill's paper has it, over draws of every width.
 #[test]
-fn the_generator_is_rand_pcgs() {
+fn the_generator_is_oneills() {
+    const MULTIPLIER: u128 = 0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645;
     for seed in 0..100 {
         let [state1, state0, stream1, stream0] =
             SeedSequence::new(seed).generate_state().map(u128::from);
-        let mut theirs = rand_pcg::Pcg64::new(state1 << 64 | state0, stream1 << 64 | stream0);
+        let increment = (stream1 << 64 | stream0) << 1 | 1;
+        let advanced = |state: u128| state.wrapping_mul(MULTIPLIER).wrapping_add(increment);
+        let mut state = advanced(increment.wrapping_add(state1 << 64 | state0));
+        let mut theirs = || {
+            state = advanced(state);
+            ((state >> 64) as u64 ^ state as u64).rotate_right((state >> 122) as u32)
+        };
         let mut ours = Pcg64::new(seed);
         for _ in 0..100 {
-            let next = theirs.next_u64();
+            let next = theirs();
             let mut again = ours.clone();
             assert_eq!(
                 [again.next_u32(), again.next_u32()],
@@ -325,9 +332,32 @@ fn the_generator_is_rand_pcgs() {
             );
             assert_eq!(ours.next_u64(), next);
         }
-        let mut bytes = [[0; 13]; 2];
-        theirs.fill_bytes(&mut bytes[0]);
-        ours.fill_bytes(&mut bytes[1]);
-        assert_eq!(bytes[0], bytes[1]);
+        let mut bytes = [0; 13];
+        ours.fill_bytes(&mut bytes);
+        let words = [theirs(), theirs()].map(u64::to_le_bytes);
+        assert_eq!(bytes, words.as_flattened()[..13]);
     }
+}
+
+/// Generators are equal if their next draws are, whether they have started or not, and print what tells them apart.
+#[test]
+fn generators_compare_and_print_by_their_next_draws() {
+    let new = Pcg64::new(42);
+    let mut started = new.clone();
+    let next = started.next_u64();
+    assert_ne!(started, new);
+    assert_eq!(
+        format!("{new:?}"),
+        format!("Pcg64 {{ next_u64: {next}, half: None }}")
+    );
+    let mut halved = new.clone();
+    let low = halved.next_u32();
+    assert_ne!(halved, started, "one has half a draw left");
+    let (second, high) = (started.next_u64(), next >> 32);
+    assert_eq!(u64::from(low), next & 0xffff_ffff);
+    assert_eq!(
+        format!("{halved:?}"),
+        format!("Pcg64 {{ next_u64: {second}, half: Some({high}) }}")
+    );
+    assert_ne!(Pcg64::new(43), new);
 }

@@ -7,12 +7,15 @@ mod formats;
 
 use std::fmt::Debug;
 
-use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::arithmetic::{Arithmetic, Micro, Real};
 use acrobot::batch::{Batch, Block, Member, Observations, StepBuffers};
 use acrobot::numpy::Pcg64;
+use acrobot::physics::Lean;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use common::Digest;
+use crc::{CRC_32_ISCSI, Crc};
 use formats::again;
+use rand_core::Rng;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -98,11 +101,25 @@ fn snapshots_that_are_not_valid_are_rejected() {
     let mut member = member();
     member.state.theta2 = f32::INFINITY;
     let bytes = postcard::to_stdvec(&member).unwrap();
-    assert!(postcard::from_bytes::<Member>(&bytes).is_err());
+    assert!(postcard::from_bytes::<Member<Fast>>(&bytes).is_err());
+}
+
+/// Loading starts a generator and advances it to its position. A new one starts with its first draw.
+#[test]
+fn a_loaded_generator_equals_one_that_drew() {
+    let mut drawn = Pcg64::new(42);
+    for draws in [0, 1, 2, 247] {
+        for _ in 0..draws {
+            drawn.next_u64();
+        }
+        let text = serde_json::to_string(&drawn).unwrap();
+        assert_eq!(serde_json::from_str::<Pcg64>(&text).unwrap(), drawn);
+    }
+    assert_ne!(drawn, Pcg64::new(42));
 }
 
 /// A member of a batch, in the middle of an episode.
-fn member() -> Member {
+fn member() -> Member<Fast> {
     let mut batch = batch_of_one();
     let mut member = batch.member(0).unwrap();
     member.rng = Pcg64::new(7);
@@ -135,7 +152,7 @@ fn play<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
 }
 
 /// 100 steps of a member, through the end of its episode.
-fn play_member(member: Member) -> u64 {
+fn play_member(member: Member<Fast>) -> u64 {
     let mut batch = batch_of_one();
     batch.set_member(0, member).unwrap();
     let mut digest = Digest::new();
@@ -214,17 +231,17 @@ fn rejection<T: DeserializeOwned + Debug>(text: &str, from: &str, to: &str) -> S
 
 #[test]
 fn snapshots_of_another_type_are_rejected_by_their_header() {
-    let header = r#""snapshot":{"of":"acrobot","version":1,"scalar":"f64"},"#;
+    let header = r#""snapshot":{"of":"acrobot","version":1,"arithmetic":"portable"},"#;
     let text = serde_json::to_string(&busy()).unwrap();
     let rejected = |from, to| rejection::<Limited>(&text, from, to);
     let first = |reason: String| reason.split(" at line").next().unwrap().to_owned();
     assert_eq!(
         first(rejected("\"version\":1", "\"version\":2")),
-        r#"the snapshot must be "acrobot", version 1, f64, got "acrobot", version 2, f64"#
+        r#"the snapshot must be "acrobot", version 1, arithmetic "portable", got "acrobot", version 2, arithmetic "portable""#
     );
     assert_eq!(
-        first(rejected("f64", "f32")),
-        r#"the snapshot must be "acrobot", version 1, f64, got "acrobot", version 1, f32"#
+        first(rejected("portable", "host")),
+        r#"the snapshot must be "acrobot", version 1, arithmetic "portable", got "acrobot", version 1, arithmetic "host""#
     );
     assert_eq!(
         first(rejected(header, "")),
@@ -237,9 +254,10 @@ fn snapshots_of_another_type_are_rejected_by_their_header() {
     let newer = header.replace('1', "2") + "\"params\":{}";
     assert!(rejected(&(header.to_owned() + "\"params\":{"), &newer).contains("version 2"));
     assert!(
-        rejection::<Member>(&serde_json::to_string(&member()).unwrap(), "f32", "f64").contains(
-            r#"must be "batch member", version 1, f32, got "batch member", version 1, f64"#
-        )
+        rejection::<Member<Fast>>(&serde_json::to_string(&member()).unwrap(), "fast", "micro")
+            .contains(
+                r#"must be "batch member", version 1, arithmetic "fast", got "batch member", version 1, arithmetic "micro""#
+            )
     );
 }
 
@@ -263,17 +281,23 @@ fn bytes_of_another_type_are_rejected() {
     let mut newer = acrobot::<Portable>();
     let version = newer.iter().position(|&byte| byte == 1).unwrap();
     newer[version] = 2;
-    let wide = Member {
-        state: member().state.cast::<f64>(),
-        elapsed: 0,
-        ended: false,
-        rng: Pcg64::new(0),
-    };
+    fn other<A: Arithmetic>() -> Member<A> {
+        Member {
+            state: member().state.cast(),
+            elapsed: 0,
+            ended: false,
+            rng: Pcg64::new(0),
+        }
+    }
+    let wide = other::<Portable>();
     let all = [
         acrobot::<Portable>(),
         acrobot::<Fast>(),
         postcard::to_stdvec(&member()).unwrap(),
         postcard::to_stdvec(&wide).unwrap(),
+        // The same scalar as of `Fast`, and other bits.
+        acrobot::<Micro>(),
+        postcard::to_stdvec(&other::<Micro>()).unwrap(),
         newer,
         unversioned::<Portable>(),
         unversioned::<Fast>(),
@@ -282,12 +306,66 @@ fn bytes_of_another_type_are_rejected() {
     let only = |number: usize| (0..all.len()).map(|i| i == number).collect::<Vec<_>>();
     assert_eq!(reads::<Acrobot<Portable>>(&all), only(0));
     assert_eq!(reads::<Acrobot<Fast>>(&all), only(1));
-    assert_eq!(reads::<Member<f32>>(&all), only(2));
-    assert_eq!(reads::<Member<f64>>(&all), only(3));
+    assert_eq!(reads::<Member<Fast>>(&all), only(2));
+    assert_eq!(reads::<Member<Portable>>(&all), only(3));
+    assert_eq!(reads::<Acrobot<Micro>>(&all), only(4));
+    assert_eq!(reads::<Member<Micro>>(&all), only(5));
 
     // Snapshots without a version began with the length of link 1 in m or with θ1 in rad, which are never so large.
-    for bytes in &all[..4] {
+    for bytes in &all[..6] {
         assert!(f64::from_le_bytes(bytes[..8].try_into().unwrap()) > 1e200);
         assert!(f32::from_le_bytes(bytes[..4].try_into().unwrap()) > 1e30);
+    }
+}
+
+/// The longest name that compiles is saved and loaded.
+#[test]
+fn an_arithmetics_name_has_up_to_16_bytes() {
+    #[derive(Clone, Copy, Debug, Default, PartialEq)]
+    struct Named;
+
+    impl Arithmetic for Named {
+        const NAME: &'static str = "sixteen letters!";
+        type Scalar = f32;
+        type Form = Lean;
+
+        fn sin_cos(x: f32) -> (f32, f32) {
+            Fast::sin_cos(x)
+        }
+    }
+
+    let acrobot = Acrobot::<Named>::new(1);
+    let bytes = postcard::to_stdvec(&acrobot).unwrap();
+    assert_eq!(postcard::from_bytes(&bytes), Ok(acrobot));
+}
+
+/// The figures of `docs/embedded.md`: without a checksum most snapshots with a flipped bit load as another acrobot.
+#[test]
+fn a_checksum_finds_every_flipped_bit() {
+    static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+    /// How many of `bytes` with a flipped bit load, and how many there are. Miri takes one in 31.
+    fn flip(mut bytes: Vec<u8>, load: fn(&[u8]) -> postcard::Result<Acrobot<Fast>>) -> [usize; 2] {
+        let bits = (0..8 * bytes.len()).step_by(if cfg!(miri) { 31 } else { 1 });
+        let loaded = bits.clone().filter(|bit| {
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            let loads = load(&bytes).is_ok();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            loads
+        });
+        [loaded.count(), bits.len()]
+    }
+
+    let mut acrobot = Acrobot::<Fast>::new(42);
+    acrobot.step(Action::Positive);
+    let plain = flip(postcard::to_stdvec(&acrobot).unwrap(), |bytes| {
+        postcard::from_bytes(bytes)
+    });
+    let checked = postcard::to_stdvec_crc32(&acrobot, CRC.digest()).unwrap();
+    let checked = flip(checked, |bytes| {
+        postcard::from_bytes_crc32(bytes, CRC.digest())
+    });
+    assert_eq!(checked[0], 0, "of {}", checked[1]);
+    if !cfg!(miri) {
+        assert_eq!([plain, checked], [[893, 1104], [0, 1136]]);
     }
 }

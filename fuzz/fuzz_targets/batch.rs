@@ -83,7 +83,7 @@ impl<A: Arithmetic> Alone<A> {
         ))
     }
 
-    fn member(&self) -> Member<A::Scalar> {
+    fn member(&self) -> Member<A> {
         Member {
             state: self.acrobot.state(),
             elapsed: self.elapsed,

@@ -36,8 +36,8 @@ const KINDS: [Kind; 14] = [
     kind::<Acrobot<Host>>(),
     kind::<TimeLimit<Acrobot<Portable>>>(),
     kind::<TimeLimit<Acrobot<Fast>>>(),
-    kind::<Member<f32>>(),
-    kind::<Member<f64>>(),
+    kind::<Member<Fast>>(),
+    kind::<Member<Portable>>(),
     kind::<Pcg64>(),
     kind::<Params<f64>>(),
     kind::<Params<f32>>(),
@@ -136,7 +136,10 @@ where
     }
 }
 
-impl<S: Real + Serialize + DeserializeOwned> Snapshot for Member<S> {
+impl<A> Snapshot for Member<A>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
     fn sample() -> Self {
         Self {
             state: State::sample(),
@@ -148,34 +151,16 @@ impl<S: Real + Serialize + DeserializeOwned> Snapshot for Member<S> {
 
     fn check(self) -> bool {
         assert!(self.state.validate().is_ok());
-        let Self {
-            state,
-            elapsed,
-            ended,
-            rng,
-        } = self;
-        let member = Member {
-            state: state.cast::<f32>(),
-            elapsed,
-            ended,
-            rng,
-        };
         for autoreset in [
             Autoreset::NextStep,
             Autoreset::SameStep,
             Autoreset::Disabled,
         ] {
-            let batch = Batch::<Fast, _, _, 1>::new(0, [Block::EMPTY], [Pcg64::UNSEEDED]);
+            let batch = Batch::<A, _, _, 1>::new(0, [Block::EMPTY], [Pcg64::UNSEEDED]);
             let mut batch = batch.expect("a block for one");
             batch.set_autoreset(autoreset);
             batch.set_limit(NonZeroU32::MAX);
-            let before = batch.member(0);
-            let put = batch.set_member(0, member.clone());
-            assert_eq!(put.is_ok(), member.state.validate().is_ok());
-            if put.is_err() {
-                assert_eq!(batch.member(0), before);
-                continue;
-            }
+            assert!(batch.set_member(0, self.clone()).is_ok());
             let buffers = StepBuffers {
                 rewards: &mut [0.0],
                 terminated: &mut [false],

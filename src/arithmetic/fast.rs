@@ -17,6 +17,7 @@ use crate::physics::Lean;
 pub struct Fast;
 
 impl Arithmetic for Fast {
+    const NAME: &'static str = "fast";
     type Scalar = f32;
     type Form = Lean;
 

@@ -22,6 +22,7 @@ pub struct Host;
     reason = "this is where the platform's library is called"
 )]
 impl Arithmetic for Host {
+    const NAME: &'static str = "host";
     type Scalar = f64;
     type Form = Gymnasium;
 

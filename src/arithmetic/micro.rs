@@ -19,6 +19,7 @@ use crate::physics::Lean;
 pub struct Micro;
 
 impl Arithmetic for Micro {
+    const NAME: &'static str = "micro";
     type Scalar = f32;
     type Form = Lean;
 

@@ -20,6 +20,7 @@ use crate::physics::Lean;
 pub struct Portable;
 
 impl Arithmetic for Portable {
+    const NAME: &'static str = "portable";
     type Scalar = f64;
     type Form = Lean;
 

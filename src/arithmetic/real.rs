@@ -55,7 +55,6 @@ pub type SinCos<V> = (V, V);
 macro_rules! impl_real {
     ($scalar:ident, $bits:ident) => {
         impl sealed::Sealed for $scalar {
-            const NAME: &'static str = stringify!($scalar);
             const ONE: Self = 1.0;
             const MINUS_ONE: Self = -1.0;
             const HALF: Self = 0.5;
@@ -121,9 +120,6 @@ impl_real!(f64, u64);
 pub(crate) mod sealed {
     /// What only this crate needs of a scalar.
     pub trait Sealed: Sized {
-        /// Its name in Rust.
-        const NAME: &'static str;
-
         /// 1.
         const ONE: Self;
 

@@ -48,6 +48,7 @@ const HAS_F64: bool = cfg!(any(
 ));
 
 impl Arithmetic for Reference {
+    const NAME: &'static str = "reference";
     type Scalar = f64;
     type Form = Gymnasium;
 

@@ -17,7 +17,7 @@ use crate::physics::State;
 ///
 /// let new = |seed| Batch::<Fast, _, _>::new(seed, [Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
 /// let (batch, mut twin) = (new(42)?, new(0)?);
-/// let saved: Vec<Member<f32>> = (0..20).filter_map(|index| batch.member(index)).collect();
+/// let saved: Vec<Member<Fast>> = (0..20).filter_map(|index| batch.member(index)).collect();
 /// for (index, member) in saved.into_iter().enumerate() {
 ///     twin.set_member(index, member)?;
 /// }
@@ -25,9 +25,9 @@ use crate::physics::State;
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Member<S = f32> {
+pub struct Member<A: Arithmetic> {
     /// The state.
-    pub state: State<S>,
+    pub state: State<A::Scalar>,
     /// The steps since the last reset.
     pub elapsed: u32,
     /// Whether the next step resets it, as with [`Autoreset::NextStep`](super::Autoreset::NextStep).
@@ -44,7 +44,7 @@ where
 {
     /// Acrobot `index`, if there is one.
     #[must_use]
-    pub fn member(&self, index: usize) -> Option<Member<A::Scalar>> {
+    pub fn member(&self, index: usize) -> Option<Member<A>> {
         let rng = self.generators.as_ref().get(index)?.clone();
         let block = self.blocks.as_ref().get(index / N)?;
         let (elapsed, ended) = block.progress(index % N)?;
@@ -64,7 +64,7 @@ where
     ///
     /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and [`Error::OutOfRange`] for a number of
     /// the state that is not finite.
-    pub fn set_member(&mut self, index: usize, member: Member<A::Scalar>) -> Result<(), Error> {
+    pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
         member.state.validate()?;
         let len = self.len();
         let block = self.blocks.as_mut().get_mut(index / N);
@@ -86,12 +86,12 @@ mod snapshot {
     use serde::ser::{Serialize, Serializer};
 
     use super::{Member, Pcg64, State};
-    use crate::arithmetic::Real;
+    use crate::arithmetic::Arithmetic;
     use crate::snapshot::{Header, Subject};
 
-    impl<S: Real> Subject for Member<S> {
+    impl<A: Arithmetic> Subject for Member<A> {
         const NAME: &'static str = "batch member";
-        type Scalar = S;
+        type Arithmetic = A;
     }
 
     #[derive(serde::Serialize, serde::Deserialize)]
@@ -104,7 +104,7 @@ mod snapshot {
         rng: R,
     }
 
-    impl<S: Real + Serialize> Serialize for Member<S> {
+    impl<A: Arithmetic<Scalar: Serialize>> Serialize for Member<A> {
         fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
             Snapshot {
                 snapshot: Header::<Self>::NEW,
@@ -117,10 +117,10 @@ mod snapshot {
         }
     }
 
-    impl<'de, S: Real + Deserialize<'de>> Deserialize<'de> for Member<S> {
+    impl<'de, A: Arithmetic<Scalar: Deserialize<'de>>> Deserialize<'de> for Member<A> {
         /// Rejects what [`set_member`](crate::batch::Batch::set_member) rejects.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot::<Header<Self>, S, Pcg64> {
+            let Snapshot::<Header<Self>, _, Pcg64> {
                 state,
                 elapsed,
                 ended,

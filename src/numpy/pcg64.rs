@@ -1,18 +1,18 @@
 //! NumPy's PCG64.
 
 use core::convert::Infallible;
+use core::fmt;
 
 use rand_core::{Rng, SeedableRng, TryRng};
 
 use super::SeedSequence;
 
-/// NumPy's `PCG64`, the generator of every Gymnasium environment and space: PCG XSL-RR 128/64, seeded through
-/// a [`SeedSequence`]. Like NumPy, it takes two 32-bit draws from one of 64 bits.
+/// NumPy's `PCG64`, the generator of every Gymnasium environment and space: `rand_pcg`'s PCG XSL-RR 128/64, seeded
+/// through a [`SeedSequence`]. Like NumPy, it takes two 32-bit draws from one of 64 bits.
 ///
 /// It is `Clone`, so that it can be saved and resumed, and not `Copy`, so that no stream is drawn from twice by
-/// accident. With the `serde` feature it can be stored.
+/// accident. Generators are equal if all their draws are. With the `serde` feature it can be stored.
 ///
-/// `rand_pcg` has the same generator but shows its state only to its own `serde` feature, which needs std.
 /// Source: M. E. O'Neill, *PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
 /// Number Generation* (2014).
 ///
@@ -24,12 +24,21 @@ use super::SeedSequence;
 /// let mut np_random = SEEDED_BY_THE_COMPILER.clone();
 /// assert_eq!(uniform(&mut np_random, 0.0, 1.0), 0.7739560485559633);
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Pcg64 {
-    state: u128,
-    /// Odd, otherwise the period is short.
-    increment: u128,
+#[derive(Clone)]
+pub struct Pcg64(Stream);
+
+/// `rand_pcg` cannot seed a generator in a `const`, so the first draw does it. The choice takes no memory: it is a value
+/// that the tag of `half` leaves free.
+#[derive(Clone)]
+enum Stream {
+    /// The hash of the seed.
+    Seeded([u64; 4]),
+    Running(Running),
+}
+
+#[derive(Clone)]
+struct Running {
+    pcg: rand_pcg::Pcg64,
     /// The high half of a 64-bit draw whose low half was used.
     half: Option<u32>,
     #[cfg(feature = "serde")]
@@ -48,34 +57,91 @@ impl Pcg64 {
 
     /// The generator of a seed with this hash. Any hash makes a valid generator.
     const fn from_hash(hash: [u64; 4]) -> Self {
-        let [state1, state0, stream1, stream0] = hash;
-        let increment = (join(stream1, stream0) << 1) | 1;
-        let state = increment.wrapping_add(join(state1, state0));
+        Self(Stream::Seeded(hash))
+    }
+
+    fn running(&self) -> Running {
+        match &self.0 {
+            Stream::Seeded(hash) => Running::new(*hash),
+            Stream::Running(running) => running.clone(),
+        }
+    }
+
+    #[cold]
+    #[inline(never)] // inlined, it would take 16 bytes of stack and 2 % of a reset
+    fn start(&mut self) {
+        self.0 = Stream::Running(self.running());
+    }
+
+    #[inline]
+    fn draw<T>(&mut self, draw: impl Fn(&mut Running) -> T) -> T {
+        loop {
+            match &mut self.0 {
+                Stream::Running(running) => return draw(running),
+                Stream::Seeded(_) => self.start(),
+            }
+        }
+    }
+}
+
+impl Running {
+    fn new(hash: [u64; 4]) -> Self {
+        let [state1, state0, stream1, stream0] = hash.map(u128::from);
         Self {
-            state: state.wrapping_mul(MULTIPLIER).wrapping_add(increment),
-            increment,
+            pcg: rand_pcg::Pcg64::new(state1 << 64 | state0, stream1 << 64 | stream0),
             half: None,
             #[cfg(feature = "serde")]
             origin: snapshot::Origin { hash, position: 0 },
         }
     }
 
-    /// One step of the underlying linear congruential generator.
     #[inline]
-    fn advance(&mut self) {
-        self.state = self
-            .state
-            .wrapping_mul(MULTIPLIER)
-            .wrapping_add(self.increment);
+    fn next_u64(&mut self) -> u64 {
         #[cfg(feature = "serde")]
-        self.origin.advance(1);
+        self.origin.advance();
+        self.pcg.next_u64()
+    }
+
+    /// The low half of a new 64-bit draw, or the high half left by the last call.
+    #[inline]
+    fn next_u32(&mut self) -> u32 {
+        self.half.take().unwrap_or_else(|| {
+            let both = self.next_u64();
+            self.half = Some((both >> 32) as u32);
+            both as u32
+        })
     }
 }
 
-const MULTIPLIER: u128 = 0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645;
+impl PartialEq for Pcg64 {
+    /// A generator that has not started equals one that has, at the same position.
+    fn eq(&self, other: &Self) -> bool {
+        let (this, other) = (self.running(), other.running());
+        (this.pcg, this.half) == (other.pcg, other.half)
+    }
+}
 
-const fn join(high: u64, low: u64) -> u128 {
-    ((high as u128) << 64) | low as u128
+impl Eq for Pcg64 {}
+
+impl fmt::Debug for Pcg64 {
+    /// The next draw of 64 bits, which stands for the state that `rand_pcg` does not show, and the half that is left.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut running = self.running();
+        f.debug_struct("Pcg64")
+            .field("next_u64", &running.next_u64())
+            .field("half", &running.half)
+            .finish()
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Pcg64 {
+    /// As `Debug`.
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let mut running = self.running();
+        let (next_u64, half) = (running.next_u64(), running.half);
+        defmt::write!(f, "Pcg64 {{ next_u64: {}, half: {} }}", next_u64, half);
+    }
 }
 
 impl From<SeedSequence> for Pcg64 {
@@ -88,22 +154,14 @@ impl From<SeedSequence> for Pcg64 {
 impl TryRng for Pcg64 {
     type Error = Infallible;
 
-    /// The low half of a new 64-bit draw, or the high half left by the last call.
     #[inline]
     fn try_next_u32(&mut self) -> Result<u32, Infallible> {
-        if let Some(high) = self.half.take() {
-            return Ok(high);
-        }
-        let both = self.next_u64();
-        self.half = Some((both >> 32) as u32);
-        Ok(both as u32)
+        Ok(self.draw(Running::next_u32))
     }
 
     #[inline]
     fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        self.advance();
-        let folded = (self.state >> 64) as u64 ^ self.state as u64;
-        Ok(folded.rotate_right((self.state >> 122) as u32))
+        Ok(self.draw(Running::next_u64))
     }
 
     // rand_core's `fill_bytes_via_next_word` has a division that panics by zero, which some compilers keep.
@@ -142,11 +200,10 @@ impl SeedableRng for Pcg64 {
 mod snapshot {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use super::{MULTIPLIER, Pcg64};
+    use super::{Pcg64, Running, Stream};
 
     /// Where a generator comes from. It is what a snapshot holds, because any of these makes a valid generator.
-    #[derive(Clone, Debug, PartialEq, Eq)]
-    #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+    #[derive(Clone)]
     pub struct Origin {
         /// The hash of the seed.
         pub hash: [u64; 4],
@@ -156,8 +213,8 @@ mod snapshot {
 
     impl Origin {
         #[inline]
-        pub fn advance(&mut self, draws: u64) {
-            self.position = self.position.wrapping_add(draws);
+        pub fn advance(&mut self) {
+            self.position = self.position.wrapping_add(1);
         }
     }
 
@@ -175,15 +232,13 @@ mod snapshot {
 
     impl Serialize for Pcg64 {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let [a, b, c, d] = self
-                .origin
-                .hash
-                .map(|word| [word as u32, (word >> 32) as u32]);
+            let Running { half, origin, .. } = self.running();
+            let [a, b, c, d] = origin.hash.map(|word| [word as u32, (word >> 32) as u32]);
             Snapshot {
                 seed: [a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]],
-                position: self.origin.position,
-                has_half: self.half.is_some(),
-                half: self.half.unwrap_or_default(),
+                position: origin.position,
+                has_half: half.is_some(),
+                half: half.unwrap_or_default(),
             }
             .serialize(serializer)
         }
@@ -198,26 +253,12 @@ mod snapshot {
                 half,
             } = Snapshot::deserialize(deserializer)?;
             let hash = [[a, b], [c, d], [e, f], [g, h]];
-            let mut pcg =
-                Self::from_hash(hash.map(|[low, high]| u64::from(high) << 32 | u64::from(low)));
-            pcg.skip(position);
-            pcg.half = has_half.then_some(half);
-            Ok(pcg)
-        }
-    }
-
-    impl Pcg64 {
-        /// Advances by many draws at once. x → a x + c, applied twice, is x → a² x + (a + 1) c.
-        fn skip(&mut self, draws: u64) {
-            let (mut a, mut c) = (MULTIPLIER, self.increment);
-            for bit in 0..u64::BITS {
-                if draws >> bit & 1 == 1 {
-                    self.state = self.state.wrapping_mul(a).wrapping_add(c);
-                }
-                c = a.wrapping_add(1).wrapping_mul(c);
-                a = a.wrapping_mul(a);
-            }
-            self.origin.advance(draws);
+            let hash = hash.map(|[low, high]| u64::from(high) << 32 | u64::from(low));
+            let mut running = Running::new(hash);
+            running.pcg.advance(position.into());
+            running.origin.position = position;
+            running.half = has_half.then_some(half);
+            Ok(Self(Stream::Running(running)))
         }
     }
 }

@@ -3,7 +3,7 @@
 use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::Member;
 use acrobot::numpy::Pcg64;
-use acrobot::{Acrobot, Action, Params, State, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
 use proptest::prelude::*;
 use rand_core::Rng;
 
@@ -59,7 +59,7 @@ fn members_and_parts_are_loaded_as_they_were_stored() {
         if half {
             rng.next_u32();
         }
-        let member = Member::<f32> {
+        let member = Member::<Fast> {
             state,
             elapsed,
             ended,

@@ -38,7 +38,7 @@ struct Snapshot {
     /// The index in [`MODES`].
     mode: usize,
     params: Params<f32>,
-    members: Vec<Member>,
+    members: Vec<Member<Fast>>,
 }
 
 #[pymethods]

@@ -101,6 +101,7 @@ fn an_arithmetic_can_be_added() {
     struct SineUnit;
 
     impl Arithmetic for SineUnit {
+        const NAME: &'static str = "sine unit";
         type Scalar = f32;
         type Form = Lean;
 

@@ -28,6 +28,7 @@ use semihosting::{println, process};
 struct Micromath;
 
 impl Arithmetic for Micromath {
+    const NAME: &'static str = "micromath";
     type Scalar = f32;
     type Form = Lean;
 
