@@ -28,7 +28,7 @@ const fn kind<T: Snapshot>() -> Kind {
     (load::<T>, save::<T>)
 }
 
-const KINDS: [Kind; 14] = [
+const KINDS: [Kind; 15] = [
     kind::<Acrobot<Reference>>(),
     kind::<Acrobot<Portable>>(),
     kind::<Acrobot<Fast>>(),
