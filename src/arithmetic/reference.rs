@@ -10,32 +10,37 @@ use crate::physics::Gymnasium;
 /// `f64`, correctly rounded sines and cosines, and Gymnasium's expressions: the same bits on every target, defined by no
 /// library but by mathematics.
 ///
-/// Of the `f64` there is one that is nearest to sin x. This arithmetic returns that one, and so would any other correctly rounded sine. Its
-/// steps are as near to Gymnasium's as those of Gymnasium on another computer: 99.75 % are bit-identical.
+/// For each x one `f64` is nearest to sin x. This arithmetic returns that one, as any other correctly rounded sine does. Its
+/// steps are as near to Gymnasium's as those of Gymnasium on another computer: 99.75 % are bit-identical ([how much is
+/// repeated](crate::guide::determinism#how-much-of-gymnasium-is-repeated)).
 ///
 /// ```
 /// use acrobot::arithmetic::{Arithmetic, Reference};
 ///
 /// let (sin, cos) = Reference::sin_cos(1.0);
 /// assert_eq!([sin, cos].map(f64::to_bits), [0x3fea_ed54_8f09_0cee, 0x3fe1_4a28_0fb5_068c]);
-/// // The largest f64 is near no multiple of π/2 that a shorter π would find.
+/// // For a large x, 53 bits of π would not do.
 /// assert_eq!(Reference::sin_cos(f64::MAX).0, 0.004961954789184062);
 /// ```
 ///
 /// # Method
 ///
-/// A fast path computes ten more bits than an `f64` has, with a proven bound of its error. Where the result is
-/// farther from half way between two `f64` than that bound, rounding it gives the nearest `f64`. Elsewhere, for one result in
-/// 400, a slow path computes 192 bits. (A. Ziv, *Fast evaluation of elementary mathematical functions with correctly
-/// rounded last bit*, 1991.)
+/// A fast path computes about ten bits more than an `f64` has, with a proven bound of its error. If the result is farther from
+/// half way between two `f64` than that bound, the nearest `f64` is certain. Otherwise, for one result in 400, a slow path
+/// computes 192 bits. Source: A. Ziv, *Fast Evaluation of Elementary Mathematical Functions with Correctly Rounded Last Bit*
+/// (1991).
 ///
-/// - |x| < 2⁻²⁷: sin x rounds to x and cos x to 1, because x³/6 and x²/2 are at most a quarter of the last place.
-/// - |x| < 64, on machines with `f64` instructions: a table and sums in two `f64`. Elsewhere: 64-bit integers. Both fast paths have
-///   the same results, because only one result is right.
-/// - Any other finite x: the slow path.
+/// | x | method |
+/// |---|---|
+/// | \|x\| < 2⁻²⁷ | sin x rounds to x and cos x to 1: x³/6 and x²/2 are at most a quarter of the last place |
+/// | \|x\| < 64, with instructions for `f64` | `float.rs`: a table, and sums of two `f64` |
+/// | \|x\| < 64, elsewhere | `integer.rs`: polynomials in 64-bit integers |
+/// | any other finite x, and what these leave | `wide.rs`: Taylor's series in 192 bits |
+/// | infinity, NaN | NaN |
 ///
-/// The source of each path, in `src/arithmetic/reference`, lists its errors term by term. `tests/data/sines.py` derives the
-/// constants, adds the errors up, and records 21 million results of MPFR, which `cargo test --test sines` compares.
+/// The two fast paths have the same results, because only one result is right. The files, in `src/arithmetic/reference`, list
+/// their errors term by term. `tests/data/sines.py` derives the constants and adds the errors up. It also records 21 million
+/// results of MPFR, which `cargo test --test sines` compares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reference;

@@ -154,6 +154,11 @@ def half_place(x):
     return mp.mpf(2) ** (mp.floor(mp.log(x, 2)) - 53) if x else mp.mpf(0)
 
 
+# The least distance of an f64 from a multiple of π/2.
+nearest = min(abs(mp.mpf(float(k * PI / 2)) - k * PI / 2) for k in range(1, 41))
+if nearest < mp.mpf(2) ** -61:
+    sys.exit("an argument is too near to a multiple of π/2")
+
 worst = 0
 for i in range(65):
     s, c = mp.sin(i * PI / 128), mp.cos(i * PI / 128)

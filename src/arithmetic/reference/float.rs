@@ -1,22 +1,24 @@
-//! The fast path where the machine computes in `f64`: a table of sines, and a sum in two `f64`.
+//! The fast path where the machine computes in `f64`: a table of sines, and sums of two `f64`.
 //!
-//! With n the integer nearest to x · 128/π, a = n π/128 and b = x − a, so that |b| ≤ π/256:
+//! Let n be the integer nearest to x · 128/π, a = n π/128 and b = x − a, so that |b| ≤ π/256. Then
 //!
-//! sin x = sin a + cos a · b + sin a (cos b − 1) + cos a (sin b − b)
+//! sin x = sin a + cos a · b + sin a (cos b − 1) + cos a (sin b − b).
 //!
-//! and the same for the cosine, with cos a for sin a and −sin a for cos a. The first two terms need more than 53 bits, the others
-//! are below 2⁻¹³.
+//! The cosine has cos a in place of sin a, and −sin a in place of cos a. The first two terms need more than 53 bits. The others
+//! are below 2⁻¹³. The errors, term by term:
 //!
-//! - b: π/128 has 41 + 39 + 53 bits in three `f64`. The products of n < 2¹² with the first two are exact, and so are the differences,
-//!   up to the last, whose error goes into `tail`. The error of b + tail is below 2⁻¹²⁶, and below 2⁻⁷⁰ b: no |x| < 64 is nearer to a multiple of
-//!   π/128 than 2⁻⁵⁶.
-//! - sin a and cos a: 26 bits, and the rest in a second `f64`, below 2⁻⁷⁹ off. So the product of the 26 bits with the upper 26 of
-//!   b is exact, and the sum with sin a leaves an exact rest, because |sin a| is 0 or above |b|.
-//! - sin a (cos b − 1): Taylor's series to b⁶, and 5 roundings of numbers below 2⁻¹³ sin a. That is most of the error.
-//! - cos a (sin b − b): Taylor's series to b⁷, and roundings of numbers below 2⁻²¹.
-//! - The sum of the small terms: 3 roundings below 2⁻⁶⁶.
+//! - b: three `f64` hold 41, 39 and 53 bits of π/128. The products of n < 2¹² with the first two are exact. So are the
+//!   differences from x, except that the last may round; `tail` takes up what it loses and the third product. The error of b +
+//!   tail is below 2⁻¹²⁷. It matters most where the result is about b. An x below 64 is at least 2⁻⁶¹ from each multiple of π/2
+//!   but 0, so the error is below 2⁻⁶⁶ of the result.
+//! - sin a and cos a: an `f64` of 26 bits, and another with the rest, which is below 2⁻⁷⁹ off. The product of the 26 bits and the
+//!   upper 26 bits of b is exact. The sum of that and sin a has an exact rest, because |sin a| is 0 or above |b|.
+//! - sin a (cos b − 1): Taylor's series to b⁶, and 5 roundings of numbers below 2⁻¹³ sin a. This is most of the error.
+//! - cos a (sin b − b): Taylor's series to b⁷, and 6 roundings of numbers below 2⁻²¹.
+//! - The sum of the small terms: 3 roundings of numbers below 2⁻¹³.
 //!
-//! `tests/data/sines.py` adds these up for each a. All are below 2⁻⁶² of the result, the margin of the rounding test.
+//! `tests/data/sines.py` adds the errors up for each a. The sum is below 2⁻⁶² of the result, which is the margin of the rounding
+//! test. One result in 350 is within the margin.
 
 use super::wide::{Fraction, octant_sine};
 

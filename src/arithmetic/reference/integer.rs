@@ -1,25 +1,26 @@
 //! The fast path where `f64` is emulated: 64-bit integers.
 //!
-//! All numbers are fractions of 64 or 128 bits after the point. Errors are in units of the last of 64 bits, and intervals say how far too low
-//! or too high a number is. `tests/data/sines.py` derives the coefficients and computes the bounds.
+//! All numbers are fractions with 64 or 128 bits after the point. A unit is 2⁻⁶⁴. An interval says how many units a number may be
+//! too high or, if negative, too low. `tests/data/sines.py` derives the coefficients and computes these bounds.
 //!
-//! - Reduction: |x| = m 2ᵖ with the mantissa m of 64 bits. The upper 128 bits of m times 2/π give the octant and the fraction φ
-//!   of it, with |x| = (octant + φ) π/4, or 1 − φ in odd octants. The product is up to 4 units of 2⁻¹²⁸ too low. |x| is below 2⁶, and a φ
-//!   below 2⁻⁵⁴ is left to the slow path, so that is below 0.25 of a unit of a result.
+//! - Reduction: the product of x's mantissa and 2/π gives the octant and the fraction φ of it, where |x| = (octant + φ) π/4, or
+//!   (octant + 1 − φ) π/4 if the octant is odd. The upper 128 bits of the product are at most 4 of 2⁻¹²⁸ too low. The shift to
+//!   the point and to the first digit of φ makes at most a quarter of a unit of that, because |x| is below 2⁶ and a φ below 2⁻⁵⁴
+//!   is left to the slow path.
 //! - w = φ² from the upper 64 bits of φ: \[−5, 0\].
-//! - sin x = φ S(w) and cos x = 1 − w T(w), with polynomials of degree 7 in Horner's scheme. The approximation errs by
-//!   \[−0.8, −0.5\] for S and \[−1.2, −1.1\] for T, and the arithmetic by \[−0.2, 1.5\]. S begins with a π/4 that is a unit
-//!   too low, and T likewise, which centres the error.
-//! - The last product has 128 bits, so that a small φ costs no precision. Its upper 64 bits are the mantissa.
+//! - sin x = φ S(w) and cos x = 1 − w T(w), with polynomials S and T of degree 7. They differ from the functions by
+//!   \[−0.8, −0.5\] and \[−1.2, −1.1\], and Horner's scheme adds \[−0.2, 1.5\]. Their first coefficients are a unit lower
+//!   than the best ones, which centres the sum.
+//! - The last product keeps 128 bits, so that a small φ costs no precision. The 64 bits from its first digit on are the mantissa.
 //!
-//! In all, a mantissa errs by less than 3 units. Bits below the 53rd that are as near to half way, in 5 of 2048 results, leave it to
-//! the slow path.
+//! In all, a mantissa is less than 3 units off. One in 410 has its last 11 bits so near to half way that it is left to the slow
+//! path.
 
 /// 2/π.
 const TWO_OVER_PI: [u64; 2] = [0xa2f9_836e_4e44_1529, 0xfc27_57d1_f534_ddc0];
 
-/// The absolute values of the coefficients of S, with alternating signs: 64, 67, 71, 76, 76, 76, 68 and 68 bits after the point. The
-/// low ones need fewer bits.
+/// The coefficients of S, whose signs alternate. They have 64, 67, 71, 76, 76, 76, 68 and 68 bits after the point: the last ones
+/// are small and need fewer bits.
 static SIN: [u64; 8] = [
     0xc90f_daa2_2168_c234,
     0xa55d_e731_2df2_95c2,

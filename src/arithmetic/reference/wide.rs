@@ -1,15 +1,15 @@
 //! Sine and cosine in 192 bits: the slow path.
 //!
-//! - Reduction: |x| = m 2ᵖ with an integer m below 2⁵³. The product of m and 384 bits of 2/π, from the bit on whose multiples are
-//!   whole turns, gives the octant and 192 bits of the rest with an error below 2⁻²⁰⁰.
+//! - Reduction: |x| = m 2ᵖ with an integer m below 2⁵³. The product of m and 384 bits of 2/π gives the octant and 192 bits of the
+//!   fraction of it, with an error below 2⁻²⁰⁰. Earlier bits of 2/π contribute whole turns only.
 //! - Series: Taylor's, to the term of r⁴⁷, with r ≤ π/4. The next term is below 2⁻²¹⁸.
-//! - Rounding errors: each operation drops less than 2⁻¹⁹², and the sum of all is below 2⁻¹⁸⁸.
+//! - Rounding: each operation drops less than 2⁻¹⁹². The sum of all errors is below 2⁻¹⁸⁸.
 //!
-//! Why 192 bits suffice: no finite sine or cosine of an `f64` except 0 is half way between two `f64`, because it is a
-//! transcendental number (Lindemann). The error of 2⁻¹⁸⁸ could matter only where a result is that near to half way. Results
-//! are spread as random numbers are. There are 2⁶³ pairs of a function and an |x| from 2⁻²⁷ on, and a result of 2⁻ᶻ, which one in 2ᶻ
-//! pairs has, has 188 − 53 − z bits beyond its last place. So one is expected to be misrounded with a probability below
-//! 62 · 2⁶³ · 2⁻¹³⁴ < 2⁻⁶⁴. The nearest one that is known for moderate angles needs 2⁻¹²⁰.
+//! Why 192 bits suffice: the sine and the cosine of an `f64` other than 0 are transcendental (Lindemann), so they are never half
+//! way between two `f64`. An error of 2⁻¹⁸⁸ can matter only where a result is that near to half way. No theorem excludes such a
+//! result, but probability does. There are 2⁶³ pairs of a function and an |x| from 2⁻²⁷ on. One pair in 2ᶻ has a result of about
+//! 2⁻ᶻ, in which two neighbouring `f64` are 2⁻⁵³⁻ᶻ apart, so it is misrounded with a probability of 2 · 2⁻¹⁸⁸ / 2⁻⁵³⁻ᶻ. The sum
+//! over all pairs, with z up to 62, is below 2⁻⁶⁴.
 
 /// A number in [0, 1): the 192 bits after the point, the highest word first.
 pub(super) type Fraction = [u64; 3];
