@@ -81,16 +81,24 @@ fn micro_is_stable() {
 }
 
 /// Other targets play the same episodes.
+fn check_episodes<A: Arithmetic>(expected: [u64; 16]) {
+    // Miri takes half a minute for each.
+    let expected = &expected[..if cfg!(miri) { 1 } else { 16 }];
+    let episodes = 0..expected.len() as u64;
+    let found: Vec<u64> = episodes.map(episodes::digest::<A>).collect();
+    assert!(found == expected, "{:?}: {found:#018x?}", A::default());
+}
+
 #[test]
-fn the_shared_episodes_are_stable() {
-    fn check<A: Arithmetic>(name: &str, expected: [u64; 16]) {
-        let found = std::array::from_fn(|episode| episodes::digest::<A>(episode as u64));
-        assert!(found == expected, "{name}: {found:#018x?}");
-    }
-    check::<Reference>("reference", episodes::REFERENCE);
-    check::<Portable>("portable", episodes::PORTABLE);
-    check::<Fast>("fast", episodes::FAST);
-    check::<Micro>("micro", episodes::MICRO);
+fn the_shared_episodes_are_stable_in_reference() {
+    check_episodes::<Reference>(episodes::REFERENCE);
+}
+
+#[test]
+fn the_shared_episodes_are_stable_in_the_other_arithmetics() {
+    check_episodes::<Portable>(episodes::PORTABLE);
+    check_episodes::<Fast>(episodes::FAST);
+    check_episodes::<Micro>(episodes::MICRO);
 }
 
 #[test]
