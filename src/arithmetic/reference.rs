@@ -120,7 +120,8 @@ mod tests {
     fn all_paths_agree() {
         let mut rng = Pcg64::new(0);
         let mut left_to_wide = [[0; 2]; 2];
-        for i in 0..1_000_000_u32 {
+        // Miri is slow.
+        for i in 0..if cfg!(miri) { 50 } else { 1_000_000_u32 } {
             let x = match i % 4 {
                 0 => uniform(&mut rng, -64.0, 64.0),
                 1 => uniform(&mut rng, -3.2, 3.2),
@@ -143,7 +144,10 @@ mod tests {
             }
         }
         for count in left_to_wide.as_flattened() {
-            assert!((100..4000).contains(count), "{left_to_wide:?}");
+            assert!(
+                cfg!(miri) || (100..4000).contains(count),
+                "{left_to_wide:?}"
+            );
         }
     }
 }
