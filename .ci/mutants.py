@@ -23,13 +23,14 @@ ROOT = Path(__file__).resolve().parents[1]
 SURVIVORS = ROOT / ".ci/mutants.txt"
 SHARDS = os.cpu_count() if len(sys.argv) == 1 else 1
 
-# `examples` is not of the library, and `batch` takes half a minute without optimization.
-OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"examples", "batch"})
+# `examples` is not of the library, `sines` tests one file, and `batch` takes half a minute without optimization.
+OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"examples", "sines", "batch"})
 ROUNDS = [
     (["src/arithmetic*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
+    (["src/arithmetic/reference*"], ["sines"]),
     (["src/batch*", "src/arithmetic/lanes.rs"], ["autoreset", "batch_slices", "stability"]),
     (["src/env*", "src/render*"], ["check_env", "env", "render"]),
-    (["src/*"], ["acrobot", "parity", "validation", "seeding", "snapshot", "trajectory"]),
+    (["src/*"], ["acrobot", "validation", "seeding", "snapshot", "trajectory"]),
     (["src/*"], OTHERS),
     (["src/batch*", "src/arithmetic/lanes.rs"], ["batch"]),
 ]
