@@ -28,6 +28,7 @@ OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"exampl
 ROUNDS = [
     (["src/arithmetic*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
     (["src/arithmetic/reference*"], ["sines"]),
+    (["src/trajectory.rs"], ["trajectory"]),
     (["src/batch*", "src/arithmetic/lanes.rs"], ["autoreset", "batch_slices", "stability"]),
     (["src/env*", "src/render*"], ["check_env", "env", "render"]),
     (["src/*"], ["acrobot", "validation", "seeding", "snapshot", "trajectory"]),
