@@ -117,7 +117,6 @@ SQUARE = between(-5, 0)
 REDUCTION = between(-mp.mpf(2) ** (2 + 7 + 53 - 64), 0)
 LIMIT = 3
 
-coefficients = {}
 for name, f, series in [("sine", sine, SINE_SERIES), ("cosine", cosine, COSINE_SERIES)]:
     fixed = fit(f)
     check("integer.rs", [int(abs(c) * mp.mpf(2) ** place) for c, place in zip(fixed, PLACES)])
@@ -183,7 +182,7 @@ if worst * (1 + mp.mpf(2) ** -10) > mp.mpf(2) ** -62:
 
 
 def uniform(u, end):
-    return -end + (end - -end) * ((u >> np.uint64(11)).astype(float) * 2.0**-53)
+    return -end + 2 * end * ((u >> np.uint64(11)).astype(float) * 2.0**-53)
 
 
 def of_bits(words):

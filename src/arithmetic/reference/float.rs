@@ -18,7 +18,7 @@
 //! - The sum of the small terms: 3 roundings of numbers below 2⁻¹³.
 //!
 //! `tests/data/sines.py` adds the errors up for each a. The sum is below 2⁻⁶² of the result, which is the margin of the rounding
-//! test. One result in 350 is within the margin.
+//! test. One result in 320 is within the margin.
 
 use super::wide::{Fraction, octant_sine};
 

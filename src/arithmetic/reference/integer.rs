@@ -16,8 +16,7 @@
 //! In all, a mantissa is less than 3 units off. One in 410 has its last 11 bits so near to half way that it is left to the slow
 //! path.
 
-/// 2/π.
-const TWO_OVER_PI: [u64; 2] = [0xa2f9_836e_4e44_1529, 0xfc27_57d1_f534_ddc0];
+use super::wide::TWO_OVER_PI;
 
 /// The coefficients of S, whose signs alternate. They have 64, 67, 71, 76, 76, 76, 68 and 68 bits after the point: the last ones
 /// are small and need fewer bits.
@@ -64,7 +63,7 @@ impl Angle {
     pub(super) fn new(x: f64) -> Self {
         let exponent = (x.to_bits() >> 52) as u32 % 2048;
         let mantissa = x.to_bits() << 11 | 1 << 63;
-        let [upper, lower] = TWO_OVER_PI;
+        let [upper, lower, ..] = TWO_OVER_PI;
         // |x| 4/π = product 2^(exponent − 1021). The remainders tell the compiler that a shift is below 32.
         let product = full(mantissa, upper) + u128::from(high(mantissa, lower));
         let (octant, fraction) = if exponent > 1021 {

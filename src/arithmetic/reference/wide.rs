@@ -15,7 +15,7 @@
 pub(super) type Fraction = [u64; 3];
 
 /// 2/π: bits for any `f64`.
-static TWO_OVER_PI: [u64; 21] = [
+pub(super) static TWO_OVER_PI: [u64; 21] = [
     0xa2f9_836e_4e44_1529,
     0xfc27_57d1_f534_ddc0,
     0xdb62_9599_3c43_9041,
