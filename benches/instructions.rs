@@ -8,10 +8,6 @@
 //! It fails if a count exceeds its limit: the measured count and 5 % for new compilers. It needs x86-64 with AVX2;
 //! valgrind does not support AVX-512. `Host` has no limit, because it calls the platform's library.
 
-#[path = "../examples/throughput/main.rs"]
-#[allow(dead_code, reason = "its main function")]
-mod throughput;
-
 use std::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
@@ -21,7 +17,7 @@ use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
-use throughput::Play;
+use yardsticks::Play;
 
 /// About two episodes of a random policy, with their resets.
 const STEPS: usize = 1000;

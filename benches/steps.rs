@@ -1,10 +1,6 @@
-//! Steps per second: `cargo bench --bench steps`. It ends with the output of the example `throughput`: each rate's ratio
-//! to its yardstick. divan's table has the yardsticks too, as `bare` and `batch_bare`.
+//! Steps per second: `cargo bench --bench steps`. The yardsticks are in the table, as `bare` and `batch_bare`; the example
+//! `throughput` has ratios to them.
 
-#[path = "../examples/throughput/main.rs"]
-mod throughput;
-
-use std::process::ExitCode;
 use std::time::Duration;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
@@ -13,17 +9,12 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use divan::counter::ItemsCount;
 use divan::{Bencher, Divan, black_box};
-use throughput::{Play, yardsticks};
+use yardsticks::Play;
 
-fn main() -> ExitCode {
+fn main() {
     Divan::from_args()
         .max_time(Duration::from_millis(500))
         .main();
-    // Not in `cargo test`, which runs each benchmark once.
-    if std::env::args().any(|argument| argument == "--bench") {
-        return throughput::main();
-    }
-    ExitCode::SUCCESS
 }
 
 /// From one acrobot to a million.

@@ -22,9 +22,7 @@ use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{self, wrap};
 use acrobot::{Acrobot, Action, Portable, State};
 use clap::Parser;
-
-#[path = "common/exit.rs"]
-mod exit;
+use examples_common::exit;
 
 /// Compares policies by their steps to the goal, and catches the upright with one of them.
 #[derive(Parser)]

@@ -14,16 +14,10 @@ use std::process::ExitCode;
 use acrobot::numpy::SeedSequence;
 use acrobot::{Acrobot, Action, Portable, State, TimeLimit};
 use clap::Parser;
+use examples_common::{exit, files};
 use plotters::prelude::*;
 
-#[path = "common/exit.rs"]
-mod exit;
-#[path = "common/files.rs"]
-mod files;
-#[path = "common/svg.rs"]
-mod svg;
-
-use svg::{Area, svg};
+use examples_common::svg::{Area, svg};
 
 /// Plots an episode as SVG.
 #[derive(Parser)]

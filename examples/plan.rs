@@ -24,17 +24,10 @@ use acrobot::numpy::SeedSequence;
 use acrobot::physics::Pendulum;
 use acrobot::{Action, Fast, State};
 use clap::Parser;
+use examples_common::{exit, weights};
 use indicatif::ProgressIterator;
 
-#[path = "sarsa/acrobot_task.rs"]
-#[allow(dead_code, reason = "one of the two presets")]
-mod acrobot_task;
-#[path = "common/exit.rs"]
-mod exit;
-#[path = "common/weights.rs"]
-mod weights;
-
-use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
+use sarsa::task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 
 /// Compares the learner's greedy policy with a beam search over the learnt values.
 #[derive(Parser)]

@@ -23,9 +23,7 @@ use acrobot::arithmetic::Host;
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Acrobot, Action, TimeLimit};
 use clap::Parser;
-
-#[path = "common/exit.rs"]
-mod exit;
+use examples_common::exit;
 
 /// Plays Acrobot-v1 at random and prints a line for each episode.
 #[derive(Parser)]

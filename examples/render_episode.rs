@@ -16,13 +16,7 @@ use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Frame, Theme};
 use acrobot::{Acrobot, Action, Portable, State, TimeLimit};
 use clap::Parser;
-
-#[path = "common/animation.rs"]
-mod animation;
-#[path = "common/exit.rs"]
-mod exit;
-#[path = "common/files.rs"]
-mod files;
+use examples_common::{animation, exit, files};
 
 /// Draws an episode as FILE.gif and a strip of its frames as FILE.png, or one state as a PNG.
 #[derive(Parser)]

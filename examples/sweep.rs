@@ -31,21 +31,13 @@ use acrobot::batch::{Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, Fast, Params};
 use clap::Parser;
+use examples_common::{exit, files};
 use indicatif::ProgressBar;
 use plotters::prelude::*;
 use rayon::prelude::*;
 
-#[path = "common/exit.rs"]
-mod exit;
-#[path = "common/files.rs"]
-mod files;
-#[path = "common/heat_map.rs"]
-mod heat_map;
-#[path = "common/svg.rs"]
-mod svg;
-
-use heat_map::{LABEL, NAME, color, draw_bar};
-use svg::{Area, svg};
+use examples_common::heat_map::{LABEL, NAME, color, draw_bar};
+use examples_common::svg::{Area, svg};
 
 /// Sweeps link masses and torques, and writes the steps to the goal as CSV and as a picture.
 #[derive(Parser)]

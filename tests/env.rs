@@ -1,7 +1,5 @@
 //! Environments: Gymnasium's runs through `make`, pictures, live changes, and rejected input.
 
-mod common;
-
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
@@ -39,7 +37,7 @@ fn make_plays_gymnasiums_runs() {
             seed: Some(sequence),
             ..ResetOptions::default()
         });
-        let (mut found, mut ends) = (Digest::new(), 0);
+        let (mut found, mut ends) = (Digest::default(), 0);
         for _ in 0..1000 {
             let step = env.step(env.action_space().sample(&mut actions));
             for x in step.observation.as_slice() {
@@ -242,7 +240,7 @@ fn each_render_mode_returns_its_kind() {
     let Ok(Rendering::Text(text)) = with_mode(RenderMode::Ansi).render() else {
         panic!("no text")
     };
-    common::assert_snapshot("ansi.txt", include_str!("data/ansi.txt"), &text);
+    common::assert_snapshot("ansi.txt", &text);
 
     let shown = Arc::new(Mutex::new(Vec::new()));
     let sink = Arc::clone(&shown);

@@ -1,14 +1,12 @@
 //! Promise 1, Gymnasium's numbers: their error against the solution of another integrator, which `data/truth.py` ran.
 
-mod common;
-
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::{Fast, Params, Portable, State};
-use common::{assert_readme_says, distance};
+use common::{assert_says, distance};
 
 /// A run under torques that last 0.2 s each.
 struct Run {
@@ -120,7 +118,7 @@ fn errors_are_as_the_readme_says() {
     }
     let table = rows.join("\n");
     println!("{table}");
-    assert_readme_says(&table);
+    assert_says("README.md", &table);
 }
 
 /// So the measured errors are those of the method, not those of the recorded states.
@@ -133,7 +131,7 @@ fn the_truth_is_known_far_better_than_the_error() {
             worst = worst.max(row.uncertainty);
         }
     }
-    assert_readme_says(&format!("known to {worst:.1e}"));
+    assert_says("README.md", &format!("known to {worst:.1e}"));
 }
 
 #[test]
@@ -166,8 +164,11 @@ fn single_precision_is_as_good_as_the_readme_says() {
         let after_a_second = run.errors::<Fast>(20)[0];
         (least, most) = (least.min(after_a_second), most.max(after_a_second));
     }
-    assert_readme_says(&format!(
-        "`Fast` has the same errors within {:.1} % at 0.2 s, and after 1 s at 0.01 s {least:.1e} to {most:.1e}",
-        excess * 100.0
-    ));
+    assert_says(
+        "README.md",
+        &format!(
+            "`Fast` has the same errors within {:.1} % at 0.2 s, and after 1 s at 0.01 s {least:.1e} to {most:.1e}",
+            excess * 100.0
+        ),
+    );
 }

@@ -1,8 +1,6 @@
 //! The equations are those of the pendulum: they agree with Lagrange's and with each other, and converge with the right
 //! order.
 
-mod common;
-
 use acrobot::arithmetic::Arithmetic;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Dynamics, Lean, derivative, energy, mass_matrix, rk4};

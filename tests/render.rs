@@ -1,13 +1,11 @@
 //! Drawings are Gymnasium's and stay within their target, and a redraw writes only pixels that change.
 
-mod common;
-
 use acrobot::arithmetic::Arithmetic;
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Frame, Theme};
 use acrobot::{Acrobot, Params, Portable, State};
+use bits::{Digest, oled};
 use common::canvas::Canvas;
-use common::{Digest, oled};
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Point, Size};
@@ -144,14 +142,14 @@ fn the_monochrome_drawing_is_its_snapshot() {
     let drawing = ascii(figure(0.6, -1.5).with_torque(1.0))
         + "\n"
         + &ascii(figure(2.5, 0.4).with_torque(-1.0));
-    common::assert_snapshot("oled.txt", include_str!("data/oled.txt"), &drawing);
+    common::assert_snapshot("oled.txt", &drawing);
 }
 
 /// Promise 2 for pictures: the firmware `oled` draws the same with the driver of a display.
 #[test]
 fn the_oled_episode_is_its_snapshot() {
     let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
-    let (mut digest, mut frames) = (Digest::new(), 0);
+    let (mut digest, mut frames) = (Digest::default(), 0);
     let drawn = oled::play(&mut canvas, oled::start(), oled::against, |canvas| {
         frames += 1;
         let lit =

@@ -1,10 +1,6 @@
 //! A snapshot resumes to the same bits, also one of an older release. One that is not valid or of another type is
 //! rejected with the reason.
 
-mod common;
-#[path = "common/formats.rs"]
-mod formats;
-
 use std::fmt::Debug;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real};
@@ -13,8 +9,8 @@ use acrobot::numpy::Pcg64;
 use acrobot::physics::Lean;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use common::Digest;
+use common::formats::again;
 use crc::{CRC_32_ISCSI, Crc};
-use formats::again;
 use rand_core::Rng;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -135,7 +131,7 @@ fn batch_of_one() -> Batch<Fast, [Block; 1], [Pcg64; 1]> {
 
 /// 100 steps of an acrobot, and its reset.
 fn play<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
-    let mut digest = Digest::new();
+    let mut digest = Digest::default();
     let mut add = |acrobot: &Acrobot<A>| {
         for x in <[A::Scalar; 4]>::from(acrobot.state()) {
             digest.add(x.to_f64().to_bits());
@@ -155,7 +151,7 @@ fn play<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
 fn play_member(member: Member<Fast>) -> u64 {
     let mut batch = batch_of_one();
     batch.set_member(0, member).unwrap();
-    let mut digest = Digest::new();
+    let mut digest = Digest::default();
     for _ in 0..100 {
         let mut rows = [[0.0; 6]];
         let buffers = StepBuffers {
@@ -218,7 +214,7 @@ fn snapshots_of_version_1_stay_readable() {
         stored(Acrobot::<Fast>::new(3), &mut lines, play),
         stored(member(), &mut lines, play_member),
     ];
-    common::assert_snapshot("snapshots_1.txt", file, &found.concat());
+    common::assert_snapshot("snapshots_1.txt", &found.concat());
 }
 
 /// The error of loading `text` with `to` in place of `from`.

@@ -1,15 +1,13 @@
 //! Promise 2, the same bits everywhere: digests of long runs. Changing one takes a breaking release.
 
-mod common;
-
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
-use common::{Digest, episodes, training};
+use bits::{Digest, episodes, training};
 
 /// Every bit of the states, rewards and ends of random episodes with 64 seeds: about 100,000 steps.
 fn digest<A: Arithmetic>() -> u64 {
-    let mut digest = Digest::new();
+    let mut digest = Digest::default();
     for seed in 0..64 {
         let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(seed));
         let mut actions = Pcg64::new(seed);
@@ -49,7 +47,7 @@ fn reference_is_stable() {
 #[test]
 fn the_sines_of_libm_are_those_of_portables_digests() {
     let mut rng = Pcg64::new(0);
-    let mut digest = Digest::new();
+    let mut digest = Digest::default();
     for i in 0..1_000_000 {
         let reach = if i % 2 == 0 { 4.0 } else { 1e6 };
         let x = uniform(&mut rng, -reach, reach);

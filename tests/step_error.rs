@@ -1,12 +1,10 @@
 //! Promise 1, Gymnasium's numbers: the error of `Portable`, `Fast` and `Micro` against them.
 
-mod common;
-
 use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Micro};
 use acrobot::{Acrobot, Fast, Portable, State};
-use common::{RECORDING, RecordedStep, assert_readme_says, distance, recorded_steps};
+use common::{RECORDING, RecordedStep, assert_says, distance, recorded_steps};
 
 /// Upper ends of the bands of max(|θ̇1|, |θ̇2|) before a step, rad/s. The last band has all remaining steps: up to the
 /// velocity bounds, and from the few initial states beyond them.
@@ -84,7 +82,7 @@ fn single_steps_are_as_close_as_the_readme_says() {
     });
     let table = rows.collect::<Vec<_>>().join("\n");
     println!("{table}");
-    assert_readme_says(&table);
+    assert_says("README.md", &table);
 }
 
 #[test]
@@ -104,8 +102,11 @@ fn whole_episodes_stay_as_long_as_the_readme_says() {
     }
     let all = RECORDING.episodes.len();
     assert_eq!(close[0], all as u32);
-    assert_readme_says(&format!(
-        "all {all} after 100 steps, {} after 200 and {} after 500",
-        close[1], close[2]
-    ));
+    assert_says(
+        "README.md",
+        &format!(
+            "all {all} after 100 steps, {} after 200 and {} after 500",
+            close[1], close[2]
+        ),
+    );
 }

@@ -16,14 +16,8 @@
 //! child, for offsets in Sutton's learner and for exploration in this crate's. The CSV is the same for every number of
 //! threads.
 
-#[path = "../common/exit.rs"]
-mod exit;
-#[path = "../common/files.rs"]
-mod files;
 mod learners;
 mod simulator;
-#[path = "../common/svg.rs"]
-mod svg;
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -34,13 +28,14 @@ use std::process::ExitCode;
 
 use acrobot::numpy::SeedSequence;
 use clap::{Parser, value_parser};
+use examples_common::{exit, files};
 use indicatif::ProgressBar;
 use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use rayon::prelude::*;
 
+use examples_common::svg::{Area, svg};
 use learners::{ours, sutton};
-use svg::{Area, svg};
 
 /// Repeats Sutton's experiment of 1996 and runs this crate's learner beside it.
 #[derive(Parser)]
@@ -263,4 +258,20 @@ fn logarithmic(range: Range<f64>, multiples: &[f64]) -> WithKeyPoints<LogCoord<f
         .filter(|x| (range.start..=range.end).contains(x))
         .collect();
     range.log_scale().with_key_points(labels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quartiles_are_interpolated_and_blocks_are_means_of_runs() {
+        let runs = vec![vec![40, 4], vec![10, 8], vec![20, 6], vec![30, 6]];
+        let experiment = Experiment(runs);
+        assert_eq!(experiment.curve(), [[17.5, 25.0, 32.5], [5.5, 6.0, 6.5]]);
+        // The means of the runs are 22, 9, 13 and 18.
+        let [mean, deviation] = experiment.block([1, 2]).unwrap();
+        assert_eq!((mean, deviation), (15.5, 24.25_f64.sqrt()));
+        assert_eq!(experiment.block([2, 3]), None);
+    }
 }

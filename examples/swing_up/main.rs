@@ -25,27 +25,14 @@ use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, State};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
+use examples_common::{animation, exit, files, weights};
 use indicatif::{ProgressBar, ProgressStyle};
 
-#[path = "../sarsa/acrobot_task.rs"]
-mod acrobot_task;
-#[path = "../common/animation.rs"]
-mod animation;
 mod curve;
-#[path = "../common/exit.rs"]
-mod exit;
-#[path = "../common/files.rs"]
-mod files;
-#[path = "../common/heat_map.rs"]
-mod heat_map;
 mod pictures;
-#[path = "../common/svg.rs"]
-mod svg;
-#[path = "../common/weights.rs"]
-mod weights;
 
-use acrobot_task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
-use svg::svg;
+use examples_common::svg::svg;
+use sarsa::task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 
 /// Learns to swing up, and evaluates the policy.
 #[derive(Parser)]

@@ -8,10 +8,10 @@ use acrobot::render::Figure;
 use acrobot::{Action, Fast, Params, REWARD_THRESHOLD, State};
 use plotters::prelude::*;
 
-use crate::acrobot_task::Env;
 use crate::curve::running_mean;
-use crate::heat_map::{LABEL, NAME, color, draw_bar};
-use crate::svg::Area;
+use examples_common::heat_map::{LABEL, NAME, color, draw_bar};
+use examples_common::svg::Area;
+use sarsa::task::Env;
 
 const TITLE: (&str, i32) = ("sans-serif", 24);
 

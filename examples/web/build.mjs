@@ -17,7 +17,8 @@ const FEATURES = ["bulk-memory", "multivalue", "mutable-globals", "nontrapping-f
 function build(name, { simd128 = false, args = [] }) {
   const folder = `target/${name}`;
   const flags = [...SMALL, ...(simd128 ? ["-Ctarget-feature=+simd128"] : [])];
-  run("cargo", ["build", "--quiet", "--locked", "--release", "--target-dir", folder, ...args], { RUSTFLAGS: flags.join(" ") });
+  const cargo = ["rustc", "--quiet", "--locked", "--release", "--crate-type", "cdylib", "--target-dir", folder, ...args];
+  run("cargo", cargo, { RUSTFLAGS: flags.join(" ") });
   const features = [...FEATURES, ...(simd128 ? ["simd"] : [])].map((feature) => `--enable-${feature}`);
   const module = `${folder}/wasm32-unknown-unknown/release/acrobot_web.wasm`;
   const text = `${folder}/acrobot.wat`;

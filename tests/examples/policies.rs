@@ -1,7 +1,7 @@
 //! `random_agent` and `energy_control`.
 
-use super::common::is_recorded_library;
 use super::{printed, rejected, run};
+use common::is_recorded_library;
 
 #[test]
 fn the_random_agent_takes_gymnasiums_episodes() {

@@ -1,9 +1,9 @@
 //! `trace` prints every bit of an episode.
 
-use super::common::{RECORDING, is_recorded_library};
 use super::{printed, rejected, run};
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
+use common::{RECORDING, is_recorded_library};
 
 fn words<S: Real>(state: State<S>) -> String {
     <[S; 4]>::from(state)

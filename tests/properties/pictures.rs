@@ -11,8 +11,8 @@ use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::primitives::Rectangle;
 use proptest::prelude::*;
 
-use crate::common::canvas::Canvas;
 use crate::given::{Number, Range, acrobot, holds, params, state};
+use common::canvas::Canvas;
 
 fn figure<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = Figure> {
     let given = (params(Range::Any), state(Range::Any), prop::num::f32::ANY);

@@ -7,8 +7,8 @@ use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
 use proptest::prelude::*;
 use rand_core::Rng;
 
-use crate::formats::again;
 use crate::given::{Number, Range, acrobot, bits, holds, params, state};
+use common::formats::again;
 
 /// An acrobot after some steps and draws, with any time limit.
 fn running<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = TimeLimit<Acrobot<A>>> {

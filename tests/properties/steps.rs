@@ -11,10 +11,10 @@ use acrobot::physics::{Pendulum, derivative, rk4};
 use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, Step, TimeLimit};
 use proptest::prelude::*;
 
-use crate::common::distance;
 use crate::given::{
     Number, Range, acrobot, action, bits, holds, number, params, start_bounds, state,
 };
+use common::distance;
 
 /// Two inputs, one after the other.
 fn two<G: Strategy>(given: impl Fn() -> G) -> [G; 2] {

@@ -46,6 +46,7 @@ mod error;
 mod learner;
 mod schedule;
 mod store;
+pub mod task;
 mod tiles;
 mod traces;
 

@@ -6,20 +6,15 @@ use core::fmt::{self, Write};
 use acrobot::numpy::Pcg64;
 use acrobot::{Action, State};
 use sarsa::LoadError;
+use sarsa::task::{self, Env, Preset, greedy, learn, training};
 
 use crate::memory::{BUFFER, Shared};
 use crate::once::Once;
 use crate::simulation;
 
-#[allow(dead_code, reason = "this program uses a part")]
-#[path = "../../sarsa/acrobot_task.rs"]
-mod acrobot_task;
-
-use acrobot_task::{Env, Preset, greedy, learn, training};
-
 const SLOTS: usize = 8192;
 type Memory = Once<[[f32; 2]; SLOTS]>;
-type Learner = acrobot_task::Learner<'static, SLOTS, 28>;
+type Learner = task::Learner<'static, SLOTS, 28>;
 
 const fn memory() -> Memory {
     Once::new([[0.0; 2]; SLOTS])

@@ -1,23 +1,24 @@
 //! The module of the page: plain functions over numbers, which JavaScript calls.
 //!
 //! Longer data passes through the buffer in `memory`: seeds in, reasons out, weights both ways. Without the `page`
-//! feature there is only `simulation`.
+//! feature there is only `simulation`. The fuzz targets call the same functions on the machine that builds.
 
-#![no_std]
+#![cfg_attr(target_family = "wasm", no_std)]
 
 #[cfg(feature = "page")]
-mod learner;
-mod memory;
+pub mod learner;
+pub mod memory;
 #[cfg(feature = "page")]
-mod once;
+pub mod once;
 #[cfg(feature = "page")]
-mod picture;
+pub mod picture;
 #[cfg(feature = "page")]
-mod policies;
-mod simulation;
+pub mod policies;
+pub mod simulation;
 #[cfg(feature = "page")]
-mod speed;
+pub mod speed;
 
+#[cfg(target_family = "wasm")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
     core::arch::wasm32::unreachable()

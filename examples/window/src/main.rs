@@ -1,7 +1,5 @@
 //! Acrobot in a window, played with the arrow keys. See the README in this folder.
 
-#[path = "../../common/files.rs"]
-mod files;
 mod game;
 mod screen;
 
@@ -19,6 +17,7 @@ use acrobot::physics::Dynamics;
 use acrobot::render::Frame;
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use examples_common::files;
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};

@@ -6,33 +6,22 @@
 #![no_std]
 #![no_main]
 
-#[path = "../counter.rs"]
-mod counter;
-#[path = "../../../../tests/common/digest.rs"]
-mod digest;
-#[allow(dead_code, reason = "this plays another episode")]
-#[path = "../../../../tests/common/oled.rs"]
-mod oled;
-#[path = "../panel.rs"]
-mod panel;
-#[path = "../../../../tests/common/training.rs"]
-mod training;
-
 use core::cell::RefCell;
 
 use acrobot::numpy::SeedSequence;
 use acrobot::{Action, REWARD_THRESHOLD, State};
+use acrobot_cortex_m::counter::Counter;
+use acrobot_cortex_m::panel::{Bus, Panel};
+use bits::training::{EPISODES, Learner, Weights};
+use bits::{oled, training};
 use cortex_m::Peripherals;
 use cortex_m_rt::{STACK_PAINT_VALUE, entry, heap_start};
-use counter::Counter;
 use heapless::HistoryBuf;
-use panel::{Bus, Panel};
+use sarsa::task::{self, Env, Preset, evaluation, greedy, learn, play};
 use semihosting::{println, process};
 use ssd1306::mode::DisplayConfig;
 use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
 use ssd1306::{I2CDisplayInterface, Ssd1306};
-use training::acrobot_task::{Env, Preset, evaluation, greedy, learn, play};
-use training::{EPISODES, Learner, Weights};
 
 #[entry]
 fn main() -> ! {
@@ -55,8 +44,7 @@ fn main() -> ! {
 
 /// Returns whether the task was solved with the expected weights on the way.
 fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
-    let (mut env, mut choices) =
-        training::acrobot_task::training(SeedSequence::new(training::SEED));
+    let (mut env, mut choices) = task::training(SeedSequence::new(training::SEED));
     let mut returns = HistoryBuf::<f32, 100>::new();
     let (mut steps, mut instructions) = (0, 0);
     let mut equal = false;

@@ -3,10 +3,8 @@
 #![no_std]
 #![no_main]
 
-#[path = "../minimal.rs"]
-mod minimal;
-
 use acrobot::Fast;
+use acrobot_cortex_m::minimal;
 use panic_halt as _;
 
 #[cortex_m_rt::entry]

@@ -7,12 +7,6 @@
 #![no_std]
 #![no_main]
 
-#[path = "../../../../tests/common/digest.rs"]
-mod digest;
-#[allow(dead_code, reason = "this does not compare the weights")]
-#[path = "../../../../tests/common/training.rs"]
-mod training;
-
 use core::hint::black_box;
 use core::num::NonZeroU32;
 use core::panic::PanicInfo;
@@ -24,12 +18,13 @@ use acrobot::physics::{self, Pendulum, StartBounds};
 use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
+use bits::training;
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
 use rand_core::{Rng as _, SeedableRng as _};
-use training::acrobot_task::{Preset, greedy, learn};
+use sarsa::task::{self, Preset, greedy, learn};
 
 unsafe extern "C" {
     fn a_panicking_branch_is_left() -> !;
@@ -212,7 +207,7 @@ fn learner() {
     let Ok(mut learner) = Preset::Fast.learner(training::EPISODES, &mut weights) else {
         return;
     };
-    let (mut env, mut choices) = training::acrobot_task::training(SeedSequence::new(black_box(42)));
+    let (mut env, mut choices) = task::training(SeedSequence::new(black_box(42)));
     black_box(learn(&mut learner, &mut env, &mut choices));
     black_box(greedy(&learner, &black_box(State::default())));
     black_box(training::digest(&learner));

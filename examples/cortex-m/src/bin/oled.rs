@@ -4,18 +4,11 @@
 #![no_std]
 #![no_main]
 
-#[path = "../../../../tests/common/digest.rs"]
-mod digest;
-#[path = "../../../../tests/common/oled.rs"]
-mod oled;
-#[path = "../panel.rs"]
-mod panel;
-
 use core::cell::RefCell;
 
+use acrobot_cortex_m::panel::{Bus, Panel};
+use bits::{Digest, oled};
 use cortex_m_rt::entry;
-use digest::Digest;
-use panel::{Bus, Panel};
 use semihosting::{println, process};
 use ssd1306::mode::DisplayConfig;
 use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
@@ -27,7 +20,7 @@ fn main() -> ! {
     let interface = I2CDisplayInterface::new(Bus(&panel));
     let mut display = Ssd1306::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
         .into_buffered_graphics_mode();
-    let mut digest = Digest::new();
+    let mut digest = Digest::default();
     let (mut frames, mut first, mut failed) = (0, 0, display.init().is_err());
 
     let drawn = oled::play(&mut display, oled::start(), oled::against, |display| {

@@ -1,0 +1,7 @@
+//! What the benchmarks and the example `throughput` share: bare loops as yardsticks, and a random policy that plays batches.
+
+mod loops;
+mod play;
+
+pub use loops::{Lanes, bare_f32, bare_f64};
+pub use play::Play;

@@ -1,0 +1,65 @@
+//! A random policy that plays a batch.
+
+use acrobot::Error;
+use acrobot::arithmetic::Arithmetic;
+use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+
+/// A batch, the random policy that plays it, and the buffers of its steps.
+#[derive(Debug)]
+pub struct Play<A: Arithmetic> {
+    pub batch: Batch<A, Vec<Block<A::Scalar>>, Vec<Pcg64>>,
+    streams: Vec<u32>,
+    actions: Vec<u8>,
+    rewards: Vec<f32>,
+    terminated: Vec<bool>,
+    truncated: Vec<bool>,
+    rows: Vec<[f32; 6]>,
+}
+
+type Step<A> = fn(
+    &mut Batch<A, Vec<Block<<A as Arithmetic>::Scalar>>, Vec<Pcg64>>,
+    &[u8],
+    StepBuffers<'_>,
+) -> Result<(), Error>;
+
+impl<A: Arithmetic> Play<A> {
+    pub fn new(len: usize) -> Self {
+        let blocks = vec![Block::EMPTY; len.div_ceil(Block::<A::Scalar>::LANES)];
+        let generators = vec![Pcg64::UNSEEDED; len];
+        Self {
+            batch: Batch::new(0, blocks, generators).expect("a block for each 16 generators"),
+            streams: (0..len as u32)
+                .map(|i| i.wrapping_mul(0x9e37_79b9))
+                .collect(),
+            actions: vec![0; len],
+            rewards: vec![0.0; len],
+            terminated: vec![false; len],
+            truncated: vec![false; len],
+            rows: vec![[0.0; 6]; len],
+        }
+    }
+
+    pub fn draw_actions(&mut self) {
+        for (stream, action) in self.streams.iter_mut().zip(&mut self.actions) {
+            *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *action = (((*stream >> 16) * 3) >> 16) as u8;
+        }
+    }
+
+    /// Steps with `step`. Returns the number of acrobots.
+    pub fn step(&mut self, observe: bool, step: Step<A>) -> usize {
+        let buffers = StepBuffers {
+            rewards: &mut self.rewards,
+            terminated: &mut self.terminated,
+            truncated: &mut self.truncated,
+            observations: match observe {
+                true => Observations::Rows(&mut self.rows),
+                false => Observations::None,
+            },
+            final_observations: Observations::None,
+        };
+        step(&mut self.batch, &self.actions, buffers).expect("slices of the batch's length");
+        self.batch.len()
+    }
+}

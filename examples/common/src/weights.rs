@@ -1,0 +1,29 @@
+//! Files of weights.
+
+use std::fmt::Display;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use sarsa::task::Learner;
+
+/// The bytes that are read at most, because a file can be endless. The largest weights have 65,556. Up to here an error
+/// names the file's size.
+const MOST: usize = 1 << 17;
+
+pub fn load<const S: usize, const T: usize>(
+    learner: &mut Learner<S, T>,
+    path: &Path,
+) -> Result<(), String> {
+    let named = |reason: &dyn Display| format!("{}: {reason}", path.display());
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| named(&error))?;
+    let read = file.take(MOST as u64 + 1).read_to_end(&mut bytes);
+    read.map_err(|error| named(&error))?;
+    if bytes.len() > MOST {
+        return Err(named(&format_args!(
+            "weights must have at most {MOST} bytes, got more"
+        )));
+    }
+    learner.load(&bytes).map_err(|error| named(&error))
+}

@@ -1,0 +1,134 @@
+//! Acrobot as a task: its learner, tuned, and the loop over an episode. The other modules know nothing of it.
+
+use core::f32::consts::PI;
+
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
+
+use crate::{
+    Dimension, Error, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement,
+};
+
+/// A learner of Acrobot with `T` tilings and `S` slots, which take 8 bytes each.
+pub type Learner<'w, const S: usize, const T: usize> = Sarsa<'w, TileCoder<4, T>, S, 2, 4, T>;
+
+/// What the learner is tuned for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// Swinging up after few episodes.
+    Fast,
+    /// The best policy after 10,000 episodes and more.
+    Quality,
+}
+
+/// Tilings over pairs learn within few episodes what an angle shares with its velocity or with the other angle.
+const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
+
+impl Preset {
+    /// A learner in this memory with `T` tilings, some of them over the pairs. Over `episodes` its step size and
+    /// its exploration fall; after that it hardly changes.
+    pub fn learner<const S: usize, const T: usize>(
+        self,
+        episodes: u32,
+        weights: &mut [[f32; 2]; S],
+    ) -> Result<Learner<'_, S, T>, Error> {
+        let (tilings, lambda, alpha, epsilon) = match self {
+            Self::Fast => (2, 0.93, 0.5, 0.005),
+            Self::Quality => (1, 0.95, 0.7, 0.01),
+        };
+        let angle = Dimension::cyclic(-PI, PI, if S < 4096 { 6 } else { 7 });
+        let velocities = [1.25 * PI, 2.5 * PI].map(|bound| Dimension::bounded(-bound, bound, 6));
+        let dimensions = [angle, angle, velocities[0], velocities[1]];
+        let all = Group::new(&[0, 1, 2, 3], T.saturating_sub(4 * tilings));
+        let [a, b, c, d] = PAIRS.each_ref().map(|pair| Group::new(pair, tilings));
+        let groups = [all, a, b, c, d];
+        let coder = TileCoder::new(dimensions, &groups, Table::Hashed(S), displacement)?;
+        let falling = |start, end| Schedule {
+            start,
+            end,
+            episodes,
+        };
+        let settings = Settings {
+            gamma: 1.0,
+            lambda,
+            alpha: falling(alpha, 0.01),
+            epsilon: falling(epsilon, 0.0),
+            symmetry: Symmetry::Mirror(2),
+        };
+        Sarsa::new(coder, settings, weights)
+    }
+}
+
+/// The torque of the learner's actions 0 and 1. It never chooses none, because that gains nothing.
+pub fn torque(action: usize) -> Action {
+    match action {
+        0 => Action::Negative,
+        _ => Action::Positive,
+    }
+}
+
+/// An acrobot with 500 steps an episode.
+pub type Env = TimeLimit<Acrobot<Fast>>;
+
+/// What every program trains with for this seed: an acrobot, and a generator for the learner's own choices.
+pub fn training(seed: SeedSequence) -> (Env, Pcg64) {
+    let choices = seed.child(0).into();
+    (TimeLimit::v1(Acrobot::with_rng(seed.into())), choices)
+}
+
+/// An acrobot with other initial states than [`training`] with this seed.
+pub fn evaluation(seed: &SeedSequence) -> Env {
+    TimeLimit::v1(Acrobot::with_rng(seed.child(1).into()))
+}
+
+/// A state as the learner sees it: \[θ1, θ2, θ̇1, θ̇1 + θ̇2\] in rad and rad/s. Link 2's velocity in space tells more
+/// about it than the velocity of its joint.
+pub fn view(state: &State<f32>) -> [f32; 4] {
+    let [theta1, theta2, dtheta1, dtheta2] = (*state).into();
+    [theta1, theta2, dtheta1, dtheta1 + dtheta2]
+}
+
+/// The action that the learner values most.
+pub fn greedy<const S: usize, const T: usize>(
+    learner: &Learner<'_, S, T>,
+    state: &State<f32>,
+) -> Action {
+    torque(learner.greedy(&view(state)))
+}
+
+/// Learns for one episode from a new initial state. Returns the sum of the rewards.
+pub fn learn<const S: usize, const T: usize>(
+    learner: &mut Learner<'_, S, T>,
+    env: &mut Env,
+    choices: &mut Pcg64,
+) -> f32 {
+    env.reset();
+    let mut action = learner.start(&view(&env.inner().state()), choices);
+    let mut sum = 0.0;
+    loop {
+        let step = env.step(torque(action));
+        sum += step.reward;
+        if step.terminated {
+            learner.end(step.reward);
+            return sum;
+        }
+        action = learner.step(step.reward, &view(&env.inner().state()), choices);
+        if step.truncated {
+            learner.cut();
+            return sum;
+        }
+    }
+}
+
+/// Plays an episode from a new initial state. Returns the sum of the rewards and whether the goal was reached.
+pub fn play(env: &mut Env, mut policy: impl FnMut(&State<f32>) -> Action) -> (f32, bool) {
+    env.reset();
+    let mut sum = 0.0;
+    loop {
+        let step = env.step(policy(&env.inner().state()));
+        sum += step.reward;
+        if step.done() {
+            return (sum, step.terminated);
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! Steps per second on one core, and their ratio to a bare loop, one line each: `name steps_per_second ratio`.
+//!
+//! A batch plays a random policy, and draws actions and resets episodes in the loop. Its yardstick is a handwritten
+//! loop over eight lanes of AVX2 that does neither, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick
+//! of `scalar_fast` and `scalar_micro` is the same equations for one acrobot in f32. That of the others alone is
+//! Gymnasium's order in f64 with the platform's sines. Both play the same actions as the crate. Each
+//! figure is the best of several runs, interleaved with runs of the yardstick.
+//!
+//! ```text
+//! cargo run --release --example throughput
+//! ```
+
+use std::hint::black_box;
+use std::io::{self, Write};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
+use acrobot::batch::{Batch, SimdLevel};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use examples_common::exit;
+use yardsticks::{Lanes, Play, bare_f32, bare_f64};
+
+fn main() -> ExitCode {
+    exit::status(measure())
+}
+
+fn measure() -> io::Result<()> {
+    scalar::<Host>("scalar_host", bare_f64)?;
+    scalar::<Reference>("scalar_reference", bare_f64)?;
+    scalar::<Portable>("scalar_portable", bare_f64)?;
+    scalar::<Fast>("scalar_fast", bare_f32)?;
+    scalar::<Micro>("scalar_micro", bare_f32)?;
+    for len in [1024, 1 << 20] {
+        batch::<Fast>("fast", len, SimdLevel::widest())?;
+    }
+    batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2)?;
+    batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline)?;
+    batch::<Portable>("portable", 1024, SimdLevel::Baseline)?;
+    threads(1 << 20)
+}
+
+const ROUNDS: usize = 7;
+
+/// The best rates of `ours` and `yardstick`, interleaved. Each returns how many steps it took.
+fn compare(mut ours: impl FnMut() -> usize, mut yardstick: impl FnMut() -> usize) -> (f64, f64) {
+    let rate = |run: &mut dyn FnMut() -> usize| {
+        let start = Instant::now();
+        let steps = run();
+        steps as f64 / start.elapsed().as_secs_f64()
+    };
+    (0..ROUNDS).fold((0.0, 0.0), |(best, bare), _| {
+        (
+            f64::max(best, rate(&mut ours)),
+            f64::max(bare, rate(&mut yardstick)),
+        )
+    })
+}
+
+fn report(name: &str, (rate, yardstick): (f64, f64)) -> io::Result<()> {
+    writeln!(io::stdout(), "{name} {rate:.0} {:.2}", rate / yardstick)
+}
+
+fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) -> io::Result<()> {
+    const STEPS: usize = 200_000;
+    let mut rng = Pcg64::new(0);
+    let actions: Vec<Action> = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
+    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
+    let ours = || {
+        for &action in &actions {
+            if black_box(acrobot.step(action)).done() {
+                acrobot.reset();
+            }
+        }
+        STEPS
+    };
+    let bare = || {
+        yardstick(&actions);
+        STEPS
+    };
+    report(name, compare(ours, bare))
+}
+
+fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) -> io::Result<()> {
+    let steps = (2_000_000 / len).max(2);
+    let mut play = Play::<A>::new(len);
+    if !level.is_available() {
+        return writeln!(
+            io::stdout(),
+            "batch_{arithmetic}_{len} needs {level:?}, which this machine does not have"
+        );
+    }
+    play.batch.set_simd_level(level);
+    for (suffix, observe) in [("", false), ("_observations", true)] {
+        let mut ours = || {
+            for _ in 0..steps {
+                play.draw_actions();
+                play.step(observe, Batch::step);
+            }
+            steps * len
+        };
+        let name = format!("batch_{arithmetic}_{len}{suffix}");
+        for (fma, flavour) in [(true, ""), (false, "_nofma")] {
+            let name = format!("{name}{flavour}");
+            match Lanes::new(fma) {
+                Some(mut bare) => report(&name, compare(&mut ours, || bare.run()))?,
+                None => writeln!(
+                    io::stdout(),
+                    "{name} has no yardstick, because that needs AVX2 and FMA"
+                )?,
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Steps on all cores; the ratio is to the same steps on one core. The actions stay the same, because only the step
+/// runs on all cores.
+fn threads(len: usize) -> io::Result<()> {
+    let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
+    let rates = compare(
+        || many.step(false, Batch::par_step),
+        || one.step(false, Batch::step),
+    );
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    report(&format!("batch_fast_{len}_threads_{threads}"), rates)
+}

@@ -1,0 +1,161 @@
+//! Sixteen fixed episodes and a batch, and a digest of every bit of each.
+
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
+
+use crate::Digest;
+
+/// Adds every bit of the state and of the observation.
+fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: Observation) {
+    for x in <[A::Scalar; 4]>::from(acrobot.state()) {
+        digest.add(x.to_f64().to_bits());
+    }
+    for x in seen.to_array() {
+        digest.add(x.to_bits().into());
+    }
+}
+
+/// Every bit of one episode, from its initial state to its end, and of the next initial state. Even episodes have random
+/// actions, odd ones torque against θ̇1.
+pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
+    let mut digest = Digest::default();
+    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(episode));
+    let mut actions = Pcg64::new(episode);
+    add_seen(&mut digest, acrobot.inner(), acrobot.inner().observation());
+    loop {
+        let action = if episode.is_multiple_of(2) {
+            Action::sample(&mut actions)
+        } else if acrobot.inner().state().dtheta1 > A::Scalar::ZERO {
+            Action::Negative
+        } else {
+            Action::Positive
+        };
+        let step = acrobot.step(action);
+        add_seen(&mut digest, acrobot.inner(), step.observation);
+        digest.add(step.reward.to_bits().into());
+        digest.add(u64::from(step.terminated) << 1 | u64::from(step.truncated));
+        if step.done() {
+            let start = acrobot.reset();
+            add_seen(&mut digest, acrobot.inner(), start);
+            return digest.0;
+        }
+    }
+}
+
+/// How many of the sixteen episodes have the expected digests.
+pub fn equal<A: Arithmetic>(expected: &[u64; 16]) -> usize {
+    let found = (0..).map(digest::<A>).zip(expected);
+    found.filter(|(found, expected)| found == *expected).count()
+}
+
+/// Every bit that a batch of twenty in `Fast` returns in 200 steps under torque against θ̇1, which ends episodes. It is
+/// the same for any width `N`.
+#[inline(never)] // one after the other, in 16 KiB
+pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
+    const LEN: usize = 20;
+    let (blocks, generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]);
+    let Ok(mut batch) = Batch::<Fast, _, _, N>::new(42, blocks, generators) else {
+        return 0;
+    };
+    batch.set_autoreset(Autoreset::SameStep);
+    let mut digest = Digest::default();
+    let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
+    let (mut rows, mut finals) = ([[0.0; 6]; LEN], [[0.0; 6]; LEN]);
+    for _ in 0..200 {
+        let actions = rows.map(|[.., dtheta1, _]| match dtheta1 > 0.0 {
+            true => Action::Negative,
+            false => Action::Positive,
+        });
+        let buffers = StepBuffers {
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+            observations: Observations::Rows(&mut rows),
+            final_observations: Observations::Rows(&mut finals),
+        };
+        if batch.step(&actions, buffers).is_err() {
+            return 0;
+        }
+        let seen = rows.iter().chain(&finals).flatten().chain(&rewards);
+        seen.for_each(|x| digest.add(x.to_bits().into()));
+        terminated.iter().for_each(|&x| digest.add(x.into()));
+    }
+    digest.0
+}
+
+pub const BATCH: u64 = 0xeae8_bc44_fb2b_ab5e;
+
+pub const REFERENCE: [u64; 16] = [
+    0x1814_77bc_77f4_e827,
+    0x62fd_2977_7e14_1128,
+    0x840d_1d07_b054_b2f9,
+    0x8862_e1f0_bcde_9dc1,
+    0x2e7e_9bbb_5a6a_11d6,
+    0x60ea_3e5b_fdf7_39de,
+    0xbd49_1819_7654_92be,
+    0x60a4_198e_edfe_33d6,
+    0xe9e6_9a47_d45c_4d5b,
+    0xfad8_6477_0dcb_78bf,
+    0x371f_f9c4_4179_c8f7,
+    0x4816_3de3_832b_82fc,
+    0x5e96_d08b_f61d_b839,
+    0x8540_3f3f_d2c3_812e,
+    0x64bc_4990_b254_82e0,
+    0x040b_848a_68ed_993b,
+];
+pub const PORTABLE: [u64; 16] = [
+    0xeb3c_f23f_71fa_31d2,
+    0xb098_0e0a_2eea_dcf6,
+    0x7af9_cb7c_29f7_cb31,
+    0xde8b_5c34_8279_9555,
+    0x7126_4e5f_f9f9_84e2,
+    0xa1f5_0827_bf27_42a6,
+    0x0ea6_9d11_fbec_1106,
+    0xd317_e228_2287_4003,
+    0x2aac_c3ac_1648_d04a,
+    0x7803_729c_a592_a113,
+    0x78be_f4c9_934f_0894,
+    0x62d2_df5e_b4dc_b835,
+    0x7cba_1845_27cc_46bc,
+    0x3ed1_c4ed_c1de_74c2,
+    0x5b5e_106e_cde0_2469,
+    0x64dd_4806_c0b9_2d75,
+];
+pub const FAST: [u64; 16] = [
+    0xa0f2_48e0_a096_4e5e,
+    0x5d8d_ef03_d7b1_356a,
+    0x5c68_e56a_db61_e0bb,
+    0xaeb1_f46b_83d3_eb96,
+    0x549d_7292_3fbf_b62f,
+    0xcda3_a90b_ef1d_b8b5,
+    0x9ab1_6d5c_afdf_78ec,
+    0x82f4_200b_dc4f_48b4,
+    0x119c_3901_757b_39eb,
+    0xacc2_491c_6f29_603a,
+    0x772d_c2e8_35fd_0d55,
+    0xcd30_724f_d0de_9c29,
+    0x7a45_677e_dcc5_b567,
+    0x89cf_002d_68f0_1a07,
+    0x92b4_9274_9578_9170,
+    0xca8f_2fe9_54b2_2733,
+];
+pub const MICRO: [u64; 16] = [
+    0x80b5_5cda_994d_906d,
+    0xfd9a_26c5_8dbf_dfd2,
+    0xe974_b345_20a1_ea9d,
+    0xeefd_ec91_9636_7234,
+    0x735d_a6d6_acfa_64bf,
+    0x21a2_ee5d_af74_e2b4,
+    0xc7f1_3659_ce4b_25b1,
+    0x6629_9bd0_fcba_77eb,
+    0x023f_97a7_2002_9a81,
+    0x3ea0_3dea_270f_a6d6,
+    0x25d5_1bd3_b25d_299d,
+    0x7aa1_ed34_3de0_09a5,
+    0x0b0a_e4e7_6f06_370c,
+    0xf38c_f8c7_9cdb_c59f,
+    0xce74_2a79_e838_f1da,
+    0x9e60_c410_dbe6_2ec1,
+];

@@ -1,0 +1,13 @@
+//! The bits that every target must compute: episodes, a batch, a training and drawings, with digests of all their bits.
+//!
+//! The crate's tests compare these digests on the machine that builds, the program of this crate on any other target, and the
+//! firmware of `examples/cortex-m` while it draws and learns.
+
+#![no_std]
+
+mod digest;
+pub mod episodes;
+pub mod oled;
+pub mod training;
+
+pub use digest::Digest;

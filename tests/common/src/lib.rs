@@ -1,0 +1,59 @@
+//! What several tests share.
+
+pub mod canvas;
+pub mod formats;
+mod recording;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use acrobot::State;
+
+pub use bits::Digest;
+pub use recording::*;
+
+/// The largest difference of the four numbers; angles that differ by a whole turn are equal.
+pub fn distance(x: State, y: State) -> f64 {
+    let angle = |x: f64, y: f64| {
+        let difference = (x - y).abs();
+        difference.min((difference - std::f64::consts::TAU).abs())
+    };
+    angle(x.theta1, y.theta1)
+        .max(angle(x.theta2, y.theta2))
+        .max((x.dtheta1 - y.dtheta1).abs())
+        .max((x.dtheta2 - y.dtheta2).abs())
+}
+
+/// Fails with the text that a page of the docs should contain. Line breaks do not count.
+pub fn assert_says(page: &str, text: &str) {
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let written = words(str::from_utf8(&read(page)).unwrap());
+    assert!(
+        written.contains(&words(text)),
+        "measured, and not in {page}: {text}"
+    );
+}
+
+/// Compares with a file of `tests/data/`. With `UPDATE_SNAPSHOTS` in the environment it writes the file again.
+pub fn assert_snapshot(name: &str, found: &str) {
+    let path = format!("tests/data/{name}");
+    if std::env::var_os("UPDATE_SNAPSHOTS").is_some() {
+        fs::write(absolute(&path), found).unwrap();
+    } else {
+        assert!(
+            read(&path) == found.as_bytes(),
+            "{name} differs from:\n{found}"
+        );
+    }
+}
+
+fn absolute(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../..")
+        .join(path)
+}
+
+/// A file of the repository.
+fn read(path: &str) -> Vec<u8> {
+    fs::read(absolute(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}

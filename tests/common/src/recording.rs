@@ -1,0 +1,185 @@
+//! Episodes and steps that `tests/data/record.py` recorded from Gymnasium.
+
+use std::hint::black_box;
+use std::io::Write;
+use std::sync::LazyLock;
+
+use acrobot::arithmetic::{Arithmetic, Host};
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::{Acrobot, Action, Params, ResetOptions, State};
+use bits::Digest;
+
+use crate::read;
+
+pub const STEPS: usize = 500;
+
+/// One of the episodes that `tests/data/record.py` recorded.
+pub struct Episode {
+    pub seed: SeedSequence,
+    pub bounds: StartBounds,
+    pub params: Params,
+    pub actions: Vec<Action>,
+    /// The initial state, and the state after each action.
+    pub states: Vec<State>,
+    pub rewards: Vec<f32>,
+    pub terminated: Vec<bool>,
+    pub start_observation: [f32; 6],
+    pub observations: Digest,
+}
+
+impl Episode {
+    /// An acrobot in the episode's initial state.
+    pub fn start<A: Arithmetic>(&self) -> Acrobot<A> {
+        let mut acrobot = Acrobot::<A>::new(0);
+        acrobot.set_params(self.params.cast()).unwrap();
+        acrobot.reset_with(ResetOptions {
+            seed: Some(self.seed.clone()),
+            bounds: Some(self.bounds),
+        });
+        acrobot
+    }
+}
+
+/// Versions, a digest of the C library's functions, and the episodes.
+pub struct Recording {
+    pub versions: String,
+    pub library: Digest,
+    pub episodes: Vec<Episode>,
+}
+
+pub static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
+    let text = read("tests/data/episodes.txt");
+    let text = str::from_utf8(&text).unwrap();
+    let bytes = read("tests/data/episodes.bin");
+    let mut bytes = &bytes[..];
+    let mut lines = text.lines();
+    let versions = lines.next().unwrap().trim_start_matches("# ").to_owned();
+    let mut lines = lines.filter(|line| !line.starts_with('#'));
+    let library = lines.next().unwrap().strip_prefix("library ").unwrap();
+    let library = Digest(u64::from_str_radix(library, 16).unwrap());
+    let episodes = lines.map(|line| read_episode(line, &mut bytes)).collect();
+    assert!(
+        bytes.is_empty(),
+        "episodes.bin and episodes.txt do not belong together"
+    );
+    Recording {
+        versions,
+        library,
+        episodes,
+    }
+});
+
+/// Whether this platform's sin, cos and pow are those that the episodes were recorded with. `Host`'s bits depend on
+/// them. If they differ, this writes to stderr directly, because the test harness captures `eprintln!`.
+pub fn is_recorded_library() -> bool {
+    let mut rng = Pcg64::new(0);
+    let mut digest = Digest::default();
+    for _ in 0..100_000 {
+        let x = black_box(uniform(&mut rng, -30.0, 30.0));
+        let (sin, cos) = Host::sin_cos(x);
+        for y in [sin, cos, Host::square(x)] {
+            digest.add(y.to_bits());
+        }
+    }
+    if digest == RECORDING.library {
+        return true;
+    }
+    let message = format!(
+        "BIT PARITY IS NOT TESTED: sin, cos or pow differ here from those of {}",
+        RECORDING.versions
+    );
+    assert!(std::env::var_os("REQUIRE_PARITY").is_none(), "{message}");
+    let _ = writeln!(std::io::stderr(), "{message}");
+    false
+}
+
+fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
+    let fields: Vec<&str> = line.split(' ').collect();
+    let [decimal, low, high, dynamics, noise, dt] = fields[..] else {
+        panic!("not six fields: {line}")
+    };
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let mut take = |n| {
+        let (head, tail) = bytes.split_at(n);
+        *bytes = tail;
+        head
+    };
+    let f32s = |bytes: &[u8]| -> Vec<f32> {
+        let words = bytes.as_chunks().0.iter();
+        words.map(|x| f32::from_le_bytes(*x)).collect()
+    };
+    Episode {
+        seed: decimal.parse().unwrap(),
+        bounds: StartBounds::new(number(low), number(high)).unwrap(),
+        params: Params {
+            dynamics: match dynamics {
+                "book" => Dynamics::Book,
+                "nips" => Dynamics::Nips,
+                _ => panic!("unknown dynamics {dynamics}"),
+            },
+            torque_noise: number(noise),
+            dt: number(dt),
+            ..Params::DEFAULT
+        },
+        actions: take(STEPS)
+            .iter()
+            .map(|&n| Action::try_from(n).unwrap())
+            .collect(),
+        states: f64s(take((STEPS + 1) * 32))
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|y| State::from(*y))
+            .collect(),
+        rewards: take(STEPS).iter().map(|&x| f32::from(x as i8)).collect(),
+        terminated: take(STEPS).iter().map(|&x| x == 1).collect(),
+        start_observation: f32s(take(24)).try_into().unwrap(),
+        observations: Digest(u64::from_le_bytes(take(8).try_into().unwrap())),
+    }
+}
+
+fn f64s(bytes: &[u8]) -> Vec<f64> {
+    let words = bytes.as_chunks().0.iter();
+    words.map(|x| f64::from_le_bytes(*x)).collect()
+}
+
+/// A single recorded step, from a state anywhere within the bounds.
+pub struct RecordedStep {
+    pub params: Params,
+    pub state: State,
+    pub action: Action,
+    pub next: State,
+}
+
+pub fn recorded_steps() -> Vec<RecordedStep> {
+    let numbers = f64s(&read("tests/data/steps.bin"));
+    let (records, rest) = numbers.as_chunks();
+    assert!(rest.is_empty());
+    records.iter().map(read_step).collect()
+}
+
+fn read_step(record: &[f64; 23]) -> RecordedStep {
+    let state = |y: &[f64]| State::from(<[f64; 4]>::try_from(y).unwrap());
+    RecordedStep {
+        params: Params {
+            length1: record[0],
+            length2: record[1],
+            mass1: record[2],
+            mass2: record[3],
+            center_of_mass1: record[4],
+            center_of_mass2: record[5],
+            inertia1: record[6],
+            inertia2: record[6],
+            dt: record[7],
+            max_velocity1: record[8],
+            max_velocity2: record[9],
+            torques: [record[10], record[11], record[12]],
+            dynamics: [Dynamics::Book, Dynamics::Nips][record[13] as usize],
+            ..Params::DEFAULT
+        },
+        state: state(&record[14..18]),
+        action: Action::try_from(record[18] as u8).unwrap(),
+        next: state(&record[19..23]),
+    }
+}

@@ -1,0 +1,12 @@
+//! Promise 3, no panic, no hang and no NaN, for any input: properties of all public functions in every arithmetic.
+//! `PROPTEST_CASES=60000 PROPTEST_RNG_SEED=7 cargo test --release --test properties` tries more and other cases.
+
+#[macro_use]
+mod given;
+
+mod draws;
+mod environments;
+mod pictures;
+mod snapshots;
+mod steps;
+mod values;
