@@ -24,7 +24,7 @@ SURVIVORS = ROOT / ".ci/mutants.txt"
 SHARDS = os.cpu_count() if len(sys.argv) == 1 else 1
 
 # `examples` is not of the library, `sines` tests one file, and `batch` takes half a minute without optimization.
-OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"examples", "sines", "batch"})
+OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines", "batch"} | {"properties"})
 ROUNDS = [
     (["src/arithmetic*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
     (["src/arithmetic/reference*"], ["sines"]),

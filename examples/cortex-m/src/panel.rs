@@ -19,8 +19,8 @@ pub struct Panel {
     pub unknown: bool,
 }
 
-impl Panel {
-    pub fn new() -> Self {
+impl Default for Panel {
+    fn default() -> Self {
         Self {
             memory: [0; 1024],
             window: [0, 127, 0, 7],
@@ -30,7 +30,9 @@ impl Panel {
             unknown: false,
         }
     }
+}
 
+impl Panel {
     fn receive(&mut self, bytes: &[u8]) {
         self.received += bytes.len() as u32;
         match bytes {

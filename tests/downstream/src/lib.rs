@@ -8,10 +8,10 @@ use core::convert::Infallible;
 use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{Batch, Block, Observations, StepBuffers};
 use acrobot::env::{Env, Space, make};
-use acrobot::numpy::Pcg64;
+use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Lean, Pendulum};
 use acrobot::trajectory::Trajectory;
-use acrobot::{Acrobot, Action, Error, Fast, State, TimeLimit};
+use acrobot::{Acrobot, Action, Error, Fast, Portable, State, TimeLimit};
 use critical_section::Mutex;
 use rand_core::TryRng;
 
@@ -40,6 +40,23 @@ fn an_interrupt_steps_a_static() {
         let (acrobot, past) = &*DEVICE.borrow_ref(cs);
         assert_eq!((acrobot.elapsed(), past.len()), (10, 4));
     });
+}
+
+/// Here libm is the newest that the crate allows. `Portable` has its sines.
+#[test]
+fn the_newest_libm_has_the_sines_of_portables_recorded_bits() {
+    let mut rng = Pcg64::new(0);
+    let mut digest = 0xcbf2_9ce4_8422_2325_u64;
+    for _ in 0..1_000_000 {
+        let (sin, cos) = Portable::sin_cos(uniform(&mut rng, -100.0, 100.0));
+        for y in [sin, cos] {
+            digest = (digest ^ y.to_bits()).wrapping_mul(0x100_0000_01b3);
+        }
+    }
+    assert_eq!(
+        digest, 0xb387_b2f4_253a_40a4,
+        "{digest:#018x}: see docs/determinism.md"
+    );
 }
 
 /// A controller steps the pendulum alone, from a state that the compiler has checked.

@@ -81,7 +81,7 @@ fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
 
 /// Plays an episode on a display. Returns whether it reached the goal.
 fn draw(env: Env, policy: impl Fn(&State<f32>) -> Action) -> bool {
-    let panel = RefCell::new(Panel::new());
+    let panel = RefCell::new(Panel::default());
     let interface = I2CDisplayInterface::new(Bus(&panel));
     let mut display = Ssd1306::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
         .into_buffered_graphics_mode();

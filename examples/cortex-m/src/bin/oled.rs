@@ -16,7 +16,7 @@ use ssd1306::{I2CDisplayInterface, Ssd1306};
 
 #[entry]
 fn main() -> ! {
-    let panel = RefCell::new(Panel::new());
+    let panel = RefCell::new(Panel::default());
     let interface = I2CDisplayInterface::new(Bus(&panel));
     let mut display = Ssd1306::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
         .into_buffered_graphics_mode();
