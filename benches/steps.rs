@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
-use acrobot::batch::{Batch, Block};
+use acrobot::batch::Batch;
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use divan::counter::ItemsCount;
@@ -101,10 +101,7 @@ fn reset<A: Arithmetic>(bencher: Bencher) {
 
 #[divan::bench(args = SIZES)]
 fn seed_a_batch(bencher: Bencher, len: usize) {
-    let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
-    let generators = vec![Pcg64::UNSEEDED; len];
-    let mut batch =
-        Batch::<Fast, _, _>::new(0, blocks, generators).expect("a block for each 16 generators");
+    let mut batch = Play::<Fast>::new(len).batch;
     let mut seed = 0_u64;
     bencher.counter(ItemsCount::new(len)).bench_local(|| {
         seed += 1;

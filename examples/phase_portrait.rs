@@ -12,9 +12,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use acrobot::numpy::SeedSequence;
-use acrobot::{Acrobot, Action, Portable, State, TimeLimit};
+use acrobot::{Acrobot, Portable, State, TimeLimit};
 use clap::Parser;
-use examples_common::{exit, files};
+use examples_common::{bang_bang, exit, files};
 use plotters::prelude::*;
 
 use examples_common::svg::{Area, svg};
@@ -62,12 +62,7 @@ fn record(seed: &SeedSequence) -> Vec<Sample> {
     };
     let mut samples = vec![sample(&acrobot)];
     loop {
-        let against = acrobot.inner().state().dtheta1 > 0.0;
-        let step = acrobot.step(if against {
-            Action::Negative
-        } else {
-            Action::Positive
-        });
+        let step = acrobot.step(bang_bang(acrobot.inner().state().dtheta1));
         samples.push(sample(&acrobot));
         if step.done() {
             return samples;

@@ -14,9 +14,9 @@ use std::process::ExitCode;
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Frame, Theme};
-use acrobot::{Acrobot, Action, Portable, State, TimeLimit};
+use acrobot::{Acrobot, Portable, State, TimeLimit};
 use clap::Parser;
-use examples_common::{animation, exit, files};
+use examples_common::{animation, bang_bang, exit, files};
 
 /// Draws an episode as FILE.gif and a strip of its frames as FILE.png, or one state as a PNG.
 #[derive(Parser)]
@@ -85,12 +85,7 @@ fn figures(seed: &SeedSequence) -> Vec<Figure> {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(seed.clone().into()));
     let mut figures = vec![Figure::new(acrobot.inner())];
     loop {
-        let against = acrobot.inner().state().dtheta1 > 0.0;
-        let action = if against {
-            Action::Negative
-        } else {
-            Action::Positive
-        };
+        let action = bang_bang(acrobot.inner().state().dtheta1);
         let step = acrobot.step(action);
         let torque = acrobot.inner().params().torque(action) as f32;
         figures.push(Figure::new(acrobot.inner()).with_torque(torque));

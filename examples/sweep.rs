@@ -31,7 +31,7 @@ use acrobot::batch::{Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, Fast, Params};
 use clap::Parser;
-use examples_common::{exit, files};
+use examples_common::{bang_bang, exit, files};
 use indicatif::ProgressBar;
 use plotters::prelude::*;
 use rayon::prelude::*;
@@ -176,11 +176,7 @@ fn play(
     };
     for step in 1..=LIMIT {
         for (action, &[.., dtheta1, _]) in actions.iter_mut().zip(&observations) {
-            *action = if dtheta1 > 0.0 {
-                Action::Negative
-            } else {
-                Action::Positive
-            };
+            *action = bang_bang(dtheta1);
         }
         batch.step(
             &actions,

@@ -9,6 +9,7 @@ use acrobot::physics::{Dynamics, StartBounds};
 use acrobot::{
     Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, Step, TimeLimit,
 };
+use bits::against;
 
 type Blocks<A, const N: usize> = Vec<Block<<A as Arithmetic>::Scalar, N>>;
 
@@ -151,14 +152,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
 
     /// Torque against θ̇1, which reaches the goal.
     fn swinging(&self) -> Vec<Action> {
-        let actions =
-            self.alone.iter().map(
-                |alone| match alone.inner().state().dtheta1 > A::Scalar::ZERO {
-                    true => Action::Negative,
-                    false => Action::Positive,
-                },
-            );
-        actions.collect()
+        let velocities = self.alone.iter().map(|alone| alone.inner().state().dtheta1);
+        velocities.map(against).collect()
     }
 
     fn swing(&mut self, steps: u32) {

@@ -5,7 +5,7 @@ use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
 
-use crate::Digest;
+use crate::{Digest, against};
 
 /// Adds every bit of the state and of the observation.
 fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: Observation) {
@@ -27,10 +27,8 @@ pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
     loop {
         let action = if episode.is_multiple_of(2) {
             Action::sample(&mut actions)
-        } else if acrobot.inner().state().dtheta1 > A::Scalar::ZERO {
-            Action::Negative
         } else {
-            Action::Positive
+            against(acrobot.inner().state().dtheta1)
         };
         let step = acrobot.step(action);
         add_seen(&mut digest, acrobot.inner(), step.observation);
@@ -64,10 +62,7 @@ pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
     let (mut rows, mut finals) = ([[0.0; 6]; LEN], [[0.0; 6]; LEN]);
     for _ in 0..200 {
-        let actions = rows.map(|[.., dtheta1, _]| match dtheta1 > 0.0 {
-            true => Action::Negative,
-            false => Action::Positive,
-        });
+        let actions = rows.map(|[.., dtheta1, _]| against(dtheta1));
         let buffers = StepBuffers {
             rewards: &mut rewards,
             terminated: &mut terminated,

@@ -11,3 +11,15 @@ pub mod oled;
 pub mod training;
 
 pub use digest::Digest;
+
+use acrobot::Action;
+use acrobot::arithmetic::Real;
+
+/// The policy of these episodes: torque against θ̇1, in rad/s. It reaches the goal.
+pub fn against<S: Real>(dtheta1: S) -> Action {
+    if dtheta1 > S::ZERO {
+        Action::Negative
+    } else {
+        Action::Positive
+    }
+}

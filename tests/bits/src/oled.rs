@@ -5,18 +5,16 @@ use acrobot::{Acrobot, Action, Fast, TimeLimit};
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::pixelcolor::BinaryColor;
 
+use crate::against;
+
 /// The acrobot in its initial state.
 pub fn start() -> TimeLimit<Acrobot<Fast>> {
     TimeLimit::v1(Acrobot::new(42))
 }
 
-/// Its policy: torque against θ̇1.
-pub fn against(acrobot: &Acrobot<Fast>) -> Action {
-    if acrobot.state().dtheta1 > 0.0 {
-        Action::Negative
-    } else {
-        Action::Positive
-    }
+/// Its policy.
+pub fn policy(acrobot: &Acrobot<Fast>) -> Action {
+    against(acrobot.state().dtheta1)
 }
 
 /// Draws the initial state and every step to the end of the episode. Calls `shown` after each frame.

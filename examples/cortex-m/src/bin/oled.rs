@@ -23,7 +23,7 @@ fn main() -> ! {
     let mut digest = Digest::default();
     let (mut frames, mut first, mut failed) = (0, 0, display.init().is_err());
 
-    let drawn = oled::play(&mut display, oled::start(), oled::against, |display| {
+    let drawn = oled::play(&mut display, oled::start(), oled::policy, |display| {
         let before = panel.borrow().received;
         failed |= display.flush().is_err();
         let panel = panel.borrow();
