@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Self
 
+__all__ = ["Acrobot", "Batch", "check_start_bounds"]
+
 @final
 class Acrobot:
     """Parameters and a state, in Gymnasium's arithmetic."""
