@@ -102,6 +102,16 @@ fn gif_frames(path: &str) -> usize {
     count
 }
 
+/// A picture's text, which is a whole SVG.
+fn svg(path: &str) -> String {
+    let text = fs::read_to_string(path).unwrap();
+    assert!(
+        text.starts_with("<svg") && text.ends_with("</svg>\n"),
+        "{path}"
+    );
+    text
+}
+
 fn png(path: &str) -> (u32, u32, Vec<u8>) {
     let file = std::io::Cursor::new(fs::read(path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();
