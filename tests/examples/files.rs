@@ -1,197 +1,158 @@
 //! Examples write a file whole or not at all, and read no more than can be valid.
 
-use std::fs::{self, File};
+use std::ffi::OsStr;
+use std::fs::{self, File, Permissions};
+use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{PermissionsExt, symlink};
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
 
-use super::{Folder, command, gif_frames, limited, printed, rejected, run};
+use super::{Folder, printed, rejected};
+use examples_common::files::write;
+
+/// `command` in a shell with these limits.
+fn limited(limits: &str, command: &Command) -> Command {
+    let mut shell = Command::new("sh");
+    shell.arg("-c").arg(format!(r#"{limits}; exec "$0" "$@""#));
+    shell.arg(command.get_program()).args(command.get_args());
+    shell.current_dir(command.get_current_dir().unwrap());
+    shell
+}
 
 /// A signal or a crash can end an example at any time. A file that has its final name is complete then.
 #[test]
 fn a_killed_example_leaves_no_truncated_file() {
-    let folder = Folder::new("killed");
-    let episode = folder.file("episode.gif");
-    let pictures = folder.0.to_str().unwrap();
-    for (example, arguments, name) in [
-        (
-            "render_episode",
-            ["--out", &episode].as_slice(),
-            "episode.gif",
-        ),
-        (
-            "swing_up",
-            &["--episodes", "10", "--pictures", pictures],
-            "swing_up.gif",
-        ),
-    ] {
-        let mut example = command(example, arguments);
-        let mut child = example.stdout(Stdio::null()).spawn().unwrap();
-        let path = folder.file(name);
-        let start = Instant::now();
-        while fs::metadata(&path).is_err() && start.elapsed() < Duration::from_secs(100) {
-            sleep(Duration::from_millis(1));
-        }
-        child.kill().unwrap();
-        child.wait().unwrap();
-        assert!(gif_frames(&path) > 50, "{name}");
+    let folder = Folder::new();
+    let mut swing_up = folder.command("swing_up --episodes 100");
+    let mut child = swing_up.stdout(Stdio::null()).spawn().unwrap();
+    let start = Instant::now();
+    while !folder.path("swing_up.gif").exists() && start.elapsed() < Duration::from_secs(100) {
+        sleep(Duration::from_millis(1));
     }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(folder.gif_frames("swing_up.gif") > 50);
 }
 
 /// Nothing is left of a file that does not fit, and an older file keeps its bytes.
 #[test]
 fn a_failed_write_changes_nothing() {
-    for (example, arguments, name) in [
-        ("render_episode", "--out FOLDER/a.gif", "a.gif"),
-        ("render_episode", "--state 1,2 --out FOLDER/a.png", "a.png"),
-        ("phase_portrait", "--out FOLDER/a.svg", "a.svg"),
-        (
-            "sutton1996",
-            "--runs 1 --episodes 9 --csv FOLDER/a.csv --picture FOLDER/a.svg",
-            "a.svg",
-        ),
-        (
-            "sweep",
-            "--episodes 400 --csv FOLDER/null.csv --picture FOLDER/a.svg",
-            "a.svg",
-        ),
-        ("swing_up", "--episodes 9 --save FOLDER/a.bin", "a.bin"),
-    ] {
-        let folder = Folder::new(&format!("too-large-{example}-{name}"));
-        symlink("/dev/null", folder.file("null.csv")).unwrap();
-        let arguments = arguments.replace("FOLDER", folder.0.to_str().unwrap());
-        let arguments: Vec<&str> = arguments.split(' ').collect();
-        let (path, before) = (folder.file(name), names(&folder.0));
-        // 512 bytes a file: the CSV of nine episodes fits, pictures and weights do not.
-        let limits = "trap '' XFSZ; ulimit -f 1";
-        for old in [None, Some("old")] {
-            if let Some(old) = old {
-                fs::write(&path, old).unwrap();
-            }
-            let output = limited(limits, example, &arguments).output().unwrap();
-            let errors = String::from_utf8(output.stderr).unwrap();
-            assert_eq!(output.status.code(), Some(2), "{example}: {errors}");
-            let reason = format!("cannot write {path}: File too large");
-            assert!(errors.contains(&reason), "{errors}");
-            assert_eq!(fs::read_to_string(&path).ok().as_deref(), old, "{example}");
-            let _ = fs::remove_file(&path);
-            let _ = fs::remove_file(folder.file("a.csv"));
-            assert_eq!(names(&folder.0), before, "{example}");
-        }
-    }
+    let folder = Folder::new();
+    // 512 bytes a file.
+    let limits = "trap '' XFSZ; ulimit -f 1";
+    let mut portrait = limited(limits, &folder.command("phase_portrait --out a.svg"));
+    let mut reject = || {
+        let errors = rejected(&mut portrait);
+        let reason = "cannot write a.svg: File too large";
+        assert!(errors.contains(reason), "{errors}");
+    };
+    reject();
+    assert!(folder.names().is_empty());
+    fs::write(folder.path("a.svg"), "old").unwrap();
+    reject();
+    assert_eq!(folder.names(), ["a.svg"]);
+    assert_eq!(folder.read("a.svg"), b"old");
 }
 
-fn names(folder: &Path) -> Vec<std::ffi::OsString> {
-    let files = fs::read_dir(folder).unwrap();
-    files.map(|file| file.unwrap().file_name()).collect()
+/// A failed write of any file is an error, also if the bytes fit into a buffer.
+#[test]
+fn a_full_disk_is_an_error() {
+    for (line, file) in [
+        ("render_episode --state 1,2", "frame.png"),
+        ("render_episode", "episode.gif"),
+        ("render_episode", "episode.png"),
+        ("phase_portrait", "portrait.svg"),
+        ("sutton1996 --runs 1 --episodes 2", "sutton1996.csv"),
+        ("sutton1996 --runs 1 --episodes 2", "sutton1996.svg"),
+        ("sweep --episodes 1 --masses 1 --torques 1", "sweep.csv"),
+        ("sweep --episodes 1 --masses 1 --torques 1", "sweep.svg"),
+        ("swing_up --episodes 100 --save weights", "weights"),
+        ("swing_up --episodes 100", "learning_curve.svg"),
+        ("swing_up --episodes 100", "values.svg"),
+        ("swing_up --episodes 100", "swing_up.gif"),
+    ] {
+        let folder = Folder::new();
+        symlink("/dev/full", folder.path(file)).unwrap();
+        let output = folder.command(line).output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{file}: {errors}");
+        assert!(errors.starts_with("error: cannot write "), "{errors}");
+        let reason = format!("{file}: No space left");
+        assert!(errors.contains(&reason), "{errors}");
+        let text = String::from_utf8(output.stdout).unwrap();
+        // The results of learning are printed although a picture cannot be written.
+        let is_printed = line == "swing_up --episodes 100";
+        assert_eq!(text.contains("\nlearnt "), is_printed, "{file}: {text}");
+        assert_eq!(text.is_empty(), !is_printed, "{file}: {text}");
+    }
 }
 
 /// Only a regular file is replaced.
 #[test]
 fn a_link_a_pipe_and_permissions_are_kept() {
-    let folder = Folder::new("special");
-    let save = |path: &str| {
-        run(
-            "swing_up",
-            &["--quiet", "--episodes", "3", "--save", path],
-            "",
-        )
-    };
-
-    let [link, file] = ["link", "file"].map(|name| folder.file(name));
+    let folder = Folder::new();
+    let [link, file, pipe] = ["link", "file", "pipe"].map(|name| folder.path(name));
     symlink("file", &link).unwrap();
-    for _ in ["a new file", "an old one"] {
-        printed(save(&link));
-        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert!(fs::read(&file).unwrap().starts_with(b"TILE"));
+    for bytes in ["a new file", "an old one"] {
+        write(&link, bytes).unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), bytes);
     }
 
-    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
-    printed(save(&file));
+    fs::set_permissions(&file, Permissions::from_mode(0o640)).unwrap();
+    write(&file, "protected").unwrap();
     let mode = fs::metadata(&file).unwrap().permissions().mode();
     assert_eq!(mode & 0o777, 0o640);
 
-    let pipe = folder.file("pipe");
-    assert!(
-        Command::new("mkfifo")
-            .arg(&pipe)
-            .status()
-            .unwrap()
-            .success()
-    );
+    let mkfifo = Command::new("mkfifo").arg(&pipe).status();
+    assert!(mkfifo.unwrap().success());
     let reader = {
         let pipe = pipe.clone();
         spawn(move || fs::read(pipe).unwrap())
     };
-    printed(save(&pipe));
-    let weights = fs::read(&file).unwrap();
-    assert!(reader.join().unwrap() == weights);
-
-    let output = save("/dev/stdout");
-    assert!(output.status.success());
-    assert!(output.stdout.starts_with(&weights));
-    assert_eq!(names(&folder.0).len(), 3);
+    write(&pipe, "piped").unwrap();
+    assert_eq!(reader.join().unwrap(), b"piped");
+    assert_eq!(folder.names(), ["file", "link", "pipe"]);
 }
 
 #[test]
-fn a_path_may_be_a_folder_empty_or_not_unicode() {
-    use std::ffi::OsStr;
-    use std::os::unix::ffi::OsStrExt;
-
-    let folder = Folder::new("paths");
-    fs::create_dir(folder.file("a.svg")).unwrap();
-    fs::create_dir(folder.file("a.gif")).unwrap();
-    for (example, option, name) in [
-        ("phase_portrait", "--out", "a.svg"),
-        ("render_episode", "--out", "a.gif"),
+fn a_path_may_be_a_folder_too_long_or_not_unicode() {
+    let folder = Folder::new();
+    for (path, reason) in [
+        (folder.path("."), "Is a directory"),
+        (folder.path(&"n".repeat(300)), "File name too long"),
     ] {
-        let path = folder.file(name);
-        let errors = rejected(example, &[option, &path], "");
-        let reason = format!("cannot write {path}: Is a directory");
-        assert!(errors.contains(&reason), "{errors}");
-        let errors = rejected(example, &[option, ""], "");
-        assert!(
-            errors.contains("a value is required for '--out"),
-            "{errors}"
-        );
+        let error = write(&path, "").unwrap_err();
+        let expected = format!("cannot write {}: {reason}", path.display());
+        assert!(error.starts_with(&expected), "{error}");
     }
-    for (example, option, name) in [
-        ("phase_portrait", "--out", &b"\xff.svg"[..]),
-        ("render_episode", "--out", b"\xff.gif"),
-        ("swing_up", "--save", b"\xff"),
+    for (line, name) in [
+        ("phase_portrait --out", &b"\xff.svg"[..]),
+        ("render_episode --out", b"\xff.gif"),
+        ("swing_up --quiet --episodes 3 --save", b"\xff"),
     ] {
-        let path = folder.0.join(OsStr::from_bytes(name));
-        let mut example = command(example, &[]);
-        if option == "--save" {
-            example.args(["--quiet", "--episodes", "3"]);
-        }
-        printed(example.arg(option).arg(&path).output().unwrap());
-        assert!(path.is_file());
+        let name = OsStr::from_bytes(name);
+        printed(folder.command(line).arg(name));
+        assert!(folder.0.join(name).is_file());
     }
-    let name = format!("{}.svg", "n".repeat(300));
-    let errors = rejected("phase_portrait", &["--out", &folder.file(&name)], "");
-    assert!(errors.contains("File name too long"), "{errors}");
 }
 
 /// In a gigabyte of memory.
 #[test]
 fn endless_input_is_rejected() {
-    let limits = "ulimit -v 1000000";
-    for example in ["swing_up", "plan"] {
-        let arguments = ["--load", "/dev/zero"];
-        let output = limited(limits, example, &arguments).output().unwrap();
-        let errors = String::from_utf8(output.stderr).unwrap();
-        let reason = "/dev/zero: weights must have at most 131072 bytes, got more";
-        assert_eq!(output.status.code(), Some(2), "{errors}");
+    let folder = Folder::new();
+    let weights = "/dev/zero: weights must have at most 131072 bytes, got more";
+    for (line, reason) in [
+        ("swing_up --load /dev/zero", weights),
+        ("plan --load /dev/zero", weights),
+        (
+            "trace --seed 1",
+            "the input must have at most 67108864 bytes, got more",
+        ),
+    ] {
+        let mut command = limited("ulimit -v 1000000", &folder.command(line));
+        let errors = rejected(command.stdin(File::open("/dev/zero").unwrap()));
         assert!(errors.contains(reason), "{errors}");
     }
-    let mut trace = limited(limits, "trace", &["--seed", "1"]);
-    let trace = trace.stdin(File::open("/dev/zero").unwrap());
-    let output = trace.output().unwrap();
-    let errors = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{errors}");
-    let reason = "the input must have at most 67108864 bytes, got more";
-    assert!(errors.contains(reason), "{errors}");
 }

@@ -1,4 +1,4 @@
-//! The examples do what their docs say, run as a user runs them.
+//! The examples do what their docs say, run as programs.
 
 mod exit;
 #[cfg(target_os = "linux")]
@@ -6,82 +6,85 @@ mod files;
 mod pictures;
 mod plan;
 mod policies;
+mod rejections;
 mod sutton1996;
 mod sweep;
 mod swing_up;
 mod trace;
 
-use std::fs;
-use std::io::Write;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::Command;
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::{env, fs};
 
-fn command(example: &str, arguments: &[&str]) -> Command {
-    let mut cargo = cargo(example);
-    cargo.arg("--").args(arguments);
-    cargo
-}
-
-/// As `command`, in a shell with these limits.
-#[cfg(target_os = "linux")]
-fn limited(limits: &str, example: &str, arguments: &[&str]) -> Command {
-    let mut cargo = cargo(example);
-    let script = format!(r#"{limits}; exec "$0" "$@""#);
-    let runner = format!("target.'cfg(unix)'.runner = ['sh', '-c', {script:?}]");
-    cargo.args(["--config", &runner, "--"]).args(arguments);
-    cargo
-}
-
-fn cargo(example: &str) -> Command {
+/// The folder with the examples' programs, which Cargo builds once. `cargo run` would look for changes before each run,
+/// and take 0.1 s for it: most runs take less.
+static EXAMPLES: LazyLock<PathBuf> = LazyLock::new(|| {
+    let test = env::current_exe().unwrap();
+    // The test is `target/debug/deps/examples-…`.
+    let profile = test.ancestors().nth(2).unwrap();
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["run", "--quiet", "--example", example]);
+    cargo.args(["build", "--quiet", "--examples", "--target-dir"]);
+    cargo.arg(profile.parent().unwrap());
     if !cfg!(debug_assertions) {
         cargo.arg("--release");
     }
-    cargo.current_dir(env!("CARGO_MANIFEST_DIR"));
-    cargo
-}
+    let built = cargo.current_dir(env!("CARGO_MANIFEST_DIR")).status();
+    assert!(built.unwrap().success());
+    profile.join("examples")
+});
 
-fn run(example: &str, arguments: &[&str], input: &str) -> Output {
-    let mut cargo = command(example, arguments);
-    let pipes = cargo
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    let mut child = pipes.spawn().unwrap();
-    // An example that rejects its arguments does not read.
-    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
-    child.wait_with_output().unwrap()
-}
-
-fn printed(output: Output) -> String {
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{}: {errors}", output.status);
-    String::from_utf8(output.stdout).unwrap()
-}
-
-fn rejected(example: &str, arguments: &[&str], input: &str) -> String {
-    let output = run(example, arguments, input);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}");
-    assert!(
-        output.stdout.is_empty(),
-        "an example that rejects its input prints nothing"
-    );
-    String::from_utf8(output.stderr).unwrap()
-}
-
-/// An empty folder for one test, removed when the test ends.
+/// An empty folder in which examples run, removed when the test ends.
 struct Folder(PathBuf);
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let folder = std::env::temp_dir().join(format!("acrobot-{name}-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
+    fn new() -> Self {
+        static NUMBER: AtomicU32 = AtomicU32::new(0);
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let folder = env::temp_dir().join(format!("acrobot-{}-{number}", std::process::id()));
+        // A killed test with the same process id may have left one.
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir(&folder).unwrap();
         Self(folder)
     }
 
-    fn file(&self, name: &str) -> String {
-        self.0.join(name).to_str().unwrap().to_owned()
+    /// An example and its arguments, separated by spaces.
+    fn command(&self, line: &str) -> Command {
+        let mut words = line.split(' ');
+        let mut command = Command::new(EXAMPLES.join(words.next().unwrap()));
+        command.args(words).current_dir(&self.0);
+        command
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap()
+    }
+
+    /// A picture's text, which is a whole SVG.
+    fn svg(&self, name: &str) -> String {
+        let text = String::from_utf8(self.read(name)).unwrap();
+        assert!(text.starts_with("<svg") && text.ends_with("</svg>\n"));
+        text
+    }
+
+    fn gif_frames(&self, name: &str) -> usize {
+        let bytes = self.read(name);
+        let gif = gif::DecodeOptions::new().read_info(&bytes[..]).unwrap();
+        gif.into_iter().map(Result::unwrap).count()
+    }
+
+    /// All files, in alphabetical order.
+    fn names(&self) -> Vec<String> {
+        let files = fs::read_dir(&self.0).unwrap();
+        let name = |file: fs::DirEntry| file.file_name().into_string().unwrap();
+        let mut names: Vec<_> = files.map(|file| name(file.unwrap())).collect();
+        names.sort();
+        names
     }
 }
 
@@ -91,21 +94,18 @@ impl Drop for Folder {
     }
 }
 
-fn gif_frames(path: &str) -> usize {
-    let mut frames = gif::DecodeOptions::new()
-        .read_info(fs::File::open(path).unwrap())
-        .unwrap();
-    let mut count = 0;
-    while frames.read_next_frame().unwrap().is_some() {
-        count += 1;
-    }
-    count
+fn printed(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}: {errors}");
+    String::from_utf8(output.stdout).unwrap()
 }
 
-fn png(path: &str) -> (u32, u32, Vec<u8>) {
-    let file = std::io::Cursor::new(fs::read(path).unwrap());
-    let mut reader = png::Decoder::new(file).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut bytes).unwrap();
-    (info.width, info.height, bytes)
+/// Returns the error message. A rejected command prints nothing on standard output.
+fn rejected(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{command:?}: {errors}");
+    assert!(output.stdout.is_empty(), "{command:?}");
+    errors
 }

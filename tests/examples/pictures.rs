@@ -1,168 +1,55 @@
-//! Pictures are those of the README, and bad input and failed writes are errors.
+//! Pictures are those of the README, of a state and of a seed.
 
-use std::fs;
+use std::fs::File;
+use std::io::BufReader;
 
-use super::{Folder, command, gif_frames, png, printed, rejected, run};
+use super::{Folder, printed};
+use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Frame};
 use acrobot::{Acrobot, Portable, State};
 
+fn png(folder: &Folder, name: &str) -> (u32, u32, Vec<u8>) {
+    let file = BufReader::new(File::open(folder.path(name)).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    (info.width, info.height, bytes)
+}
+
 #[test]
 fn a_state_is_rendered_as_its_frame() {
-    let folder = Folder::new("state");
-    let out = folder.file("frame.png");
-    printed(run(
-        "render_episode",
-        &["--state", "-0.6,1.5", "--out", &out],
-        "",
-    ));
-    let mut acrobot = Acrobot::<Portable>::new(0);
-    acrobot
-        .set_state(State {
-            theta1: -0.6,
-            theta2: 1.5,
-            ..State::default()
-        })
-        .unwrap();
-    let expected = Frame::of(&Figure::new(&acrobot));
-    assert_eq!(png(&out), (500, 500, expected.bytes().to_vec()));
+    let folder = Folder::new();
+    printed(&mut folder.command("render_episode --state -0.6,1.5"));
+    let state = State::from([-0.6, 1.5, 0.0, 0.0]);
+    let pendulum = Pendulum::<Portable>::at(state).unwrap();
+    let expected = Frame::of(&Figure::new(&Acrobot::from_pendulum(pendulum, ())));
+    let expected = (500, 500, expected.bytes().to_vec());
+    assert!(png(&folder, "frame.png") == expected);
 }
 
 /// The example draws the README's first picture.
 #[test]
 fn the_episode_is_the_readmes_picture() {
-    let folder = Folder::new("episode");
-    let (gif, strip) = (folder.file("episode.gif"), folder.file("episode.png"));
-    printed(run("render_episode", &["--out", &gif], ""));
+    let folder = Folder::new();
+    printed(&mut folder.command("render_episode"));
+    let recorded = include_bytes!("../../examples/episode.gif");
     assert!(
-        fs::read(&gif).unwrap() == include_bytes!("../../examples/episode.gif"),
+        folder.read("episode.gif") == recorded,
         "examples/episode.gif differs"
     );
-    let (width, height, pixels) = png(&strip);
+    let (width, height, pixels) = png(&folder, "episode.png");
     assert_eq!((width, height), (8 * 150, 150));
+    // The colour of the joints.
     assert!(pixels.chunks(3).any(|pixel| pixel == [0, 204, 204]));
-
-    assert_eq!(gif_frames(&gif), 95);
 }
 
 #[test]
-fn the_portrait_has_its_four_panels() {
-    let folder = Folder::new("portrait");
-    let out = folder.file("portrait.svg");
-    assert!(printed(run("phase_portrait", &["--out", &out], "")).contains("94 steps"));
-    let svg = fs::read_to_string(&out).unwrap();
-    for title in [
-        "angles",
-        "velocities",
-        "energy",
-        "phase portrait",
-        "rad/s",
-        "time (s)",
-    ] {
-        assert!(svg.contains(title), "{title}");
-    }
-    assert!(svg.matches("<polyline").count() >= 6);
-}
-
-#[test]
-fn drawing_examples_reject_with_a_reason() {
-    for (example, arguments, reason) in [
-        ("render_episode", "--state 1", "must be two numbers in rad"),
-        (
-            "render_episode",
-            "--state nan,1",
-            "theta1 must be a finite number of rad, got NaN",
-        ),
-        (
-            "render_episode",
-            "--out picture.png",
-            "--out must end in .gif, got picture.png",
-        ),
-        (
-            "render_episode",
-            "--out no/such/folder.gif",
-            "cannot write no/such/folder.gif",
-        ),
-        (
-            "phase_portrait",
-            "--out no/such/folder.svg",
-            "must be a name that ends in .svg, in an existing folder",
-        ),
-        (
-            "render_episode",
-            "--state 1,1 --out frame.gif",
-            "--out must end in .png, got frame.gif",
-        ),
-        (
-            "phase_portrait",
-            "--out portrait.png",
-            "must be a name that ends in .svg, in an existing folder",
-        ),
-        (
-            "energy_control",
-            "--limit 0",
-            "must be finite and above 0 N m",
-        ),
-        ("energy_control", "--episodes 0", "0 is not in 1.."),
-    ] {
-        let arguments: Vec<&str> = arguments.split(' ').collect();
-        let errors = rejected(example, &arguments, "");
-        assert!(errors.contains(reason), "{errors}");
-    }
-}
-
-/// A failed write is an error, also if the bytes fit into a buffer.
-#[test]
-#[cfg(target_os = "linux")]
-fn a_full_disk_is_an_error() {
-    let folder = Folder::new("full");
-    for name in ["full.csv", "full.gif", "full.png", "full.svg"] {
-        std::os::unix::fs::symlink("/dev/full", folder.file(name)).unwrap();
-    }
-    for (example, arguments, name) in [
-        ("render_episode", "--state 1,2 --out", "full.png"),
-        ("render_episode", "--seed 42 --out", "full.gif"),
-        ("phase_portrait", "--out", "full.svg"),
-        (
-            "sutton1996",
-            "--runs 1 --episodes 9 --csv FOLDER/a.csv --picture",
-            "full.svg",
-        ),
-        ("sutton1996", "--runs 1 --episodes 9 --csv", "full.csv"),
-        (
-            "sweep",
-            "--episodes 4 --masses 1,2 --torques 1,2 --csv FOLDER/a.csv --picture",
-            "full.svg",
-        ),
-        ("sweep", "--episodes 400 --csv", "full.csv"),
-    ] {
-        let path = folder.file(name);
-        let arguments = arguments.replace("FOLDER", folder.0.to_str().unwrap());
-        let mut arguments: Vec<&str> = arguments.split(' ').collect();
-        arguments.push(&path);
-        let errors = rejected(example, &arguments, "");
-        let reason = format!("cannot write {path}: No space left");
-        assert!(errors.contains(&reason), "{example}: {errors}");
-    }
-    for name in [
-        "learning_curve.svg",
-        "values.svg",
-        "swing_up.gif",
-        "weights",
-    ] {
-        let folder = Folder::new(&format!("full-{name}"));
-        let path = folder.file(name);
-        std::os::unix::fs::symlink("/dev/full", &path).unwrap();
-        let mut swing_up = command("swing_up", &["--episodes", "20"]);
-        swing_up.args(["--pictures", folder.0.to_str().unwrap()]);
-        if name == "weights" {
-            swing_up.args(["--save", &path]);
-        }
-        let output = swing_up.output().unwrap();
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{name}: {errors}");
-        let reason = format!("cannot write {path}: No space left");
-        assert!(errors.contains(&reason), "{errors}");
-        let text = String::from_utf8(output.stdout).unwrap();
-        assert!(name == "weights" || text.contains("\nlearnt "), "{text}");
-    }
+fn the_portrait_is_of_its_seed() {
+    let folder = Folder::new();
+    let [one, other] = [("42", "94 steps"), ("43", "steps")].map(|(seed, steps)| {
+        let mut portrait = folder.command(&format!("phase_portrait --seed {seed}"));
+        assert!(printed(&mut portrait).contains(steps));
+        folder.svg("portrait.svg")
+    });
+    assert!(one != other, "the seed must change the picture");
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{Folder, command, gif_frames, printed, rejected, run};
+use super::{Folder, printed, rejected};
 
 /// The figures of the line that `--quiet` prints: when it was solved, the greedy policy's mean and standard deviation,
 /// and its misses. Checks the form of the line.
@@ -19,21 +19,18 @@ fn figures(line: &str) -> (Option<u32>, f64, f64, u32) {
     (solved_at, mean, sd, misses as u32)
 }
 
-fn swing_up(arguments: &str, files: &[&str]) -> String {
-    let arguments: Vec<&str> = arguments
-        .split_whitespace()
-        .chain(files.iter().copied())
-        .collect();
-    printed(run("swing_up", &arguments, ""))
+impl Folder {
+    fn swing_up(&self, arguments: &str) -> String {
+        printed(&mut self.command(&format!("swing_up {arguments}")))
+    }
 }
 
 #[test]
 fn swing_up_learns_the_same_from_the_same_seed() {
-    let folder = Folder::new("weights");
+    let folder = Folder::new();
     let [one, two] = ["one", "two"].map(|name| {
-        let path = folder.file(name);
-        let line = swing_up("--quiet --episodes 300 --seed 1", &["--save", &path]);
-        (line, fs::read(&path).unwrap())
+        let line = folder.swing_up(&format!("--quiet --episodes 300 --seed 1 --save {name}"));
+        (line, folder.read(name))
     });
     assert!(one == two, "{} {}", one.0, two.0);
     assert_eq!(one.1.len(), 65_536 + 20);
@@ -41,28 +38,24 @@ fn swing_up_learns_the_same_from_the_same_seed() {
     let (solved_at, mean, sd, misses) = figures(&one.0);
     assert!(solved_at.is_some_and(|n| (100..=115).contains(&n)) && misses == 0);
     assert!(mean > -100.0 && sd > 0.0, "{}", one.0);
-    let other = folder.file("other");
-    swing_up("--quiet --episodes 300 --seed 2", &["--save", &other]);
+    folder.swing_up("--quiet --episodes 300 --seed 2 --save other");
     assert!(
-        fs::read(other).unwrap() != one.1,
+        folder.read("other") != one.1,
         "the seed must change the weights"
     );
 
     // Loaded weights give the same figures, and are saved unchanged.
-    let (one, again) = (folder.file("one"), folder.file("again"));
-    let files = ["--load", &one, "--save", &again];
-    let line = swing_up("--quiet --episodes 0 --seed 1", &files);
+    let line = folder.swing_up("--quiet --episodes 0 --seed 1 --load one --save again");
     assert_eq!(figures(&line), (None, mean, sd, misses));
-    assert!(fs::read(one).unwrap() == fs::read(again).unwrap());
+    assert!(folder.read("again") == one.1);
 }
 
 /// Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
 /// Learning must improve on this baseline by more than chance.
 #[test]
 fn swing_up_is_better_than_torque_against_the_velocity() {
-    let folder = Folder::new("swing-up");
-    let pictures = ["--pictures", folder.0.to_str().unwrap()];
-    let output = swing_up("--seed 42", &pictures);
+    let folder = Folder::new();
+    let output = folder.swing_up("--seed 42");
     let row = |policy: &str| -> [f64; 3] {
         let row = output.lines().find_map(|line| line.strip_prefix(policy));
         let row = row.unwrap_or_else(|| panic!("{output}")).replace('±', "");
@@ -76,128 +69,55 @@ fn swing_up_is_better_than_torque_against_the_velocity() {
     assert_eq!([learnt[2], against[2]], [0.0, 0.0], "{output}");
     assert!(random[0] < -490.0 && random[2] > 900.0, "{output}");
 
-    // The curve from the first to the last episode, and the line of the reward threshold.
-    let curve = fs::read_to_string(folder.file("learning_curve.svg")).unwrap();
-    for text in ["Learning to swing up", "episode", "solved: -100", "1000"] {
-        assert!(curve.contains(text), "{text}");
-    }
-    let points = |line: &str| line.split('"').map(|part| part.matches(',').count()).max();
-    let lines = curve.match_indices("<polyline");
-    let long =
-        lines.filter(|&(at, _)| points(curve[at..].split("/>").next().unwrap()) >= Some(2000));
-    assert_eq!(long.count(), 2, "returns, and their running mean");
-
-    // Each cell, sixty shades of the colour bar and the background. The goal is grey, and symmetric.
-    let values = fs::read_to_string(folder.file("values.svg")).unwrap();
-    assert_eq!(values.matches("<rect").count(), 72 * 72 + 60 + 1);
-    let grey = values.matches("#BEBEBE").count();
-    assert!(
-        grey.is_multiple_of(2) && (500..1500).contains(&grey),
-        "{grey}"
-    );
-
     // The initial state and every step. An episode without the goal has 501 frames.
     let steps = output.split("last greedy episode, ").nth(1).unwrap();
     let steps: usize = steps.split(' ').next().unwrap().parse().unwrap();
-    assert_eq!(gif_frames(&folder.file("swing_up.gif")), steps + 1);
+    assert_eq!(folder.gif_frames("swing_up.gif"), steps + 1);
     assert!((50..200).contains(&steps), "{output}");
 
-    let untrained = figures(&swing_up("--quiet --episodes 0", &[]));
+    let untrained = figures(&folder.swing_up("--quiet --episodes 0"));
     assert_eq!(untrained, (None, against[0], against[1], 0));
 }
 
 #[test]
+fn swing_up_draws_what_it_has_learnt() {
+    let folder = Folder::new();
+    let [one, other] = [1, 2].map(|seed| {
+        folder.swing_up(&format!("--episodes 100 --seed {seed}"));
+        ["learning_curve.svg", "values.svg"].map(|name| folder.svg(name))
+    });
+    assert!(one[0] != other[0], "the seed must change the returns");
+    assert!(one[1] != other[1], "the seed must change the values");
+}
+
+#[test]
 fn swing_up_takes_every_preset_and_memory() {
+    let folder = Folder::new();
     for (memory, bytes) in [("8k", 8192), ("16k", 16384), ("32k", 32768), ("64k", 65536)] {
         for preset in ["fast", "quality"] {
-            let folder = Folder::new(&format!("{preset}-{memory}"));
-            let path = folder.file("weights");
-            let arguments = format!("--quiet --episodes 3 --preset {preset} --memory {memory}");
-            assert_eq!(figures(&swing_up(&arguments, &["--save", &path])).0, None);
-            assert_eq!(fs::read(path).unwrap().len(), bytes + 20);
+            let options = format!("--preset {preset} --memory {memory}");
+            let line = folder.swing_up(&format!("--quiet --episodes 3 {options} --save weights"));
+            assert_eq!(figures(&line).0, None);
+            assert_eq!(folder.read("weights").len(), bytes + 20);
         }
     }
 }
 
+/// The learner's own tests damage every byte.
 #[test]
 fn swing_up_rejects_weights_that_are_not_its_own() {
-    let folder = Folder::new("rejected-weights");
-    let weights = folder.file("weights");
-    swing_up("--quiet --episodes 3", &["--save", &weights]);
-    let bytes = fs::read(&weights).unwrap();
-    let changed = |at: usize| {
-        let mut bytes = bytes.clone();
-        bytes[at] ^= 2;
-        bytes
+    let folder = Folder::new();
+    folder.swing_up("--quiet --episodes 3 --save weights");
+    let rejects = |arguments: &str, reason: &str| {
+        let line = format!("swing_up --load weights --save out {arguments}");
+        let errors = rejected(&mut folder.command(line.trim_end()));
+        assert!(errors.contains(&format!("weights: {reason}")), "{errors}");
+        assert_eq!(folder.names(), ["weights"], "{errors}");
     };
-    for (bytes, arguments, reason) in [
-        (bytes[1..].to_vec(), "", "weights must begin with"),
-        (vec![], "", "weights must begin with"),
-        (changed(4), "", "weights must be of version 1, got 3"),
-        (
-            bytes[..65_555].to_vec(),
-            "",
-            "weights must have 65556 bytes, got 65555",
-        ),
-        (
-            [&bytes[..], &[0]].concat(),
-            "",
-            "weights must have 65556 bytes, got 65557",
-        ),
-        (
-            bytes.clone(),
-            "--memory 16k",
-            "weights must have 16404 bytes, got 65556",
-        ),
-        (changed(30_000), "", "damaged weights: "),
-        (changed(65_555), "", "damaged weights: "),
-        (bytes.clone(), "--preset quality", "weights must be of "),
-    ] {
-        fs::write(&weights, bytes).unwrap();
-        let out = folder.file("out");
-        let mut all: Vec<&str> = arguments.split_whitespace().collect();
-        let pictures = folder.0.to_str().unwrap();
-        all.extend(["--load", &weights, "--save", &out, "--pictures", pictures]);
-        let errors = rejected("swing_up", &all, "");
-        assert!(
-            errors.contains(&weights) && errors.contains(reason),
-            "{errors}"
-        );
-        assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1, "{errors}");
-    }
-}
-
-#[test]
-fn swing_up_rejects_before_it_learns() {
-    let folder = Folder::new("rejected-swing-up");
-    for (arguments, reason) in [
-        ("--preset slow", "possible values: fast, quality"),
-        ("--memory 12k", "possible values: 8k, 16k, 32k, 64k"),
-        ("--episodes -1", "-1 is not in 0..=4294967295"),
-        (
-            "--episodes 4294967296",
-            "4294967296 is not in 0..=4294967295",
-        ),
-        ("--seed -1", "got '-' as character 1"),
-        ("--load none/weights", "none/weights: "),
-        (
-            "--save none/weights",
-            "must be a file in an existing folder",
-        ),
-        ("--pictures none", "must be an existing folder"),
-    ] {
-        let arguments: Vec<&str> = arguments.split(' ').collect();
-        let mut swing_up = command("swing_up", &arguments);
-        if arguments[0] != "--pictures" {
-            swing_up.args(["--pictures", folder.0.to_str().unwrap()]);
-        }
-        let output = swing_up.output().unwrap();
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{errors}");
-        assert!(
-            output.stdout.is_empty() && errors.contains(reason),
-            "{errors}"
-        );
-        assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 0, "{errors}");
-    }
+    rejects("--memory 16k", "weights must have 16404 bytes, got 65556");
+    rejects("--preset quality", "weights must be of ");
+    let mut bytes = folder.read("weights");
+    bytes[30_000] ^= 2;
+    fs::write(folder.path("weights"), bytes).unwrap();
+    rejects("", "damaged weights: ");
 }
