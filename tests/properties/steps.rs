@@ -245,8 +245,7 @@ fn lanes_of_a_batch_are_as_one_alone() {
                 .collect();
             let mut rows = [[0.0; 6]; LEN];
             let mut terminated = [false; LEN];
-            // The first step has actions, the second torques.
-            for action in [Some(Action::Positive), None] {
+            for _ in 0..2 {
                 let buffers = StepBuffers {
                     rewards: &mut [0.0; LEN],
                     terminated: &mut terminated,
@@ -254,15 +253,9 @@ fn lanes_of_a_batch_are_as_one_alone() {
                     observations: Observations::Rows(&mut rows),
                     final_observations: Observations::None,
                 };
-                match action {
-                    Some(action) => batch.step(&[action; LEN], buffers).unwrap(),
-                    None => batch.step_torques(&torques, buffers).unwrap(),
-                }
+                batch.step_torques(&torques, buffers).unwrap();
                 for (i, alone) in alone.iter_mut().enumerate() {
-                    let step = match action {
-                        Some(action) => alone.step(action),
-                        None => alone.step_torque(torques[i]).unwrap(),
-                    };
+                    let step = alone.step_torque(torques[i]).unwrap();
                     assert_eq!(bits(batch.state(i).unwrap()), bits(alone.state()), "{i}");
                     let observation = step.observation.to_array();
                     assert_eq!(rows[i].map(f32::to_bits), observation.map(f32::to_bits));
