@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo install --locked gungraun-runner@0.20.0    # and the system's valgrind
-//! cargo bench --bench instructions
+//! cargo bench -p benches --bench instructions
 //! ```
 //!
 //! It fails if a count exceeds its limit: the measured count and 5 % for new compilers. It needs x86-64 with AVX2;
@@ -14,10 +14,10 @@ use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::batch::{Batch, SimdLevel};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use benches::Play;
 use gungraun::{
     Callgrind, EventKind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main,
 };
-use yardsticks::Play;
 
 /// About two episodes of a random policy, with their resets.
 const STEPS: usize = 1000;

@@ -1,4 +1,4 @@
-//! Steps per second: `cargo bench --bench steps`. The yardsticks are in the table, as `bare` and `batch_bare`; the example
+//! Steps per second: `cargo bench -p benches --bench steps`. The yardsticks are in the table, as `bare` and `batch_bare`; the example
 //! `throughput` has ratios to them.
 
 use std::time::Duration;
@@ -7,9 +7,9 @@ use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::batch::Batch;
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use benches::Play;
 use divan::counter::ItemsCount;
 use divan::{Bencher, Divan, black_box};
-use yardsticks::Play;
 
 fn main() {
     Divan::from_args()
@@ -45,8 +45,8 @@ fn alone<A: Arithmetic>(bencher: Bencher, how: &str) {
 fn bare(bencher: Bencher, bits: u32) {
     let actions = actions();
     let bare = match bits {
-        32 => yardsticks::bare_f32,
-        _ => yardsticks::bare_f64,
+        32 => benches::bare_f32,
+        _ => benches::bare_f64,
     };
     bencher
         .counter(ItemsCount::new(actions.len()))
@@ -83,7 +83,7 @@ fn batch_on_all_cores<A: Arithmetic>(bencher: Bencher, len: usize) {
 /// Handwritten AVX2 with eight lanes, with and without fused multiply-adds.
 #[divan::bench(args = ["fma", "nofma"])]
 fn batch_bare(bencher: Bencher, flavour: &str) {
-    if let Some(mut bare) = yardsticks::Lanes::new(flavour == "fma") {
+    if let Some(mut bare) = benches::Lanes::new(flavour == "fma") {
         let steps = bare.run();
         bencher
             .counter(ItemsCount::new(steps))

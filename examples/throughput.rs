@@ -19,8 +19,8 @@ use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::batch::{Batch, SimdLevel};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use benches::{Lanes, Play, bare_f32, bare_f64};
 use examples_common::exit;
-use yardsticks::{Lanes, Play, bare_f32, bare_f64};
 
 fn main() -> ExitCode {
     exit::status(measure())
