@@ -5,6 +5,7 @@ ARM's Technical Reference Manual (ARM DDI 0439, 3.3.1 and 7.2.3). It assumes mem
 refill the pipeline after a taken branch.
 """
 
+import functools
 import re
 import subprocess
 
@@ -19,6 +20,12 @@ def registers(operands):
     return sum(int(m[2]) - int(m[1]) + 1 if m[2] else 1 for m in names)
 
 
+@functools.cache
+def is_load(mnemonic):
+    return re.match(r"v?(ldr|str)", mnemonic) is not None
+
+
+@functools.cache
 def cost(mnemonic, operands, taken, after_load):
     stem = mnemonic.split(".")[0]
     branch = 2 if taken else 0
@@ -28,7 +35,7 @@ def cost(mnemonic, operands, taken, after_load):
         return 1 + registers(operands) + branch
     if re.match(r"ldrd|strd", stem):
         return 3
-    if re.match(r"v?(ldr|str)", stem):
+    if is_load(stem):
         # A load or store right after another is pipelined.
         return (1 if after_load else 2) + branch
     return 1 + branch
@@ -53,10 +60,11 @@ def per_instruction(image, most=None):
     cycles = instructions = steps = 0
     previous, after_load = None, False
     for line in qemu.stdout:
-        match = re.search(r"\[[0-9a-f]+/([0-9a-f]+)/", line)
-        if not match:
+        # Trace 0: 0x7f0000000000 [00800400/0000014c/00000110/ff020201]
+        _, *fields = line.split("/", 2)
+        if len(fields) < 2:
             continue
-        address = int(match[1], 16)
+        address = int(fields[0], 16)
         # A `nop` marks each step of the loop. Seeding comes before the first.
         if code[address][0] == "nop":
             steps += 1
@@ -69,7 +77,7 @@ def per_instruction(image, most=None):
             taken = address not in (previous + 2, previous + 4)
             instructions += 1
             cycles += cost(mnemonic, operands, taken, after_load)
-            after_load = re.match(r"v?(ldr|str)", mnemonic) is not None
+            after_load = is_load(mnemonic)
         previous = address
     qemu.kill()
     return cycles / instructions
