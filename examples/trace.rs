@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State};
 use clap::{Parser, ValueEnum};
 use examples_common::exit;
@@ -27,10 +27,10 @@ struct Options {
     #[arg(long)]
     seed: SeedSequence,
     /// Lower bound of the initial state, rad and rad/s.
-    #[arg(long, default_value_t = StartBounds::DEFAULT.low(), allow_hyphen_values = true)]
+    #[arg(long, default_value_t = ResetBounds::DEFAULT.low(), allow_hyphen_values = true)]
     low: f64,
     /// Upper bound of the initial state, rad and rad/s.
-    #[arg(long, default_value_t = StartBounds::DEFAULT.high(), allow_hyphen_values = true)]
+    #[arg(long, default_value_t = ResetBounds::DEFAULT.high(), allow_hyphen_values = true)]
     high: f64,
     /// Equations of motion.
     #[arg(long, value_enum, default_value = "book")]
@@ -76,7 +76,7 @@ const MOST: u64 = 1 << 26;
 
 /// Reads and checks everything before it prints the first line.
 fn trace<A: Arithmetic>(options: &Options) -> Result<(), Box<dyn Error>> {
-    let bounds = StartBounds::new(options.low, options.high)?;
+    let bounds = ResetBounds::new(options.low, options.high)?;
     let params = Params {
         dt: options.dt,
         torque_noise: options.noise,

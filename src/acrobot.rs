@@ -7,7 +7,7 @@ use crate::arithmetic::{Arithmetic, Portable, Real, SinCos};
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence, uniform};
 use crate::observation::Observation;
-use crate::physics::{Params, Pendulum, StartBounds, State, check_torque};
+use crate::physics::{Params, Pendulum, ResetBounds, State, check_torque};
 
 /// The mean return of 100 episodes from which on Gymnasium calls `Acrobot-v1` solved.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -43,14 +43,14 @@ impl<O, I> Step<O, I> {
 ///
 /// ```
 /// use acrobot::numpy::SeedSequence;
-/// use acrobot::physics::StartBounds;
+/// use acrobot::physics::ResetBounds;
 /// use acrobot::{Acrobot, Fast, ResetOptions};
 ///
 /// let mut acrobot = Acrobot::<Fast>::new(0);
 /// // env.reset(seed=42, options={"low": -0.2, "high": 0.2})
 /// acrobot.reset_with(ResetOptions {
 ///     seed: Some(SeedSequence::new(42)),
-///     bounds: Some(StartBounds::new(-0.2, 0.2)?),
+///     bounds: Some(ResetBounds::new(-0.2, 0.2)?),
 /// });
 /// # Ok::<(), acrobot::Error>(())
 /// ```
@@ -61,7 +61,7 @@ pub struct ResetOptions {
     pub seed: Option<SeedSequence>,
     /// The bounds that the initial state is drawn from. Without any, the environment's own: Gymnasium's, except for a
     /// [`Batch`](crate::batch::Batch) with others.
-    pub bounds: Option<StartBounds>,
+    pub bounds: Option<ResetBounds>,
 }
 
 /// One Acrobot: Gymnasium's environment without its wrappers.
@@ -152,17 +152,17 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
     /// An acrobot with the default parameters, in an initial state drawn from `rng`.
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {
-        let state = StartBounds::DEFAULT.draw(&mut rng).cast();
+        let state = ResetBounds::DEFAULT.draw(&mut rng).cast();
         Self::from_pendulum(Pendulum::unchecked(Params::default(), state), rng)
     }
 
-    /// Draws a new initial state from [`StartBounds::DEFAULT`] and returns what the agent sees of it.
+    /// Draws a new initial state from [`ResetBounds::DEFAULT`] and returns what the agent sees of it.
     pub fn reset(&mut self) -> Observation {
-        self.reset_within(StartBounds::DEFAULT)
+        self.reset_within(ResetBounds::DEFAULT)
     }
 
     /// Draws a new initial state from `bounds`.
-    pub fn reset_within(&mut self, bounds: StartBounds) -> Observation {
+    pub fn reset_within(&mut self, bounds: ResetBounds) -> Observation {
         self.pendulum.place(bounds.draw(&mut self.rng).cast());
         self.observe(self.pendulum.current_sin_cos())
     }

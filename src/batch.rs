@@ -43,7 +43,7 @@ use crate::acrobot::ResetOptions;
 use crate::arithmetic::{Arithmetic, Model};
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::physics::{StartBounds, State};
+use crate::physics::{ResetBounds, State};
 use crate::time_limit::V1;
 use block::{Actions, Drive, Torques};
 use buffers::{check_length, take, take_mut};
@@ -96,7 +96,7 @@ pub struct Batch<A: Arithmetic, B, G, const N: usize = 16> {
 #[derive(Clone, Debug)]
 struct Shared<A: Arithmetic> {
     model: Model<A>,
-    bounds: StartBounds,
+    bounds: ResetBounds,
     limit: NonZeroU32,
     autoreset: Autoreset,
 }
@@ -134,7 +134,7 @@ where
         let mut batch = Self {
             shared: Shared {
                 model: Model::DEFAULT,
-                bounds: StartBounds::DEFAULT,
+                bounds: ResetBounds::DEFAULT,
                 limit: V1,
                 autoreset: Autoreset::default(),
             },
@@ -162,8 +162,8 @@ where
     }
 
     /// Resets all acrobots, with initial states from `bounds`. Later resets draw from
-    /// [`start_bounds`](Self::start_bounds) again.
-    pub fn reset_within(&mut self, bounds: StartBounds) {
+    /// [`reset_bounds`](Self::reset_bounds) again.
+    pub fn reset_within(&mut self, bounds: ResetBounds) {
         self.reset_with(ResetOptions {
             seed: None,
             bounds: Some(bounds),
@@ -179,7 +179,7 @@ where
     }
 
     /// Gymnasium's `reset(seed=…, options=…)` of all acrobots. A seed seeds acrobot `i` with the `i`-th
-    /// of its children that it has not yet spawned. Without bounds [`start_bounds`](Self::start_bounds) are used.
+    /// of its children that it has not yet spawned. Without bounds [`reset_bounds`](Self::reset_bounds) are used.
     pub fn reset_with(&mut self, options: ResetOptions) {
         self.reset_some(core::iter::repeat(true), options);
     }

@@ -79,5 +79,5 @@ pub use params::{Dynamics, Params};
 pub use pendulum::{Pendulum, derivative, energy, mass_matrix, positions, tip_height};
 pub(crate) use pendulum::{check_torque, sin_cos};
 pub use rk4::rk4;
-pub use state::{StartBounds, State};
+pub use state::{ResetBounds, State};
 pub(crate) use step::step;

@@ -9,7 +9,7 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::physics::StartBounds;
+use crate::physics::ResetBounds;
 
 pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
 const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
@@ -128,7 +128,7 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
     }
 
     /// [`Acrobot::reset_within`], and the count starts again.
-    pub fn reset_within(&mut self, bounds: StartBounds) -> Observation {
+    pub fn reset_within(&mut self, bounds: ResetBounds) -> Observation {
         self.restart();
         self.inner.reset_within(bounds)
     }

@@ -6,7 +6,7 @@ use std::convert::Infallible;
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::{
-    Dynamics, Gymnasium, Lean, Pendulum, StartBounds, derivative, energy, mass_matrix, positions,
+    Dynamics, Gymnasium, Lean, Pendulum, ResetBounds, derivative, energy, mass_matrix, positions,
     tip_height, wrap,
 };
 use acrobot::trajectory::{Trajectory, Transition};
@@ -231,8 +231,8 @@ fn acrobots_are_equal_by_parameters_state_and_generator() {
 }
 
 #[test]
-fn start_bounds_return_both_bounds() {
-    let bounds = StartBounds::new(-0.2, 0.3).unwrap();
+fn reset_bounds_return_both_bounds() {
+    let bounds = ResetBounds::new(-0.2, 0.3).unwrap();
     assert_eq!((bounds.low(), bounds.high()), (-0.2, 0.3));
 }
 
@@ -248,7 +248,7 @@ fn a_seeded_reset_is_a_new_acrobot() {
 /// `reset_with` seeds as `reset_with_seed` if there is a seed, and draws from its bounds.
 #[test]
 fn resets_with_options_are_seeded_resets_within_bounds() {
-    let bounds = StartBounds::new(-3.0, 5.0).unwrap();
+    let bounds = ResetBounds::new(-3.0, 5.0).unwrap();
     let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(0));
     acrobot.step(Action::Zero);
     let options = ResetOptions {
@@ -487,7 +487,7 @@ fn custom_generators_draw_initial_states_and_noise() {
     assert_eq!(acrobot.inner().state(), drawn(-0.1, 0.1));
     acrobot.reset();
     assert_eq!(acrobot.inner().state(), drawn(-0.1, 0.1));
-    acrobot.reset_within(StartBounds::new(1.0, 2.0).unwrap());
+    acrobot.reset_within(ResetBounds::new(1.0, 2.0).unwrap());
     assert_eq!(acrobot.inner().state(), drawn(1.0, 2.0));
 
     let noisy = Params {

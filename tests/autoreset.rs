@@ -2,7 +2,7 @@
 
 use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, StepBuffers};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Fast, Params};
 
 type One = Batch<Fast, [Block; 1], [Pcg64; 1]>;
@@ -15,7 +15,7 @@ fn one(autoreset: Autoreset) -> One {
         ..Params::default()
     };
     batch.set_params(noisy).unwrap();
-    batch.set_start_bounds(StartBounds::new(0.5, 0.6).unwrap());
+    batch.set_reset_bounds(ResetBounds::new(0.5, 0.6).unwrap());
     batch.set_autoreset(autoreset);
     batch
 }

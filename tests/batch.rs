@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, Observations, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{
     Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, Step, TimeLimit,
 };
@@ -53,8 +53,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
     }
 
     fn start_within(&mut self, low: f64, high: f64) {
-        let bounds = StartBounds::new(low, high).unwrap();
-        self.batch.set_start_bounds(bounds);
+        let bounds = ResetBounds::new(low, high).unwrap();
+        self.batch.set_reset_bounds(bounds);
         self.batch.reset();
         self.reset_alone(|_, alone| {
             alone.reset_within(bounds);
@@ -106,7 +106,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
             final_observations: Observations::Rows(&mut finals),
         };
         step(&mut self.batch, buffers).unwrap();
-        let (autoreset, bounds) = (self.batch.autoreset(), self.batch.start_bounds());
+        let (autoreset, bounds) = (self.batch.autoreset(), self.batch.reset_bounds());
         let mut done = vec![false; len];
         for (i, alone) in self.alone.iter_mut().enumerate() {
             let mut last = [9.0; 6];
@@ -457,7 +457,7 @@ fn begins_in_given_states_as_one_alone() {
 #[test]
 fn resets_as_one_alone() {
     let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
-    let bounds = StartBounds::new(1.0, 2.0).unwrap();
+    let bounds = ResetBounds::new(1.0, 2.0).unwrap();
     // After 500 steps most wait for a reset, which these replace.
     for steps in [500, 3] {
         twins.play_randomly(steps);
@@ -493,7 +493,7 @@ fn resets_as_one_alone() {
             });
         }
     }
-    assert_eq!(twins.batch.start_bounds(), StartBounds::DEFAULT);
+    assert_eq!(twins.batch.reset_bounds(), ResetBounds::DEFAULT);
 }
 
 /// Torques for controllers, through ends in every mode, without and with noise.
@@ -537,7 +537,7 @@ fn masked_resets_are_resets_by_hand() {
         let mut twins = Twins::<A, N>::new(35, Autoreset::Disabled);
         twins.set_noise(0.3);
         twins.start_within(-1.0, 1.0);
-        let bounds = twins.batch.start_bounds();
+        let bounds = twins.batch.reset_bounds();
         let mut rng = Pcg64::new(7);
         let (mut ends, mut past) = (0, 0);
         let mut before = vec![false; 35];

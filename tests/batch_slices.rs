@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Error, Fast, Params, ResetOptions, State};
 
 type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
@@ -87,7 +87,7 @@ fn settings_are_returned_as_set() {
     assert_eq!(batch.len(), 3);
     assert_eq!(*batch.params(), Params::DEFAULT);
     assert_eq!(batch.simd_level(), SimdLevel::widest());
-    assert_eq!(batch.start_bounds(), StartBounds::DEFAULT);
+    assert_eq!(batch.reset_bounds(), ResetBounds::DEFAULT);
     assert_eq!(batch.limit().get(), 500);
     assert_eq!(batch.autoreset(), Autoreset::NextStep);
 
@@ -101,9 +101,9 @@ fn settings_are_returned_as_set() {
         batch.set_simd_level(level);
         assert_eq!(batch.simd_level(), level);
     }
-    let bounds = StartBounds::new(1.0, 2.0).unwrap();
-    batch.set_start_bounds(bounds);
-    assert_eq!(batch.start_bounds(), bounds);
+    let bounds = ResetBounds::new(1.0, 2.0).unwrap();
+    batch.set_reset_bounds(bounds);
+    assert_eq!(batch.reset_bounds(), bounds);
     batch.set_limit(NonZeroU32::MIN);
     assert_eq!(batch.limit(), NonZeroU32::MIN);
     for autoreset in [
@@ -143,10 +143,10 @@ fn resets_within_bounds_leave_the_batchs_bounds() {
             numbers.iter().all(|x| (low..=high).contains(x))
         })
     };
-    batch.set_start_bounds(StartBounds::new(1.0, 2.0).unwrap());
-    batch.reset_within(StartBounds::new(-4.0, -3.0).unwrap());
+    batch.set_reset_bounds(ResetBounds::new(1.0, 2.0).unwrap());
+    batch.reset_within(ResetBounds::new(-4.0, -3.0).unwrap());
     assert!(within(&batch, -4.0, -3.0));
-    assert_eq!(batch.start_bounds(), StartBounds::new(1.0, 2.0).unwrap());
+    assert_eq!(batch.reset_bounds(), ResetBounds::new(1.0, 2.0).unwrap());
     batch.reset();
     assert!(within(&batch, 1.0, 2.0));
 }

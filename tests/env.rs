@@ -10,7 +10,7 @@ use acrobot::env::{
     Options, RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make, make_with,
 };
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::render::{Figure, Frame};
 use acrobot::{
     Acrobot, Action, Fast, Observation, Params, Portable, ResetOptions, State, TimeLimit,
@@ -61,7 +61,7 @@ fn make_plays_gymnasiums_runs() {
 /// The first observation of a reset whose bounds are both `x`.
 fn reset_to(mut env: impl Env<Observation = DynObservation>, x: f64) -> Vec<f32> {
     let (observation, _) = env.reset_with(ResetOptions {
-        bounds: Some(StartBounds::new(x, x).unwrap()),
+        bounds: Some(ResetBounds::new(x, x).unwrap()),
         ..ResetOptions::default()
     });
     observation.as_slice().to_vec()

@@ -7,7 +7,7 @@ use std::str::FromStr;
 use acrobot::batch::{Batch, Block};
 use acrobot::env::{AcrobotEnv, Env, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Error, Fast, Observation, Portable};
 use rand_core::{Rng, SeedableRng};
 
@@ -247,7 +247,7 @@ fn uniform_draws_can_round_to_the_upper_bound() {
 fn seeds_and_bounds_are_made_in_a_const() {
     const SEQUENCE: SeedSequence = SeedSequence::from_words(&[42, 7]);
     const STATE: [u64; 4] = SEQUENCE.generate_state();
-    const BOUNDS: StartBounds = match StartBounds::new(-0.25, 0.5) {
+    const BOUNDS: ResetBounds = match ResetBounds::new(-0.25, 0.5) {
         Ok(bounds) => bounds,
         Err(_) => panic!(),
     };
@@ -257,13 +257,13 @@ fn seeds_and_bounds_are_made_in_a_const() {
     assert_eq!(SEQUENCE, SeedSequence::from_words(&words));
     assert_eq!(STATE, SeedSequence::from_words(&words).generate_state());
     assert_eq!(RNG, Pcg64::new(std::hint::black_box(42)));
-    assert_eq!(StartBounds::new(-0.25, 0.5), Ok(BOUNDS));
-    const { assert!(StartBounds::new(0.5, -0.25).is_err()) };
+    assert_eq!(ResetBounds::new(-0.25, 0.5), Ok(BOUNDS));
+    const { assert!(ResetBounds::new(0.5, -0.25).is_err()) };
 
     let mut acrobot = Acrobot::<Fast>::with_rng(RNG.clone());
     let mut twin = Acrobot::<Fast>::new(42);
     assert_eq!(acrobot, twin);
-    let bounds = StartBounds::new(-0.25, 0.5).unwrap();
+    let bounds = ResetBounds::new(-0.25, 0.5).unwrap();
     assert_eq!(acrobot.reset_within(BOUNDS), twin.reset_within(bounds));
 }
 

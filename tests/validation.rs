@@ -4,7 +4,7 @@
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Batch, Block};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Pendulum, StartBounds};
+use acrobot::physics::{Pendulum, ResetBounds};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
 
@@ -19,7 +19,7 @@ fn errors_say_what_was_wrong_and_what_is_valid() {
         params.validate()
     }
     fn bounds(low: f64, high: f64) -> Result<(), Error> {
-        StartBounds::new(low, high).map(drop)
+        ResetBounds::new(low, high).map(drop)
     }
     fn batch<const LEN: usize>() -> Result<Batch<Fast, [Block; 3], [Pcg64; LEN]>, Error> {
         Batch::new(1, [Block::EMPTY; 3], [Pcg64::UNSEEDED; LEN])
@@ -250,11 +250,11 @@ fn parameters_that_a_pendulum_rejects_change_nothing() {
 }
 
 #[test]
-fn bad_start_bounds_and_actions_are_rejected() {
+fn bad_reset_bounds_and_actions_are_rejected() {
     for value in NOT_FINITE.into_iter().chain([1e39, -1e39]) {
         for (name, bounds) in [
-            ("low", StartBounds::new(value, 0.1)),
-            ("high", StartBounds::new(-0.1, value)),
+            ("low", ResetBounds::new(value, 0.1)),
+            ("high", ResetBounds::new(-0.1, value)),
         ] {
             let text = bounds.unwrap_err().to_string();
             let start = format!("{name} must be within -3.4e38 and 3.4e38 rad");
@@ -265,7 +265,7 @@ fn bad_start_bounds_and_actions_are_rejected() {
         }
     }
     assert_eq!(
-        StartBounds::new(0.2, 0.1),
+        ResetBounds::new(0.2, 0.1),
         Err(Error::ReversedBounds {
             low: 0.2,
             high: 0.1

@@ -7,7 +7,7 @@ use super::{Autoreset, Observations, Shared, StepBuffers};
 use crate::arithmetic::{Arithmetic, Lanes, Real, SinCos};
 use crate::error::Error;
 use crate::numpy::{Pcg64, uniform};
-use crate::physics::{Params, StartBounds, State, check_torque, sin_cos, step};
+use crate::physics::{Params, ResetBounds, State, check_torque, sin_cos, step};
 
 /// The memory of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) consists of these.
 ///
@@ -99,7 +99,7 @@ impl<S: Real, const N: usize> Block<S, N> {
     pub(super) fn reset<A: Arithmetic<Scalar = S>>(
         &mut self,
         some: &[bool; N],
-        bounds: StartBounds,
+        bounds: ResetBounds,
         generators: &mut [Pcg64],
     ) {
         let mut generators = generators.iter_mut();

@@ -6,7 +6,7 @@ use super::{Autoreset, Batch, Block, SimdLevel, each_block};
 use crate::arithmetic::{Arithmetic, Model};
 use crate::error::Error;
 use crate::numpy::Pcg64;
-use crate::physics::{Params, StartBounds};
+use crate::physics::{Params, ResetBounds};
 
 impl<A, B, G, const N: usize> Batch<A, B, G, N>
 where
@@ -44,12 +44,12 @@ where
 
     /// The bounds of initial states.
     #[must_use]
-    pub fn start_bounds(&self) -> StartBounds {
+    pub fn reset_bounds(&self) -> ResetBounds {
         self.shared.bounds
     }
 
     /// Sets the bounds of initial states, from the next reset on.
-    pub fn set_start_bounds(&mut self, bounds: StartBounds) {
+    pub fn set_reset_bounds(&mut self, bounds: ResetBounds) {
         self.shared.bounds = bounds;
     }
 

@@ -8,7 +8,7 @@ use crate::acrobot::{Acrobot, ResetOptions, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::observation::Observation;
-use crate::physics::{Params, StartBounds, State};
+use crate::physics::{Params, ResetBounds, State};
 use crate::render::Figure;
 
 /// A kind of observation of an acrobot.
@@ -64,7 +64,7 @@ impl ObservationKind for Observation<4> {
 
 /// The largest velocities after a step or a reset with the default bounds, rad/s.
 fn highest_velocities(params: &Params<f32>) -> [f32; 2] {
-    let initial = StartBounds::DEFAULT.high() as f32;
+    let initial = ResetBounds::DEFAULT.high() as f32;
     [params.max_velocity1, params.max_velocity2].map(|limit| limit.max(initial))
 }
 

@@ -101,12 +101,12 @@ impl State<f64> {
 /// They are always finite, in order and within the range of `f32`, to which initial states are rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct StartBounds {
+pub struct ResetBounds {
     low: f64,
     high: f64,
 }
 
-impl StartBounds {
+impl ResetBounds {
     /// Gymnasium's bounds: from −0.1 to 0.1.
     pub const DEFAULT: Self = Self {
         low: -0.1,
@@ -119,11 +119,11 @@ impl StartBounds {
     /// bounds these.
     ///
     /// ```
-    /// use acrobot::physics::StartBounds;
+    /// use acrobot::physics::ResetBounds;
     ///
-    /// assert!(StartBounds::new(-0.2, 0.2).is_ok());
-    /// assert!(StartBounds::new(0.2, -0.2).is_err());
-    /// assert!(StartBounds::new(f64::NAN, 0.2).is_err());
+    /// assert!(ResetBounds::new(-0.2, 0.2).is_ok());
+    /// assert!(ResetBounds::new(0.2, -0.2).is_err());
+    /// assert!(ResetBounds::new(f64::NAN, 0.2).is_err());
     /// ```
     ///
     /// # Errors
@@ -166,7 +166,7 @@ impl StartBounds {
     }
 }
 
-impl Default for StartBounds {
+impl Default for ResetBounds {
     fn default() -> Self {
         Self::DEFAULT
     }

@@ -4,12 +4,12 @@ use std::num::NonZeroU32;
 
 use acrobot::env::{BoxSpace, Discrete, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Portable};
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng, TryRng};
 
-use crate::given::{Range, holds, number, start_bounds};
+use crate::given::{Range, holds, number, reset_bounds};
 
 /// A custom generator, which repeats these words.
 #[derive(Clone, Debug)]
@@ -66,7 +66,7 @@ fn uniform_draws_are_within_their_bounds() {
 /// Within the bounds rounded to `f32`, because initial states are `f32`.
 #[test]
 fn initial_states_are_within_their_bounds() {
-    holds(1000, (generator(), start_bounds()), |(rng, bounds)| {
+    holds(1000, (generator(), reset_bounds()), |(rng, bounds)| {
         let mut acrobot = Acrobot::<Portable, _>::with_rng(rng);
         acrobot.reset_within(bounds);
         let [low, high] = [bounds.low(), bounds.high()].map(|bound| f64::from(bound as f32));
@@ -77,16 +77,16 @@ fn initial_states_are_within_their_bounds() {
 }
 
 #[test]
-fn start_bounds_are_ordered_and_in_f32() {
+fn reset_bounds_are_ordered_and_in_f32() {
     let bound = || prop_oneof![number::<f64>(Range::Any), prop::num::f64::ANY];
     holds(2000, (bound(), bound()), |(low, high)| {
         let in_f32 = |x: f64| x.abs() <= f32::MAX.into();
-        match StartBounds::new(low, high) {
+        match ResetBounds::new(low, high) {
             Ok(bounds) => assert_eq!((bounds.low(), bounds.high()), (low, high)),
             Err(_) => assert!(!in_f32(low) || !in_f32(high) || low > high),
         }
         let valid = in_f32(low) && in_f32(high) && low <= high;
-        assert_eq!(StartBounds::new(low, high).is_ok(), valid);
+        assert_eq!(ResetBounds::new(low, high).is_ok(), valid);
     });
 }
 

@@ -6,11 +6,11 @@ use acrobot::env::{
     acrobot_v0, acrobot_v1, check_env, make_with,
 };
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Action, Params, ResetOptions, State, TimeLimit};
 use proptest::prelude::*;
 
-use crate::given::{Number, Range, action, holds, params, start_bounds, state};
+use crate::given::{Number, Range, action, holds, params, reset_bounds, state};
 
 /// Parameters that are also valid in `f32`.
 fn fitting() -> impl Strategy<Value = Params> {
@@ -41,7 +41,7 @@ fn environments_of_any_parameters_keep_the_contract() {
 
 #[derive(Clone, Debug)]
 enum Call {
-    Reset(Option<u64>, StartBounds),
+    Reset(Option<u64>, ResetBounds),
     Step(Action),
     SetState(State),
     SetParams(Params),
@@ -50,7 +50,7 @@ enum Call {
 }
 
 fn call() -> impl Strategy<Value = Call> {
-    let bounds = prop_oneof![Just(StartBounds::DEFAULT), start_bounds()];
+    let bounds = prop_oneof![Just(ResetBounds::DEFAULT), reset_bounds()];
     let reset = (any::<Option<u64>>(), bounds);
     prop_oneof![
         2 => reset.prop_map(|(seed, bounds)| Call::Reset(seed, bounds)),

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::{Dynamics, Pendulum, StartBounds};
+use acrobot::physics::{Dynamics, Pendulum, ResetBounds};
 use acrobot::{Acrobot, Action, Params, State};
 use proptest::num::{f32, f64};
 use proptest::prelude::*;
@@ -177,14 +177,14 @@ pub fn action() -> impl Strategy<Value = Action> {
 }
 
 /// Any valid bounds.
-pub fn start_bounds() -> impl Strategy<Value = StartBounds> {
+pub fn reset_bounds() -> impl Strategy<Value = ResetBounds> {
     let bound = || {
         prop_oneof![
             number::<f64>(Range::Moderate),
             number::<f32>(Range::Any).prop_map(f64::from)
         ]
     };
-    (bound(), bound()).prop_map(|(x, y)| StartBounds::new(x.min(y), x.max(y)).unwrap())
+    (bound(), bound()).prop_map(|(x, y)| ResetBounds::new(x.min(y), x.max(y)).unwrap())
 }
 
 /// An acrobot with these parameters in this state.

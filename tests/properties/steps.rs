@@ -12,7 +12,7 @@ use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, Step,
 use proptest::prelude::*;
 
 use crate::given::{
-    Number, Range, acrobot, action, bits, holds, number, params, start_bounds, state,
+    Number, Range, acrobot, action, bits, holds, number, params, reset_bounds, state,
 };
 use common::distance;
 
@@ -58,7 +58,7 @@ fn any_settings_and_steps_stay_in_bounds() {
         let steps = Cell::new(0_u64);
         let set = (two(|| params(Range::Any)), two(|| state(Range::Any)));
         let done = (
-            start_bounds(),
+            reset_bounds(),
             number(Range::Any),
             any::<u64>(),
             0..=200_u32,

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::batch::{Autoreset, Block, Member, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Fast, Params, ResetOptions};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadwriteArray1, PyReadwriteArray2};
 use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};
@@ -72,7 +72,7 @@ impl Batch {
     ) -> PyResult<()> {
         let options = ResetOptions {
             seed: seed.map(parse).transpose()?,
-            bounds: Some(StartBounds::new(low, high).map_err(rejected)?),
+            bounds: Some(ResetBounds::new(low, high).map_err(rejected)?),
         };
         let Some(mask) = mask else {
             py.detach(|| self.batch.reset_with(options));

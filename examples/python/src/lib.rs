@@ -8,7 +8,7 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::Host;
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyAttributeError, PyRuntimeError, PyValueError};
@@ -23,15 +23,15 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::check_start_bounds;
+    use super::check_reset_bounds;
     #[pymodule_export]
     use super::single::Acrobot;
 }
 
 /// Rejects bounds beyond the range of `f32`, and a `low` above `high`.
 #[pyfunction]
-fn check_start_bounds(low: f64, high: f64) -> PyResult<()> {
-    StartBounds::new(low, high).map_err(rejected)?;
+fn check_reset_bounds(low: f64, high: f64) -> PyResult<()> {
+    ResetBounds::new(low, high).map_err(rejected)?;
     Ok(())
 }
 

@@ -7,7 +7,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Error, Fast, Params, Portable, ResetOptions, State, Step};
 use acrobot_fuzz::{assert_settled, bits, number, params, state};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
@@ -47,7 +47,7 @@ impl<A: Arithmetic> Alone<A> {
         }
     }
 
-    fn reset(&mut self, bounds: StartBounds) {
+    fn reset(&mut self, bounds: ResetBounds) {
         self.acrobot.reset_within(bounds);
         self.begin();
     }
@@ -97,7 +97,7 @@ const MODES: [Autoreset; 2] = [Autoreset::NextStep, Autoreset::SameStep];
 
 struct Settings {
     autoreset: Autoreset,
-    bounds: StartBounds,
+    bounds: ResetBounds,
     limit: NonZeroU32,
 }
 
@@ -117,7 +117,7 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
         .collect();
     let mut settings = Settings {
         autoreset: *u.choose(&MODES)?,
-        bounds: StartBounds::DEFAULT,
+        bounds: ResetBounds::DEFAULT,
         limit: u.arbitrary()?,
     };
     batch.set_autoreset(settings.autoreset);
@@ -137,7 +137,7 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                 }
             }
             242 => {
-                let Ok(bounds) = StartBounds::new(number(u, -0.1)?, number(u, 0.1)?) else {
+                let Ok(bounds) = ResetBounds::new(number(u, -0.1)?, number(u, 0.1)?) else {
                     continue;
                 };
                 let seed = u.arbitrary::<Option<u64>>()?.map(SeedSequence::new);
@@ -197,9 +197,9 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                     }
                 }
                 1 => {
-                    if let Ok(bounds) = StartBounds::new(number(u, -0.1)?, number(u, 0.1)?) {
+                    if let Ok(bounds) = ResetBounds::new(number(u, -0.1)?, number(u, 0.1)?) {
                         settings.bounds = bounds;
-                        batch.set_start_bounds(bounds);
+                        batch.set_reset_bounds(bounds);
                     }
                 }
                 2 => {
@@ -272,7 +272,7 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
         }
         assert_eq!((batch.member(len), batch.state(len)), (None, None));
         assert_eq!(batch.autoreset(), settings.autoreset);
-        assert_eq!(batch.start_bounds(), settings.bounds);
+        assert_eq!(batch.reset_bounds(), settings.bounds);
     }
     Ok(())
 }

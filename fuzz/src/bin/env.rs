@@ -6,7 +6,7 @@ use acrobot::env::{
     ArithmeticKind, Display, DynEnv, Env, Error, Options, RenderMode, Rendering, Space, make_with,
 };
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Action, ResetOptions};
 use acrobot_fuzz::{number, params, state};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
@@ -56,7 +56,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
         match u.int_in_range(0..=6)? {
             0 => {
                 let seed = u.arbitrary::<Option<[u32; 3]>>()?;
-                let bounds = StartBounds::new(number(u, -0.1)?, number(u, 0.1)?);
+                let bounds = ResetBounds::new(number(u, -0.1)?, number(u, 0.1)?);
                 let seed = seed.map(|words| SeedSequence::from_words(&words));
                 let (observation, _) = env.reset_with(ResetOptions {
                     seed,

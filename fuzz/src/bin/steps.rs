@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{Pendulum, StartBounds, wrap};
+use acrobot::physics::{Pendulum, ResetBounds, wrap};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Error, Fast, Portable, ResetOptions, TimeLimit};
 use acrobot_fuzz::{assert_seen, assert_settled, assert_stepped, bits, number, params, state};
@@ -64,7 +64,7 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
             }
             3 => {
                 let (low, high) = (number(u, -0.1)?, number(u, 0.1)?);
-                let bounds = StartBounds::new(low, high);
+                let bounds = ResetBounds::new(low, high);
                 let in_f32 = |x: f64| (x.abs() <= f32::MAX.into()).then_some(x);
                 let valid = in_f32(low)
                     .zip(in_f32(high))

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use acrobot::arithmetic::{Arithmetic, Host};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::{Dynamics, StartBounds};
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Acrobot, Action, Params, ResetOptions, State};
 use bits::Digest;
 
@@ -17,7 +17,7 @@ pub const STEPS: usize = 500;
 /// One of the episodes that `tests/data/record.py` recorded.
 pub struct Episode {
     pub seed: SeedSequence,
-    pub bounds: StartBounds,
+    pub bounds: ResetBounds,
     pub params: Params,
     pub actions: Vec<Action>,
     /// The initial state, and the state after each action.
@@ -111,7 +111,7 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
     };
     Episode {
         seed: decimal.parse().unwrap(),
-        bounds: StartBounds::new(number(low), number(high)).unwrap(),
+        bounds: ResetBounds::new(number(low), number(high)).unwrap(),
         params: Params {
             dynamics: match dynamics {
                 "book" => Dynamics::Book,

@@ -6,7 +6,7 @@
 use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use acrobot::physics::StartBounds;
+use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, Params, TimeLimit};
 use cortex_m_rt::entry;
 use semihosting::process;
@@ -31,7 +31,7 @@ fn main() -> ! {
     if let Err(error) = acrobot.inner_mut().set_params(rejected) {
         defmt::warn!("{}", error);
     }
-    if let Err(error) = StartBounds::new(0.1, -0.1) {
+    if let Err(error) = ResetBounds::new(0.1, -0.1) {
         defmt::warn!("{}", error);
     }
 

@@ -14,7 +14,7 @@ use core::panic::PanicInfo;
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::physics::{self, Pendulum, StartBounds};
+use acrobot::physics::{self, Pendulum, ResetBounds};
 use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
@@ -110,7 +110,7 @@ fn environment<A: Arithmetic>() {
         let inner = acrobot.inner_mut();
         let _ = black_box(inner.set_params(params()));
         let _ = black_box(inner.set_state(state()));
-        if let Ok(bounds) = StartBounds::new(black_box(-0.2), black_box(0.2)) {
+        if let Ok(bounds) = ResetBounds::new(black_box(-0.2), black_box(0.2)) {
             black_box(acrobot.reset_within(bounds));
             let (seed, bounds) = (Some(seed), Some(bounds));
             black_box(acrobot.reset_with(ResetOptions { seed, bounds }));

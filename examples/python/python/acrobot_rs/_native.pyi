@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Self
 
-__all__ = ["Acrobot", "Batch", "check_start_bounds"]
+__all__ = ["Acrobot", "Batch", "check_reset_bounds"]
 
 @final
 class Acrobot:
@@ -48,4 +48,4 @@ class Batch:
     def __getstate__(self) -> bytes: ...
     def __setstate__(self, bytes: bytes) -> None: ...
 
-def check_start_bounds(low: float, high: float) -> None: ...
+def check_reset_bounds(low: float, high: float) -> None: ...

@@ -10,7 +10,7 @@ from gymnasium import spaces
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.parameters import Parameters, start_bounds
+from acrobot_rs.parameters import Parameters, reset_bounds
 
 
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
@@ -114,7 +114,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         Raises:
             ValueError: For bounds that are not finite numbers in order. Nothing changes then.
         """
-        low, high = start_bounds(options)
+        low, high = reset_bounds(options)
         super().reset(seed=seed)
         # Gymnasium rounds initial states to float32.
         self.state = self.np_random.uniform(low, high, 4).astype(np.float32)

@@ -10,7 +10,7 @@ import numpy as np
 from gymnasium import logger, spaces
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 
-from acrobot_rs._native import Acrobot, Batch, check_start_bounds
+from acrobot_rs._native import Acrobot, Batch, check_reset_bounds
 
 
 class Parameters:
@@ -96,12 +96,12 @@ class Parameters:
 _NAMES = tuple(name for name in Parameters.__annotations__ if hasattr(Parameters, name))
 
 
-def start_bounds(options: dict[str, Any] | None) -> tuple[float, float]:
+def reset_bounds(options: dict[str, Any] | None) -> tuple[float, float]:
     """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1.
 
     Raises:
         ValueError: For a bound that is not a number in the range of float32, and for a low above high.
     """
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
-    check_start_bounds(low, high)
+    check_reset_bounds(low, high)
     return low, high

@@ -12,7 +12,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.parameters import Parameters, start_bounds
+from acrobot_rs.parameters import Parameters, reset_bounds
 
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
@@ -106,7 +106,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
             ValueError: For bounds that are not finite numbers in order, and for another mask or one without a true
                 element. Nothing changes then.
         """
-        low, high = start_bounds(options)
+        low, high = reset_bounds(options)
         mask = self._mask(options)
         # True is a seed, too. Python rejects too many digits here, and Gymnasium other types below.
         digits = str(int(seed)) if isinstance(seed, int) else None
