@@ -1,5 +1,5 @@
-//! An episode of the bang-bang policy, torque against θ̇1, as an animated GIF and a PNG strip; or one
-//! state as a PNG.
+//! An episode of the bang-bang policy, torque against θ̇1, as an animated GIF and as an animated SVG; or one state as
+//! a PNG.
 //!
 //! ```text
 //! cargo run --release --example render_episode -- --seed 42 --out episode.gif
@@ -13,12 +13,12 @@ use std::process::ExitCode;
 
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::Pendulum;
-use acrobot::render::{Figure, Frame, Theme};
+use acrobot::render::{Figure, Frame};
 use acrobot::{Acrobot, Portable, State, TimeLimit};
 use clap::Parser;
 use examples_common::{animation, bang_bang, exit, files};
 
-/// Draws an episode as FILE.gif and a strip of its frames as FILE.png, or one state as a PNG.
+/// Draws an episode as FILE.gif and as FILE.svg, or one state as a PNG.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
@@ -65,50 +65,33 @@ fn draw_state(state: State, out: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The side of the strip's frames, pixels.
-const STRIP_SIDE: u32 = 150;
-const STRIP_FRAMES: usize = 8;
-
 fn draw_episode(seed: &SeedSequence, out: &Path) -> Result<(), Box<dyn Error>> {
     expect_extension(out, "gif")?;
-    let strip = out.with_extension("png");
-    let figures = figures(seed);
+    let svg = out.with_extension("svg");
+    let (figures, states) = episode(seed);
     files::write(out, animation::gif(&figures)?)?;
-    files::write(&strip, png(&draw_strip(&figures))?)?;
-    writeln!(io::stdout(), "{}: {} frames", out.display(), figures.len())?;
-    writeln!(io::stdout(), "{}: {STRIP_FRAMES} of them", strip.display())?;
+    files::write(&svg, animation::svg(&states))?;
+    for path in [out, &svg] {
+        writeln!(io::stdout(), "{}: {} frames", path.display(), figures.len())?;
+    }
     Ok(())
 }
 
 /// The initial state and every step of the episode.
-fn figures(seed: &SeedSequence) -> Vec<Figure> {
+fn episode(seed: &SeedSequence) -> (Vec<Figure>, Vec<State>) {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(seed.clone().into()));
     let mut figures = vec![Figure::new(acrobot.inner())];
+    let mut states = vec![acrobot.inner().state()];
     loop {
         let action = bang_bang(acrobot.inner().state().dtheta1);
         let step = acrobot.step(action);
         let torque = acrobot.inner().params().torque(action) as f32;
         figures.push(Figure::new(acrobot.inner()).with_torque(torque));
+        states.push(acrobot.inner().state());
         if step.done() {
-            return figures;
+            return (figures, states);
         }
     }
-}
-
-/// Frames at equal intervals, side by side.
-fn draw_strip(figures: &[Figure]) -> Frame {
-    use embedded_graphics::draw_target::DrawTargetExt;
-    use embedded_graphics::geometry::{Point, Size};
-    use embedded_graphics::primitives::Rectangle;
-
-    let mut strip = Frame::new(STRIP_SIDE * STRIP_FRAMES as u32, STRIP_SIDE);
-    for i in 0..STRIP_FRAMES {
-        let figure = &figures[i * (figures.len() - 1) / (STRIP_FRAMES - 1)];
-        let corner = Point::new(i as i32 * STRIP_SIDE as i32, 0);
-        let mut part = strip.cropped(&Rectangle::new(corner, Size::new_equal(STRIP_SIDE)));
-        let Ok(()) = figure.draw(&mut part, &Theme::GYMNASIUM);
-    }
-    strip
 }
 
 fn png(frame: &Frame) -> Result<Vec<u8>, png::EncodingError> {

@@ -1,6 +1,21 @@
-//! The book: how to begin, and what the numbers mean. It is documentation only.
+//! The guide: one page for each reader and each subject.
 //!
-//! A first step, explained in [Rust](rust):
+//! | you write | begin with |
+//! |---|---|
+//! | Rust on a desktop or a server | [`rust`] |
+//! | firmware | [`embedded`] |
+//! | a web page | [`wasm`] |
+//! | Python | [`python`] |
+//!
+//! | you want to know | read |
+//! |---|---|
+//! | which arithmetic to choose; units, ranges and errors | [`numbers`] |
+//! | how close it is to Gymnasium | [`parity`] |
+//! | how close it is to the solution of the equations | [`accuracy`] |
+//! | why all machines compute the same bits, and where that ends | [`determinism`] |
+//! | the equations, and their sources | [`equations`] |
+//! | how fast it is | [`benchmarks`] |
+//! | how well it learns | [`learning`] |
 //!
 //! ```
 //! use acrobot::{Acrobot, Action, Fast};
@@ -8,32 +23,63 @@
 //! let step = Acrobot::<Fast>::new(42).step(Action::Positive);
 //! assert!(!step.done());
 //! ```
+//!
+//! # Files
+//!
+//! Paths such as `examples/cortex-m` and `tests/data` are in the repository, beside the crate's source.
 
-// Where examples of a page need a feature, `cargo test` without it leaves the page out.
+// Each page is also a file that GitHub shows. Its links are defined twice: for rustdoc in docs/rustdoc-links.txt, and for
+// GitHub at the page's end. The first definition counts. A page whose examples need a feature is not tested without it.
 
+#[doc = include_str!("../docs/rustdoc-links.txt")]
 #[cfg_attr(
     any(not(doctest), all(feature = "std", feature = "serde")),
     doc = include_str!("../docs/rust.md")
 )]
 pub mod rust {}
 
-#[cfg_attr(any(not(doctest), feature = "serde"), doc = include_str!("../docs/embedded.md"))]
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[cfg_attr(
+    any(not(doctest), all(feature = "graphics", feature = "serde")),
+    doc = include_str!("../docs/embedded.md")
+)]
 pub mod embedded {}
 
+#[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/wasm.md")]
 pub mod wasm {}
 
-#[doc = include_str!("../docs/equations.md")]
-pub mod equations {}
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/python.md")]
+pub mod python {}
 
-#[doc = include_str!("../docs/determinism.md")]
-pub mod determinism {}
-
+#[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/numbers.md")]
 pub mod numbers {}
 
-#[doc = include_str!("../ARCHITECTURE.md")]
-pub mod architecture {}
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/parity.md")]
+pub mod parity {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/accuracy.md")]
+pub mod accuracy {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/determinism.md")]
+pub mod determinism {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/equations.md")]
+pub mod equations {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/benchmarks.md")]
+pub mod benchmarks {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/learning.md")]
+pub mod learning {}
 
 // For its tests only: its links and pictures lead into the repository.
 #[cfg(doctest)]

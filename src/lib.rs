@@ -1,24 +1,56 @@
-//! Gymnasium's two-link Acrobot without a heap, a panic or a hang, bit-identical on microcontrollers, in browsers and on
-//! servers.
+//! Gymnasium's `Acrobot-v1`, the two-link swing-up task, without a heap and without a panic, for microcontrollers, browsers
+//! and servers. It is hundreds of times as fast as Gymnasium, and a seed gives the same episode everywhere, bit for bit.
+//!
+#![doc = include_str!("../docs/episode.svg")]
 //!
 //! ```
-//! use acrobot::{Acrobot, Action, Fast};
+//! use acrobot::{Acrobot, Action, Fast, TimeLimit};
 //!
-//! let mut acrobot = Acrobot::<Fast>::new(42); // the state after Gymnasium's reset(seed=42)
-//! let velocity = acrobot.observation().dtheta1(); // rad/s
-//! let step = acrobot.step(Action::Positive);
-//! assert_eq!(step.reward, -1.0);
+//! let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42)); // make, and reset(seed=42)
+//! let mut step = acrobot.step(Action::Positive);
+//! while !step.done() {
+//!     // Torque against the velocity of link 1.
+//!     step = acrobot.step(match step.observation.dtheta1() > 0.0 {
+//!         true => Action::Negative,
+//!         false => Action::Positive,
+//!     });
+//! }
+//! assert!(acrobot.elapsed() < 100);
 //! ```
 //!
-//! # Where to go
+//! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in a browser](guide::wasm) or
+//! [in Python](guide::python).
 //!
-//! - Begin: [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in a browser](guide::wasm).
-//! - [`arithmetic`] chooses the bits, [`physics`] is the pendulum alone, [`batch`] steps many acrobots with SIMD,
-//!   [`numpy`] has Gymnasium's random numbers, [`trajectory`] records steps, `render` (feature `graphics`) draws, and `env`
-//!   (feature `std`) has Gymnasium's `make`, spaces and wrappers.
-//! - Understand: [the equations](guide::equations), [determinism](guide::determinism), [numbers](guide::numbers).
-//! - All figures, the features and the examples: the repository's README.
-//! - Contribute: [the architecture](guide::architecture).
+//! # What everybody uses
+//!
+//! - [`Acrobot`] is the environment. Its type parameter is the arithmetic: [`Fast`] (`f32`), [`Portable`] (`f64`), or
+//!   [another one](arithmetic). Always write it, because it decides the bits.
+//! - [`TimeLimit`] truncates episodes, after 500 steps as `Acrobot-v1`.
+//! - [`Action`] goes into a step. [`Step`] comes out, with the [`Observation`], the reward, and whether the episode is done.
+//! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques. Both can be set at any time.
+//! - [`ResetOptions`] has what a reset may choose: the seed, and the bounds of the initial state.
+//! - [`Error`] names a rejected value, its unit and the rule. Nothing has changed then.
+//!
+//! # Modules
+//!
+//! - [`physics`]: the model alone, [`Pendulum`](physics::Pendulum), and its functions, from the derivative to the energy.
+//! - [`batch`]: many acrobots at once, with SIMD and on all cores.
+//! - [`numpy`]: NumPy's seeds and random numbers, as Gymnasium draws them.
+//! - [`trajectory`]: the last steps in fixed memory, as CSV.
+//! - `render` (feature `graphics`): drawing, on a display or into memory.
+//! - `env` (feature `std`): Gymnasium's `make`, spaces, wrappers and render modes.
+//! - [`arithmetic`]: the types that decide the bits, and the trait to write another one.
+//! - [`guide`]: pages on parity, accuracy, determinism, the equations, speed and learning.
+//!
+//! # Features
+//!
+//! None is on by default. Features are additive and never change a result.
+//!
+//! - `std`: `graphics`; `env`; the arithmetic `Host`; batches with AVX2 or AVX-512.
+//! - `graphics`: `render`.
+//! - `rayon`: `std`; batches on all cores.
+//! - `serde`: snapshots, whose version and arithmetic are checked when loaded.
+//! - `defmt`: `defmt::Format` for all public types except those of `env` and batches.
 #![no_std]
 #![deny(missing_docs, unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -101,9 +101,9 @@ fn worst<A: Arithmetic>(dynamics: Dynamics, start: &str, parts: u32) -> Vec<f64>
 /// The number of steps for each torque of 0.2 s: dt is 0.2, 0.1, 0.05 and 0.01 s.
 const PARTS: [u32; 4] = [1, 2, 4, 20];
 
-/// This measures the README's table, which is the same on every machine.
+/// This measures the table in docs/accuracy.md, which is the same on every machine.
 #[test]
-fn errors_are_as_the_readme_says() {
+fn errors_are_as_the_docs_say() {
     let mut rows = Vec::new();
     for dynamics in [Dynamics::Book, Dynamics::Nips] {
         for parts in PARTS {
@@ -118,7 +118,7 @@ fn errors_are_as_the_readme_says() {
     }
     let table = rows.join("\n");
     println!("{table}");
-    assert_says("README.md", &table);
+    assert_says("docs/accuracy.md", &table);
 }
 
 /// So the measured errors are those of the method, not those of the recorded states.
@@ -131,7 +131,7 @@ fn the_truth_is_known_far_better_than_the_error() {
             worst = worst.max(row.uncertainty);
         }
     }
-    assert_says("README.md", &format!("known to {worst:.1e}"));
+    assert_says("docs/accuracy.md", &format!("known to {worst:.1e}"));
 }
 
 #[test]
@@ -154,7 +154,7 @@ fn errors_shrink_with_the_fourth_power_of_dt() {
 
 /// In `f32` rounding is small beside the method's error at Gymnasium's dt, and dominates at 0.01 s.
 #[test]
-fn single_precision_is_as_good_as_the_readme_says() {
+fn single_precision_is_as_good_as_the_docs_say() {
     let (mut excess, mut least, mut most) = (0.0_f64, f64::INFINITY, 0.0_f64);
     for run in RUNS.iter() {
         let [fast, portable] = [run.errors::<Fast>(1), run.errors::<Portable>(1)];
@@ -165,7 +165,7 @@ fn single_precision_is_as_good_as_the_readme_says() {
         (least, most) = (least.min(after_a_second), most.max(after_a_second));
     }
     assert_says(
-        "README.md",
+        "docs/accuracy.md",
         &format!(
             "`Fast` has the same errors within {:.1} % at 0.2 s, and after 1 s at 0.01 s {least:.1e} to {most:.1e}",
             excess * 100.0

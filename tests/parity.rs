@@ -144,7 +144,7 @@ fn repeated<A: Arithmetic<Scalar = f64>>() -> ([f64; 2], [u32; 3]) {
     (shares, equal)
 }
 
-/// This measures a table of docs/determinism.md. CI measures its line of Gymnasium without FMA.
+/// This measures a table of docs/parity.md. CI measures its line of Gymnasium without FMA.
 #[test]
 fn the_docs_say_how_much_of_gymnasium_is_repeated() {
     let row = |name: &str, repeated: ([f64; 2], [u32; 3])| {
@@ -168,7 +168,7 @@ fn the_docs_say_how_much_of_gymnasium_is_repeated() {
         row("`Host` without FMA", repeated::<Host>());
     }
     for row in rows {
-        assert_says("docs/determinism.md", &row);
+        assert_says("docs/parity.md", &row);
     }
 }
 

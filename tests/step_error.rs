@@ -57,9 +57,9 @@ fn percentile_99_9(sorted: &[f64]) -> f64 {
     sorted[sorted.len() * 999 / 1000]
 }
 
-/// This measures the README's table, which is the same on every machine.
+/// This measures the table in docs/parity.md, which is the same on every machine.
 #[test]
-fn single_steps_are_as_close_as_the_readme_says() {
+fn single_steps_are_as_close_as_the_docs_say() {
     let errors = [
         step_errors::<Portable>(),
         step_errors::<Fast>(),
@@ -82,11 +82,11 @@ fn single_steps_are_as_close_as_the_readme_says() {
     });
     let table = rows.collect::<Vec<_>>().join("\n");
     println!("{table}");
-    assert_says("README.md", &table);
+    assert_says("docs/parity.md", &table);
 }
 
 #[test]
-fn whole_episodes_stay_as_long_as_the_readme_says() {
+fn whole_episodes_stay_as_close_as_the_docs_say() {
     let after = [100, 200, 500];
     let mut close = [0; 3];
     for episode in &RECORDING.episodes {
@@ -103,7 +103,7 @@ fn whole_episodes_stay_as_long_as_the_readme_says() {
     let all = RECORDING.episodes.len();
     assert_eq!(close[0], all as u32);
     assert_says(
-        "README.md",
+        "docs/parity.md",
         &format!(
             "all {all} after 100 steps, {} after 200 and {} after 500",
             close[1], close[2]

@@ -1,7 +1,7 @@
 """Measures this crate beside other Acrobots of PyPI and crates.io, on one core of a Linux machine.
 
     python3 compare.py             prints the table
-    python3 compare.py --update    also writes it into the crate's README
+    python3 compare.py --update    also writes it into docs/benchmarks.md
     python3 compare.py --quick     one short round, to try it
 
 Each peer runs once a round in its own process, from `peers.py` or `src/main.rs`, and reports steps
@@ -16,7 +16,7 @@ import subprocess
 import sys
 import venv
 
-README = pathlib.Path("../../README.md")
+PAGE = pathlib.Path("../../docs/benchmarks.md")
 HEAD = "| one core | version | M steps/s | to Gymnasium |"
 BASE = "make"
 # The package of each Python peer, and the names of all peers in the table.
@@ -95,16 +95,16 @@ def table(versions, rates, missing):
 
 
 def update(rows):
-    lines = README.read_text().splitlines()
+    lines = PAGE.read_text().splitlines()
     start = lines.index(HEAD)
     end = next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
     lines[start:end] = rows
-    README.write_text("\n".join(lines) + "\n")
+    PAGE.write_text("\n".join(lines) + "\n")
 
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--update", action="store_true", help="write the table into the README")
+    parser.add_argument("--update", action="store_true", help="write the table into docs/benchmarks.md")
     parser.add_argument("--quick", action="store_true", help="one short round")
     options = parser.parse_args()
 
@@ -126,7 +126,7 @@ def main():
     versions, rates, ratio = measure(commands, rounds, seconds)
     rows = list(table(versions, rates, missing))
     print("\n".join(rows))
-    print(f"rlevo-environments takes {ratio:.2f} times as long as `Fast`, interleaved in one process")
+    print(f"interleaved in one process, `Fast` is {ratio:.2f} times as fast as rlevo-environments")
     if options.update:
         update(rows)
 

@@ -1,4 +1,4 @@
-"""Learns with `swing_up` over several seeds, and compares the figures with the table in the crate's README.
+"""Learns with `swing_up` over several seeds, and compares the figures with the table in docs/learning.md.
 
     python3 figures.py             fails if they differ: learning is bit-identical everywhere
     python3 figures.py --update    writes the table again
@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-README = ROOT / "README.md"
+PAGE = ROOT / "docs/learning.md"
 SEEDS = range(3000, 3020)
 RUNS = [
     ("fast", "64k", 0),
@@ -66,14 +66,14 @@ def main():
     for line in measure():
         print(line, flush=True)
         table.append(line)
-    lines = README.read_text().splitlines()
+    lines = PAGE.read_text().splitlines()
     start = lines.index(HEAD)
     end = next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
     if sys.argv[1:] == ["--update"]:
         lines[start:end] = table
-        README.write_text("\n".join(lines) + "\n")
+        PAGE.write_text("\n".join(lines) + "\n")
     elif lines[start:end] != table:
-        sys.exit("The README's table differs. If that is intended: python3 figures.py --update")
+        sys.exit("The table in docs/learning.md differs. If that is intended: python3 figures.py --update")
 
 
 main()

@@ -33,7 +33,7 @@ fn a_failed_print_is_an_error() {
         ("plan --learn 10 --episodes 1 --depth 2", ""),
         ("random_agent", ""),
         ("random_agent --help", ""),
-        ("render_episode", "episode.gif episode.png"),
+        ("render_episode", "episode.gif episode.svg"),
         (
             "sutton1996 --runs 1 --episodes 2",
             "sutton1996.csv sutton1996.svg",

@@ -61,7 +61,7 @@ fn a_full_disk_is_an_error() {
     for (line, file) in [
         ("render_episode --state 1,2", "frame.png"),
         ("render_episode", "episode.gif"),
-        ("render_episode", "episode.png"),
+        ("render_episode", "episode.svg"),
         ("phase_portrait", "portrait.svg"),
         ("sutton1996 --runs 1 --episodes 2", "sutton1996.csv"),
         ("sutton1996 --runs 1 --episodes 2", "sutton1996.svg"),

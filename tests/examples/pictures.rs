@@ -32,15 +32,11 @@ fn a_state_is_rendered_as_its_frame() {
 fn the_episode_is_the_readmes_picture() {
     let folder = Folder::new();
     printed(&mut folder.command("render_episode"));
-    let recorded = include_bytes!("../../examples/episode.gif");
-    assert!(
-        folder.read("episode.gif") == recorded,
-        "examples/episode.gif differs"
-    );
-    let (width, height, pixels) = png(&folder, "episode.png");
-    assert_eq!((width, height), (8 * 150, 150));
-    // The colour of the joints.
-    assert!(pixels.chunks(3).any(|pixel| pixel == [0, 204, 204]));
+    let recorded = include_str!("../../docs/episode.svg");
+    let drawn = folder.svg("episode.svg");
+    assert!(drawn == recorded, "docs/episode.svg differs");
+    // The initial state and 94 steps.
+    assert_eq!(folder.gif_frames("episode.gif"), 95);
 }
 
 #[test]

@@ -1,5 +1,8 @@
-//! Figures as an animated GIF.
+//! Episodes as an animated GIF or SVG.
 
+use std::f64::consts::TAU;
+
+use acrobot::State;
 use acrobot::render::{Figure, Frame, Theme};
 use indicatif::ProgressBar;
 
@@ -7,6 +10,8 @@ use indicatif::ProgressBar;
 const SIDE: u16 = 300;
 /// How long a step of 0.2 s is shown, in 1/100 s: about three times as fast as real time.
 const DELAY: u16 = 7;
+/// How long the last frame is shown, in 1/100 s.
+const LAST: u16 = 200;
 
 pub fn gif(figures: &[Figure]) -> Result<Vec<u8>, gif::EncodingError> {
     let mut encoder = gif::Encoder::new(Vec::new(), SIDE, SIDE, &[])?;
@@ -16,11 +21,57 @@ pub fn gif(figures: &[Figure]) -> Result<Vec<u8>, gif::EncodingError> {
         let mut drawn = Frame::new(SIDE.into(), SIDE.into());
         let Ok(()) = figure.draw(&mut drawn, &Theme::GYMNASIUM);
         let mut frame = gif::Frame::from_rgb(SIDE, SIDE, drawn.bytes());
-        // The last frame stays for two seconds.
-        frame.delay = if i + 1 == figures.len() { 200 } else { DELAY };
+        frame.delay = if i + 1 == figures.len() { LAST } else { DELAY };
         encoder.write_frame(&frame)?;
         progress.inc(1);
     }
     progress.finish_and_clear();
     encoder.into_inner()
+}
+
+/// Links of 1 m, drawn as Gymnasium draws them, whose angles are interpolated between steps. The text has no blank line, so
+/// that Markdown takes it as one picture.
+pub fn svg(states: &[State]) -> String {
+    let [angles1, angles2] = [
+        rotations(states.iter().map(|state| state.theta1)),
+        rotations(states.iter().map(|state| state.theta2)),
+    ];
+    let seconds = f64::from(DELAY) / 100.0 * angles1.split(';').count() as f64;
+    let rotate = |angles: &str| {
+        format!(
+            r#"<animateTransform attributeName="transform" type="rotate" dur="{seconds:.2}s" repeatCount="indefinite" values="{angles}"/>"#
+        )
+    };
+    let link = r##"<path d="M-.1 0h.2v1h-.2z" fill="#0cc"/><circle r=".1" fill="#cc0"/>"##;
+    format!(
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="300" viewBox="-2.2 -2.2 4.4 4.4">
+<path d="M-2.2-2.2h4.4v4.4h-4.4z" fill="#fff"/>
+<path d="M-2.2-1h4.4" stroke="#000" stroke-width=".01"/>
+<g>
+{}
+{link}
+<g transform="translate(0 1)"><g>
+{}
+{link}
+</g></g>
+</g>
+</svg>
+"##,
+        rotate(&angles1),
+        rotate(&angles2)
+    )
+}
+
+/// Angles in degrees, clockwise and without jumps at half a turn. The last one is held.
+fn rotations(angles: impl Iterator<Item = f64>) -> String {
+    let mut unwrapped: Vec<f64> = Vec::new();
+    for angle in angles {
+        let last = unwrapped.last().copied().unwrap_or(angle);
+        unwrapped.push(angle + ((last - angle) / TAU).round() * TAU);
+    }
+    if let Some(&last) = unwrapped.last() {
+        unwrapped.extend((0..LAST / DELAY).map(|_| last));
+    }
+    let degrees = unwrapped.iter().map(|x| format!("{:.1}", -x.to_degrees()));
+    degrees.collect::<Vec<_>>().join(";")
 }

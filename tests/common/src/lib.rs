@@ -27,7 +27,7 @@ pub fn distance(x: State, y: State) -> f64 {
 /// Fails with the text that a page of the docs should contain. Line breaks do not count.
 pub fn assert_says(page: &str, text: &str) {
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let written = words(str::from_utf8(&read(page)).unwrap());
+    let written = words(&text_of(page));
     assert!(
         written.contains(&words(text)),
         "measured, and not in {page}: {text}"
@@ -51,6 +51,11 @@ fn absolute(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../..")
         .join(path)
+}
+
+/// A text of the repository.
+pub fn text_of(path: &str) -> String {
+    String::from_utf8(read(path)).unwrap()
 }
 
 /// A file of the repository.

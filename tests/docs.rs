@@ -1,0 +1,45 @@
+//! What the README and the pages repeat from elsewhere is what stands there.
+
+use common::text_of;
+
+/// Each number of the README's table stands in the page that its row links to.
+#[test]
+fn the_figures_of_the_readme_are_those_of_the_pages() {
+    let readme = text_of("README.md");
+    let rows = readme.lines().filter(|line| line.contains(") |"));
+    let mut numbers = 0;
+    for row in rows {
+        let [_, _, text, link, _] = row.split('|').collect::<Vec<_>>()[..] else {
+            panic!("three cells: {row}");
+        };
+        let (_, path) = link.trim().trim_end_matches(')').split_once("](").unwrap();
+        let linked = text_of(path.split('#').next().unwrap());
+        let linked: Vec<&str> = words(&linked).collect();
+        for number in words(text).filter(|word| word.starts_with(|c: char| c.is_ascii_digit())) {
+            assert!(linked.contains(&number), "{number} is not in {path}");
+            numbers += 1;
+        }
+    }
+    assert!(numbers > 10, "only {numbers} numbers were compared");
+}
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split([' ', '\n', '|'])
+        .map(|word| word.trim_end_matches(['.', ',', ';', ':']))
+}
+
+/// A block that is not compiled with the crate names the file that it is from: "```rust,ignore (path)".
+#[test]
+fn excerpts_are_in_their_files() {
+    let embedded = text_of("docs/embedded.md");
+    let blocks: Vec<&str> = embedded.split("```rust,ignore (").skip(1).collect();
+    for block in &blocks {
+        let (path, rest) = block.split_once(")\n").unwrap();
+        let (excerpt, _) = rest.split_once("```").unwrap();
+        assert!(
+            text_of(path).contains(excerpt),
+            "{path} has no such lines:\n{excerpt}"
+        );
+    }
+    assert_eq!(blocks.len(), 2, "RTIC and Embassy");
+}
