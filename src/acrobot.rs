@@ -9,12 +9,12 @@ use crate::numpy::{Pcg64, SeedSequence, uniform};
 use crate::observation::Observation;
 use crate::physics::{Params, Pendulum, ResetBounds, State, check_torque};
 
-/// Gymnasium's `reward_threshold`: `Acrobot-v1` counts as solved once the mean return of 100 episodes reaches it.
+/// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
 
 /// The result of a step.
 ///
-/// `O` is the type of the observation, and `I` the type of further information, such as the `Info` of an `Env`.
+/// `O` is the type of the observation, `I` that of further information, such as the `Info` of an `Env`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Step<O = Observation, I = ()> {
@@ -116,8 +116,7 @@ pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
     rng: R,
 }
 
-/// The size that the docs state, bytes. ARM aligns `u128` to 8 bytes only. With `serde` a generator also keeps the hash
-/// of its seed and its position.
+/// The size that the docs state, bytes. ARM aligns `u128` to 8 bytes. With `serde` a generator also keeps its origin.
 const _: () = {
     let limit = match (cfg!(target_arch = "arm"), cfg!(feature = "serde")) {
         (true, false) => 184,
@@ -232,7 +231,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         Self { pendulum, rng }
     }
 
-    /// The pendulum. A clone of it is a model of this acrobot without torque noise.
+    /// The pendulum. Its clone is a model of this acrobot without noise.
     #[must_use]
     #[inline]
     pub const fn pendulum(&self) -> &Pendulum<A> {

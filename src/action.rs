@@ -35,8 +35,8 @@ impl Action {
     /// All three actions, in the order of their numbers.
     pub const ALL: [Self; 3] = [Self::Negative, Self::Zero, Self::Positive];
 
-    /// Draws one of the three actions, all equally likely. A [`Pcg64`](crate::numpy::Pcg64) with seed `s` draws the
-    /// actions that Gymnasium's `action_space.sample()` draws after `action_space.seed(s)`.
+    /// Draws a random action, all equally likely: Gymnasium's `action_space.sample()`, if `rng` is a
+    /// [`Pcg64`](crate::numpy::Pcg64) with the seed given to `action_space.seed`.
     ///
     /// ```
     /// use acrobot::Action;

@@ -1,4 +1,4 @@
-//! Arithmetics: the types that determine every bit of an acrobot's results.
+//! Arithmetics: the types that determine every bit of a result.
 //!
 //! An [`Arithmetic`] names a scalar, a sine and cosine, and a [`Form`] of the equations of motion. It is a type
 //! parameter and not a feature flag, because Cargo unifies features: a flag that changes results would change them for
@@ -63,7 +63,7 @@ pub use real::Real;
 pub(crate) use real::SinCos;
 pub use reference::Reference;
 
-/// A scalar, its sines and the form of the equations, which together determine every bit of an acrobot's results.
+/// A scalar, its sines and the form of the equations: they determine every bit of a result.
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
     /// A short name in lower case, of at most 16 bytes. Snapshots hold it, so no other arithmetic can load them. The
     /// crate's names are "reference", "portable", "fast", "micro" and "host". With a longer name, code that saves or
@@ -87,8 +87,8 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
         Self::sin_cos(x)
     }
 
-    /// The sines and the cosines of `N` angles, bit-identical to [`sin_cos_near`](Self::sin_cos_near). A batch calls
-    /// this method, so it is the place for SIMD.
+    /// Sines and cosines of `N` angles, bit-identical to [`sin_cos_near`](Self::sin_cos_near). Batches call it, so it
+    /// is the place for SIMD.
     #[inline(always)]
     fn sin_cos_lanes<const N: usize>(
         mut x: [Self::Scalar; N],

@@ -341,7 +341,7 @@ where
         self.blocks.as_ref().get(index / N)?.state(index % N)
     }
 
-    /// Sets the state of acrobot `index`. Its episode continues: its number of steps and a pending reset do not change.
+    /// Sets the state of acrobot `index`. Its number of steps and a pending reset do not change.
     ///
     /// # Errors
     ///

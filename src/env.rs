@@ -107,8 +107,8 @@ pub trait Env {
     ///
     /// # Errors
     ///
-    /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if the function of a [`Display`]
-    /// renders on that display.
+    /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if a [`Display`] renders on
+    /// itself.
     fn render(&mut self) -> Result<Rendering, Error> {
         Err(Error::NoRenderMode)
     }

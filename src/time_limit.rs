@@ -79,7 +79,7 @@ impl<E> TimeLimit<E> {
         &self.inner
     }
 
-    /// The wrapped environment, to change it. A reset through this reference does not reset the count of steps.
+    /// The wrapped environment, to change it. Resetting it does not reset the count of steps.
     #[must_use]
     #[inline]
     pub fn inner_mut(&mut self) -> &mut E {

@@ -119,7 +119,7 @@ mod sealed {
 pub struct Trajectory<S, const N: usize> {
     /// Not heapless's history buffer, whose indexing has a bounds check that can panic.
     transitions: Deque<Transition<S>, N>,
-    /// The number of transitions pushed since the last `clear`, including dropped ones.
+    /// Transitions pushed since the last `clear`, including dropped ones.
     pushed: u32,
 }
 
@@ -206,8 +206,8 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
 
     /// Writes all transitions as CSV, oldest first, below a line of column names with units.
     ///
-    /// The column `step` counts from 1 at the first push, dropped transitions included. Numbers have the fewest digits
-    /// that parse to the same bits. On a microcontroller [this costs flash](self#on-a-microcontroller).
+    /// `step` counts from 1 at the first push, including dropped ones. Numbers have the fewest digits that parse to the
+    /// same bits. On a microcontroller [this costs flash](self#on-a-microcontroller).
     ///
     /// # Errors
     ///

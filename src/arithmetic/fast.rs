@@ -75,7 +75,7 @@ fn sin_cos_kernel<V: QuarterTurns>(x: V) -> (V, V) {
     V::rotate(shifted, sin, cos)
 }
 
-/// Numbers whose sines and cosines can be rotated by quarter turns.
+/// Numbers that can be rotated by quarter turns.
 trait QuarterTurns: Numbers<f32> {
     /// Rotates sine and cosine by 0 to 3 quarter turns: the two lowest bits of `turns`. A quarter turn changes
     /// (sin, cos) to (cos, −sin).

@@ -5,9 +5,8 @@ use core::hint::black_box;
 use super::Arithmetic;
 use crate::physics::Gymnasium;
 
-/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order of operations. It is bit-identical to Gymnasium
-/// if NumPy calls the same library, as on x86-64 Linux with glibc and a CPU with FMA. Without FMA, glibc rounds a few
-/// sines differently.
+/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: bit-identical to Gymnasium if NumPy calls the
+/// same library, as on x86-64 Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
 ///
 /// ```
 /// use acrobot::arithmetic::{Arithmetic, Host};
@@ -38,8 +37,8 @@ impl Arithmetic for Host {
     }
 
     /// NumPy computes `x**2` of a scalar by C's `pow`. For one argument in a thousand, whose exact square is about half
-    /// way between two doubles, glibc's `pow` rounds differently from `x * x`. For the others this avoids `pow`, which
-    /// would take much of a step's time.
+    /// way between two doubles, glibc's `pow` rounds differently from `x * x`. All others avoid `pow`, which would cost
+    /// much of a step.
     #[inline(always)]
     fn square(x: f64) -> f64 {
         if is_far_from_a_tie(x) {

@@ -36,7 +36,7 @@ pub trait Real:
     /// The same number, exactly.
     fn to_f64(self) -> f64;
 
-    /// Whether the number is neither infinite nor NaN.
+    /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
     /// The nearest integer, ties to even. Exact for |self| up to 2²² in `f32` and 2⁵¹ in `f64`, finite beyond.

@@ -12,8 +12,8 @@ use crate::physics::Gymnasium;
 ///
 /// For each x one `f64` is nearest to sin x. This arithmetic returns it, as any other correctly rounded sine does.
 /// 99.75 % of its steps are [bit-identical to
-/// Gymnasium's](crate::guide::determinism#how-much-of-gymnasium-is-repeated), about as many as between Gymnasium on two
-/// different CPUs.
+/// Gymnasium's](crate::guide::determinism#how-much-of-gymnasium-is-repeated), about as many as between Gymnasium on
+/// two CPUs.
 ///
 /// ```
 /// use acrobot::arithmetic::{Arithmetic, Reference};
@@ -147,7 +147,7 @@ mod tests {
                 }
             }
         }
-        // The shares that `float.rs` and `integer.rs` state.
+        // As `float.rs` and `integer.rs` state.
         let shares =
             left_to_wide.map(|path| path.map(|count| f64::from(random) / f64::from(count)));
         let expected = [320.0, 410.0].map(|share| 0.9 * share..1.1 * share);

@@ -94,8 +94,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// Resets the lanes in `some`, each with its generator. A lane without a generator has no acrobot and hangs at
-    /// rest.
+    /// Resets the lanes in `some`, each with its generator. A lane without one has no acrobot and hangs at rest.
     #[cold]
     pub(super) fn reset<A: Arithmetic<Scalar = S>>(
         &mut self,
@@ -113,7 +112,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// Ends pending resets in a mode that has none: `SameStep` resets these lanes now, `Disabled` never.
+    /// Ends pending resets: `SameStep` resets the lanes now, `Disabled` never.
     pub(super) fn stop_waiting<A: Arithmetic<Scalar = S>>(
         &mut self,
         shared: &Shared<A>,
@@ -127,7 +126,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// The observations as six columns with one number for each lane.
+    /// The observations: six columns with one number for each lane.
     #[inline(always)]
     fn columns(&self) -> [&[S; N]; 6] {
         let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
@@ -135,7 +134,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         [&cos1.0, &sin1.0, &cos2.0, &sin2.0, &dtheta1.0, &dtheta2.0]
     }
 
-    /// The observations as one row of six numbers for each lane.
+    /// The observations: one row of six numbers for each lane.
     #[inline(always)]
     fn rows(&self) -> impl Iterator<Item = [f32; 6]> {
         let [cos1, sin1, cos2, sin2, dtheta1, dtheta2] = self.columns();
@@ -166,7 +165,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// Writes the observations of the lanes in `some`. Removes nothing from `to`.
+    /// Writes the observations of the lanes in `some`, at their index in `to`.
     #[cold]
     fn observe_some(&self, some: &[bool; N], to: &mut Observations<'_>) {
         for ((lane, row), _) in self

@@ -30,7 +30,7 @@ pub struct Member<A: Arithmetic> {
     pub state: State<A::Scalar>,
     /// The number of steps since the last reset.
     pub elapsed: u32,
-    /// Whether the next step resets it, which happens with [`Autoreset::NextStep`](super::Autoreset::NextStep).
+    /// Whether the next step resets it; only with [`Autoreset::NextStep`](super::Autoreset::NextStep).
     pub ended: bool,
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,

@@ -34,7 +34,7 @@ pub enum ArithmeticKind {
 pub struct Options {
     /// What `render` returns.
     pub render_mode: RenderMode,
-    /// The arithmetic. [`acrobot_v1`] and [`acrobot_v0`] ignore it: they take the arithmetic as a type.
+    /// The arithmetic. [`acrobot_v1`] and [`acrobot_v0`] take it as a type and ignore this field.
     pub arithmetic: ArithmeticKind,
     /// The parameters.
     pub params: Params,
@@ -71,7 +71,7 @@ pub type DynEnv = dyn Env<
         Unwrapped = dyn DynAcrobot,
     > + Send;
 
-/// `Acrobot-v1`: observes sines and cosines of the angles, and truncates after 500 steps.
+/// `Acrobot-v1`: observations with sines and cosines, and 500 steps.
 ///
 /// # Errors
 ///
@@ -85,7 +85,7 @@ pub fn acrobot_v1<A: Arithmetic>(
     )?))
 }
 
-/// `Acrobot-v0`: observes the angles themselves, and truncates after 200 steps.
+/// `Acrobot-v0`: observations with the angles, and 200 steps.
 ///
 /// # Errors
 ///
@@ -159,7 +159,7 @@ pub fn make_with(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     }
 }
 
-/// The number of characters of an unknown id that an error keeps, because an id can be of any length.
+/// The number of characters of an unknown id that an error keeps. An id can have any length.
 const LONGEST_ID: usize = 64;
 
 fn make_in<A: Arithmetic>(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {

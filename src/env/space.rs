@@ -7,7 +7,7 @@ use rand_core::Rng;
 use crate::action::Action;
 use crate::numpy::{integers, uniform};
 
-/// A set of elements: tests whether it contains an element, and draws random ones.
+/// A set that can test for an element and draw random ones.
 ///
 /// A space has no generator, so copies cannot draw the same elements by accident. Gymnasium's `action_space.seed(s)`
 /// is [`Pcg64::new(s)`](crate::numpy::Pcg64::new) here.
@@ -18,8 +18,7 @@ pub trait Space {
     /// Whether `element` is in it.
     fn contains(&self, element: &Self::Element) -> bool;
 
-    /// Draws a random element. A [`Pcg64`](crate::numpy::Pcg64) with the seed of Gymnasium's space draws what its
-    /// `sample()` draws.
+    /// Draws a random element: Gymnasium's `sample()`, if `rng` is a `Pcg64` with the seed of its space.
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Element;
 }
 

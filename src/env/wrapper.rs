@@ -6,7 +6,7 @@ use super::{Env, Error, Info, Rendering};
 use crate::acrobot::{ResetOptions, Step};
 use crate::time_limit::TimeLimit;
 
-/// Forwards parts of [`Env`] to the wrapped environment: the types, `reset_with` and `step`, or the other methods.
+/// Forwards parts of [`Env`] to the wrapped one: types, `reset_with` and `step`, or the other methods.
 macro_rules! forward {
     (types $inner:ident) => {
         type Observation = $inner::Observation;
@@ -53,7 +53,7 @@ macro_rules! forward {
 
 pub(super) use forward;
 
-/// Sets `truncated` once the limit is reached. It also stays set if the wrapped environment sets it.
+/// Sets `truncated` once the limit is reached, and keeps what the wrapped environment sets.
 impl<E: Env> Env for TimeLimit<E> {
     forward!(types E);
 

@@ -120,7 +120,7 @@ impl SeedSequence {
         }
     }
 
-    /// The first `N` 64-bit words of the sequence, for a generator's state. Each call returns the same words.
+    /// The first `N` 64-bit words of the sequence. Each call returns the same.
     #[must_use]
     #[expect(
         clippy::indexing_slicing,

@@ -5,9 +5,9 @@ use crate::arithmetic::{Arithmetic, Equations, Numbers, Real};
 /// The angle `x`, rad, wrapped to \[−π, π\] by whole turns, as a step of `A` wraps it.
 ///
 /// [`Gymnasium`](super::Gymnasium) subtracts turn by turn, up to 64 turns, and takes the remainder beyond.
-/// [`Lean`](super::Lean) subtracts the rounded number of turns at once, with an error of up to the spacing of `f32` at
-/// `x`, 1.2e-7 |x|. In both, wrapping −x negates the result, except for the sign of zero; in `f32` this holds up to 2²²
-/// turns. An infinite angle or NaN gives NaN.
+/// [`Lean`](super::Lean) subtracts the rounded number of turns at once; its error is at most the spacing of `f32` at
+/// `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero; in `f32` up to 2²² turns. An infinite
+/// angle or NaN gives NaN.
 ///
 /// ```
 /// use acrobot::physics::wrap;

@@ -94,7 +94,7 @@ where
         let turns = x * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
         let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
         // The bound is for angles so large that neighbouring numbers are more than a turn apart. An angle within ±π
-        // does not change, although next to ±π its number of turns can round to ±1.
+        // does not change, even where its turns round to ±1.
         x.zip(turned.bound(S::PI), |x, turned| {
             if x.abs() <= S::PI { x } else { turned }
         })

@@ -13,8 +13,8 @@ pub enum Dynamics {
     /// Those of Sutton & Barto, *Reinforcement Learning: An Introduction*: the physical double pendulum.
     #[default]
     Book,
-    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996). They lack the centrifugal
-    /// term in θ̇1² of the second joint, so they do not conserve energy.
+    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996). The centrifugal term
+    /// in θ̇1² of the second joint is missing, so energy is not conserved.
     Nips,
 }
 

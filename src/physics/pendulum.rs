@@ -40,7 +40,7 @@ pub struct Pendulum<A: Arithmetic> {
     model: Model<A>,
     /// Sines and cosines of θ1 and θ2, for the observation and the next step.
     sin_cos: [SinCos<A::Scalar>; 2],
-    /// Whether `sin_cos` is up to date. It is not in a pendulum made in a `const`, where sines cannot be computed.
+    /// Whether `sin_cos` is up to date. After a `const` it is not: sines cannot be computed there.
     is_current: bool,
 }
 
@@ -158,7 +158,7 @@ impl<A: Arithmetic> Pendulum<A> {
         }
     }
 
-    /// As [`sin_cos`](Self::sin_cos), after a step or a reset, when the cache is up to date.
+    /// As [`sin_cos`](Self::sin_cos), when the cache is known to be up to date.
     #[inline]
     pub(crate) fn current_sin_cos(&self) -> [SinCos<A::Scalar>; 2] {
         self.sin_cos
@@ -312,8 +312,8 @@ pub fn mass_matrix<A: Arithmetic>(
 /// The total mechanical energy of a state, J. The potential energy is 0 at the height of the fixed joint, so the
 /// least energy is that of hanging at rest.
 ///
-/// Without a torque, the equations of [`Dynamics::Book`](super::Dynamics::Book) conserve it; those of
-/// [`Dynamics::Nips`](super::Dynamics::Nips) do not. Extreme velocities or parameters can make it infinite or NaN.
+/// Without a torque, `Dynamics::Book` conserves it and `Dynamics::Nips` does not. Extreme velocities or parameters can
+/// make it infinite or NaN.
 ///
 /// ```
 /// use acrobot::physics::energy;

@@ -73,8 +73,8 @@ fn enforce_bounds_apart<A: Arithmetic, V: Numbers<A::Scalar>>(
     enforce_bounds::<A, V>(params, y, angles);
 }
 
-/// Wraps the angles and bounds the velocities. If a number is not finite, restores the angles before the step and sets
-/// the velocities to 0.
+/// Wraps the angles and bounds the velocities. A result that is not finite becomes the angles before the step with
+/// zero velocities.
 #[inline(always)]
 fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     params: &Params<A::Scalar>,

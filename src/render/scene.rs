@@ -21,8 +21,8 @@ pub(super) struct Scene {
 /// Targets with fewer pixels than this in one direction show no arrow.
 const ROOM_FOR_ARROW: u32 = 48;
 
-/// A bar covers the pixels whose centres are at most this far from it, pixels. This matches Gymnasium, which truncates
-/// the corners of a link to whole pixels and includes them.
+/// A bar covers pixels with centres up to this far from it, pixels. This matches Gymnasium, which truncates the corners
+/// of a link to whole pixels and includes them.
 const TOLERANCE: f32 = 0.5;
 
 impl Scene {
@@ -134,7 +134,7 @@ fn arrow(center: Vector, radius: f32, direction: f32) -> [Bar; 8] {
     })
 }
 
-/// A position on the target in pixels, to the right and downwards; pixel (0, 0) is the square from (0, 0) to (1, 1).
+/// A position on the target in pixels, to the right and downwards; pixel (0, 0) covers (0, 0) to (1, 1).
 #[derive(Clone, Copy)]
 struct Vector {
     x: f32,

@@ -137,7 +137,7 @@ fn polynomial(coefficients: &[u64; 8], w: u64) -> u64 {
     c0 - (high(p, w) >> 3)
 }
 
-/// The `f64` nearest to `mantissa` 2⁻⁶⁴ 2^(exponent − 1021), or `None` if the error leaves that open.
+/// The `f64` nearest to `mantissa` 2⁻⁶⁴ 2^(exponent − 1021), or `None` if undecided.
 #[inline(always)]
 fn round(mantissa: u64, exponent: u32, sign: u64) -> Option<f64> {
     /// Half a unit of the 53rd bit.
