@@ -9,29 +9,29 @@ use crate::numpy::{Pcg64, SeedSequence, uniform};
 use crate::observation::Observation;
 use crate::physics::{Params, Pendulum, ResetBounds, State, check_torque};
 
-/// The mean return of 100 episodes from which on Gymnasium calls `Acrobot-v1` solved.
+/// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
 
 /// The result of a step.
 ///
-/// `O` is the observation and `I` what else an environment reports, such as the `Info` of an `Env`.
+/// `O` is the type of the observation, `I` that of further information, such as the `Info` of an `Env`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Step<O = Observation, I = ()> {
-    /// What the agent sees of the new state.
+    /// The observation of the new state.
     pub observation: O,
-    /// −1, or 0 for the step that reaches the goal.
+    /// −1, or 0 if `terminated`.
     pub reward: f32,
-    /// Whether the new state is in the goal: −cos θ1 − cos(θ1 + θ2) > 1.
+    /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
     pub terminated: bool,
-    /// Whether a time limit cut the episode off. Always false without a [`TimeLimit`](crate::TimeLimit).
+    /// Whether a time limit ended the episode. Always false without a [`TimeLimit`](crate::TimeLimit).
     pub truncated: bool,
-    /// What else the environment reports.
+    /// Further information from the environment.
     pub info: I,
 }
 
 impl<O, I> Step<O, I> {
-    /// Whether the episode is over, for either reason.
+    /// Whether the episode is over: `terminated` or `truncated`.
     #[must_use]
     #[inline]
     pub fn done(&self) -> bool {
@@ -39,7 +39,7 @@ impl<O, I> Step<O, I> {
     }
 }
 
-/// What a reset may choose: Gymnasium's `reset(seed=…, options=…)`.
+/// The arguments of Gymnasium's `reset(seed=…, options=…)`.
 ///
 /// ```
 /// use acrobot::numpy::SeedSequence;
@@ -57,20 +57,20 @@ impl<O, I> Step<O, I> {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ResetOptions {
-    /// Seeds the generator. Without a seed the current stream goes on.
+    /// Seeds the generator. With `None` the generator continues its stream.
     pub seed: Option<SeedSequence>,
-    /// The bounds that the initial state is drawn from. Without any, the environment's own: Gymnasium's, except for a
-    /// [`Batch`](crate::batch::Batch) with others.
+    /// The bounds of the initial state. `None` means [`ResetBounds::DEFAULT`], or a batch's
+    /// [`reset_bounds`](crate::batch::Batch::reset_bounds).
     pub bounds: Option<ResetBounds>,
 }
 
 /// One Acrobot: Gymnasium's environment without its wrappers.
 ///
-/// `A` is the [arithmetic](crate::arithmetic) and decides the bits. Always write it, because Rust does not infer
+/// `A` is the [arithmetic](crate::arithmetic), which determines every bit. Always write it, because Rust does not infer
 /// defaulted type parameters. `R` is the generator for initial states and torque noise.
 ///
-/// The state is always valid. Steps past the goal continue, as in Gymnasium; [`TimeLimit`](crate::TimeLimit) adds
-/// truncation. [What happens to results that are not finite](Pendulum#results-that-are-not-finite).
+/// The state is always finite ([why](Pendulum#results-that-are-not-finite)). After the goal an acrobot can step on, as
+/// in Gymnasium. [`TimeLimit`](crate::TimeLimit) adds truncation.
 ///
 /// ```
 /// use acrobot::{Acrobot, Action, Fast};
@@ -85,14 +85,16 @@ pub struct ResetOptions {
 ///
 /// # Snapshots
 ///
-/// With the `serde` feature an acrobot can be saved, and resumes to the same bits. A snapshot has only numbers of up to 64
-/// bits and no optional field, so that any serde format can hold it. The tests use JSON, postcard, CBOR, MessagePack, TOML,
-/// RON and YAML, also in flattened structs and in tagged enums.
+/// With the `serde` feature an acrobot can be saved and loaded; the loaded one continues bit-identically. A snapshot
+/// has only numbers of up to 64 bits and no optional field, so any serde format can hold it. The tests use JSON,
+/// postcard, CBOR, MessagePack, TOML, RON and YAML, also in flattened structs and in tagged enums.
 ///
-/// The first field says what is saved, its version (1) and the [name of the arithmetic](Arithmetic::NAME). Loading rejects
-/// anything else and names both. It also rejects parameters and states that the setters reject. postcard drops the reason. A
-/// [`TimeLimit`](crate::TimeLimit) has the version of the acrobot inside. The parts of a snapshot (`Params`, `State`, `Pcg64`) can be saved alone, without a
-/// version or a check. Any snapshot of a [`Pcg64`] is a valid generator: the hash of a seed and a position in its stream.
+/// The first field holds the type, the version (1) and the [name of the arithmetic](Arithmetic::NAME). Loading rejects
+/// other values of this field, and the error names both. Loading also rejects parameters and states that the setters
+/// reject. postcard's errors do not say why. The version of a [`TimeLimit`](crate::TimeLimit) is that of its acrobot.
+///
+/// `Params`, `State` and `Pcg64` can also be saved alone, without a version. A saved [`Pcg64`] is the hash of a seed
+/// and a position in its stream, so any values make a valid generator.
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
@@ -114,7 +116,7 @@ pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
     rng: R,
 }
 
-/// The size that the docs promise. `u128` is aligned to 8 bytes on ARM. With `serde` the generator knows its origin.
+/// The size that the docs state, bytes. ARM aligns `u128` to 8 bytes. With `serde` a generator also keeps its origin.
 const _: () = {
     let limit = match (cfg!(target_arch = "arm"), cfg!(feature = "serde")) {
         (true, false) => 184,
@@ -126,8 +128,8 @@ const _: () = {
 };
 
 impl<A: Arithmetic> Acrobot<A> {
-    /// An acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. For a seed
-    /// of another type: `Acrobot::with_rng(Pcg64::from(sequence))`.
+    /// An acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. For a
+    /// [`SeedSequence`]: `Acrobot::with_rng(Pcg64::from(sequence))`.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self::with_rng(Pcg64::new(seed))
@@ -156,12 +158,12 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         Self::from_pendulum(Pendulum::unchecked(Params::default(), state), rng)
     }
 
-    /// Draws a new initial state from [`ResetBounds::DEFAULT`] and returns what the agent sees of it.
+    /// Draws a new initial state from [`ResetBounds::DEFAULT`] and returns its observation.
     pub fn reset(&mut self) -> Observation {
         self.reset_within(ResetBounds::DEFAULT)
     }
 
-    /// Draws a new initial state from `bounds`.
+    /// Draws a new initial state from `bounds` and returns its observation.
     pub fn reset_within(&mut self, bounds: ResetBounds) -> Observation {
         self.pendulum.place(bounds.draw(&mut self.rng).cast());
         self.observe(self.pendulum.current_sin_cos())
@@ -173,7 +175,7 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         self.advance(self.params().torque(action))
     }
 
-    /// Applies a torque in N m, of any size, for one dt: for controllers.
+    /// Applies any finite torque, N m, for one dt: for controllers.
     ///
     /// # Errors
     ///
@@ -205,7 +207,7 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
 }
 
 impl<A: Arithmetic, R> Acrobot<A, R> {
-    /// An acrobot with the default parameters that hangs at rest, also in a `const`: for a `static`.
+    /// An acrobot with the default parameters that hangs at rest. It can be a `const` or a `static`.
     ///
     /// ```
     /// use std::sync::Mutex;
@@ -229,14 +231,14 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         Self { pendulum, rng }
     }
 
-    /// The pendulum, to clone as a model of this acrobot.
+    /// The pendulum. Its clone is a model of this acrobot without noise.
     #[must_use]
     #[inline]
     pub const fn pendulum(&self) -> &Pendulum<A> {
         &self.pendulum
     }
 
-    /// What the agent sees of the state.
+    /// The observation of the state.
     #[must_use]
     #[inline]
     pub fn observation(&self) -> Observation {
@@ -276,11 +278,11 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         self.pendulum.params()
     }
 
-    /// Sets the parameters, from the next step on. The state and the generator stay.
+    /// Sets the parameters for the next steps. The state and the generator do not change.
     ///
     /// # Errors
     ///
-    /// As [`Params::validate`].
+    /// Those of [`Params::validate`].
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         self.pendulum.set_params(params)
     }

@@ -32,11 +32,11 @@ pub enum Action {
 }
 
 impl Action {
-    /// All three, in the order of their numbers.
+    /// All three actions, in the order of their numbers.
     pub const ALL: [Self; 3] = [Self::Negative, Self::Zero, Self::Positive];
 
-    /// Draws a random action: Gymnasium's `action_space.sample()`, if `rng` is a
-    /// [`Pcg64`](crate::numpy::Pcg64) with the seed that was given to `action_space.seed`.
+    /// Draws a random action, all equally likely: Gymnasium's `action_space.sample()`, if `rng` is a
+    /// [`Pcg64`](crate::numpy::Pcg64) with the seed given to `action_space.seed`.
     ///
     /// ```
     /// use acrobot::Action;

@@ -1,8 +1,8 @@
-//! Arithmetics: the types that decide an acrobot's bits.
+//! Arithmetics: the types that determine every bit of a result.
 //!
 //! An [`Arithmetic`] names a scalar, a sine and cosine, and a [`Form`] of the equations of motion. It is a type
-//! parameter and not a feature flag, because Cargo unifies features over a build: a flag that changes results
-//! would change them for every crate in it.
+//! parameter and not a feature flag, because Cargo unifies features: a flag that changes results would change them for
+//! every crate in the build.
 //!
 //! | type | scalar | sine and cosine | equations | use |
 //! |---|---|---|---|---|
@@ -12,8 +12,8 @@
 //! | [`Fast`] | `f32` | polynomial | lean | single-precision FPUs, WASM, SIMD batches |
 //! | [`Micro`] | `f32` | table | lean | the fewest instructions on a microcontroller |
 //!
-//! No arithmetic has the sines of the crate `micromath`: on a Cortex-M4F they take more flash than those of [`Fast`] and [`Micro`], more
-//! instructions (622 a step, `Fast` 566), and their error is 1.1e-3.
+//! No arithmetic uses the sines of the crate `micromath`. On a Cortex-M4F they take more flash than those of [`Fast`]
+//! and [`Micro`] and more instructions (622 a step, `Fast` 566), and their error is 1.1e-3.
 //!
 //! For a hardware sine unit, implement [`Arithmetic`]:
 //!
@@ -22,7 +22,7 @@
 //! use acrobot::physics::Lean;
 //! use acrobot::{Acrobot, Action};
 //!
-//! /// Sines from the chip's table.
+//! /// Sines from the microcontroller's table.
 //! #[derive(Clone, Copy, Debug, Default, PartialEq)]
 //! struct Table;
 //!
@@ -63,10 +63,11 @@ pub use real::Real;
 pub(crate) use real::SinCos;
 pub use reference::Reference;
 
-/// A scalar, its trigonometry and the form of the equations: everything that decides an acrobot's bits.
+/// A scalar, its sines and the form of the equations: they determine every bit of a result.
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
-    /// A short name in lower case, of at most 16 bytes. Snapshots carry it, so that no other arithmetic loads them. The
-    /// crate's are "reference", "portable", "fast", "micro" and "host". With a longer name, code that saves or loads does not compile.
+    /// A short name in lower case, of at most 16 bytes. Snapshots hold it, so no other arithmetic can load them. The
+    /// crate's names are "reference", "portable", "fast", "micro" and "host". With a longer name, code that saves or
+    /// loads a snapshot does not compile.
     const NAME: &'static str;
 
     /// The type of angles, velocities, torques and parameters.
@@ -79,15 +80,15 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// Sine and cosine of `x` rad. Both must be within \[−1, 1\] for every finite `x`.
     fn sin_cos(x: Self::Scalar) -> (Self::Scalar, Self::Scalar);
 
-    /// The same bits as [`sin_cos`](Self::sin_cos) for |x| up to 2¹⁹ rad. Beyond it may return anything, also
-    /// NaN: the place to leave out range checks, because a step calls only this one.
+    /// Sine and cosine, bit-identical to [`sin_cos`](Self::sin_cos) for |x| ≤ 2¹⁹ rad. Beyond, any result is valid,
+    /// even NaN. Steps call this method for speed: it can leave out range checks.
     #[inline]
     fn sin_cos_near(x: Self::Scalar) -> (Self::Scalar, Self::Scalar) {
         Self::sin_cos(x)
     }
 
-    /// [`sin_cos_near`](Self::sin_cos_near) of `N` angles, bit for bit: sines, then cosines. Batches call it, so it is
-    /// the place for SIMD.
+    /// Sines and cosines of `N` angles, bit-identical to [`sin_cos_near`](Self::sin_cos_near). Batches call it, so it
+    /// is the place for SIMD.
     #[inline(always)]
     fn sin_cos_lanes<const N: usize>(
         mut x: [Self::Scalar; N],
@@ -99,7 +100,7 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
         (x, cos)
     }
 
-    /// Cosine of `x` rad: the second of [`sin_cos`](Self::sin_cos), bit for bit.
+    /// Cosine of `x` rad, bit-identical to the cosine of [`sin_cos`](Self::sin_cos).
     #[inline]
     fn cos(x: Self::Scalar) -> Self::Scalar {
         Self::sin_cos(x).1
@@ -112,12 +113,12 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     }
 }
 
-/// A form of the equations of motion. The two forms agree up to rounding:
-/// [`Gymnasium`](crate::physics::Gymnasium) and [`Lean`](crate::physics::Lean). No other type can implement it.
+/// A form of the equations of motion: [`Gymnasium`](crate::physics::Gymnasium) or [`Lean`](crate::physics::Lean), which
+/// agree up to rounding. No other type can implement it.
 pub trait Form<S: Real>: Equations<S> {}
 
 impl<S: Real, F: Equations<S>> Form<S> for F {}
 
-/// The largest angle that the `f32` kernels reduce, rad: 2¹⁹, where neighbouring `f32` are 1/16 rad apart. They
-/// compute larger angles as this one.
+/// The largest angle that the `f32` arithmetics reduce, rad: 2¹⁹, where neighbouring `f32` are 1/16 rad apart. Their
+/// `sin_cos` clamps larger angles to it.
 const FARTHEST: f32 = 524_288.0;

@@ -53,13 +53,13 @@ use buffers::{check_length, take, take_mut};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Autoreset {
-    /// In the next step, which ignores its action and returns the initial state, with a reward of 0.
+    /// In the next step, which ignores its action and returns the initial observation and a reward of 0.
     #[default]
     NextStep,
-    /// In the step that ends the episode. It returns the initial state as its observation, and the last observation
-    /// of the episode in [`final_observations`](StepBuffers::final_observations).
+    /// In the step that ends the episode. It returns the initial observation of the next episode, and the last one of
+    /// the ended episode in [`final_observations`](StepBuffers::final_observations).
     SameStep,
-    /// Never. Acrobots step on after their ends, as an [`Acrobot`](crate::Acrobot) does, until
+    /// Never. Acrobots continue after the end of an episode, as an [`Acrobot`](crate::Acrobot) does, until
     /// [`Batch::reset_masked`] or another reset.
     Disabled,
 }
@@ -67,14 +67,14 @@ pub enum Autoreset {
 /// Many acrobots with the same parameters, each with its own stream of random numbers.
 ///
 /// Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th child, under a
-/// [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side, with the widest SIMD instructions that
-/// the machine has if the `std` feature is on. Neither `N` nor the instructions change a bit.
+/// [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side; with the `std` feature it uses
+/// the widest SIMD instructions that the machine has. Neither `N` nor the instructions change a bit.
 ///
 /// `B` holds a [`Block`] for each `N` acrobots, and `G` a generator for each acrobot: arrays, slices or `Vec`s. They
-/// are separate because a step seldom draws. [An example](self).
+/// are separate because a step seldom draws. See [the example](self).
 ///
-/// `N` must be from 1 to 32. A step keeps arrays of `N` numbers on the stack, and 64 `f64` each would take more than a
-/// thread's 2 MiB in a debug build.
+/// `N` must be from 1 to 32, because a step keeps arrays of `N` numbers on the stack: with `N` = 64 and `f64` a debug
+/// build would need more than a thread's 2 MiB.
 ///
 /// ```compile_fail,E0080
 /// use acrobot::Fast;
@@ -92,7 +92,7 @@ pub struct Batch<A: Arithmetic, B, G, const N: usize = 16> {
     generators: G,
 }
 
-/// What all acrobots of a batch have in common.
+/// The settings that all acrobots of a batch share.
 #[derive(Clone, Debug)]
 struct Shared<A: Arithmetic> {
     model: Model<A>,
@@ -107,23 +107,23 @@ where
     B: AsRef<[Block<A::Scalar, N>]> + AsMut<[Block<A::Scalar, N>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
 {
-    /// A batch of as many acrobots as `generators`, which it seeds: acrobot `i` with the `i`-th child of `seed`. It has
-    /// the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
+    /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child of `seed`. The batch
+    /// has the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
     ///
     /// # Errors
     ///
     /// [`Error::EmptyBatch`] without generators, and [`Error::WrongLength`] unless there is one block for each `N`
-    /// generators; the last may be filled in part.
+    /// generators; the last block may be partly filled.
     pub fn new(seed: u64, blocks: B, generators: G) -> Result<Self, Error> {
         Self::with_seed(SeedSequence::new(seed), blocks, generators)
     }
 
-    /// [`new`](Self::new) with a seed of any size. Acrobot `i` takes the `i`-th of the children that `seed` has not yet
-    /// spawned.
+    /// As [`new`](Self::new), with a seed of any size. Acrobot `i` is seeded with the `i`-th child that `seed` has not
+    /// yet spawned.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
+    /// Those of [`new`](Self::new).
     pub fn with_seed(seed: SeedSequence, blocks: B, generators: G) -> Result<Self, Error> {
         const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
         let len = generators.as_ref().len();
@@ -178,14 +178,14 @@ where
         });
     }
 
-    /// Gymnasium's `reset(seed=…, options=…)` of all acrobots. A seed seeds acrobot `i` with the `i`-th
-    /// of its children that it has not yet spawned. Without bounds [`reset_bounds`](Self::reset_bounds) are used.
+    /// Gymnasium's `reset(seed=…, options=…)` for all acrobots. A seed seeds acrobot `i` with the `i`-th child that the
+    /// seed has not yet spawned. Without bounds, initial states are from [`reset_bounds`](Self::reset_bounds).
     pub fn reset_with(&mut self, options: ResetOptions) {
         self.reset_some(core::iter::repeat(true), options);
     }
 
-    /// [`reset_with`](Self::reset_with) of the acrobots whose element of `mask` is true: Gymnasium's
-    /// `reset(options={"reset_mask": mask})`. The others stay as they are.
+    /// As [`reset_with`](Self::reset_with), for the acrobots whose element of `mask` is true: Gymnasium's
+    /// `reset(options={"reset_mask": mask})`. The others do not change.
     ///
     /// # Errors
     ///
@@ -212,7 +212,7 @@ where
         }
     }
 
-    /// Begins an episode of each acrobot in a given state: for searches on the model.
+    /// Begins an episode of each acrobot in a given state, for example to search on the model.
     ///
     /// # Errors
     ///
@@ -242,7 +242,7 @@ where
         self.drive::<Actions<T>>(actions, buffers)
     }
 
-    /// Applies a torque in N m, of any size, to each acrobot for one dt: for controllers.
+    /// Applies any finite torque, N m, to each acrobot for one dt: for controllers.
     ///
     /// # Errors
     ///
@@ -256,11 +256,11 @@ where
         self.drive::<Torques>(torques, buffers)
     }
 
-    /// [`step`](Self::step) on all cores, by rayon. The number of threads changes no bit.
+    /// As [`step`](Self::step), on all cores with rayon. The number of threads changes no bit.
     ///
     /// # Errors
     ///
-    /// As [`step`](Self::step).
+    /// Those of [`step`](Self::step).
     #[cfg(feature = "rayon")]
     pub fn par_step<T: Copy + Into<u8> + Sync>(
         &mut self,
@@ -270,11 +270,11 @@ where
         self.par_drive::<Actions<T>>(actions, buffers)
     }
 
-    /// [`step_torques`](Self::step_torques) on all cores, by rayon. The number of threads changes no bit.
+    /// As [`step_torques`](Self::step_torques), on all cores with rayon. The number of threads changes no bit.
     ///
     /// # Errors
     ///
-    /// As [`step_torques`](Self::step_torques).
+    /// Those of [`step_torques`](Self::step_torques).
     #[cfg(feature = "rayon")]
     pub fn par_step_torques(
         &mut self,
@@ -319,7 +319,7 @@ where
         buffers.check(self.len())
     }
 
-    /// Writes what the agents see of the states.
+    /// Writes the observations of the states.
     ///
     /// # Errors
     ///
@@ -341,7 +341,7 @@ where
         self.blocks.as_ref().get(index / N)?.state(index % N)
     }
 
-    /// Sets the state of acrobot `index`. Its episode goes on: its steps, and a reset that it waits for, stay.
+    /// Sets the state of acrobot `index`. Its number of steps and a pending reset do not change.
     ///
     /// # Errors
     ///

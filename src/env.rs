@@ -1,4 +1,4 @@
-//! Environments as Gymnasium's users know them: [`make`], spaces, wrappers and render modes.
+//! Gymnasium's interface: [`make`], environments, spaces, wrappers and render modes.
 //!
 //! ```
 //! use acrobot::env::{Env, Space, make};
@@ -41,8 +41,7 @@ use crate::numpy::SeedSequence;
 
 /// An environment: Gymnasium's `Env`, with its types known at compile time.
 ///
-/// It is object-safe if its types are named: [`DynEnv`] is the one that [`make`] returns. [`check_env`] checks an
-/// implementation.
+/// It is dyn-compatible: [`make`] returns a boxed [`DynEnv`]. [`check_env`] checks an implementation.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -65,21 +64,21 @@ use crate::numpy::SeedSequence;
 /// # Ok::<(), acrobot::env::Error>(())
 /// ```
 pub trait Env {
-    /// What the agent sees.
+    /// The type of an observation.
     type Observation;
-    /// What the agent does.
+    /// The type of an action.
     type Action;
-    /// The set of all observations.
+    /// The type of the set of all observations.
     type ObservationSpace: Space<Element = Self::Observation>;
-    /// The set of all actions.
+    /// The type of the set of all actions.
     type ActionSpace: Space<Element = Self::Action>;
-    /// The environment without its wrappers, for live changes: Gymnasium's `unwrapped`.
+    /// The type of the environment without its wrappers: Gymnasium's `unwrapped`.
     type Unwrapped: ?Sized;
 
-    /// Gymnasium's `reset(seed=…, options=…)`: begins an episode and returns what the agent sees of its initial state.
+    /// Gymnasium's `reset(seed=…, options=…)`: begins an episode and returns the observation of its initial state.
     ///
-    /// A seed seeds the generator; without one the current stream goes on. An environment that was never seeded has
-    /// seed 0: where Gymnasium asks the system for entropy, nothing here differs from run to run.
+    /// A seed seeds the generator; without one the generator continues its stream. An environment that was never seeded
+    /// has seed 0, so runs are repeatable. Gymnasium takes entropy from the system instead.
     fn reset_with(&mut self, options: ResetOptions) -> (Self::Observation, Info);
 
     /// Gymnasium's `reset()`.
@@ -108,24 +107,25 @@ pub trait Env {
     ///
     /// # Errors
     ///
-    /// [`Error::NoRenderMode`] if it was made with none, and [`Error::DisplayBusy`] if a [`Display`] renders on itself.
+    /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if a [`Display`] renders on
+    /// itself.
     fn render(&mut self) -> Result<Rendering, Error> {
         Err(Error::NoRenderMode)
     }
 
-    /// Releases what is held for rendering, such as a display. Nothing is rendered afterwards.
+    /// Releases resources for rendering, such as a display. Afterwards nothing is rendered.
     fn close(&mut self) {}
 
     /// The environment without its wrappers.
     fn unwrapped(&self) -> &Self::Unwrapped;
 
-    /// The environment without its wrappers, for live changes.
+    /// The environment without its wrappers, to change it.
     fn unwrapped_mut(&mut self) -> &mut Self::Unwrapped;
 }
 
-/// What a reset or a step reports besides the rest. Acrobot itself reports nothing.
+/// Further information from a reset or a step: Gymnasium's `info`. Acrobot itself adds none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Info {
-    /// Statistics of the episode that this step ended, where [`RecordEpisodeStatistics`] records them.
+    /// Statistics of the episode that this step ended, if [`RecordEpisodeStatistics`] records them.
     pub episode: Option<EpisodeStatistics>,
 }

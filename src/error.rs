@@ -1,4 +1,4 @@
-//! Errors: what was wrong with an input.
+//! The error type: why an input was rejected.
 
 use core::fmt;
 
@@ -17,7 +17,7 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Error {
-    /// A quantity is outside its range or not a number.
+    /// A number is outside its range, infinite or NaN.
     OutOfRange {
         /// The field or argument.
         name: &'static str,
@@ -25,7 +25,7 @@ pub enum Error {
         value: f64,
         /// The SI unit, such as `"rad/s"`.
         unit: &'static str,
-        /// The rule, to be read before the unit: `"finite and above 0"`.
+        /// The rule, which the message puts before the unit: `"finite and above 0"`.
         rule: &'static str,
     },
     /// A link has neither a moment of inertia nor a distance between its centre of mass and its joint, so
@@ -101,7 +101,7 @@ impl fmt::Display for Error {
             } => write!(f, "{name} must be {rule} {unit}, got {value}"),
             Self::NoInertia { name, value } => write!(
                 f,
-                "{name} must be above 0 kg m² where the centre of mass is on the joint, got {value}"
+                "{name} must be above 0 kg m² if the centre of mass is on the joint, got {value}"
             ),
             Self::ReversedBounds { low, high } => write!(
                 f,
@@ -116,7 +116,7 @@ impl fmt::Display for Error {
                 expected,
             } => write!(f, "{name} must have {expected} elements, got {len}"),
             Self::NoSuchIndex { name, index, len } => {
-                write!(f, "{name} must be below the length {len}, got {index}")
+                write!(f, "{name} index must be below {len}, got {index}")
             }
             Self::BufferTooSmall { len, needed } => {
                 write!(f, "buffer must have at least {needed} bytes, got {len}")
@@ -143,16 +143,16 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// The ranges that a quantity can have.
+/// The range of a quantity.
 #[derive(Clone, Copy)]
 pub(crate) enum Range {
     Finite,
     AtLeastZero,
     AboveZero,
-    /// Observations are `f32` and contain velocities, so velocity bounds must fit. NEON of 32-bit ARM takes subnormal
-    /// numbers for 0.
+    /// The positive normal numbers of `f32`: for velocity bounds, because observations are `f32`. NEON of 32-bit ARM
+    /// treats subnormal numbers as 0.
     NormalF32,
-    /// Initial states are rounded to `f32`, so reset bounds must fit.
+    /// Finite in `f32`: for reset bounds, because initial states are rounded to `f32`.
     InF32,
 }
 
@@ -173,7 +173,7 @@ impl Range {
                 value >= f32::MIN_POSITIVE as f64 && in_f32,
                 "from 1.2e-38 to 3.4e38",
             ),
-            Self::InF32 => (in_f32, "within -3.4e38 and 3.4e38"),
+            Self::InF32 => (in_f32, "from -3.4e38 to 3.4e38"),
         };
         if holds && value.is_finite() {
             return Ok(());

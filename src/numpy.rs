@@ -2,8 +2,8 @@
 //!
 //! Gymnasium seeds each environment and each space with NumPy's `default_rng(seed)`. [`Pcg64`] is that
 //! generator, [`SeedSequence`] turns a seed into its state and into independent child seeds, and [`uniform`]
-//! and [`integers`] are the two draws that Gymnasium makes. rand's `Pcg64` seeds differently, hence the
-//! module's name.
+//! and [`integers`] are the two draws that Gymnasium makes. rand's `Pcg64` seeds differently, so this
+//! module is named after NumPy.
 //!
 //! ```
 //! use acrobot::numpy::{Pcg64, SeedSequence, uniform};
@@ -43,18 +43,18 @@ pub fn uniform<R: Rng + ?Sized>(rng: &mut R, low: f64, high: f64) -> f64 {
 
 /// NumPy's `Generator.integers(n)`: draws one of 0 to `n` − 1, all equally likely.
 ///
-/// This is Lemire's method (<https://arxiv.org/abs/1805.10941>) on 32-bit draws. If 64 draws in a row must be
-/// rejected, which only a broken generator produces, it takes the last one, so it always returns.
+/// This is Lemire's method (<https://arxiv.org/abs/1805.10941>) on 32-bit draws. It always returns: after 64 rejected
+/// draws in a row, which only a broken generator produces, it takes the last one.
 #[inline]
 pub fn integers<R: Rng + ?Sized>(rng: &mut R, n: NonZeroU32) -> u32 {
-    // NumPy draws nothing where there is no choice.
+    // Like NumPy, draw nothing if there is only one result.
     if n.get() == 1 {
         return 0;
     }
     let mut product = 0;
     for _ in 0..64 {
         product = u64::from(rng.next_u32()) * u64::from(n.get());
-        // 2³² mod n: this many of the lowest products would be drawn once too often.
+        // Rejects the lowest 2³² mod n products, which would make some results more likely than others.
         if product as u32 >= n.get() || product as u32 >= n.get().wrapping_neg() % n {
             break;
         }

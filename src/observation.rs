@@ -7,10 +7,10 @@ use crate::physics::State;
 
 /// What an agent sees: `N` numbers in Gymnasium's order.
 ///
-/// `Observation`, short for `Observation<6>`, is that of `Acrobot-v1`. It shows the angles as points on the
-/// unit circle: \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\]. Hanging at rest is \[1, 0, 1, 0, 0, 0\].
+/// `Observation`, short for `Observation<6>`, is the observation of `Acrobot-v1`:
+/// \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\], velocities in rad/s. Hanging at rest it is \[1, 0, 1, 0, 0, 0\].
 ///
-/// `Observation<4>` is that of `Acrobot-v0`: the state \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
+/// `Observation<4>` is the observation of `Acrobot-v0`: the state \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
 ///
 /// ```
 /// use acrobot::{Acrobot, Observation, Portable};
@@ -67,14 +67,14 @@ accessors! {
 }
 
 impl Observation<6> {
-    /// The upper bounds of `Acrobot-v1`'s observation space: 1, and 4π and 9π rad/s.
+    /// The upper bounds of `Acrobot-v1`'s observation space: 1, 4π rad/s and 9π rad/s.
     pub const HIGH: Self = Self([1.0, 1.0, 1.0, 1.0, 4.0 * PI, 9.0 * PI]);
     /// The lower bounds: `-HIGH`.
     pub const LOW: Self = Self([-1.0, -1.0, -1.0, -1.0, -4.0 * PI, -9.0 * PI]);
 }
 
 impl Observation<4> {
-    /// The upper bounds of `Acrobot-v0`'s observation space: π rad, and 4π and 9π rad/s.
+    /// The upper bounds of `Acrobot-v0`'s observation space: π rad, 4π rad/s and 9π rad/s.
     pub const V0_HIGH: Self = Self([PI, PI, 4.0 * PI, 9.0 * PI]);
     /// The lower bounds: `-V0_HIGH`.
     pub const V0_LOW: Self = Self([-PI, -PI, -4.0 * PI, -9.0 * PI]);

@@ -1,7 +1,7 @@
 //! The pendulum alone: equations of motion, integrator and bounds, without a generator or an environment.
 //!
-//! [`Pendulum`] is the fast way to simulate: it keeps what depends on the parameters and the sines and cosines of
-//! its angles. It needs no random numbers and has no code for them, so it takes about a third of the flash of an
+//! [`Pendulum`] is the fast way to simulate: it caches the constants that depend on the parameters, and the sines and
+//! cosines of its angles. It has no code for random numbers, so it takes about a third of the flash of an
 //! [`Acrobot`](crate::Acrobot).
 //!
 //! ```
@@ -17,9 +17,9 @@
 //! # Ok::<(), acrobot::Error>(())
 //! ```
 //!
-//! The functions [`derivative`], [`energy`], [`mass_matrix`], [`positions`] and [`tip_height`] take any parameters and any state,
-//! for integrators and controllers of your own; [`rk4`] integrates any derivative. The book explains
-//! [the equations](crate::guide::equations).
+//! For your own integrators and controllers, the functions [`derivative`], [`energy`], [`mass_matrix`], [`positions`]
+//! and [`tip_height`] take any parameters and any state, and [`rk4`] integrates any derivative. The guide explains the
+//! [equations](crate::guide::equations).
 
 /// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
 macro_rules! for_f32_and_f64 {
@@ -35,7 +35,8 @@ macro_rules! for_f32_and_f64 {
     };
 }
 
-/// Implements `FromParams` for the `Constants` of a form, given how they follow from the parameters and l1², lc1², lc2².
+/// Implements `FromParams` for the `Constants` of a form. The block computes them from the parameters and l1², lc1²,
+/// lc2².
 macro_rules! constants_of_form {
     (|$params:ident, $squares:pat_param| $constants:block) => {
         for_f32_and_f64! {

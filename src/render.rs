@@ -1,7 +1,7 @@
 //! Drawing on any [embedded-graphics] target, from a 128×64 OLED to a window.
 //!
-//! A [`Figure`] draws itself, scaled to the target. The colour of each pixel is computed from its geometry, topmost
-//! part first, so each pixel is written once, and [`Figure::redraw`] writes only the pixels that changed.
+//! A [`Figure`] is scaled to the target. Each pixel's colour is computed from the geometry, so [`Figure::draw`] writes
+//! each pixel once, and [`Figure::redraw`] writes only the pixels that changed.
 //!
 //! ```
 //! use acrobot::render::{Figure, Theme};
@@ -69,7 +69,7 @@ impl Theme<Rgb888> {
 }
 
 impl Theme<BinaryColor> {
-    /// For displays of one colour: lit on dark, with dark joints.
+    /// For monochrome displays: lit links on a dark background, with dark joints.
     pub const MONOCHROME: Self = Self {
         ground: BinaryColor::Off,
         line: BinaryColor::On,
@@ -107,21 +107,21 @@ impl<C> Theme<C> {
     }
 }
 
-/// A drawing: the positions of an acrobot's parts.
+/// A drawing of an acrobot. See [the example](self).
 ///
-/// It is scaled to the target's bounding box as Gymnasium scales its window: both links and 0.2 m more in each
-/// direction fit into the shorter side. Any target size is drawn, also 0×0, and nothing outside it. Nothing is drawn on
-/// a target whose width, height, right end or bottom end is above `i32::MAX`. [An example](self).
+/// It is scaled as in Gymnasium's window: the fixed joint is in the centre, and the shorter side of the target shows
+/// both links and 0.2 m more in each direction. Targets of any size work, also 0×0. A target whose width, height, right
+/// end or bottom end is above `i32::MAX` stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Figure {
-    /// Sine and cosine of each link's angle to the vertical.
+    /// Sine and cosine of each link's angle from hanging down.
     directions: [(f32, f32); 2],
-    /// The length of each link, in units of half the picture.
+    /// The length of each link, in units of half the target's shorter side.
     lengths: [f32; 2],
     /// One metre in the same unit.
     metre: f32,
-    /// −1, 0 or 1.
+    /// The sign of the torque: −1, 0 or 1.
     torque: i8,
 }
 
@@ -144,8 +144,8 @@ impl Figure {
         }
     }
 
-    /// Adds an arrow around the middle joint in the direction of `torque`, if it is not 0 and the target has at least
-    /// 48 pixels in each direction.
+    /// Adds an arrow around the middle joint in the direction of `torque`. It is drawn if `torque` is not 0 and the
+    /// target has at least 48 pixels in each direction.
     #[must_use]
     pub fn with_torque(mut self, torque: f32) -> Self {
         self.torque = i8::from(torque > 0.0) - i8::from(torque < 0.0);
@@ -169,7 +169,7 @@ impl Figure {
         target.fill_contiguous(&area, area.points().map(|point| scene.color(point, theme)))
     }
 
-    /// Draws over a picture of `previous` and writes only the pixels that differ.
+    /// Draws over a drawing of `previous`. Only the pixels that differ are written.
     ///
     /// # Errors
     ///
@@ -190,7 +190,7 @@ impl Figure {
         let (Some(old), Some(new)) = (Scene::new(previous, area), Scene::new(self, area)) else {
             return Ok(());
         };
-        // A line that moved did so across the whole area.
+        // If the line moved, pixels change across the whole width.
         let changed = if old.line == new.line {
             old.bounds_with(&new)
         } else {

@@ -12,7 +12,7 @@ use crate::arithmetic::Arithmetic;
 /// Incremented whenever the fields of any snapshot change.
 const VERSION: u32 = 1;
 
-/// The longest text in a header, bytes. An arithmetic with a longer name would have snapshots that do not load, so saving
+/// The longest text in a header, bytes. Snapshots of an arithmetic with a longer name could not be loaded, so saving
 /// one does not compile:
 ///
 /// ```compile_fail,E0080
@@ -42,8 +42,8 @@ pub(crate) trait Subject {
     type Arithmetic: Arithmetic;
 }
 
-/// The first field of a snapshot of a `T`. Zero-sized: its contents are constants, checked when loaded. Binary
-/// formats have no other way to tell one snapshot from another, and other bytes do not begin with the name.
+/// The first field of a snapshot of a `T`. Zero-sized: its contents are constants, checked when loaded. Binary formats
+/// have no field names, so only the header tells which type a snapshot is of.
 pub(crate) struct Header<T>(PhantomData<T>);
 
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -95,7 +95,7 @@ impl<'de, T: Subject> Deserialize<'de> for Header<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let found: Fields<String<LIMIT>> = Fields::deserialize(deserializer).map_err(|error| {
             D::Error::custom(format_args!(
-                "{error}; must be a snapshot of version {VERSION}"
+                "{error}; the input must be a snapshot of version {VERSION}"
             ))
         })?;
         let Fields {

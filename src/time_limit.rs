@@ -14,8 +14,8 @@ use crate::physics::ResetBounds;
 pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
 const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
 
-/// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the limit on, apart
-/// from `terminated`.
+/// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they reach the limit. It
+/// does not change `terminated`.
 ///
 /// ```
 /// use acrobot::{Acrobot, Action, Fast, TimeLimit};
@@ -37,7 +37,7 @@ pub struct TimeLimit<E = Acrobot> {
 }
 
 impl<E> TimeLimit<E> {
-    /// Truncates after `limit` steps.
+    /// Truncates episodes after `limit` steps.
     #[must_use]
     pub const fn new(inner: E, limit: NonZeroU32) -> Self {
         Self {
@@ -47,25 +47,25 @@ impl<E> TimeLimit<E> {
         }
     }
 
-    /// Truncates after 500 steps, as `Acrobot-v1`.
+    /// Truncates episodes after 500 steps, as `Acrobot-v1` does.
     #[must_use]
     pub const fn v1(inner: E) -> Self {
         Self::new(inner, V1)
     }
 
-    /// Truncates after 200 steps, as `Acrobot-v0`.
+    /// Truncates episodes after 200 steps, as `Acrobot-v0` does.
     #[must_use]
     pub const fn v0(inner: E) -> Self {
         Self::new(inner, V0)
     }
 
-    /// The steps after which episodes are truncated.
+    /// The number of steps after which episodes are truncated.
     #[must_use]
     pub const fn limit(&self) -> NonZeroU32 {
         self.limit
     }
 
-    /// The steps since the last reset.
+    /// The number of steps since the last reset.
     #[must_use]
     #[inline]
     pub const fn elapsed(&self) -> u32 {
@@ -79,20 +79,20 @@ impl<E> TimeLimit<E> {
         &self.inner
     }
 
-    /// The wrapped environment, for live changes. A reset there does not reset the count here.
+    /// The wrapped environment, to change it. Resetting it does not reset the count of steps.
     #[must_use]
     #[inline]
     pub fn inner_mut(&mut self) -> &mut E {
         &mut self.inner
     }
 
-    /// The wrapped environment, without its limit.
+    /// Returns the wrapped environment and drops the limit.
     #[must_use]
     pub fn into_inner(self) -> E {
         self.inner
     }
 
-    /// Begins an episode.
+    /// Sets the count of steps to 0.
     #[inline]
     pub(crate) fn restart(&mut self) {
         self.elapsed = 0;
@@ -107,13 +107,13 @@ impl<E> TimeLimit<E> {
 }
 
 impl<A: Arithmetic> TimeLimit<Acrobot<A>> {
-    /// [`Acrobot::reset_with_seed`], and the count starts again.
+    /// Calls [`Acrobot::reset_with_seed`] and sets the count of steps to 0.
     pub fn reset_with_seed(&mut self, seed: u64) -> Observation {
         self.restart();
         self.inner.reset_with_seed(seed)
     }
 
-    /// [`Acrobot::reset_with`], and the count starts again.
+    /// Calls [`Acrobot::reset_with`] and sets the count of steps to 0.
     pub fn reset_with(&mut self, options: ResetOptions) -> Observation {
         self.restart();
         self.inner.reset_with(options)
@@ -121,19 +121,19 @@ impl<A: Arithmetic> TimeLimit<Acrobot<A>> {
 }
 
 impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
-    /// [`Acrobot::reset`], and the count starts again.
+    /// Calls [`Acrobot::reset`] and sets the count of steps to 0.
     pub fn reset(&mut self) -> Observation {
         self.restart();
         self.inner.reset()
     }
 
-    /// [`Acrobot::reset_within`], and the count starts again.
+    /// Calls [`Acrobot::reset_within`] and sets the count of steps to 0.
     pub fn reset_within(&mut self, bounds: ResetBounds) -> Observation {
         self.restart();
         self.inner.reset_within(bounds)
     }
 
-    /// [`Acrobot::step`], counted.
+    /// Calls [`Acrobot::step`] and counts the step.
     #[inline]
     pub fn step(&mut self, action: Action) -> Step {
         let step = self.inner.step(action);
@@ -141,7 +141,7 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
         Step { truncated, ..step }
     }
 
-    /// [`Acrobot::step_torque`], counted.
+    /// Calls [`Acrobot::step_torque`] and counts the step.
     ///
     /// # Errors
     ///

@@ -18,10 +18,9 @@
 //!
 //! # On a microcontroller
 //!
-//! Formatting floats as CSV costs 28 KB of flash, and the linker cannot prove it free of panics, because core's own
-//! code for it has checked slices. The binary alternative is [`Transition`] with the `serde` feature: postcard
-//! writes one of `f32` into 42 bytes. Where CSV must be, [`Trajectory::write_row`] needs a buffer of one row at a
-//! time:
+//! Formatting floats as CSV costs 28 KB of flash, and the linker cannot prove it free of panics, because `core`'s code
+//! for it slices with bounds checks. The alternative is binary: with the `serde` feature, postcard writes a
+//! `Transition<f32>` into 42 bytes. If you need CSV, [`Trajectory::write_row`] takes a buffer for one row:
 //!
 //! ```
 //! # use acrobot::trajectory::Trajectory;
@@ -62,13 +61,13 @@ use crate::time_limit::TimeLimit;
 pub struct Transition<S = f64> {
     /// The state before the step.
     pub state: State<S>,
-    /// The torque that was asked for, N m, without noise.
+    /// The requested torque, N m, without noise.
     pub torque: S,
-    /// −1, or 0 for the step that reached the goal.
+    /// −1, or 0 if `terminated`.
     pub reward: f32,
     /// The state after the step.
     pub next: State<S>,
-    /// Whether `next` is in the goal.
+    /// Whether `next` is a goal state.
     pub terminated: bool,
     /// Whether the time limit ended the episode.
     pub truncated: bool,
@@ -113,14 +112,14 @@ mod sealed {
     recorded!(TimeLimit<Acrobot<A, R>>, self, self.inner());
 }
 
-/// The last `N` transitions, oldest first. Older ones are forgotten.
+/// The last `N` transitions, oldest first. Older ones are dropped.
 ///
-/// It takes about 44 `N` bytes for `f32`, and no heap. [An example](self).
+/// With `f32` it takes about 44 `N` bytes, and no heap. See [the example](self).
 #[derive(Clone, Debug)]
 pub struct Trajectory<S, const N: usize> {
-    /// heapless's history buffer would index with a checked branch.
+    /// Not heapless's history buffer, whose indexing has a bounds check that can panic.
     transitions: Deque<Transition<S>, N>,
-    /// How many were pushed since the last `clear`, kept or not.
+    /// Transitions pushed since the last `clear`, including dropped ones.
     pushed: u32,
 }
 
@@ -135,7 +134,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         }
     }
 
-    /// Steps an [`Acrobot`] or a [`TimeLimit`] around one, and adds the transition.
+    /// Steps an [`Acrobot`], or a [`TimeLimit`] around one, and adds the transition.
     pub fn step(&mut self, environment: &mut impl sealed::Recorded<S>, action: Action) -> Step {
         let (state, torque) = (environment.state(), environment.torque(action));
         let step = environment.step(action);
@@ -143,7 +142,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         step
     }
 
-    /// [`step`](Self::step) with a torque in N m.
+    /// As [`step`](Self::step), with a torque in N m.
     ///
     /// # Errors
     ///
@@ -171,18 +170,18 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         });
     }
 
-    /// Adds a transition. If there are `N`, the oldest is forgotten.
+    /// Adds a transition. If there are already `N`, drops the oldest.
     #[inline]
     pub fn push(&mut self, transition: Transition<S>) {
         if self.transitions.is_full() {
             self.transitions.pop_front();
         }
-        // There is room for one now.
+        // Cannot fail: there is room for one.
         let _ = self.transitions.push_back(transition);
         self.pushed = self.pushed.saturating_add(1);
     }
 
-    /// Forgets all transitions, as at the start of an episode.
+    /// Removes all transitions, for a new episode.
     pub fn clear(&mut self) {
         self.transitions.clear();
         self.pushed = 0;
@@ -207,8 +206,8 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
 
     /// Writes all transitions as CSV, oldest first, below a line of column names with units.
     ///
-    /// `step` counts from 1 at the first push, including forgotten ones. Numbers are the shortest that read back to
-    /// the same bits. [What formatting floats costs](self#on-a-microcontroller).
+    /// `step` counts from 1 at the first push, including dropped ones. Numbers have the fewest digits that parse to the
+    /// same bits. On a microcontroller [this costs flash](self#on-a-microcontroller).
     ///
     /// # Errors
     ///
@@ -221,22 +220,22 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         Ok(())
     }
 
-    /// Writes the line of column names of [`write_csv`](Self::write_csv) into `buffer` and returns it: 182 bytes.
+    /// Writes the line of column names of [`write_csv`](Self::write_csv), 182 bytes, into `buffer` and returns it.
     ///
     /// # Errors
     ///
-    /// [`Error::BufferTooSmall`] with the length that is needed.
+    /// [`Error::BufferTooSmall`] with the length needed.
     pub fn write_header<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a str, Error> {
         Buffer::write(buffer, |out| out.write_str(HEADER))
     }
 
     /// Writes one row of [`write_csv`](Self::write_csv) into `buffer` and returns it; index 0 is the oldest. With
-    /// `f32` and Gymnasium's parameters 150 bytes are enough; numbers near 0 can be longer.
+    /// `f32` and Gymnasium's parameters 150 bytes are usually enough; numbers near 0 have more digits.
     ///
     /// # Errors
     ///
     /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and [`Error::BufferTooSmall`] with the
-    /// length that is needed.
+    /// length needed.
     pub fn write_row<'a>(&self, index: usize, buffer: &'a mut [u8]) -> Result<&'a str, Error> {
         let Some((number, transition)) = self.numbered().nth(index) else {
             let len = self.len();
@@ -249,7 +248,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         Buffer::write(buffer, |out| row(out, number, transition))
     }
 
-    /// All transitions with the number of their step.
+    /// All transitions, each with the number of its step.
     fn numbered(&self) -> impl Iterator<Item = (u32, &Transition<S>)> {
         let forgotten = self.pushed.saturating_sub(self.len() as u32);
         let number = move |i| forgotten.saturating_add(i);
@@ -285,20 +284,20 @@ fn row<S: Real, W: fmt::Write + ?Sized>(
     writeln!(out, ",{},{}", u8::from(*terminated), u8::from(*truncated))
 }
 
-/// Keeps what fits and counts the rest.
+/// Keeps the text that fits and counts the bytes of all.
 struct Buffer<'a> {
     bytes: &'a mut [u8],
     needed: usize,
 }
 
 impl<'a> Buffer<'a> {
-    /// The text that `text` writes.
+    /// Returns the text that `text` writes.
     fn write(
         bytes: &'a mut [u8],
         text: impl FnOnce(&mut Self) -> fmt::Result,
     ) -> Result<&'a str, Error> {
         let mut buffer = Self { bytes, needed: 0 };
-        // Writing to a buffer does not fail, and what it holds is whole texts.
+        // `write_str` cannot fail, and it keeps whole strings only, which are UTF-8.
         let _ = text(&mut buffer);
         let Self { bytes, needed } = buffer;
         let len = bytes.len();

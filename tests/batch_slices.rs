@@ -277,11 +277,11 @@ fn rejected_changes_change_nothing() {
         // Lane 3 of the block holds no acrobot.
         (
             batch.set_state(3, State::default()),
-            "member must be below the length 3, got 3",
+            "member index must be below 3, got 3",
         ),
         (
             batch.set_state(16, State::default()),
-            "member must be below the length 3, got 16",
+            "member index must be below 3, got 16",
         ),
         (
             batch.set_state(1, NAN),
@@ -289,7 +289,7 @@ fn rejected_changes_change_nothing() {
         ),
         (
             batch.set_member(3, member),
-            "member must be below the length 3, got 3",
+            "member index must be below 3, got 3",
         ),
         (
             batch.set_member(1, invalid),

@@ -239,11 +239,11 @@ fn every_violation_is_found() {
         ),
         (
             Flaw::Count(Cell::new(0)),
-            "a reset after an end begins a whole new episode",
+            "a reset after the end begins a full new episode",
         ),
         (
             Flaw::Unseeded(Cell::new(0)),
-            "a reset after an end begins a whole new episode",
+            "a reset after the end begins a full new episode",
         ),
         (
             Flaw::Shared(Rc::new(Cell::new(0))),
@@ -251,7 +251,7 @@ fn every_violation_is_found() {
         ),
         (
             Flaw::SharedInEpisode(Rc::new(Cell::new(0))),
-            "a clone does what its original would have done",
+            "a clone behaves like its original",
         ),
         (
             Flaw::ObservationSamples,

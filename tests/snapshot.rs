@@ -241,7 +241,7 @@ fn snapshots_of_another_type_are_rejected_by_their_header() {
     );
     assert_eq!(
         first(rejected(header, "")),
-        "missing field `snapshot`; must be a snapshot of version 1"
+        "missing field `snapshot`; the input must be a snapshot of version 1"
     );
     assert!(rejected("\"acrobot\"", "\"batch member\"").contains("got \"batch member\""));
     let unknown = "\"an environment of another kind\"";

@@ -54,7 +54,7 @@ fn errors_say_what_was_wrong_and_what_is_valid() {
         ),
         (
             bounds(f64::NEG_INFINITY, 0.0),
-            "low must be within -3.4e38 and 3.4e38 rad and rad/s, got -inf",
+            "low must be from -3.4e38 to 3.4e38 rad and rad/s, got -inf",
         ),
         (
             bounds(0.2, -0.2),
@@ -62,7 +62,7 @@ fn errors_say_what_was_wrong_and_what_is_valid() {
         ),
         (
             params(|params| (params.inertia1, params.center_of_mass1) = (0.0, 0.0)),
-            "inertia1 must be above 0 kg m² where the centre of mass is on the joint, got 0",
+            "inertia1 must be above 0 kg m² if the centre of mass is on the joint, got 0",
         ),
         (
             batch::<0>().map(drop),
@@ -74,11 +74,11 @@ fn errors_say_what_was_wrong_and_what_is_valid() {
         ),
         (
             members.set_state(35, State::default()),
-            "member must be below the length 35, got 35",
+            "member index must be below 35, got 35",
         ),
         (
             trajectory.write_row(1, &mut [0; 200]).map(drop),
-            "row must be below the length 1, got 1",
+            "row index must be below 1, got 1",
         ),
         (
             trajectory.write_header(&mut [0; 10]).map(drop),
@@ -257,7 +257,7 @@ fn bad_reset_bounds_and_actions_are_rejected() {
             ("high", ResetBounds::new(-0.1, value)),
         ] {
             let text = bounds.unwrap_err().to_string();
-            let start = format!("{name} must be within -3.4e38 and 3.4e38 rad");
+            let start = format!("{name} must be from -3.4e38 to 3.4e38 rad");
             assert!(
                 text.starts_with(&start) && text.ends_with(&format!(", got {value}")),
                 "{text}"

@@ -6,7 +6,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use super::{Arithmetic, Real, SinCos};
 use crate::physics::{FromParams, Params};
 
-/// The parameters, and what the form of the equations computes from them once.
+/// The parameters, and the constants that the form of the equations computes from them.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<A: Arithmetic> {
     pub(crate) params: Params<A::Scalar>,
@@ -34,16 +34,16 @@ impl<A: Arithmetic> Model<A> {
     }
 }
 
-/// A form of the equations, in `S`.
+/// A form of the equations of motion, in the scalar `S`.
 pub trait Equations<S: Real>: Copy + fmt::Debug {
-    /// What depends on the parameters alone.
+    /// The constants, which depend only on the parameters.
     type Constants: FromParams<S>;
 
-    /// Whether the Runge-Kutta step adds its stages up at once instead of in Gymnasium's order.
+    /// Whether the Runge-Kutta step adds each stage to the result at once, instead of in Gymnasium's order.
     const COMPACT: bool;
 
-    /// The derivative at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque in N m. `sin_cos` are the sines and cosines of θ1
-    /// and θ2 where they are known.
+    /// The derivative at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque, N m. `sin_cos` are the sines and cosines of θ1 and
+    /// θ2, if they are known.
     fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
         model: &Model<A>,
         y: [V; 4],
@@ -51,7 +51,7 @@ pub trait Equations<S: Real>: Copy + fmt::Debug {
         torque: V,
     ) -> [V; 4];
 
-    /// The angle `x` rad brought to \[−π, π\] by whole turns.
+    /// The angle `x`, rad, wrapped to \[−π, π\] by whole turns.
     fn wrap<V: Numbers<S>>(x: V) -> V;
 
     /// Whether −cos θ1 − cos(θ1 + θ2) > 1: Gymnasium's goal, whatever the lengths of the links.
@@ -61,7 +61,7 @@ pub trait Equations<S: Real>: Copy + fmt::Debug {
     ) -> V::Mask;
 }
 
-/// One number, or many that are computed side by side. The step is written in these, once.
+/// One number, or many side by side. The code of a step is generic over this, so it is written once.
 pub trait Numbers<S: Real>:
     Copy
     + Add<Output = Self>
@@ -76,28 +76,28 @@ pub trait Numbers<S: Real>:
     /// Whether this is a single number.
     const IS_ONE: bool;
 
-    /// `x` in each place.
+    /// `x` in each lane.
     fn splat(x: S) -> Self;
 
-    /// `f` of each number.
+    /// Applies `f` to each number.
     fn map(self, f: impl FnMut(S) -> S) -> Self;
 
-    /// `f` of each pair of numbers.
+    /// Applies `f` to each pair of numbers.
     fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
 
-    /// Whether |x| ≤ `limit` for all; false for NaN.
+    /// Whether |x| ≤ `limit` for all numbers x; false for NaN.
     fn all_within(self, limit: S) -> bool;
 
     /// `inside` where |x| ≤ `limit`, `outside` elsewhere and for NaN.
     fn select_within(self, limit: S, inside: Self, outside: Self) -> Self;
 
-    /// Which are above `limit`.
+    /// Which numbers are above `limit`.
     fn above(self, limit: S) -> Self::Mask;
 
     /// [`Arithmetic::sin_cos_near`] of each number.
     fn sin_cos<A: Arithmetic<Scalar = S>>(self) -> SinCos<Self>;
 
-    /// Each number brought to \[−`limit`, `limit`\]; NaN stays NaN.
+    /// Each number clamped to \[−`limit`, `limit`\]; NaN stays NaN.
     #[inline(always)]
     fn bound(self, limit: S) -> Self {
         self.map(|x| if x > limit { limit } else { x })

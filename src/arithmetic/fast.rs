@@ -3,7 +3,7 @@
 use super::{Arithmetic, FARTHEST, Lanes, Numbers};
 use crate::physics::Lean;
 
-/// `f32`, sines from a polynomial, and the lean form: the same bits on every target, with or without an FPU.
+/// `f32`, polynomial sines, and the lean form: the same bits on every target, with or without an FPU.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -21,9 +21,9 @@ impl Arithmetic for Fast {
     type Scalar = f32;
     type Form = Lean;
 
-    /// Sine and cosine with an error of at most 1.2e-7 (two units in the last place of 1) for |x| ≤ 64 rad:
-    /// 1.17e-7 is the worst over all these `f32` (`cargo test --release --test trigonometry`). For larger
-    /// angles the error is that of an angle in `f32`, 1.2e-7 |x|. Angles beyond 2¹⁹ rad count as 2¹⁹ rad.
+    /// Sine and cosine with an error of at most 1.2e-7 (two units in the last place of 1) for |x| ≤ 64 rad. The largest
+    /// error over all these `f32` is 1.17e-7 (`cargo test --release --test trigonometry`). For larger angles the error
+    /// is that of an angle in `f32`, 1.2e-7 |x|. Angles beyond ±2¹⁹ rad are clamped to ±2¹⁹ rad.
     #[inline]
     fn sin_cos(x: f32) -> (f32, f32) {
         sin_cos_kernel(x.clamp(-FARTHEST, FARTHEST))
@@ -45,19 +45,19 @@ impl Arithmetic for Fast {
 /// |x| ≤ 64 the multiple has at most 6 bits and `PI_2_HIGH` has 18, so their product is exact.
 #[inline(always)]
 fn sin_cos_kernel<V: QuarterTurns>(x: V) -> (V, V) {
-    /// The leading 18 bits of π/2, and the rest.
+    /// π/2: its leading 18 bits, and the rest.
     const PI_2_HIGH: f32 = f32::from_bits(0x3fc9_0fc0);
     const PI_2_LOW: f32 = (core::f64::consts::FRAC_PI_2 - PI_2_HIGH as f64) as f32;
-    /// 1.5 × 2²³: a sum with it is rounded to an integer, which is in its lowest bits.
+    /// 1.5 × 2²³: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
     const MAGIC: f32 = 12_582_912.0;
-    /// Minimax over |r| ≤ π/4, each coefficient rounded to `f32` before the next was fitted
-    /// (`tests/data/polynomials.py`): error 1.8e-9 for sin r = r + r³(S0 + S1 r² + S2 r⁴)
+    /// sin r = r + r³(S0 + S1 r² + S2 r⁴), error 1.8e-9. Minimax over |r| ≤ π/4, each coefficient rounded to `f32`
+    /// before the next was fitted (`tests/data/polynomials.py`).
     const S: [f32; 3] = [
         f32::from_bits(0xbe2a_aaa0),
         f32::from_bits(0x3c08_82df),
         f32::from_bits(0xb94c_6e8b),
     ];
-    /// and 3.3e-8 for cos r = 1 + C0 r² + C1 r⁴ + C2 r⁶.
+    /// cos r = 1 + C0 r² + C1 r⁴ + C2 r⁶, error 3.3e-8. Fitted as `S`.
     const C: [f32; 3] = [
         f32::from_bits(0xbeff_ffdd),
         f32::from_bits(0x3d2a_9fd5),
@@ -75,15 +75,15 @@ fn sin_cos_kernel<V: QuarterTurns>(x: V) -> (V, V) {
     V::rotate(shifted, sin, cos)
 }
 
-/// Numbers that can be turned by quarters.
+/// Numbers that can be rotated by quarter turns.
 trait QuarterTurns: Numbers<f32> {
-    /// Sine and cosine after as many more quarter turns as the two lowest bits of `turns` say. Each takes
+    /// Rotates sine and cosine by 0 to 3 quarter turns: the two lowest bits of `turns`. A quarter turn changes
     /// (sin, cos) to (cos, −sin).
     fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self);
 }
 
 impl QuarterTurns for f32 {
-    /// By the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and cheaper on a
+    /// Uses the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and cheaper on a
     /// Cortex-M than selecting and negating. No −0 is lost: `sin` is never −0, `cos` never 0.
     #[inline(always)]
     #[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
@@ -99,8 +99,8 @@ impl QuarterTurns for f32 {
 }
 
 impl<const N: usize> QuarterTurns for Lanes<f32, N> {
-    /// By selecting and flipping signs. The sum with 0 turns −0 to 0, which the table of `f32` gives. Where that gives
-    /// NaN this gives infinity; a step with either is not finite.
+    /// Selects and flips signs. Adding 0 changes −0 to 0, which is the result for a single `f32`. Where a single `f32`
+    /// gives NaN, this can give infinity; a step with either is not finite.
     #[inline(always)]
     fn rotate(turns: Self, mut sin: Self, mut cos: Self) -> (Self, Self) {
         const SIGN: u32 = 1 << 31;

@@ -5,7 +5,7 @@ use core::hint::black_box;
 use super::Arithmetic;
 use crate::physics::Gymnasium;
 
-/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: Gymnasium's bits where NumPy calls the
+/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: bit-identical to Gymnasium if NumPy calls the
 /// same library, as on x86-64 Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
 ///
 /// ```
@@ -36,9 +36,9 @@ impl Arithmetic for Host {
         x.cos()
     }
 
-    /// `x**2` of a NumPy scalar is C's `pow`. glibc's rounds differently from `x * x` for one argument in a
-    /// thousand, where the exact square is about half way between two doubles. Elsewhere this avoids `pow`,
-    /// which would cost much of a step.
+    /// NumPy computes `x**2` of a scalar by C's `pow`. For one argument in a thousand, whose exact square is about half
+    /// way between two doubles, glibc's `pow` rounds differently from `x * x`. All others avoid `pow`, which would cost
+    /// much of a step.
     #[inline(always)]
     fn square(x: f64) -> f64 {
         if is_far_from_a_tie(x) {
@@ -53,17 +53,17 @@ impl Arithmetic for Host {
 #[cold]
 #[expect(clippy::disallowed_methods, reason = "as above")]
 fn power(x: f64) -> f64 {
-    // LLVM turns it into `x * x` if it sees the exponent.
+    // LLVM replaces the call by `x * x` if it sees the exponent.
     x.powf(black_box(2.0))
 }
 
-/// Whether x is moderate and its exact square so far from the middle of two doubles that `pow` equals
-/// `x * x`.
+/// Whether `pow(x, 2.0)` certainly equals `x * x`: x is moderate, and its exact square is far from half way between two
+/// doubles.
 ///
 /// glibc's source (`e_pow.c`) bounds the error of `pow` by 0.511 units in the last place and by
-/// 2⁵³ × 1.5 × 2⁻⁶⁸ |2 ln x|, below 0.004 for |x| of 2⁻⁶⁰ to 2⁶⁰. So `pow` rounds correctly where the middle is
-/// more than 0.015 units away; this asks for 0.02. Integers give the bits of the square beyond its last place,
-/// which is faster than floats without a fused multiply-add.
+/// 2⁵³ × 1.5 × 2⁻⁶⁸ |2 ln x|, below 0.004 for |x| of 2⁻⁶⁰ to 2⁶⁰. So `pow` rounds correctly if half way is more than
+/// 0.015 units from the square; this requires 0.02. An integer product gives the bits of the square beyond its last
+/// place, which is faster than floats without a fused multiply-add.
 #[inline(always)]
 fn is_far_from_a_tie(x: f64) -> bool {
     /// 0.02 units, where 2⁶⁴ is one unit.
@@ -74,7 +74,7 @@ fn is_far_from_a_tie(x: f64) -> bool {
 
     let is_moderate = (x.to_bits() << 1).wrapping_sub((1023 - 60) << 53) < 120 << 53;
     let mantissa_of_x = mantissa(x);
-    // From √2 on the square has one more bit before its last place.
+    // From √2 on, the square of the mantissa has one more bit before its last place.
     let kept = if mantissa_of_x > mantissa(core::f64::consts::SQRT_2) {
         11
     } else {

@@ -1,6 +1,6 @@
-//! `N` numbers side by side, which a batch computes in.
+//! `N` numbers side by side, for batches.
 //!
-//! These are plain arrays and loops over them, which LLVM turns into the vectors that the target has.
+//! These are plain arrays and loops over them, which LLVM compiles to the SIMD instructions of the target.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -33,7 +33,7 @@ impl<S: Real, const N: usize> Neg for Lanes<S, N> {
     }
 }
 
-// Loops and not `array::map`, which LLVM keeps out of line, where it may not use its caller's vectors.
+// Loops and not `array::map`, which LLVM keeps out of line, where it may not use the SIMD instructions of its caller.
 impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     type Mask = [bool; N];
     const IS_ONE: bool = false;

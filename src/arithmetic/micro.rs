@@ -24,8 +24,8 @@ impl Arithmetic for Micro {
     type Form = Lean;
 
     /// Sine and cosine with an error of at most 8e-7 for |x| ≤ π, and 4e-6 for |x| ≤ 64 rad
-    /// (`cargo test --release --test trigonometry`). For larger angles the error is that of an angle in `f32`,
-    /// 2e-7 |x|. Angles beyond 2¹⁹ rad count as 2¹⁹ rad.
+    /// (`cargo test --release --test trigonometry`). For larger angles the error is 2e-7 |x|.
+    /// Angles beyond ±2¹⁹ rad are clamped to ±2¹⁹ rad.
     #[inline]
     fn sin_cos(x: f32) -> (f32, f32) {
         sin_cos_kernel(x.clamp(-FARTHEST, FARTHEST))
@@ -37,15 +37,15 @@ impl Arithmetic for Micro {
     }
 }
 
-/// Sine and cosine of the nearest multiple of π/16 from the table, of the rest `r` from polynomials, and of
-/// their sum by the addition theorem.
+/// A table gives sine and cosine of the nearest multiple of π/16, and polynomials those of the remainder `r`. The
+/// addition theorem combines them.
 #[inline(always)]
 fn sin_cos_kernel(x: f32) -> (f32, f32) {
     const STEP: f32 = PI / 16.0;
-    /// 1.5 × 2²³: a sum with it is rounded to an integer, which is in its lowest bits.
+    /// 1.5 × 2²³: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
     const MAGIC: f32 = 12_582_912.0;
-    /// Minimax over |r| ≤ π/32 (`tests/data/polynomials.py`): error 9.9e-9 for sin r = r + S r³ and 6.6e-7
-    /// for cos r = 1 + C r².
+    /// sin r = r + S r³, error 9.9e-9, and cos r = 1 + C r², error 6.6e-7: minimax over |r| ≤ π/32
+    /// (`tests/data/polynomials.py`).
     const S: f32 = f32::from_bits(0xbe2a_985f);
     const C: f32 = f32::from_bits(0xbeff_d468);
 
@@ -67,7 +67,7 @@ fn sin_cos_kernel(x: f32) -> (f32, f32) {
 #[inline(always)]
 #[expect(clippy::indexing_slicing, reason = "the index is 0 to 31")]
 fn sixteenths(number: u32) -> (f32, f32) {
-    /// Sines of one turn, and of a quarter turn more for the cosines.
+    /// Sines over one turn, and over a quarter turn more for the cosines.
     static SINES: [f32; 40] = sines();
     let i = (number & 31) as usize;
     (SINES[i], SINES[i + 8])
@@ -75,7 +75,7 @@ fn sixteenths(number: u32) -> (f32, f32) {
 
 #[expect(clippy::indexing_slicing, reason = "evaluated by the compiler")]
 const fn sines() -> [f32; 40] {
-    /// From 0 to a quarter turn, each the `f32` nearest to it (`tests/data/polynomials.py`).
+    /// Sines from 0 to a quarter turn, each rounded to the nearest `f32` (`tests/data/polynomials.py`).
     const QUARTER: [u32; 9] = [
         0x0000_0000,
         0x3e47_c5c2,

@@ -5,8 +5,9 @@ use crate::physics::Lean;
 
 /// `f64`, sines from the crate `libm`, and the lean form: the fastest `f64` with the same bits on every target.
 ///
-/// Its bits are those of `libm`'s sines, so a release of `libm` could change them;
-/// [what to do about that](crate::guide::determinism#where-it-ends). [`Reference`](super::Reference) depends on no library.
+/// A release of `libm` could round its sines differently and so change the bits. [Fix its
+/// version](crate::guide::determinism#where-it-ends), or use [`Reference`](super::Reference), which depends on no
+/// library.
 ///
 /// ```
 /// use acrobot::Portable;

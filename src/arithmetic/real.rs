@@ -5,8 +5,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A scalar that the physics can be computed in: `f32` or `f64`.
 ///
-/// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so that every machine
-/// agrees.
+/// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are the same on every
+/// machine.
 pub trait Real:
     Copy
     + fmt::Debug
@@ -36,13 +36,12 @@ pub trait Real:
     /// The same number, exactly.
     fn to_f64(self) -> f64;
 
-    /// Neither infinite nor NaN.
+    /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
-    /// The nearest integer, ties to even. Exact for |self| up to 2²² in `f32` and 2⁵¹ in `f64`, finite
-    /// beyond.
+    /// The nearest integer, ties to even. Exact for |self| up to 2²² in `f32` and 2⁵¹ in `f64`, finite beyond.
     ///
-    /// It takes two additions because a Cortex-M4F has no instruction for it.
+    /// It consists of two additions, because a Cortex-M4F has no rounding instruction.
     fn round_small(self) -> Self;
 
     /// The exact remainder of the division by `divisor`, with the sign of `self`.
@@ -101,7 +100,7 @@ macro_rules! impl_real {
 
             #[inline]
             fn round_small(self) -> Self {
-                // 1.5 / ε: the sum's last place is 1, so that the addition itself rounds.
+                // 1.5 / ε: the sum's last place is 1, so the addition itself rounds.
                 const MAGIC: $scalar = 1.5 / $scalar::EPSILON;
                 (self + MAGIC) - MAGIC
             }
@@ -118,7 +117,7 @@ impl_real!(f32, u32);
 impl_real!(f64, u64);
 
 pub(crate) mod sealed {
-    /// What only this crate needs of a scalar.
+    /// Items of a scalar that only this crate uses.
     pub trait Sealed: Sized {
         /// 1.
         const ONE: Self;

@@ -7,40 +7,41 @@ mod wide;
 use super::Arithmetic;
 use crate::physics::Gymnasium;
 
-/// `f64`, correctly rounded sines and cosines, and Gymnasium's expressions: the same bits on every target, defined by no
-/// library but by mathematics.
+/// `f64`, correctly rounded sines and cosines, and Gymnasium's expressions: the same bits on every target, defined by
+/// mathematics and not by a library.
 ///
-/// For each x one `f64` is nearest to sin x. This arithmetic returns that one, as any other correctly rounded sine does. Its
-/// steps are as near to Gymnasium's as those of Gymnasium on another computer: 99.75 % are bit-identical ([how much is
-/// repeated](crate::guide::determinism#how-much-of-gymnasium-is-repeated)).
+/// For each x one `f64` is nearest to sin x. This arithmetic returns it, as any other correctly rounded sine does.
+/// 99.75 % of its steps are [bit-identical to
+/// Gymnasium's](crate::guide::determinism#how-much-of-gymnasium-is-repeated), about as many as between Gymnasium on
+/// two CPUs.
 ///
 /// ```
 /// use acrobot::arithmetic::{Arithmetic, Reference};
 ///
 /// let (sin, cos) = Reference::sin_cos(1.0);
 /// assert_eq!([sin, cos].map(f64::to_bits), [0x3fea_ed54_8f09_0cee, 0x3fe1_4a28_0fb5_068c]);
-/// // For a large x, 53 bits of π would not do.
+/// // A large x needs more than 53 bits of π.
 /// assert_eq!(Reference::sin_cos(f64::MAX).0, 0.004961954789184062);
 /// ```
 ///
 /// # Method
 ///
-/// A fast path computes about ten bits more than an `f64` has, with a proven bound of its error. If the result is farther from
-/// half way between two `f64` than that bound, the nearest `f64` is certain. Otherwise, for one result in 300 to 400, a slow path
-/// computes 192 bits. Source: A. Ziv, *Fast Evaluation of Elementary Mathematical Functions with Correctly Rounded Last Bit*
-/// (1991).
+/// A fast path computes about ten bits more than an `f64` has, with a proven error bound. If the result is farther from
+/// half way between two `f64` than that bound, the nearest `f64` is certain. Otherwise, for one result in 300 to 400, a
+/// slow path computes 192 bits. Source: A. Ziv, *Fast Evaluation of Elementary Mathematical Functions with Correctly
+/// Rounded Last Bit* (1991).
 ///
 /// | x | method |
 /// |---|---|
 /// | \|x\| < 2⁻²⁷ | sin x rounds to x and cos x to 1: x³/6 and x²/2 are at most a quarter of the last place |
 /// | \|x\| < 64, with instructions for `f64` | `float.rs`: a table, and sums of two `f64` |
 /// | \|x\| < 64, elsewhere | `integer.rs`: polynomials in 64-bit integers |
-/// | any other finite x, and what these leave | `wide.rs`: Taylor's series in 192 bits |
+/// | other finite x, and results that the fast paths leave open | `wide.rs`: Taylor's series in 192 bits |
 /// | infinity, NaN | NaN |
 ///
-/// The two fast paths have the same results, because only one result is right. The files, in `src/arithmetic/reference`, list
-/// their errors term by term. `tests/data/sines.py` derives the constants and adds the errors up. It also records 21 million
-/// results of MPFR, which `cargo test --test sines` compares.
+/// The two fast paths return the same bits, because only one result is correct. The files, in
+/// `src/arithmetic/reference`, list their errors term by term. `tests/data/sines.py` derives the constants and adds up
+/// the errors. It also records 21 million results of MPFR, with which `cargo test --test sines` compares.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reference;
@@ -115,7 +116,7 @@ mod tests {
     use super::*;
     use crate::numpy::{Pcg64, uniform};
 
-    /// This machine takes one of the fast paths, another machine the other.
+    /// A machine uses only one of the two fast paths. This test runs both.
     #[test]
     fn all_paths_agree() {
         let mut rng = Pcg64::new(0);
@@ -131,7 +132,7 @@ mod tests {
             if !has_fast_path(x) {
                 continue;
             }
-            // There are few quarters, so each that is left counts often.
+            // The multiples of π/8 repeat, so one that is left open counts often.
             let is_random = u32::from(i % 4 != 2);
             random += is_random;
             let (float, integer) = (float::Angle::new(x), integer::Angle::new(x));
@@ -146,7 +147,7 @@ mod tests {
                 }
             }
         }
-        // As the files say.
+        // As `float.rs` and `integer.rs` state.
         let shares =
             left_to_wide.map(|path| path.map(|count| f64::from(random) / f64::from(count)));
         let expected = [320.0, 410.0].map(|share| 0.9 * share..1.1 * share);

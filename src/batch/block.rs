@@ -1,4 +1,4 @@
-//! Some acrobots side by side, and one step of them.
+//! `N` acrobots side by side, and their step.
 
 use core::marker::PhantomData;
 
@@ -11,8 +11,8 @@ use crate::physics::{Params, ResetBounds, State, check_torque, sin_cos, step};
 
 /// The memory of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) consists of these.
 ///
-/// Sixteen suit a machine with vectors. Fewer waste less where there are few acrobots: a `Block<f32, 1>` takes 64
-/// bytes, one of sixteen 640.
+/// `N` = 16 suits a machine with SIMD. For a few acrobots, a smaller `N` wastes less memory: a `Block<f32, 1>` takes 64
+/// bytes, a `Block<f32, 16>` 640.
 ///
 /// ```
 /// use acrobot::batch::Block;
@@ -26,10 +26,10 @@ use crate::physics::{Params, ResetBounds, State, check_torque, sin_cos, step};
 pub struct Block<S = f32, const N: usize = 16> {
     /// θ1, θ2, θ̇1 and θ̇2.
     y: [Lanes<S, N>; 4],
-    /// Of θ1 and θ2, for the observation and the next step.
+    /// Sines and cosines of θ1 and θ2, for the observation and the next step.
     sin_cos: [SinCos<Lanes<S, N>>; 2],
     elapsed: [u32; N],
-    /// Whether the next step resets.
+    /// Whether the next step resets the lane.
     ended: [bool; N],
 }
 
@@ -37,7 +37,7 @@ impl<S: Real, const N: usize> Block<S, N> {
     /// The number of acrobots in a block.
     pub const LANES: usize = N;
 
-    /// A block before its acrobots are placed.
+    /// A block to create a batch with, which resets it.
     pub const EMPTY: Self = Self {
         y: [Lanes([S::ZERO; N]); 4],
         sin_cos: [(Lanes([S::ZERO; N]), Lanes([S::ZERO; N])); 2],
@@ -46,7 +46,7 @@ impl<S: Real, const N: usize> Block<S, N> {
     };
 }
 
-// Each lane is reached by an iterator or by `get`, so that no compiler has a panic to prove away.
+// Lanes are accessed by iterators or `get`, so no compiler has to prove that an index cannot panic.
 impl<S: Real, const N: usize> Block<S, N> {
     pub(super) fn state(&self, lane: usize) -> Option<State<S>> {
         let [theta1, theta2, dtheta1, dtheta2] = &self.y;
@@ -58,7 +58,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         })
     }
 
-    /// Places a lane in a state, which leaves its episode as it is.
+    /// Sets the state of a lane. Its episode continues.
     pub(super) fn set_state<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, state: State<S>) {
         let new = sin_cos::<A>([state.theta1, state.theta2]);
         for (numbers, number) in self.y.iter_mut().zip(<[S; 4]>::from(state)) {
@@ -70,12 +70,12 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// The steps of a lane's episode, and whether the next one resets it.
+    /// The number of steps of a lane's episode, and whether the next step resets it.
     pub(super) fn progress(&self, lane: usize) -> Option<(u32, bool)> {
         Some((*self.elapsed.get(lane)?, *self.ended.get(lane)?))
     }
 
-    /// Continues an episode in a lane.
+    /// Sets the state and the progress of a lane.
     pub(super) fn resume<A: Arithmetic<Scalar = S>>(
         &mut self,
         lane: usize,
@@ -87,14 +87,14 @@ impl<S: Real, const N: usize> Block<S, N> {
         set(&mut self.ended, lane, ended);
     }
 
-    /// Begins an episode in each of the first lanes.
+    /// Begins an episode in the first lanes, one for each state.
     pub(super) fn reset_to<A: Arithmetic<Scalar = S>>(&mut self, states: &[State<S>]) {
         for (lane, state) in states.iter().enumerate() {
             self.resume::<A>(lane, *state, (0, false));
         }
     }
 
-    /// Resets some lanes, each with its generator. A lane without one holds no acrobot and hangs at rest.
+    /// Resets the lanes in `some`, each with its generator. A lane without one has no acrobot and hangs at rest.
     #[cold]
     pub(super) fn reset<A: Arithmetic<Scalar = S>>(
         &mut self,
@@ -112,7 +112,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// Makes the lanes that wait for their reset fit a mode in which none waits.
+    /// Ends pending resets: `SameStep` resets the lanes now, `Disabled` never.
     pub(super) fn stop_waiting<A: Arithmetic<Scalar = S>>(
         &mut self,
         shared: &Shared<A>,
@@ -126,7 +126,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// Each acrobot's six numbers, lane by lane.
+    /// The observations: six columns with one number for each lane.
     #[inline(always)]
     fn columns(&self) -> [&[S; N]; 6] {
         let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
@@ -134,7 +134,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         [&cos1.0, &sin1.0, &cos2.0, &sin2.0, &dtheta1.0, &dtheta2.0]
     }
 
-    /// Each acrobot's six numbers, acrobot by acrobot.
+    /// The observations: one row of six numbers for each lane.
     #[inline(always)]
     fn rows(&self) -> impl Iterator<Item = [f32; 6]> {
         let [cos1, sin1, cos2, sin2, dtheta1, dtheta2] = self.columns();
@@ -145,7 +145,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         })
     }
 
-    /// Writes the observations, and takes off what is written to.
+    /// Writes the observations, and removes the written elements from `to`.
     #[inline(always)]
     pub(super) fn observe(&self, to: &mut Observations<'_>) {
         match to {
@@ -165,7 +165,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// [`observe`](Self::observe) for some of the lanes.
+    /// Writes the observations of the lanes in `some`, at their index in `to`.
     #[cold]
     fn observe_some(&self, some: &[bool; N], to: &mut Observations<'_>) {
         for ((lane, row), _) in self
@@ -178,7 +178,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         }
     }
 
-    /// One step of all lanes. Writes the results, and takes off what is written to.
+    /// One step of all lanes. Writes the results, and removes the written elements from `buffers`.
     #[inline(always)]
     fn step<A: Arithmetic<Scalar = S>>(
         &mut self,
@@ -229,7 +229,7 @@ impl<S: Real, const N: usize> Block<S, N> {
         self.observe(&mut buffers.observations);
     }
 
-    /// Adds a draw of the noise to each torque, except in lanes that this step only resets.
+    /// Adds a noise draw to each torque, except in lanes that this step only resets.
     #[cold]
     fn add_noise(&self, torques: &mut [S; N], noise: S, generators: &mut [Pcg64]) {
         let noise = noise.to_f64();
@@ -240,7 +240,7 @@ impl<S: Real, const N: usize> Block<S, N> {
     }
 }
 
-/// The results of lanes that the step only resets.
+/// Sets the results of lanes that the step only resets.
 #[cold]
 fn clear<const N: usize>(
     resets: &[bool; N],
@@ -260,22 +260,22 @@ fn set<T>(lanes: &mut [T], lane: usize, x: T) {
     }
 }
 
-/// What drives a batch for one step.
+/// The kind of input to a step: actions or torques.
 pub(super) trait Drive<S> {
     /// The argument's name, for errors.
     const NAME: &'static str;
 
-    /// What each acrobot is given.
+    /// The input to one acrobot.
     type Input: Copy + Sync;
 
-    /// Rejects an input that is not valid.
+    /// Rejects invalid inputs.
     fn check(inputs: &[Self::Input]) -> Result<(), Error>;
 
-    /// The torques of one block in N m. Lanes without an input get one that is valid.
+    /// The torques of one block, N m. Lanes without an input get a valid torque.
     fn torques<const N: usize>(params: &Params<S>, inputs: &[Self::Input]) -> [S; N];
 }
 
-/// Action numbers, which are 0, 1 and 2.
+/// Action numbers: 0, 1 and 2.
 pub(super) struct Actions<T>(PhantomData<T>);
 
 impl<S: Real, T: Copy + Into<u8> + Sync> Drive<S> for Actions<T> {
@@ -299,7 +299,7 @@ impl<S: Real, T: Copy + Into<u8> + Sync> Drive<S> for Actions<T> {
     }
 }
 
-/// Torques in N m, which are finite.
+/// Finite torques, N m.
 pub(super) struct Torques;
 
 impl<S: Real> Drive<S> for Torques {
@@ -332,7 +332,7 @@ pub(super) fn step_blocks<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
     }
 }
 
-/// A block's inputs, converted. The last block may have fewer; the rest of its lanes get `rest`.
+/// Converts a block's inputs. The last block may have fewer than `N`; its other lanes get `rest`.
 #[inline(always)]
 fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(T) -> U) -> [U; N] {
     let mut to = [rest; N];
@@ -342,7 +342,7 @@ fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(
     to
 }
 
-/// Writes as many as there is room for, and takes off what is written to.
+/// Writes as many elements as fit, and removes them from `to`.
 #[inline(always)]
 fn write<T: Copy, const N: usize>(to: &mut &mut [T], from: &[T; N]) {
     let to = take_mut(to, N);

@@ -5,16 +5,16 @@ use crate::error::Error;
 /// Where a step of a [`Batch`](super::Batch) writes its results. Each slice has one element for each acrobot.
 #[derive(Debug)]
 pub struct StepBuffers<'a> {
-    /// −1, or 0 for the step that reaches the goal and for one that only resets.
+    /// −1, or 0 if the acrobot terminated or was only reset.
     pub rewards: &'a mut [f32],
-    /// Whether the new state is in the goal.
+    /// Whether the new state is a goal state.
     pub terminated: &'a mut [bool],
     /// Whether the time limit is reached.
     pub truncated: &'a mut [bool],
-    /// What the agents see of the new states.
+    /// The observations of the new states.
     pub observations: Observations<'a>,
-    /// The last observations of the episodes that this step ended, with [`Autoreset::SameStep`](super::Autoreset::SameStep) only. Elements of
-    /// other acrobots stay as they are.
+    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the episodes that this step
+    /// ended. Elements of other acrobots are not written.
     pub final_observations: Observations<'a>,
 }
 
@@ -30,7 +30,7 @@ pub enum Observations<'a> {
 }
 
 impl StepBuffers<'_> {
-    /// Takes off the buffers of the first `n` acrobots, or of all if there are fewer.
+    /// Splits off the buffers of the first `n` acrobots, or of all if there are fewer.
     #[cfg(feature = "rayon")]
     pub(super) fn take(&mut self, n: usize) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl StepBuffers<'_> {
 }
 
 impl Observations<'_> {
-    /// Takes off those of the first `n` acrobots, or of all if there are fewer.
+    /// Splits off the observations of the first `n` acrobots, or of all if there are fewer.
     #[inline(always)]
     pub(super) fn take(&mut self, n: usize) -> Self {
         match self {
@@ -74,7 +74,7 @@ impl Observations<'_> {
         }
     }
 
-    /// Writes the six numbers of one acrobot, if there is room for it.
+    /// Writes the six numbers of one acrobot, if `index` is in range.
     pub(super) fn write(&mut self, index: usize, row: [f32; 6]) {
         match self {
             Self::None => {}
@@ -94,22 +94,22 @@ impl Observations<'_> {
     }
 }
 
-/// Takes the first `n` elements off a slice, or all if there are fewer. `chunks` would divide by `n`, and some
-/// compilers keep the panic of that division by zero.
+/// Splits off the first `n` elements of a slice, or all if there are fewer. Not `chunks`, which divides by `n`: some
+/// compilers keep the panic of a division by zero.
 #[inline(always)]
 pub(super) fn take<'a, T>(rest: &mut &'a [T], n: usize) -> &'a [T] {
     let first = rest.split_off(..n);
     first.unwrap_or_else(|| core::mem::take(rest))
 }
 
-/// [`take`] of a slice that can be changed.
+/// [`take`] for a mutable slice.
 #[inline(always)]
 pub(super) fn take_mut<'a, T>(rest: &mut &'a mut [T], n: usize) -> &'a mut [T] {
     let first = rest.split_off_mut(..n);
     first.unwrap_or_else(|| core::mem::take(rest))
 }
 
-/// Rejects a slice of another length.
+/// Rejects a slice whose length is not `expected`.
 pub(super) fn check_length(name: &'static str, len: usize, expected: usize) -> Result<(), Error> {
     if len == expected {
         Ok(())

@@ -1,4 +1,4 @@
-//! One acrobot of a batch, to save and to resume.
+//! One acrobot of a batch, to save and to load.
 
 use super::buffers::take_mut;
 use super::{Batch, Block, no_such_member};
@@ -28,9 +28,9 @@ use crate::physics::State;
 pub struct Member<A: Arithmetic> {
     /// The state.
     pub state: State<A::Scalar>,
-    /// The steps since the last reset.
+    /// The number of steps since the last reset.
     pub elapsed: u32,
-    /// Whether the next step resets it, as with [`Autoreset::NextStep`](super::Autoreset::NextStep).
+    /// Whether the next step resets it; only with [`Autoreset::NextStep`](super::Autoreset::NextStep).
     pub ended: bool,
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
@@ -56,14 +56,14 @@ where
         })
     }
 
-    /// Replaces acrobot `index`, which resumes to the same bits. If it waits for the next step to reset it,
-    /// [`Autoreset::SameStep`](super::Autoreset::SameStep) resets it immediately, and with
-    /// [`Autoreset::Disabled`](super::Autoreset::Disabled) it steps on.
+    /// Replaces acrobot `index` by `member`, which continues bit-identically. If its reset is pending,
+    /// [`Autoreset::SameStep`](super::Autoreset::SameStep) resets it immediately, and
+    /// [`Autoreset::Disabled`](super::Autoreset::Disabled) never.
     ///
     /// # Errors
     ///
-    /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and [`Error::OutOfRange`] for a number of
-    /// the state that is not finite.
+    /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and [`Error::OutOfRange`] for a state with a
+    /// number that is not finite.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
         member.state.validate()?;
         let len = self.len();

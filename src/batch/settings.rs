@@ -1,4 +1,4 @@
-//! What all acrobots of a batch have in common, to read and to change.
+//! The settings that all acrobots of a batch share.
 
 use core::num::NonZeroU32;
 
@@ -20,24 +20,24 @@ where
         &self.shared.model.params
     }
 
-    /// Sets the parameters of all acrobots, from the next step on.
+    /// Sets the parameters of all acrobots for the next steps.
     ///
     /// # Errors
     ///
-    /// As [`Params::validate`].
+    /// Those of [`Params::validate`].
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         params.validate()?;
         self.shared.model = Model::new(params);
         Ok(())
     }
 
-    /// The SIMD instructions to step with.
+    /// The SIMD instructions that a step uses.
     #[must_use]
     pub fn simd_level(&self) -> SimdLevel {
         self.simd_level
     }
 
-    /// Sets the SIMD instructions to step with. A level that the machine does not have acts as the baseline.
+    /// Sets the SIMD instructions that a step uses. A level that the machine does not have acts as the baseline.
     pub fn set_simd_level(&mut self, level: SimdLevel) {
         self.simd_level = level;
     }
@@ -48,18 +48,18 @@ where
         self.shared.bounds
     }
 
-    /// Sets the bounds of initial states, from the next reset on.
+    /// Sets the bounds of initial states for the next resets.
     pub fn set_reset_bounds(&mut self, bounds: ResetBounds) {
         self.shared.bounds = bounds;
     }
 
-    /// The steps after which episodes are truncated.
+    /// The number of steps after which episodes are truncated.
     #[must_use]
     pub fn limit(&self) -> NonZeroU32 {
         self.shared.limit
     }
 
-    /// Sets the steps after which episodes are truncated.
+    /// Sets the number of steps after which episodes are truncated.
     pub fn set_limit(&mut self, limit: NonZeroU32) {
         self.shared.limit = limit;
     }
@@ -70,8 +70,8 @@ where
         self.shared.autoreset
     }
 
-    /// Sets when ended episodes are reset. Of the acrobots that wait for the next step to reset them,
-    /// [`Autoreset::SameStep`] resets all immediately, and with [`Autoreset::Disabled`] all step on.
+    /// Sets when ended episodes are reset. Acrobots whose reset is pending are reset immediately by
+    /// [`Autoreset::SameStep`], and never by [`Autoreset::Disabled`].
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.shared.autoreset = autoreset;
         for (block, generators) in each_block(self.blocks.as_mut(), self.generators.as_mut()) {

@@ -1,4 +1,4 @@
-//! The SIMD instructions that a batch is stepped with.
+//! The SIMD instructions that a step of a batch uses.
 
 use super::block::{Block, Drive, step_blocks};
 #[cfg(feature = "rayon")]
@@ -7,7 +7,7 @@ use super::{Shared, StepBuffers};
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
 
-/// The SIMD instructions that a [`Batch`](super::Batch) is stepped with. They change no bit.
+/// The SIMD instructions that a step of a [`Batch`](super::Batch) uses. They change no bit.
 ///
 /// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there is only the
 /// baseline: what the crate is compiled for, such as WASM's simd128 or NEON.
@@ -45,7 +45,7 @@ impl SimdLevel {
             .unwrap_or(Self::Baseline)
     }
 
-    /// Whether this machine has it. Without `std`, and on other machines than x86-64, only the baseline is.
+    /// Whether this machine has it. Without `std`, and on targets other than x86-64, only the baseline is available.
     #[must_use]
     pub fn is_available(self) -> bool {
         match self {
@@ -64,10 +64,10 @@ impl SimdLevel {
         }
     }
 
-    /// Steps all blocks; with the baseline where the machine does not have this level.
+    /// Steps all blocks, with the baseline if the machine does not have this level.
     #[allow(
         unsafe_code,
-        reason = "the one place that uses instructions which the machine has and the build does not know of"
+        reason = "the one place that uses instructions which the machine has and the build does not assume"
     )]
     pub(super) fn step<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
         self,
@@ -111,7 +111,7 @@ impl SimdLevel {
         step_blocks::<A, D, N>(shared, blocks, generators, inputs, buffers);
     }
 
-    /// [`step`](Self::step) on all cores: halves in parallel, down to what is worth a task.
+    /// As [`step`](Self::step), on all cores: halves the blocks until a task is too small to share.
     #[cfg(feature = "rayon")]
     pub(super) fn par_step<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
         self,
@@ -121,7 +121,7 @@ impl SimdLevel {
         mut inputs: &[D::Input],
         mut buffers: StepBuffers<'_>,
     ) {
-        // About a hundred microseconds of work in `f32` and in `f64`: waking a thread takes ten.
+        // Both are about 100 µs of work: waking a thread takes 10 µs.
         let acrobots_of_a_task = match size_of::<A::Scalar>() {
             4 => 16_384,
             _ => 1024,

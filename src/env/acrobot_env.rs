@@ -28,7 +28,7 @@ use crate::render::Figure;
 pub trait ObservationKind:
     AsRef<[f32]> + AsMut<[f32]> + Clone + fmt::Debug + PartialEq + 'static
 {
-    /// What the agent sees.
+    /// The observation of an acrobot's state.
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self;
 
     /// The space of these observations. Its velocity bounds are those of `params`, but at least 0.1 rad/s, so that it
@@ -81,7 +81,7 @@ impl<A: Arithmetic, O: ObservationKind> AcrobotEnv<A, O> {
     ///
     /// # Errors
     ///
-    /// As [`Params::validate`], for the parameters as they are and as rounded to `A`'s scalar.
+    /// Those of [`Params::validate`], for the parameters as given and as rounded to `A`'s scalar.
     pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, crate::Error> {
         let mut env = Self {
             render_mode,
@@ -153,7 +153,7 @@ impl<A: Arithmetic, O: ObservationKind> Env for AcrobotEnv<A, O> {
     }
 }
 
-/// An acrobot in any arithmetic, for live changes through [`DynEnv`](super::DynEnv).
+/// An acrobot in any arithmetic, to change it through a [`DynEnv`](super::DynEnv).
 ///
 /// ```
 /// use acrobot::env::{DynAcrobot, Env, Error, make};
@@ -170,24 +170,24 @@ impl<A: Arithmetic, O: ObservationKind> Env for AcrobotEnv<A, O> {
 /// # Ok::<(), Error>(())
 /// ```
 pub trait DynAcrobot {
-    /// The state, exactly.
+    /// The state, converted to `f64` exactly.
     fn state(&self) -> State;
 
-    /// [`Acrobot::set_state`], rounded to the arithmetic's scalar.
+    /// [`Acrobot::set_state`] with the state rounded to the arithmetic's scalar.
     ///
     /// # Errors
     ///
-    /// As there.
+    /// Those of [`Acrobot::set_state`].
     fn set_state(&mut self, state: State) -> Result<(), crate::Error>;
 
-    /// The parameters, exactly.
+    /// The parameters, converted to `f64` exactly.
     fn params(&self) -> Params;
 
-    /// [`Acrobot::set_params`], rounded to the arithmetic's scalar.
+    /// [`Acrobot::set_params`] with the parameters rounded to the arithmetic's scalar.
     ///
     /// # Errors
     ///
-    /// As there, for the parameters as they are and as rounded.
+    /// Those of [`Acrobot::set_params`], for the parameters as given and as rounded.
     fn set_params(&mut self, params: Params) -> Result<(), crate::Error>;
 
     /// The figure to draw.

@@ -30,20 +30,20 @@ const IN_SPACE: &str = "observations are in the observation space";
 const ACTIONS: &str = "the action space contains its samples";
 const REWARD: &str = "rewards are finite";
 const SEED: &str = "the same seed and actions give the same episode";
-const AFTER_END: &str = "a reset after an end begins a whole new episode";
-const CLONE: &str = "a clone does what its original would have done";
+const AFTER_END: &str = "a reset after the end begins a full new episode";
+const CLONE: &str = "a clone behaves like its original";
 const RENDER: &str = "rendering changes nothing";
 
-/// The most steps of an episode that are played.
+/// The largest number of steps that is played in an episode.
 const STEPS: usize = 2000;
 
 /// Plays random episodes and checks the contract:
 ///
 /// - Observations and samples are in their space, and rewards are finite.
 /// - The same seed gives the same episode.
-/// - A reset after an end begins a whole new episode, with or without a seed. So truncation is not reported again at
-///   the start of the next episode.
-/// - Clones differ only by the actions that they are given.
+/// - A reset after the end begins a full new episode, with or without a seed. So a truncated episode does not shorten
+///   the next one.
+/// - A clone behaves like its original.
 /// - Rendering changes nothing.
 ///
 /// ```
@@ -69,7 +69,7 @@ where
     if !actions.iter().all(|action| space.contains(action)) {
         return Err(Violation {
             rule: ACTIONS,
-            found: "a sample is not".into(),
+            found: "a sample is outside".into(),
         });
     }
 
@@ -80,7 +80,7 @@ where
     let again = play(&mut otherwise_seeded, Some(seed), &actions)?;
     same(SEED, &first, &again)?;
 
-    // Both are at the same end and go on in the same stream.
+    // Both ended the same episode and continue the same stream.
     let next = play(&mut played, None, &actions)?;
     same(SEED, &next, &play(&mut otherwise_seeded, None, &actions)?)?;
     let truncated = |episode: &Episode<_>| episode.steps.last().is_some_and(|step| step.truncated);

@@ -3,7 +3,7 @@
 use core::fmt;
 use std::string::String;
 
-/// Why an environment cannot be made or shown.
+/// Why an environment cannot be made or rendered.
 ///
 /// ```
 /// use acrobot::env::{Env, Error, make};
@@ -15,7 +15,7 @@ use std::string::String;
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// No environment has this id. An id of more than 64 characters is cut there and ends in `…`.
+    /// No environment has this id. A longer id is cut after 64 characters and ends in `…`.
     UnknownId(String),
     /// The environment was made without a render mode.
     NoRenderMode,

@@ -1,4 +1,4 @@
-//! Environments by their ids.
+//! Makes environments from their ids.
 
 use core::fmt;
 use std::boxed::Box;
@@ -29,14 +29,14 @@ pub enum ArithmeticKind {
     Micro,
 }
 
-/// How an environment is made. The default is Gymnasium's `make(id)`.
+/// The options of an environment. The default is Gymnasium's `make(id)`.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// What `render` returns.
     pub render_mode: RenderMode,
-    /// The arithmetic. [`acrobot_v1`] and [`acrobot_v0`] have it as a type instead.
+    /// The arithmetic. [`acrobot_v1`] and [`acrobot_v0`] take it as a type and ignore this field.
     pub arithmetic: ArithmeticKind,
-    /// The parameters: dynamics, time step, noise, masses and all others.
+    /// The parameters.
     pub params: Params,
 }
 
@@ -71,11 +71,11 @@ pub type DynEnv = dyn Env<
         Unwrapped = dyn DynAcrobot,
     > + Send;
 
-/// `Acrobot-v1`: sines and cosines of the angles, and 500 steps.
+/// `Acrobot-v1`: observations with sines and cosines, and 500 steps.
 ///
 /// # Errors
 ///
-/// [`Error::Invalid`] for parameters that are rejected.
+/// [`Error::Invalid`] for invalid parameters.
 pub fn acrobot_v1<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, Observation<6>>>, Error> {
@@ -85,11 +85,11 @@ pub fn acrobot_v1<A: Arithmetic>(
     )?))
 }
 
-/// `Acrobot-v0`: the angles themselves, and 200 steps.
+/// `Acrobot-v0`: observations with the angles, and 200 steps.
 ///
 /// # Errors
 ///
-/// [`Error::Invalid`] for parameters that are rejected.
+/// [`Error::Invalid`] for invalid parameters.
 pub fn acrobot_v0<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, Observation<4>>>, Error> {
@@ -148,7 +148,7 @@ pub fn make(id: &str) -> Result<Box<DynEnv>, Error> {
 ///
 /// # Errors
 ///
-/// [`Error::UnknownId`] for another id, and [`Error::Invalid`] for parameters that are rejected.
+/// [`Error::UnknownId`] for another id, and [`Error::Invalid`] for invalid parameters.
 pub fn make_with(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     match options.arithmetic {
         ArithmeticKind::Host => make_in::<Host>(id, options),
@@ -159,7 +159,7 @@ pub fn make_with(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     }
 }
 
-/// The characters of an unknown id that an error repeats: it can be any text, of any length.
+/// The number of characters of an unknown id that an error keeps. An id can have any length.
 const LONGEST_ID: usize = 64;
 
 fn make_in<A: Arithmetic>(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
@@ -176,7 +176,7 @@ fn make_in<A: Arithmetic>(id: &str, options: Options) -> Result<Box<DynEnv>, Err
     }
 }
 
-/// What an agent sees in either version.
+/// The observation of either version.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DynObservation {
     /// Four numbers, in `Acrobot-v0`.

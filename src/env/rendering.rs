@@ -13,7 +13,7 @@ use crate::arithmetic::Arithmetic;
 use crate::physics::State;
 use crate::render::{self, Figure, Frame};
 
-/// Shows the frames of [`RenderMode::Human`]: a window, a web socket, a test.
+/// A function that shows the frames of [`RenderMode::Human`], for example in a window.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -33,17 +33,17 @@ pub struct Display(Arc<Shared<Show>>);
 type Show = dyn FnMut(&Frame) + Send;
 
 struct Shared<F: ?Sized> {
-    /// The thread that is in `show`.
+    /// The thread that is calling `show`.
     thread: Mutex<Option<ThreadId>>,
     show: Mutex<F>,
 }
 
 impl Display {
-    /// A display that passes each frame to `show`. Clones share it: while one shows a frame, other threads wait.
+    /// A display that passes each frame to `show`. Clones share `show`: while one shows a frame, other threads wait.
     ///
-    /// `show` cannot show frames on its own display. An environment that it resets or steps is not shown there, and
-    /// [`render`](super::Env::render) returns [`Error::DisplayBusy`]. `show` must not wait for a thread that shows
-    /// frames there: both would wait forever.
+    /// `show` cannot use its display itself: an environment that it resets or steps is not shown on this display, and
+    /// [`render`](super::Env::render) returns [`Error::DisplayBusy`]. `show` must not wait for another thread that uses
+    /// this display: both would wait forever.
     pub fn new(show: impl FnMut(&Frame) + Send + 'static) -> Self {
         Self(Arc::new(Shared {
             thread: Mutex::new(None),
@@ -64,7 +64,7 @@ impl Display {
     }
 }
 
-/// A display that panicked can still show the next frame.
+/// Ignores poisoning, so a display that panicked can show the next frame.
 fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -94,7 +94,7 @@ impl RenderMode {
     /// Shows the acrobot if the mode is `Human`, as Gymnasium does in each reset and each step.
     pub(super) fn show<A: Arithmetic>(&self, acrobot: &Acrobot<A>) {
         if let Self::Human(display) = self {
-            // A reset or a step from within the display is not shown.
+            // A reset or a step by the display's own function is not shown.
             let _ = display.show(&Frame::of(&Figure::new(acrobot)));
         }
     }
@@ -123,7 +123,7 @@ impl RenderMode {
     }
 }
 
-/// What [`Env::render`](super::Env::render) returns, by [`RenderMode`].
+/// The result of [`Env::render`](super::Env::render) in each [`RenderMode`].
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rendering {

@@ -1,4 +1,4 @@
-//! Spaces: the sets that actions and observations are from.
+//! Spaces: the sets of valid actions and observations.
 
 use core::num::NonZeroU32;
 
@@ -7,10 +7,10 @@ use rand_core::Rng;
 use crate::action::Action;
 use crate::numpy::{integers, uniform};
 
-/// A set that an element can be in and be drawn from.
+/// A set that can test for an element and draw random ones.
 ///
-/// A space has no generator, so that two copies do not draw the same by accident. Gymnasium's `action_space.seed(s)` is
-/// [`Pcg64::new(s)`](crate::numpy::Pcg64::new) here.
+/// A space has no generator, so copies cannot draw the same elements by accident. Gymnasium's `action_space.seed(s)`
+/// is [`Pcg64::new(s)`](crate::numpy::Pcg64::new) here.
 pub trait Space {
     /// The type of its elements.
     type Element;
@@ -18,11 +18,11 @@ pub trait Space {
     /// Whether `element` is in it.
     fn contains(&self, element: &Self::Element) -> bool;
 
-    /// Draws a random element: Gymnasium's `sample()`, if `rng` has the seed of its space.
+    /// Draws a random element: Gymnasium's `sample()`, if `rng` is a `Pcg64` with the seed of its space.
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Element;
 }
 
-/// Gymnasium's `Discrete`: a few elements, numbered from 0.
+/// Gymnasium's `Discrete`: a list of elements, numbered from 0.
 ///
 /// ```
 /// use acrobot::env::{Discrete, Space};
@@ -49,7 +49,7 @@ impl Discrete<Action> {
 }
 
 impl<T> Discrete<T> {
-    /// A space of these elements. `None` for none, and for more than 2³² − 1.
+    /// A space of these elements. `None` if there are none, or more than 2³² − 1.
     #[must_use]
     pub fn new(elements: &'static [T]) -> Option<Self> {
         let n = NonZeroU32::new(elements.len().try_into().ok()?)?;
@@ -98,8 +98,8 @@ pub struct BoxSpace<T> {
 }
 
 impl<T: AsRef<[f32]>> BoxSpace<T> {
-    /// The vectors from `low` to `high`. `None` if they differ in length, or a bound is not finite, or a lower one is
-    /// above its upper one.
+    /// The vectors from `low` to `high`. `None` if the two differ in length, a bound is not finite, or a lower bound is
+    /// above its upper bound.
     #[must_use]
     pub fn new(low: T, high: T) -> Option<Self> {
         let (lows, highs) = (low.as_ref(), high.as_ref());

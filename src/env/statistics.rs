@@ -18,8 +18,8 @@ pub struct EpisodeStatistics {
     pub elapsed: Duration,
 }
 
-/// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode reports its statistics in [`Info`], and those
-/// of the last hundred are kept.
+/// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode reports its statistics in [`Info`]. Those of
+/// the last 100 episodes are kept.
 ///
 /// ```
 /// use acrobot::env::{Env, EpisodeStatistics, RecordEpisodeStatistics, acrobot_v1};
@@ -61,13 +61,13 @@ impl<E> RecordEpisodeStatistics<E> {
         }
     }
 
-    /// The last hundred episodes, oldest first.
+    /// The last 100 episodes, oldest first.
     pub fn episodes(&self) -> impl Iterator<Item = &EpisodeStatistics> {
         self.episodes.iter()
     }
 
-    /// The mean return of these, to compare with [`REWARD_THRESHOLD`](crate::REWARD_THRESHOLD). `None` before the
-    /// first has ended.
+    /// The mean return of these episodes, to compare with [`REWARD_THRESHOLD`](crate::REWARD_THRESHOLD). `None` before
+    /// the first has ended.
     #[must_use]
     pub fn mean_return(&self) -> Option<f32> {
         let sum: f32 = self.episodes().map(|episode| episode.episode_return).sum();
@@ -80,13 +80,13 @@ impl<E> RecordEpisodeStatistics<E> {
         &self.inner
     }
 
-    /// The wrapped environment, for live changes. Steps there are not recorded here.
+    /// The wrapped environment, to change it. Steps through this reference are not recorded.
     #[must_use]
     pub fn inner_mut(&mut self) -> &mut E {
         &mut self.inner
     }
 
-    /// The wrapped environment, without its statistics.
+    /// Returns the wrapped environment and drops the statistics.
     #[must_use]
     pub fn into_inner(self) -> E {
         self.inner

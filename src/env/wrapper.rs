@@ -1,4 +1,4 @@
-//! Environments around environments: a time limit, a reference, a box.
+//! Wrappers that are environments too: `TimeLimit`, `&mut E` and `Box<E>`.
 
 use std::boxed::Box;
 
@@ -6,7 +6,7 @@ use super::{Env, Error, Info, Rendering};
 use crate::acrobot::{ResetOptions, Step};
 use crate::time_limit::TimeLimit;
 
-/// The parts of [`Env`] that a wrapper hands on: its types, its episodes, and all the rest.
+/// Forwards parts of [`Env`] to the wrapped one: types, `reset_with` and `step`, or the other methods.
 macro_rules! forward {
     (types $inner:ident) => {
         type Observation = $inner::Observation;
@@ -53,7 +53,7 @@ macro_rules! forward {
 
 pub(super) use forward;
 
-/// Sets `truncated` from the limit on. It stays set where the wrapped environment sets it.
+/// Sets `truncated` once the limit is reached, and keeps what the wrapped environment sets.
 impl<E: Env> Env for TimeLimit<E> {
     forward!(types E);
 
@@ -78,7 +78,7 @@ impl<E: Env + ?Sized> Env for &mut E {
     forward!(self, (**self));
 }
 
-/// A boxed environment, so that what [`make`](super::make) returns can be wrapped and passed to generic code.
+/// A boxed environment. So the result of [`make`](super::make) can be wrapped and passed to generic code.
 impl<E: Env + ?Sized> Env for Box<E> {
     forward!(types E);
     forward!(episode self, (**self));

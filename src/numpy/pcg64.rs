@@ -8,10 +8,10 @@ use rand_core::{Rng, SeedableRng, TryRng};
 use super::SeedSequence;
 
 /// NumPy's `PCG64`, the generator of every Gymnasium environment and space: `rand_pcg`'s PCG XSL-RR 128/64, seeded
-/// through a [`SeedSequence`]. Like NumPy, it takes two 32-bit draws from one of 64 bits.
+/// through a [`SeedSequence`]. Like NumPy, it takes two 32-bit draws from one 64-bit draw.
 ///
-/// It is `Clone`, so that it can be saved and resumed, and not `Copy`, so that no stream is drawn from twice by
-/// accident. Generators are equal if all their draws are. With the `serde` feature it can be stored.
+/// It is `Clone`, to save and resume it, and not `Copy`, so that no stream is drawn from twice by accident. Two
+/// generators are equal if all their draws are equal. With the `serde` feature it can be stored.
 ///
 /// Source: M. E. O'Neill, *PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
 /// Number Generation* (2014).
@@ -27,8 +27,8 @@ use super::SeedSequence;
 #[derive(Clone)]
 pub struct Pcg64(Stream);
 
-/// `rand_pcg` cannot seed a generator in a `const`, so the first draw does it. The choice takes no memory: it is a value
-/// that the tag of `half` leaves free.
+/// `rand_pcg` cannot seed a generator in a `const`, so the first draw seeds it. The enum takes no extra memory, because
+/// its tag fits into the tag of `half`.
 #[derive(Clone)]
 enum Stream {
     /// The hash of the seed.
@@ -46,10 +46,10 @@ struct Running {
 }
 
 impl Pcg64 {
-    /// A placeholder that a [`Batch`](crate::batch::Batch) seeds. Its own stream is of low quality.
+    /// A placeholder that a [`Batch`](crate::batch::Batch) seeds. Do not draw from it: its stream is of low quality.
     pub const UNSEEDED: Self = Self::from_hash([0; 4]);
 
-    /// NumPy's `default_rng(seed)`. For other seeds: `Pcg64::from` a [`SeedSequence`].
+    /// NumPy's `default_rng(seed)`. For longer seeds: `Pcg64::from` a [`SeedSequence`].
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self::from_hash(SeedSequence::new(seed).generate_state())
@@ -68,7 +68,7 @@ impl Pcg64 {
     }
 
     #[cold]
-    #[inline(never)] // inlined, it would take 16 bytes of stack and 2 % of a reset
+    #[inline(never)] // inlining costs 16 bytes of stack and 2 % of a reset
     fn start(&mut self) {
         self.0 = Stream::Running(self.running());
     }
@@ -114,7 +114,7 @@ impl Running {
 }
 
 impl PartialEq for Pcg64 {
-    /// A generator that has not started equals one that has, at the same position.
+    /// Compares stream and position, whether or not the generators have been drawn from.
     fn eq(&self, other: &Self) -> bool {
         let (this, other) = (self.running(), other.running());
         (this.pcg, this.half) == (other.pcg, other.half)
@@ -124,7 +124,7 @@ impl PartialEq for Pcg64 {
 impl Eq for Pcg64 {}
 
 impl fmt::Debug for Pcg64 {
-    /// The next draw of 64 bits, which stands for the state that `rand_pcg` does not show, and the half that is left.
+    /// The next 64-bit draw, because `rand_pcg` does not show its state, and the unused half of the last one.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut running = self.running();
         f.debug_struct("Pcg64")
@@ -136,7 +136,7 @@ impl fmt::Debug for Pcg64 {
 
 #[cfg(feature = "defmt")]
 impl defmt::Format for Pcg64 {
-    /// As `Debug`.
+    /// The same as `Debug`.
     fn format(&self, f: defmt::Formatter<'_>) {
         let mut running = self.running();
         let (next_u64, half) = (running.next_u64(), running.half);
@@ -164,7 +164,7 @@ impl TryRng for Pcg64 {
         Ok(self.draw(Running::next_u64))
     }
 
-    // rand_core's `fill_bytes_via_next_word` has a division that panics by zero, which some compilers keep.
+    // Not rand_core's `fill_bytes_via_next_word`, which divides: some compilers keep the panic of a division by zero.
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
         let (words, rest) = bytes.as_chunks_mut();
         for word in words {
@@ -181,7 +181,7 @@ impl TryRng for Pcg64 {
 impl SeedableRng for Pcg64 {
     type Seed = [u8; 32];
 
-    /// The generator of the integer with these bytes, the lowest first.
+    /// The generator seeded with the integer that has these bytes, the lowest first.
     fn from_seed(seed: Self::Seed) -> Self {
         let mut words = [0; 8];
         for (word, bytes) in words.iter_mut().zip(seed.as_chunks().0) {
@@ -202,12 +202,12 @@ mod snapshot {
 
     use super::{Pcg64, Running, Stream};
 
-    /// Where a generator comes from. It is what a snapshot holds, because any of these makes a valid generator.
+    /// The origin of a generator. A snapshot holds it, because any values make a valid generator.
     #[derive(Clone)]
     pub struct Origin {
         /// The hash of the seed.
         pub hash: [u64; 4],
-        /// How many 64-bit draws were made since.
+        /// The number of 64-bit draws since the seeding.
         pub position: u64,
     }
 
@@ -218,8 +218,8 @@ mod snapshot {
         }
     }
 
-    /// Only numbers that every format holds: TOML has no integers above 2⁶³, JavaScript none above 2⁵³, and others no
-    /// 128 bits. No field is optional, because some formats leave those out.
+    /// Only numbers that every format can hold: TOML has no integers above 2⁶³, JavaScript none above 2⁵³, and other
+    /// formats no 128-bit integers. No field is optional, because some formats omit optional fields.
     #[derive(Serialize, Deserialize)]
     #[serde(rename = "Pcg64")]
     struct Snapshot {

@@ -1,4 +1,4 @@
-//! NumPy's `SeedSequence`: turns a seed into the words that a generator starts with.
+//! NumPy's `SeedSequence`: turns a seed into the initial state of a generator.
 //!
 //! The algorithm is M. E. O'Neill's `seed_seq_fe`
 //! (<https://www.pcg-random.org/posts/developing-a-seed_seq-alternative.html>), with NumPy's constants
@@ -6,9 +6,9 @@
 
 /// A hashed seed: NumPy's `SeedSequence` of any non-negative integer, and its children.
 ///
-/// NumPy keeps the seed and hashes it again for each child. Hashing is sequential, so this keeps the hashed
-/// pool instead: at most 48 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the same
-/// children by accident.
+/// NumPy keeps the seed and hashes it again for each child. Hashing is sequential, so this type keeps only the hashed
+/// pool: at most 48 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the same children
+/// by accident.
 ///
 /// ```
 /// use acrobot::numpy::SeedSequence;
@@ -26,22 +26,22 @@ pub struct SeedSequence {
     pool: [u32; 4],
     /// The multiplier of the next `hash`, which changes it.
     hash_multiplier: u32,
-    /// How many children were spawned. 128 bits never run out: one call spawns less than 2⁶⁴.
+    /// The number of children spawned. It cannot overflow in practice: one call spawns fewer than 2⁶⁴.
     spawned: u128,
 }
 
 const SHIFT: u32 = 16;
 
 impl SeedSequence {
-    /// The sequence of `seed`. Longer seeds: [`from_words`](Self::from_words), `From<u128>` and, with `std`,
-    /// a decimal text can be parsed.
+    /// The sequence of `seed`. For longer seeds: [`from_words`](Self::from_words), `From<u128>` and, with `std`,
+    /// `parse` on a decimal text.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self::from_words(&[seed as u32, (seed >> 32) as u32])
     }
 
-    /// The sequence of the integer with these 32-bit digits, the lowest first. No digits are 0, and leading
-    /// zeros do not count.
+    /// The sequence of the integer with these 32-bit digits, the lowest first. An empty slice is the integer 0, and
+    /// leading zeros do not count.
     ///
     /// ```
     /// use acrobot::numpy::SeedSequence;
@@ -52,9 +52,9 @@ impl SeedSequence {
     #[must_use]
     #[expect(
         clippy::indexing_slicing,
-        reason = "the pool has four words, and 0..4 is below"
+        reason = "indices are below 4, the length of the pool"
     )]
-    #[inline(never)] // saves flash, as in `hash`, which it calls sixteen times
+    #[inline(never)] // saves flash, as does `hash`, which it calls sixteen times
     pub const fn from_words(mut words: &[u32]) -> Self {
         while let [rest @ .., 0] = words {
             words = rest;
@@ -92,8 +92,7 @@ impl SeedSequence {
         sequence
     }
 
-    /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call gives other
-    /// children.
+    /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call returns other children.
     pub fn spawn(&mut self, n: u64) -> impl Iterator<Item = Self> + use<> {
         let parent = self.clone();
         self.spawned = parent.spawned.saturating_add(n.into());
@@ -121,7 +120,7 @@ impl SeedSequence {
         }
     }
 
-    /// The first `N` 64-bit words that the sequence generates. They are always the same.
+    /// The first `N` 64-bit words of the sequence. Each call returns the same.
     #[must_use]
     #[expect(
         clippy::indexing_slicing,

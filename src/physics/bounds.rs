@@ -1,12 +1,12 @@
-//! The bounds of a state: angles wrap around, velocities stop.
+//! The bounds of a state: angles are wrapped, velocities are clamped.
 
 use crate::arithmetic::{Arithmetic, Equations, Numbers, Real};
 
-/// The angle `x` rad brought to \[−π, π\] by whole turns, as a step of `A` does.
+/// The angle `x`, rad, wrapped to \[−π, π\] by whole turns, as a step of `A` wraps it.
 ///
 /// [`Gymnasium`](super::Gymnasium) subtracts turn by turn, up to 64 turns, and takes the remainder beyond.
-/// [`Lean`](super::Lean) subtracts one rounded quotient, which is right to the spacing of `f32` at `x`,
-/// 1.2e-7 |x|. Both take −x to the mirror image, in `f32` up to 2²² turns, except for the sign of zero. An infinite
+/// [`Lean`](super::Lean) subtracts the rounded number of turns at once; its error is at most the spacing of `f32` at
+/// `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero; in `f32` up to 2²² turns. An infinite
 /// angle or NaN gives NaN.
 ///
 /// ```
@@ -23,7 +23,7 @@ pub fn wrap<A: Arithmetic>(x: A::Scalar) -> A::Scalar {
     A::Form::wrap(x)
 }
 
-/// `x` brought to \[−`limit`, `limit`\], for a `limit` of at least 0. NaN stays NaN.
+/// `x` clamped to \[−`limit`, `limit`\], for a `limit` of at least 0. NaN stays NaN.
 #[must_use]
 #[inline]
 pub fn bound<S: Real>(x: S, limit: S) -> S {

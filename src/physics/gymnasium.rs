@@ -4,8 +4,7 @@ use super::model::{Common, FromParams};
 use super::{Dynamics, Params};
 use crate::arithmetic::{Arithmetic, Equations, Model, Numbers, Real, SinCos};
 
-/// The form of the equations that Gymnasium's source has: four divisions and four trigonometric calls for each
-/// evaluation.
+/// The equations as Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
 #[derive(Clone, Copy, Debug)]
 pub struct Gymnasium;
 
@@ -36,7 +35,7 @@ constants_of_form!(|params, [l1_squared, lc1_squared, lc2_squared]| {
     }
 });
 
-/// The turns after which `wrap` stops following Gymnasium's and takes the remainder.
+/// Beyond this number of turns `wrap` takes the remainder, unlike Gymnasium.
 const MAX_TURNS: u32 = 64;
 
 impl<S: Real> Equations<S> for Gymnasium
@@ -46,9 +45,9 @@ where
     type Constants = Constants<S>;
     const COMPACT: bool = false;
 
-    /// `AcrobotEnv._dsdt`, except that it may multiply by 2 elsewhere, which is exact.
-    // With `std` because `Host` takes a tenth longer otherwise; on a microcontroller it would cost `Portable` flash and
-    // gain nothing.
+    /// `AcrobotEnv._dsdt`, except for the place of the factors 2, which are exact.
+    // Inlined with `std`, because `Host` takes a tenth longer otherwise. On a microcontroller inlining would cost flash
+    // and gain nothing.
     #[cfg_attr(feature = "std", inline(always))]
     fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
         model: &Model<A>,
@@ -84,7 +83,7 @@ where
         let [quarter, two] = [S::PI * S::HALF, S::from_f64(2.0)].map(V::splat);
         let square = |x: V| x.map(A::square);
 
-        // First, because calls keep no floats in registers on x86-64.
+        // Computed first, because no float stays in a register across a call on x86-64.
         let phi2 = gravity2 * (theta1 + theta2 - quarter).map(A::cos);
         let cos1 = (theta1 - quarter).map(A::cos);
         let arm = arms_product * cos2;
@@ -103,7 +102,7 @@ where
         [dtheta1, dtheta2, ddtheta1, ddtheta2]
     }
 
-    /// Subtracts turn by turn, as Gymnasium does. Where Gymnasium would take ever longer or never return, it
+    /// Subtracts turn by turn, as Gymnasium does. Beyond `MAX_TURNS`, where Gymnasium takes long or never returns, it
     /// takes the remainder.
     #[inline(always)]
     fn wrap<V: Numbers<S>>(x: V) -> V {
@@ -127,7 +126,7 @@ where
         [(_, cos1), _]: [SinCos<V>; 2],
     ) -> V::Mask {
         let height = cos1.zip(theta2 + theta1, |cos1, sum| {
-            // While link 1 points down, link 2 cannot reach: its cosine, at most 1, is not computed.
+            // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
             if cos1 >= S::ZERO {
                 S::ZERO
             } else {

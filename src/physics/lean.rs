@@ -4,8 +4,7 @@ use super::model::{Common, FromParams};
 use super::{Dynamics, Params};
 use crate::arithmetic::{Arithmetic, Equations, Model, Numbers, Real, SinCos};
 
-/// The form of the equations that solves them by Cramer's rule, with one division: for all arithmetics that
-/// need not have Gymnasium's bits.
+/// The equations solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Lean;
 
@@ -20,7 +19,7 @@ pub struct Constants<S> {
     determinant: S,
     /// 1 for the equations of the book, otherwise 0.
     book: S,
-    /// 1 for those of the paper, otherwise 0.
+    /// 1 for the equations of the 1996 paper, otherwise 0.
     nips: S,
 }
 
@@ -48,8 +47,8 @@ where
     type Constants = Constants<S>;
     const COMPACT: bool = true;
 
-    /// The determinant is a sum of squares and positive constants, so nothing cancels. The angles to the
-    /// horizontal, θ1 − π/2 and θ1 + θ2 − π/2, enter by the addition theorem.
+    /// The determinant is a positive constant plus a square, so nothing cancels. Gymnasium's cos(θ1 − π/2) is sin θ1
+    /// here, and its cos(θ1 + θ2 − π/2) is sin(θ1 + θ2), by the addition theorem.
     #[inline(always)]
     fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
         model: &Model<A>,
@@ -78,7 +77,7 @@ where
         let dtheta_sum = dtheta1 + dtheta2;
         let square = dtheta1 * dtheta1;
 
-        // The force on θ1 with its sign changed, and the force on θ1 + θ2.
+        // The generalized forces: the negated one on θ1, and the one on θ1 + θ2.
         let force1 =
             (gravity1 * sin1 - coupling_sin * (dtheta_sum * dtheta_sum - nips * square)) + torque;
         let force2 = torque - gravity2 * sin_sum - coupling_sin * (book * square);
@@ -89,13 +88,13 @@ where
         [dtheta1, dtheta2, ddtheta1, ddtheta2]
     }
 
-    /// Subtracts one rounded quotient of turns.
+    /// Subtracts the rounded number of turns at once.
     #[inline(always)]
     fn wrap<V: Numbers<S>>(x: V) -> V {
         let turns = x * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
         let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
         // The bound is for angles so large that neighbouring numbers are more than a turn apart. An angle within ±π
-        // stays as it is, also one next to ±π.
+        // does not change, even where its turns round to ±1.
         x.zip(turned.bound(S::PI), |x, turned| {
             if x.abs() <= S::PI { x } else { turned }
         })

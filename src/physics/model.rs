@@ -10,17 +10,17 @@ use crate::arithmetic::{Real, SinCos};
 
 /// The constants of a form of the equations.
 pub trait FromParams<S>: Copy + fmt::Debug + Send + Sync {
-    /// Those of [`Params::DEFAULT`], computed by the compiler.
+    /// The constants of [`Params::DEFAULT`], computed by the compiler.
     const DEFAULT: Self;
 
-    /// Those of `params`, given l1², lc1² and lc2², because `Host` squares with the platform's `pow`.
+    /// The constants of `params`. l1², lc1² and lc2² are arguments, because `Host` squares with the platform's `pow`.
     fn new(params: &Params<S>, squares: [S; 3]) -> Self;
 
-    /// Those that both forms need.
+    /// The constants that both forms need.
     fn common(&self) -> &Common<S>;
 }
 
-/// What both forms need.
+/// The constants that both forms need.
 #[derive(Clone, Copy, Debug)]
 pub struct Common<S> {
     /// m2 l1 lc2, kg m²: how strongly the links accelerate each other.
@@ -103,7 +103,7 @@ pub(super) fn positions<S: Real>(params: &Params<S>, sin_cos: [SinCos<S>; 2]) ->
     [elbow, tip]
 }
 
-/// Sines and cosines of θ1 and θ1 + θ2, the angles of both links to the vertical.
+/// Sines and cosines of θ1 and θ1 + θ2, the angles of both links from hanging down.
 fn directions<S: Real>([(sin1, cos1), (sin2, cos2)]: [SinCos<S>; 2]) -> [SinCos<S>; 2] {
     let sum = (sin1 * cos2 + cos1 * sin2, cos1 * cos2 - sin1 * sin2);
     [(sin1, cos1), sum]

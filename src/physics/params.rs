@@ -4,17 +4,17 @@ use crate::action::Action;
 use crate::arithmetic::Real;
 use crate::error::{Error, Range};
 
-/// The equations of motion: those of the book, or those printed in the 1996 paper.
+/// Which equations of motion to use: Gymnasium's `book_or_nips`.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dynamics {
-    /// Sutton & Barto, *Reinforcement Learning: An Introduction*: the physical double pendulum.
+    /// Those of Sutton & Barto, *Reinforcement Learning: An Introduction*: the physical double pendulum.
     #[default]
     Book,
-    /// Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996): without the centrifugal term in θ̇1²
-    /// of the second joint. Energy is not conserved.
+    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996). The centrifugal term
+    /// in θ̇1² of the second joint is missing, so energy is not conserved.
     Nips,
 }
 
@@ -37,8 +37,8 @@ pub enum Dynamics {
 pub struct Params<S = f64> {
     /// Length of link 1, m; above 0.
     pub length1: S,
-    /// Length of link 2, m; above 0. It only enters [`positions`](super::positions) and drawings: neither
-    /// the equations of motion nor Gymnasium's goal contain it.
+    /// Length of link 2, m; above 0. Only [`positions`](super::positions), the tip's height and drawings use it:
+    /// neither the equations of motion nor Gymnasium's goal contain it.
     pub length2: S,
     /// Mass of link 1, kg; above 0.
     pub mass1: S,
@@ -48,8 +48,8 @@ pub struct Params<S = f64> {
     pub center_of_mass1: S,
     /// Distance of link 2's centre of mass from its joint, m; 0 or more.
     pub center_of_mass2: S,
-    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 where the centre
-    /// of mass is on the joint.
+    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on
+    /// the joint.
     pub inertia1: S,
     /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
     pub inertia2: S,
@@ -57,22 +57,22 @@ pub struct Params<S = f64> {
     pub gravity: S,
     /// Duration of one step, s; above 0.
     pub dt: S,
-    /// Bound of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38, the normal numbers of `f32`, which observations are.
+    /// Bound of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38, because observations are `f32`.
     pub max_velocity1: S,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
     /// Torques of the three actions, N m, in the order of their numbers; finite.
     pub torques: [S; 3],
-    /// Torque noise, N m: each step adds a uniform draw from [−noise, noise), rounded to the scalar, to the
-    /// torque; 0 or more, 0 draws nothing.
+    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise), rounded to the scalar, to the
+    /// torque. 0 draws nothing.
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
 }
 
 impl<S: Real> Default for Params<S> {
-    /// [`Params::DEFAULT`], made field by field: as a whole it would be copied by `memcpy`, which takes 1 KB of flash
-    /// where nothing else needs it.
+    /// [`Params::DEFAULT`], built field by field: copying the constant would call `memcpy`, which takes 1 KB of flash
+    /// if nothing else calls it.
     #[inline]
     fn default() -> Self {
         Params::<f64>::DEFAULT.cast()
@@ -102,7 +102,7 @@ impl<S: Real> Params<S> {
         }
     };
 
-    /// The same parameters in another scalar, each rounded to the nearest.
+    /// The same parameters in another scalar. Each number is rounded to the nearest.
     #[must_use]
     #[inline]
     pub fn cast<T: Real>(&self) -> Params<T> {
@@ -139,8 +139,8 @@ impl<S: Real> Params<S> {
 
     /// Checks every field against the range in its documentation.
     ///
-    /// Valid parameters can still be so extreme that a step overflows the scalar. [`Pendulum`](super::Pendulum)
-    /// says what happens then.
+    /// With extreme but valid parameters a step can still overflow: see
+    /// [results that are not finite](super::Pendulum#results-that-are-not-finite).
     ///
     /// # Errors
     ///
@@ -171,7 +171,7 @@ impl<S: Real> Params<S> {
             range.check(name, value.to_f64(), unit)?;
         }
 
-        // Without inertia about its joint a link has no determined acceleration.
+        // The acceleration of a link without inertia about its joint is undetermined.
         for (name, inertia, mass, center) in [
             ("inertia1", self.inertia1, self.mass1, self.center_of_mass1),
             ("inertia2", self.inertia2, self.mass2, self.center_of_mass2),

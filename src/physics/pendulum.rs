@@ -1,4 +1,4 @@
-//! The pendulum: parameters, a state, and what they determine.
+//! The pendulum: parameters, a state, and quantities that follow from them.
 
 use super::model::{self, FromParams};
 use super::{Params, State, step};
@@ -11,8 +11,8 @@ use crate::error::{Error, Range};
 
 /// A double pendulum with a motor between its links.
 ///
-/// `A` is the [arithmetic](crate::arithmetic) and decides the bits. A pendulum can be made in a `const`, so it can
-/// be a `static`:
+/// `A` is the [arithmetic](crate::arithmetic), which determines every bit. A pendulum can be made in a `const`, so it
+/// can be a `static`:
 ///
 /// ```
 /// use std::sync::Mutex;
@@ -30,19 +30,17 @@ use crate::error::{Error, Range};
 ///
 /// # Results that are not finite
 ///
-/// Extreme but valid parameters, states and torques can take a step's result beyond the range of the scalar. A step
-/// whose result is not finite keeps the angles and sets both velocities to 0, in every arithmetic and in batches. An
-/// initial state far outside ±π is valid: the first step wraps the angles and bounds the velocities. No step hangs,
-/// panics or returns NaN.
+/// With extreme but valid parameters, states or torques a step can overflow. A step whose result is not finite keeps
+/// the angles and sets both velocities to 0, in every arithmetic and in batches. An initial state far outside ±π is
+/// valid: the first step wraps the angles and bounds the velocities. No step hangs, panics or returns NaN.
 #[derive(Clone, Debug)]
 pub struct Pendulum<A: Arithmetic> {
     /// θ1, θ2, θ̇1 and θ̇2.
     y: [A::Scalar; 4],
     model: Model<A>,
-    /// Of θ1 and θ2, for the observation and the next step.
+    /// Sines and cosines of θ1 and θ2, for the observation and the next step.
     sin_cos: [SinCos<A::Scalar>; 2],
-    /// Whether `sin_cos` is up to date. It is not where a `const` made the pendulum: no arithmetic can compute sines
-    /// there.
+    /// Whether `sin_cos` is up to date. After a `const` it is not: sines cannot be computed there.
     is_current: bool,
 }
 
@@ -62,14 +60,14 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// As [`Params::validate`] and [`State::validate`].
+    /// Those of [`Params::validate`] and [`State::validate`].
     pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
         params.validate()?;
         state.validate()?;
         Ok(Self::unchecked(params, state))
     }
 
-    /// [`new`](Self::new) with parameters and a state that are known to be valid.
+    /// As [`new`](Self::new), with parameters and a state that are known to be valid.
     #[inline]
     pub(crate) fn unchecked(params: Params<A::Scalar>, state: State<A::Scalar>) -> Self {
         Self {
@@ -80,7 +78,7 @@ impl<A: Arithmetic> Pendulum<A> {
         }
     }
 
-    /// Applies a torque in N m for one dt. Returns whether the new state is in Gymnasium's goal:
+    /// Applies a torque, N m, for one dt. Returns whether the new state is a goal state:
     /// −cos θ1 − cos(θ1 + θ2) > 1.
     ///
     /// # Errors
@@ -92,7 +90,7 @@ impl<A: Arithmetic> Pendulum<A> {
         Ok(self.advance(torque))
     }
 
-    /// [`step`](Self::step) with a torque that is known to be finite.
+    /// As [`step`](Self::step), with a torque that is known to be finite.
     #[inline]
     pub(crate) fn advance(&mut self, torque: A::Scalar) -> bool {
         if !self.is_current {
@@ -119,7 +117,7 @@ impl<A: Arithmetic> Pendulum<A> {
         Ok(())
     }
 
-    /// [`set_state`](Self::set_state) with a state that is known to be finite.
+    /// As [`set_state`](Self::set_state), with a state that is known to be finite.
     pub(crate) fn place(&mut self, state: State<A::Scalar>) {
         self.y = state.into();
         self.compute_sines();
@@ -138,18 +136,18 @@ impl<A: Arithmetic> Pendulum<A> {
         &self.model.params
     }
 
-    /// Sets the parameters, from the next step on. A pendulum ignores `torques` and `torque_noise`.
+    /// Sets the parameters for the next steps. A pendulum ignores `torques` and `torque_noise`.
     ///
     /// # Errors
     ///
-    /// As [`Params::validate`].
+    /// Those of [`Params::validate`].
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         params.validate()?;
         self.model = Model::new(params);
         Ok(())
     }
 
-    /// Sine and cosine of θ1, and those of θ2, which the pendulum keeps from its last step.
+    /// Sine and cosine of θ1, then of θ2, which the pendulum caches.
     #[must_use]
     #[inline]
     pub fn sin_cos(&self) -> [(A::Scalar, A::Scalar); 2] {
@@ -160,13 +158,13 @@ impl<A: Arithmetic> Pendulum<A> {
         }
     }
 
-    /// [`sin_cos`](Self::sin_cos) after a step or a reset, when it is known to be current.
+    /// As [`sin_cos`](Self::sin_cos), when the cache is known to be up to date.
     #[inline]
     pub(crate) fn current_sin_cos(&self) -> [SinCos<A::Scalar>; 2] {
         self.sin_cos
     }
 
-    /// [`derivative`] at the state under a torque in N m, from the sines and constants that the pendulum keeps.
+    /// [`derivative`] at the state under a torque, N m, from cached sines and constants.
     #[must_use]
     pub fn derivative(&self, torque: A::Scalar) -> [A::Scalar; 4] {
         A::Form::derivative(&self.model, self.y, Some(self.sin_cos()), torque)
@@ -240,7 +238,7 @@ macro_rules! at {
 at!(Reference: f64, Portable: f64, Fast: f32, Micro: f32, #[cfg(feature = "std")] Host: f64);
 
 impl<A: Arithmetic> PartialEq for Pendulum<A> {
-    /// Compares parameters and state. Extreme parameters can make constants NaN, which does not equal itself.
+    /// Compares parameters and state only: extreme parameters can make constants NaN, which does not equal itself.
     fn eq(&self, other: &Self) -> bool {
         self.params() == other.params() && self.y == other.y
     }
@@ -262,7 +260,7 @@ pub(crate) fn check_torque<S: Real>(torque: S) -> Result<(), Error> {
 
 /// Sines and cosines of angles of any size.
 pub(crate) fn sin_cos<A: Arithmetic>(angles: [A::Scalar; 2]) -> [SinCos<A::Scalar>; 2] {
-    /// Out of line, to save flash: initial states are few.
+    /// Out of line to save flash: a step does not call it.
     #[inline(never)]
     fn apart<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
         A::sin_cos(x)
@@ -271,12 +269,11 @@ pub(crate) fn sin_cos<A: Arithmetic>(angles: [A::Scalar; 2]) -> [SinCos<A::Scala
     [apart::<A>(theta1), apart::<A>(theta2)]
 }
 
-/// The equations of motion: \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², at a state and under a torque between the
-/// links in N m.
+/// The derivative of a state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque between the links, N m.
 ///
-/// The arithmetic's form decides the order of evaluation, and `params.dynamics` between the equations of the book
-/// and of the paper. Nothing is checked: values out of range give what IEEE 754 gives. Constants that depend only on
-/// the parameters are computed again in each call; [`Pendulum::derivative`] keeps them.
+/// The arithmetic's form determines the order of evaluation, and `params.dynamics` the equations. Inputs are not
+/// checked: values out of range give what IEEE 754 gives. Each call computes the constants that depend only on the
+/// parameters; [`Pendulum::derivative`] caches them.
 ///
 /// ```
 /// use acrobot::physics::derivative;
@@ -295,7 +292,7 @@ pub fn derivative<A: Arithmetic>(
 }
 
 /// The mass matrix M at a state, kg m². The kinetic energy is θ̇ᵀ M θ̇ / 2. M is symmetric and positive definite.
-/// Extreme parameters can make its numbers infinite or NaN.
+/// Extreme parameters can make its elements infinite or NaN.
 ///
 /// ```
 /// use acrobot::physics::mass_matrix;
@@ -315,8 +312,8 @@ pub fn mass_matrix<A: Arithmetic>(
 /// The total mechanical energy of a state, J. The potential energy is 0 at the height of the fixed joint, so the
 /// least energy is that of hanging at rest.
 ///
-/// The equations of the book conserve it without a torque; those of the paper do not. Extreme velocities or parameters
-/// can make it infinite or NaN.
+/// Without a torque, `Dynamics::Book` conserves it and `Dynamics::Nips` does not. Extreme velocities or parameters can
+/// make it infinite or NaN.
 ///
 /// ```
 /// use acrobot::physics::energy;

@@ -1,9 +1,9 @@
-//! The classical Runge-Kutta method of fourth order. No physics.
+//! The classical Runge-Kutta method of fourth order, for any derivative.
 
 use crate::arithmetic::{Numbers, Real};
 
-/// One step of the classical Runge-Kutta method: the solution of `y' = derivative(y)` after the time `dt`, in
-/// Gymnasium's order of operations.
+/// One step of the classical Runge-Kutta method: approximates the solution of `y' = derivative(y)` after the time `dt`.
+/// The order of operations is Gymnasium's.
 ///
 /// ```
 /// let y = acrobot::physics::rk4([1.0_f64], 0.1, |[y]| [-y]);
@@ -30,8 +30,8 @@ impl<V, const N: usize, F: Fn([V; N]) -> [V; N]> Derivative<V, N> for Closure<F>
     }
 }
 
-/// The right side of `y' = f(y)`. It is not a closure because closures cannot be marked for inlining: LLVM keeps a
-/// large one out of line, where it may not use its caller's vectors.
+/// The right side of `y' = f(y)`. It is not a closure, because closures cannot be marked for inlining: LLVM keeps a
+/// large one out of line, where it may not use the SIMD instructions of its caller.
 pub trait Derivative<V, const N: usize> {
     /// f(y).
     fn at(&self, y: [V; N]) -> [V; N];
@@ -53,8 +53,8 @@ pub(super) fn classical<S: Real, V: Numbers<S>, const N: usize>(
     along(y, sixth, sum(along(along(k1, two, k2), two, k3), k4))
 }
 
-/// [`classical`] in another order: it adds each stage to the result at once, in a loop. Few numbers are alive at a
-/// time, and the derivative, inlined once, is small in flash.
+/// [`classical`] with another order of additions: a loop adds each stage to the result at once. Few numbers are alive
+/// at a time, and the derivative is inlined only once, which saves flash.
 #[inline(always)]
 pub(super) fn compact<S: Real, V: Numbers<S>, const N: usize>(
     y: [V; N],

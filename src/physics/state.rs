@@ -6,10 +6,10 @@ use crate::arithmetic::Real;
 use crate::error::{Error, Range};
 use crate::numpy::uniform;
 
-/// Two angles and their velocities.
+/// The state of an acrobot: two angles and their velocities.
 ///
-/// After a step the angles are within \[−π, π\] and the velocities within their bounds. An initial state, and
-/// one that is set, may be outside, as in Gymnasium. The default hangs at rest.
+/// After a step the angles are within \[−π, π\] and the velocities within their bounds. An initial state, or one that
+/// you set, may be outside, as in Gymnasium. The default is hanging at rest.
 ///
 /// ```
 /// use acrobot::State;
@@ -54,7 +54,7 @@ impl<S> From<State<S>> for [S; 4] {
 }
 
 impl<S: Real> State<S> {
-    /// Hanging at rest: all four numbers are 0. The default, for a `const`.
+    /// Hanging at rest: all four numbers are 0. This is the default as a constant.
     pub const HANGING: Self = Self {
         theta1: S::ZERO,
         theta2: S::ZERO,
@@ -62,7 +62,7 @@ impl<S: Real> State<S> {
         dtheta2: S::ZERO,
     };
 
-    /// The same state in another scalar, each number rounded to the nearest.
+    /// The same state in another scalar. Each number is rounded to the nearest.
     #[must_use]
     #[inline]
     pub fn cast<T: Real>(self) -> State<T> {
@@ -73,14 +73,14 @@ impl<S: Real> State<S> {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] with the first that is not.
+    /// [`Error::OutOfRange`] with the first number that is not.
     pub fn validate(&self) -> Result<(), Error> {
         self.cast::<f64>().check()
     }
 }
 
 impl State<f64> {
-    /// [`State::validate`], also in a `const`.
+    /// As [`State::validate`], also in a `const`.
     pub(super) const fn check(&self) -> Result<(), Error> {
         // `?` is not allowed in a `const fn`.
         if let Err(error) = Range::Finite.check("theta1", self.theta1, "rad") {
@@ -96,9 +96,9 @@ impl State<f64> {
     }
 }
 
-/// The bounds within which a reset draws all four numbers of the initial state, rad and rad/s.
+/// The bounds between which a reset draws each of the four numbers of an initial state, rad and rad/s.
 ///
-/// They are always finite, in order and within the range of `f32`, to which initial states are rounded.
+/// Both are finite in `f32`, because initial states are rounded to `f32`. The lower one is never above the upper one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ResetBounds {
@@ -115,8 +115,8 @@ impl ResetBounds {
 
     /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state.
     ///
-    /// Bounds beyond ±π or beyond the velocity bounds give initial states beyond them. The first step wraps and
-    /// bounds these.
+    /// Bounds may be beyond ±π and beyond the velocity bounds. The first step then wraps the angles and bounds the
+    /// velocities.
     ///
     /// ```
     /// use acrobot::physics::ResetBounds;
@@ -143,7 +143,7 @@ impl ResetBounds {
         Ok(Self { low, high })
     }
 
-    /// Draws an initial state, which is `f32` in Gymnasium, whatever it computes in afterwards.
+    /// Draws an initial state. It is `f32` in every arithmetic, as in Gymnasium.
     #[inline(never)] // saves flash: each kind of reset calls it
     pub(crate) fn draw<R: Rng>(&self, rng: &mut R) -> State<f32> {
         [(); 4]

@@ -4,8 +4,8 @@ use super::rk4::{Derivative, classical, compact};
 use super::{FromParams, Params};
 use crate::arithmetic::{Arithmetic, Equations, Model, Numbers, Real, SinCos};
 
-/// Takes `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 through one dt under a constant torque
-/// in N m. Returns whether the new state is in the goal.
+/// Advances `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 by one dt under a constant torque, N m.
+/// Returns whether the new state is a goal state.
 #[inline(always)]
 pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<A>,
@@ -27,8 +27,8 @@ pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
     } else {
         classical(*y, k1, dts, &forced)
     };
-    // Few results of one number need it, so it is out of line, which saves flash. Of many lanes one often does. They
-    // inline it, because a function out of line may not use the vectors that its caller may use.
+    // One acrobot seldom leaves its bounds, so this is out of line, which saves flash. Among many lanes one often does.
+    // There it is inlined, because a function out of line may not use the SIMD instructions of its caller.
     if !V::IS_ONE {
         enforce_bounds::<A, V>(params, y, angles);
     } else if !is_within_bounds::<A, V>(params, y) {
@@ -38,7 +38,7 @@ pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
     A::Form::reaches_goal::<A, V>([y[0], y[1]], *sin_cos)
 }
 
-/// The equations under a torque that is constant for a step.
+/// The equations of motion under a torque that is constant during a step.
 struct Forced<'a, A: Arithmetic, V> {
     model: &'a Model<A>,
     torque: V,
@@ -73,8 +73,8 @@ fn enforce_bounds_apart<A: Arithmetic, V: Numbers<A::Scalar>>(
     enforce_bounds::<A, V>(params, y, angles);
 }
 
-/// Wraps the angles and bounds the velocities. A result that is not finite becomes the angles before the step, at
-/// rest.
+/// Wraps the angles and bounds the velocities. A result that is not finite becomes the angles before the step with
+/// zero velocities.
 #[inline(always)]
 fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     params: &Params<A::Scalar>,

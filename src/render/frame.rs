@@ -51,7 +51,8 @@ impl Frame {
     ///
     /// # Panics
     ///
-    /// If it takes more than `isize::MAX` bytes. Like any `Vec`, one that the allocator has no memory for ends the process.
+    /// If it takes more than `isize::MAX` bytes. If the allocator has too little memory, the process aborts, as with
+    /// any `Vec`.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = (width as usize).saturating_mul(height as usize);

@@ -9,7 +9,7 @@ use super::{Figure, Theme};
 
 /// A figure in the pixels of one target. The parts overlap as in Gymnasium, the lower link over the upper.
 pub(super) struct Scene {
-    /// The corners of the pixels of all parts except the line: pixels outside need no test against parts.
+    /// Corners of a rectangle around all parts except the line. Pixels outside are not tested against parts.
     corners: [Point; 2],
     /// The row of the target height.
     pub(super) line: i32,
@@ -18,15 +18,15 @@ pub(super) struct Scene {
     arrow: Option<[Bar; 8]>,
 }
 
-/// Targets with fewer pixels in one direction show no arrow.
+/// Targets with fewer pixels than this in one direction show no arrow.
 const ROOM_FOR_ARROW: u32 = 48;
 
-/// A pixel belongs to a part within half a pixel of its centre, as in Gymnasium, which truncates the corners of a
-/// link to whole pixels and includes them.
+/// A bar covers pixels with centres up to this far from it, pixels. This matches Gymnasium, which truncates the corners
+/// of a link to whole pixels and includes them.
 const TOLERANCE: f32 = 0.5;
 
 impl Scene {
-    /// `None` for an area without pixels, and for one beyond `i32::MAX`, where embedded-graphics would overflow.
+    /// `None` for an area without pixels, and for an area beyond `i32::MAX`, where embedded-graphics would overflow.
     pub(super) fn new(figure: &Figure, area: Rectangle) -> Option<Self> {
         let Size { width, height } = area.size;
         let last = |start: i32, side: u32| {
@@ -37,7 +37,7 @@ impl Scene {
             last(area.top_left.x, width)?,
             last(area.top_left.y, height)?,
         );
-        // Half the picture in pixels; the fixed joint is in the middle of the area.
+        // Half the shorter side in pixels; the fixed joint is in the middle of the area.
         let half = width.min(height) as f32 / 2.0;
         let metre = figure.metre * half;
         let thickness = 0.1 * metre;
@@ -48,7 +48,7 @@ impl Scene {
 
         let [(sin1, cos1), (sin2, cos2)] = figure.directions;
         let [length1, length2] = figure.lengths.map(|length| length * half);
-        // Rows count downwards, as the cosine of an angle against the hanging vertical does.
+        // Rows count downwards, and so does the cosine of an angle from hanging down.
         let elbow = center.plus(length1 * sin1, length1 * cos1);
         let tip = elbow.plus(length2 * sin2, length2 * cos2);
 
@@ -63,7 +63,7 @@ impl Scene {
         };
         Some(Self {
             corners: [corner(f32::min, -margin), corner(f32::max, margin)],
-            // Gymnasium counts rows upwards and truncates: between two rows, the upper one.
+            // Gymnasium counts rows upwards and truncates, so on the edge of two rows it takes the upper one.
             line: (F32Ext::ceil(center.y - metre) as i32).saturating_sub(1),
             links: [
                 Bar::new(center, elbow, thickness),
@@ -74,7 +74,7 @@ impl Scene {
         })
     }
 
-    /// Around the parts of both scenes.
+    /// A rectangle around the parts of both scenes.
     pub(super) fn bounds_with(&self, other: &Self) -> Rectangle {
         let ([first, last], [other_first, other_last]) = (self.corners, other.corners);
         Rectangle::with_corners(
@@ -134,7 +134,7 @@ fn arrow(center: Vector, radius: f32, direction: f32) -> [Bar; 8] {
     })
 }
 
-/// A position on the target in pixels, to the right and downwards; pixel (0, 0) reaches to (1, 1).
+/// A position on the target in pixels, to the right and downwards; pixel (0, 0) covers (0, 0) to (1, 1).
 #[derive(Clone, Copy)]
 struct Vector {
     x: f32,
@@ -168,7 +168,7 @@ struct Bar {
 }
 
 impl Bar {
-    /// Not inlined, because a picture has ten: that would take 400 bytes of a chip's flash.
+    /// Not inlined: a drawing has ten bars, and inlining takes 400 bytes of flash.
     #[inline(never)]
     fn new(from: Vector, to: Vector, half_width: f32) -> Self {
         let (x, y) = (to.x - from.x, to.y - from.y);
@@ -213,19 +213,19 @@ impl Disc {
     }
 }
 
-/// The square root of `x`: the nearest number, or just below a power of 4 the one above it. Below 1e-30, where the
-/// remainder would be subnormal, it is 0.
+/// The square root of `x`, correctly rounded; just below a power of 4 it can be the next number above. For `x` below
+/// 1e-30, where the remainder would be subnormal, it is 0.
 fn sqrt(x: f32) -> f32 {
     if x < 1e-30 {
         return 0.0;
     }
-    // By path, because `x.sqrt()` is the platform's where std is linked.
+    // Called by path, because with std `x.sqrt()` is the platform's.
     let mut root = F32Ext::sqrt(x);
-    // The estimate is up to 6 % off. Each of Newton's steps doubles the number of right digits.
+    // The estimate is up to 6 % off. Each Newton step doubles the number of correct digits.
     for _ in 0..3 {
         root = 0.5 * (root + x / root);
     }
-    // The last step knows x − root² without rounding, because half as many digits have exact products.
+    // The last step computes x − root² exactly, because products of numbers with half the digits are exact.
     let high = f32::from_bits(root.to_bits() & 0xffff_f000);
     let low = root - high;
     let remainder = x - high * high - 2.0 * high * low - low * low;

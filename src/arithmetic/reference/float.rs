@@ -1,28 +1,29 @@
-//! The fast path where the machine computes in `f64`: a table of sines, and sums of two `f64`.
+//! The fast path for machines with instructions for `f64`: a table of sines, and sums of two `f64`.
 //!
 //! Let n be the integer nearest to x · 128/π, a = n π/128 and b = x − a, so that |b| ≤ π/256. Then
 //!
 //! sin x = sin a + cos a · b + sin a (cos b − 1) + cos a (sin b − b).
 //!
-//! The cosine has cos a in place of sin a, and −sin a in place of cos a. The first two terms need more than 53 bits. The others
-//! are below 2⁻¹³. The errors, term by term:
+//! The cosine has cos a in place of sin a, and −sin a in place of cos a. The first two terms need more than 53 bits.
+//! The others are below 2⁻¹³. The errors, term by term:
 //!
 //! - b: three `f64` hold 41, 39 and 53 bits of π/128. The products of n < 2¹² with the first two are exact. So are the
-//!   differences from x, except that the last may round; `tail` takes up what it loses and the third product. The error of b +
-//!   tail is below 2⁻¹²⁷. It matters most where the result is about b. An x below 64 is at least 2⁻⁶¹ from each multiple of π/2
-//!   but 0, so the error is below 2⁻⁶⁶ of the result.
-//! - sin a and cos a: an `f64` of 26 bits, and another with the rest, which is below 2⁻⁷⁹ off. The product of the 26 bits and the
-//!   upper 26 bits of b is exact. The sum of that and sin a has an exact rest, because |sin a| is 0 or above |b|.
+//!   differences from x, except that the last may round; `tail` holds this rounding error and the third product. The
+//!   error of b + tail is below 2⁻¹²⁷. It matters most where the result is about b. An x below 64 is at least 2⁻⁶¹ from
+//!   each multiple of π/2 except 0, so the error is below 2⁻⁶⁶ of the result.
+//! - sin a and cos a: an `f64` of 26 bits plus an `f64` with the rest, error below 2⁻⁷⁹. The product of the 26 bits and
+//!   the upper 26 bits of b is exact. The rounding error of adding it to sin a is computed exactly, because |sin a| is
+//!   0 or above |b|.
 //! - sin a (cos b − 1): Taylor's series to b⁶, and 5 roundings of numbers below 2⁻¹³ sin a. This is most of the error.
 //! - cos a (sin b − b): Taylor's series to b⁷, and 6 roundings of numbers below 2⁻²¹.
 //! - The sum of the small terms: 3 roundings of numbers below 2⁻¹³.
 //!
-//! `tests/data/sines.py` adds the errors up for each a. The sum is below 2⁻⁶² of the result, which is the margin of the rounding
-//! test. One result in 320 is within the margin.
+//! `tests/data/sines.py` adds up the errors for each a. The sum is below 2⁻⁶² of the result, which is the margin of the
+//! rounding test. One result in 320 is within the margin.
 
 use super::wide::{Fraction, octant_sine};
 
-/// sin(i π/128): 26 bits, and the rest.
+/// sin(i π/128): its leading 26 bits, and the rest.
 static SINES: [[f64; 2]; 320] = sines();
 
 #[expect(clippy::indexing_slicing, reason = "evaluated by the compiler")]
@@ -30,7 +31,7 @@ const fn sines() -> [[f64; 2]; 320] {
     let mut table = [[0.0; 2]; 320];
     let mut i = 0;
     while i < 320 {
-        // To a quarter turn.
+        // Mirrored to within a quarter turn.
         let index = if i % 128 > 64 { 128 - i % 128 } else { i % 128 };
         let [high, low] = match index as u64 {
             0 => [0.0; 2],
@@ -57,9 +58,9 @@ const fn split(&[first, second, _]: &Fraction) -> [f64; 2] {
     [high as f64 * UNIT, rest as f64 * UNIT * UNIT]
 }
 
-/// x, ready for both functions.
+/// The angle x, reduced for both functions.
 pub(super) struct Angle {
-    /// n, within one turn.
+    /// n, reduced to one turn.
     index: usize,
     /// b, its upper 26 bits, and the rest of it.
     b: [f64; 3],
@@ -80,7 +81,7 @@ impl Angle {
             f64::from_bits(0x3d0a_308d_3131_8000),
             f64::from_bits(0x3a88_a2e0_3707_344a),
         ];
-        /// 1.5 × 2⁵²: a sum with it is rounded to an integer, which is in its lowest bits.
+        /// 1.5 × 2⁵²: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
         const MAGIC: f64 = 6_755_399_441_055_744.0;
 
         let shifted = x * STEPS + MAGIC;
@@ -99,14 +100,14 @@ impl Angle {
         }
     }
 
-    /// sin x, correctly rounded, or `None` where it is too near to half way between two `f64`.
+    /// sin x, correctly rounded, or `None` if it is too near half way between two `f64`.
     #[inline(always)]
     pub(super) fn sin(&self) -> Option<f64> {
         let [sin, cos] = self.look_up();
         self.rotate(sin, cos)
     }
 
-    /// cos x, as [`sin`](Self::sin).
+    /// cos x; otherwise as [`sin`](Self::sin).
     #[inline(always)]
     pub(super) fn cos(&self) -> Option<f64> {
         let [sin, cos] = self.look_up();

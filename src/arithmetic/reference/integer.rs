@@ -1,25 +1,26 @@
-//! The fast path where `f64` is emulated: 64-bit integers.
+//! The fast path for machines that emulate `f64`: 64-bit integers.
 //!
-//! All numbers are fractions with 64 or 128 bits after the point. A unit is 2⁻⁶⁴. An interval says how many units a number may be
-//! too high or, if negative, too low. `tests/data/sines.py` derives the coefficients and computes these bounds.
+//! All numbers are fractions with 64 or 128 bits after the point. A unit is 2⁻⁶⁴. An interval says by how many units a
+//! number may be too high or, if negative, too low. `tests/data/sines.py` derives the coefficients and these bounds.
 //!
-//! - Reduction: the product of x's mantissa and 2/π gives the octant and the fraction φ of it, where |x| = (octant + φ) π/4, or
-//!   (octant + 1 − φ) π/4 if the octant is odd. The upper 128 bits of the product are at most 4 of 2⁻¹²⁸ too low. The shift to
-//!   the point and to the first digit of φ makes at most a quarter of a unit of that, because |x| is below 2⁶ and a φ below 2⁻⁵⁴
-//!   is left to the slow path.
+//! - Reduction: the product of x's mantissa and 2/π gives the octant and its fraction φ, where |x| = (octant + φ) π/4,
+//!   or (octant + 1 − φ) π/4 if the octant is odd. The upper 128 bits of the product are at most 4 · 2⁻¹²⁸ too low.
+//!   Shifting to the point and to the first digit of φ enlarges this to at most a quarter of a unit, because |x| is
+//!   below 2⁶ and a φ below 2⁻⁵⁴ is left to the slow path.
 //! - w = φ² from the upper 64 bits of φ: \[−5, 0\].
 //! - sin x = φ S(w) and cos x = 1 − w T(w), with polynomials S and T of degree 7. They differ from the functions by
-//!   \[−0.8, −0.5\] and \[−1.2, −1.1\], and Horner's scheme adds \[−0.2, 1.5\]. Their first coefficients are a unit lower
-//!   than the best ones, which centres the sum.
-//! - The last product keeps 128 bits, so that a small φ costs no precision. The 64 bits from its first digit on are the mantissa.
+//!   \[−0.8, −0.5\] and \[−1.2, −1.1\], and Horner's scheme adds \[−0.2, 1.5\]. Their first coefficients are a unit
+//!   lower than the best ones, which centres the sum.
+//! - The last product keeps 128 bits, so a small φ costs no precision. The 64 bits from its first digit on are the
+//!   mantissa.
 //!
-//! In all, a mantissa is less than 3 units off. One in 410 has its last 11 bits so near to half way that it is left to the slow
-//! path.
+//! In total, a mantissa is less than 3 units off. For one in 410 the last 11 bits are so near half way that the slow
+//! path decides.
 
 use super::wide::TWO_OVER_PI;
 
-/// The coefficients of S, whose signs alternate. They have 64, 67, 71, 76, 76, 76, 68 and 68 bits after the point: the last ones
-/// are small and need fewer bits.
+/// The coefficients of S, whose signs alternate. They have 64, 67, 71, 76, 76, 76, 68 and 68 bits after the point: the
+/// last ones are small and need fewer bits.
 static SIN: [u64; 8] = [
     0xc90f_daa2_2168_c234,
     0xa55d_e731_2df2_95c2,
@@ -31,7 +32,7 @@ static SIN: [u64; 8] = [
     0x0000_0000_005b_16e2,
 ];
 
-/// Those of T.
+/// The coefficients of T.
 static COS: [u64; 8] = [
     0x4ef4_f326_f917_7968,
     0x2078_3e10_36b5_8764,
@@ -46,7 +47,7 @@ static COS: [u64; 8] = [
 /// The error of a mantissa is below this.
 const ERROR: u64 = 3;
 
-/// x, ready for both functions.
+/// The angle x, reduced for both functions.
 pub(super) struct Angle {
     /// The sign of x, in the highest bit.
     sign: u64,
@@ -83,13 +84,13 @@ impl Angle {
         }
     }
 
-    /// sin x, correctly rounded, or `None` where it is too near to half way between two `f64`.
+    /// sin x, correctly rounded, or `None` if it is too near half way between two `f64`.
     #[inline(always)]
     pub(super) fn sin(&self) -> Option<f64> {
         self.sine(0, self.sign)
     }
 
-    /// cos x, as [`sin`](Self::sin).
+    /// cos x; otherwise as [`sin`](Self::sin).
     #[inline(always)]
     pub(super) fn cos(&self) -> Option<f64> {
         self.sine(1, 0)
@@ -136,7 +137,7 @@ fn polynomial(coefficients: &[u64; 8], w: u64) -> u64 {
     c0 - (high(p, w) >> 3)
 }
 
-/// The `f64` nearest to `mantissa` 2⁻⁶⁴ 2^(exponent − 1021).
+/// The `f64` nearest to `mantissa` 2⁻⁶⁴ 2^(exponent − 1021), or `None` if undecided.
 #[inline(always)]
 fn round(mantissa: u64, exponent: u32, sign: u64) -> Option<f64> {
     /// Half a unit of the 53rd bit.
@@ -155,7 +156,7 @@ fn full(a: u64, b: u64) -> u128 {
     u128::from(a) * u128::from(b)
 }
 
-/// The upper half of the product, less than 3 too low: three multiplications where all need four and carries.
+/// The upper half of the product, less than 3 too low. The exact one takes a fourth multiplication, and carries.
 #[inline(always)]
 fn high(a: u64, b: u64) -> u64 {
     let [a1, a0, b1, b0] = [a >> 32, a << 32 >> 32, b >> 32, b << 32 >> 32];

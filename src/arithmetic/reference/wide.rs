@@ -1,20 +1,20 @@
 //! Sine and cosine in 192 bits: the slow path.
 //!
-//! - Reduction: |x| = m 2ᵖ with an integer m below 2⁵³. The product of m and 384 bits of 2/π gives the octant and 192 bits of the
-//!   fraction of it, with an error below 2⁻²⁰⁰. Earlier bits of 2/π contribute whole turns only.
+//! - Reduction: |x| = m 2ᵖ with an integer m below 2⁵³. The product of m and 384 bits of 2/π gives the octant and 192
+//!   bits of its fraction, with an error below 2⁻²⁰⁰. Earlier bits of 2/π contribute whole turns only.
 //! - Series: Taylor's, to the term of r⁴⁷, with r ≤ π/4. The next term is below 2⁻²¹⁸.
 //! - Rounding: each operation drops less than 2⁻¹⁹². The sum of all errors is below 2⁻¹⁸⁸.
 //!
-//! Why 192 bits suffice: the sine and the cosine of an `f64` other than 0 are transcendental (Lindemann), so they are never half
-//! way between two `f64`. An error of 2⁻¹⁸⁸ can matter only where a result is that near to half way. No theorem excludes such a
-//! result, but probability does. There are 2⁶³ pairs of a function and an |x| from 2⁻²⁷ on. One pair in 2ᶻ has a result of about
-//! 2⁻ᶻ, in which two neighbouring `f64` are 2⁻⁵³⁻ᶻ apart, so it is misrounded with a probability of 2 · 2⁻¹⁸⁸ / 2⁻⁵³⁻ᶻ. The sum
-//! over all pairs, with z up to 62, is below 2⁻⁶⁴.
+//! Why 192 bits suffice: the sine and the cosine of an `f64` other than 0 are transcendental (Lindemann), so they are
+//! never half way between two `f64`. An error of 2⁻¹⁸⁸ can matter only if a result is that near half way. No theorem
+//! excludes such a result, but it is improbable. There are 2⁶³ pairs of a function and an |x| from 2⁻²⁷ on. One pair in
+//! 2ᶻ has a result of about 2⁻ᶻ, where two neighbouring `f64` are 2⁻⁵³⁻ᶻ apart, so it is misrounded with a probability
+//! of 2 · 2⁻¹⁸⁸ / 2⁻⁵³⁻ᶻ. The sum over all pairs, with z up to 62, is below 2⁻⁶⁴.
 
 /// A number in [0, 1): the 192 bits after the point, the highest word first.
 pub(super) type Fraction = [u64; 3];
 
-/// 2/π: bits for any `f64`.
+/// 2/π, with enough bits for any `f64`.
 pub(super) static TWO_OVER_PI: [u64; 21] = [
     0xa2f9_836e_4e44_1529,
     0xfc27_57d1_f534_ddc0,
@@ -46,7 +46,7 @@ const QUARTER_PI: Fraction = [
     0x2902_4e08_8a67_cc74,
 ];
 
-/// 1/n!, first of an even n, then of the next odd one, the largest last.
+/// 1/n! for n from 2 to 47, in pairs of an even n and the next odd n.
 const INVERSE_FACTORIALS: &[[Fraction; 2]] = &inverse_factorials();
 
 #[expect(clippy::indexing_slicing, reason = "evaluated by the compiler")]
@@ -69,7 +69,7 @@ const fn inverse_factorials() -> [[Fraction; 2]; 23] {
     table
 }
 
-/// sin(x + `quarters` π/2), correctly rounded, for 0 or 1 quarters and any finite |x| from 2⁻²⁷ on.
+/// sin(x + `quarters` π/2), correctly rounded, for `quarters` of 0 or 1 and any finite |x| from 2⁻²⁷ on.
 #[cold]
 #[inline(never)]
 pub(super) fn sine(x: f64, quarters: u64) -> f64 {
@@ -83,13 +83,13 @@ pub(super) fn sine(x: f64, quarters: u64) -> f64 {
     if is_negative { -magnitude } else { magnitude }
 }
 
-/// |x| = (octant + fraction) π/4, or 1 − fraction where the octant is odd.
+/// Up to whole turns, |x| = (octant + fraction) π/4, or (octant + 1 − fraction) π/4 if the octant is odd.
 fn reduce(x: f64) -> (u64, Fraction) {
     // |x| 4/π = mantissa 2/π · 2^(shift − 1152)
     let shift = (x.to_bits() >> 52) as usize % 2048 + 78;
     let mantissa = u128::from((x.to_bits() % (1 << 52)) | (1 << 52)) << (shift % 64);
     let words = shift / 64; // 16 to 33
-    // Products with the words before are multiples of 2⁶⁴ octants.
+    // Products with earlier words are multiples of 2⁶⁴ octants.
     let first = words.saturating_sub(19);
     let mut window = [0; 6];
     for (word, known) in window.iter_mut().zip(TWO_OVER_PI.iter().skip(first)) {
@@ -136,7 +136,7 @@ pub(super) const fn octant_sine(fraction: &Fraction, is_cosine: bool) -> Fractio
     }
 }
 
-/// The nearest `f64`.
+/// The `f64` nearest to a fraction.
 fn round([first, second, third]: Fraction) -> f64 {
     let (upper, lower, exponent) = if first == 0 {
         (second, third, 1021 - 64)
