@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Mutation testing of what is committed: which changes to src/ does no test notice?
+"""Mutation testing of the committed source: which changes to src/ does no test notice?
 
     python3 .ci/mutants.py              # an hour on two cores
     python3 .ci/mutants.py src/trajectory.rs
 
-Mutants meet the tests that know their file first, and those that survive all others. It fails unless the survivors are
-those of .ci/mutants.txt, where each has its reason. It needs `cargo install cargo-mutants`.
+Each mutant first meets the tests of its file, and if it survives, all other tests. The script fails unless the
+survivors are those in .ci/mutants.txt, which gives the reasons. It needs `cargo install cargo-mutants`.
 """
 
 import json
@@ -23,7 +23,8 @@ ROOT = Path(__file__).resolve().parents[1]
 SURVIVORS = ROOT / ".ci/mutants.txt"
 SHARDS = os.cpu_count() if len(sys.argv) == 1 else 1
 
-# `examples` is not of the library, `sines` tests one file, and `batch` takes half a minute without optimization.
+# Without `examples`, which does not test the library, `sines`, which tests one file, and `batch`, which takes half a
+# minute without optimization.
 OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines", "batch"} | {"properties"})
 ROUNDS = [
     (["src/arithmetic*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
@@ -40,18 +41,18 @@ CARGO = ["--config=profile.dev.package.acrobot.opt-level=0", "--config=profile.d
 
 
 def copy(shard):
-    """A clone of its own for each shard."""
+    """Clones the repository for a shard, or updates the clone."""
     folder = ROOT / f"target/mutants/{shard}"
     if not folder.exists():
         subprocess.run(["git", "clone", "--quiet", ROOT, folder], check=True)
-    # Also where a run was interrupted within a mutant, or nothing but a commit is checked out.
+    # This also removes a mutant that an interrupted run left, and works with a detached HEAD.
     subprocess.run(["git", "fetch", "--quiet", "origin", "HEAD"], cwd=folder, check=True)
     subprocess.run(["git", "reset", "--quiet", "--hard", "FETCH_HEAD"], cwd=folder, check=True)
     return folder
 
 
 def play(folder, shard, files, tests, done):
-    """One shard of a round: what became of each mutant that is not done yet."""
+    """Runs one shard of a round. Returns the outcome of each mutant that was not done."""
     output = folder / "mutants.out"
     shutil.rmtree(output, ignore_errors=True)
     output.mkdir()
@@ -60,7 +61,7 @@ def play(folder, shard, files, tests, done):
     options = ["--in-place", "--iterate", f"--shard={shard}/{SHARDS}", "--no-times", "--colors=never", "--timeout=300"]
     options += [f"--file={file}" for file in files] + [f"--cargo-arg=--test={test}" for test in tests]
     options += [f"--cargo-arg={option}" for option in CARGO]
-    # One shard takes the dependencies that are built already.
+    # A single shard uses the dependencies that are built in target/.
     environment = {**os.environ, "CARGO_TARGET_DIR": str(ROOT / "target" if SHARDS == 1 else folder / "target")}
     subprocess.run(["cargo", "mutants", *options], cwd=folder, env=environment)
     outcomes = json.loads((output / "outcomes.json").read_text())["outcomes"]
@@ -87,20 +88,20 @@ def main():
             for shard in shards:
                 became |= shard.result()
 
-    # Where cargo-mutants was killed, or what is committed has other mutants than the files here.
+    # cargo-mutants was killed, or the committed files have other mutants than the files here.
     if unknown := files.keys() - became.keys():
         sys.exit(f"each mutant must have an outcome, {len(unknown)} of {len(files)} have none: {min(unknown)} …")
     counts = Counter(became.values())
     caught, missed = counts["CaughtMutant"] + counts["Timeout"], counts["MissedMutant"]
-    print(f"{caught} of {caught + missed} mutants were noticed, {caught / max(caught + missed, 1):.1%}; {counts['Unviable']} did not compile")
+    print(f"{caught} of {caught + missed} mutants were caught, {caught / max(caught + missed, 1):.1%}; {counts['Unviable']} did not compile")
     # Without line and column, which other changes move.
     survivors = Counter(re.sub(r":\d+:\d+", "", name) for name, summary in became.items() if summary == "MissedMutant")
     lines = SURVIVORS.read_text().splitlines()
     expected = Counter(line for line in lines if line.split(":")[0] in files.values())
     for name in (survivors - expected).elements():
-        print(f"survives without a reason: {name}")
+        print(f"survives, and is not in {SURVIVORS.name}: {name}")
     for name in (expected - survivors).elements():
-        print(f"has a reason and does not survive: {name}")
+        print(f"does not survive, and is in {SURVIVORS.name}: {name}")
     if survivors != expected:
         sys.exit(1)
 

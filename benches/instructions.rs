@@ -1,11 +1,11 @@
-//! The instructions of a step, which callgrind counts the same in every run: a gate for CI.
+//! Counts the instructions of a step for CI. callgrind gives the same count in every run.
 //!
 //! ```text
 //! cargo install --locked gungraun-runner@0.20.0    # and the system's valgrind
 //! cargo bench -p benches --bench instructions
 //! ```
 //!
-//! It fails if a count exceeds its limit: the measured count and 5 % for new compilers. It needs x86-64 with AVX2;
+//! It fails if a count exceeds its limit: the measured count plus 5 % for new compilers. It needs x86-64 with AVX2;
 //! valgrind does not support AVX-512. `Host` has no limit, because it calls the platform's library.
 
 use std::hint::black_box;
@@ -23,7 +23,7 @@ use gungraun::{
 const STEPS: usize = 1000;
 const ACROBOTS: usize = 64;
 
-/// A limit of this many instructions for each step of each acrobot.
+/// Limits each step of each acrobot to this many instructions.
 fn limit(instructions: f64, acrobots: usize) -> LibraryBenchmarkConfig {
     let limit = (instructions * 1.05 * (acrobots * STEPS) as f64) as u64;
     let mut callgrind = Callgrind::with_args(["cache-sim=no"]);

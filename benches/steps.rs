@@ -1,5 +1,5 @@
-//! Steps per second: `cargo bench -p benches --bench steps`. The yardsticks are in the table, as `bare` and `batch_bare`; the example
-//! `throughput` has ratios to them.
+//! Steps per second: `cargo bench -p benches --bench steps`. The table includes the yardsticks, `bare` and
+//! `batch_bare`. The example `throughput` prints ratios to them.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ fn main() {
 /// From one acrobot to a million.
 const SIZES: [usize; 6] = [1, 16, 128, 1024, 32_768, 1 << 20];
 
-/// With and without the observation: one that is not read need not be computed.
+/// Steps with and without the observation, which is not computed if it is not read.
 #[divan::bench(types = [Host, Reference, Portable, Fast, Micro], args = ["observed", "unobserved"])]
 fn alone<A: Arithmetic>(bencher: Bencher, how: &str) {
     let actions = actions();

@@ -1,5 +1,5 @@
-//! A controller that pumps energy until it can catch the acrobot upright, and holds it there. Prints its mean steps
-//! to the goal over a hundred seeds, beside those of two simpler policies.
+//! A controller that pumps energy until it can catch the acrobot upright, and holds it there. Prints the mean steps to
+//! the goal over a hundred seeds, also for two simpler policies.
 //!
 //! ```text
 //! cargo run --release --example energy_control -- --limit 10
@@ -24,7 +24,7 @@ use acrobot::{Acrobot, Action, Portable, State};
 use clap::Parser;
 use examples_common::exit;
 
-/// Compares policies by their steps to the goal, and catches the upright with one of them.
+/// Compares policies by their steps to the goal. One of them also balances the acrobot upright.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
@@ -34,7 +34,7 @@ struct Options {
     /// Episodes of each policy.
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..))]
     episodes: u64,
-    /// Torque limit of the strong energy controller, N m.
+    /// Torque limit of the second energy controller, N m.
     #[arg(long, default_value_t = 10.0, value_parser = limit)]
     limit: f64,
 }
@@ -60,7 +60,7 @@ fn main() -> ExitCode {
 fn compare(options: &Options, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "policy                torque limit  steps to the goal      caught upright"
+        "policy                torque limit  reached the goal             held upright"
     )?;
     let mut actions = Pcg64::from(options.seed.clone());
     let random = |pendulum: &Pendulum| pendulum.params().torque(Action::sample(&mut actions));
@@ -97,11 +97,11 @@ fn report(
         if steps.is_empty() {
             share
         } else {
-            format!("{share} at {mean:.1}")
+            format!("{share} in {mean:.1} steps")
         }
     };
     format!(
-        "{name:<20}  {limit:>8} N m  {:<21}  {}",
+        "{name:<20}  {limit:>8} N m  {:<27}  {}",
         of(&goals),
         of(&catches)
     )

@@ -19,13 +19,13 @@ use plotters::prelude::*;
 
 use examples_common::svg::{Area, svg};
 
-/// Plots an episode as SVG.
+/// Plots the angles, velocities and energy of an episode, and its phase portrait, as SVG.
 #[derive(Parser)]
 struct Options {
     /// Seed of the initial state: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// The picture to write.
+    /// SVG file to write.
     #[arg(long, value_name = "FILE", default_value = "portrait.svg")]
     #[arg(value_parser = files::named("svg"))]
     out: PathBuf,

@@ -1,5 +1,5 @@
-//! What a chip with a model can add to its learnt policy: before each action a beam search steps the exact model
-//! ahead, and the learnt values rate the states that it reaches.
+//! Planning on top of a learnt policy, small enough for a microcontroller: before each action a beam search steps the
+//! exact model ahead, and the learnt values rate the states that it reaches.
 //!
 //! ```text
 //! cargo run --release --example swing_up -- --preset quality --episodes 10000 --save weights.bin
@@ -7,13 +7,13 @@
 //! ```
 //!
 //! Every step ahead tries both actions in each of the beam's eight states, and keeps the eight new states that the
-//! learner values most. The search ends at the first path to the goal, because no later one is shorter. The path is
-//! followed until a shorter one is found. Without `--load` it learns first. Memory is fixed: the learner's, and the
-//! search's, which is printed.
+//! learner values most. The search ends at the first path to the goal, because no later one is shorter. The
+//! acrobot follows the path until the search finds a shorter one. Without `--load` the program learns first. Memory is
+//! fixed, and the program prints how much the search takes.
 //!
-//! Result: a few steps ahead are worse than none. Values are learnt along the policy's own paths, and a search finds
-//! states beside them whose values are too high. From about ten steps on, true rewards outweigh that. Thirty steps
-//! give nearly all of the gain. Sixty give half a step more, and most searches end earlier.
+//! Result: looking a few steps ahead is worse than not planning. Values are learnt along the policy's own paths, and a
+//! search finds states off these paths whose values are too high. From about ten steps on, true rewards outweigh that.
+//! Thirty steps give nearly all of the gain. Sixty give half a step more, and most searches end earlier.
 
 use std::error::Error;
 use std::io::{self, Write};
@@ -32,19 +32,19 @@ use sarsa::task::{Learner, Preset, evaluation, greedy, learn, play, torque, trai
 /// Compares the learner's greedy policy with a beam search over the learnt values.
 #[derive(Parser)]
 struct Options {
-    /// Steps to look ahead.
+    /// Steps that the search looks ahead.
     #[arg(long, default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=128))]
     depth: u32,
     /// Episodes to play.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..))]
     episodes: u32,
-    /// Seed of everything: a decimal integer of any size.
+    /// Seed of learning and evaluation: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// Weights that `swing_up --preset quality --save` wrote, instead of learning.
+    /// File of weights from `swing_up --preset quality --save`, which replaces learning.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
-    /// Episodes to learn in without `--load`.
+    /// Episodes of learning without `--load`.
     #[arg(long, default_value_t = 10_000)]
     learn: u32,
 }
@@ -87,7 +87,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     writeln!(out, "{planned}")?;
     writeln!(
         out,
-        "the search takes {} bytes, and {} steps of the model an action",
+        "the search takes {} bytes, and {} steps of the model per action",
         size_of::<Search>(),
         search.steps / u64::from(search.choices.max(1))
     )?;
@@ -109,7 +109,7 @@ fn report(name: &str, options: &Options, mut policy: impl FnMut(&State<f32>) -> 
     format!("{name:<14}  {mean:>16.2} ± {sd:<9.2}  {misses:>15}")
 }
 
-/// States that are followed at once.
+/// The width of the beam: states that are followed at the same time.
 const BEAM: usize = 8;
 
 /// A beam search on the model, in fixed memory.

@@ -32,7 +32,7 @@ struct Options {
     /// Seed of the initial states and of the actions: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// How many steps to take.
+    /// Number of steps.
     #[arg(long, default_value_t = 1000)]
     steps: u64,
 }
@@ -72,7 +72,7 @@ fn play(options: &Options, out: &mut impl Write) -> io::Result<()> {
 
     write!(
         out,
-        "{} steps, {episodes} episodes, {goals} at the goal",
+        "{} steps, {episodes} episodes, {goals} reached the goal",
         options.steps
     )?;
     if episodes > 0 {
@@ -80,6 +80,6 @@ fn play(options: &Options, out: &mut impl Write) -> io::Result<()> {
     }
     match acrobot.elapsed() {
         0 => writeln!(out),
-        unfinished => writeln!(out, "; {unfinished} steps into the next"),
+        unfinished => writeln!(out, "; {unfinished} steps of an unfinished episode"),
     }
 }

@@ -25,10 +25,10 @@ struct Options {
     /// Seed of the initial state: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// Draws only this state, in 500×500 pixels: two angles in rad.
+    /// Draws one state in 500×500 pixels: two angles in rad.
     #[arg(long, value_name = "THETA1,THETA2", value_parser = state, allow_hyphen_values = true)]
     state: Option<State>,
-    /// What to write: a GIF, or with --state a PNG.
+    /// File to write: a GIF, or with --state a PNG.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

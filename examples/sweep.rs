@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Each of the two links has the mass; lengths and moments of inertia are Gymnasium's. Every cell plays the same
-//! initial states: its acrobot `i` plays one episode with the seed's `i`-th child. The CSV is the same on every
+//! initial states: acrobot `i` plays one episode with the seed's `i`-th child. The CSV is the same on every
 //! machine and for every number of threads.
 //!
 //! An episode that does not reach the goal within 500 steps counts in `episodes` but not in the mean. So where
@@ -57,11 +57,11 @@ struct Options {
     #[arg(long, value_name = "N_M", value_delimiter = ',', default_value = GRID)]
     #[arg(value_parser = |text: &str| positive(text, "N m"))]
     torques: Vec<f32>,
-    /// The file for the numbers.
+    /// CSV file to write.
     #[arg(long, value_name = "FILE", default_value = "sweep.csv")]
     #[arg(value_parser = files::named("csv"))]
     csv: PathBuf,
-    /// The file for the heat map.
+    /// SVG file to write: the heat map.
     #[arg(long, value_name = "FILE", default_value = "sweep.svg")]
     #[arg(value_parser = files::named("svg"))]
     picture: PathBuf,
@@ -83,7 +83,7 @@ struct Cell {
     episodes: usize,
     /// Episodes that reached the goal.
     reached: usize,
-    /// The steps of those, in all.
+    /// The sum of their steps.
     steps: usize,
 }
 
@@ -138,7 +138,7 @@ fn grid(options: &Options) -> Vec<Params<f32>> {
 }
 
 fn episodes_of_a_cell(episodes: usize, cells: usize) -> Result<usize, String> {
-    /// Their batch takes about 100 MB.
+    /// The batch of so many acrobots takes about 100 MB.
     const MOST: usize = 1_000_000;
     let of_a_cell = episodes / cells;
     if (1..=MOST).contains(&of_a_cell) && episodes.is_multiple_of(cells) {
@@ -153,8 +153,8 @@ fn episodes_of_a_cell(episodes: usize, cells: usize) -> Result<usize, String> {
 /// The steps of an episode before it is truncated, as in Gymnasium: 100 s.
 const LIMIT: usize = 500;
 
-/// Plays one episode of each acrobot. Those at the goal step on, uncounted, until all are there: counting the first
-/// episodes that end would favour short ones.
+/// Plays one episode of each acrobot. Acrobots that reached the goal step on, but no longer count. Counting the
+/// episodes that end first would favour short ones.
 fn play(
     mut batch: Batch<Fast, Vec<Block>, Vec<Pcg64>>,
     params: Params<f32>,
@@ -245,7 +245,7 @@ fn table(cells: &[Cell]) -> String {
     text
 }
 
-/// The range of the colour map, as binary logarithms of steps: from 8 steps, which stand for fewer too, to 512.
+/// The range of the colour map, as binary logarithms of steps: from 8 steps or fewer to 512.
 const DOUBLINGS: Range<f64> = 3.0..9.0;
 
 /// Draws the heat map and its colour bar.

@@ -2,8 +2,8 @@
 //!
 //! A batch plays a random policy, and draws actions and resets episodes in the loop. Its yardstick is a handwritten
 //! loop over eight lanes of AVX2 that does neither, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick
-//! of `scalar_fast` and `scalar_micro` is the same equations for one acrobot in f32. That of the others alone is
-//! Gymnasium's order in f64 with the platform's sines. Both play the same actions as the crate. Each
+//! of `scalar_fast` and `scalar_micro` has the same equations for one acrobot in f32. That of the other `scalar_…` has
+//! Gymnasium's order of operations in f64 and the platform's sines. Both play the same actions as the crate. Each
 //! figure is the best of several runs, interleaved with runs of the yardstick.
 //!
 //! ```text
@@ -107,7 +107,7 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) -> io::R
                 Some(mut bare) => report(&name, compare(&mut ours, || bare.run()))?,
                 None => writeln!(
                     io::stdout(),
-                    "{name} has no yardstick, because that needs AVX2 and FMA"
+                    "{name} has no yardstick, which needs AVX2 and FMA"
                 )?,
             }
         }

@@ -1,4 +1,4 @@
-//! The parity tool: replays actions and prints every bit of the states.
+//! Replays actions and prints every bit of the states, to compare them with another implementation.
 //!
 //! ```text
 //! echo 0 1 2 2 2 | cargo run --release --features std --example trace -- --seed 42
@@ -41,7 +41,7 @@ struct Options {
     /// Duration of a step, s.
     #[arg(long, default_value_t = Params::DEFAULT.dt, allow_hyphen_values = true)]
     dt: f64,
-    /// Arithmetic.
+    /// Arithmetic of the steps.
     #[arg(long, value_enum, default_value = "host")]
     arithmetic: ArithmeticName,
 }
@@ -71,7 +71,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// The bytes of the longest input, which is kept in memory.
+/// The longest input in bytes, which is kept in memory.
 const MOST: u64 = 1 << 26;
 
 /// Reads and checks everything before it prints the first line.

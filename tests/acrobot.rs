@@ -1,5 +1,5 @@
-//! The environment's contract beyond its numbers: construction, resets, ends, time limits, live changes, sizes and
-//! auto-traits.
+//! The environment's contract beyond its numbers: construction, resets, terminations, time limits, live changes,
+//! sizes and auto-traits.
 
 use std::convert::Infallible;
 
@@ -18,7 +18,7 @@ use rand_core::TryRng;
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
 
-/// Firmware relies on these. The compiler checks them.
+/// Firmware relies on these sizes and traits. The compiler checks them.
 const _: () = {
     assert!(size_of::<Acrobot<Micro>>() == size_of::<Acrobot<Fast>>());
     assert!(size_of::<Acrobot<Reference>>() <= 400);
@@ -39,7 +39,7 @@ const _: () = {
 };
 
 #[test]
-fn the_goal_ends_with_a_reward_of_zero_and_stepping_goes_on() {
+fn the_goal_terminates_with_a_reward_of_zero_and_steps_continue() {
     let mut acrobot = Acrobot::<Portable>::new(0);
     let upright = State {
         theta1: std::f64::consts::PI,
@@ -72,7 +72,7 @@ impl Arithmetic for AtTheTarget {
     }
 }
 
-/// Only what an arithmetic must have.
+/// An arithmetic with only the required items.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Least;
 
@@ -87,7 +87,7 @@ impl Arithmetic for Least {
 }
 
 #[test]
-fn the_default_methods_of_an_arithmetic_are_portables() {
+fn the_default_methods_of_an_arithmetic_equal_those_of_portable() {
     let mut least = Acrobot::<Least>::new(3);
     let mut portable = Acrobot::<Portable>::new(3);
     for _ in 0..100 {
@@ -107,7 +107,7 @@ fn a_tip_at_the_target_height_is_not_in_the_goal() {
     assert_eq!(step.reward, -1.0);
 }
 
-fn assert_goal_is_by_height<A: Arithmetic>() {
+fn assert_height_decides_the_goal<A: Arithmetic>() {
     let mut acrobot = Acrobot::<A>::new(0);
     let dt = A::Scalar::from_f64(1e-6);
     let params = Params {
@@ -135,12 +135,12 @@ fn assert_goal_is_by_height<A: Arithmetic>() {
 }
 
 #[test]
-fn the_goal_is_by_height_in_every_arithmetic() {
-    assert_goal_is_by_height::<Fast>();
-    assert_goal_is_by_height::<Micro>();
-    assert_goal_is_by_height::<Reference>();
-    assert_goal_is_by_height::<Portable>();
-    assert_goal_is_by_height::<Host>();
+fn the_tip_height_decides_the_goal_in_every_arithmetic() {
+    assert_height_decides_the_goal::<Fast>();
+    assert_height_decides_the_goal::<Micro>();
+    assert_height_decides_the_goal::<Reference>();
+    assert_height_decides_the_goal::<Portable>();
+    assert_height_decides_the_goal::<Host>();
 }
 
 #[test]
@@ -231,13 +231,13 @@ fn acrobots_are_equal_by_parameters_state_and_generator() {
 }
 
 #[test]
-fn reset_bounds_return_both_bounds() {
+fn reset_bounds_return_low_and_high() {
     let bounds = ResetBounds::new(-0.2, 0.3).unwrap();
     assert_eq!((bounds.low(), bounds.high()), (-0.2, 0.3));
 }
 
 #[test]
-fn a_seeded_reset_is_a_new_acrobot() {
+fn a_seeded_reset_equals_a_new_acrobot() {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(0));
     acrobot.step(Action::Zero);
     let observation = acrobot.reset_with_seed(7);
@@ -245,9 +245,9 @@ fn a_seeded_reset_is_a_new_acrobot() {
     assert_eq!(observation, acrobot.inner().observation());
 }
 
-/// `reset_with` seeds as `reset_with_seed` if there is a seed, and draws from its bounds.
+/// With a seed, `reset_with` resets as `reset_with_seed` does. It draws from the bounds that it is given.
 #[test]
-fn resets_with_options_are_seeded_resets_within_bounds() {
+fn reset_with_takes_a_seed_and_bounds() {
     let bounds = ResetBounds::new(-3.0, 5.0).unwrap();
     let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(0));
     acrobot.step(Action::Zero);
@@ -273,7 +273,7 @@ fn resets_with_options_are_seeded_resets_within_bounds() {
         bounds: Some(bounds),
     });
     expected.reset_within(bounds);
-    assert_eq!(acrobot, expected, "without a seed the stream goes on");
+    assert_eq!(acrobot, expected, "without a seed the stream continues");
 }
 
 fn bits<S: Real, const N: usize>(numbers: [S; N]) -> [u64; N] {
@@ -298,7 +298,7 @@ fn bits_of<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) -> ([u64; 4], [u64; 
 
 /// An acrobot in a `static`, hanging or in a given state, steps bit-identically to one that `set_state` places.
 #[test]
-fn acrobots_made_by_the_compiler_step_as_those_made_at_run_time() {
+fn acrobots_made_by_the_compiler_equal_those_made_at_run_time() {
     fn check<A: Arithmetic>(made: &Acrobot<A>, state: State<A::Scalar>) {
         let (mut made, mut set) = (made.clone(), Acrobot::<A>::new(0));
         *set.rng_mut() = Pcg64::new(42);
@@ -343,7 +343,7 @@ fn acrobots_made_by_the_compiler_step_as_those_made_at_run_time() {
 
 /// A pendulum steps bit-identically to an acrobot without noise, and returns whether the acrobot terminates.
 #[test]
-fn a_pendulum_steps_as_a_noiseless_acrobot() {
+fn a_pendulum_equals_an_acrobot_without_noise() {
     fn check<A: Arithmetic>() {
         let number = A::Scalar::from_f64;
         let params = Params {
@@ -380,9 +380,9 @@ fn a_pendulum_steps_as_a_noiseless_acrobot() {
     check::<Micro>();
 }
 
-/// After steps, the methods are bit-identical to the functions of the same name.
+/// After each step the methods are bit-identical to the functions of the same name.
 #[test]
-fn methods_are_the_functions_of_physics() {
+fn methods_equal_the_functions_of_physics() {
     fn check<A: Arithmetic>() {
         let number = A::Scalar::from_f64;
         let params = Params {
@@ -505,7 +505,7 @@ fn custom_generators_draw_initial_states_and_noise() {
 }
 
 #[test]
-fn the_bounds_are_gymnasiums() {
+fn observation_bounds_equal_gymnasiums() {
     // As its observation space prints them: 4π and 9π in f32.
     let (four_pi, nine_pi) = (12.566_371, 28.274_334);
     let high = Observation::HIGH.to_array();
@@ -577,7 +577,7 @@ fn angles_wrap() {
     ] {
         assert_eq!(wrap::<Portable>(x), wrapped);
     }
-    // Beyond 64 turns it takes the remainder, which agrees up to rounding.
+    // Beyond 64 turns `wrap` takes one remainder, which agrees up to rounding.
     for turns in [60.0, 63.0, 64.0, 65.0, 70.0, 1e6] {
         for x in [-3.0, -1.0, 0.25, 3.0] {
             for turns in [-turns, turns] {

@@ -1,4 +1,4 @@
-//! Acrobots wait for their reset in mode `NextStep` only, however they came into the batch.
+//! Acrobots wait for their reset only in mode `NextStep`, also those that `set_member` placed in the batch.
 
 use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, StepBuffers};
 use acrobot::numpy::Pcg64;
@@ -28,8 +28,8 @@ fn waiting() -> Member<Fast> {
     }
 }
 
-/// The acrobot is in an initial state.
-fn assert_begun(batch: One) {
+/// The acrobot is in an initial state, and does not wait.
+fn assert_reset(batch: One) {
     let initial = batch.member(0).unwrap();
     assert!((0.5..0.6).contains(&initial.state.theta1), "{initial:?}");
     assert_eq!(initial.elapsed, 0);
@@ -60,7 +60,7 @@ fn assert_steps(mut batch: One) {
 fn a_waiting_member_is_reset_immediately_in_mode_same_step() {
     let mut batch = one(Autoreset::SameStep);
     batch.set_member(0, waiting()).unwrap();
-    assert_begun(batch);
+    assert_reset(batch);
 
     let mut batch = one(Autoreset::NextStep);
     batch.set_member(0, waiting()).unwrap();
@@ -72,12 +72,12 @@ fn a_waiting_acrobot_is_reset_when_the_mode_becomes_same_step() {
     let mut batch = one(Autoreset::NextStep);
     batch.set_member(0, waiting()).unwrap();
     batch.set_autoreset(Autoreset::SameStep);
-    assert_begun(batch);
+    assert_reset(batch);
 }
 
-/// In mode `Disabled` an acrobot that waited steps on from where it is, however it came there.
+/// In mode `Disabled` a waiting acrobot continues from its state, whether `set_member` placed it or the mode changed.
 #[test]
-fn a_waiting_acrobot_steps_on_in_mode_disabled() {
+fn a_waiting_acrobot_continues_in_mode_disabled() {
     let mut put = one(Autoreset::Disabled);
     put.set_member(0, waiting()).unwrap();
     let mut changed = one(Autoreset::NextStep);

@@ -1,4 +1,4 @@
-//! Promise 2 for batches: acrobot i of a batch is bit-identical to one alone with the i-th child of the seed.
+//! Promise 2 for batches: acrobot `i` is bit-identical to an `Acrobot` seeded with the seed's `i`-th child.
 
 use std::num::NonZeroU32;
 
@@ -52,7 +52,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         });
     }
 
-    fn start_within(&mut self, low: f64, high: f64) {
+    fn reset_within(&mut self, low: f64, high: f64) {
         let bounds = ResetBounds::new(low, high).unwrap();
         self.batch.set_reset_bounds(bounds);
         self.batch.reset();
@@ -61,7 +61,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         });
     }
 
-    /// After a reset of the batch: resets the scalar twins, given their index, and compares every bit.
+    /// Call it after a reset of the batch. It resets each scalar twin by its index, and compares every bit.
     fn reset_alone(&mut self, reset: impl Fn(u64, &mut TimeLimit<Acrobot<A>>)) {
         for (alone, i) in self.alone.iter_mut().zip(0..) {
             reset(i, alone);
@@ -184,8 +184,8 @@ const MODES: [Autoreset; 3] = [
 
 const LEVELS: [SimdLevel; 3] = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
 
-/// More than a block, and not a whole number of blocks. Through ends and resets in every mode.
-fn plays_as_one_alone<A: Arithmetic>(len: usize, steps: u32) {
+/// Plays through ends and resets in every mode. `len` is more than one block, and not a whole number of blocks.
+fn assert_equals_single_acrobots<A: Arithmetic>(len: usize, steps: u32) {
     for autoreset in MODES {
         let mut twins = Twins::<A>::new(len, autoreset);
         twins.swing(steps);
@@ -194,29 +194,29 @@ fn plays_as_one_alone<A: Arithmetic>(len: usize, steps: u32) {
 }
 
 #[test]
-fn fast_plays_as_one_alone() {
-    plays_as_one_alone::<Fast>(35, 1200);
+fn fast_equals_single_acrobots() {
+    assert_equals_single_acrobots::<Fast>(35, 1200);
 }
 
 #[test]
-fn other_arithmetics_play_as_one_alone() {
-    plays_as_one_alone::<Reference>(17, 600);
-    plays_as_one_alone::<Portable>(17, 600);
-    plays_as_one_alone::<Micro>(17, 600);
-    plays_as_one_alone::<Host>(17, 600);
+fn other_arithmetics_equal_single_acrobots() {
+    assert_equals_single_acrobots::<Reference>(17, 600);
+    assert_equals_single_acrobots::<Portable>(17, 600);
+    assert_equals_single_acrobots::<Micro>(17, 600);
+    assert_equals_single_acrobots::<Host>(17, 600);
 }
 
-/// In every width and with every SIMD level. A level that the machine does not have acts as the baseline.
+/// Tries every width with every SIMD level. A level that the machine does not have acts as the baseline.
 #[test]
-fn a_thousand_play_ten_thousand_steps_as_one_alone() {
+fn a_thousand_acrobots_equal_single_ones_for_ten_thousand_steps() {
     fn play<const N: usize>() {
-        // Optimized they take seconds.
+        // With optimization the larger numbers take seconds.
         let (len, steps) = match cfg!(debug_assertions) {
             true => (100, 600),
             false => (1000, 10_000),
         };
         for level in LEVELS {
-            println!("{N} by {level:?}, available: {}", level.is_available());
+            println!("{N} lanes, {level:?}, available: {}", level.is_available());
             let mut twins = Twins::<Fast, N>::new(len, Autoreset::NextStep);
             twins.batch.set_simd_level(level);
             twins.swing(steps);
@@ -228,18 +228,18 @@ fn a_thousand_play_ten_thousand_steps_as_one_alone() {
     play::<16>();
 }
 
-/// Every arithmetic with every SIMD level, in widths below, at and above that of a vector. Initial states are far
+/// Tries every arithmetic with every SIMD level, in widths below, at and above that of a vector. Initial states are far
 /// outside the bounds, and there is noise.
 #[test]
-fn any_width_plays_as_one_alone() {
+fn any_width_equals_single_acrobots() {
     fn play<A: Arithmetic, const N: usize>() {
         for level in LEVELS {
             let mut twins = Twins::<A, N>::new(37, Autoreset::SameStep);
             twins.batch.set_simd_level(level);
             twins.swing(200);
             twins.set_noise(0.5);
-            twins.start_within(-100.0, 100.0);
-            // Past their ends the links turn over, which wraps angles.
+            twins.reset_within(-100.0, 100.0);
+            // After an episode's end the links turn over, which wraps angles.
             twins.batch.set_autoreset(Autoreset::Disabled);
             twins.swing(200);
         }
@@ -254,14 +254,14 @@ fn any_width_plays_as_one_alone() {
 }
 
 #[test]
-fn any_size_plays_as_one_alone() {
+fn any_size_equals_single_acrobots() {
     for len in [1, 2, 15, 16, 17, 31, 32, 33, 100] {
         Twins::<Fast>::new(len, Autoreset::SameStep).swing(200);
     }
 }
 
 #[test]
-fn other_parameters_noise_and_initial_states_play_as_one_alone() {
+fn other_parameters_noise_and_initial_states_equal_single_acrobots() {
     let mut rng = Pcg64::new(11);
     for dynamics in [Dynamics::Book, Dynamics::Nips] {
         for noise in [0.0, 0.5] {
@@ -278,14 +278,14 @@ fn other_parameters_noise_and_initial_states_play_as_one_alone() {
                     dynamics,
                     ..Params::default()
                 });
-                twins.start_within(-size, size);
+                twins.reset_within(-size, size);
                 twins.swing(700);
             }
         }
     }
 }
 
-/// On all cores, with observations in columns, with actions and with torques.
+/// Steps on all cores equal those on one: with actions, with torques, and with observations in columns.
 #[test]
 fn threads_change_no_bit() {
     let len = 50_003_usize;
@@ -315,7 +315,7 @@ fn threads_change_no_bit() {
         let seen = [columns, finals].map(|columns| columns.map(bits));
         (bits(rewards), terminated, truncated, seen)
     };
-    // Past two limits, optimized past eight.
+    // This exceeds the limit of steps twice, with optimization eight times.
     for _ in 0..if cfg!(debug_assertions) { 16 } else { 60 } {
         let actions: Vec<Action> = (0..len).map(|_| Action::sample(&mut rng)).collect();
         let alone = run(&mut one, &|batch, buffers| batch.step(&actions, buffers));
@@ -340,7 +340,7 @@ fn threads_change_no_bit() {
     }
 }
 
-/// A user's slices can differ in length from one call to the next. Steps on all cores then do what those on one do.
+/// A user's slices can differ in length from one call to the next. Steps on all cores and on one then do the same.
 #[test]
 fn slices_that_change_their_length_cannot_panic() {
     #[derive(Clone)]
@@ -400,9 +400,9 @@ fn slices_that_change_their_length_cannot_panic() {
     }
 }
 
-/// Also the sign of a zero: here every force is 0 or −0, and beyond 2¹⁹ rad sines can be 0.
+/// Here every force is 0 or −0, and beyond 2¹⁹ rad sines can be 0.
 #[test]
-fn zeros_have_the_sign_of_one_alone() {
+fn zeros_have_the_same_sign_as_in_single_acrobots() {
     for autoreset in MODES {
         let mut twins = Twins::<Fast>::new(20, autoreset);
         twins.set_params(Params {
@@ -433,7 +433,7 @@ fn zeros_have_the_sign_of_one_alone() {
 }
 
 #[test]
-fn begins_in_given_states_as_one_alone() {
+fn given_initial_states_equal_single_acrobots() {
     let mut rng = Pcg64::new(3);
     let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
     // After 500 steps most have ended and wait for their reset.
@@ -453,12 +453,12 @@ fn begins_in_given_states_as_one_alone() {
     twins.swing(520);
 }
 
-/// Each kind of reset is that of the same name for every scalar twin. None changes the batch's own bounds.
+/// Each kind of reset equals that of the same name for every scalar twin. None changes the batch's bounds.
 #[test]
-fn resets_as_one_alone() {
+fn resets_equal_those_of_single_acrobots() {
     let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
     let bounds = ResetBounds::new(1.0, 2.0).unwrap();
-    // After 500 steps most wait for a reset, which these replace.
+    // After 500 steps most acrobots wait for their reset. These resets replace it.
     for steps in [500, 3] {
         twins.play_randomly(steps);
         twins.batch.reset();
@@ -496,9 +496,9 @@ fn resets_as_one_alone() {
     assert_eq!(twins.batch.reset_bounds(), ResetBounds::DEFAULT);
 }
 
-/// Torques for controllers, through ends in every mode, without and with noise.
+/// Plays through ends in every mode, without and with noise.
 #[test]
-fn steps_by_torques_as_one_alone() {
+fn torques_equal_single_acrobots() {
     fn play<A: Arithmetic, const N: usize>(len: usize, steps: u32, parallel: bool) {
         for autoreset in MODES {
             let mut twins = Twins::<A, N>::new(len, autoreset);
@@ -506,7 +506,7 @@ fn steps_by_torques_as_one_alone() {
             let mut ends = 0;
             for noise in [0.0, 0.5] {
                 twins.set_noise(noise);
-                twins.start_within(-2.0, 2.0);
+                twins.reset_within(-2.0, 2.0);
                 for _ in 0..steps {
                     let torques = twins.alone.iter().map(|alone| {
                         let size = uniform(&mut rng, 0.0, 3.0);
@@ -525,18 +525,18 @@ fn steps_by_torques_as_one_alone() {
     play::<Micro, 16>(35, 300, false);
     play::<Portable, 16>(35, 300, false);
     play::<Host, 16>(35, 300, false);
-    // More acrobots than a thread takes at once.
+    // These are more acrobots than a thread takes at once.
     play::<Portable, 16>(2100, 12, true);
     play::<Fast, 16>(33_000, 4, true);
 }
 
-/// `Autoreset::Disabled` with `reset_masked`: as scalar acrobots that are reset by hand, through ends and past them.
+/// With `Autoreset::Disabled`, `reset_masked` equals resets of single acrobots, at ends and after them.
 #[test]
-fn masked_resets_are_resets_by_hand() {
+fn masked_resets_equal_resets_of_single_acrobots() {
     fn play<A: Arithmetic, const N: usize>() {
         let mut twins = Twins::<A, N>::new(35, Autoreset::Disabled);
         twins.set_noise(0.3);
-        twins.start_within(-1.0, 1.0);
+        twins.reset_within(-1.0, 1.0);
         let bounds = twins.batch.reset_bounds();
         let mut rng = Pcg64::new(7);
         let (mut ends, mut past) = (0, 0);
@@ -544,14 +544,14 @@ fn masked_resets_are_resets_by_hand() {
         for step in 0..700 {
             let done = twins.step(&twins.swinging());
             ends += done.iter().filter(|done| **done).count();
-            // Some that ended step on, and some that did not end are reset.
+            // Some acrobots step on after their end, and some are reset before it.
             let mask: Vec<bool> = done
                 .iter()
                 .map(|&done| uniform(&mut rng, 0.0, 1.0) < if done { 0.5 } else { 0.005 })
                 .collect();
             past += before.iter().zip(&mask).filter(|(x, y)| **x && **y).count();
             before = done.iter().zip(&mask).map(|(x, y)| *x && !y).collect();
-            // Now and then with a seed, whose i-th child acrobot i takes.
+            // Every 50th reset has a seed, and acrobot i takes its i-th child.
             let seed = (step % 50 == 0).then(|| SeedSequence::new(step));
             let options = ResetOptions { seed, bounds: None };
             twins.batch.reset_masked(&mask, options.clone()).unwrap();
@@ -563,7 +563,10 @@ fn masked_resets_are_resets_by_hand() {
                 }
             });
         }
-        assert!(ends > 100 && past > 10, "{ends} ends, {past} past them");
+        assert!(
+            ends > 100 && past > 10,
+            "{ends} ends, {past} resets after a step past the end"
+        );
     }
     play::<Fast, 16>();
     play::<Micro, 16>();
@@ -571,9 +574,9 @@ fn masked_resets_are_resets_by_hand() {
     play::<Host, 16>();
 }
 
-/// Acrobots that wait for their reset step on when the mode changes to `Disabled`.
+/// Waiting acrobots continue when the mode changes to `Disabled`.
 #[test]
-fn waiting_acrobots_step_on_in_mode_disabled_as_one_alone() {
+fn waiting_acrobots_continue_in_mode_disabled_as_single_acrobots() {
     let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);
     twins.set_noise(0.3);
     for _ in 0..3 {
@@ -589,16 +592,16 @@ fn waiting_acrobots_step_on_in_mode_disabled_as_one_alone() {
     }
 }
 
-/// The state of one acrobot changes, its episode goes on, and all others stay as they are.
+/// Setting the state of one acrobot keeps its episode, and changes no other acrobot.
 #[test]
-fn one_state_is_set_as_one_alone() {
+fn set_state_equals_that_of_a_single_acrobot() {
     fn check<A: Arithmetic, const N: usize>() {
         let mut twins = Twins::<A, N>::new(35, Autoreset::NextStep);
         twins.set_noise(0.3);
         let mut rng = Pcg64::new(3);
         for index in [Some(0), Some(15), Some(16), Some(34), None] {
             twins.swing(50);
-            // At last one that waits for its reset, which goes on waiting.
+            // The last one waits for its reset, and continues to wait.
             let index = index.unwrap_or_else(|| {
                 while !twins.waiting.contains(&true) {
                     twins.swing(1);
@@ -625,7 +628,7 @@ fn one_state_is_set_as_one_alone() {
     check::<Host, 16>();
 }
 
-/// In the middle of episodes, some of which have just ended, with noise.
+/// The members are stored in the middle of episodes or just after their end, with noise.
 #[test]
 fn members_resume_in_another_batch() {
     let mut twins = Twins::<Fast>::new(35, Autoreset::NextStep);

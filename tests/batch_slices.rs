@@ -15,7 +15,7 @@ fn small<const BLOCKS: usize, const LEN: usize>() -> Result<Small<BLOCKS, LEN>, 
 }
 
 #[test]
-fn columns_are_the_rows() {
+fn columns_equal_rows() {
     let mut batch = small::<2, 20>().unwrap();
     batch.set_limit(NonZeroU32::MIN);
     let mut rows = [[0.0; 6]; 20];
@@ -35,9 +35,9 @@ fn columns_are_the_rows() {
     }
 }
 
-/// At each SIMD level, in one batch. `par_step` takes one thread for so few.
+/// The batch changes its SIMD level. `par_step` takes one thread for so few acrobots.
 #[test]
-fn a_limit_truncates_each_of_its_steps() {
+fn a_limit_truncates_at_every_simd_level() {
     let mut batch = small::<1, 3>().unwrap();
     batch.set_limit(NonZeroU32::new(2).unwrap());
     batch.set_autoreset(Autoreset::SameStep);
@@ -191,7 +191,7 @@ fn rejections(
     })
 }
 
-/// Slices of another length, unknown actions and torques that are not finite are rejected before anything is stepped.
+/// Slices of another length, unknown actions and torques that are not finite are rejected before any acrobot steps.
 #[test]
 fn rejected_steps_change_nothing() {
     let batch = &mut small::<1, 3>().unwrap();
@@ -227,7 +227,7 @@ fn rejected_steps_change_nothing() {
     }
 }
 
-/// Everything else that a batch rejects: the error says why, and the next step is that of a twin.
+/// A batch rejects other invalid calls with the reason, and its next step equals that of an untouched twin.
 #[test]
 fn rejected_changes_change_nothing() {
     const NAN: State<f32> = State {

@@ -50,7 +50,7 @@ fn our_environments_keep_the_contract() {
     );
 }
 
-/// Initial velocities of up to 0.1 rad/s are in the observation space, whatever the velocity bounds.
+/// Initial velocities of up to 0.1 rad/s are in the observation space, with any velocity bounds.
 #[test]
 fn slow_environments_keep_the_contract() {
     for (max_velocity1, max_velocity2) in [(0.05, 0.05), (1e-30, 30.0), (30.0, 1e-30), (0.1, 0.1)] {
@@ -72,7 +72,7 @@ fn slow_environments_keep_the_contract() {
 /// How an environment can break the contract.
 #[derive(Clone)]
 enum Flaw {
-    /// None: the wrapper itself keeps the contract.
+    /// No flaw: the wrapper itself keeps the contract.
     None,
     /// Observations leave their space.
     Outside,
@@ -86,7 +86,7 @@ enum Flaw {
     Seed,
     /// A reset does not restart the time limit's count, so truncation is reported again.
     Count(Cell<u32>),
-    /// The same, except that a reset with a seed restarts the count.
+    /// As `Count`, but a reset with a seed restarts the count.
     Unseeded(Cell<u32>),
     /// Clones share a count.
     Shared(Rc<Cell<u32>>),
@@ -94,7 +94,7 @@ enum Flaw {
     SharedInEpisode(Rc<Cell<u32>>),
     /// Rendering moves the acrobot.
     Render,
-    /// A space does not contain what it samples.
+    /// A space does not contain its samples.
     ObservationSamples,
     ActionSamples,
 }

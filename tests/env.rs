@@ -141,7 +141,7 @@ fn live_changes_reach_through_every_wrapper() {
     assert_eq!(erased.unwrapped().figure(), Figure::new(typed.unwrapped()));
 }
 
-/// The boxes that `make` returns can be wrapped and borrowed as any environment.
+/// The boxes that `make` returns can be wrapped and borrowed like any environment.
 #[test]
 fn boxed_and_borrowed_environments_are_environments() {
     let limit = 3.try_into().unwrap();
@@ -261,10 +261,10 @@ fn human(display: &Display) -> Options {
     }
 }
 
-/// A display that is asked from within itself to show a frame reports an error and does not deadlock. It shows the
+/// A display's function that renders on the same display gets an error and does not deadlock. The display shows the
 /// next frame, also after a panic.
 #[test]
-fn a_display_rejects_frames_from_within_itself() {
+fn a_display_rejects_frames_from_its_own_function() {
     let nested: Arc<Mutex<Option<[Box<DynEnv>; 2]>>> = Arc::default();
     let (other_sender, other_frames) = mpsc::channel();
     let other = Display::new(move |_| other_sender.send(()).unwrap());
@@ -300,7 +300,7 @@ fn a_display_rejects_frames_from_within_itself() {
     );
 }
 
-/// Two threads that share a display take turns: it shows every frame.
+/// A display that two threads share shows every frame.
 #[test]
 fn threads_share_a_display() {
     let (sender, frames) = mpsc::channel();
@@ -319,7 +319,7 @@ fn threads_share_a_display() {
 }
 
 #[test]
-fn statistics_are_of_each_episode() {
+fn statistics_cover_each_episode() {
     let env = AcrobotEnv::<Fast, Observation>::default();
     let mut env = RecordEpisodeStatistics::new(TimeLimit::new(env, 5.try_into().unwrap()));
     assert_eq!(env.mean_return(), None);
@@ -363,14 +363,14 @@ fn unwrapping_changes_nothing() {
 }
 
 #[test]
-fn rejections_say_what_is_valid() {
+fn rejections_name_the_rule() {
     for id in ["Acrobot-v2", "acrobot-v0", "", "CartPole-v1"] {
         let error = make(id).unwrap_err();
         let expected = format!(r#"the id must be "Acrobot-v1" or "Acrobot-v0", got {id:?}"#);
         assert_eq!(error.to_string(), expected);
         assert_eq!(error, Error::UnknownId(id.to_owned()));
     }
-    // A long id is cut after 64 characters, whatever these are.
+    // A long id is cut after 64 characters, however many bytes each has.
     for letter in ["x", "é", "\0"] {
         let error = make(&letter.repeat(1_000_000)).unwrap_err();
         assert_eq!(error, Error::UnknownId(letter.repeat(64) + "…"));
@@ -463,7 +463,7 @@ fn spaces_know_their_elements() {
     );
 }
 
-/// Parameters are checked before they are rounded to the scalar, too.
+/// Parameters are checked before and after they are rounded to the scalar.
 #[test]
 fn parameters_that_only_rounding_makes_valid_are_rejected() {
     // Rounded to `f32` it is 0.

@@ -1,4 +1,4 @@
-//! Promise 1, Gymnasium's numbers: their error against the solution of another integrator, which `data/truth.py` ran.
+//! Promise 1, Gymnasium's numbers: the error of its integration against that of `data/truth.py`.
 
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -20,7 +20,7 @@ struct Run {
 struct Row {
     seconds: u32,
     state: State,
-    /// The error that the recorded state itself can have.
+    /// How far the recorded state can be from the solution.
     uncertainty: f64,
 }
 
@@ -121,7 +121,7 @@ fn errors_are_as_the_docs_say() {
     assert_says("docs/accuracy.md", &table);
 }
 
-/// So the measured errors are those of the method, not those of the recorded states.
+/// The measured errors are therefore those of the method, not of the recorded states.
 #[test]
 fn the_truth_is_known_far_better_than_the_error() {
     let mut worst = 0.0_f64;
@@ -152,7 +152,7 @@ fn errors_shrink_with_the_fourth_power_of_dt() {
     }
 }
 
-/// In `f32` rounding is small beside the method's error at Gymnasium's dt, and dominates at 0.01 s.
+/// In `f32` rounding is small compared with the method's error at Gymnasium's dt, and dominates at 0.01 s.
 #[test]
 fn single_precision_is_as_good_as_the_docs_say() {
     let (mut excess, mut least, mut most) = (0.0_f64, f64::INFINITY, 0.0_f64);

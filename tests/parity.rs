@@ -9,10 +9,11 @@ use common::{
     Digest, RECORDING, STEPS, assert_says, distance, is_recorded_library, recorded_steps,
 };
 
-/// With another C library each step from Gymnasium's state is at most this far off: twice what [`Reference`] needs.
+/// The tolerance of a single step with another C library: twice the error of [`Reference`].
 const OTHER_LIBRARY: f64 = 1.5e-14;
 
-/// Twice what `Portable` needs, whose lean form adds in another order, at up to 28 rad/s and after dozens of turns.
+/// The tolerance of `Portable`, whose lean form adds in another order: twice its error, at up to 28 rad/s and after
+/// dozens of turns.
 const OTHER_ORDER: f64 = 1.5e-12;
 
 fn bits(state: State) -> [u64; 4] {
@@ -56,7 +57,7 @@ fn host_replays_gymnasium() {
     }
     assert!(
         goals > 1000,
-        "the recording should reach the goal often, and did {goals} times"
+        "the recording must reach the goal often, and reaches it {goals} times"
     );
 }
 
@@ -97,9 +98,9 @@ fn host_takes_gymnasiums_single_steps() {
     single_steps::<Host>(is_recorded_library(), OTHER_LIBRARY);
 }
 
-/// Another C library can meet its tolerance.
+/// Another C library can meet the tolerance, because `Reference` does.
 #[test]
-fn another_library_takes_them_closely() {
+fn other_arithmetics_take_single_steps_closely() {
     single_steps::<Reference>(false, OTHER_LIBRARY);
     single_steps::<Portable>(false, OTHER_ORDER);
 }
@@ -107,7 +108,7 @@ fn another_library_takes_them_closely() {
 /// How much of the recordings an arithmetic repeats bit for bit: the shares of single steps under a random and under an
 /// energetic policy, in percent, and how many of 60 free-running episodes after 65, 100 and 200 steps.
 fn repeated<A: Arithmetic<Scalar = f64>>() -> ([f64; 2], [u32; 3]) {
-    // One policy in each half of the first 64 episodes. The last eight begin beyond all bounds.
+    // One policy in each half of the first 64 episodes. The last eight begin outside the bounds.
     let shares = [0..32, 32..64].map(|episodes| {
         let mut equal = 0;
         for episode in &RECORDING.episodes[episodes] {
@@ -144,7 +145,7 @@ fn repeated<A: Arithmetic<Scalar = f64>>() -> ([f64; 2], [u32; 3]) {
     (shares, equal)
 }
 
-/// This measures a table of docs/parity.md. CI measures its line of Gymnasium without FMA.
+/// This measures a table of docs/parity.md. CI measures its row without FMA.
 #[test]
 fn the_docs_say_how_much_of_gymnasium_is_repeated() {
     let row = |name: &str, repeated: ([f64; 2], [u32; 3])| {
@@ -187,7 +188,7 @@ fn initial_observations_are_within_one_ulp() {
 /// `Host` calls C's `pow` only where it can differ from `x * x`. Elsewhere the two are equal.
 #[test]
 #[expect(clippy::disallowed_methods, reason = "the platform's function")]
-fn hosts_square_is_the_platforms_power() {
+fn hosts_square_equals_the_platforms_power() {
     let two = std::hint::black_box(2.0);
     let mut rng = Pcg64::new(5);
     let mut differs = 0;

@@ -1,5 +1,5 @@
-//! The equations are those of the pendulum: they agree with Lagrange's and with each other, and converge with the right
-//! order.
+//! The equations of motion are right: both forms agree with each other and with Lagrange's equations, and the
+//! integration converges with the fourth order.
 
 use acrobot::arithmetic::Arithmetic;
 use acrobot::numpy::{Pcg64, uniform};
@@ -21,7 +21,7 @@ impl Arithmetic for LeanF64 {
     }
 }
 
-/// Parameters, states and torques of every kind.
+/// Random parameters, states and torques.
 fn random_cases() -> impl Iterator<Item = (Params, State, f64)> {
     let mut rng = Pcg64::new(1);
     let mut draw = move |low, high| uniform(&mut rng, low, high);
@@ -67,7 +67,7 @@ fn accelerations<A: Arithmetic>(
     [ddtheta1, ddtheta2]
 }
 
-/// Some hundred roundings of terms up to a thousand times the result.
+/// Hundreds of roundings of terms that are up to a thousand times the result.
 const ROUNDING: f64 = 1e-11;
 
 #[test]
@@ -93,7 +93,7 @@ impl HyperDual {
         Self([x, 0.0, 0.0, 0.0])
     }
 
-    /// f of the number, given the value and the first two derivatives of f.
+    /// f of this number, from the value and the first two derivatives of f.
     fn map(self, f: f64, first: f64, second: f64) -> Self {
         let [_, a, b, ab] = self.0;
         Self([f, first * a, first * b, first * ab + second * a * b])
@@ -166,7 +166,7 @@ fn differentiate(p: &Params, y: [f64; 4], i: usize, j: usize) -> [f64; 4] {
 /// Lagrange's equations: d/dt ∂L/∂θ̇ − ∂L/∂θ = (0, torque), that is
 /// (∂²L/∂θ̇∂θ̇) θ̈ = (0, torque) + ∂L/∂θ − (∂²L/∂θ̇∂θ) θ̇.
 #[test]
-fn the_books_equations_are_lagranges() {
+fn the_books_equations_equal_lagranges() {
     for (params, state, torque) in random_cases() {
         let y = <[f64; 4]>::from(state);
         let mixed = |i, j| differentiate(&params, y, i, j)[3];
@@ -261,7 +261,7 @@ fn energy_drifts_no_faster_than_the_fourth_power_of_dt() {
 
 /// A step with the torque of an action equals the step with the action.
 #[test]
-fn actions_are_torques() {
+fn an_action_equals_its_torque() {
     let mut by_action = Acrobot::<Portable>::new(5);
     let mut by_torque = by_action.clone();
     for (action, torque) in Action::ALL.into_iter().zip([-1.0, 0.0, 1.0]) {

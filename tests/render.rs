@@ -1,4 +1,4 @@
-//! Drawings are Gymnasium's and stay within their target, and a redraw writes only pixels that change.
+//! Drawings equal Gymnasium's and stay within their target, and a redraw writes only pixels that change.
 
 use acrobot::arithmetic::Arithmetic;
 use acrobot::physics::Pendulum;
@@ -74,7 +74,7 @@ fn joint(frame: &[u8], (column, row): (f64, f64)) -> (f64, f64, usize) {
 const LEAST_SHARE: f64 = 0.998;
 
 #[test]
-fn frames_are_gymnasiums() {
+fn frames_equal_gymnasiums() {
     let frames = recorded_frames();
     assert_eq!(frames.len(), 64);
     let (mut worst, mut sum, mut farthest) = (1.0_f64, 0.0, 0.0_f64);
@@ -138,7 +138,7 @@ fn ascii(figure: Figure) -> String {
 }
 
 #[test]
-fn the_monochrome_drawing_is_its_snapshot() {
+fn the_monochrome_drawing_equals_its_snapshot() {
     let drawing = ascii(figure(0.6, -1.5).with_torque(1.0))
         + "\n"
         + &ascii(figure(2.5, 0.4).with_torque(-1.0));
@@ -147,7 +147,7 @@ fn the_monochrome_drawing_is_its_snapshot() {
 
 /// Promise 2 for pictures: the firmware `oled` draws the same with the driver of a display.
 #[test]
-fn the_oled_episode_is_its_snapshot() {
+fn the_oled_episode_equals_its_digest() {
     let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
     let (mut digest, mut frames) = (Digest::default(), 0);
     let drawn = oled::play(&mut canvas, oled::start(), oled::policy, |canvas| {
@@ -177,7 +177,7 @@ fn a_redraw_writes_only_the_pixels_that_changed() {
     shown.draw(&mut canvas, &THEME).unwrap();
     for i in 0..50 {
         let angle = f64::from(i) * 0.3;
-        // Every tenth length is another, which also moves the line.
+        // Every tenth figure has another length, which also moves the target height.
         let length = 1.0 + f64::from(i / 10) * 0.1;
         let next = figure_of([angle / 2.0, angle, length, 1.0]).with_torque((i % 3 - 1) as f32);
         let before = canvas.pixels.clone();
@@ -241,8 +241,8 @@ fn the_arrow_shows_the_torques_direction_if_there_is_room() {
 
 /// A link too short to see has no direction: only the other link and the joints are drawn.
 #[test]
-fn a_link_of_hardly_any_length_is_not_drawn() {
-    // Around the origin, where floats are dense enough for such a link to end in another place than it starts.
+fn a_link_of_almost_no_length_is_not_drawn() {
+    // Around the origin floats are dense enough to distinguish the two ends of such a link.
     let columns = |figure: Figure| {
         let mut canvas = Canvas::new(Point::new(-64, -32), Size::new(128, 64));
         figure.draw(&mut canvas, &THEME).unwrap();
@@ -259,7 +259,7 @@ fn a_link_of_hardly_any_length_is_not_drawn() {
 
 /// `Theme::default()` is Gymnasium's in RGB, and monochrome on displays of one colour.
 #[test]
-fn default_themes_are_those_of_their_colours() {
+fn default_themes_fit_their_colours() {
     assert_eq!(Theme::<Rgb888>::default(), Theme::GYMNASIUM);
     assert_eq!(Theme::<BinaryColor>::default(), Theme::MONOCHROME);
     assert_eq!(Theme::<Rgb888>::default().ground, Rgb888::WHITE);

@@ -42,7 +42,7 @@ fn hexes(row: &[&str]) -> Vec<u64> {
 }
 
 #[test]
-fn initial_states_are_gymnasiums() {
+fn initial_states_equal_gymnasiums() {
     for row in rows("reset") {
         let portable = Acrobot::<Portable>::with_rng(generator(row[0])).state();
         let fast = Acrobot::<Fast>::with_rng(generator(row[0])).state();
@@ -53,7 +53,7 @@ fn initial_states_are_gymnasiums() {
 }
 
 #[test]
-fn samples_are_gymnasiums() {
+fn samples_equal_gymnasiums() {
     for row in rows("sample") {
         let mut space = generator(row[0]);
         let n: NonZeroU32 = row[1].parse().unwrap();
@@ -63,7 +63,7 @@ fn samples_are_gymnasiums() {
 }
 
 #[test]
-fn box_samples_are_gymnasiums() {
+fn box_samples_equal_gymnasiums() {
     let space = AcrobotEnv::<Fast, Observation>::default().observation_space();
     for row in rows("box") {
         let mut rng = generator(row[0]);
@@ -75,9 +75,9 @@ fn box_samples_are_gymnasiums() {
     }
 }
 
-/// The half of a draw that a 32-bit draw leaves stays through 64-bit draws.
+/// A 32-bit draw takes half of a word. The other half stays through 64-bit draws.
 #[test]
-fn mixed_draws_are_numpys() {
+fn mixed_draws_equal_numpys() {
     let [three, five] = [3, 5].map(|n| NonZeroU32::new(n).unwrap());
     for row in rows("mixed") {
         let mut rng = generator(row[0]);
@@ -93,7 +93,7 @@ fn mixed_draws_are_numpys() {
 }
 
 #[test]
-fn descendants_are_numpys() {
+fn descendants_equal_numpys() {
     for row in rows("spawn") {
         let path = if row[1] == "-" {
             vec![]
@@ -128,7 +128,7 @@ fn a_later_spawn_gives_the_next_children() {
     );
 }
 
-/// Children do not run out. A batch then takes the next ones, not unseeded generators.
+/// Children never run out: a batch takes the next ones, even after 2⁶⁴.
 #[test]
 fn there_is_always_a_next_child() {
     let mut seed = SeedSequence::new(42);
@@ -235,16 +235,16 @@ fn long_texts_are_seeds_up_to_a_limit() {
     }
 }
 
-/// The sum that NumPy takes can round to the upper bound.
+/// NumPy's formula can round to the upper bound.
 #[test]
 fn uniform_draws_can_round_to_the_upper_bound() {
     // np.random.default_rng(42).uniform(1e16, 1e16 + 2)
     assert_eq!(uniform(&mut Pcg64::new(42), 1e16, 1e16 + 2.0), 1e16 + 2.0);
 }
 
-/// A sequence, a generator and reset bounds that the compiler makes equal those made at run time.
+/// A seed sequence, a generator and reset bounds that the compiler makes equal those made at run time.
 #[test]
-fn seeds_and_bounds_are_made_in_a_const() {
+fn seeds_and_bounds_can_be_made_in_a_const() {
     const SEQUENCE: SeedSequence = SeedSequence::from_words(&[42, 7]);
     const STATE: [u64; 4] = SEQUENCE.generate_state();
     const BOUNDS: ResetBounds = match ResetBounds::new(-0.25, 0.5) {
@@ -308,9 +308,9 @@ fn a_constant_generator_draws_the_lowest_state_and_does_not_hang() {
     assert_eq!(integers(&mut Constant(0), NonZeroU32::new(3).unwrap()), 0);
 }
 
-/// Equal to PCG XSL-RR 128/64 as O'Neill's paper has it, over draws of every width.
+/// The generator equals PCG XSL-RR 128/64 of O'Neill's paper in draws of every width.
 #[test]
-fn the_generator_is_oneills() {
+fn the_generator_equals_oneills() {
     const MULTIPLIER: u128 = 0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645;
     for seed in 0..100 {
         let [state1, state0, stream1, stream0] =
@@ -339,7 +339,8 @@ fn the_generator_is_oneills() {
     }
 }
 
-/// Generators are equal if their next draws are, whether they have started or not, and print what tells them apart.
+/// Generators are equal if their next draws are equal, whether they have drawn before or not. They print their next
+/// draws.
 #[test]
 fn generators_compare_and_print_by_their_next_draws() {
     let new = Pcg64::new(42);

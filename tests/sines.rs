@@ -1,5 +1,5 @@
-//! Promise 2, bits defined by mathematics: `Reference`'s sines and cosines are correctly rounded. `data/sines.py` recorded what
-//! MPFR computes.
+//! Promise 2, bits defined by mathematics: `Reference`'s sines and cosines are correctly rounded. `data/sines.py`
+//! recorded MPFR's results.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -52,7 +52,7 @@ fn argument(family: &str, rng: &mut Pcg64) -> f64 {
 }
 
 #[test]
-fn twenty_one_million_are_correctly_rounded() {
+fn twenty_one_million_sines_are_correctly_rounded() {
     let mut count = 0;
     for fields in recorded() {
         let ["family", family, chunk, expected] = fields[..] else {
@@ -79,7 +79,8 @@ fn twenty_one_million_are_correctly_rounded() {
     assert_eq!(count, 21_000_000);
 }
 
-/// Results next to half way between two `f64`, arguments next to multiples of π/2 of every size, and the ends of each method.
+/// Results next to half way between two `f64`, arguments next to multiples of π/2 of every size, and the ends of each
+/// method.
 #[test]
 fn hard_cases_are_correctly_rounded() {
     let mut count = 0;
@@ -109,7 +110,7 @@ fn hard_cases_are_correctly_rounded() {
 }
 
 #[test]
-fn what_is_not_finite_has_no_sine() {
+fn the_sine_of_infinity_and_nan_is_nan() {
     for x in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
         let (sin, cos) = Reference::sin_cos(x);
         assert!(sin.is_nan() && cos.is_nan() && Reference::cos(x).is_nan());

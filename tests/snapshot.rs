@@ -1,4 +1,4 @@
-//! A snapshot resumes to the same bits, also one of an older release. One that is not valid or of another type is
+//! A snapshot resumes to the same bits, also one of an older release. An invalid snapshot, or one of another type, is
 //! rejected with the reason.
 
 use std::fmt::Debug;
@@ -179,8 +179,8 @@ fn from_hex(text: &str) -> Vec<u8> {
     pairs.map(byte).collect()
 }
 
-/// Three lines: `original` as JSON, as postcard, and the digest that it plays. Lines of the file must load as `original`
-/// and play the same.
+/// Three lines: `original` as JSON and as postcard, and the digest of its steps. The lines of the file must load as
+/// `original` and give the same digest.
 fn stored<T>(original: T, lines: &mut std::str::Lines<'_>, play: fn(T) -> u64) -> String
 where
     T: Serialize + DeserializeOwned + PartialEq + Debug,
@@ -204,7 +204,7 @@ where
     format!("{json}\n{hex}\n{}\n", play(original))
 }
 
-/// Another version has another file.
+/// Each version has its own file.
 #[test]
 fn snapshots_of_version_1_stay_readable() {
     let file = include_str!("data/snapshots_1.txt");
@@ -291,7 +291,7 @@ fn bytes_of_another_type_are_rejected() {
         acrobot::<Fast>(),
         postcard::to_stdvec(&member()).unwrap(),
         postcard::to_stdvec(&wide).unwrap(),
-        // The same scalar as of `Fast`, and other bits.
+        // The same scalar as `Fast`, but other bits.
         acrobot::<Micro>(),
         postcard::to_stdvec(&other::<Micro>()).unwrap(),
         newer,

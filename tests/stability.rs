@@ -43,9 +43,9 @@ fn reference_is_stable() {
     );
 }
 
-/// `Portable` has the sines of the crate `libm`, in whatever version a build has.
+/// `Portable` calls the sines of the crate `libm`, in the version of the build.
 #[test]
-fn the_sines_of_libm_are_those_of_portables_digests() {
+fn libm_has_the_sines_of_portables_digests() {
     let mut rng = Pcg64::new(0);
     let mut digest = Digest::default();
     for i in 0..1_000_000 {
@@ -59,7 +59,7 @@ fn the_sines_of_libm_are_those_of_portables_digests() {
     assert_eq!(
         format!("{:016x}", digest.0),
         "30c8c9548cb4f32a",
-        "this version of the crate libm rounds sines otherwise than 0.2.16: Portable's bits follow it, see docs/determinism.md"
+        "this version of libm rounds sines differently from 0.2.16, so Portable's bits differ: see docs/determinism.md"
     );
 }
 
@@ -78,7 +78,7 @@ fn micro_is_stable() {
     assert_eq!(format!("{:016x}", digest::<Micro>()), "2b5713d875b4e5db");
 }
 
-/// Other targets play the same episodes.
+/// The program `bits` compares the same episodes on other targets.
 fn check_episodes<A: Arithmetic>(expected: [u64; 16]) {
     // Miri takes half a minute for each.
     let expected = &expected[..if cfg!(miri) { 1 } else { 16 }];
@@ -109,7 +109,7 @@ fn the_shared_batch_is_stable_in_every_width() {
     assert!(widths == [episodes::BATCH; 3], "{widths:#018x?}");
 }
 
-/// From the seed through 100 episodes to the weights. Any change in the learner or the task changes them.
+/// The weights after 100 episodes. Any change in the learner or the task changes them.
 #[test]
 fn the_shared_training_is_stable() {
     let found = training::weights();

@@ -36,7 +36,7 @@ fn record<const N: usize>(steps: usize) -> (Trajectory<f32, N>, Vec<Transition<f
 
 /// `step` and `step_torque` record and return the step of an acrobot, with or without a time limit.
 #[test]
-fn acrobots_step_as_without_a_trajectory() {
+fn acrobots_step_the_same_with_a_trajectory() {
     let mut acrobot = Acrobot::<Fast>::new(4);
     let mut limited = TimeLimit::new(acrobot.clone(), NonZeroU32::new(3).unwrap());
     let (mut twin, mut limited_twin) = (acrobot.clone(), limited.clone());
@@ -60,7 +60,7 @@ fn acrobots_step_as_without_a_trajectory() {
     let torques = [-1.0, -2.5, 0.0, 0.5, 1.0, 3.0];
     assert!(bare.iter().map(|row| row.torque).eq(torques));
     assert!(bare.iter().all(|row| !row.truncated));
-    // The limit alone tells the two trajectories apart.
+    // The two trajectories differ only in the time limit.
     let truncated = bare.iter().zip(1..).map(|(row, number)| Transition {
         truncated: number >= 3,
         ..*row
@@ -82,7 +82,7 @@ fn rejected_torques_are_not_recorded() {
 
 /// `write_header` and `write_row` write the text of `write_csv`, into a buffer that is exactly long enough.
 #[test]
-fn rows_one_by_one_are_the_csv() {
+fn single_rows_equal_the_csv() {
     let (trajectory, _) = record::<10>(25);
     let mut csv = String::new();
     trajectory.write_csv(&mut csv).unwrap();

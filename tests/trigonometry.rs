@@ -1,5 +1,5 @@
-//! Promises 1 and 3: the error of every sine and cosine, over every argument. `cargo test --release --test trigonometry`
-//! tries every `f32` for `Fast`; without `--release` it is one argument in 257.
+//! Promises 1 and 3: the error of every sine and cosine, over every argument. `cargo test --release --test
+//! trigonometry` tries every `f32` for `Fast`, and without `--release` one argument in 257.
 
 use std::f32::consts::PI;
 
@@ -50,7 +50,7 @@ fn largest_errors<A: Arithmetic<Scalar = f32>>(start: f32, end: f32, stride: usi
 }
 
 #[test]
-fn fast_is_within_its_budget() {
+fn fast_is_within_its_error() {
     let [sin, cos] = largest_errors::<Fast>(0.0, 64.0, EVERY);
     println!("sin {sin:e}, cos {cos:e}");
     assert!(sin.max(cos) <= 1.17e-7);
@@ -65,7 +65,7 @@ fn micro_is_within_its_error() {
     }
 }
 
-/// The README's reason for a table: the sine of `micromath`, which `Micro` could call, has an error of 1.1e-3.
+/// `Micro` has a table because the sine of `micromath`, which it could call, has an error of 1.1e-3, as the README says.
 #[test]
 fn micro_is_a_thousand_times_as_close_as_micromath() {
     let worst = (-3141..=3141)
@@ -78,7 +78,7 @@ fn micro_is_a_thousand_times_as_close_as_micromath() {
 
 /// Beyond 64 rad the rounding of the angle to `f32` dominates the error.
 #[test]
-fn the_error_far_outside_is_that_of_the_angle() {
+fn far_angles_have_the_error_of_their_rounding() {
     fn check<A: Arithmetic<Scalar = f32>>(of_angle: f64) {
         for end in (7..=19).map(|power| (1_u32 << power) as f32) {
             let [sin, cos] = largest_errors::<A>(end / 2.0, end, 257 * EVERY);
@@ -92,7 +92,7 @@ fn the_error_far_outside_is_that_of_the_angle() {
 
 /// `sin_cos_near`, which a step calls, is bit-identical to `sin_cos` near the origin.
 #[test]
-fn near_the_origin_nothing_differs() {
+fn sin_cos_near_equals_sin_cos_near_the_origin() {
     fn check<A: Arithmetic>() {
         for x in (-1000..1000).map(|i| A::Scalar::from_f64(f64::from(i).powi(3) / 1908.0)) {
             let [(sin, cos), (near_sin, near_cos)] = [A::sin_cos(x), A::sin_cos_near(x)];
@@ -106,10 +106,10 @@ fn near_the_origin_nothing_differs() {
     check::<Host>();
 }
 
-/// A batch's sines have the bits of one acrobot's, at any distance. Where they overflow, both have a number that is not
-/// finite, which ends the step alike.
+/// A batch's sines are bit-identical to those of one acrobot, at any angle. Where they overflow, neither is finite, so
+/// both steps keep the angles.
 #[test]
-fn lanes_have_the_bits_of_one() {
+fn lanes_are_bit_identical_to_one_number() {
     fn check<A: Arithmetic<Scalar = f32>>() {
         for first in (0..f32::INFINITY.to_bits()).step_by(16 * EVERY.max(17)) {
             for sign in [1.0, -1.0] {
@@ -131,7 +131,7 @@ fn lanes_have_the_bits_of_one() {
     check::<Micro>();
 }
 
-/// So any finite state has an observation.
+/// Therefore any finite state has an observation.
 #[test]
 fn every_finite_angle_has_a_sine_and_a_cosine() {
     fn holds<A: Arithmetic<Scalar = f32>>() {
@@ -150,7 +150,7 @@ fn every_finite_angle_has_a_sine_and_a_cosine() {
 
 /// `Portable`'s error against Gymnasium follows from this property of `libm`.
 #[test]
-fn portable_is_within_one_ulp_of_the_host() {
+fn portable_is_within_one_ulp_of_host() {
     for i in 0..1_000_000 {
         let x = f64::from(i - 500_000) * 1e-4;
         let (sin, cos) = Portable::sin_cos(x);

@@ -12,7 +12,7 @@ const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 /// Every rule of every [`Error`]: the message names the value, its unit and what it must be.
 #[test]
-fn errors_say_what_was_wrong_and_what_is_valid() {
+fn errors_name_the_value_and_the_rule() {
     fn params(change: fn(&mut Params)) -> Result<(), Error> {
         let mut params = Params::DEFAULT;
         change(&mut params);
@@ -166,7 +166,7 @@ fn a_link_needs_inertia_about_its_joint() {
             center_of_mass2: 0.0,
             ..Params::DEFAULT
         },
-        // Their squares vanish in f64.
+        // Their squares underflow to 0 in f64.
         Params {
             inertia2: 0.0,
             center_of_mass2: 1e-170,

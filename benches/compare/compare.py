@@ -1,11 +1,11 @@
-"""Measures this crate beside other Acrobots of PyPI and crates.io, on one core of a Linux machine.
+"""Measures this crate and other Acrobots from PyPI and crates.io, on one core of a Linux machine.
 
     python3 compare.py             prints the table
     python3 compare.py --update    also writes it into docs/benchmarks.md
     python3 compare.py --quick     one short round, to try it
 
-Each peer runs once a round in its own process, from `peers.py` or `src/main.rs`, and reports steps
-and processor time. Medians count. Python packages are installed into `.venv`, 2 GB.
+Each implementation runs once a round in its own process, from `peers.py` or `src/main.rs`, and reports
+steps and processor time. Results are medians. Python packages are installed into `.venv`, 2 GB.
 """
 
 import argparse
@@ -19,7 +19,7 @@ import venv
 PAGE = pathlib.Path("../../docs/benchmarks.md")
 HEAD = "| one core | version | M steps/s | to Gymnasium |"
 BASE = "make"
-# The package of each Python peer, and the names of all peers in the table.
+# The package of each Python implementation, and the names of all implementations in the table.
 PACKAGES = {
     "make": "gymnasium",
     "unwrapped": "gymnasium",
@@ -65,7 +65,7 @@ def run(*command):
 
 
 def measure(commands, rounds, seconds):
-    """The version and the median rate of each peer, and how many times longer than `Fast` rlevo takes."""
+    """The version and the median rate of each implementation, and how many times as long as `Fast` rlevo takes."""
     versions, rates, ratios = {}, {name: [] for name in commands}, []
     for _ in range(rounds):
         for name, command in commands.items():

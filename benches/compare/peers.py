@@ -9,8 +9,9 @@ import importlib.metadata
 import sys
 import time
 
-# Steps of an episode. Vector environments play as many between two looks at the clock, because their episodes are in
-# phase and sines can take longer for larger angles: gymnax begins an episode at 3.8 M steps/s and ends it at 2.3.
+# Steps of an episode. Vector environments play a whole episode between two readings of the clock, because their
+# episodes are in phase and sines of larger angles can take longer: gymnax begins an episode at 3.8 M steps/s and ends
+# it at 2.3.
 LIMIT = 500
 
 
@@ -107,7 +108,7 @@ def together(envs, count):
     return run
 
 
-# For each peer a function that returns a function that plays some steps, and the packages to name.
+# For each implementation: a function that makes it and returns a function that plays some steps, and its packages.
 PEERS = {
     "make": (make, ["gymnasium"]),
     "unwrapped": (unwrapped, ["gymnasium"]),

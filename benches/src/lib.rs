@@ -1,4 +1,5 @@
-//! What the benchmarks and the example `throughput` share: bare loops as yardsticks, and a random policy that plays batches.
+//! Code that the benchmarks and the example `throughput` share: bare loops as yardsticks, and a random policy for
+//! batches.
 
 mod loops;
 mod play;

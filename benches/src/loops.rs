@@ -1,5 +1,4 @@
-//! The barest loops that step an acrobot. They share no formula with the crate, so they
-//! do not change with it.
+//! The shortest loops that step an acrobot. They share no formula with the crate, so they do not change with it.
 
 use std::array::from_fn;
 use std::hint::black_box;
@@ -10,7 +9,7 @@ use acrobot::arithmetic::Real;
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Lanes;
 
-/// Elsewhere there is no AVX2.
+/// Other architectures have no AVX2.
 #[cfg(not(target_arch = "x86_64"))]
 #[derive(Debug)]
 pub struct Lanes;
@@ -27,8 +26,8 @@ impl Lanes {
 }
 
 /// Gymnasium's order in f64, with `x * x` for its squares. It plays whole episodes of the same policy as the crate,
-/// because the C library's sines branch on the quadrant: with a periodic torque the branches are predicted, and the
-/// loop takes a third less time.
+/// because the C library's sines branch on the quadrant: with a periodic torque the CPU predicts the branches,
+/// and the loop takes a third less time.
 #[expect(
     clippy::disallowed_methods,
     reason = "the yardstick uses the platform's sines"

@@ -1,4 +1,4 @@
-//! Sutton's experiment as published, and this crate's learner beside it in the same simulator. Writes median and
+//! Sutton's experiment as published, and this crate's learner in the same simulator. Writes median and
 //! quartiles of the steps to the goal in each episode over many runs, as a table, as CSV and as a picture.
 //!
 //! ```text
@@ -7,10 +7,10 @@
 //!
 //! R. S. Sutton, *Generalization in Reinforcement Learning: Successful Examples Using Sparse Coarse
 //! Coding*, NIPS 8 (1996); R. S. Sutton and A. G. Barto, *Reinforcement Learning: An Introduction*, 1st
-//! edition (1998), 11.3. Both give only one number, in the text: about 75 steps in the end. The table therefore has
-//! the numbers of another replication. Unpublished details follow Sutton's Lisp: the goal ends a decision at any of its
-//! time steps. One detail differs: traces below 0.05 are cut, after 29 steps. With 64 steps his learner's last 300
-//! episodes take 84.5 and 81.5 steps with seeds 0 and 1, and with 29 they take 84.5 and 82.5.
+//! edition (1998), 11.3. Both give only one number, in the text: about 75 steps in the end. The table therefore
+//! includes the numbers of another replication. Unpublished details follow Sutton's Lisp: the goal ends a decision at
+//! any of its time steps. One detail differs: traces below 0.05 are cut, after 29 steps. With 64 steps his learner's
+//! last 300 episodes take 84.5 and 81.5 steps with seeds 0 and 1, and with 29 they take 84.5 and 82.5.
 //!
 //! Every episode begins at rest and has no step limit. Only the learners are random: run `i` has the seed's `i`-th
 //! child, for offsets in Sutton's learner and for exploration in this crate's. The CSV is the same for every number of
@@ -37,24 +37,24 @@ use rayon::prelude::*;
 use examples_common::svg::{Area, svg};
 use learners::{ours, sutton};
 
-/// Repeats Sutton's experiment of 1996 and runs this crate's learner beside it.
+/// Repeats Sutton's experiment of 1996, also with this crate's learner.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Runs of each learner, each untrained at first.
+    /// Runs of each learner. Each begins untrained.
     #[arg(long, default_value_t = 40, value_parser = value_parser!(u16).range(1..=10_000))]
     runs: u16,
-    /// Episodes of a run.
+    /// Episodes per run.
     #[arg(long, default_value_t = 500, value_parser = value_parser!(u16).range(2..=10_000))]
     episodes: u16,
     /// Seed whose children seed the runs: a decimal integer of any size.
     #[arg(long, default_value = "0")]
     seed: SeedSequence,
-    /// The file for the numbers.
+    /// CSV file to write.
     #[arg(long, value_name = "FILE", default_value = "sutton1996.csv")]
     #[arg(value_parser = files::named("csv"))]
     csv: PathBuf,
-    /// The file for the learning curves.
+    /// SVG file to write: the learning curves.
     #[arg(long, value_name = "FILE", default_value = "sutton1996.svg")]
     #[arg(value_parser = files::named("svg"))]
     picture: PathBuf,
@@ -122,9 +122,9 @@ fn quantile(sorted: &[u32], share: f64) -> f64 {
     below + (above - below) * place.fract()
 }
 
-const NAMES: [&str; 2] = ["Sutton's learner", "this crate's"];
+const NAMES: [&str; 2] = ["Sutton's learner", "this crate's learner"];
 
-/// The episodes whose median is printed, and the medians of the other replication in 20 runs.
+/// The episodes whose median is printed, and the medians of Sutton's learner in another replication of 20 runs.
 const MEDIANS: [(usize, f64); 7] = [
     (1, 602.0),
     (5, 338.0),
@@ -135,7 +135,7 @@ const MEDIANS: [(usize, f64); 7] = [
     (500, 81.5),
 ];
 
-/// The blocks of episodes whose mean is printed, and the means of the other replication.
+/// The blocks of episodes whose mean is printed, and the means in the same replication.
 const BLOCKS: [([usize; 2], f64); 5] = [
     ([1, 10], 372.0),
     ([11, 50], 123.0),
@@ -144,7 +144,7 @@ const BLOCKS: [([usize; 2], f64); 5] = [
     ([201, 500], 82.2),
 ];
 
-const REPLICATION: &str = "his, another replication";
+const REPLICATION: &str = "another replication";
 
 /// The printed table.
 fn table(experiments: &[Experiment; 2], curves: &[Vec<[f64; 3]>; 2]) -> String {

@@ -2,7 +2,7 @@
 
 use acrobot::REWARD_THRESHOLD;
 
-/// The episodes of the running mean that Gymnasium's reward threshold applies to.
+/// Gymnasium's reward threshold applies to the mean of this many episodes.
 const LATEST: usize = 100;
 
 /// The mean of the latest 100 returns, or of all if there are fewer. Returns are integers, so the sum is exact.
@@ -19,7 +19,7 @@ pub fn solved_at(returns: &[f32]) -> Option<usize> {
     (LATEST..=returns.len()).find(|&n| running_mean(&returns[..n]) >= REWARD_THRESHOLD)
 }
 
-/// The rows of the chart, each a factor of √2 in steps: on a linear axis −500 to −100 would hide everything above.
+/// The rows of the chart, each a factor of √2 in steps: on a linear axis, −500 to −100 would hide the best returns.
 const ROWS: usize = 6;
 
 /// Bars of mean returns: better is higher. Each bar covers a sixth of all episodes before it, because most is learnt

@@ -1,4 +1,4 @@
-//! Sutton's Sarsa(λ) learns to swing up within seconds. Its greedy policy is then evaluated beside two policies that
+//! Sutton's Sarsa(λ) learns to swing up within seconds. Its greedy policy is then compared with two policies that
 //! do not learn.
 //!
 //! ```text
@@ -34,29 +34,29 @@ mod pictures;
 use examples_common::svg::svg;
 use sarsa::task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 
-/// Learns to swing up, and evaluates the policy.
+/// Learns to swing up, and compares the learnt policy with two simple ones.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// What the learner is tuned for: few episodes, or the best policy after many.
+    /// Aim of the tuning: few episodes, or the best policy after many.
     #[arg(long, value_enum, default_value_t = Goal::Fast)]
     preset: Goal,
-    /// Memory of the weights.
+    /// Memory for the weights, in KiB.
     #[arg(long, value_enum, default_value_t = Memory::K64)]
     memory: Memory,
-    /// Episodes to learn in. Step size and exploration fall until the last.
+    /// Episodes of learning. Step size and exploration fall until the last one.
     #[arg(long, default_value_t = 2000)]
     episodes: u32,
-    /// Seed of everything: a decimal integer of any size.
+    /// Seed of learning and evaluation: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// The file to save the weights in.
+    /// File to save the weights in.
     #[arg(long, value_name = "FILE", value_parser = PathBufValueParser::new().try_map(file))]
     save: Option<PathBuf>,
-    /// The file to load the weights from, instead of zeros.
+    /// File to load the weights from. Without it all weights are 0.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
-    /// The folder for the pictures.
+    /// Folder for the pictures.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     #[arg(value_parser = PathBufValueParser::new().try_map(folder))]
     pictures: PathBuf,
@@ -193,12 +193,16 @@ fn draw<const S: usize, const T: usize>(
     };
     let svg = svg((780, 720), |area| pictures::draw_values(area, value))?;
     files::write(&values, svg)?;
-    writeln!(lines, "{}: the values at rest", values.display())?;
+    writeln!(
+        lines,
+        "{}: the learnt values of states at rest",
+        values.display()
+    )?;
 
     let episode = path("swing_up.gif");
     let mut env = evaluation(&options.seed);
     for _ in 1..EVALUATION {
-        // Its generator draws only initial states, so this leads to the last of them.
+        // The generator draws only initial states, so these resets lead to the last episode.
         env.reset();
     }
     let figures = pictures::figures(&mut env, |state| greedy(learner, state));
@@ -227,7 +231,7 @@ fn train<const S: usize, const T: usize>(
     let style = ProgressStyle::with_template(template).expect("a valid template");
     bar.set_style(style);
 
-    // A hundred charts in all, because a chart takes as long as some steps.
+    // A hundred charts in all, because drawing one takes as long as several steps.
     let period = (options.episodes as usize).div_ceil(100).max(1);
     let mut returns = Vec::new();
     for _ in 0..options.episodes {

@@ -107,7 +107,7 @@ pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> Result<()
     let body = area
         .titled("Learnt values of the acrobot at rest", TITLE)?
         .titled(
-            "the higher action value; grey: the tip is above the goal",
+            "the higher action value; grey: the tip is above the target height",
             NAME,
         )?;
     let (map, bar) = body.split_horizontally(660);
@@ -143,7 +143,7 @@ pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> Result<()
     Ok(())
 }
 
-/// The figures of an episode from the next initial state: that state and every step.
+/// The figures of an episode from the next initial state, and of each state after a step.
 pub fn figures(env: &mut Env, policy: impl Fn(&State<f32>) -> Action) -> Vec<Figure> {
     env.reset();
     let mut figures = vec![Figure::new(env.inner())];

@@ -1,4 +1,4 @@
-//! Writes a snapshot of every type and format into a folder, as a corpus that follows the formats.
+//! Writes a snapshot of every type in every format into a folder, as a corpus.
 
 use std::fs;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! What the targets share: numbers from bytes, and what holds after every step.
+//! What the targets share: numbers from bytes, and checks of every step.
 
 pub mod snapshots;
 
@@ -7,7 +7,7 @@ use acrobot::physics::Dynamics;
 use acrobot::{Observation, Params, State, Step};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
-/// Numbers at which ranges are likely to be wrong.
+/// Numbers at which range checks are likely to be wrong.
 const EDGES: [f64; 12] = [
     0.0,
     -0.0,
@@ -23,8 +23,8 @@ const EDGES: [f64; 12] = [
     f64::NAN,
 ];
 
-/// A number near the `usual` one, at an edge, or of any bits. With only the last kind, few sequences would reach a
-/// step.
+/// A number near the `usual` one, at an edge, or of any bits. With numbers of any bits only, few sequences would reach
+/// a step.
 pub fn number(u: &mut Unstructured<'_>, usual: f64) -> Result<f64> {
     Ok(match u.int_in_range(0..=7)? {
         0 => f64::from_bits(u.arbitrary()?),
@@ -73,7 +73,7 @@ pub fn bits<S: Real>(state: State<S>) -> [u64; 4] {
     <[S; 4]>::from(state).map(|x| x.to_f64().to_bits())
 }
 
-/// What holds after a step from any state with any input.
+/// Checks a step from any state with any input.
 pub fn assert_stepped<S: Real>(step: Step, state: State<S>, params: &Params<S>) {
     assert_settled(state, params);
     assert_seen(step.observation);

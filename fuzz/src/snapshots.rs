@@ -1,4 +1,4 @@
-//! Everything that can be saved, and what holds after any of it is loaded.
+//! All types that can be saved, and checks of what was loaded.
 
 use std::num::NonZeroU32;
 
@@ -14,10 +14,10 @@ use crate::{assert_settled, assert_stepped};
 
 /// A type that can be saved.
 trait Snapshot: Serialize + DeserializeOwned {
-    /// One that a user might save.
+    /// A value that a user might save.
     fn sample() -> Self;
 
-    /// Uses what was loaded. Returns whether it is valid, which plain data need not be.
+    /// Uses the loaded value. Returns whether it is valid. Plain data can be invalid.
     fn check(self) -> bool;
 }
 
@@ -157,7 +157,7 @@ where
             Autoreset::Disabled,
         ] {
             let batch = Batch::<A, _, _, 1>::new(0, [Block::EMPTY], [Pcg64::UNSEEDED]);
-            let mut batch = batch.expect("a block for one");
+            let mut batch = batch.expect("a block for one acrobot");
             batch.set_autoreset(autoreset);
             batch.set_limit(NonZeroU32::MAX);
             assert!(batch.set_member(0, self.clone()).is_ok());
@@ -169,7 +169,7 @@ where
                 final_observations: Observations::None,
             };
             assert!(batch.step(&[2_u8], buffers).is_ok());
-            assert_settled(batch.state(0).expect("it has one"), batch.params());
+            assert_settled(batch.state(0).expect("it has one acrobot"), batch.params());
         }
         true
     }

@@ -1,10 +1,10 @@
-"""Compares NumPy's sines and cosines with those of the C library, on a million arguments. `Host` calls the C library, so it
-has Gymnasium's bits as long as they are equal. Fails when NumPy has left the C library.
+"""Compares NumPy's sines and cosines with those of the C library, on a million arguments. `Host` calls the C library, so
+it has Gymnasium's bits as long as they are equal. Fails if any result differs.
 
     pip install -r tests/data/requirements.txt
     python tests/data/canary.py
 
-On a CPU with AVX-512 NumPy takes sines of its own already, so it is told not to.
+On a CPU with AVX-512 NumPy uses its own sines, so this script disables them.
 """
 
 import os
@@ -26,4 +26,4 @@ for name in ["sin", "cos"]:
     differ = np.count_nonzero(single.view("<u8") != ours.view("<u8"))
     print(f"{differ} of {len(x)} results of np.{name} differ from the C library's")
     if differ:
-        sys.exit(f"NumPy {np.__version__} has left the C library's {name}: `Host` no longer has Gymnasium's bits")
+        sys.exit(f"NumPy {np.__version__} no longer has the C library's {name}, so `Host` no longer has Gymnasium's bits")

@@ -1,5 +1,5 @@
 """Records 64 frames of Gymnasium's rgb_array rendering: writes frames.png, eight rows of eight, and frames.txt, the
-states, beside itself.
+states, to its folder.
 
     pip install -r tests/data/requirements.txt
     python tests/data/frames.py

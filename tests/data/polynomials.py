@@ -1,11 +1,11 @@
 """Prints the constants of src/arithmetic/fast.rs and src/arithmetic/micro.rs, as bits of f32, and the error of
-each polynomial; fails where there are others.
+each polynomial. Fails if the source has other constants.
 
     pip install -r tests/data/requirements.txt
     python tests/data/polynomials.py
 
 Minimax by linear programming. Each coefficient is rounded to f32 in turn, the one of the lowest power first, and
-the rest are fitted again to make up for it.
+the remaining ones are fitted again to compensate.
 """
 
 import sys
@@ -21,7 +21,7 @@ def fit(r, target, powers):
     coefficients = []
     for i in range(len(powers)):
         basis = np.stack([r**power for power in powers[i:]], axis=1)
-        # The largest error is the last unknown, counted in 1e-7 so that all are of one size.
+        # The largest error is the last unknown, in units of 1e-7 so that all unknowns have a similar size.
         bound = np.full((len(r), 1), 1e-7)
         constraints = np.block([[basis, -bound], [-basis, -bound]]) * 1e6
         limits = np.concatenate([target, -target]) * 1e6

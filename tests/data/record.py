@@ -1,10 +1,10 @@
-"""Records what Gymnasium's Acrobot does: writes episodes.txt, episodes.bin, steps.bin, free.txt and seeds.txt beside itself.
+"""Records Gymnasium's Acrobot: writes episodes.txt, episodes.bin, steps.bin, free.txt and seeds.txt to its folder.
 
     pip install -r tests/data/requirements.txt
     python tests/data/record.py
 
-The files hold the bits of one C library's sin, cos and pow: those were recorded with glibc 2.36 on
-x86-64 with FMA. On a CPU with AVX-512 NumPy would take other sines of its own, so it is told not to.
+The files hold the bits of one C library's sin, cos and pow: they were recorded with glibc 2.36 on
+x86-64 with FMA. On a CPU with AVX-512 NumPy uses its own sines, so this script disables them.
 """
 
 import os
@@ -41,7 +41,7 @@ def bits(numbers):
 
 
 def library():
-    """A digest of the functions that the episodes depend on, to know this C library again."""
+    """A digest of the functions that the episodes depend on, which identifies the C library."""
     x = np.random.default_rng(0).uniform(-30.0, 30.0, 100_000)
     return digest(bits([f(v) for v in x for f in (np.sin, np.cos, lambda v: v**2)]))
 
@@ -52,12 +52,12 @@ def pump(state, rng):
 
 
 def episode(seed, low, high, dynamics, noise, dt, policy):
-    """The start, and 500 steps whatever they reach."""
+    """The initial state and 500 steps, also past the goal."""
     env = gymnasium.make("Acrobot-v1").unwrapped
     env.book_or_nips, env.torque_noise_max, env.dt = dynamics, noise, dt
     env.action_space.seed(seed)
     rng = np.random.default_rng(seed)
-    start_observation, _ = env.reset(seed=seed, options={"low": low, "high": high})
+    initial_observation, _ = env.reset(seed=seed, options={"low": low, "high": high})
     actions, states, rewards, ends, observations = [], [env.state.astype("<f8")], [], [], []
     for _ in range(STEPS):
         action = env.action_space.sample() if policy == "random" else pump(env.state, rng)
@@ -75,7 +75,7 @@ def episode(seed, low, high, dynamics, noise, dt, policy):
             np.asarray(states, dtype="<f8").tobytes(),
             np.asarray(rewards, dtype="i1").tobytes(),
             np.asarray(ends, dtype="u1").tobytes(),
-            start_observation.astype("<f4").tobytes(),
+            initial_observation.astype("<f4").tobytes(),
             np.asarray(digest(seen), dtype="<u8").tobytes(),
         ]
     )
@@ -87,13 +87,13 @@ def write_episodes():
     # Each kind with a seed of up to 64 bits and one beyond.
     rows = [(7 + 1000003 * i, *kind, "random") for i, kind in enumerate(kinds)]
     rows += [(2**64 + 3**i * 5**60, *kind, "pump") for i, kind in enumerate(kinds)]
-    # And eight that start beyond all bounds and go on near them.
+    # And eight whose initial states are far outside the bounds.
     wild = product(["book", "nips"], [(-30.0, 30.0)], [0.0, 0.3], [0.2, 0.05])
     rows += [(2**32 + i, *kind, "random") for i, kind in enumerate(wild)]
     lines = [
         f"# {VERSIONS}",
         "# Each row stands for a record in episodes.bin: 500 actions (u8), 501 states of 4 (f64), 500 rewards",
-        "# (i8), 500 terminated (u8), the start's observation (6 f32), a digest of the steps' observations (u64).",
+        "# (i8), 500 terminated (u8), the initial observation (6 f32), a digest of the steps' observations (u64).",
         f"library {library():016x}",
         "# seed low high dynamics noise dt",
     ]
@@ -105,7 +105,7 @@ def write_episodes():
 
 
 def write_free():
-    """Sixty episodes under random actions that nothing corrects: digests of all states up to some steps."""
+    """Sixty episodes under random actions, without a reset: digests of all states up to some steps."""
     lines = [f"# {VERSIONS}", "# SEED, and digests of the states' bits after each of 65, 100 and 200 random steps, with no reset"]
     env = gymnasium.make("Acrobot-v1").unwrapped
     for seed in range(60):
@@ -140,7 +140,7 @@ def write_steps():
         (env.MAX_VEL_1, env.MAX_VEL_2) = params[8:10]
         env.AVAIL_TORQUE = params[10:]
         env.book_or_nips = ["book", "nips"][i % 2]
-        # Four speeds alike, up to the bounds.
+        # The velocities are within 1/4, 1/2, 3/4 and all of their bounds, equally often.
         bounds = np.array([np.pi, np.pi, *(np.array([4 * np.pi, 9 * np.pi]) * (i // 2 % 4 + 1) / 4)])
         if i >= 2400:
             bounds[:2] = 390.0
@@ -159,7 +159,7 @@ def hexes(words, digits):
 def write_seeds():
     seeds = [0, 1, 2, 3, 7, 42, 123, 2**31, 2**32 - 1, 2**32, 2**32 + 1, 10**15, 2**63, 2**64 - 1, 2**64]
     seeds += [2**96 - 1, 2**96, 2**127 + 9, 2**128 - 1, 2**128, 2**160 + 5, 10**60, 2**1000 + 7]
-    lines = [f"# {VERSIONS}", "# reset SEED: the start's four numbers (bits of f32)"]
+    lines = [f"# {VERSIONS}", "# reset SEED: the initial state (bits of f32)"]
     env = gymnasium.make("Acrobot-v1").unwrapped
     for seed in seeds:
         env.reset(seed=seed)
@@ -192,7 +192,7 @@ def write_seeds():
     lines.append("# play ID SEED: 1000 random steps, a reset at each end: a digest of every step's observation (f32; for v0")
     lines.append("# the state), reward and ends, and the number of episodes")
     for version, seed in product([0, 1], range(10)):
-        # Gymnasium has no Acrobot-v0 any more; it was this.
+        # Gymnasium no longer has Acrobot-v0, which differed in its limit and its observation.
         played = gymnasium.make("Acrobot-v1", max_episode_steps=[200, 500][version])
         played.reset(seed=seed)
         played.action_space.seed(seed)

@@ -1,5 +1,6 @@
-"""Derives the constants of src/arithmetic/reference, bounds the errors of its two fast paths, and records correctly rounded
-sines and cosines by MPFR in sines.txt beside itself. Fails where the source has other constants or an error exceeds its margin.
+"""Derives the constants of src/arithmetic/reference, bounds the errors of its two fast paths, and records MPFR's correctly
+rounded sines and cosines in sines.txt in its folder. Fails if the source has other constants or an error exceeds its
+margin.
 
     pip install -r tests/data/requirements.txt
     python tests/data/sines.py          records the first digest of each family again, in seconds
@@ -66,8 +67,8 @@ PLACES = [64, 67, 71, 76, 76, 76, 68, 68]
 
 
 def fit(f):
-    """Near minimax: interpolates in Chebyshev's nodes. Each coefficient is rounded in turn, the one of the highest power first,
-    and the others are fitted again to make up for it."""
+    """Near minimax: interpolates at Chebyshev's nodes. Each coefficient is rounded in turn, the one of the highest power
+    first, and the others are fitted again to compensate."""
     fixed = [mp.mpf(0)] * 8
     for last in reversed(range(8)):
         n = last + 1
@@ -127,7 +128,7 @@ for name, f, series in [("sine", sine, SINE_SERIES), ("cosine", cosine, COSINE_S
         total = sum(terms) / mp.sin(PI / 4) + REDUCTION * 2 + between(-1, 0)
     else:
         total = -(sum(terms) + SQUARE * between(0, COSINE_SERIES[0])) + between(-1, 0)
-    print(name, *[mp.iv.nstr(term, 3) for term in terms], "in all", mp.iv.nstr(total, 3), "of", LIMIT)
+    print(name, *[mp.iv.nstr(term, 3) for term in terms], "total", mp.iv.nstr(total, 3), "limit", LIMIT)
     if not (-LIMIT < total.a and total.b < LIMIT):
         sys.exit("the error exceeds the margin")
 
@@ -161,7 +162,7 @@ if nearest < mp.mpf(2) ** -61:
 worst = 0
 for i in range(65):
     s, c = mp.sin(i * PI / 128), mp.cos(i * PI / 128)
-    # Where a is 0, b is the least of the result itself, and its errors are relative to it.
+    # For i = 0 the result is about b, so its relative error is also checked at a small b.
     for b in [B] if i else [B, B / 2**20]:
         result = s * mp.cos(b) - c * mp.sin(b) if i else mp.sin(b)
         cosine_rest, sine_rest = b**2 / 2, b**3 / 6
@@ -174,7 +175,7 @@ for i in range(65):
             2 * half_place(small + half_place(s + b)),
         ]
         worst = max(worst, sum(errors) / abs(result))
-print("float.rs: the error is at most 2 to the", mp.nstr(mp.log(worst, 2), 4), "of the result, the margin 2 to the -62")
+print("float.rs: the relative error is at most 2 to the", mp.nstr(mp.log(worst, 2), 4), "and its limit 2 to the -62")
 if worst * (1 + mp.mpf(2) ** -10) > mp.mpf(2) ** -62:
     sys.exit("the error exceeds the margin")
 
@@ -229,7 +230,7 @@ def digest(x):
 
 
 def hard(x):
-    """Whether sin x or cos x is so near to half way between two f64 that 66 bits do not tell."""
+    """Whether sin x or cos x is so near to half way between two f64 that 66 bits do not decide the rounding."""
     with gmpy2.context(gmpy2.get_context(), precision=150):
         for y in gmpy2.sin_cos(gmpy2.mpfr(x)):
             _, mantissa = gmpy2.frexp(y)
@@ -263,13 +264,13 @@ def hard_cases():
             yield float(mp.ldexp(m, exponent))
     for x in [0.0, 5e-324, 2.0**-1022, 2.0**-28, 2.0**-27, 2.0**-26, 2.0**-25, 0.5, 1.0, 64.0, 2.0**20, 1.7976931348623157e308]:
         yield from [x, -x, np.nextafter(x, 0), np.nextafter(x, 1)]
-    # Rest states, upright ones and level ones, from either side.
+    # Multiples of π/4, for links that hang, stand or are level, and of π/128, as in the table of float.rs.
     for k in range(1, 200):
         yield from [k * (np.pi / 4), -k * (np.pi / 4), k * (np.pi / 128)]
 
 
 def record():
-    # Subnormal results too.
+    # This context also rounds subnormal results correctly.
     gmpy2.set_context(gmpy2.ieee(64))
     path = HERE / "sines.txt"
     known = dict(line.rsplit(" ", 1) for line in path.read_text().splitlines() if line.startswith("family")) if path.exists() else {}

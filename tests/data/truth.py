@@ -1,15 +1,15 @@
-"""Integrates the published equations of motion by SciPy's DOP853: writes truth.txt beside itself.
+"""Integrates the published equations of motion by SciPy's DOP853: writes truth.txt to its folder.
 
     pip install -r tests/data/requirements.txt
     python tests/data/truth.py
 
 The equations are those that R. S. Sutton and A. G. Barto print (Reinforcement Learning: An Introduction, 1998, figure
 11.4), and R. S. Sutton before them (Generalization in Reinforcement Learning, NIPS 8, 1996) without one term: here
-as two linear equations for the two accelerations, which LAPACK solves, and with sines for the cosines of angles
-less pi/2. The work of all torques is integrated beside them.
+as two linear equations for the two accelerations, which LAPACK solves, and with sines instead of the cosines of angles
+minus pi/2. The work of the torques is integrated too.
 
-What is written is judged twice. The same run at a quarter of the tolerance says how far off each row may be, which
-stands in it. And the energy, from where the links are and how fast they move, has to be the work done on them.
+The script makes two checks. A run at a quarter of the tolerance gives the uncertainty of each row, which the row
+contains. The change of the energy, from the positions and velocities of the links, must equal the work of the torques.
 """
 
 import math
@@ -18,7 +18,8 @@ import platform
 from itertools import product
 from pathlib import Path
 
-# What OpenBLAS takes differs between processors, and so does what it rounds to; this asks for FMA, as glibc's sines take it.
+# OpenBLAS has other code, and so another rounding, for each processor. This chooses code with FMA, which glibc's sines
+# use.
 os.environ["OPENBLAS_CORETYPE"] = "Haswell"
 
 import numpy as np
@@ -30,7 +31,7 @@ HOLD = 0.2  # s, for which a torque is held
 GRAVITY, LENGTH, CENTER, INERTIA = 9.8, 1.0, 0.5, 1.0  # of both links, whose masses are 1 kg
 STARTS = {"rest": ([0.05, -0.03, 0.02, 0.01], [1, 10, 100]), "fast": ([1.2, -0.7, 3.0, 2.0], [1, 10])}
 TORQUES = {"constant": np.ones(500), "switching": np.random.default_rng(9).integers(-1, 2, 500).astype(float)}
-# Far above what is found, far below what a wrong sign would make of it.
+# Far above the difference that is found, far below the effect of a wrong sign.
 BALANCE = 1e-8  # J
 
 
@@ -44,14 +45,14 @@ def derivative(_, y, torque, dynamics):
     phi1 += (CENTER + LENGTH) * GRAVITY * math.sin(theta1) + phi2
     centrifugal = arm * dtheta1**2 * sin2
     if dynamics == "nips":
-        # Where the term is left out, the pendulum moves as under a torque that cancels it.
+        # Without the term the pendulum moves as under a torque that cancels it.
         torque = torque + centrifugal
     mass = [[d1, d2], [d2, CENTER**2 + INERTIA]]
     return [dtheta1, dtheta2, *np.linalg.solve(mass, [-phi1, torque - centrifugal - phi2]), torque * dtheta2]
 
 
 def energy(theta1, theta2, dtheta1, dtheta2):
-    """Of two rods, from the positions and velocities of their centres of mass."""
+    """The energy of two rods, from the positions and velocities of their centres of mass."""
     across = np.array([np.cos(theta1), np.sin(theta1)]) * dtheta1
     turning = dtheta1 + dtheta2
     second = LENGTH * across + CENTER * np.array([np.cos(theta1 + theta2), np.sin(theta1 + theta2)]) * turning
@@ -99,7 +100,7 @@ def main():
         f"# DOP853 at rtol = atol = {TOLERANCE}; energy and work differ by {worst:.0e} J or less.",
         "# torques NAME: N m, for 0.2 s each",
         "# start DYNAMICS START TORQUES, and the state (bits of f64)",
-        f"# after SECONDS, the state, and the largest difference until then from the same at {FINER}",
+        f"# after SECONDS, the state, and the largest difference until then from the run at {FINER}",
     ]
     (Path(__file__).parent / "truth.txt").write_text("\n".join(head + lines) + "\n")
 

@@ -23,7 +23,7 @@ fn full() -> Stdio {
     full.unwrap().into()
 }
 
-/// Examples write files before they print, so files do not depend on the reader.
+/// Examples write their files before they print, so a failed print leaves the files complete.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_failed_print_is_an_error() {

@@ -1,4 +1,4 @@
-//! Examples write a file whole or not at all, and read no more than can be valid.
+//! Examples write a whole file or nothing, and read at most the longest valid input.
 
 use std::ffi::OsStr;
 use std::fs::{self, File, Permissions};
@@ -20,7 +20,7 @@ fn limited(limits: &str, command: &Command) -> Command {
     shell
 }
 
-/// A signal or a crash can end an example at any time. A file that has its final name is complete then.
+/// A signal or a crash can end an example at any time. A file with its final name is then complete.
 #[test]
 fn a_killed_example_leaves_no_truncated_file() {
     let folder = Folder::new();
@@ -35,11 +35,11 @@ fn a_killed_example_leaves_no_truncated_file() {
     assert!(folder.gif_frames("swing_up.gif") > 50);
 }
 
-/// Nothing is left of a file that does not fit, and an older file keeps its bytes.
+/// A failed write leaves no file, and an older file keeps its bytes.
 #[test]
 fn a_failed_write_changes_nothing() {
     let folder = Folder::new();
-    // 512 bytes a file.
+    // At most 512 bytes per file.
     let limits = "trap '' XFSZ; ulimit -f 1";
     let mut portrait = limited(limits, &folder.command("phase_portrait --out a.svg"));
     let mut reject = || {
@@ -55,7 +55,7 @@ fn a_failed_write_changes_nothing() {
     assert_eq!(folder.read("a.svg"), b"old");
 }
 
-/// A failed write of any file is an error, also if the bytes fit into a buffer.
+/// A failed write of any file is an error, even if the bytes fit into a buffer.
 #[test]
 fn a_full_disk_is_an_error() {
     for (line, file) in [
@@ -81,14 +81,14 @@ fn a_full_disk_is_an_error() {
         let reason = format!("{file}: No space left");
         assert!(errors.contains(&reason), "{errors}");
         let text = String::from_utf8(output.stdout).unwrap();
-        // The results of learning are printed although a picture cannot be written.
+        // The results of learning are printed even if a picture cannot be written.
         let is_printed = line == "swing_up --episodes 100";
         assert_eq!(text.contains("\nlearnt "), is_printed, "{file}: {text}");
         assert_eq!(text.is_empty(), !is_printed, "{file}: {text}");
     }
 }
 
-/// Only a regular file is replaced.
+/// Only a regular file is replaced. Links, pipes and permissions stay.
 #[test]
 fn a_link_a_pipe_and_permissions_are_kept() {
     let folder = Folder::new();
@@ -138,7 +138,7 @@ fn a_path_may_be_a_folder_too_long_or_not_unicode() {
     }
 }
 
-/// In a gigabyte of memory.
+/// The examples have one gigabyte of memory.
 #[test]
 fn endless_input_is_rejected() {
     let folder = Folder::new();

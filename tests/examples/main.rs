@@ -1,4 +1,4 @@
-//! The examples do what their docs say, run as programs.
+//! The examples, run as programs, do what their docs say.
 
 mod exit;
 #[cfg(target_os = "linux")]
@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::{env, fs};
 
 /// The folder with the examples' programs, which Cargo builds once. `cargo run` would look for changes before each run,
-/// and take 0.1 s for it: most runs take less.
+/// which takes 0.1 s, longer than most runs.
 static EXAMPLES: LazyLock<PathBuf> = LazyLock::new(|| {
     let test = env::current_exe().unwrap();
     // The test is `target/debug/deps/examples-…`.
@@ -65,7 +65,7 @@ impl Folder {
         fs::read(self.path(name)).unwrap()
     }
 
-    /// A picture's text, which is a whole SVG.
+    /// The text of a picture, which must be a complete SVG.
     fn svg(&self, name: &str) -> String {
         let text = String::from_utf8(self.read(name)).unwrap();
         assert!(text.starts_with("<svg") && text.ends_with("</svg>\n"));

@@ -1,4 +1,4 @@
-//! Pictures are those of the README, of a state and of a seed.
+//! Pictures equal those of the README, show the given state, and depend on the seed.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -29,7 +29,7 @@ fn a_state_is_rendered_as_its_frame() {
 
 /// The example draws the README's first picture.
 #[test]
-fn the_episode_is_the_readmes_picture() {
+fn the_episode_equals_the_readmes_picture() {
     let folder = Folder::new();
     printed(&mut folder.command("render_episode"));
     let recorded = include_str!("../../docs/episode.svg");
@@ -40,7 +40,7 @@ fn the_episode_is_the_readmes_picture() {
 }
 
 #[test]
-fn the_portrait_is_of_its_seed() {
+fn the_portrait_depends_on_the_seed() {
     let folder = Folder::new();
     let [one, other] = [("42", "94 steps"), ("43", "steps")].map(|(seed, steps)| {
         let mut portrait = folder.command(&format!("phase_portrait --seed {seed}"));

@@ -1,4 +1,4 @@
-//! `plan` is better than the learnt policy.
+//! The plans of `plan` are better than the learnt policy.
 
 use super::{Folder, printed};
 
@@ -12,7 +12,7 @@ fn planning_beats_the_learnt_policy_within_fixed_memory() {
         let (_, rest) = text.split_once(name).unwrap();
         rest.split_whitespace().next().unwrap().parse().unwrap()
     };
-    // The values of 300 episodes are coarse.
+    // After 300 episodes the values are coarse.
     assert!(number("30 steps ahead") > -72.0, "{text}");
     assert!(number("30 steps ahead") > number("greedy") + 5.0, "{text}");
     assert!(number("the search takes ") <= 4096.0, "{text}");

@@ -49,7 +49,7 @@ fn the_energy_controller_catches_the_upright() {
         let row = lines.find(|line| line.starts_with(policy) && line.contains(limit));
         row.unwrap_or_else(|| panic!("{output}"))
     };
-    assert_eq!(row("energy", "10 N m").matches("20 of 20 at").count(), 2);
-    assert!(row("bang-bang", "1 N m").contains("20 of 20 at"));
+    assert_eq!(row("energy", "10 N m").matches("20 of 20 in").count(), 2);
+    assert!(row("bang-bang", "1 N m").contains("20 of 20 in"));
     assert!(row("random", "1 N m").ends_with("0 of 20"));
 }

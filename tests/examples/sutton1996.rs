@@ -1,4 +1,4 @@
-//! Sutton's experiment: its results. The example itself tests its simulator.
+//! The results of Sutton's experiment. The example itself tests its simulator.
 
 use super::{Folder, printed};
 
@@ -23,7 +23,7 @@ fn the_experiment_reports_its_runs() {
     let numbers = |row: &str| -> Vec<f64> { row.split(',').map(|x| x.parse().unwrap()).collect() };
     let rows: Vec<_> = csv.lines().skip(1).map(numbers).collect();
     assert_eq!(rows.len(), 12);
-    for (name, learner) in [("Sutton's learner", 1), ("this crate's", 4)] {
+    for (name, learner) in [("Sutton's learner", 1), ("this crate's learner", 4)] {
         let median = |row: usize| rows[row][learner + 1];
         assert!(median(11) < median(0) / 2.0, "learns: {csv}");
         for row in &rows {

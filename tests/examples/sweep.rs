@@ -74,13 +74,13 @@ fn the_sweep_counts_every_episode_once() {
     );
 }
 
-/// The command beside the README's heat map draws it.
+/// The command next to the README's heat map draws it.
 #[test]
 #[cfg_attr(
     debug_assertions,
     ignore = "a million episodes, which need optimization"
 )]
-fn the_sweep_is_the_readmes_picture() {
+fn the_sweep_equals_the_readmes_picture() {
     let folder = Folder::new();
     printed(&mut folder.command("sweep"));
     let recorded = include_bytes!("../../examples/sweep.svg");

@@ -4,8 +4,8 @@ use std::fs;
 
 use super::{Folder, printed, rejected};
 
-/// The figures of the line that `--quiet` prints: when it was solved, the greedy policy's mean and standard deviation,
-/// and its misses. Checks the form of the line.
+/// The figures of the line that `--quiet` prints: the episode that solved the task, the greedy policy's mean and
+/// standard deviation, and its misses. Checks the form of the line.
 fn figures(line: &str) -> (Option<u32>, f64, f64, u32) {
     let words: Vec<&str> = line.split_whitespace().collect();
     let number = |i: usize| words[i].parse::<f64>().unwrap();
@@ -80,7 +80,7 @@ fn swing_up_is_better_than_torque_against_the_velocity() {
 }
 
 #[test]
-fn swing_up_draws_what_it_has_learnt() {
+fn swing_up_draws_its_results() {
     let folder = Folder::new();
     let [one, other] = [1, 2].map(|seed| {
         folder.swing_up(&format!("--episodes 100 --seed {seed}"));
@@ -105,7 +105,7 @@ fn swing_up_takes_every_preset_and_memory() {
 
 /// The learner's own tests damage every byte.
 #[test]
-fn swing_up_rejects_weights_that_are_not_its_own() {
+fn swing_up_rejects_weights_of_another_learner() {
     let folder = Folder::new();
     folder.swing_up("--quiet --episodes 3 --save weights");
     let rejects = |arguments: &str, reason: &str| {
@@ -115,7 +115,7 @@ fn swing_up_rejects_weights_that_are_not_its_own() {
         assert_eq!(folder.names(), ["weights"], "{errors}");
     };
     rejects("--memory 16k", "weights must have 16404 bytes, got 65556");
-    rejects("--preset quality", "weights must be of ");
+    rejects("--preset quality", "weights must be for features ");
     let mut bytes = folder.read("weights");
     bytes[30_000] ^= 2;
     fs::write(folder.path("weights"), bytes).unwrap();

@@ -76,7 +76,7 @@ fn trace_takes_every_arithmetic() {
 }
 
 #[test]
-fn trace_rejects_what_is_no_action() {
+fn trace_rejects_other_characters() {
     let errors = rejected(&mut trace(&Folder::new(), "--seed 1", "0 1\n3 2"));
     let reason = "the input must be actions (0, 1 and 2) and white space, got '3' as byte 5";
     assert!(errors.contains(reason), "{errors}");

@@ -39,7 +39,7 @@ fn generator() -> impl Strategy<Value = Repeating> {
 }
 
 #[test]
-fn integers_are_below_their_number_with_any_generator() {
+fn integers_are_below_their_bound_with_any_generator() {
     let n = prop_oneof![Just(1), 1..10_u32, any::<u32>()].prop_filter_map("0", NonZeroU32::new);
     holds(2000, (generator(), n), |(mut rng, n)| {
         assert!(integers(&mut rng, n) < n.get());
@@ -63,7 +63,7 @@ fn uniform_draws_are_within_their_bounds() {
     );
 }
 
-/// Within the bounds rounded to `f32`, because initial states are `f32`.
+/// The bounds are rounded to `f32`, because initial states are `f32`.
 #[test]
 fn initial_states_are_within_their_bounds() {
     holds(1000, (generator(), reset_bounds()), |(rng, bounds)| {
@@ -116,7 +116,7 @@ fn words_decimals_bytes_and_integers_are_the_same_seed() {
 }
 
 #[test]
-fn children_are_numbered_over_all_that_are_spawned() {
+fn children_are_numbered_across_all_spawns() {
     let counts = prop::collection::vec(0..5_u64, 0..5);
     let words = prop::collection::vec(any::<u32>(), 0..9);
     holds(
@@ -135,7 +135,7 @@ fn children_are_numbered_over_all_that_are_spawned() {
             }
             let [first, _, _] = parent.child(far).generate_state();
             assert_eq!(parent.child(far).generate_state(), [first]);
-            // Children do not run out.
+            // Children never run out.
             assert!(sequence.spawn(u64::MAX).next().is_some());
             assert_eq!(sequence.spawn(1).count(), 1);
         },
@@ -143,7 +143,7 @@ fn children_are_numbered_over_all_that_are_spawned() {
 }
 
 #[test]
-fn spaces_contain_what_they_sample() {
+fn spaces_contain_their_samples() {
     let bound = || prop_oneof![4 => number::<f32>(Range::Any), 1 => prop::num::f32::ANY];
     let bounds = prop::collection::vec((bound(), bound()), 0..4);
     holds(2000, (bounds, generator()), |(bounds, mut rng)| {
@@ -163,9 +163,9 @@ fn spaces_contain_what_they_sample() {
     });
 }
 
-/// Both halves of each word, the low one first, with any draws between them.
+/// A 32-bit draw takes half of a word, the low half first, and keeps the other half for the next 32-bit draw.
 #[test]
-fn halves_of_a_word_stay_through_draws_of_whole_words() {
+fn half_words_survive_draws_of_whole_words() {
     let draws = prop::collection::vec(any::<bool>(), 0..20);
     holds(500, (any::<u64>(), draws), |(seed, draws)| {
         let (mut rng, mut words) = (Pcg64::new(seed), Pcg64::new(seed));

@@ -1,4 +1,4 @@
-//! Inputs of the properties: numbers of every size, and values made of them.
+//! Inputs of the properties: numbers of every size, and values built from them.
 
 use std::fmt::Debug;
 
@@ -12,8 +12,8 @@ use proptest::test_runner::{FileFailurePersistence, RngSeed, TestRunner};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Tries a property on this many cases, which are always the same. `PROPTEST_CASES` and `PROPTEST_RNG_SEED` in the
-/// environment change both.
+/// Tries a property on this many cases, the same in every run. In the environment, `PROPTEST_CASES` changes their
+/// number and `PROPTEST_RNG_SEED` the cases.
 pub fn holds<G: Strategy + 'static>(cases: u32, given: G, property: impl Fn(G::Value)) {
     hold(cases, given.boxed(), &property);
 }

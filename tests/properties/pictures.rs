@@ -23,7 +23,7 @@ fn figure<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = Figure> {
 
 /// The canvas rejects pixels outside it.
 #[test]
-fn every_pixel_is_drawn_once_and_a_redraw_makes_it_another_figures() {
+fn every_pixel_is_drawn_once_and_a_redraw_equals_a_drawing() {
     fn check<A: Arithmetic<Scalar: Number>>() {
         let sides = prop_oneof![
             4 => (0..70_u32, 0..70_u32),

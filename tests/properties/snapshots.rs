@@ -48,13 +48,13 @@ fn snapshots_resume_to_the_same_bits() {
             }
         });
     }
-    // A scalar each: what else differs is a name.
+    // One arithmetic for each scalar: the others have other names only.
     check::<Portable>();
     check::<Fast>();
 }
 
 #[test]
-fn members_and_parts_are_loaded_as_they_were_stored() {
+fn members_and_parts_load_as_stored() {
     let given = (state(Range::Any), any::<(u32, bool, u64, bool)>());
     holds(500, given, |(state, (elapsed, ended, seed, half))| {
         let mut rng = Pcg64::new(seed);

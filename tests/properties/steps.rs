@@ -16,7 +16,7 @@ use crate::given::{
 };
 use common::distance;
 
-/// Two inputs, one after the other.
+/// Two inputs from the same strategy.
 fn two<G: Strategy>(given: impl Fn() -> G) -> [G; 2] {
     [given(), given()]
 }
@@ -33,7 +33,7 @@ fn assert_seen<A: Arithmetic>(acrobot: &Acrobot<A>, observation: Observation) {
     }
 }
 
-/// Promise 3 for the state after a step and its results.
+/// Promise 3 after a step: the state is within its bounds, and the results follow from it.
 fn assert_stepped<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) {
     let Params {
         max_velocity1,
@@ -49,7 +49,7 @@ fn assert_stepped<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) {
     assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
 }
 
-/// With optimization ten million steps: this many cases of 100 steps on average in four arithmetics.
+/// With optimization this takes ten million steps: `CASES` of 100 steps on average in four arithmetics.
 #[test]
 fn any_settings_and_steps_stay_in_bounds() {
     const CASES: u32 = if cfg!(debug_assertions) { 500 } else { 25_500 };
@@ -133,8 +133,9 @@ fn reach<A: Arithmetic>(
     }
 }
 
-/// Mirroring state and torque mirrors the result, bit for bit, except for the sign of zero, up to the angle where the lean
-/// wrap or the kernel loses count: beyond, |x| + 1.5 × 2²³ and −|x| + 1.5 × 2²³ round differently, in `f64` with 2⁵².
+/// Mirroring state and torque mirrors the result, bit for bit, except for the sign of zero, up to the angle where the
+/// lean wrap or the kernel loses count: beyond, |x| + 1.5 × 2²³ and −|x| + 1.5 × 2²³ round differently, in `f64` with
+/// 2⁵².
 #[test]
 fn mirrored_steps_are_mirror_images() {
     fn check<A: Arithmetic<Scalar: Number>>(farthest: f64) {
@@ -179,7 +180,7 @@ fn mirror_images_differ_in_the_sign_of_zero() {
     check::<Micro>();
 }
 
-/// `Host` takes cos(x − π/2) as Gymnasium does, so its mirror images differ by rounding.
+/// `Host` computes cos(x − π/2) as Gymnasium does, so its mirror images differ by rounding.
 #[test]
 fn mirrored_steps_are_nearly_mirror_images_in_host() {
     /// A few roundings of numbers up to 3. Faster links would amplify them.
@@ -221,9 +222,9 @@ fn episodes_are_truncated_from_their_limit_on() {
     });
 }
 
-/// No lane affects another: each has its own state, extreme or not, and is bit-identical to one alone.
+/// No lane affects another: with any state, extreme or not, it is bit-identical to a single acrobot.
 #[test]
-fn lanes_of_a_batch_are_as_one_alone() {
+fn lanes_of_a_batch_equal_single_acrobots() {
     const LEN: usize = 18;
 
     fn check<A: Arithmetic<Scalar: Number>>() {

@@ -53,7 +53,7 @@ fn angles_wrap_by_whole_turns() {
 }
 
 #[test]
-fn bounds_are_clamps() {
+fn bound_is_clamp() {
     fn check<A: Arithmetic<Scalar: Number>>() {
         let given = (number::<A::Scalar>(Range::Any), number(Range::Any));
         holds(1000, given, |(x, limit): (A::Scalar, A::Scalar)| {
@@ -88,7 +88,7 @@ fn sines_and_cosines_are_on_the_unit_circle() {
 
 /// The methods of an acrobot are bit-identical to the functions of `physics`, and the tip is within reach.
 #[test]
-fn methods_are_the_functions_of_the_same_name() {
+fn methods_equal_the_functions_of_the_same_name() {
     fn check<A: Arithmetic<Scalar: Number>>() {
         let given = (params(Range::Any), state(Range::Any), number(Range::Any));
         holds(1000, given, |(params, state, torque)| {
@@ -171,9 +171,9 @@ fn the_equations_are_those_of_a_pendulum() {
     in_every_arithmetic!(check);
 }
 
-/// It solves y' = c and y' = t exactly up to rounding, and with dt = 0 nothing moves.
+/// The Runge-Kutta step solves y' = c and y' = t exactly up to rounding, and with dt = 0 it changes nothing.
 #[test]
-fn rk4_solves_what_it_can_exactly() {
+fn rk4_solves_lines_and_parabolas() {
     let given = (
         [number::<f64>(Range::Moderate), number(Range::Moderate)],
         number(Range::Any),
@@ -218,7 +218,7 @@ fn transition() -> impl Strategy<Value = Transition> {
     )
 }
 
-/// As a queue that forgets, and bit-identical in CSV.
+/// A trajectory equals a queue that drops its oldest element, and its CSV reads back to the same bits.
 #[test]
 fn a_trajectory_keeps_the_last_transitions_in_order() {
     const ROOM: usize = 5;

@@ -1,5 +1,5 @@
-//! Plays one Rust peer with a random policy for some seconds of processor time, and prints
-//! `name version steps seconds`. For two peers it prints how many times longer the first takes than the second.
+//! Plays one Rust implementation with a random policy for some seconds of processor time, and prints
+//! `name version steps seconds`. For two implementations it prints how many times as long the first takes.
 //!
 //! ```text
 //! cargo run --release -- gmgn 1
@@ -25,12 +25,12 @@ use rlevo_core::environment::Environment as _;
 use rlevo_environments::classic::acrobot::{Acrobot as RlevoAcrobot, AcrobotAction};
 
 /// Plays a number of steps and returns how many episodes ended.
-type Peer = Box<dyn FnMut(usize) -> usize>;
+type Implementation = Box<dyn FnMut(usize) -> usize>;
 
-type New = fn() -> Peer;
+type New = fn() -> Implementation;
 
-/// The name of each peer, the package that it measures, and how to make it.
-const PEERS: [(&str, &str, New); 8] = [
+/// The name of each implementation, its package, and how to make it.
+const IMPLEMENTATIONS: [(&str, &str, New); 8] = [
     ("host", "acrobot", ours::<Host>),
     ("reference", "acrobot", ours::<Reference>),
     ("portable", "acrobot", ours::<Portable>),
@@ -45,12 +45,12 @@ const PEERS: [(&str, &str, New); 8] = [
 
 /// The acrobots of a batch.
 const ACROBOTS: usize = 1024;
-/// Steps between two looks at the clock: some milliseconds, and whole steps of a batch.
+/// Steps between two readings of the clock: a few milliseconds, and whole steps of a batch.
 const STEPS: usize = 16 * ACROBOTS;
 const LIMIT: u16 = 500;
 
 fn main() -> ExitCode {
-    // No peer has a name that is not Unicode, so the lossy one is rejected too.
+    // All names are Unicode, so a lossy argument matches none and is rejected.
     let arguments = env::args_os().map(|argument| argument.to_string_lossy().into_owned());
     let message = match report(&arguments.skip(1).collect::<Vec<_>>()) {
         Some(line) => match writeln!(io::stdout(), "{line}") {
@@ -59,10 +59,10 @@ fn main() -> ExitCode {
         },
         None => format!(
             "usage: acrobot-compare NAME[/NAME] SECONDS, where a name is one of {}, and seconds are finite and above 0",
-            PEERS.map(|(name, ..)| name).join(", ")
+            IMPLEMENTATIONS.map(|(name, ..)| name).join(", ")
         ),
     };
-    // The status must be right also where the message cannot be printed.
+    // The status must be right even if the message cannot be printed.
     let _ = writeln!(io::stderr(), "{message}");
     ExitCode::from(2)
 }
@@ -80,14 +80,16 @@ fn report(arguments: &[String]) -> Option<String> {
         let [slow, quick] = time([slow, quick], seconds).1;
         return Some(format!("{names} {:.2}", slow / quick));
     }
-    let (peer, version) = find(names)?;
-    let (steps, [seconds]) = time([peer], seconds);
+    let (implementation, version) = find(names)?;
+    let (steps, [seconds]) = time([implementation], seconds);
     Some(format!("{names} {version} {steps} {seconds}"))
 }
 
-/// The peer with this name and its version.
-fn find(name: &str) -> Option<(Peer, String)> {
-    let (_, package, new) = PEERS.iter().find(|peer| peer.0 == name)?;
+/// The implementation with this name, and its version.
+fn find(name: &str) -> Option<(Implementation, String)> {
+    let (_, package, new) = IMPLEMENTATIONS
+        .iter()
+        .find(|implementation| implementation.0 == name)?;
     let lock = lock();
     let (_, rest) = lock.split_once(&format!("name = \"{package}\"\nversion = \""))?;
     Some((new(), rest.split_once('"')?.0.to_owned()))
@@ -99,14 +101,17 @@ fn lock() -> String {
     std::fs::read_to_string(path).unwrap_or_default()
 }
 
-/// Plays all peers interleaved until one has used `seconds`. Returns the steps of each, and the time of each.
-fn time<const N: usize>(mut peers: [Peer; N], seconds: f64) -> (usize, [f64; N]) {
-    for play in &mut peers {
+/// Plays all implementations interleaved until one has used `seconds`. Returns the steps of each, and the time of each.
+fn time<const N: usize>(
+    mut implementations: [Implementation; N],
+    seconds: f64,
+) -> (usize, [f64; N]) {
+    for play in &mut implementations {
         play(STEPS); // warms up
     }
     let (mut steps, mut times) = (0, [0.0; N]);
     while times.iter().all(|&time| time < seconds) {
-        for (play, time) in peers.iter_mut().zip(&mut times) {
+        for (play, time) in implementations.iter_mut().zip(&mut times) {
             let start = ProcessTime::now();
             play(STEPS);
             *time += start.elapsed().as_secs_f64();
@@ -116,19 +121,19 @@ fn time<const N: usize>(mut peers: [Peer; N], seconds: f64) -> (usize, [f64; N])
     (steps, times)
 }
 
-/// The policy. It costs little beside a step, and SIMD can draw, too.
+/// The policy. It costs little compared with a step, and SIMD can compute it.
 fn draw(stream: &mut u32) -> u8 {
     *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     (((*stream >> 16) * 3) >> 16) as u8
 }
 
-/// A peer from a step, which resets after an end and returns whether there was one.
-fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Peer {
+/// An implementation from a `step`, which resets after an episode's end and returns whether there was one.
+fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Implementation {
     let mut stream = 0;
     Box::new(move |steps| (0..steps).filter(|_| step(draw(&mut stream))).count())
 }
 
-fn ours<A: Arithmetic + 'static>() -> Peer {
+fn ours<A: Arithmetic + 'static>() -> Implementation {
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
     alone(move |action| {
         let done = black_box(acrobot.step(Action::ALL[usize::from(action)])).done();
@@ -139,11 +144,12 @@ fn ours<A: Arithmetic + 'static>() -> Peer {
     })
 }
 
-fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Peer {
+fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Implementation {
     const N: usize = ACROBOTS;
     let blocks = vec![Block::EMPTY; N.div_ceil(Block::<f32>::LANES)];
     let generators = vec![Pcg64::UNSEEDED; N];
-    let mut batch = Batch::<Fast, _, _>::new(0, blocks, generators).expect("memory of its size");
+    let mut batch =
+        Batch::<Fast, _, _>::new(0, blocks, generators).expect("blocks for all acrobots");
     let mut streams: Vec<u32> = (0..N as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect();
     let (mut actions, mut rewards, mut rows) = (vec![0; N], vec![0.0; N], vec![[0.0; 6]; N]);
     let (mut terminated, mut truncated) = (vec![false; N], vec![false; N]);
@@ -160,7 +166,9 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Peer {
                 observations: observe(&mut rows),
                 final_observations: Observations::None,
             };
-            batch.step(&actions, buffers).expect("slices of its size");
+            batch
+                .step(&actions, buffers)
+                .expect("slices of the batch's length");
             let ended = terminated.iter().zip(&truncated).map(|(a, b)| a | b);
             ends += usize::from(ended.map(u16::from).sum::<u16>());
         }
@@ -168,7 +176,7 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Peer {
     })
 }
 
-fn gmgn() -> Peer {
+fn gmgn() -> Implementation {
     let acrobot = AcrobotEnv::new(Default::default()).expect("its default is valid");
     let mut acrobot = gmgn::wrappers::TimeLimit::new(acrobot, LIMIT.into());
     acrobot.reset(Some(0)).expect("it resets");
@@ -182,7 +190,7 @@ fn gmgn() -> Peer {
     })
 }
 
-fn rlevo() -> Peer {
+fn rlevo() -> Implementation {
     let acrobot = <RlevoAcrobot>::default();
     let mut acrobot = rlevo_environments::wrappers::TimeLimit::new(acrobot, LIMIT.into());
     acrobot.reset().expect("it resets");
@@ -202,8 +210,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_peer_steps_and_reports_its_version() {
-        for (name, package, _) in PEERS {
+    fn every_implementation_steps_and_reports_its_version() {
+        for (name, package, _) in IMPLEMENTATIONS {
             let line = report(&[name.into(), "0.01".into()]).unwrap();
             let [reported, version, steps, seconds] = line.split(' ').collect::<Vec<_>>()[..]
             else {
@@ -219,8 +227,8 @@ mod tests {
 
     /// Few random episodes reach the goal before the limit, and none is longer.
     #[test]
-    fn every_peer_plays_episodes_of_almost_500_steps() {
-        for (name, _, new) in PEERS {
+    fn every_implementation_plays_episodes_of_almost_500_steps() {
+        for (name, _, new) in IMPLEMENTATIONS {
             let steps = 1200 * ACROBOTS; // a batch is in its third episodes then
             let ends = new()(steps);
             assert!((steps / 600..steps / 450).contains(&ends), "{name} {ends}");
@@ -228,14 +236,14 @@ mod tests {
     }
 
     #[test]
-    fn compares_two() {
+    fn two_implementations_are_compared() {
         let line = report(&["gmgn/gmgn".into(), "0.1".into()]).unwrap();
         let ratio: f64 = line.strip_prefix("gmgn/gmgn ").unwrap().parse().unwrap();
         assert!((0.5..2.0).contains(&ratio), "{line}");
     }
 
     #[test]
-    fn rejects_unknown_arguments() {
+    fn unknown_arguments_are_rejected() {
         for arguments in [
             "",
             "fast",

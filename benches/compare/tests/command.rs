@@ -1,4 +1,4 @@
-//! The program ends with a status and a message, whatever it is given.
+//! The program ends with a status and a message for any arguments.
 
 #![cfg(target_os = "linux")]
 

@@ -14,7 +14,7 @@ pub fn run<O: Parser, E: Into<Box<dyn Error>>>(
         Ok(options) => status(example(&options)),
         Err(error) => match (error.print(), error.use_stderr()) {
             (help, false) => status(help),
-            // clap's status for an invalid argument is that of every other error.
+            // clap's status for an invalid argument is 2, as for every other error.
             (_, true) => ExitCode::from(2),
         },
     }
@@ -27,12 +27,12 @@ pub fn status(result: Result<(), impl Into<Box<dyn Error>>>) -> ExitCode {
         return ExitCode::SUCCESS;
     };
     let from = match error.downcast_ref::<io::Error>().map(io::Error::kind) {
-        // The reader closed the pipe: that is no error.
+        // The reader closed the pipe, which is not an error.
         Some(io::ErrorKind::BrokenPipe) => return ExitCode::SUCCESS,
         Some(_) => "cannot print: ",
         None => "",
     };
-    // The status must be right also where the message cannot be printed.
+    // The status must be right even if the message cannot be printed.
     let _ = writeln!(io::stderr(), "error: {from}{error}");
     ExitCode::from(2)
 }

@@ -20,7 +20,7 @@ pub fn named(extension: &'static str) -> impl TypedValueParser<Value = PathBuf> 
     })
 }
 
-/// Fails if the file cannot be written, and changes nothing. A link, a device or a pipe is only tried by [`write()`].
+/// Fails if the file cannot be written, and changes nothing. Only [`write()`] tries a link, a device or a pipe.
 pub fn check(path: &Path) -> Result<(), String> {
     let tried = match fs::symlink_metadata(path) {
         Ok(old) if old.is_file() || old.is_dir() => open(path),
@@ -51,24 +51,24 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         return fs::write(path, bytes);
     }
     if old.is_some() {
-        // A file that is protected from writing is protected from being replaced.
+        // A write-protected file must not be replaced.
         open(path)?;
     }
     let temporary = path.with_file_name(format!(".acrobot-{}.tmp", process::id()));
     let Ok(mut file) = File::create_new(&temporary) else {
-        // A protected folder can have a file that is not. Any other error occurs again here.
+        // A protected folder can contain a writable file. Any other error occurs again here.
         return fs::write(path, bytes);
     };
     let replaced = file.write_all(bytes).and_then(|()| {
         if let Some(old) = &old {
             file.set_permissions(old.permissions())?;
         }
-        // Some file systems notice only here that they are full.
+        // Some file systems report only here that they are full.
         file.sync_all()?;
         // A mount point can be written but not replaced.
         fs::rename(&temporary, path).or_else(|_| fs::write(path, bytes))
     });
-    // After a rename nothing has this name.
+    // After a rename there is no file of this name.
     let _ = fs::remove_file(&temporary);
     replaced
 }

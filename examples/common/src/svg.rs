@@ -7,7 +7,7 @@ use plotters::prelude::*;
 
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The text of a picture of this size in pixels. The caller writes it, because plotters ignores errors of the last bytes.
+/// A picture of this size in pixels, as text. The caller writes it, because plotters ignores errors of the last bytes.
 pub fn svg(
     size: (u32, u32),
     draw: impl FnOnce(&Area) -> Result<(), Box<dyn Error>>,

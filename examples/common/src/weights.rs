@@ -1,4 +1,4 @@
-//! Files of weights.
+//! Loads files of weights.
 
 use std::fmt::Display;
 use std::fs::File;
@@ -7,8 +7,8 @@ use std::path::Path;
 
 use sarsa::task::Learner;
 
-/// The bytes that are read at most, because a file can be endless. The largest weights have 65,556. Up to here an error
-/// names the file's size.
+/// The most bytes that are read, because a file can be endless. The largest weights have 65,556 bytes. An error names
+/// the size of a file up to this limit.
 const MOST: usize = 1 << 17;
 
 pub fn load<const S: usize, const T: usize>(

@@ -23,7 +23,7 @@ pub enum Error {
         value: usize,
         /// The rule, to be read before `limit`.
         rule: &'static str,
-        /// The number that the rule refers to.
+        /// The number after the rule.
         limit: usize,
     },
 }
@@ -113,7 +113,7 @@ impl fmt::Display for LoadError {
         match self {
             Self::Magic => write!(f, "weights must begin with the bytes TILE"),
             Self::Version { found, expected } => {
-                write!(f, "weights must be of version {expected}, got {found}")
+                write!(f, "weights must have version {expected}, got {found}")
             }
             Self::Size { found, expected } => {
                 write!(f, "weights must have {expected} bytes, got {found}")
@@ -121,7 +121,7 @@ impl fmt::Display for LoadError {
             Self::Features { found, expected } => {
                 write!(
                     f,
-                    "weights must be of features {expected:08x}, got {found:08x}"
+                    "weights must be for features {expected:08x}, got {found:08x}"
                 )
             }
             Self::NotFinite { index } => write!(f, "weight {index} must be a finite number"),

@@ -14,14 +14,15 @@ pub trait Features<const D: usize, const T: usize> {
     /// The `T` slots of a state, each below [`Features::slots`].
     fn active(&self, state: &[f32; D]) -> [u16; T];
 
-    /// Passes `mix` the numbers that define these features, so that weights saved for others are rejected.
+    /// Passes `mix` the numbers that define these features, so that weights saved for other features are
+    /// rejected.
     fn fingerprint(&self, mix: impl FnMut(u32));
 }
 
 /// Whether the learner treats two states as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symmetry {
-    /// Each state is itself only.
+    /// The task has no symmetry.
     None,
     /// Negating all numbers of the state and reversing the order of the actions changes nothing. The learner
     /// replaces states that are negative in this dimension by their mirror image.
@@ -65,7 +66,7 @@ pub struct Sarsa<'w, F, const S: usize, const A: usize, const D: usize, const T:
 impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T: usize>
     Sarsa<'w, F, S, A, D, T>
 {
-    /// An untrained learner: the weights become 0.
+    /// An untrained learner. This sets the weights to 0.
     ///
     /// # Errors
     ///
@@ -249,7 +250,7 @@ fn best<const A: usize>(values: &[f32; A]) -> (usize, f32) {
     best
 }
 
-/// Every action has a value. This is not an index because that could panic, for all that some compilers see.
+/// Every action has a value. Indexing is avoided, because some compilers would keep its panic.
 #[inline]
 fn value_of<const A: usize>(values: &[f32; A], action: usize) -> f32 {
     values.get(action).copied().unwrap_or_default()

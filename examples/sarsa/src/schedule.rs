@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 
-/// A number that goes evenly from `start` to `end`, and stays there.
+/// A number that changes linearly from `start` to `end`, and stays there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
     /// The number in the first episode, in \[0, 1\].

@@ -1,4 +1,4 @@
-//! Acrobot as a task: its learner, tuned, and the loop over an episode. The other modules know nothing of it.
+//! Acrobot as a task: its tuned learner, and the loop over an episode. The other modules do not depend on it.
 
 use core::f32::consts::PI;
 
@@ -12,7 +12,7 @@ use crate::{
 /// A learner of Acrobot with `T` tilings and `S` slots, which take 8 bytes each.
 pub type Learner<'w, const S: usize, const T: usize> = Sarsa<'w, TileCoder<4, T>, S, 2, 4, T>;
 
-/// What the learner is tuned for.
+/// The aim for which the learner is tuned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Preset {
     /// Swinging up after few episodes.
@@ -21,7 +21,7 @@ pub enum Preset {
     Quality,
 }
 
-/// Tilings over pairs learn within few episodes what an angle shares with its velocity or with the other angle.
+/// The tilings over pairs learn within few episodes: both angles, both velocities, and each angle with a velocity.
 const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
 
 impl Preset {
@@ -59,7 +59,7 @@ impl Preset {
     }
 }
 
-/// The torque of the learner's actions 0 and 1. It never chooses none, because that gains nothing.
+/// The torque of the learner's actions 0 and 1. It has no action without torque, which would gain nothing.
 pub fn torque(action: usize) -> Action {
     match action {
         0 => Action::Negative,
@@ -67,10 +67,10 @@ pub fn torque(action: usize) -> Action {
     }
 }
 
-/// An acrobot with 500 steps an episode.
+/// An acrobot with at most 500 steps per episode.
 pub type Env = TimeLimit<Acrobot<Fast>>;
 
-/// What every program trains with for this seed: an acrobot, and a generator for the learner's own choices.
+/// The acrobot that every program trains with this seed, and the generator of the learner's choices.
 pub fn training(seed: SeedSequence) -> (Env, Pcg64) {
     let choices = seed.child(0).into();
     (TimeLimit::v1(Acrobot::with_rng(seed.into())), choices)

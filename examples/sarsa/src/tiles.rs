@@ -167,7 +167,7 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         Ok(coder)
     }
 
-    /// Places one tiling after the other.
+    /// Places the tilings in the table, one after the other.
     fn place(&mut self, groups: &[Group]) -> Result<(), Error> {
         let dimensions = &self.dimensions;
         let tiles = groups.iter().flat_map(|group| {
@@ -200,7 +200,7 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
         Ok(())
     }
 
-    /// The tilings without their places in the table.
+    /// The tilings before they are placed in the table.
     fn grids(
         dimensions: [Dimension; D],
         groups: &[Group],
@@ -233,7 +233,7 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
                     coder.strides.get_mut(d),
                 ) else {
                     return Err(Error::Count {
-                        name: "a dimension's number",
+                        name: "a dimension's index",
                         value: d,
                         rule: "below",
                         limit: D,

@@ -73,7 +73,7 @@ fn displacement_is_by_odd_integers() {
 }
 
 #[test]
-fn a_circle_is_closed() {
+fn cyclic_numbers_wrap_around() {
     let coder = eight(Table::Direct);
     let at = |x| coder.active(&[x, 0.3, 0.3, 0.3]);
     assert_eq!(changed(at(-0.975), at(0.975)), 1);
@@ -83,13 +83,13 @@ fn a_circle_is_closed() {
         }
     }
     assert_eq!(at(-1.0), at(1.0));
-    // After five intervals the first tile comes again, not a sixth.
+    // After five intervals the first tile follows, not a sixth.
     let distinct: BTreeSet<_> = (0..1000).map(|n| at(n as f32 / 500.0 - 1.0)[3]).collect();
     assert_eq!(distinct.len(), 5);
 }
 
 #[test]
-fn a_line_ends_at_its_bounds() {
+fn numbers_beyond_a_bound_count_as_the_bound() {
     let coder = eight(Table::Direct);
     let at = |x| coder.active(&[0.1, x, 0.3, 0.3]);
     for (beyond, bound) in [
@@ -104,7 +104,7 @@ fn a_line_ends_at_its_bounds() {
 }
 
 #[test]
-fn every_tile_has_a_slot_of_its_own_and_no_slot_is_left_over() {
+fn tilings_share_no_slots_without_hashing() {
     let groups = [
         Group::new(&[0, 1], 3),
         Group::new(&[1, 2, 3], 2),
@@ -130,7 +130,7 @@ fn every_tile_has_a_slot_of_its_own_and_no_slot_is_left_over() {
 }
 
 #[test]
-fn a_tiling_sees_its_own_dimensions_only() {
+fn a_tiling_depends_only_on_its_dimensions() {
     let groups = [Group::new(&[0, 2], 2), Group::new(&[3], 1)];
     let coder = TileCoder::<4, 3>::new(SPACE, &groups, Table::Hashed(64), displacement).unwrap();
     let [a, b, c] = coder.active(&[0.1, 0.1, 0.1, 0.1]);
@@ -169,7 +169,7 @@ fn hashing_spreads_the_tiles() {
 }
 
 #[test]
-fn nothing_panics_or_leaves_the_table() {
+fn any_number_gives_slots_of_the_table() {
     let odd = [
         f32::NAN,
         f32::INFINITY,

@@ -1,4 +1,4 @@
-//! The update is the textbook's, and it learns the right values.
+//! The update equals the textbook's, and learns the right values.
 
 use rand_core::Rng;
 use rand_pcg::Pcg32;
@@ -84,7 +84,7 @@ impl Textbook {
 
 /// Bit-identical, because each weight has the same additions in the same order: one in each step.
 #[test]
-fn the_weights_are_those_of_the_textbook() {
+fn the_weights_equal_those_of_the_textbook() {
     for (lambda, gamma) in [
         (0.0, 1.0),
         (0.5, 0.9),
@@ -146,8 +146,8 @@ fn the_weights_are_those_of_the_textbook() {
 /// A corridor of five cells with a reward of −1 a step and the goal behind the last cell: q(cell, onward) = −Σ γᵏ
 /// over the remaining steps, for every λ.
 #[test]
-fn a_corridor_is_as_long_as_it_is() {
-    /// Cells are counted as integers, so that no float comparison decides about the end.
+fn values_count_the_remaining_steps_of_a_corridor() {
+    /// Counts cells as integers, so that no comparison of floats decides the end.
     fn learn(gamma: f32, lambda: f32) -> [f32; 5] {
         let cells = [Dimension::cyclic(0.0, 5.0, 5)];
         let coder =
@@ -198,7 +198,7 @@ fn a_corridor_is_as_long_as_it_is() {
 
 /// The same walk and its mirror image give opposite actions and equal weights.
 #[test]
-fn a_mirrored_world_is_the_same_world() {
+fn a_mirrored_walk_learns_equal_weights() {
     let play = |sign: f32| {
         let settings = Settings {
             symmetry: Symmetry::Mirror(1),
@@ -228,7 +228,7 @@ fn a_mirrored_world_is_the_same_world() {
 }
 
 #[test]
-fn schedules_go_evenly_from_episode_to_episode_and_stay_at_their_end() {
+fn schedules_change_linearly_and_stay_at_their_end() {
     let settings = Settings {
         alpha: Schedule {
             start: 0.5,

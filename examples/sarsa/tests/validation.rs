@@ -36,7 +36,7 @@ fn agent(weights: &mut [[f32; 2]; 32]) -> Agent<'_> {
 }
 
 #[test]
-fn settings() {
+fn invalid_settings_are_rejected() {
     let ending = |end| Schedule {
         start: 0.5,
         end,
@@ -128,7 +128,7 @@ fn settings() {
 }
 
 #[test]
-fn sizes() {
+fn invalid_sizes_are_rejected() {
     let mut few = [[0.0; 2]; 19];
     let direct = coder(LINE, 4, Table::Direct).unwrap();
     let error = Sarsa::new(direct.clone(), SETTINGS, &mut few).unwrap_err();
@@ -142,7 +142,7 @@ fn sizes() {
 }
 
 #[test]
-fn coders() {
+fn invalid_coders_are_rejected() {
     let reason = |line, tilings, table| coder(line, tilings, table).unwrap_err().to_string();
     for slots in [0, 1, 48, 1 << 17] {
         assert_eq!(
@@ -178,7 +178,7 @@ fn coders() {
     let beyond = TileCoder::<1, 4>::new(LINE, &[Group::new(&[1], 4)], Table::Direct, displacement);
     assert_eq!(
         beyond.unwrap_err().to_string(),
-        "a dimension's number must be below 1, got 1"
+        "a dimension's index must be below 1, got 1"
     );
     let far = TileCoder::<1, 4>::new(LINE, &[Group::new(&[0], 4)], Table::Direct, |_| 1.0);
     assert_eq!(
@@ -211,7 +211,7 @@ fn learnt(weights: &mut [[f32; 2]; 32]) -> Vec<u8> {
 }
 
 #[test]
-fn what_was_saved_is_loaded() {
+fn saved_weights_are_loaded() {
     let mut weights = [[0.0; 2]; 32];
     let bytes = learnt(&mut weights);
     assert_eq!(bytes.len(), Agent::BYTES);
@@ -223,7 +223,7 @@ fn what_was_saved_is_loaded() {
 }
 
 #[test]
-fn bytes() {
+fn damaged_bytes_are_rejected() {
     let mut weights = [[0.0; 2]; 32];
     let good = learnt(&mut weights);
     let rejected = |bytes: &[u8]| {
@@ -242,7 +242,7 @@ fn bytes() {
     assert_eq!(rejected(&good[..3]), LoadError::Magic);
     assert_eq!(rejected(&with(0, b'X')), LoadError::Magic);
     let version = rejected(&with(4, 2));
-    assert_eq!(version.to_string(), "weights must be of version 1, got 2");
+    assert_eq!(version.to_string(), "weights must have version 1, got 2");
     for length in [4, 7, 8, 15, 16, 20, good.len() - 1] {
         let size = rejected(&good[..length]);
         assert_eq!(
@@ -269,9 +269,9 @@ fn bytes() {
     }
 }
 
-/// The same size, but the weights belong to other tiles.
+/// The weights have the same size, but belong to other tiles.
 #[test]
-fn weights_of_other_tiles() {
+fn weights_of_other_tiles_are_rejected() {
     let mut weights = [[0.0; 2]; 32];
     let good = learnt(&mut weights);
     let wider = coder([Dimension::bounded(0.0, 2.0, 4)], 4, Table::Hashed(32)).unwrap();
@@ -288,9 +288,9 @@ fn weights_of_other_tiles() {
     }
 }
 
-/// Damaged before the checksum was computed, so the checksum is right.
+/// The checksum is computed after the damage, so it is right.
 #[test]
-fn weights_that_are_not_finite() {
+fn weights_that_are_not_finite_are_rejected() {
     let mut weights = [[0.0; 2]; 32];
     let saved = learnt(&mut weights);
     for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
@@ -310,7 +310,7 @@ fn weights_that_are_not_finite() {
 }
 
 #[test]
-fn tilings_whose_sum_wraps() {
+fn tilings_whose_sum_overflows_are_rejected() {
     let groups = [Group::new(&[0], usize::MAX), Group::new(&[0], 5)];
     let coder = TileCoder::<1, 4>::new(LINE, &groups, Table::Direct, displacement);
     assert_eq!(

@@ -1,4 +1,4 @@
-//! A batch of any length and block size, bit-identical to its acrobots one by one, with any settings.
+//! A batch of any length, block size and settings is bit-identical to single acrobots.
 
 #![no_main]
 
@@ -27,7 +27,7 @@ type Scalar<A> = <A as Arithmetic>::Scalar;
 
 type Many<A, const N: usize> = Batch<A, Vec<Block<Scalar<A>, N>>, Vec<Pcg64>, N>;
 
-/// One acrobot as in a batch.
+/// A single acrobot that follows the rules of a batch.
 struct Alone<A: Arithmetic> {
     acrobot: Acrobot<A>,
     elapsed: u32,
@@ -38,7 +38,7 @@ struct Alone<A: Arithmetic> {
 type Returned = ([f32; 6], f32, bool, bool, Option<[f32; 6]>);
 
 impl<A: Arithmetic> Alone<A> {
-    /// Stops waiting for a reset, except in the mode that waits.
+    /// Stops waiting for a reset, except in mode `NextStep`.
     fn settle(&mut self, settings: &Settings) {
         match settings.autoreset {
             Autoreset::SameStep if self.ended => self.reset(settings.bounds),
@@ -62,7 +62,7 @@ impl<A: Arithmetic> Alone<A> {
         step: impl FnOnce(&mut Acrobot<A>) -> std::result::Result<Step, Error>,
     ) -> std::result::Result<Returned, Error> {
         if self.ended && settings.autoreset == Autoreset::NextStep {
-            // This ignores the action and draws no noise.
+            // A reset ignores the action and draws no noise.
             self.reset(settings.bounds);
             let first = self.acrobot.observation().to_array();
             return Ok((first, 0.0, false, false, None));
@@ -125,7 +125,7 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
     let levels = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
     batch.set_simd_level(*u.choose(&levels)?);
     while !u.is_empty() {
-        // 241 to 245 are calls of their own. Of all other bytes the last digit decides.
+        // 241 to 245 choose rare calls. The last digit of any other byte chooses the call.
         match u.arbitrary::<u8>()? {
             241 => {
                 let index = u.int_in_range(0..=len + N)?;
@@ -247,7 +247,7 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                     alone.iter_mut().for_each(|alone| alone.settle(&settings));
                 }
                 _ => {
-                    // Sometimes an unknown number, or one element too few.
+                    // Sometimes an action is unknown, or the last one is missing.
                     let last = *u.choose(&[0, 1, 2, 0, 1, 2, 0, 1, 2, 3, u8::MAX])?;
                     let mut actions = inputs(len, u, |u| u.int_in_range(0..=2))?;
                     if let Some(action) = actions.last_mut() {

@@ -44,7 +44,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
     };
     assert!(valid);
     let mut rng = Pcg64::new(0);
-    // Each shows a frame of 250,000 pixels.
+    // In mode `Human` each call shows a frame of 250,000 pixels.
     let calls = match options.render_mode {
         RenderMode::Human(_) => 2,
         _ => 16,

@@ -1,4 +1,4 @@
-//! Any bytes in place of a snapshot: rejected, or as valid as a saved one.
+//! Any bytes in place of a snapshot: rejected, or loaded as a valid one.
 
 #![no_main]
 

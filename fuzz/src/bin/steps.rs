@@ -1,4 +1,4 @@
-//! An acrobot in any arithmetic, with any values set at any time, beside a pendulum.
+//! An acrobot in any arithmetic, with any values set at any time, and a pendulum that must agree.
 
 #![no_main]
 
@@ -47,7 +47,7 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
             2 => {
                 let torque = real(number(u, 1.0)?);
                 let pendulum = Pendulum::<A>::new(*acrobot.params(), acrobot.state());
-                let mut pendulum = pendulum.expect("an acrobot's are valid");
+                let mut pendulum = pendulum.expect("an acrobot's parameters and state are valid");
                 assert_eq!(pendulum.positions(), acrobot.positions());
                 let step = acrobot.step_torque(torque);
                 assert_eq!(step.is_ok(), torque.is_finite());
@@ -113,10 +113,10 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
         };
         assert!(
             !rejected || acrobot == before,
-            "a rejected call has changed something"
+            "a rejected call changed the acrobot"
         );
         assert_seen(acrobot.observation());
-        // These may return anything, also NaN.
+        // These may return any number, also NaN.
         let _ = (
             acrobot.derivative(A::Scalar::PI),
             acrobot.energy(),
@@ -153,11 +153,13 @@ fn episode<A: Arithmetic<Scalar: FromStr>>(
     assert_eq!(last, state, "{csv}");
     let mut buffer = [0; 4096];
     let mut rows = String::new();
-    rows += trajectory.write_header(&mut buffer).expect("it has room");
+    rows += trajectory
+        .write_header(&mut buffer)
+        .expect("the buffer is long enough");
     let mut needed = 0;
     for index in 0..trajectory.len() {
         let row = trajectory.write_row(index, &mut buffer);
-        let row = row.expect("it has room");
+        let row = row.expect("the buffer is long enough");
         needed = row.len();
         rows += row;
     }

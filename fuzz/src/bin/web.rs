@@ -1,7 +1,7 @@
-//! The functions that the page's module exports, called in any order with any numbers.
+//! Calls to the exports of the WebAssembly module, in any order with any numbers.
 //!
-//! The module is compiled for this machine. Its state is global, so each input resets it. Only the learners stay, because
-//! the module can make them only once.
+//! The module is compiled for this machine. Its state is global, so each input resets it. Only the learners stay,
+//! because the module can make them only once.
 
 #![no_main]
 
@@ -34,7 +34,7 @@ fn sequence(u: &mut Unstructured<'_>) -> Result<()> {
             }
             3 => assert!(simulation::random() < 3),
             4 => set_params(u)?,
-            // Seldom a wide picture, so that a run does not take too long.
+            // Wide pictures are rare, because they take long.
             5 if u.ratio(1, 16)? => picture::resize(u.arbitrary()?, u.int_in_range(0..=3)?),
             5 => picture::resize(u.int_in_range(0..=70)?, u.int_in_range(0..=70)?),
             6 => picture::paint(
@@ -96,7 +96,7 @@ fn load(u: &mut Unstructured<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Only the first call in a process begins a training. All others continue it.
+/// The first call in a process begins a training. All others continue it.
 fn train(u: &mut Unstructured<'_>) -> Result<()> {
     learner::begin_training(u.arbitrary()?, u.arbitrary()?, u.arbitrary()?);
     assert!((-500.0..=0.0).contains(&learner::train()));

@@ -1,4 +1,4 @@
-//! Any bytes in place of a learner's weights: rejected without a change, or taken as they are.
+//! Any bytes in place of a learner's weights: rejected without a change, or loaded unchanged.
 
 #![no_main]
 
@@ -8,11 +8,11 @@ use libfuzzer_sys::fuzz_target;
 
 use sarsa::task::{Learner, Preset, greedy, learn};
 
-/// So few that libFuzzer finds bytes of the right length.
+/// Few, so that libFuzzer finds bytes of the right length.
 const SLOTS: usize = 16;
 type Small<'w> = Learner<'w, SLOTS, 28>;
 
-/// FNV-1a, the checksum. No search would find it.
+/// The checksum, FNV-1a. libFuzzer would not find it.
 fn checksum(bytes: &[u8]) -> u32 {
     bytes.iter().fold(0x811c_9dc5, |hash, &byte| {
         (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
@@ -26,7 +26,7 @@ fuzz_target!(|bytes: &[u8]| {
     let mut memory = [[0.0; 2]; SLOTS];
     let mut learner: Small = Preset::Fast.learner(1, &mut memory).expect("a preset");
     let before: Vec<u8> = learner.save().collect();
-    // As they are, with this learner's header, or also with its checksum.
+    // The bytes are unchanged, or get a valid header, or a valid header and checksum.
     let mut bytes = bytes.to_vec();
     if kind % 3 > 0 {
         bytes.splice(..bytes.len().min(16), before[..16].iter().copied());

@@ -17,8 +17,8 @@ fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: Obse
     }
 }
 
-/// Every bit of one episode, from its initial state to its end, and of the next initial state. Even episodes have random
-/// actions, odd ones torque against θ̇1.
+/// Every bit of one episode, from its initial state to its end, and of the next initial state. Even episodes have
+/// random actions, odd ones torque against θ̇1.
 pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
     let mut digest = Digest::default();
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(episode));
@@ -50,7 +50,7 @@ pub fn equal<A: Arithmetic>(expected: &[u64; 16]) -> usize {
 
 /// Every bit that a batch of twenty in `Fast` returns in 200 steps under torque against θ̇1, which ends episodes. It is
 /// the same for any width `N`.
-#[inline(never)] // one after the other, in 16 KiB
+#[inline(never)] // each width frees its stack before the next, because RAM has 16 KiB
 pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
     const LEN: usize = 20;
     let (blocks, generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]);

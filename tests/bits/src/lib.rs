@@ -1,7 +1,7 @@
 //! The bits that every target must compute: episodes, a batch, a training and drawings, with digests of all their bits.
 //!
-//! The crate's tests compare these digests on the machine that builds, the program of this crate on any other target, and the
-//! firmware of `examples/cortex-m` while it draws and learns.
+//! The library's tests compare these digests on the build machine, and the program of this crate compares them on any
+//! target. The firmware of `examples/cortex-m` compares them while it draws and learns.
 
 #![no_std]
 

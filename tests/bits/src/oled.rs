@@ -1,4 +1,4 @@
-//! An episode on a 128×64 display of one colour, and a digest of all its frames.
+//! An episode on a monochrome 128×64 display, and a digest of all its frames.
 
 use acrobot::render::{Figure, Theme};
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
@@ -12,7 +12,7 @@ pub fn start() -> TimeLimit<Acrobot<Fast>> {
     TimeLimit::v1(Acrobot::new(42))
 }
 
-/// Its policy.
+/// The policy of the episode: torque against θ̇1.
 pub fn policy(acrobot: &Acrobot<Fast>) -> Action {
     against(acrobot.state().dtheta1)
 }

@@ -12,7 +12,7 @@ pub type Learner<'w> = task::Learner<'w, 2048, 20>;
 
 /// The seed of the acrobot and of the learner's choices.
 pub const SEED: u64 = 42;
-/// The episodes that the learner's schedules end with.
+/// The episodes after which the learner's schedules end.
 pub const EPISODES: u32 = 200;
 /// The episodes after which the weights are compared.
 pub const COMPARED: u32 = 100;

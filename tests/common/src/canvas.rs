@@ -1,4 +1,4 @@
-//! A target for drawings.
+//! A drawing target in memory.
 
 use std::convert::Infallible;
 

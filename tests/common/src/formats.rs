@@ -1,4 +1,4 @@
-//! A value stored and loaded again in many formats of serde's.
+//! Stores and loads a value in many serde formats.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ enum Untagged<T> {
     One(T),
 }
 
-/// What comes back from each format, with the format's name. `value` is a struct.
+/// The value after a round trip through each format, with the format's name. `value` must be a struct.
 pub fn again<T: Serialize + DeserializeOwned>(value: &T) -> Vec<(&'static str, T)> {
     let flattened = Flattened {
         name: "a".into(),

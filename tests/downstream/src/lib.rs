@@ -1,4 +1,4 @@
-//! What users of the crate write: each test is one of them.
+//! Programs that users of the crate write, one per test.
 
 #![cfg(test)]
 
@@ -15,7 +15,7 @@ use acrobot::{Acrobot, Action, Error, Fast, Portable, State, TimeLimit};
 use critical_section::Mutex;
 use rand_core::TryRng;
 
-/// Firmware has an acrobot in a static that an interrupt steps.
+/// In firmware an interrupt steps an acrobot in a static.
 #[test]
 fn an_interrupt_steps_a_static() {
     type Device = (TimeLimit<Acrobot<Fast>>, Trajectory<f32, 4>);
@@ -42,7 +42,7 @@ fn an_interrupt_steps_a_static() {
     });
 }
 
-/// Here libm is the newest that the crate allows. `Portable` has its sines.
+/// Here libm is the newest version that the crate allows. `Portable` calls its sines.
 #[test]
 fn the_newest_libm_has_the_sines_of_portables_recorded_bits() {
     let mut rng = Pcg64::new(0);
@@ -111,7 +111,7 @@ fn a_borrowed_batch_takes_torques() -> Result<(), Error> {
     Ok(())
 }
 
-/// A chip's sine unit becomes an arithmetic.
+/// A microcontroller's sine unit becomes an arithmetic.
 #[test]
 fn an_arithmetic_can_be_added() {
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
