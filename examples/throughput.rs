@@ -20,10 +20,15 @@ use acrobot::batch::{Batch, SimdLevel};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use benches::{Lanes, Play, bare_f32, bare_f64};
+use clap::Parser;
 use examples_common::exit;
 
+/// Prints steps per second on one core, alone and in batches, and their ratio to a bare loop.
+#[derive(Parser)]
+struct Options {}
+
 fn main() -> ExitCode {
-    exit::status(measure())
+    exit::run(|_: &Options| measure())
 }
 
 fn measure() -> io::Result<()> {
