@@ -8,41 +8,23 @@ use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::Lean;
 use acrobot::render::{Figure, Theme};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
+use acrobot_cortex_m::micromath::Micromath;
 use bits::episodes;
-use cortex_m::Peripherals;
 use cortex_m::register::msp;
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
-use micromath::F32Ext;
 use semihosting::{println, process};
-
-/// For comparison: micromath's sine and cosine, with an error of 1.1e-3.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Micromath;
-
-impl Arithmetic for Micromath {
-    const NAME: &'static str = "micromath";
-    type Scalar = f32;
-    type Form = Lean;
-
-    fn sin_cos(x: f32) -> (f32, f32) {
-        // By path, because `x.sin()` is the platform's where std is linked.
-        (F32Ext::sin(x), F32Ext::cos(x))
-    }
-}
 
 #[entry]
 fn main() -> ! {
-    let Some(peripherals) = Peripherals::take() else {
+    let Some(mut counter) = Counter::take() else {
         process::exit(1)
     };
-    let mut counter = Counter::start(peripherals.SYST);
     measure::<Fast>("fast", &mut counter);
     measure::<Micro>("micro", &mut counter);
     measure::<Micromath>("micromath", &mut counter);
@@ -65,13 +47,6 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     let mut actions = actions.iter().copied().cycle();
     let mut action = || actions.next().unwrap_or(Action::Zero);
 
-    let count = counter.count(4000, || {
-        if black_box(&step(&mut acrobot, action())).done() {
-            black_box(acrobot.reset());
-        }
-    });
-    println!("{name} step {count}");
-
     // More than a turn to either side.
     let angles: [A::Scalar; 64] =
         core::array::from_fn(|i| A::Scalar::from_f64(i as f64 * 0.25 - 8.0));
@@ -87,14 +62,14 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     println!("{name} reset {count}");
 
     let mut display = Display::new();
-    let count = counter.count(20, || {
+    let count = counter.count(200, || {
         step(&mut acrobot, action());
         let _ = Figure::new(acrobot.inner()).draw(&mut display, &Theme::MONOCHROME);
     });
     println!("{name} draw {count}");
 
     let mut shown = Figure::new(acrobot.inner());
-    let count = counter.count(20, || {
+    let count = counter.count(200, || {
         step(&mut acrobot, action());
         let figure = Figure::new(acrobot.inner());
         let _ = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);

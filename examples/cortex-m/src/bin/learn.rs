@@ -14,7 +14,6 @@ use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::panel::{Bus, Panel};
 use bits::training::{EPISODES, Learner, Weights};
 use bits::{oled, training};
-use cortex_m::Peripherals;
 use cortex_m_rt::{STACK_PAINT_VALUE, entry, heap_start};
 use heapless::HistoryBuf;
 use sarsa::task::{self, Env, Preset, evaluation, greedy, learn, play};
@@ -26,12 +25,12 @@ use ssd1306::{I2CDisplayInterface, Ssd1306};
 #[entry]
 fn main() -> ! {
     static mut WEIGHTS: Weights = training::UNTRAINED;
-    let (Some(peripherals), Ok(mut learner)) =
-        (Peripherals::take(), Preset::Fast.learner(EPISODES, WEIGHTS))
+    let (Some(mut counter), Ok(mut learner)) =
+        (Counter::take(), Preset::Fast.learner(EPISODES, WEIGHTS))
     else {
         process::exit(1)
     };
-    let solved = train(&mut learner, &mut Counter::start(peripherals.SYST));
+    let solved = train(&mut learner, &mut counter);
     let mut env = evaluation(&SeedSequence::new(training::SEED));
     let policy = |state: &State<f32>| greedy(&learner, state);
     let sum: f32 = (0..100).map(|_| play(&mut env, policy).0).sum();
