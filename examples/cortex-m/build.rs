@@ -11,16 +11,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         env::var("CARGO_MANIFEST_DIR")?
     );
     println!("cargo:rustc-link-arg=-Tlink.x");
-    let (flash, ram) = match env::var("TARGET")?.split('-').next() {
-        // mps2-an505
-        Some("thumbv8m.main") => (0x1000_0000, 0x3800_0000),
-        // virt, which runs from RAM
-        Some(target) if target.starts_with("riscv32") => (0x8000_0000_u32, 0x8010_0000_u32),
-        // microbit, mps2-an385 and mps2-an386
-        _ => (0, 0x2000_0000),
-    };
-    println!("cargo:rustc-link-arg=--defsym=FLASH_ORIGIN={flash}");
-    println!("cargo:rustc-link-arg=--defsym=RAM_ORIGIN={ram}");
+    // The memory of QEMU's machines that differ from `memory.x`: mps2-an505, and virt, which runs from RAM.
+    let target = env::var("TARGET")?;
+    if target.starts_with("thumbv8m.main") {
+        println!("cargo:rustc-link-arg=--defsym=FLASH_ORIGIN=0x10000000");
+        println!("cargo:rustc-link-arg=--defsym=RAM_ORIGIN=0x38000000");
+    } else if target.starts_with("riscv32") {
+        println!("cargo:rustc-link-arg=--defsym=FLASH_ORIGIN=0x80000000");
+        println!("cargo:rustc-link-arg=--defsym=RAM_ORIGIN=0x80100000");
+    }
     println!("cargo:rustc-link-arg-bin=logger=-Tdefmt.x");
     // Its weights alone take 16 KiB.
     println!("cargo:rustc-link-arg-bin=learn=--defsym=RAM_SIZE=32K");
