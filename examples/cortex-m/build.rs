@@ -1,4 +1,4 @@
-//! Passes the memory, defmt's sections and, with the feature `libgcc`, libgcc's doubles to the linker.
+//! Gives the linker the memory, defmt's sections and, with the feature `libgcc`, libgcc's doubles.
 
 mod libgcc;
 

@@ -101,14 +101,14 @@ fn draw(env: Env, policy: impl Fn(&State<f32>) -> Action) -> bool {
     !failed && !panel.borrow().unknown && drawn.is_ok() && steps < 500
 }
 
-/// Bytes of RAM in use. What still has the paint of the start-up code was never written.
+/// Bytes of RAM in use. The start-up code paints the RAM, so a word that is still painted was never written.
 fn ram() -> usize {
     unsafe extern "C" {
         static _ram_start: u32;
         static _ram_end: u32;
     }
     let mut deepest = heap_start();
-    // SAFETY: the paint begins there, and this function's own frame ends the search.
+    // SAFETY: the search begins in RAM, and ends at this function's own frame, which is not painted.
     while unsafe { deepest.read_volatile() } == STACK_PAINT_VALUE {
         deepest = deepest.wrapping_add(1);
     }
