@@ -1,5 +1,5 @@
-//! Prints the instructions per environment step with each arithmetic, one a line: `fast step 566`. It builds for each target
-//! of the table of cores in `docs/embedded.md`.
+//! Prints the instructions per environment step with each arithmetic, one a line: `arithmetic step value`. It builds for each
+//! target of the table of cores in `docs/embedded.md`.
 
 #![no_std]
 #![no_main]
