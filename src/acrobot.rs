@@ -116,9 +116,12 @@ pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
     rng: R,
 }
 
-/// The size that the docs state, bytes. ARM aligns `u128` to 8 bytes. With `serde` a generator also keeps its origin.
+/// The size that the docs state, bytes. 32-bit ARM and RISC-V align `u128` to 8 bytes. With `serde` a generator also keeps its origin.
 const _: () = {
-    let limit = match (cfg!(target_arch = "arm"), cfg!(feature = "serde")) {
+    let limit = match (
+        cfg!(any(target_arch = "arm", target_arch = "riscv32")),
+        cfg!(feature = "serde"),
+    ) {
         (true, false) => 184,
         (true, true) => 224,
         (false, false) => 192,

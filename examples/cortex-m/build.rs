@@ -1,4 +1,4 @@
-//! Passes the memory, defmt's sections and, with the feature `libgcc`, libgcc's doubles to the linker.
+//! Gives the linker the memory, defmt's sections and, with the feature `libgcc`, libgcc's doubles.
 
 mod libgcc;
 
@@ -11,10 +11,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         env::var("CARGO_MANIFEST_DIR")?
     );
     println!("cargo:rustc-link-arg=-Tlink.x");
+    // The memory of QEMU's machines that differ from `memory.x`: mps2-an505, and virt, which runs from RAM.
+    let target = env::var("TARGET")?;
+    if target.starts_with("thumbv8m.main") {
+        println!("cargo:rustc-link-arg=--defsym=FLASH_ORIGIN=0x10000000");
+        println!("cargo:rustc-link-arg=--defsym=RAM_ORIGIN=0x38000000");
+    } else if target.starts_with("riscv32") {
+        println!("cargo:rustc-link-arg=--defsym=FLASH_ORIGIN=0x80000000");
+        println!("cargo:rustc-link-arg=--defsym=RAM_ORIGIN=0x80100000");
+    }
     println!("cargo:rustc-link-arg-bin=logger=-Tdefmt.x");
     // Its weights alone take 16 KiB.
     println!("cargo:rustc-link-arg-bin=learn=--defsym=RAM_SIZE=32K");
-    // Nobody flashes it, and it has batches in all arithmetics.
+    // It has batches in all arithmetics and is never flashed.
     println!("cargo:rustc-link-arg-bin=no_panic=--defsym=FLASH_SIZE=1M");
     if env::var_os("CARGO_FEATURE_LIBGCC").is_some() {
         libgcc::link()?;

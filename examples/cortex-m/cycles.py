@@ -1,8 +1,8 @@
-"""Estimates the cycles of an instruction on a Cortex-M4F, for `figures.py`.
+"""Estimates the mean cycles per instruction on a Cortex-M4F, for `figures.py`.
 
-It averages over every instruction that QEMU executes in the loop of a firmware such as `minimal_fast`, with the timings of
-ARM's Technical Reference Manual (ARM DDI 0439, 3.3.1 and 7.2.3). It assumes memory without wait states, and two cycles to
-refill the pipeline after a taken branch.
+The mean is over every instruction that QEMU executes in the loop of a firmware such as `minimal_fast`. The timing of each is
+that of ARM's Technical Reference Manual (ARM DDI 0439, 3.3.1 and 7.2.3). The estimate assumes memory without wait states, and
+two cycles to refill the pipeline after a taken branch.
 """
 
 import functools
@@ -42,7 +42,7 @@ def cost(mnemonic, operands, taken, after_load):
 
 
 def per_instruction(image, most=None):
-    """The mean over some steps of the firmware in the file `image`, or over its first `most` instructions."""
+    """The mean cycles per instruction of `STEPS` steps of the firmware `image`, or of its first `most` instructions."""
     listing = subprocess.run(
         ["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image], check=True, capture_output=True, text=True
     ).stdout
@@ -60,12 +60,12 @@ def per_instruction(image, most=None):
     cycles = instructions = steps = 0
     previous, after_load = None, False
     for line in qemu.stdout:
-        # Trace 0: 0x7f0000000000 [00800400/0000014c/00000110/ff020201]
+        # A line is: Trace 0: 0x7f0000000000 [00800400/0000014c/00000110/ff020201]. The second number is the address.
         _, *fields = line.split("/", 2)
         if len(fields) < 2:
             continue
         address = int(fields[0], 16)
-        # A `nop` marks each step of the loop. Seeding comes before the first.
+        # Each step of the loop begins with a `nop`. Seeding comes before the first.
         if code[address][0] == "nop":
             steps += 1
             if steps > STEPS:

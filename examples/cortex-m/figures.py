@@ -1,12 +1,15 @@
-"""Measures what the crate costs on a Cortex-M4F, and compares it with the table in the crate's README.
+"""Measures what the crate costs on microcontrollers, and compares it with the tables in `docs/embedded.md`.
 
-    python3 figures.py             fails if a figure has grown by more than 5 %, and prints the old and the new one
-    python3 figures.py --update    writes the table and the one derived from it
+    python3 figures.py             fails if a figure has grown by more than 5 %, and prints every figure
+    python3 figures.py --update    writes the tables
+    python3 figures.py cores       only the tables that are named: m4f, cores, levels
 
-`bench` and `learn` count instructions, stack and RAM. Flash is that of `minimal_fast` and the others minus that of
-`minimal_without`. `cycles.py` estimates the cycles of an instruction.
+`steps`, `bench` and `learn` count instructions, stack and RAM. Flash is that of `minimal_fast` and the others minus that of
+`minimal_without`. `cycles.py` estimates the cycles per instruction.
 """
 
+import argparse
+import collections
 import os
 import pathlib
 import re
@@ -15,8 +18,11 @@ import sys
 
 import cycles
 
-README = pathlib.Path("../../README.md")
+DOCUMENT = pathlib.Path("../../docs/embedded.md")
 TOLERANCE = 1.05
+M4F = "thumbv7em-none-eabihf"
+TUNED = "-C target-cpu=cortex-m4"
+ARITHMETICS = {"fast": "`Fast`", "micro": "`Micro`", "reference": "`Reference`", "portable": "`Portable`"}
 COLUMNS = {
     "fast": "`Fast`",
     "micro": "`Micro`",
@@ -24,142 +30,222 @@ COLUMNS = {
     "reference_libgcc": "`Reference`, libgcc",
     "portable": "`Portable`",
     "portable_libgcc": "`Portable`, libgcc",
-    "micromath": "by `micromath`",
+    "micromath": "micromath's sine",
 }
 ROWS = {
-    "step": "instructions a step, with observation, end test and resets",
-    "cycles": "cycles a step, estimated",
-    "tuned": "the same with `-C target-cpu=cortex-m4`",
-    "sin_cos": "instructions a sine and cosine",
-    "reset": "instructions a reset",
-    "draw": "instructions a frame of 128×64 pixels",
-    "redraw": "instructions a frame of which only what moved is drawn",
-    "flash": "flash of the crate, bytes, seeding included",
+    "step": "instructions per step, with observation, end test and resets",
+    "cycles": "cycles per step, estimated",
+    "tuned": f"cycles per step with `{TUNED}`, estimated",
+    "sin_cos": "instructions per sine and cosine",
+    "reset": "instructions per reset",
+    "draw": "instructions per frame of 128×64 pixels",
+    "redraw": "instructions per frame if only what moved is drawn",
+    "flash": "flash of the crate with seeding, bytes",
     "physics": "flash of the pendulum alone, bytes",
     "size": "RAM of an `Acrobot`, bytes",
     "stack": "stack of a step, bytes",
-    "learn": "instructions a step with learning",
-    "training": "millions of instructions until the mean of 100 episodes is −100",
-    "milliseconds": "milliseconds that these take at 168 MHz, estimated",
-    "ram": "RAM in all of the firmware that learns and draws, bytes",
+    "learn": "instructions per step of training",
+    "training": "training until the mean return of 100 episodes is −100, millions of instructions",
+    "milliseconds": "time of this training at 168 MHz, estimated, ms",
+    "ram": "RAM of the whole firmware that trains and draws, bytes",
 }
+CORES = {
+    "thumbv6m-none-eabi": "Cortex-M0",
+    "thumbv7m-none-eabi": "Cortex-M3",
+    M4F: "Cortex-M4F",
+    "thumbv8m.main-none-eabihf": "Cortex-M33 with FPU",
+    "riscv32i-unknown-none-elf": "RV32I",
+    "riscv32imc-unknown-none-elf": "RV32IMC",
+    "riscv32imafc-unknown-none-elf": "RV32IMAFC",
+}
+LEVELS = ["3", "2", '"s"', '"z"']
 CLOCKS = {
     "STM32F4 (Cortex-M4F)": 168,
     "nRF52840 (Cortex-M4F)": 64,
-    "RP2350 (Cortex-M33, taken to have the same timings)": 150,
+    "RP2350 (Cortex-M33, assumed to have the same timings)": 150,
 }
-PAPER_HEAD = "| steps a second, on paper | clock | `Fast` | `Micro` | `Reference` | `Portable` |"
-HEAD = "| on a Cortex-M4F | " + " | ".join(COLUMNS.values()) + " |"
 
 
 def run(*command, rustflags=""):
     environment = os.environ | {"RUSTFLAGS": rustflags}
-    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, env=environment).stdout
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
+    if done.returncode != 0:
+        sys.exit(f"{done.stdout}failed: {' '.join(command)}")
+    return done.stdout
 
 
-def bench(features="", rustflags="", binary="bench"):
-    """The figures that it prints: arithmetic, figure and value."""
-    options = ["--quiet", "--locked", "--release", "--features", features, "--bin", binary]
-    lines = run("cargo", "run", *options, rustflags=rustflags)
-    for arithmetic, figure, value in re.findall(r"^(\w+) (\w+) (\d+)$", lines, re.MULTILINE):
-        yield arithmetic, figure, int(value)
+def cargo(command, *binaries, target=M4F, features="", level="3", rustflags=""):
+    options = ["--quiet", "--locked", "--release", "--target", target, "--features", features]
+    options += ["--config", f"profile.release.opt-level={level}"]
+    return run("cargo", command, *options, *(f"--bin={binary}" for binary in binaries), rustflags=rustflags)
 
 
-def image(binary, features="", rustflags=""):
-    """The path of that firmware."""
-    options = ["--quiet", "--locked", "--release", "--features", features, "--bin", binary]
-    run("cargo", "build", *options, rustflags=rustflags)
-    return f"target/thumbv7em-none-eabihf/release/{binary}"
+def printed(binary, **options):
+    """The figures that a binary prints: {(arithmetic, figure): value}."""
+    lines = re.findall(r"^(\w+) (\w+) (\d+)$", cargo("run", binary, **options), re.MULTILINE)
+    return {(arithmetic, figure): int(value) for arithmetic, figure, value in lines}
 
 
-def flash(name, features=""):
+def images(*binaries, **options):
+    """The paths of the firmware, once built: {binary: path}."""
+    cargo("build", *binaries, **options)
+    return {binary: f"target/{M4F}/release/{binary}" for binary in binaries}
+
+
+def flash(path):
     """Bytes of code, constants and initial values."""
-    sections = run("size", "-A", image(f"minimal_{name}", features))
+    sections = run("arm-none-eabi-size", "-A", path)
     return sum(int(size) for size in re.findall(r"^\.(?:text|rodata|data)\s+(\d+)", sections, re.MULTILINE))
 
 
-def measure():
-    figures = {(arithmetic, figure): value for arithmetic, figure, value in bench()}
-    figures |= {(f"{arithmetic}_libgcc", figure): value for arithmetic, figure, value in bench("libgcc")}
-    without = flash("without")
-    figures["fast", "physics"] = flash("physics") - without
-    tuned = "-C target-cpu=cortex-m4"
-    for column in ["fast", "micro", "reference", "reference_libgcc", "portable", "portable_libgcc"]:
-        arithmetic, _, features = column.partition("_")
-        figures[column, "flash"] = flash(arithmetic, features) - without
-        each = cycles.per_instruction(image(f"minimal_{arithmetic}", features))
-        figures[column, "cycles"] = round(figures[column, "step"] * each)
-    for arithmetic, figure, value in bench(rustflags=tuned):
-        if figure == "step" and arithmetic != "micromath":
-            figures[arithmetic, "tuned"] = round(value * cycles.per_instruction(image(f"minimal_{arithmetic}", rustflags=tuned)))
-    figures |= {(arithmetic, figure): value for arithmetic, figure, value in bench(binary="learn")}
-    # A hundred steps. From step 58 on there are as many traces as there will be.
-    each = cycles.per_instruction(image("learn"), most=3_000_000)
+def minimal(arithmetics, **options):
+    """The paths of the minimal firmware, and the flash of the crate in it: {arithmetic: path}, {arithmetic: bytes}."""
+    built = images("minimal_without", *(f"minimal_{each}" for each in arithmetics), **options)
+    without = flash(built["minimal_without"])
+    paths = {each: built[f"minimal_{each}"] for each in arithmetics}
+    return paths, {each: flash(path) - without for each, path in paths.items()}
+
+
+def measure_m4f():
+    figures = {}
+    for suffix, features, arithmetics in [
+        ("", "", [*ARITHMETICS, "micromath"]),
+        ("_libgcc", "libgcc", ["reference", "portable"]),
+    ]:
+        counted = printed("steps", features=features) | printed("bench", features=features)
+        figures |= {(arithmetic + suffix, figure): value for (arithmetic, figure), value in counted.items()}
+        paths, sizes = minimal(arithmetics, features=features)
+        for arithmetic, path in paths.items():
+            column = arithmetic + suffix
+            figures[column, "flash"] = sizes[arithmetic]
+            figures[column, "cycles"] = round(figures[column, "step"] * cycles.per_instruction(path))
+    counted = printed("steps", rustflags=TUNED)
+    paths, _ = minimal([*ARITHMETICS, "micromath"], rustflags=TUNED)
+    for arithmetic, path in paths.items():
+        figures[arithmetic, "tuned"] = round(counted[arithmetic, "step"] * cycles.per_instruction(path))
+    figures["fast", "physics"] = minimal(["physics"])[1]["physics"]
+    figures |= printed("learn")
+    # The first hundred steps of training. From step 58 on there are as many traces as there will be.
+    each = cycles.per_instruction(images("learn")["learn"], most=3_000_000)
     figures["fast", "milliseconds"] = round(figures["fast", "training"] * each / 168 * 1000)
-    return {key: value for key, value in figures.items() if key[0] in COLUMNS and key[1] in ROWS}
+    return figures
 
 
-def table(figures):
-    def cell(column, row):
-        return f"{figures[column, row]:,}" if (column, row) in figures else ""
-
-    yield HEAD
-    yield "|---|" + "---|" * len(COLUMNS)
-    for row, words in ROWS.items():
-        yield f"| {words} | " + " | ".join(cell(column, row) for column in COLUMNS) + " |"
+def measure_cores():
+    return {
+        (arithmetic, target): value
+        for target in CORES
+        for (arithmetic, _), value in printed("steps", target=target).items()
+    }
 
 
-def paper(figures):
-    """Steps a second on some parts, from the cycles, to three digits."""
-    yield PAPER_HEAD
-    yield "|---|---|---|---|---|---|"
+def measure_levels():
+    figures = {}
+    for level in LEVELS:
+        counted = printed("steps", level=level)
+        _, sizes = minimal(ARITHMETICS, level=level)
+        for arithmetic in ARITHMETICS:
+            figures[arithmetic, f"step {level}"] = counted[arithmetic, "step"]
+            figures[arithmetic, f"flash {level}"] = sizes[arithmetic]
+    return figures
+
+
+Table = collections.namedtuple("Table", "title columns rows measure")
+TABLES = {
+    "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
+    "cores": Table(
+        "instructions per step", ARITHMETICS, {target: f"{core}, `{target}`" for target, core in CORES.items()}, measure_cores
+    ),
+    "levels": Table(
+        "`opt-level` on a Cortex-M4F",
+        ARITHMETICS,
+        {f"step {level}": f"`{level}`, instructions per step" for level in LEVELS}
+        | {f"flash {level}": f"`{level}`, bytes of flash" for level in LEVELS},
+        measure_levels,
+    ),
+}
+
+
+def head(title, columns):
+    return [f"| {title} | {' | '.join(columns)} |", "|---|" + "---|" * len(columns)]
+
+
+def written(table, figures):
+    """The lines of a table."""
+    cells = {key: f"{value:,}" for key, value in figures.items()}
+    yield from head(table.title, table.columns.values())
+    for row, words in table.rows.items():
+        yield f"| {words} | " + " | ".join(cells.get((column, row), "") for column in table.columns) + " |"
+
+
+def rates(figures):
+    """The lines of the table of steps per second, to three digits, from the table of the Cortex-M4F."""
+    yield from head("steps per second, on paper", ["clock", *ARITHMETICS.values()])
     for part, megahertz in CLOCKS.items():
-        rates = [megahertz * 1e6 / figures[arithmetic, "tuned"] for arithmetic in ("fast", "micro", "reference", "portable")]
-        cells = [f"{int(float(f'{rate:.3g}')):,}" for rate in rates]
+        each = [megahertz * 1e6 / figures[arithmetic, "tuned"] for arithmetic in ARITHMETICS]
+        cells = [f"{float(f'{rate:.3g}'):,.0f}" for rate in each]
         yield f"| {part} | {megahertz} MHz | {' | '.join(cells)} |"
 
 
-def find(head, lines):
-    """The first line of the table with that head, and the one after its last."""
-    start = lines.index(head)
-    return start, next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
+def find(first, lines):
+    """Where the table begins that has this first line, and where it ends."""
+    start = lines.index(first)
+    return start, next((i for i in range(start, len(lines)) if not lines[i].startswith("|")), len(lines))
 
 
-def documented(lines):
-    """The figures in the README's table."""
-    names = {words: row for row, words in ROWS.items()}
-    start, end = find(HEAD, lines)
+def documented(table, lines):
+    """The figures of a table: {(column, row): value}."""
+    names = {words: row for row, words in table.rows.items()}
+    start, end = find(next(written(table, {})), lines)
     for line in lines[start + 2 : end]:
         words, *cells = [cell.strip() for cell in line.strip("|").split("|")]
-        for column, cell in zip(COLUMNS, cells):
+        for column, cell in zip(table.columns, cells):
             if cell and words in names:
                 yield (column, names[words]), int(cell.replace(",", ""))
 
 
-def main():
-    figures = measure()
-    lines = README.read_text().splitlines()
-    if sys.argv[1:] == ["--update"]:
-        for head, rows in [(HEAD, table), (PAPER_HEAD, paper)]:
-            start, end = find(head, lines)
-            lines[start:end] = rows(figures)
-        README.write_text("\n".join(lines) + "\n")
-        return
-    old = dict(documented(lines))
-    grown = []
+def compare(name, old, figures):
+    """Prints the figures, and returns what is wrong with them."""
     for key, value in figures.items():
-        print(*key, value)
+        words = " ".join((name, *key))
+        print(words, value)
         if key not in old:
-            grown.append(f"{' '.join(key)} is {value}; the README has no such figure")
+            yield f"{words} is {value}; the table has no such figure"
         elif value > old[key] * TOLERANCE:
-            grown.append(f"{' '.join(key)} was {old[key]} and is {value}")
-    start, end = find(PAPER_HEAD, lines)
-    if lines[start:end] != list(paper(old)):
-        grown.append("the table of steps a second does not match the cycles")
+            yield f"{words} was {old[key]} and is {value}"
     for key in old.keys() - figures.keys():
-        grown.append(f"{' '.join(key)} was {old[key]} and is not measured")
-    if grown:
-        sys.exit("\n".join(grown) + "\nIf this is intended: python3 figures.py --update")
+        yield f"{' '.join((name, *key))} was {old[key]} and is not measured"
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Measures what the crate costs on microcontrollers.")
+    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"one of {', '.join(TABLES)}; default: all")
+    parser.add_argument("--update", action="store_true", help="write the tables instead of comparing them")
+    options = parser.parse_args()
+    if unknown := set(options.tables) - TABLES.keys():
+        parser.error(f"there is no table {', '.join(sorted(unknown))}; there are: {', '.join(TABLES)}")
+    lines = DOCUMENT.read_text().splitlines()
+    wrong = []
+    for name in options.tables or TABLES:
+        table = TABLES[name]
+        figures = {key: value for key, value in table.measure().items() if key[0] in table.columns and key[1] in table.rows}
+        new = [written(table, figures)] + ([rates(figures)] if name == "m4f" else [])
+        if options.update:
+            for rows in map(list, new):
+                start, end = find(rows[0], lines)
+                lines[start:end] = rows
+            continue
+        old = dict(documented(table, lines))
+        wrong += compare(name, old, figures)
+        if name == "m4f":
+            rows = list(rates(old))
+            start, end = find(rows[0], lines)
+            if lines[start:end] != rows:
+                wrong.append("the table of steps per second does not match the cycles")
+    if options.update:
+        DOCUMENT.write_text("\n".join(lines) + "\n")
+    elif wrong:
+        sys.exit("\n".join(wrong) + "\nIf this is intended: python3 figures.py --update")
 
 
 main()

@@ -1,6 +1,6 @@
-//! Links libgcc's sums, products and conversions of doubles in place of Rust's own routines, with the same bits.
+//! Makes libgcc add, multiply and convert doubles, instead of Rust's own routines. The bits are the same.
 //!
-//! For a Cortex-M without an FPU for doubles. Copy this file beside your `build.rs` and call `link` there:
+//! It is for a Cortex-M3, M4 or M33, which compute doubles in software. Copy this file beside your `build.rs` and call `link` there:
 //!
 //! ```text
 //! mod libgcc;
@@ -24,7 +24,7 @@ pub fn link() -> Result<(), Box<dyn Error>> {
         "thumbv7em-none-eabihf" => ("armv7e-m+fp", "hard"),
         "thumbv8m.main-none-eabi" => ("armv8-m.main", "soft"),
         "thumbv8m.main-none-eabihf" => ("armv8-m.main+fp", "hard"),
-        other => return Err(format!("libgcc has no faster doubles for {other}").into()),
+        other => return Err(format!("libgcc's doubles are not faster on {other}").into()),
     };
     let core = format!("-march={core}");
     let floats = format!("-mfloat-abi={floats}");
@@ -43,7 +43,7 @@ pub fn link() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What a program of the package gcc-arm-none-eabi prints.
+/// Runs a program of the package gcc-arm-none-eabi, and returns what it prints.
 fn run(folder: &str, program: &str, arguments: &[&str]) -> Result<String, Box<dyn Error>> {
     let output = Command::new(program)
         .args(arguments)

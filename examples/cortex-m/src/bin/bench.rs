@@ -1,5 +1,5 @@
-//! Counts instructions and bytes of stack and prints one figure a line: `arithmetic figure value`. Every run prints the same.
-//! Then it compares the bits of the doubles.
+//! Counts instructions, and bytes of stack and RAM. Prints one figure a line, `arithmetic figure value`, the same in every run.
+//! Then it compares the bits of `Reference` and `Portable` with the crate's tests.
 
 #![no_std]
 #![no_main]
@@ -8,47 +8,29 @@ use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::Lean;
 use acrobot::render::{Figure, Theme};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
+use acrobot_cortex_m::micromath::Micromath;
 use bits::episodes;
-use cortex_m::Peripherals;
 use cortex_m::register::msp;
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
-use micromath::F32Ext;
 use semihosting::{println, process};
-
-/// For comparison: micromath's sine and cosine, with an error of 1.1e-3.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Micromath;
-
-impl Arithmetic for Micromath {
-    const NAME: &'static str = "micromath";
-    type Scalar = f32;
-    type Form = Lean;
-
-    fn sin_cos(x: f32) -> (f32, f32) {
-        // By path, because `x.sin()` is the platform's where std is linked.
-        (F32Ext::sin(x), F32Ext::cos(x))
-    }
-}
 
 #[entry]
 fn main() -> ! {
-    let Some(peripherals) = Peripherals::take() else {
+    let Some(mut counter) = Counter::take() else {
         process::exit(1)
     };
-    let mut counter = Counter::start(peripherals.SYST);
     measure::<Fast>("fast", &mut counter);
     measure::<Micro>("micro", &mut counter);
     measure::<Micromath>("micromath", &mut counter);
     measure::<Reference>("reference", &mut counter);
     measure::<Portable>("portable", &mut counter);
-    // By whatever routines the doubles are computed.
+    // The bits must also be the same with libgcc's routines.
     let equal = episodes::equal::<Reference>(&episodes::REFERENCE)
         + episodes::equal::<Portable>(&episodes::PORTABLE);
     println!("{equal} of 32 episodes in doubles are bit-identical");
@@ -65,14 +47,7 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     let mut actions = actions.iter().copied().cycle();
     let mut action = || actions.next().unwrap_or(Action::Zero);
 
-    let count = counter.count(4000, || {
-        if black_box(&step(&mut acrobot, action())).done() {
-            black_box(acrobot.reset());
-        }
-    });
-    println!("{name} step {count}");
-
-    // More than a turn to either side.
+    // From −8 to 8 rad: more than a turn in either direction.
     let angles: [A::Scalar; 64] =
         core::array::from_fn(|i| A::Scalar::from_f64(i as f64 * 0.25 - 8.0));
     let mut angles = angles.iter().copied().cycle();
@@ -87,14 +62,14 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     println!("{name} reset {count}");
 
     let mut display = Display::new();
-    let count = counter.count(20, || {
+    let count = counter.count(200, || {
         step(&mut acrobot, action());
         let _ = Figure::new(acrobot.inner()).draw(&mut display, &Theme::MONOCHROME);
     });
     println!("{name} draw {count}");
 
     let mut shown = Figure::new(acrobot.inner());
-    let count = counter.count(20, || {
+    let count = counter.count(200, || {
         step(&mut acrobot, action());
         let figure = Figure::new(acrobot.inner());
         let _ = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);
@@ -102,7 +77,7 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     });
     println!("{name} redraw {count}");
 
-    // Noise this large takes the steps through every branch: noise, bounds and goal.
+    // With noise this large the steps take every branch: noise, bounds and goal.
     let params = *acrobot.inner().params();
     let noise = A::Scalar::from_f64(20.0);
     let changed = acrobot.inner_mut().set_params(Params {
@@ -128,12 +103,12 @@ fn step<A: Arithmetic>(acrobot: &mut TimeLimit<Acrobot<A>>, action: Action) -> S
     acrobot.step(action)
 }
 
-/// The bytes of stack that `run` takes. Paints the stack below, runs, and finds the deepest word that changed.
+/// The bytes of stack that `run` takes. Paints the stack below, calls `run`, and finds the deepest word that changed.
 #[inline(never)]
 fn stack(run: impl FnOnce()) -> usize {
     const PAINT: u32 = 0xa5c3_9617;
     const WORDS: usize = 512;
-    // Paints below this function's own frame, whatever its size.
+    // The paint begins below this function's own frame.
     let end = msp::read() as usize as *mut u32;
     for i in 1..=WORDS {
         // SAFETY: the 2 KiB below the stack pointer are unused stack, because no interrupt is enabled.

@@ -14,7 +14,6 @@ use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::panel::{Bus, Panel};
 use bits::training::{EPISODES, Learner, Weights};
 use bits::{oled, training};
-use cortex_m::Peripherals;
 use cortex_m_rt::{STACK_PAINT_VALUE, entry, heap_start};
 use heapless::HistoryBuf;
 use sarsa::task::{self, Env, Preset, evaluation, greedy, learn, play};
@@ -26,12 +25,12 @@ use ssd1306::{I2CDisplayInterface, Ssd1306};
 #[entry]
 fn main() -> ! {
     static mut WEIGHTS: Weights = training::UNTRAINED;
-    let (Some(peripherals), Ok(mut learner)) =
-        (Peripherals::take(), Preset::Fast.learner(EPISODES, WEIGHTS))
+    let (Some(mut counter), Ok(mut learner)) =
+        (Counter::take(), Preset::Fast.learner(EPISODES, WEIGHTS))
     else {
         process::exit(1)
     };
-    let solved = train(&mut learner, &mut Counter::start(peripherals.SYST));
+    let solved = train(&mut learner, &mut counter);
     let mut env = evaluation(&SeedSequence::new(training::SEED));
     let policy = |state: &State<f32>| greedy(&learner, state);
     let sum: f32 = (0..100).map(|_| play(&mut env, policy).0).sum();
@@ -102,14 +101,14 @@ fn draw(env: Env, policy: impl Fn(&State<f32>) -> Action) -> bool {
     !failed && !panel.borrow().unknown && drawn.is_ok() && steps < 500
 }
 
-/// Bytes of RAM in use. What still has the paint of the start-up code was never written.
+/// Bytes of RAM in use. The start-up code paints the RAM, so a word that is still painted was never written.
 fn ram() -> usize {
     unsafe extern "C" {
         static _ram_start: u32;
         static _ram_end: u32;
     }
     let mut deepest = heap_start();
-    // SAFETY: the paint begins there, and this function's own frame ends the search.
+    // SAFETY: the search begins in RAM, and ends at this function's own frame, which is not painted.
     while unsafe { deepest.read_volatile() } == STACK_PAINT_VALUE {
         deepest = deepest.wrapping_add(1);
     }

@@ -1,4 +1,4 @@
-//! The flash that an `Acrobot<Micro>` takes above that of `minimal_without`.
+//! Firmware with an `Acrobot<Micro>`: its flash minus that of `minimal_without` is the crate's.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! The flash that a `Pendulum<Fast>` takes above that of `minimal_without`: physics without random numbers.
+//! Firmware with a `Pendulum<Fast>`, which has no random numbers: its flash minus that of `minimal_without` is the pendulum's.
 
 #![no_std]
 #![no_main]
@@ -15,7 +15,7 @@ fn main() -> ! {
     loop {
         // `cycles.py` counts a step here.
         cortex_m::asm::nop();
-        // The compiler does not know the controller's torque, nor what the controller needs.
+        // The compiler must not know the torque, and must compute the whole state.
         if PENDULUM.step(black_box(0.0)).is_ok() {
             black_box(PENDULUM.state());
         }

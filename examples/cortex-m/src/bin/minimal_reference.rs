@@ -1,4 +1,4 @@
-//! The flash that an `Acrobot<Reference>` takes above that of `minimal_without`.
+//! Firmware with an `Acrobot<Reference>`: its flash minus that of `minimal_without` is the crate's.
 
 #![no_std]
 #![no_main]

@@ -1,4 +1,4 @@
-//! The firmware of the other binaries called `minimal`, without an acrobot.
+//! The same firmware as `minimal_fast` and the others, without an acrobot.
 
 #![no_std]
 #![no_main]

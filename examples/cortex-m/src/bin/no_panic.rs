@@ -1,6 +1,6 @@
 //! Links only if no panicking branch is left, because the panic handler calls a function that does not exist.
 //! `cargo build --release --bin no_panic` is the whole test; there is nothing to run. CI builds it with the oldest and with the
-//! newest Rust, at opt-level 3, 2, "s" and "z": the source must have no panic, not only what one compiler makes of it.
+//! newest Rust, at opt-level 3, 2, "s" and "z", so that the result does not depend on one optimizer.
 //!
 //! `Trajectory`'s `write_csv` and `write_row` are not called: core's formatting of floats has branches that panic.
 
@@ -55,7 +55,7 @@ fn main() -> ! {
     }
 }
 
-/// A number that the compiler does not know.
+/// A number that the compiler cannot know.
 fn number<S: Real>() -> S {
     S::from_f64(black_box(0.5))
 }
@@ -188,7 +188,7 @@ fn batch<A: Arithmetic>() {
     }
 }
 
-/// NumPy's draws.
+/// NumPy's random numbers.
 fn numbers() {
     let mut rng = Pcg64::new(black_box(42));
     black_box(uniform(&mut rng, black_box(-1.0), black_box(1.0)));

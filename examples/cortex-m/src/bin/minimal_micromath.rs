@@ -1,0 +1,13 @@
+//! Firmware with an `Acrobot<Micromath>`: its flash minus that of `minimal_without` is the crate's.
+
+#![no_std]
+#![no_main]
+
+use acrobot_cortex_m::micromath::Micromath;
+use acrobot_cortex_m::minimal;
+use panic_halt as _;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    minimal::run::<Micromath>()
+}
