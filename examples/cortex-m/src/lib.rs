@@ -3,5 +3,6 @@
 #![no_std]
 
 pub mod counter;
+pub mod episode;
 pub mod minimal;
 pub mod panel;
