@@ -3,6 +3,7 @@
 #![no_std]
 
 pub mod counter;
+pub mod episode;
 pub mod micromath;
 #[cfg(target_arch = "arm")]
 pub mod minimal;
