@@ -1,14 +1,14 @@
-"""Plays episodes on all workers of a Ray cluster, shard by shard, and writes one Parquet file.
+"""Plays episodes on all workers of a Ray cluster and writes them into one Parquet file, with a row for each episode.
 
-    python scale_out.py                               starts a cluster on this machine, on loopback only
-    python scale_out.py --workers 2 --kill 3          a worker dies in the middle of shard 3; the file is the same
-    python scale_out.py --address 10.0.0.1:6379       on a cluster with acrobot-rs and pyarrow on each node
+    python scale_out.py                            starts a cluster on this machine, which listens on loopback only
+    python scale_out.py --workers 2 --kill 3       kills the worker of shard 3 half-way; the file is the same
+    python scale_out.py --address 10.0.0.1:6379    uses a cluster with acrobot-rs and pyarrow on each node
 
-A shard depends only on the seed, on its number and on the settings, not on its worker. Shard k has the k-th child of the
-seed. The first child of that seeds the environments, and the second one the random policy. So the file does not depend on
-the number of workers. Shards of workers that die are played again.
+The work is divided into shards. A shard depends only on its number, the seed and the settings, so the file does not depend on
+the number of workers. Shard k has the k-th child of the seed. The first child of that seeds the environments, and the second
+one seeds the random policy. If a worker dies, its shard is played again.
 
-Every environment plays the same number of episodes. A limit on steps instead would count too many short episodes.
+Every environment plays the same number of episodes. A limit on steps would count too many short episodes.
 """
 
 import argparse
@@ -41,7 +41,7 @@ POLICIES = {
 
 
 class ShardError(Exception):
-    """A shard failed."""
+    """A shard failed, or was lost too often."""
 
 
 class Played(NamedTuple):
@@ -51,14 +51,14 @@ class Played(NamedTuple):
 
 
 def streams(seed, shard):
-    """The seed of a shard's environments, 256 bits, and the generator of its policy."""
+    """A shard's two streams: the seed of its environments, 256 bits, and the generator of its policy."""
     environments, draws = np.random.SeedSequence(seed, spawn_key=(shard,)).spawn(2)
     words = environments.generate_state(8).astype("<u4")
     return int.from_bytes(words.tobytes(), "little"), np.random.default_rng(draws)
 
 
 def play(seed, shard, environments, episodes, policy):
-    """A row for each episode of a shard, in the order of environments and episodes: its length, its return, its end."""
+    """Plays a shard. Returns a row for each episode, by environment and episode: length, return, terminated, truncated."""
     reset_seed, rng = streams(seed, shard)
     envs = AcrobotVectorEnv(environments, copy=False)
     observations, _ = envs.reset(seed=reset_seed)
@@ -85,7 +85,7 @@ def play(seed, shard, environments, episodes, policy):
 
 
 def work(what, kill, shard, attempt):
-    """Plays a shard on a worker. The worker to be killed plays half of it first."""
+    """Plays a shard on a worker. If this shard is to be killed, plays half of it and kills the worker."""
     import ray
 
     if shard == kill and attempt == 1:
@@ -99,15 +99,15 @@ def work(what, kill, shard, attempt):
 
 @contextlib.contextmanager
 def cluster(address, cpus):
-    """The number of CPUs of the cluster at an address, or of a new one that listens on loopback only.
+    """Connects to the cluster at an address, or starts one that listens on loopback only. Yields its number of CPUs.
 
-    Ray reads its environment variables when it is imported, so it is imported here.
+    Ray is imported here, because it reads its environment variables on import.
     """
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     if address is None:
-        # 0, the default on these two systems, keeps the cluster on loopback. Ray ignores an address given to `init`.
+        # 0 keeps the cluster on loopback, as is the default on Windows and macOS. An address passed to `init` does not.
         os.environ.setdefault("RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER", "0")
-        # Otherwise Ray writes a token into the home folder.
+        # Without this variable Ray would write a token into the home folder.
         os.environ.setdefault("RAY_AUTH_MODE", "token")
         os.environ.setdefault("RAY_AUTH_TOKEN", secrets.token_hex(32))
     import ray
@@ -124,8 +124,8 @@ def cluster(address, cpus):
 def play_all(work, shards, workers):
     """Yields each shard with the result of `work(shard, attempt)` on a worker, in the order of completion.
 
-    Ray's own retries are off. A shard whose worker died is played again here, `TRIES` times in all, so that a shard that
-    kills every worker ends the run. An exception in a shard would happen again, so it ends the run immediately.
+    Ray's own retries are off. If a worker dies, its shard is played again here, at most `TRIES` times in total. So a shard that
+    kills every worker ends the run. An exception in a shard would occur again, so it ends the run immediately.
     """
     import ray
     from ray.exceptions import RayError, RayTaskError
@@ -152,7 +152,7 @@ def play_all(work, shards, workers):
 
 
 def gather(what, shards, workers, kill=None):
-    """All shards as one table, in order, and the worker and the time of each."""
+    """Plays all shards. Returns their rows as one table, in order, and what `work` returned for each shard."""
     results = play_all(lambda shard, attempt: work(what, kill, shard, attempt), shards, workers)
     played = dict(tqdm(results, total=shards, unit="shard"))
     table = pa.concat_tables(played[shard].table for shard in range(shards))
@@ -161,14 +161,14 @@ def gather(what, shards, workers, kill=None):
 
 
 def write(table, path):
-    """Writes the whole file or none."""
+    """Writes the whole file, or leaves the old one."""
     part = path.with_name(path.name + ".part")
     pq.write_table(table, part)
     part.replace(path)
 
 
 def report(played, seconds):
-    """Prints steps of counted episodes per second: of each worker while it plays, and of all with Ray's overhead."""
+    """Prints steps per second: for each worker its playing time counts, and in total the whole time, with Ray's overhead."""
     shards, steps, busy = Counter(), Counter(), Counter()
     for worker, took, table in played:
         shards[worker] += 1
@@ -177,11 +177,11 @@ def report(played, seconds):
     print(f"{'worker':28}{'shards':>8}{'steps':>16}{'steps/s':>14}")
     for worker in sorted(shards):
         print(f"{worker:28}{shards[worker]:8}{steps[worker]:16,}{steps[worker] / busy[worker]:14,.0f}")
-    print(f"{'in all':28}{shards.total():8}{steps.total():16,}{steps.total() / seconds:14,.0f}")
+    print(f"{'total':28}{shards.total():8}{steps.total():16,}{steps.total() / seconds:14,.0f}")
 
 
 def whole(low, high=None):
-    """A parser of integers within bounds, for argparse."""
+    """A parser for argparse: integers within bounds."""
 
     def parse(text):
         rule = f"an integer of at least {low}" if high is None else f"an integer from {low} to {high}"
@@ -193,7 +193,7 @@ def whole(low, high=None):
 
 
 def listening(text):
-    """An address with a listener, for argparse. Ray would try forever."""
+    """A parser for argparse: an address where something listens. Without one, Ray would retry forever."""
     host, _, port = text.rpartition(":")
     try:
         socket.create_connection((host, int(port)), timeout=10).close()
@@ -206,13 +206,13 @@ def parse(arguments):
     count = whole(1, 2**31 - 1)
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--shards", type=count, default=8, help="default 8")
-    parser.add_argument("--environments", type=count, default=1024, help="of each shard; default 1024")
-    parser.add_argument("--episodes", type=count, default=100, help="of each environment; default 100")
+    parser.add_argument("--environments", type=count, default=1024, help="per shard; default 1024")
+    parser.add_argument("--episodes", type=count, default=100, help="per environment; default 100")
     parser.add_argument("--policy", choices=POLICIES, default="bang-bang", help="default bang-bang")
-    parser.add_argument("--seed", type=whole(0), default=0, help="of any size; default 0")
-    parser.add_argument("--workers", type=count, help="default: as many as the cluster has CPUs")
-    parser.add_argument("--address", type=listening, help="host:port of an existing cluster's head")
-    parser.add_argument("--kill", type=whole(0), metavar="SHARD", help="kill the first worker of this shard half-way")
+    parser.add_argument("--seed", type=whole(0), default=0, help="an integer of at least 0, of any size; default 0")
+    parser.add_argument("--workers", type=count, help="default: one for each CPU of the cluster")
+    parser.add_argument("--address", type=listening, help="host:port of the head of an existing cluster")
+    parser.add_argument("--kill", type=whole(0), metavar="SHARD", help="kill the worker of this shard half-way, as a test")
     parser.add_argument("--output", type=Path, default=Path("episodes.parquet"), help="default episodes.parquet")
     options = parser.parse_args(arguments)
     if options.workers and options.workers > options.shards:
@@ -229,7 +229,7 @@ def main(arguments=None):
     what = {name: getattr(options, name) for name in ("seed", "environments", "episodes", "policy")}
     try:
         with cluster(options.address, options.workers) as cpus:
-            # Ray's own handler would leave the cluster running.
+            # Replaces Ray's handler, which would leave the cluster running.
             signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated"))
             workers = options.workers or min(cpus, options.shards)
             if not 1 <= workers <= cpus:

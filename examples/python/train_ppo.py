@@ -1,11 +1,13 @@
-"""PPO with JAX on the vector environment, in one file as in CleanRL, until the mean return of 100 episodes passes -100.
+"""Trains PPO with JAX on the vector environment until the mean return of 100 episodes passes -100. One file, as in CleanRL.
 
     pip install -r requirements.txt && pip install .
-    python train_ppo.py            seeds 1, 2 and 3
-    python train_ppo.py 42 --picture curve.png
+    python train_ppo.py                           seeds 1, 2 and 3
+    python train_ppo.py 42 --picture curve.png    seed 42
 
-Prints steps, seconds and mean return of each seed, and the mean return of its policy in Gymnasium's own environment. Draws
-the learning curves. Fails if a seed has not learnt after a million steps.
+Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in Gymnasium's own environment.
+Draws the learning curves. Fails if a seed has not learnt after a million steps.
+
+Step counts differ between CPUs, because XLA rounds differently on them.
 """
 
 import argparse
@@ -31,14 +33,14 @@ LEARNING_RATE, MAX_GRADIENT = 2.5e-3, 0.5
 DISCOUNT, LAMBDA = 0.99, 0.95
 CLIP, ENTROPY, VALUE = 0.2, 0.01, 0.5
 EPISODES, EVALUATE_EVERY = 100, 5  # per evaluation; updates between two
-# Observations are divided by this: their bounds.
+# The bounds of observations, which are divided by them.
 SCALE = jnp.array([1, 1, 1, 1, 4 * jnp.pi, 9 * jnp.pi])
 
 optimizer = optax.chain(optax.clip_by_global_norm(MAX_GRADIENT), optax.adam(LEARNING_RATE, eps=1e-5))
 
 
 def layers(key, outputs, gain):
-    """Weights and biases of a perceptron with two hidden layers of 64. Weights are orthogonal, as is usual for PPO."""
+    """Weights and biases of a perceptron with two hidden layers of 64 units. Weights are orthogonal, as is usual for PPO."""
     sizes = [6, 64, 64, outputs]
     gains = [2**0.5, 2**0.5, gain]
     return [
@@ -71,21 +73,24 @@ def values(parameters, observations):
 
 @jax.jit
 def act(parameters, key, observations):
-    """Actions drawn from the policy, and the key of the next draw."""
+    """Draws actions from the policy. Returns them and the key of the next draw."""
     key, draw = jax.random.split(key)
     return jax.random.categorical(draw, log_probabilities(parameters, observations)), key
 
 
 def roll_out(envs, parameters, key, observations):
-    """STEPS of each environment: observations, actions, the observations that followed, rewards, terminations and ends,
-    each of shape (STEPS, ENVS, ...). Also the last observations, and the key of the next draw."""
+    """Plays STEPS in each environment.
+
+    Returns arrays of shape (STEPS, ENVS, ...): observations, actions, following observations, rewards, whether the episode
+    terminated and whether it ended. Also returns the last observations, and the key of the next draw.
+    """
     rollout = []
     for _ in range(STEPS):
         actions, key = act(parameters, key, observations)
         actions = np.asarray(actions)
         following, rewards, terminated, truncated, infos = envs.step(actions)
         ended = terminated | truncated
-        # For an episode that ended, its last observation and not the next initial one.
+        # If an episode ended, its last observation follows, not the first one of the next episode.
         seen = following.copy()
         if ended.any():
             seen[ended] = np.stack(infos["final_obs"][ended])
@@ -96,7 +101,7 @@ def roll_out(envs, parameters, key, observations):
 
 def advantages(parameters, observations, seen, rewards, terminated, ended):
     """Generalized advantage estimates."""
-    # A truncated episode would have gone on: the value of its last observation estimates the rest.
+    # A truncated episode has not terminated, so the value of its last observation estimates the rest.
     errors = rewards + DISCOUNT * ~terminated * values(parameters, seen) - values(parameters, observations)
 
     def back(advantage, step):
@@ -122,7 +127,7 @@ def loss(parameters, batch):
 
 @jax.jit
 def learn(parameters, state, key, rollout):
-    """The parameters after EPOCHS over the rollout."""
+    """Optimizes the parameters for EPOCHS over the rollout. Returns them and the optimizer's state."""
     observations, actions, seen, rewards, terminated, ended = rollout
     advantage = advantages(parameters, observations, seen, rewards, terminated, ended)
     targets = advantage + values(parameters, observations)
@@ -141,7 +146,7 @@ def learn(parameters, state, key, rollout):
 
 
 def evaluate(envs, parameters, key):
-    """The mean return of one new episode of each environment. Playing on until 100 ended would favour short ones."""
+    """The mean return of one new episode in each environment. Counting the first 100 that end would favour short ones."""
     observations, _ = envs.reset()
     returns, running = np.zeros(envs.num_envs), np.ones(envs.num_envs, bool)
     while running.any():
@@ -153,7 +158,7 @@ def evaluate(envs, parameters, key):
 
 
 def train(seed):
-    """The parameters learnt, and (steps, mean return) of each evaluation. Only the last can have passed."""
+    """Trains until an evaluation passes. Returns the parameters, and (steps, mean return) of each evaluation."""
     envs = gymnasium.make_vec(NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
     others = gymnasium.make_vec(NAME, num_envs=EPISODES)
     of_envs, of_others, of_jax = (int(each) for each in np.random.SeedSequence(seed).generate_state(3))
@@ -189,16 +194,17 @@ def draw(figure, curves, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition(":")[0])
-    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help="integers of at least 0, of any size")
-    parser.add_argument("--picture", type=pathlib.Path, default="train_ppo.png", help="file for the curves, as .png or .svg")
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help="integers of at least 0; default 1 2 3")
+    help = "file for the learning curves, .png or .svg; default train_ppo.png"
+    parser.add_argument("--picture", type=pathlib.Path, default="train_ppo.png", help=help)
     arguments = parser.parse_args()
     if min(arguments.seeds) < 0:
         parser.error(f"a seed must be at least 0, got {min(arguments.seeds)}")
     figure = matplotlib.figure.Figure(figsize=(7, 4), layout="constrained")
     kinds = figure.canvas.get_supported_filetypes()
     if arguments.picture.suffix[1:] not in kinds or not arguments.picture.parent.is_dir():
-        parser.error(f"--picture must be a file in a folder that exists, as {', '.join(kinds)}, got {arguments.picture}")
+        parser.error(f"--picture must be a file in a folder that exists, of type {', '.join(kinds)}, got {arguments.picture}")
     gymnasiums = gymnasium.make_vec("Acrobot-v1", num_envs=EPISODES, vectorization_mode="sync")
     curves = {}
     for seed in arguments.seeds:

@@ -1,4 +1,4 @@
-//! Many acrobots in one step.
+//! The vector environment: steps many acrobots at once.
 
 use std::num::NonZeroU32;
 
@@ -18,14 +18,14 @@ use crate::{
 
 type Native = acrobot::batch::Batch<Fast, Vec<Block>, Vec<Pcg64>>;
 
-/// A batch, and memory for its actions.
+/// A batch, and memory for its actions, which Python passes as 64-bit integers.
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
     batch: Native,
     actions: Vec<u8>,
 }
 
-/// All modes, with Gymnasium's names.
+/// All autoreset modes, with Gymnasium's names.
 const MODES: [(&str, Autoreset); 3] = [
     ("NextStep", Autoreset::NextStep),
     ("SameStep", Autoreset::SameStep),
@@ -60,8 +60,8 @@ impl Batch {
         self.batch.set_params(params.cast()).map_err(rejected)
     }
 
-    /// Resets all, or those in a mask, with initial states within these bounds. With a seed each takes the stream of
-    /// its child first.
+    /// Resets all acrobots, or those that the mask selects, to initial states within these bounds. With a seed, each
+    /// acrobot that is reset first takes the stream of its child.
     fn reset(
         &mut self,
         py: Python<'_>,
@@ -90,7 +90,7 @@ impl Batch {
             .map_err(rejected)
     }
 
-    /// Writes into the arrays, and into `finals` if given. Releases Python's lock meanwhile.
+    /// Steps, and writes the results into the arrays. Releases Python's lock meanwhile.
     #[expect(clippy::too_many_arguments, reason = "an array for each result")]
     fn step(
         &mut self,
@@ -134,7 +134,7 @@ impl Batch {
         render(py, self.batch.params().cast(), state.cast(), mode)
     }
 
-    /// Makes the smallest batch. `__setstate__` replaces it.
+    /// Arguments with which pickle makes the smallest batch. `__setstate__` then replaces it.
     fn __getnewargs__(&self) -> (i64, &str, i64, &str) {
         (1, "0", 1, "NextStep")
     }
@@ -195,7 +195,7 @@ impl Batch {
         Ok(Self { batch, actions })
     }
 
-    /// Reads the actions into the width that a batch takes.
+    /// Checks the actions and copies them as bytes, which the batch takes.
     fn read(&mut self, actions: &[i64]) -> PyResult<()> {
         let (len, expected) = (actions.len(), self.actions.len());
         if len != expected {
@@ -203,7 +203,7 @@ impl Batch {
             return Err(InvalidAction::new_err(message));
         }
         let known = |action: &i64| (0..3).contains(action);
-        // One pass without an exit, so that the compiler makes SIMD of it.
+        // No early exit, so that the compiler vectorizes the loop.
         if !actions.iter().fold(true, |all, action| all & known(action)) {
             let unknown = actions
                 .iter()
@@ -220,7 +220,7 @@ impl Batch {
     }
 }
 
-/// The sequence of a decimal integer of at least 0, of any size.
+/// Parses a seed: a decimal integer of at least 0, of any size.
 fn parse(seed: &str) -> PyResult<SeedSequence> {
     seed.parse::<SeedSequence>().map_err(rejected)
 }

@@ -1,4 +1,4 @@
-//! The native part of `acrobot_rs`. Gymnasium's interface is in `python/`.
+//! The native part of `acrobot_rs`, which calls the crate. Gymnasium's interface is written in Python, in `python/`.
 
 mod batch;
 mod single;
@@ -28,32 +28,32 @@ mod _native {
     use super::single::Acrobot;
 }
 
-/// Rejects bounds beyond the range of `f32`, and a `low` above `high`.
+/// Raises a `ValueError` if a bound is beyond the range of `f32` or if `low` is above `high`.
 #[pyfunction]
 fn check_reset_bounds(low: f64, high: f64) -> PyResult<()> {
     ResetBounds::new(low, high).map_err(rejected)?;
     Ok(())
 }
 
-/// What the crate rejects is a `ValueError`, whose message has the rule.
+/// Turns an error of the crate into a `ValueError` with its message.
 fn rejected(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// A message like those of the crate.
+/// An error message in the form of the crate's.
 fn must_be(name: &str, rule: impl Display, got: impl Display) -> String {
     format!("{name} must be {rule}, got {got}")
 }
 
-/// The rule for an action.
+/// What an action must be.
 const ACTIONS: &str = "0 (negative torque), 1 (none) or 2 (positive)";
 
-/// A text from Python that is not one of the names in `rule`.
+/// The error for a text from Python that is not one of the names in `rule`.
 fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
     PyValueError::new_err(must_be(name, rule, format_args!("{got:?}")))
 }
 
-/// A count from Python, whose integers have no bounds.
+/// Converts a count from Python, or raises a `ValueError` if it is not from 1 to `u32::MAX`.
 fn positive(name: &str, value: i64) -> PyResult<NonZeroU32> {
     let count = u32::try_from(value).ok().and_then(NonZeroU32::new);
     count.ok_or_else(|| {
@@ -62,7 +62,7 @@ fn positive(name: &str, value: i64) -> PyResult<NonZeroU32> {
     })
 }
 
-/// The parameters with one of them changed. `name` is Gymnasium's.
+/// The parameters with one of them changed. `name` is Gymnasium's name of it.
 fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     let mut params = params;
     match name {
@@ -94,7 +94,7 @@ fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params
     Ok(params)
 }
 
-/// A picture of a state: an array of shape (500, 500, 3) or a text, by the render mode.
+/// Renders a state: an array of shape (500, 500, 3) or a text, depending on the render mode.
 fn render<'py>(
     py: Python<'py>,
     params: Params,
@@ -115,21 +115,21 @@ fn render<'py>(
             Ok(array.into_any())
         }
         Rendering::Text(text) => Ok(text.into_pyobject(py)?.into_any()),
-        // The other modes show pictures elsewhere.
+        // The other modes return no picture, and were rejected above.
         _ => Ok(py.None().into_bound(py)),
     }
 }
 
-/// The version of what this package adds to the crate's snapshots. Those have versions of their own.
+/// The version of this package's snapshots. The crate's snapshots, which they contain, have their own version.
 const VERSION: u32 = 1;
 
-/// The bytes of a snapshot, for pickle.
+/// Serializes a snapshot, for pickle.
 fn save(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
     postcard::to_stdvec(&(VERSION, snapshot))
         .map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
-/// The snapshot in these bytes, checked. Rejects bytes after its end.
+/// Deserializes a snapshot. Rejects invalid snapshots, and bytes after the end.
 fn load<T: DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
     let damaged = |error| PyValueError::new_err(format!("the snapshot is damaged: {error}"));
     let (version, bytes) = postcard::take_from_bytes::<u32>(bytes).map_err(damaged)?;

@@ -1,4 +1,4 @@
-//! One acrobot, bit-identical to Gymnasium's.
+//! The single environment: one acrobot, bit-identical to Gymnasium's.
 
 use acrobot::arithmetic::Host;
 use acrobot::{Action, Observation, Params, State};
@@ -18,13 +18,13 @@ type Step<'py> = (
     Bound<'py, PyDict>,
 );
 
-/// Parameters and a state. All random numbers are drawn by NumPy, from the environment's generator.
+/// One acrobot: its parameters and its state. Python draws all random numbers, from the environment's generator.
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Acrobot {
     acrobot: acrobot::Acrobot<Host>,
     /// Whether observations are those of `Acrobot-v0`.
     angles: bool,
-    /// Whether there is a state: Gymnasium has none before the first reset.
+    /// Whether the state was set or reset: Gymnasium's environment has none before the first reset.
     started: bool,
 }
 
@@ -41,7 +41,7 @@ impl Acrobot {
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let params = with(*self.acrobot.params(), name, value)?;
-        // Each step is given its noise.
+        // No noise from the crate: `step` gets it as an argument.
         let params = Params {
             torque_noise: 0.0,
             ..params
@@ -72,7 +72,7 @@ impl Acrobot {
         }
     }
 
-    /// The torque of an action, N m. Rejects other actions, and a step before the first reset.
+    /// The torque of an action, N m. Rejects invalid actions, and any action before the first reset.
     fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
         if !self.started {
             let message = "the environment has no state yet; call reset before step";

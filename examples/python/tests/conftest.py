@@ -1,6 +1,6 @@
-"""Keeps NumPy to the C library's sines: with AVX-512 it has its own, so these are disabled before it is imported.
+"""Makes NumPy use the C library's sines, as ours does. NumPy may have its own for AVX-512, which this disables before the import.
 
-Sets how many examples Hypothesis tries: 200, the same in each run, or 10,000 random ones with ``--hypothesis-profile=long``.
+Sets how many examples Hypothesis tries: the same 200 in each run, or 10,000 random ones with ``--hypothesis-profile=long``.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""Any objects as arguments: they are rejected as by Gymnasium, change nothing then, and no result is a panic or NaN.
+"""Any object can be an argument: invalid ones are rejected and change nothing, nothing panics, and no result is NaN.
 
 With more examples: ``python -m pytest --hypothesis-profile=long tests/test_anything.py``.
 """
@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-#: What a call may raise. A panic in Rust is not even an Exception.
+#: What a call may raise. A panic in Rust raises none of these.
 REJECTIONS = (AssertionError, OverflowError, TypeError, ValueError, gymnasium.error.Error)
 
 NUMBERS = st.one_of(
@@ -47,7 +47,7 @@ FEW = st.integers(1, 4)
 
 
 def calls(**methods):
-    """Some calls: each a name and arguments."""
+    """Sequences of calls, each a name and arguments."""
     return st.lists(st.one_of([st.tuples(st.just(name), args) for name, args in methods.items()]), max_size=20)
 
 
@@ -69,7 +69,7 @@ def play(env, do, sequence):
         try:
             result = do[name](*args)
         except REJECTIONS:
-            assert env._native.__getstate__() == before, "a rejected call has changed something"
+            assert env._native.__getstate__() == before, "a rejected call changed something"
             continue
         if isinstance(result, np.ndarray):
             assert_numbers(result)
@@ -122,15 +122,15 @@ def test_a_vector_environment(num_envs, limit, autoreset, copy, sequence):
 
 
 @given(FEW | ANYTHING, FEW | ANYTHING, ANYTHING, MODES | ANYTHING)
-def test_arguments_of_environments(num_envs, limit, mode, autoreset):
-    # A large integer would ask for too much memory.
+def test_constructors(num_envs, limit, mode, autoreset):
+    # A large number of environments would need too much memory.
     if not isinstance(num_envs, int | np.integer) or num_envs < 1000:
         attempt(acrobot_rs.AcrobotVectorEnv, num_envs, limit, mode, autoreset)
     attempt(acrobot_rs.AcrobotEnv, mode)
 
 
 def damaged(good):
-    """Snapshots with bytes removed, changed or added, and other bytes."""
+    """Snapshots with bytes removed, changed or added, and random bytes."""
     change = st.tuples(st.integers(0, len(good) - 1), st.integers(1, 255))
 
     def apply(changes, end, more):
@@ -148,7 +148,7 @@ SNAPSHOT.reset(seed=1)
 
 
 @given(damaged(SNAPSHOT._native.__getstate__()))
-def test_damaged_snapshots_of_one(snapshot):
+def test_damaged_snapshots_of_a_single_environment(snapshot):
     env = acrobot_rs.AcrobotEnv("ansi")
     env.reset(seed=2)
     before = env._native.__getstate__()
@@ -185,7 +185,7 @@ def test_arrays_of_a_batch(arguments, mode, alias):
     with contextlib.suppress(IndexError):
         attempt(batch.render, arguments[0], "ansi")
     attempt(batch.reset, *arguments[:4])
-    # Results need arrays that differ and are writable.
+    # Arrays for results must be writable, and none may be passed twice.
     rows, flags = np.zeros((2, 6), np.float32), np.zeros(2, np.bool_)
     if not alias:
         rows.flags.writeable = False

@@ -17,7 +17,7 @@ V1, V0 = "acrobot_rs/Acrobot-v1", "acrobot_rs/Acrobot-v0"
 
 @pytest.fixture
 def env():
-    """Without wrappers, in an initial state."""
+    """A single environment without wrappers, in an initial state."""
     env = acrobot_rs.AcrobotEnv()
     env.reset(seed=42)
     return env
@@ -26,7 +26,7 @@ def env():
 def make(name, **kwargs):
     if name == V1:
         return gymnasium.make(name, **kwargs)
-    with pytest.warns(DeprecationWarning, match="out of date"):  # as for every v0 that has a v1
+    with pytest.warns(DeprecationWarning, match="out of date"):  # because there is a v1
         return gymnasium.make(name, **kwargs)
 
 
@@ -36,7 +36,7 @@ def test_gymnasium_checks_pass_without_a_warning(name):
 
 
 @pytest.mark.parametrize("base", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env])
-def test_slow_environments_contain_their_initial_states(base):
+def test_the_observation_space_contains_initial_states_above_the_bounds_of_velocity(base):
     check_env(type("Slow", (base,), {"MAX_VEL_1": 1e-30, "MAX_VEL_2": 0.05})(), skip_render_check=True)
 
 
@@ -64,7 +64,7 @@ def test_frames(env):
     pictures.reset(seed=42)
     hanging = pictures.render()
     assert hanging.shape == (500, 500, 3) and hanging.dtype == np.uint8
-    # The first link, in Gymnasium's colour, below the joint and not above it.
+    # Gymnasium's colour of a link: the first link hangs below the joint.
     assert list(hanging[300, 250]) == [0, 204, 204]
     pictures.state = [np.pi, 0, 0, 0]
     assert list(pictures.render()[200, 250]) == [0, 204, 204]
@@ -80,7 +80,7 @@ def test_frames(env):
 
 
 @pytest.mark.parametrize("action", [3, -1, 256, 2**70, 1.0, "1", None, np.array([1, 2])])
-def test_other_actions_are_rejected(env, action):
+def test_invalid_actions_are_rejected(env, action):
     env.unwrapped.torque_noise_max = 0.5
     before, drawn = env.state, env.np_random.bit_generator.state
     with pytest.raises(InvalidAction, match=r"action must be 0 \(negative torque\), 1 \(none\) or 2 \(positive\), got "):
@@ -90,7 +90,7 @@ def test_other_actions_are_rejected(env, action):
 
 
 @pytest.mark.parametrize("action", [2, np.int64(2), np.uint8(2), np.array(2)])
-def test_actions_are_integers_of_any_kind(env, action):
+def test_actions_can_be_integers_of_any_type(env, action):
     assert env.action_space.contains(2)
     env.step(action)
 
@@ -111,7 +111,7 @@ def test_actions_are_integers_of_any_kind(env, action):
         ("state", [0.0, 0.0, 0.0, np.nan]),
     ],
 )
-def test_other_values_are_rejected(env, name, value):
+def test_invalid_values_are_rejected(env, name, value):
     before = np.copy(getattr(env, name))
     with pytest.raises(ValueError):
         setattr(env, name, value)
@@ -119,14 +119,14 @@ def test_other_values_are_rejected(env, name, value):
 
 
 @pytest.mark.parametrize("torques", [{-1.0, 0.0, 1.0}, iter([-1.0, 0.0, 1.0]), itertools.repeat(0.0, 10**6)])
-def test_torques_are_a_sequence(env, torques):
+def test_torques_must_be_a_sequence(env, torques):
     """A set has no order, and an iterator may have no end."""
     with pytest.raises(TypeError):
         env.AVAIL_TORQUE = torques
     assert env.AVAIL_TORQUE == (-1.0, 0.0, 1.0)
 
 
-def test_a_deleted_parameter_is_that_of_the_class(env):
+def test_a_deleted_parameter_gets_the_value_of_the_class(env):
     twin = acrobot_rs.AcrobotEnv()
     twin.state = env.state
     with unittest.mock.patch.object(env, "dt", 0.05):
@@ -140,29 +140,29 @@ def test_a_deleted_parameter_is_that_of_the_class(env):
 @pytest.mark.parametrize(
     "options", [{"low": 1, "high": 0}, {"low": "x"}, {"high": None}, {"high": np.inf}, {"low": np.nan}]
 )
-def test_other_bounds_are_rejected(env, options):
+def test_invalid_bounds_are_rejected(env, options):
     state, rng = env.state, env.np_random.bit_generator.state
     with pytest.raises(ValueError):
         env.reset(seed=1, options=options)
     assert (env.state == state).all() and env.np_random.bit_generator.state == rng
 
 
-def test_a_reset_comes_first():
+def test_the_first_step_needs_a_reset():
     env = acrobot_rs.AcrobotEnv()
     assert env.state is None
     with pytest.raises(AssertionError, match="reset"):
         env.step(0)
 
 
-def test_the_state_is_set_as_a_whole(env):
+def test_the_state_is_read_only_and_set_as_a_whole(env):
     with pytest.raises(ValueError, match="read-only"):
         env.state[0] = 1.0
     env.state = np.array([0.1, 0.2, 0.3, 0.4])
     assert list(env.state) == [0.1, 0.2, 0.3, 0.4]
 
 
-def test_every_parameter_acts():
-    """Each changes what a step or a picture is, also if a subclass sets it."""
+def test_every_parameter_has_an_effect():
+    """Each changes a step or a picture, also if a subclass sets it."""
     changes = {
         "dt": 0.05,
         "LINK_LENGTH_1": 1.5,
@@ -194,7 +194,7 @@ def test_every_parameter_acts():
 
     env.AVAIL_TORQUE = [-2.0, 0.0, 2.0]
     with pytest.raises(TypeError):
-        env.AVAIL_TORQUE[0] = 0.0  # it would not be noticed
+        env.AVAIL_TORQUE[0] = 0.0  # assigning an element would have no effect
 
     pictures = acrobot_rs.AcrobotEnv("rgb_array")
     pictures.reset(seed=3)

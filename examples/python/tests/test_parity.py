@@ -1,4 +1,4 @@
-"""Gymnasium's environment and ours, side by side in one process: bit-identical."""
+"""The single environment is bit-identical to Gymnasium's, which runs beside it."""
 
 import acrobot_rs
 import gymnasium
@@ -9,7 +9,7 @@ STEPS = 500
 
 
 def side_by_side(seed, book_or_nips="book", noise=0.0, dt=0.2, options=None):
-    """Both get the same actions, and a reset in the middle that continues their streams."""
+    """Plays the same actions in both. A reset in the middle continues their streams."""
     theirs, ours = gymnasium.make("Acrobot-v1").unwrapped, gymnasium.make("acrobot_rs/Acrobot-v1").unwrapped
     for env in (theirs, ours):
         env.book_or_nips, env.torque_noise_max, env.dt = book_or_nips, noise, dt
@@ -42,12 +42,12 @@ def test_seeds(seed):
 @pytest.mark.parametrize("book_or_nips", ["book", "nips"])
 @pytest.mark.parametrize("noise", [0.0, 0.3])
 @pytest.mark.parametrize("dt", [0.2, 0.05])
-def test_changes_of_a_live_environment(book_or_nips, noise, dt):
+def test_parameters_and_reset_bounds(book_or_nips, noise, dt):
     side_by_side(2**70 + 1, book_or_nips, noise, dt, {"low": -1.5, "high": 2.0})
 
 
-def test_other_links():
-    """Random masses, lengths, torques, bounds and states."""
+def test_other_parameters():
+    """Single steps with random masses, lengths, torques, bounds and states."""
     rng = np.random.default_rng(0)
     theirs, ours = gymnasium.make("Acrobot-v1").unwrapped, acrobot_rs.AcrobotEnv()
     names = ["LINK_LENGTH_1", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2", "LINK_MOI"]
@@ -65,7 +65,7 @@ def test_other_links():
         assert ours.state.tobytes() == theirs.state.tobytes()
 
 
-def test_v0_is_the_state():
+def test_v0_observes_the_state():
     env = acrobot_rs.AcrobotV0Env()
     twin = acrobot_rs.AcrobotEnv()
     observation, _ = env.reset(seed=9)

@@ -1,4 +1,4 @@
-"""scale_out.py: the table depends neither on the number of workers nor on their deaths."""
+"""The table of scale_out.py depends neither on the number of workers nor on their deaths."""
 
 import os
 import secrets
@@ -32,12 +32,12 @@ with scale_out.cluster(None, 4):
 def address():
     """The address of a cluster with four CPUs, to which this process is connected.
 
-    Another process starts it, because Ray forks and a process with JAX's threads must not fork.
+    Another process starts it, because Ray forks, and this process must not: it has JAX's threads.
     """
     with pytest.MonkeyPatch.context() as patch:
-        # Must be set before Ray is imported. Otherwise Ray takes another interface's address for loopback's.
+        # Must be set before Ray is imported. Otherwise Ray replaces 127.0.0.1 by the address of another interface.
         patch.setenv("RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER", "0")
-        # Only for this cluster.
+        # A token for this cluster only. Otherwise Ray would write one into the home folder.
         patch.setenv("RAY_AUTH_MODE", "token")
         patch.setenv("RAY_AUTH_TOKEN", secrets.token_hex(32))
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
@@ -53,7 +53,7 @@ def address():
 
 @pytest.fixture(scope="module")
 def expected():
-    """All shards, played one after the other in this process."""
+    """The rows of all shards, played one after the other in this process."""
     return pa.concat_tables(scale_out.play(shard=shard, **WHAT) for shard in range(SHARDS))
 
 
@@ -78,7 +78,7 @@ def test_a_killed_worker_changes_nothing(address, expected, capfd):
 
 @pytest.mark.parametrize("policy", scale_out.POLICIES)
 def test_rows_are_the_episodes_of_the_vector_environment(policy):
-    """Compared with a loop over environments."""
+    """The expected rows come from a loop over environments."""
     shard, environments, episodes = 5, 30, 3
     table = scale_out.play(WHAT["seed"], shard, environments, episodes, policy)
     child = np.random.SeedSequence(WHAT["seed"]).spawn(shard + 1)[shard]
@@ -115,7 +115,7 @@ def test_rows_are_the_episodes_of_the_vector_environment(policy):
     assert ends.mean() > 0.9
 
 
-def test_streams_differ():
+def test_shards_and_seeds_have_different_streams():
     seeds = {scale_out.streams(seed, shard)[0] for seed in (0, 1, 2**64) for shard in range(100)}
     draws = {scale_out.streams(seed, shard)[1].integers(2**63) for seed in (0, 1, 2**64) for shard in range(100)}
     assert len(seeds) == len(draws) == 300
@@ -141,13 +141,13 @@ def test_an_error_in_a_shard_ends_the_run_immediately(address, tmp_path):
     assert [mark.name for mark in tmp_path.iterdir()] == ["0 1"]
 
 
-def test_on_a_cluster_of_its_own_the_same_file(tmp_path, expected):
-    """Also the same bytes, because the file contains neither times nor workers."""
+def test_a_killed_worker_and_a_new_cluster_give_the_same_file(tmp_path, expected):
+    """All bytes are the same, because the file contains neither times nor workers."""
     one, other = tmp_path / "killed.parquet", tmp_path / "direct.parquet"
     run = command("--workers=2", "--kill=6", f"--output={one}")
     assert run.returncode == 0, run.stderr
     assert "shard 6 is lost" in run.stderr
-    assert run.stdout.splitlines()[-1].split()[:4] == ["in", "all", "8", f"{sum(expected['length'].to_numpy()):,}"]
+    assert run.stdout.splitlines()[-1].split()[:3] == ["total", "8", f"{sum(expected['length'].to_numpy()):,}"]
     table = pq.read_table(one)
     assert table.equals(expected)
     assert b'"seed": 1180591620717411303425' in table.schema.metadata[b"scale_out"]
@@ -184,7 +184,7 @@ def test_an_existing_cluster_is_joined(address, tmp_path, expected):
         (["--address=nonsense"], "--address: must be host:port of a cluster's head, got 'nonsense'"),
     ],
 )
-def test_other_arguments_are_rejected(arguments, message, capsys):
+def test_invalid_arguments_are_rejected(arguments, message, capsys):
     with pytest.raises(SystemExit) as rejected:
         scale_out.main(arguments)
     assert rejected.value.code == 2

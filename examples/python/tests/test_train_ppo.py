@@ -1,4 +1,4 @@
-"""PPO: its advantages and rollouts are right, and it learns."""
+"""train_ppo.py computes advantages and rollouts correctly, and learns."""
 
 import re
 import subprocess
@@ -14,7 +14,7 @@ import train_ppo
 SCRIPT = Path(train_ppo.__file__)
 
 
-def test_advantages_are_the_discounted_errors_until_an_episode_ends():
+def test_advantages_are_the_discounted_errors_until_the_end_of_the_episode():
     rng = np.random.default_rng(0)
     shape = (train_ppo.STEPS, 3)
     observations, seen = rng.normal(size=(2, *shape, 6)).astype(np.float32)
@@ -38,7 +38,7 @@ def test_advantages_are_the_discounted_errors_until_an_episode_ends():
     np.testing.assert_allclose(advantages, expected, rtol=1e-4, atol=1e-4)
 
 
-def test_a_rollout_has_the_last_observation_of_an_episode_and_then_the_next_episode():
+def test_a_rollout_contains_the_last_observation_of_an_episode_and_then_the_next_episode():
     mode = gymnasium.vector.AutoresetMode.SAME_STEP
     envs = gymnasium.make_vec(train_ppo.NAME, num_envs=4, autoreset_mode=mode, max_episode_steps=10)
     first, _ = envs.reset(seed=0)
@@ -56,7 +56,7 @@ def test_a_rollout_has_the_last_observation_of_an_episode_and_then_the_next_epis
     assert (observations[0] == first).all() and (seen[-1] == last).all()
 
 
-def test_an_evaluation_counts_one_episode_of_each():
+def test_an_evaluation_counts_one_episode_of_each_environment():
     envs = gymnasium.make_vec(train_ppo.NAME, num_envs=2, max_episode_steps=7)
     envs.reset(seed=0)
     assert train_ppo.evaluate(envs, train_ppo.initial(jax.random.key(0)), jax.random.key(0)) == -7
@@ -77,10 +77,10 @@ def test_it_learns_and_draws_the_curves(tmp_path):
     ("arguments", "reason"),
     [
         (["--", "-1"], "a seed must be at least 0, got -1"),
-        (["--picture", "missing/curve.png"], "--picture must be a file in a folder that exists, as "),
+        (["--picture", "missing/curve.png"], "--picture must be a file in a folder that exists, of type "),
         (["--picture", "curve.text"], ", got curve.text"),
     ],
 )
-def test_bad_arguments_are_rejected_first(arguments, reason, tmp_path):
+def test_invalid_arguments_are_rejected_before_training(arguments, reason, tmp_path):
     run = subprocess.run([sys.executable, SCRIPT, *arguments], capture_output=True, text=True, cwd=tmp_path, check=False)
     assert run.returncode == 2 and reason in run.stderr and not run.stdout

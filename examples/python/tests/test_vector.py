@@ -1,4 +1,4 @@
-"""The vector environment: its streams, resets as in SyncVectorEnv, and numbers close to Gymnasium's."""
+"""The vector environment has the documented streams, resets as SyncVectorEnv does, and steps as Gymnasium does within float32."""
 
 import copy
 import pickle
@@ -33,7 +33,7 @@ def play(envs, steps, seed):
     return played
 
 
-def test_made_without_a_warning_with_spaces_for_all():
+def test_make_vec_gives_no_warning_and_gymnasium_s_spaces():
     envs = make_vec(5)
     theirs = gymnasium.make_vec("Acrobot-v1", num_envs=5, vectorization_mode="sync")
     assert envs.observation_space == theirs.observation_space
@@ -53,8 +53,8 @@ def test_made_without_a_warning_with_spaces_for_all():
 
 @MODES
 def test_resets_are_those_of_sync_vector_env(mode):
-    """Beside Gymnasium's own Acrobot in its own vector environment, with the same streams. Episodes are so short that f32
-    and f64 stay close."""
+    """Compares with Gymnasium's Acrobot in Gymnasium's vector environment, with the same streams. Episodes are so short that
+    float32 and float64 stay close."""
     count, seed, limit = 33, 7, 5
     theirs = SyncVectorEnv([lambda: gymnasium.make("Acrobot-v1", max_episode_steps=limit)] * count, autoreset_mode=mode)
     children = np.random.SeedSequence(seed).spawn(count)
@@ -85,7 +85,7 @@ def test_resets_are_those_of_sync_vector_env(mode):
         elif mode is AutoresetMode.DISABLED and len(expected) == 5 and (ended := expected[2] | expected[3]).any():
             options = bounds | {"reset_mask": ended.copy()}
             found = ours.reset(options=options)
-            expected = theirs.reset(options=options)  # takes the mask out of the options
+            expected = theirs.reset(options=options)  # last, because it removes the mask from the options
         else:
             actions = rng.integers(3, size=count)
             expected, found = theirs.step(actions), ours.step(actions)
@@ -95,7 +95,7 @@ def test_resets_are_those_of_sync_vector_env(mode):
 
 @MODES
 def test_goals_end_episodes_as_in_sync_vector_env(mode):
-    """From each of our states, one step of Gymnasium's environment."""
+    """Compares each step with a step of Gymnasium's environment from the same state."""
     envs = make_vec(64, autoreset_mode=mode)
     envs.reset(seed=3, options={"low": -3.0, "high": 3.0})
     single = gymnasium.make("Acrobot-v1").unwrapped
@@ -120,7 +120,7 @@ def test_goals_end_episodes_as_in_sync_vector_env(mode):
     assert reached > 20
 
 
-def test_seeds_are_children_and_sizes_change_nothing():
+def test_streams_are_the_seed_s_children_whatever_the_number_of_environments():
     small, large = make_vec(5), make_vec(100)
     for seed in [0, 42, 2**100 + 3]:
         small.reset(seed=seed), large.reset(seed=seed)
@@ -150,7 +150,7 @@ def test_copies_continue_bit_identically(mode, again):
     np.testing.assert_equal(play(envs, 300, 3), play(twin, 300, 3))
 
 
-def test_true_is_a_seed_as_to_gymnasium():
+def test_true_is_the_seed_1_as_in_gymnasium():
     envs = make_vec(3)
     assert (envs.reset(seed=True)[0] == envs.reset(seed=1)[0]).all()
 
@@ -167,7 +167,7 @@ def test_damaged_snapshots_are_rejected():
     assert native.__getstate__() == good
 
 
-def test_parameters_are_set_live_and_by_subclasses():
+def test_parameters_are_set_on_environments_and_by_subclasses():
     class Heavy(acrobot_rs.AcrobotVectorEnv):
         LINK_MASS_2 = 2.0
 
@@ -201,7 +201,7 @@ def test_observations_are_copies_or_one_array():
     [[0, 1, 2, 3], [0, 0, 0, -1], [0, 0, 256, 0], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]], [0.0, 1.0, 2.0, 0.0], "0120", 1,
      np.array([0, 0, 0, 2**63], dtype=np.uint64)],
 )  # fmt: skip
-def test_other_actions_are_rejected(actions):
+def test_invalid_actions_are_rejected(actions):
     envs = make_vec(4)
     envs.reset(seed=1)
     before = envs.state
@@ -211,18 +211,18 @@ def test_other_actions_are_rejected(actions):
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.int8, np.int32, np.uint64, ">i8"])
-def test_actions_are_integers_of_any_kind(dtype):
+def test_actions_can_be_integers_of_any_type(dtype):
     envs, twin = make_vec(4), make_vec(4)
     actions = np.array([[0, 1], [1, 1], [2, 1], [0, 1]])
     for each in (envs, twin):
         each.reset(seed=1)
     one = envs.step(actions[:, 0].copy())
-    other = twin.step(actions.astype(dtype)[:, 0])  # not contiguous either
+    other = twin.step(actions.astype(dtype)[:, 0])  # also not contiguous
     np.testing.assert_equal(one, other)
 
 
 def test_actions_may_be_in_packed_bytes():
-    """Numbers after a header are not aligned. Gymnasium takes them."""
+    """Numbers after a header of one byte are not aligned. Gymnasium accepts them."""
     envs, twin = make_vec(4), make_vec(4)
     for each in (envs, twin):
         each.reset(seed=1)
@@ -244,13 +244,13 @@ def test_actions_may_be_in_packed_bytes():
         {"num_envs": 2, "render_mode": "human"},
     ],
 )
-def test_other_arguments_are_rejected(kwargs):
+def test_invalid_arguments_are_rejected(kwargs):
     with pytest.raises(ValueError):
         acrobot_rs.AcrobotVectorEnv(**kwargs)
 
 
 def test_more_than_memory_is_rejected():
-    """In a process that may take 8 GiB."""
+    """In a process that may use 8 GiB."""
     code = """if True:
         import resource
         import acrobot_rs
@@ -261,7 +261,7 @@ def test_more_than_memory_is_rejected():
     assert "MemoryError: num_envs must be so few that they fit into memory, got 4294967295" in run.stderr
 
 
-def test_the_limit_is_chosen_when_made():
+def test_the_limit_of_steps_is_read_only():
     """An assignment would have no effect."""
     envs = make_vec(2, max_episode_steps=3)
     with pytest.raises(AttributeError):
@@ -281,7 +281,7 @@ def test_a_rejected_seed_changes_nothing():
 
 
 @pytest.mark.parametrize("options", [{"low": 1, "high": 0}, {"high": np.inf}, {"low": 1, "reset_mask": [True, False]}])
-def test_other_bounds_are_rejected(options):
+def test_invalid_bounds_are_rejected(options):
     envs = make_vec(2)
     before = envs._native.__getstate__()
     with pytest.raises(ValueError):
@@ -290,7 +290,7 @@ def test_other_bounds_are_rejected(options):
 
 
 @pytest.mark.parametrize("mask", [None, True, [1, 0], [False, False], [True], [True, False, True], [[True, False]]])
-def test_other_masks_are_rejected(mask):
+def test_invalid_masks_are_rejected(mask):
     envs = make_vec(2)
     before = envs._native.__getstate__()
     with pytest.raises(ValueError, match=r"reset_mask must be an array of bool of shape \(2,\) with a true element, got"):
@@ -299,7 +299,7 @@ def test_other_masks_are_rejected(mask):
 
 
 @MODES
-def test_a_mask_chooses_what_is_seeded_and_reset(mode):
+def test_a_mask_selects_the_environments_to_seed_and_reset(mode):
     envs = make_vec(40, autoreset_mode=mode)
     envs.reset(seed=1)
     play(envs, 20, 1)
@@ -313,13 +313,13 @@ def test_a_mask_chooses_what_is_seeded_and_reset(mode):
     assert (observations[:, 4:] == envs.state[:, 2:]).all()
 
 
-def test_a_mask_of_other_bytes_is_one_of_bools():
-    """NumPy takes any byte for a bool. In Rust another byte than 0 and 1 is undefined behaviour."""
+def test_other_bytes_than_0_and_1_in_a_mask_become_1():
+    """A NumPy bool can be any byte. In Rust a bool that is not 0 or 1 is undefined behaviour."""
     mask = make_vec(4)._mask({"reset_mask": np.array([2, 0, 255, 0], np.uint8).view(np.bool_)})
     assert mask.tobytes() == b"\1\0\1\0"
 
 
-def test_disabled_environments_step_on_after_their_ends():
+def test_without_autoreset_environments_continue_after_the_end():
     envs = make_vec(3, autoreset_mode="Disabled", max_episode_steps=5)
     envs.reset(seed=1)
     ends = [envs.step([0, 1, 2])[3].any() for _ in range(8)]
@@ -328,7 +328,7 @@ def test_disabled_environments_step_on_after_their_ends():
     assert list(envs.step([0, 1, 2])[3]) == [True, False, True]
 
 
-def test_pictures_of_all():
+def test_frames_are_those_of_single_environments():
     envs = make_vec(2, render_mode="rgb_array")
     envs.reset(seed=1, options={"low": -2.0, "high": 2.0})
     single = acrobot_rs.AcrobotEnv("rgb_array")
@@ -343,26 +343,26 @@ def test_other_threads_run_while_it_steps():
     envs = make_vec(200_000, copy=False)
     envs.reset(seed=1)
     actions = np.ones(envs.num_envs, np.int64)
-    done, turns = threading.Event(), 0
+    done, loops = threading.Event(), 0
 
-    def take_turns():
-        nonlocal turns
+    def loop():
+        nonlocal loops
         while not done.is_set():
-            turns += 1
+            loops += 1
             time.sleep(0)
 
     interval = sys.getswitchinterval()
-    sys.setswitchinterval(60)  # so that threads switch only where Python's lock is released
-    thread = threading.Thread(target=take_turns)
+    sys.setswitchinterval(60)  # threads switch only where Python's lock is released
+    thread = threading.Thread(target=loop)
     thread.start()
     try:
         results = [np.empty(envs.num_envs, dtype) for dtype in (np.float32, np.bool_, np.bool_)]
-        for _ in range(200):  # the other thread may have no core for a while
-            before = turns
+        for _ in range(200):  # the other thread may wait for a core
+            before = loops
             envs._native.step(actions, envs._observations, *results, None)
-            if turns > before:
+            if loops > before:
                 break
-        assert turns > before
+        assert loops > before
     finally:
         done.set()
         thread.join()

@@ -1,4 +1,4 @@
-//! The game: Acrobot-v1 in human mode, and an overlay over its frames.
+//! The game: steps `Acrobot-v1` in human mode and writes an overlay onto its frames.
 
 use std::sync::mpsc::{self, Receiver};
 
@@ -14,22 +14,22 @@ use embedded_graphics::pixelcolor::Rgb888;
 use embedded_graphics::prelude::Point;
 use embedded_graphics::text::{Baseline, Text};
 
-/// The overlay's colour. Nothing else in the picture has it.
+/// The overlay's colour. Nothing else in the picture has it, so the tests can find the overlay.
 const INK: Rgb888 = Rgb888::new(68, 68, 68);
 
-/// The ticks that an ended episode stays on the screen: two seconds.
+/// The number of ticks for which an ended episode stays on the screen: two seconds.
 const PAUSE: u32 = 30;
 
 pub struct Game {
     env: TimeLimit<AcrobotEnv<Host, Observation>>,
-    /// The frames that the environment has shown.
+    /// Receives the frames that the environment shows.
     shown: Receiver<Frame>,
     picture: Frame,
     episode_return: f32,
     end: Option<End>,
 }
 
-/// How the episode ended, and the remaining ticks of its pause.
+/// How the episode ended, and for how many more ticks it stays on the screen.
 struct End {
     text: &'static str,
     pause: u32,
@@ -39,7 +39,7 @@ impl Game {
     pub fn new(seed: SeedSequence, dynamics: Dynamics) -> Result<Self, Error> {
         let (sender, shown) = mpsc::channel();
         let display = Display::new(move |frame| {
-            // Sending fails only if the game is gone.
+            // This fails only if the game was dropped.
             let _ = sender.send(frame.clone());
         });
         let mut game = Self {
@@ -60,7 +60,7 @@ impl Game {
         Ok(game)
     }
 
-    /// Begins the next episode of the same stream.
+    /// Begins the next episode of the same seed.
     pub fn reset(&mut self) {
         self.begin(None);
     }
@@ -85,9 +85,9 @@ impl Game {
                 self.episode_return += step.reward;
                 self.end = step.done().then_some(End {
                     text: if step.terminated {
-                        "Goal! R: again"
+                        "Goal! R: reset"
                     } else {
-                        "Out of time. R: again"
+                        "Out of time. R: reset"
                     },
                     pause: PAUSE,
                 });
@@ -106,7 +106,7 @@ impl Game {
             self.picture = frame;
         }
 
-        // Human mode shows Gymnasium's picture. It has no arrow for the torque, so this draws one.
+        // Gymnasium's picture has no arrow for the torque. This adds one.
         let figure = Figure::new(self.env.unwrapped());
         let torque = self.env.unwrapped().params().torque(action) as f32;
         let Ok(()) =

@@ -1,4 +1,4 @@
-//! Acrobot in a window, played with the arrow keys. See the README in this folder.
+//! A window in which the arrow keys play `Acrobot-v1`. See the README in this folder.
 
 mod game;
 mod screen;
@@ -27,23 +27,23 @@ use winit::window::WindowId;
 use game::Game;
 use screen::Screen;
 
-/// Gymnasium shows 15 frames a second, each a step.
+/// As in Gymnasium: 15 frames per second, one for each step.
 const FRAME_TIME: Duration = Duration::from_nanos(1_000_000_000 / 15);
 
-/// Plays Acrobot-v1 in a window: left and right apply torque, R resets, Escape or Q quits.
+/// Play Acrobot-v1 in a window: left and right apply torque, R resets, Escape or Q quits.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Seed of the initial states: a decimal integer of any size.
+    /// Seed of the initial states: a decimal integer of at least 0, of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// Equations of motion: those of the book or those of the NIPS paper.
+    /// Equations of motion: those of Sutton and Barto's book, or those of the 1996 NIPS paper.
     #[arg(long, default_value = "book", value_parser = dynamics())]
     dynamics: Dynamics,
     /// Quit after this many frames.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     frames: Option<u64>,
-    /// On quitting, write the last picture to this PNG file.
+    /// Write the last frame to this PNG file on quitting.
     #[arg(long, value_name = "FILE.png")]
     screenshot: Option<PathBuf>,
 }
@@ -59,7 +59,7 @@ fn main() -> ExitCode {
     match run(Options::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            // The status must be right also where the message cannot be printed.
+            // If the message cannot be printed, the exit status still reports the error.
             let _ = writeln!(io::stderr(), "error: {message}");
             ExitCode::FAILURE
         }
@@ -70,7 +70,7 @@ fn run(options: Options) -> Result<(), String> {
     let game = Game::new(options.seed, options.dynamics).map_err(|error| error.to_string())?;
     let event_loop = event_loop().map_err(no_window)?;
 
-    // Before the game, so an error comes before the player plays.
+    // Check now, so that an error comes before the game and not after it.
     if let Some(path) = &options.screenshot {
         files::check(path)?;
     }
@@ -88,7 +88,7 @@ fn run(options: Options) -> Result<(), String> {
     if let Some(message) = app.failure {
         return Err(message);
     }
-    result.map_err(|error| format!("the window has failed: {error}"))?;
+    result.map_err(|error| format!("the window failed: {error}"))?;
 
     match &options.screenshot {
         Some(path) => {
@@ -99,14 +99,14 @@ fn run(options: Options) -> Result<(), String> {
     }
 }
 
-/// winit's event loop. winit panics if it finds no libxkbcommon.
+/// Creates winit's event loop. Turns winit's panic into an error: it panics if it finds no libxkbcommon.
 fn event_loop() -> Result<EventLoop<()>, Box<dyn Error>> {
     panic::set_hook(Box::new(|_| ()));
     let made = panic::catch_unwind(EventLoop::new);
     let _ = panic::take_hook();
     let made = made.map_err(|panic| match panic.downcast::<String>() {
         Ok(message) => *message,
-        Err(_) => "winit has panicked".to_string(),
+        Err(_) => "winit panicked".to_string(),
     })?;
     Ok(made?)
 }
@@ -114,7 +114,7 @@ fn event_loop() -> Result<EventLoop<()>, Box<dyn Error>> {
 fn no_window(cause: impl Display) -> String {
     format!(
         "cannot open a window. It needs a running X11 or Wayland session, DISPLAY or \
-         WAYLAND_DISPLAY set, and the libraries that the README names ({cause})"
+         WAYLAND_DISPLAY set, and the libraries listed in the README ({cause})"
     )
 }
 
@@ -135,9 +135,9 @@ struct App {
     left: bool,
     right: bool,
     next_tick: Instant,
-    /// The remaining frames.
+    /// The number of frames until the window closes, if there is a limit.
     frames: Option<u64>,
-    /// Why the window had to close.
+    /// The error that closed the window.
     failure: Option<String>,
 }
 
@@ -189,7 +189,7 @@ impl ApplicationHandler for App {
         match event {
             WindowEvent::CloseRequested => event_loop.exit(),
             WindowEvent::KeyboardInput { event, .. } => self.key(event_loop, &event),
-            // Another window gets the event when a key is released.
+            // If the key is released in another window, this one gets no event.
             WindowEvent::Focused(false) => (self.left, self.right) = (false, false),
             WindowEvent::Resized(_) => self.redraw(),
             WindowEvent::RedrawRequested => {

@@ -1,4 +1,4 @@
-//! The window and its pixels.
+//! The window, and the copy of a frame into its pixels.
 
 use std::error::Error;
 use std::num::NonZeroU32;
@@ -30,7 +30,7 @@ impl Screen {
         self.window.request_redraw();
     }
 
-    /// Shows the picture in the middle of the window, as large as fits, on white.
+    /// Shows the picture in the middle of the window, as large as fits. The rest is white.
     pub fn show(&mut self, picture: &Frame) -> Result<(), SoftBufferError> {
         let size = self.window.inner_size();
         let (Some(width), Some(height)) =

@@ -1,5 +1,5 @@
-//! The window as a player sees it. Keys go in through a real X server, and its screen is compared pixel by pixel with the
-//! states that these keys lead to.
+//! The window shows the states that the pressed keys lead to, and options and errors work as documented. The tests press keys
+//! on an X server and compare its screen pixel by pixel.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Cursor};
@@ -22,12 +22,12 @@ const INK: [u8; 3] = [68, 68, 68];
 const WHITE: [u8; 3] = [255, 255, 255];
 
 #[test]
-fn keys_steer_what_the_screen_shows() {
+fn the_screen_shows_the_states_that_the_keys_lead_to() {
     let screen = Screen::start();
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("last.png");
     let mut game = screen.play(&["--seed", "42", "--screenshot", file.to_str().unwrap()]);
 
-    // The picture is there, with its overlay, and no key is pressed.
+    // Before a key is pressed, the screen shows the picture and its overlay.
     let steps = screen.wait_for("the initial state", |picture| {
         let steps = picture.steps()?;
         picture.shows(0, &[(Action::Zero, steps)]).then_some(steps)
@@ -58,7 +58,7 @@ fn keys_steer_what_the_screen_shows() {
     });
     screen.keep("reset.png");
 
-    // A window of another shape shows the same, smaller, in its middle.
+    // A window that is not square shows the picture scaled, in its middle.
     screen.xdotool(&["windowsize", &window, "800", "300"]);
     screen.wait_for("the picture scaled", |picture| {
         let expected = size * 300 * 300 / (500 * 500);
@@ -77,7 +77,7 @@ fn keys_steer_what_the_screen_shows() {
 }
 
 #[test]
-fn frames_are_shown_at_their_rate_and_bounded() {
+fn the_window_shows_15_frames_per_second_and_closes_after_the_last() {
     let screen = Screen::start();
     let start = Instant::now();
     let output = screen.run(&["--frames", "30", "--dynamics", "nips"]);
@@ -90,7 +90,7 @@ fn frames_are_shown_at_their_rate_and_bounded() {
 }
 
 #[test]
-fn errors_say_what_is_wrong() {
+fn invalid_options_and_displays_are_errors_with_the_reason() {
     let screen = Screen::start();
     for (arguments, status, words) in [
         (&["--seed", "-1"], 2, "decimal integer"),
@@ -161,7 +161,7 @@ fn game(arguments: &[&str]) -> Command {
     command
 }
 
-/// Ends with the test, also if that fails.
+/// A process that is killed at the end of the test, even if the test fails.
 struct Process(Child);
 
 impl Drop for Process {
@@ -171,7 +171,7 @@ impl Drop for Process {
     }
 }
 
-/// An X server without a monitor.
+/// A virtual X server.
 struct Screen {
     _server: Process,
     display: String,
@@ -186,7 +186,7 @@ impl Screen {
         let mut number = String::new();
         let stdout = server.0.stdout.as_mut().unwrap();
         BufReader::new(stdout).read_line(&mut number).unwrap();
-        assert!(!number.is_empty(), "Xvfb does not start");
+        assert!(!number.is_empty(), "Xvfb failed to start");
         Self {
             _server: server,
             display: format!(":{}", number.trim()),
@@ -233,7 +233,7 @@ impl Screen {
         Picture::decode(self.screenshot())
     }
 
-    /// Keeps a screenshot in `target/tmp`.
+    /// Saves a screenshot in `target/tmp`.
     fn keep(&self, name: &str) {
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         fs::write(file, self.screenshot()).unwrap();
@@ -293,7 +293,7 @@ impl Picture {
         pixels.filter(|&pixel| pixel == color).count()
     }
 
-    /// The number after the word "step" in the overlay.
+    /// Reads the number after the word "step" in the overlay.
     fn steps(&self) -> Option<u32> {
         let [red, green, blue] = INK;
         let style = MonoTextStyle::new(&FONT_9X18_BOLD, Rgb888::new(red, green, blue));
@@ -306,7 +306,7 @@ impl Picture {
         })
     }
 
-    /// Whether it shows, under the overlay, the state that these actions lead to in this episode of seed 42.
+    /// Whether the picture shows, under the overlay, the state that these actions lead to in this episode of seed 42.
     fn shows(&self, episode: u32, actions: &[(Action, u32)]) -> bool {
         let mut acrobot = Acrobot::<Host>::new(42);
         for _ in 0..episode {

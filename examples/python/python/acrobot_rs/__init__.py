@@ -1,13 +1,13 @@
 """Gymnasium's Acrobot in Rust: bit-identical episodes, and a vector environment a thousand times as fast.
 
-Importing it registers ``acrobot_rs/Acrobot-v1`` and ``acrobot_rs/Acrobot-v0``:
+Importing this package registers ``acrobot_rs/Acrobot-v1`` and ``acrobot_rs/Acrobot-v0``:
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
     >>> env = gym.make("acrobot_rs/Acrobot-v1", render_mode="rgb_array")
     >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024)
 
-Without that import, ``gym.make("acrobot_rs:acrobot_rs/Acrobot-v1")`` imports and makes.
+``gym.make("acrobot_rs:acrobot_rs/Acrobot-v1")`` works without that import.
 """
 
 from gymnasium.envs.registration import register

@@ -1,4 +1,4 @@
-"""The native part."""
+"""The native part, written in Rust. `Acrobot` is the single environment, `Batch` the vector environment."""
 
 from typing import Any, final
 
@@ -10,7 +10,7 @@ __all__ = ["Acrobot", "Batch", "check_reset_bounds"]
 
 @final
 class Acrobot:
-    """Parameters and a state, in Gymnasium's arithmetic."""
+    """One acrobot: its parameters and its state, computed as in Gymnasium."""
 
     def __new__(cls, angles: bool) -> Self: ...
     state: NDArray[np.float64] | None

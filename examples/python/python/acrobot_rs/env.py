@@ -53,7 +53,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     ## Episode End
 
     1. Termination: ``-cos(theta1) - cos(theta1 + theta2) > 1``. The tip is then more than one link above the joint.
-    2. Truncation by ``gymnasium.make``: 500 steps.
+    2. Truncation: after 500 steps, by ``gymnasium.make``.
 
     ## Arguments
 
@@ -71,14 +71,14 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 15}
 
     _native: Acrobot
-    #: Whether the observation is the state itself.
+    #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
 
     def __init__(self, render_mode: str | None = None) -> None:
-        """Make an environment, which must be reset before its first step.
+        """Make an environment. Reset it before its first step.
 
         Raises:
-            ValueError: For another render mode, and for an invalid parameter of a subclass.
+            ValueError: If the render mode is unknown, or if a subclass sets an invalid parameter.
         """
         super().__init__(Acrobot(self._ANGLES), render_mode)
         self.action_space = spaces.Discrete(3)
@@ -88,7 +88,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     def state(self) -> NDArray[np.float64] | None:
         """theta1, theta2 (rad) and their velocities (rad/s), of shape ``(4,)``; ``None`` before the first reset.
 
-        It is a read-only copy. Assign four finite numbers to set the state.
+        This is a read-only copy. To set the state, assign four finite numbers.
         """
         state = self._native.state
         if state is not None:
@@ -105,14 +105,14 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         """Begin an episode.
 
         Args:
-            seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its stream goes on.
+            seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its stream continues.
             options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by default -0.1 and 0.1.
 
         Returns:
             The observation of the initial state, and an empty info.
 
         Raises:
-            ValueError: For bounds that are not finite numbers in order. Nothing changes then.
+            ValueError: If a bound is not a finite number, or if low is above high. Nothing changes then.
         """
         low, high = reset_bounds(options)
         super().reset(seed=seed)
@@ -127,22 +127,25 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             action: 0, 1 or 2: a torque of -1, 0 or 1 N m.
 
         Returns:
-            The observation; the reward, -1.0, or 0.0 in the goal; whether the goal is reached; ``False``, because
-            ``gymnasium.make`` counts the steps; and an empty info.
+            The observation; the reward, -1.0, or 0.0 if the step reaches the goal; whether it does; ``False``, because the
+            wrapper of ``gymnasium.make`` counts the steps and truncates; and an empty info.
 
         Raises:
-            gymnasium.error.InvalidAction: For another action.
-            AssertionError: Before the first reset.
+            gymnasium.error.InvalidAction: If the action is not 0, 1 or 2. Nothing changes then.
+            AssertionError: If the environment was never reset.
         """
         noise = self.torque_noise_max
         if noise:
-            # Rejects an action before it draws.
+            # This rejects an invalid action before noise is drawn for it.
             self._native.torque(action)
             noise = self.np_random.uniform(-noise, noise)
         return self._native.step(action, noise)
 
     def render(self) -> NDArray[np.uint8] | str | None:
-        """An array of shape ``(500, 500, 3)`` or a text, by the render mode. Without a mode it warns."""
+        """An array of shape ``(500, 500, 3)`` or a text, depending on the render mode.
+
+        Without a render mode, warns and returns ``None``.
+        """
         if self.render_mode is None:
             self._warn_of_no_render_mode()
             return None
@@ -150,7 +153,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
 
 class AcrobotV0Env(AcrobotEnv):
-    """``Acrobot-v0``, which Gymnasium has removed: :class:`AcrobotEnv` with the state as its observation.
+    """``Acrobot-v0``, which Gymnasium has removed: like :class:`AcrobotEnv`, but the observation is the state.
 
     The observation is theta1, theta2 (within pi, rad) and their velocities (within 4 pi and 9 pi, rad/s), ``float32`` of
     shape ``(4,)``. ``gymnasium.make`` truncates episodes after 200 steps.
