@@ -6,7 +6,7 @@ use crate::physics::Lean;
 /// `f64`, sines from the crate `libm`, and the lean form: the fastest `f64` with the same bits on every target.
 ///
 /// A release of `libm` could round its sines differently and so change the bits. [Fix its
-/// version](crate::guide::determinism#where-it-ends), or use [`Reference`](super::Reference), which depends on no
+/// version](crate::guide::determinism#limits), or use [`Reference`](super::Reference), which depends on no
 /// library.
 ///
 /// ```

@@ -12,7 +12,7 @@ use crate::physics::Gymnasium;
 ///
 /// For each x one `f64` is nearest to sin x. This arithmetic returns it, as any other correctly rounded sine does.
 /// 99.75 % of its steps are [bit-identical to
-/// Gymnasium's](crate::guide::determinism#how-much-of-gymnasium-is-repeated), about as many as between Gymnasium on
+/// Gymnasium's](crate::guide::parity#bit-identical-steps), about as many as between Gymnasium on
 /// two CPUs.
 ///
 /// ```

@@ -6,7 +6,7 @@
 #![no_main]
 
 use acrobot::numpy::Pcg64;
-use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Observation, Step, TimeLimit};
 use acrobot_cortex_m::episode::{decide, play};
 use cortex_m::Peripherals;
 use cortex_m_rt::exception;
@@ -47,13 +47,7 @@ async fn machine(mut acrobot: TimeLimit<Acrobot<Fast>>) {
         OBSERVATION.signal(step.observation);
         action = ACTION.wait().await;
     };
-
-    let steps = acrobot.elapsed();
-    let in_time = Instant::MIN.elapsed() / steps == PERIOD; // since the clock started
-    let equal = (acrobot, step) == play();
-    println!("{steps} steps; in time: {in_time}; as in a plain loop: {equal}");
-    let passed = in_time && equal && step.terminated;
-    process::exit(if passed { 0 } else { 1 })
+    finish(acrobot, step)
 }
 
 #[embassy_executor::task]
@@ -76,4 +70,13 @@ async fn main(spawner: Spawner) {
     CLOCK.start(&mut core.SYST);
     spawner.spawn(machine);
     spawner.spawn(controller);
+}
+
+fn finish(acrobot: TimeLimit<Acrobot<Fast>>, step: Step) -> ! {
+    let steps = acrobot.elapsed();
+    let in_time = Instant::MIN.elapsed() / steps == PERIOD; // since the clock started
+    let equal = (acrobot, step) == play();
+    println!("{steps} steps; in time: {in_time}; as in a plain loop: {equal}");
+    let passed = in_time && equal && step.terminated;
+    process::exit(if passed { 0 } else { 1 })
 }
