@@ -1,10 +1,10 @@
-// Debian's Chromium, without a screen.
+// Launches Debian's Chromium without a window.
 
 import { chromium } from "playwright-core";
 
 export const launch = () =>
   chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    // As root, as in CI, Chromium has no sandbox.
+    // Chromium's sandbox does not work as root, as in CI.
     args: process.getuid?.() === 0 ? ["--no-sandbox"] : [],
   });

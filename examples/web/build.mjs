@@ -1,4 +1,4 @@
-// Builds the page into dist/: a copy of its files, and three modules.
+// Builds the page into dist/: copies its files and compiles three WebAssembly modules.
 
 import { execFileSync } from "node:child_process";
 import { cpSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
@@ -7,11 +7,14 @@ import { fileURLToPath } from "node:url";
 const run = (command, args, env = {}) =>
   execFileSync(command, args, { stdio: "inherit", env: { ...process.env, ...env } });
 
-/** For size: loops are unrolled only as a whole, and only up to 16 turns, the lanes of a batch's block. */
+/** Smaller code: a loop is unrolled fully or not at all, and only up to 16 iterations, the lanes of a batch's block. */
 const SMALL = ["-Cllvm-args=-unroll-full-max-count=16", "-Cllvm-args=-unroll-allow-partial=false"];
-/** wasm-opt's passes for size. Constants that occur often become locals. Rust puts nothing below address 1024. */
+/**
+ * wasm-opt's passes for smaller code. `--const-hoisting` turns constants that occur often into locals. `--low-memory-unused`
+ * is safe because Rust puts nothing below address 1024.
+ */
 const PASSES = ["--low-memory-unused", "-Os", "--const-hoisting", "-Os", "--strip-debug", "--strip-producers", "--strip-target-features"];
-/** The features that Rust's compiler assumes. Every browser with modules in workers has them. */
+/** The WebAssembly features that rustc assumes. Every browser with modules in workers has them. */
 const FEATURES = ["bulk-memory", "multivalue", "mutable-globals", "nontrapping-float-to-int", "reference-types", "sign-ext"];
 
 function build(name, { simd128 = false, args = [] }) {
@@ -29,9 +32,9 @@ function build(name, { simd128 = false, args = [] }) {
 }
 
 /**
- * A vector constant takes 18 bytes wherever it occurs, and V8 compiles it to four instructions each time. A constant that
- * occurs three times or more in a function becomes a global: 2 bytes and a load. It is mutable, otherwise V8 puts the
- * constant back.
+ * Moves vector constants into globals. A vector constant takes 18 bytes wherever it occurs, and V8 compiles it to four
+ * instructions. A global takes 2 bytes and a load, so it is better for a constant that occurs three times or more in a
+ * function. The global is mutable, because V8 would replace an immutable one by the constant.
  */
 function withVectorsInGlobals(text) {
   const vector = /\(v128\.const [^)]*\)/g;

@@ -1,4 +1,4 @@
-// A static server for dist/: `npm run serve`, or `npm run serve -- 8000` for that port.
+// A static server for dist/: `npm run serve`, or `npm run serve -- 8000` for port 8000.
 
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
@@ -15,10 +15,10 @@ const TYPES = {
   ".wasm": "application/wasm",
 };
 
-/** The file for an address, or undefined if the address is invalid. It is in dist/, because URL resolves every "..". */
+/** The file for an address, or undefined if the address is invalid. It is always in dist/, because URL resolves every "..". */
 function fileOf(address) {
   try {
-    // A path that begins with two slashes would name another host.
+    // URL would read what follows two slashes as a host name.
     const { pathname } = new URL(address.replace(/^[/\\]+/, "/"), "http://localhost");
     return join(DIST, pathname.endsWith("/") ? `${pathname}index.html` : pathname);
   } catch {
@@ -26,7 +26,7 @@ function fileOf(address) {
   }
 }
 
-/** A server on this machine's own address. Port 0 takes any free port. */
+/** A server that only this machine can reach. Port 0 takes any free port. */
 export function serve(port) {
   const server = createServer(async ({ method, url }, response) => {
     const fail = (status, reason, headers) => response.writeHead(status, headers).end(reason);
@@ -34,7 +34,7 @@ export function serve(port) {
     const file = fileOf(url);
     if (!file) return fail(400, "the address must be a path");
     try {
-      // Read before the answer begins, because a file can be missing, a folder, or replaced by a build.
+      // Before the response begins, because this fails if the file is missing, is a folder or is being replaced by a build.
       const content = await readFile(file);
       response.setHeader("content-type", TYPES[extname(file)] ?? "application/octet-stream");
       response.end(content);

@@ -1,4 +1,4 @@
-// One episode: its seed, parameters and actions, and its states.
+// One episode: its seed, parameters, actions and states.
 
 import { LIMIT } from "./module.js";
 
@@ -17,7 +17,7 @@ export class Game {
     this.begin(seed, params);
   }
 
-  /** Begins an episode. If the crate rejects the parameters it throws, and the current episode goes on. */
+  /** Begins an episode. Throws if the crate rejects the parameters. Then the current episode continues. */
   begin(seed, params = this.params) {
     this.#acrobot.setParams(params);
     this.#acrobot.reset(seed);
@@ -43,7 +43,7 @@ export class Game {
     return (this.end === "goal" ? 1 : 0) - this.steps;
   }
 
-  /** The state, its energy and the tip's height. */
+  /** The four numbers of the state, the energy and the height of the tip. */
   get numbers() {
     return this.#rows.at(-1);
   }
@@ -69,7 +69,7 @@ export class Game {
   }
 }
 
-/** The fewest digits that read back to the same number in single precision. */
+/** The shortest decimal that rounds to the same number in single precision. */
 export function shortest(number) {
   for (let digits = 1; ; digits++) {
     const text = String(Number(number.toPrecision(digits)));

@@ -1,8 +1,8 @@
-// A run in an address, after the #: seed, parameters other than Gymnasium's, and actions.
+// A run in an address, after the #: seed, parameters that differ from Gymnasium's, and actions.
 
 import { DEFAULTS, LIMIT, PARAMETERS, parseSeed } from "./module.js";
 
-/** Fills the last byte. It is no action. */
+/** Fills the last byte, which has room for four actions. No action has this number. */
 const PADDING = 3;
 
 /** Actions as base64url, two bits each and the first in the highest. */
@@ -37,7 +37,7 @@ export function encodeRun({ seed, params, actions }) {
   return `#${fields}`;
 }
 
-/** The run in an address, with unchecked parameters. Throws an `Error` with the reason for an address without a run. */
+/** The run in an address. Throws an `Error` with the reason if there is none. The module checks the parameters later. */
 export function decodeRun(hash) {
   const fields = new URLSearchParams(hash.slice(1));
   const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];
@@ -54,7 +54,7 @@ export function decodeRun(hash) {
   return { seed: parseSeed(fields.get("seed") ?? "42"), params, actions: decodeActions(fields.get("actions") ?? "") };
 }
 
-/** The number in a text; NaN for a text that is no number. */
+/** The number in a text, or NaN if the text is not a number. */
 export function parseNumber(text) {
   return text.trim() === "" ? NaN : Number(text);
 }

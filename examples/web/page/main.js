@@ -1,4 +1,4 @@
-// Loads the module that this browser can run, and connects the page to it.
+// Loads the WebAssembly module that this browser can run, and connects the page to it.
 
 import { Game } from "./game.js";
 import { decodeRun, encodeRun } from "./link.js";
@@ -11,7 +11,7 @@ import { download, trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
 
-/** The time that the end of an episode is shown before a policy begins the next, ms. */
+/** How long a policy's ended episode stays on the screen before the next begins, ms. */
 const INTERVAL = 1500;
 
 async function load() {
@@ -24,7 +24,7 @@ async function load() {
   $("module").textContent = simd
     ? `WebAssembly with simd128, ${kib} KiB.`
     : `WebAssembly, ${kib} KiB. This browser has no simd128: results are bit-identical, but a batch is no faster than one acrobot.`;
-  $("vectors").textContent = simd ? ", by simd128" : ", without simd128";
+  $("vectors").textContent = simd ? ", with simd128" : ", without simd128";
   const module = await WebAssembly.compile(bytes);
   start(module, await Acrobot.load(module));
 }
@@ -37,9 +37,9 @@ function start(module, acrobot) {
   const stage = new Stage(acrobot);
 
   let playing = !calm.matches;
-  /** The time that the last step has been shown, s; dt before the first step. */
+  /** How much of the last step has been shown, s; dt before the first step. */
   let shown = game.params.dt;
-  /** When the next episode begins; infinite if it does not begin by itself. */
+  /** When the next episode begins; infinite if the user must begin it. */
   let nextAt = Infinity;
   /** The actions of a link. */
   let recorded = [];
@@ -56,13 +56,13 @@ function start(module, acrobot) {
 
   const step = () => {
     const next = action();
-    if (next === undefined) return pause("The link ends here.");
+    if (next === undefined) return pause("The replay has ended.");
     game.step(next);
     shown = 0;
     if (game.end === null) return;
     if (game.end === "goal" && (best === null || game.steps < best)) best = game.steps;
-    const goal = `The tip is above the line, after ${game.steps} steps.`;
-    say(game.end === "goal" ? goal : `Out of time, after ${LIMIT} steps.`);
+    const goal = `Goal: the tip is above the target height after ${game.steps} steps.`;
+    say(game.end === "goal" ? goal : `Out of time after ${LIMIT} steps.`);
     if (!["keys", "link"].includes($("policy").value)) nextAt = performance.now() + INTERVAL;
   };
 
@@ -102,13 +102,13 @@ function start(module, acrobot) {
   const toggle = () => (playing ? pause("Paused.") : play());
   const single = () => {
     if (playing) pause("Paused.");
-    if (game.end !== null) return say("The episode has ended: reset it, or take the next seed.");
+    if (game.end !== null) return say("The episode has ended. Press Reset or Next seed.");
     step();
     shown = game.params.dt;
     changed();
   };
 
-  /** A seed of any size, shortened to fit a sentence. */
+  /** A seed as text. A long one is shortened to fit a sentence. */
   const name = (seed) => (`${seed}`.length > 24 ? `${`${seed}`.slice(0, 20)}…` : `${seed}`);
   const say = (message) => ($("status").textContent = message);
 
@@ -152,7 +152,7 @@ function start(module, acrobot) {
       marks: [standing],
       end,
     });
-    caption("energy-caption", [["Energy"], [`${number(energy)} J`, "first"], [`standing: ${number(standing)} J`, "mark"], [`tip at ${number(height)} m`]]);
+    caption("energy-caption", [["Energy"], [`${number(energy)} J`, "first"], [`upright: ${number(standing)} J`, "mark"], [`tip height ${number(height)} m`]]);
     plot($("angles"), {
       series: [{ values: game.column(0), color: first }, { values: game.column(1), color: second }],
       range: [-Math.PI, Math.PI],
@@ -171,7 +171,7 @@ function start(module, acrobot) {
   };
 
   let dirty = true;
-  /** Something except the picture has changed. */
+  /** Requests an update of everything except the picture, which each frame draws. */
   const changed = () => (dirty = true);
 
   const update = () => {
@@ -183,8 +183,8 @@ function start(module, acrobot) {
     $("verdict").textContent = { goal: `${game.steps} steps`, limit: "Out of time" }[game.end] ?? "";
     $("drive").disabled = document.querySelector("[value=learnt]").disabled;
     $("between").textContent = calm.matches
-      ? "Shown step by step and without a trail, for less motion."
-      : `Physics every ${game.params.dt} s. Between two steps the picture is interpolated: by the cubic through both states' angles and velocities.`;
+      ? "Reduced motion: the picture moves step by step, without a trail."
+      : `The physics steps every ${game.params.dt} s. Between steps the picture is interpolated.`;
     const bits = new Uint32Array(game.numbers.buffer);
     rows.forEach(({ unit, value, bits: code }, i) => {
       value.textContent = `${number(game.numbers[i], 4)} ${unit}`;
@@ -196,14 +196,14 @@ function start(module, acrobot) {
   const cost = { frames: 0, physics: 0, drawing: 0 };
   let last = performance.now();
   const frame = (now) => {
-    // A page in the background has no frames. It does not catch up.
+    // A page in the background gets no frames. Afterwards it does not catch up.
     const elapsed = Math.min(Math.max(now - last, 0), 100) / 1000;
     last = now;
     const { dt } = game.params;
     const before = performance.now();
     if (playing && game.end === null) {
       shown += elapsed * Number($("pace").value);
-      // However small dt is, the episode's limit ends this loop.
+      // The limit of steps ends this loop even if dt is tiny.
       while (shown >= dt && playing && game.end === null) {
         const over = shown - dt;
         step();
@@ -240,7 +240,7 @@ function start(module, acrobot) {
   const sides = { ArrowLeft: "left", ArrowRight: "right" };
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select")) return;
-    // A button is pressed by the space bar.
+    // The space bar presses the focused button.
     if (event.key === " " && event.target.closest("button, summary, a")) return;
     if (event.key in sides) hold(sides[event.key], true);
     else if (!event.repeat && event.key.toLowerCase() in keys) keys[event.key.toLowerCase()]();
@@ -248,7 +248,7 @@ function start(module, acrobot) {
     event.preventDefault();
   });
   document.addEventListener("keyup", ({ key }) => key in sides && hold(sides[key], false));
-  // Another window gets the event when a key is released.
+  // If the key is released in another window, this one gets no event.
   addEventListener("blur", () => ["left", "right"].forEach((side) => hold(side, false)));
   for (const side of ["left", "right"]) {
     const button = $(side);
@@ -291,22 +291,22 @@ function start(module, acrobot) {
       recorded = run.actions;
       document.querySelector("[value=link]").disabled = false;
       choose("link");
-      say(`The run of a link: ${recorded.length} steps of seed ${name(run.seed)}.`);
+      say(`Replay of a link: ${recorded.length} steps of seed ${name(run.seed)}.`);
     });
   };
   addEventListener("hashchange", open);
   $("share").onclick = async () => {
     const hash = encodeRun(game);
-    // `location` would open it.
+    // Assigning to `location` would replay the run.
     history.replaceState(null, "", hash);
     $("link").value = location.href;
     $("link-field").hidden = false;
     $("link").select();
     try {
       await navigator.clipboard.writeText(location.href);
-      say("The link is copied.");
+      say("Link copied.");
     } catch {
-      say("The link is in the field; copy it from there.");
+      say("The browser does not allow copying. Copy the link from the field.");
     }
   };
   $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
@@ -341,12 +341,12 @@ function start(module, acrobot) {
 
 const notice = $("notice");
 if (typeof WebAssembly === "object") {
-  notice.textContent = "Loading";
+  notice.textContent = "Loading…";
   load().catch((error) => {
     $("app").hidden = true;
     notice.hidden = false;
     notice.textContent = `The page could not start: ${error.message}.`;
   });
 } else {
-  notice.textContent = "This browser has no WebAssembly, or does not allow it here. The page needs it.";
+  notice.textContent = "This page needs WebAssembly. This browser lacks it or blocks it here.";
 }

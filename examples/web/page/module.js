@@ -1,6 +1,7 @@
-// The module's functions over numbers, as methods over JavaScript's values. The page has one module, and each worker its own.
+// Wraps the WebAssembly module, whose functions take numbers, in methods that take JavaScript values. The page has one
+// instance, and each worker has its own.
 
-/** Bytes of a module that uses simd128: `i32.const 0`, `i8x16.splat`, `drop`. */
+/** A minimal module that uses simd128: `i32.const 0`, `i8x16.splat`, `drop`. Only browsers with simd128 accept it. */
 const SIMD128 = Uint8Array.of(
   0, 97, 115, 109, 1, 0, 0, 0, // magic and version
   1, 4, 1, 96, 0, 0, // a type: () -> ()
@@ -13,9 +14,9 @@ export const hasSimd128 = () => WebAssembly.validate(SIMD128);
 /** The most steps of an episode. */
 export const LIMIT = 500;
 
-/** The parameters that can be set: name, label, unit, Gymnasium's value, and the slider's end and step. */
+/** The parameters that the page can set: name, label, unit, Gymnasium's value, and the slider's end and step. */
 export const PARAMETERS = [
-  ["dt", "Time of a step, dt", "s", 0.2, 0.5, 0.01],
+  ["dt", "Time step dt", "s", 0.2, 0.5, 0.01],
   ["mass1", "Mass of link 1", "kg", 1, 4, 0.05],
   ["mass2", "Mass of link 2", "kg", 1, 4, 0.05],
   ["length1", "Length of link 1", "m", 1, 3, 0.05],
@@ -28,11 +29,11 @@ export const DEFAULTS = {
   ...Object.fromEntries(PARAMETERS.map(({ name, value }) => [name, value])),
 };
 
-/** Bytes of the module's buffer, and the most 32-bit words that it reads of a seed. */
+/** The size of the module's buffer in bytes, and the maximum number of 32-bit words that it reads of a seed. */
 const BUFFER = 1 << 17;
 const SEED_WORDS = 64;
 
-/** The seed in a text. Throws an `Error` with the reason for a text that is no seed. */
+/** The seed in a text. Throws an `Error` with the reason if the text is not a seed. */
 export function parseSeed(text) {
   const digits = text.trim();
   const rule = "seed must be a decimal integer of at least 0 with at most 600 digits";
@@ -69,7 +70,7 @@ export class Acrobot {
     return new TextDecoder().decode(this.#bytes(length).slice(start));
   }
 
-  /** Writes a seed into the module's buffer. Returns the number of its words. */
+  /** Writes a seed into the module's buffer. Returns the number of words written. */
   #seed(seed) {
     const words = new DataView(this.#exports.memory.buffer, this.#buffer);
     let count = 0;
@@ -83,7 +84,7 @@ export class Acrobot {
     this.#exports.reset(this.#seed(seed));
   }
 
-  /** Steps. Returns whether the goal or the limit of steps was reached. */
+  /** Steps. Returns whether this reached the goal or the limit of steps. */
   step(action) {
     const flags = this.#exports.step(action);
     return { terminated: (flags & 1) !== 0, truncated: (flags & 2) !== 0 };
@@ -94,14 +95,14 @@ export class Acrobot {
     return this.#floats(this.#exports.numbers(), 6).slice();
   }
 
-  /** Sets the parameters. If they are rejected it throws an `Error` with the crate's reason and changes nothing. */
+  /** Sets the parameters. If the crate rejects them, throws an `Error` with its reason and changes nothing. */
   setParams(params) {
     const { dynamics, dt, mass1, mass2, length1, length2, gravity } = params;
     const length = this.#exports.set_params(dynamics === "nips", dt, mass1, mass2, length1, length2, gravity);
     if (length === 0) return;
     const [name, unit, rule] = this.#text(length, 8).split("\n");
     const rounded = new DataView(this.#exports.memory.buffer, this.#buffer).getFloat64(0, true);
-    // The number as the user wrote it, unless single precision has nothing like it.
+    // The number as the user wrote it, unless it rounds to zero or infinity in single precision.
     const value = params[name] * rounded > 0 && Number.isFinite(rounded) ? params[name] : rounded;
     throw new Error(`${name} must be ${rule} ${unit}, got ${String(value).replace("Infinity", "inf")}`);
   }
@@ -126,12 +127,12 @@ export class Acrobot {
     this.#exports.paint(...colors);
   }
 
-  /** Draws a part of the last step, from 0 to 1. Returns the tip's position [x, y] in m, x to the right and y up. */
+  /** Draws the acrobot at a part of its last step, from 0 to 1. Returns the tip's position [x, y] in m, x to the right and y up. */
   draw(part) {
     return this.#floats(this.#exports.draw(part), 2);
   }
 
-  /** Loads weights as the policy `learnt`. If they are rejected it throws an `Error` with the reason and changes nothing. */
+  /** Loads weights for the policy `learnt`. If they are rejected, throws an `Error` with the reason and changes nothing. */
   load(weights) {
     if (weights.length > BUFFER) throw new Error(`weights must have at most ${BUFFER} bytes, got ${weights.length}`);
     this.#bytes(weights.length).set(weights);
@@ -143,7 +144,7 @@ export class Acrobot {
     this.#exports.begin_training(preset === "quality", episodes, this.#seed(seed));
   }
 
-  /** Trains for an episode. Returns the sum of its rewards. */
+  /** Trains for one episode. Returns its return. */
   train() {
     return this.#exports.train();
   }

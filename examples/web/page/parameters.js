@@ -1,11 +1,12 @@
-// The panel of the physics: equations, and a slider and a field for each parameter, which shows why a value is rejected.
+// The panel "Physics": a choice of equations, and a slider and a field for each parameter. The field shows why a value is
+// rejected.
 
 import { parseNumber } from "./link.js";
 import { DEFAULTS, PARAMETERS } from "./module.js";
 
 const $ = (id) => document.getElementById(id);
 
-/** Runs `set`. If it throws, marks the field and shows the reason. */
+/** Calls `set`. If it throws, marks the field as invalid and shows the reason. */
 export function attempt(field, reason, set) {
   try {
     set();

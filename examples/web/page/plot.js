@@ -1,4 +1,4 @@
-// Lines over the steps of an episode or over episodes, at the display's resolution.
+// Draws line plots at the display's resolution: over the steps of an episode, or over the episodes of a training.
 
 const MARGIN = { left: 40, right: 8, top: 6, bottom: 18 };
 
@@ -8,8 +8,8 @@ export function color(name) {
 }
 
 /**
- * Draws `series`, each with `values` and a `color`, the first value at x = `start`. Each of `marks` is a value with a
- * line across. Values that differ by more than `jump` are not connected.
+ * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of `marks` is a value, drawn as a
+ * dashed horizontal line. Neighbouring values that differ by more than `jump` are not connected: an angle jumps from π to −π.
  */
 export function plot(canvas, { series, range, start = 0, end, marks = [], jump = Infinity }) {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -55,7 +55,7 @@ export function plot(canvas, { series, range, start = 0, end, marks = [], jump =
   }
 }
 
-/** About `count` round numbers from `low` to `high`. */
+/** At most about `count` round numbers from `low` to `high`, at equal distances. */
 function ticks(low, high, count) {
   const raw = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(raw));
@@ -66,9 +66,9 @@ function ticks(low, high, count) {
 
 const label = (value) => String(Number(value.toPrecision(3))).replace("-", "−");
 
-/** The range of some values, a little wider, and never empty. */
+/** The range of some values, made a little wider, so that it is never empty. */
 export function rangeOf(values) {
-  // Not `Math.min(...values)`: a call takes some 100,000 arguments, and a training can have a million episodes.
+  // Not `Math.min(...values)`: a call takes about 100,000 arguments, and a training can have a million episodes.
   let [low, high] = [Infinity, -Infinity];
   for (const value of values) [low, high] = [Math.min(low, value), Math.max(high, value)];
   const room = (high - low || 1) * 0.06;

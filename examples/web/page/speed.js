@@ -1,4 +1,4 @@
-// The panel that measures steps a second in a worker.
+// The panel "Speed", which measures steps per second in a worker.
 
 const $ = (id) => document.getElementById(id);
 
@@ -10,16 +10,16 @@ export function speedPanel(module) {
   };
   $("measure").onclick = () => {
     $("measure").disabled = true;
-    $("speed-status").textContent = "Measuring";
+    $("speed-status").textContent = "Measuring…";
     const worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
-    worker.onerror = ({ message }) => end(worker, `It failed: ${message}`);
+    worker.onerror = ({ message }) => end(worker, `The measurement failed: ${message}`);
     worker.onmessage = ({ data: { failed, scalar, batch } }) => {
-      if (failed) return end(worker, `It failed: ${failed}`);
+      if (failed) return end(worker, `The measurement failed: ${failed}`);
       const millions = (rate) => `${(rate / 1e6).toFixed(1)} million`;
       $("scalar").textContent = millions(scalar);
       $("batch").textContent = millions(batch);
       $("ratio").textContent = (batch / scalar).toFixed(2);
-      end(worker, "Measured: the best of ten runs each.");
+      end(worker, "Each result is the best of ten runs.");
     };
     worker.postMessage({ module, task: "speed" });
   };

@@ -1,10 +1,10 @@
-// The picture of the acrobot over the trail of its tip.
+// Draws the acrobot, which the module paints, over the trail of its tip.
 
 import { color } from "./plot.js";
 
-/** The most pixels of the picture's side, for which the module has memory. */
+/** The picture's maximum width and height in pixels: the module has no more memory. */
 const SIDE = 1024;
-/** The number of drawings after which a part of the trail disappears. */
+/** The number of frames after which a part of the trail disappears. */
 const TRAIL = 90;
 
 export class Stage {
@@ -12,7 +12,7 @@ export class Stage {
   #picture = document.querySelector("#picture");
   #trail = document.querySelector("#trail");
   #pixels;
-  /** Former positions of the tip, [x, y] in m. */
+  /** Recent positions of the tip, [x, y] in m. */
   #tips = [];
 
   constructor(acrobot) {
@@ -30,7 +30,7 @@ export class Stage {
     for (const canvas of [this.#picture, this.#trail]) canvas.width = canvas.height = side;
   }
 
-  /** Takes the current colours of the style sheet. */
+  /** Paints in the current colours of the style sheet, which the colour scheme changes. */
   repaint() {
     const colors = ["--line", "--link", "--joint", "--torque"].map((name) => {
       const [red, green, blue] = color(name).match(/\w\w/g).map((digits) => parseInt(digits, 16));
@@ -43,10 +43,10 @@ export class Stage {
     this.#tips = [];
   }
 
-  /** Draws a part of the last step, from 0 to 1. `reach` is the length of both links, m. */
+  /** Draws the acrobot at a part of its last step, from 0 to 1. `reach` is the total length of the links, m. */
   draw(part, reach, withTrail) {
     const half = this.#pixels.width / 2;
-    // The crate scales its picture like this.
+    // The scale of the crate's picture.
     const metre = half / (reach + 0.2);
     const [x, y] = this.#acrobot.draw(part);
     this.#picture.getContext("2d").putImageData(this.#pixels, 0, 0);

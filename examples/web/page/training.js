@@ -1,16 +1,16 @@
-// The panel that trains in a worker, draws the curve, and loads and saves weights.
+// The panel "Train a policy": trains in a worker, draws the learning curve, loads and saves weights.
 
 import { parseSeed } from "./module.js";
 import { color, plot, rangeOf } from "./plot.js";
 
-/** Episodes of a mean, as in Gymnasium's definition of solved. */
+/** Solved, as Gymnasium defines it: a mean return of −100 over 100 episodes. */
 const WINDOW = 100;
 const SOLVED = -100;
 const EPISODES = 1_000_000;
 
 const $ = (id) => document.getElementById(id);
 
-/** Calls `ready` when there is a policy, and `drive` when the user lets it drive. */
+/** Calls `ready` once there is a learnt policy, and `drive` when the user wants to watch it. */
 export function trainingPanel(acrobot, module, { ready, drive }) {
   let worker = null;
   let weights = null;
@@ -22,7 +22,7 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
     plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), marks: [SOLVED] });
   };
 
-  /** Loads weights into the page's module. Throws with the reason if they are rejected. */
+  /** Loads weights into the page's module. Throws an `Error` with the reason if they are rejected. */
   const take = (bytes) => {
     acrobot.load(bytes);
     weights = bytes;
@@ -72,14 +72,14 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
         `${returns.length.toLocaleString("en")} of ${episodes.toLocaleString("en")} episodes`,
         `mean return ${means.at(-1).toFixed(1).replace("-", "−")}`,
         solved < 0 ? "not solved yet" : `solved at episode ${solved + 1}`,
-        `${rate.toLocaleString("en")} episodes a minute`,
+        `${rate.toLocaleString("en")} episodes per minute`,
       ].join(" · ");
       $("training-status").textContent = text;
       if (returns.length === episodes) stop();
     };
     worker.postMessage({ module, task: "train", preset: $("preset").value, seed, episodes });
     $("train").textContent = "Stop";
-    $("training-status").textContent = "Training";
+    $("training-status").textContent = "Training…";
   };
 
   $("train").onclick = () => (worker ? stop("Stopped. The weights are kept.") : train());
@@ -87,7 +87,7 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
   $("save").onclick = () => download("weights.bin", weights);
   $("load").onchange = async ({ target }) => {
     const [file] = target.files;
-    // Otherwise the same file could not be chosen again.
+    // Otherwise choosing the same file again would cause no event.
     target.value = "";
     $("weights-reason").textContent = "";
     if (file === undefined) return;
@@ -107,6 +107,6 @@ export function download(name, content) {
   link.href = URL.createObjectURL(new Blob([content]));
   link.download = name;
   link.click();
-  // The browser may still be reading it.
+  // Later, because the browser may still be reading it.
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }

@@ -1,8 +1,9 @@
-// One task with its own module, outside the page's thread: { module, task, … } in, reports out. Terminate the worker to stop it.
+// Trains or measures outside the page's thread, with its own instance of the module. It receives { module, task, … } and
+// posts reports. To stop a task, terminate the worker.
 
 import { Acrobot } from "./module.js";
 
-/** The time between two reports, ms. */
+/** The time between two reports of a training, ms. */
 const PERIOD = 150;
 
 const tasks = {
@@ -27,7 +28,7 @@ const tasks = {
   },
 };
 
-/** Steps a second in the best of ten runs. During the first the browser may still compile. */
+/** Steps per second in the best of ten runs. During the first the browser may still compile. */
 function fastest(steps, run) {
   let best = Infinity;
   for (let round = 0; round < 10; round++) {

@@ -1,5 +1,5 @@
-//! The learner of `swing_up` with its 64 KiB of weights: training, in a worker's module, and the learnt policy, in the
-//! page's.
+//! The learner of `swing_up` with its 64 KiB of weights. A worker's instance of the module trains, and the page's
+//! instance plays the learnt policy.
 
 use core::fmt::{self, Write};
 
@@ -20,15 +20,15 @@ const fn memory() -> Memory {
     Once::new([[0.0; 2]; SLOTS])
 }
 
-/// An untrained learner, or none if its memory was taken before.
+/// An untrained learner, or `None` if its memory is already in use.
 fn learner(preset: Preset, episodes: u32, memory: &'static Memory) -> Option<Learner> {
     preset.learner(episodes, memory.take()?).ok()
 }
 
 static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);
 
-/// Begins to train with the seed in the buffer, as `swing_up` does: the preset `fast`, or `quality` if that is not 0. Returns
-/// false if this module has begun a training before, because it has memory for one.
+/// Begins a training like that of `swing_up`, with the seed in the buffer and the preset `fast`, or `quality` if that is not
+/// 0. Returns false if this instance has begun a training before, because it has memory for only one.
 #[unsafe(no_mangle)]
 pub extern "C" fn begin_training(quality: u32, episodes: u32, words: usize) -> bool {
     static WEIGHTS: Memory = memory();
@@ -45,7 +45,7 @@ pub extern "C" fn begin_training(quality: u32, episodes: u32, words: usize) -> b
     true
 }
 
-/// Trains for an episode. Returns the sum of its rewards, or NaN if no training has begun.
+/// Trains for one episode. Returns its return, or NaN if no training has begun.
 #[unsafe(no_mangle)]
 pub extern "C" fn train() -> f32 {
     match &mut *TRAINING.borrow() {
@@ -54,7 +54,8 @@ pub extern "C" fn train() -> f32 {
     }
 }
 
-/// Writes the weights of the training into the buffer, as `swing_up --save` does. Returns the number of bytes.
+/// Writes the training's weights into the buffer, in the format of `swing_up --save`. Returns the number of bytes, which is
+/// 0 if no training has begun.
 #[unsafe(no_mangle)]
 pub extern "C" fn save() -> usize {
     let Some((learner, ..)) = &*TRAINING.borrow() else {
@@ -66,17 +67,17 @@ pub extern "C" fn save() -> usize {
     Learner::BYTES
 }
 
-/// A learner for each preset, one of which has the loaded weights.
+/// A learner for each preset, because presets have different weights. One of them plays.
 struct Policy {
     presets: [Learner; 2],
-    /// The one that loaded weights last.
+    /// The learner that loaded weights last. It plays.
     last: usize,
 }
 
 static POLICY: Shared<Option<Policy>> = Shared::new(None);
 
 impl Policy {
-    /// Untrained, or none if there was one before.
+    /// Untrained learners, or `None` if their memory is already in use.
     fn new() -> Option<Self> {
         static FAST: Memory = memory();
         static QUALITY: Memory = memory();
@@ -109,8 +110,8 @@ impl Policy {
     }
 }
 
-/// Takes the weights in the buffer's first `len` bytes as the policy, of either preset. If they are rejected the policy
-/// stays, and the result is the length of the reason in the buffer; otherwise it is 0.
+/// Loads weights of either preset from the first `len` bytes of the buffer. Returns 0, or, if they are rejected, the length of
+/// the reason in the buffer. Then the policy does not change.
 #[unsafe(no_mangle)]
 pub extern "C" fn load(len: usize) -> usize {
     let mut policy = POLICY.borrow();
@@ -127,12 +128,12 @@ pub extern "C" fn load(len: usize) -> usize {
         bytes: &mut *buffer,
         len: 0,
     };
-    // The buffer is a hundred times as long.
+    // This cannot fail, because the buffer is a hundred times as long as the text.
     let _ = write!(text, "{error}");
     text.len
 }
 
-/// The action of the loaded policy, or no torque before weights were loaded.
+/// The action of the learnt policy. It applies no torque until weights are loaded.
 #[unsafe(no_mangle)]
 pub extern "C" fn learnt() -> u8 {
     let policy = POLICY.borrow();
@@ -142,7 +143,7 @@ pub extern "C" fn learnt() -> u8 {
     action.into()
 }
 
-/// Writes into bytes. Fails if they are full.
+/// Writes text into bytes. Fails if they are full.
 struct Text<'a> {
     bytes: &'a mut [u8],
     len: usize,

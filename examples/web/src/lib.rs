@@ -1,7 +1,7 @@
-//! The module of the page: plain functions over numbers, which JavaScript calls.
+//! The page's WebAssembly module: exported functions with numbers as arguments and results, which JavaScript calls.
 //!
-//! Longer data passes through the buffer in `memory`: seeds in, reasons out, weights both ways. Without the `page`
-//! feature there is only `simulation`. The fuzz targets call the same functions on the machine that builds.
+//! Longer data passes through the buffer in `memory`: JavaScript writes seeds, Rust writes error texts, both write weights.
+//! Without the `page` feature the module contains only `simulation`. Fuzz targets call the same functions natively.
 
 #![cfg_attr(target_family = "wasm", no_std)]
 

@@ -1,14 +1,14 @@
-//! Memory that lives as long as the module.
+//! Memory that lives as long as the module, and belongs to one owner.
 
 use core::cell::{Cell, UnsafeCell};
 
-/// Memory that is handed out once.
+/// Memory that can be taken once.
 pub struct Once<T> {
     taken: Cell<bool>,
     value: UnsafeCell<T>,
 }
 
-// SAFETY: a module without atomics has one thread, as `memory` makes sure.
+// SAFETY: a module without atomics has one thread. `memory` does not compile with atomics.
 unsafe impl<T> Sync for Once<T> {}
 
 impl<T> Once<T> {
@@ -19,12 +19,12 @@ impl<T> Once<T> {
         }
     }
 
-    #[expect(clippy::mut_from_ref, reason = "it is handed out once")]
+    #[expect(clippy::mut_from_ref, reason = "it can be taken once")]
     pub fn take(&'static self) -> Option<&'static mut T> {
         if self.taken.replace(true) {
             return None;
         }
-        // SAFETY: it is taken for the first time, and never again.
+        // SAFETY: this line runs once, so no other reference exists.
         Some(unsafe { &mut *self.value.get() })
     }
 }

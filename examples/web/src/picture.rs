@@ -1,4 +1,5 @@
-//! The acrobot in pixels, drawn by the crate, also between two steps, because a display is faster than the physics.
+//! Draws the acrobot into a pixel buffer. It also draws states between two steps, because a display shows more frames than
+//! the physics takes steps.
 
 use core::convert::Infallible;
 
@@ -13,10 +14,10 @@ use embedded_graphics_core::primitives::Rectangle;
 use crate::memory::Shared;
 use crate::simulation;
 
-/// The most pixels in each direction: the memory is static.
+/// The maximum width and height in pixels, because the memory is static.
 const SIDE: usize = 1024;
 
-/// A pixel as a canvas has it: red in the lowest byte, opacity in the highest.
+/// A pixel in the format of an HTML canvas: red in the lowest byte, opacity in the highest.
 #[derive(Clone, Copy, PartialEq)]
 struct Rgba(u32);
 
@@ -40,11 +41,11 @@ static CANVAS: Shared<Canvas> = Shared::new(Canvas {
 struct Canvas {
     size: Size,
     theme: Theme<Rgba>,
-    /// What the pixels show, if they show anything.
+    /// The figure that the pixels show. `None` if they must all be drawn.
     shown: Option<Figure>,
 }
 
-/// Pixels in rows.
+/// A drawing target: rows of pixels.
 struct Frame<'a> {
     size: Size,
     pixels: &'a mut [Rgba],
@@ -74,7 +75,7 @@ impl DrawTarget for Frame<'_> {
         Ok(())
     }
 
-    /// A figure only calls this for its whole target.
+    /// A figure calls this only to fill its whole target.
     fn fill_contiguous<I: IntoIterator<Item = Rgba>>(
         &mut self,
         _: &Rectangle,
@@ -92,7 +93,7 @@ pub extern "C" fn pixels() -> *mut u8 {
     PIXELS.address().cast()
 }
 
-/// Sets the picture's width and height, at most 1024 each. The next drawing writes all pixels.
+/// Sets the picture's width and height, at most 1024 each. The next `draw` writes all pixels.
 #[unsafe(no_mangle)]
 pub extern "C" fn resize(width: u32, height: u32) {
     let mut canvas = CANVAS.borrow();
@@ -100,7 +101,7 @@ pub extern "C" fn resize(width: u32, height: u32) {
     canvas.shown = None;
 }
 
-/// Sets the colours as bytes of red, green, blue and opacity; the background is transparent. The next drawing
+/// Sets the colours, with red in the lowest byte and opacity in the highest. The background is transparent. The next `draw`
 /// writes all pixels.
 #[unsafe(no_mangle)]
 pub extern "C" fn paint(line: u32, link: u32, joint: u32, torque: u32) {
@@ -115,8 +116,8 @@ pub extern "C" fn paint(line: u32, link: u32, joint: u32, torque: u32) {
     canvas.shown = None;
 }
 
-/// Draws the acrobot at a part of its last step, from 0 (before) to 1 (after), with the step's torque. Returns the tip's
-/// position: \[x, y\] in m from the fixed joint, x to the right and y up.
+/// Draws the acrobot at a part of its last step, from 0 (before) to 1 (after), with an arrow for the step's torque. Returns
+/// the tip's position: \[x, y\] in m from the fixed joint, x to the right and y up.
 #[unsafe(no_mangle)]
 pub extern "C" fn draw(part: f32) -> *const [f32; 2] {
     static TIP: Shared<[f32; 2]> = Shared::new([0.0; 2]);
@@ -124,7 +125,7 @@ pub extern "C" fn draw(part: f32) -> *const [f32; 2] {
         let mut acrobot = simulation.env.inner().clone();
         let dt = acrobot.params().dt;
         let state = between(simulation.before, acrobot.state(), dt, part);
-        // If the interpolation overflowed, the state stays that after the step.
+        // If the interpolation overflows, this draws the state after the step.
         let _ = acrobot.set_state(state);
 
         let mut canvas = CANVAS.borrow();
@@ -145,13 +146,13 @@ pub extern "C" fn draw(part: f32) -> *const [f32; 2] {
     TIP.address()
 }
 
-/// The state at a `part` of the step from `a` to `b`. Angles follow the cubic with the angles and velocities of both
-/// states (Hermite's); velocities are interpolated linearly.
+/// Interpolates the state at a `part` of the step from `a` to `b`: angles by the cubic Hermite polynomial, which has the
+/// angles and velocities of both states, and velocities linearly.
 fn between(a: State<f32>, b: State<f32>, dt: f32, part: f32) -> State<f32> {
     let [part2, part3] = [part * part, part * part * part];
     let angle = |theta: [f32; 2], dtheta: [f32; 2]| {
         let [start, end] = dtheta.map(|dtheta| dtheta * dt);
-        // Of all turns from one angle to the other, the one closest to the mean velocity's.
+        // Angles are modulo 2π. Of the possible rotations take the one closest to that at the mean velocity.
         let mean = (start + end) * 0.5;
         let turned = mean + wrap::<Fast>(theta[1] - theta[0] - mean);
         theta[0]

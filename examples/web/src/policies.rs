@@ -1,4 +1,4 @@
-//! Two policies that do not learn.
+//! Two policies that need no training.
 
 use core::f32::consts::PI;
 
@@ -7,7 +7,7 @@ use acrobot::{Action, Fast, State};
 
 use crate::simulation;
 
-/// Torque against θ̇1.
+/// Applies torque against θ̇1.
 #[unsafe(no_mangle)]
 pub extern "C" fn bang_bang() -> u8 {
     simulation::with(|simulation| {
@@ -21,8 +21,8 @@ pub extern "C" fn bang_bang() -> u8 {
     })
 }
 
-/// The law of `energy_control`, −(E↑ − E) θ̇1 with E↑ the energy of standing upright, rounded to an action. It adds
-/// energy where there is too little, and removes it where there is too much.
+/// Applies the torque of the example `energy_control`, −(E↑ − E) θ̇1, rounded to an action. E↑ is the energy of standing
+/// upright. The torque adds energy below E↑ and removes energy above it.
 #[unsafe(no_mangle)]
 pub extern "C" fn energy_law() -> u8 {
     let standing = standing();

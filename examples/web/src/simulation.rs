@@ -1,4 +1,4 @@
-//! One acrobot in `Fast` with Gymnasium's limit of 500 steps.
+//! One acrobot in arithmetic `Fast`, with Gymnasium's limit of 500 steps.
 
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
@@ -15,7 +15,7 @@ pub struct Simulation {
     pub torque: f32,
 }
 
-/// It hangs at rest until the first [`reset`].
+/// The acrobot hangs at rest until the first [`reset`].
 static SIMULATION: Shared<Simulation> = Shared::new(Simulation {
     env: TimeLimit::v1(Acrobot::hanging(Pcg64::new(0))),
     action_space: Pcg64::new(0),
@@ -28,7 +28,7 @@ pub fn with<R>(f: impl FnOnce(&mut Simulation) -> R) -> R {
     f(&mut SIMULATION.borrow())
 }
 
-/// The seed in the first `words` 32-bit words of the buffer, the lowest first.
+/// Reads a seed from the first `words` 32-bit words of the buffer. The lowest word is first.
 pub fn seed_in_buffer(words: usize) -> SeedSequence {
     let mut seed = [0; 64];
     let buffer = BUFFER.borrow();
@@ -41,7 +41,7 @@ pub fn seed_in_buffer(words: usize) -> SeedSequence {
     SeedSequence::from_words(seed.get(..len).unwrap_or(&seed))
 }
 
-/// Gymnasium's `reset(seed=seed)` and `action_space.seed(seed)`, with the seed in the buffer of up to 64 words.
+/// Gymnasium's `reset(seed=seed)` and `action_space.seed(seed)`. The seed is in the buffer and has at most 64 words.
 #[unsafe(no_mangle)]
 pub extern "C" fn reset(words: usize) {
     let seed = seed_in_buffer(words);
@@ -56,8 +56,8 @@ pub extern "C" fn reset(words: usize) {
     });
 }
 
-/// Steps with an action's number. Bit 0 of the result says whether the goal was reached, bit 1 whether the episode was
-/// truncated, and bit 2 that the number is no action and nothing was stepped.
+/// Steps with the action of this number. In the result, bit 0 says that the step reached the goal, bit 1 that the episode was
+/// truncated, and bit 2 that there is no such action, so nothing was stepped.
 #[unsafe(no_mangle)]
 pub extern "C" fn step(action: u32) -> u32 {
     let number = u8::try_from(action).unwrap_or(u8::MAX);
@@ -72,7 +72,7 @@ pub extern "C" fn step(action: u32) -> u32 {
     })
 }
 
-/// A random action: Gymnasium's `action_space.sample()`.
+/// Draws a random action: Gymnasium's `action_space.sample()`.
 #[unsafe(no_mangle)]
 pub extern "C" fn random() -> u8 {
     with(|simulation| Action::sample(&mut simulation.action_space).into())
@@ -91,9 +91,8 @@ pub extern "C" fn numbers() -> *const [f32; 6] {
     NUMBERS.address()
 }
 
-/// Sets parameters in SI units, and the equations: those of the book if `nips` is 0. Other parameters become
-/// Gymnasium's. If a parameter is rejected nothing changes, and the result is the length of the reason in the buffer;
-/// otherwise it is 0.
+/// Sets parameters in SI units, and the equations: those of the book if `nips` is 0. All other parameters get Gymnasium's
+/// values. Returns 0, or, if a parameter is rejected, the length of the reason in the buffer. Then nothing changes.
 #[unsafe(no_mangle)]
 pub extern "C" fn set_params(
     nips: u32,
@@ -122,8 +121,8 @@ pub extern "C" fn set_params(
     set.map_or_else(reason, |()| 0)
 }
 
-/// Writes the parts of a message into the buffer, from which JavaScript writes the message: the value in 8 bytes, then
-/// name, unit and rule, a line each. Rust's own formatting of floats would take 16 KB.
+/// Writes the parts of an error message into the buffer: the value in 8 bytes, then name, unit and rule on a line each.
+/// JavaScript composes the message, because Rust's formatting of floats would add 16 KB to the module.
 fn reason(error: Error) -> usize {
     let Error::OutOfRange {
         name,

@@ -1,4 +1,4 @@
-//! Loops to time, with a random policy: they draw the actions and reset ended episodes.
+//! Loops that JavaScript times. They draw random actions and reset ended episodes.
 
 use core::hint::black_box;
 
@@ -6,7 +6,7 @@ use acrobot::batch::{Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
-/// A linear congruential generator, which takes little time compared with a step.
+/// A linear congruential generator, because it takes little time compared with a step.
 struct Actions(u32);
 
 impl Actions {
@@ -29,7 +29,7 @@ pub extern "C" fn scalar_steps(steps: u32) {
     }
 }
 
-/// The acrobots of the batch.
+/// The number of acrobots in the batch.
 const LEN: usize = 1024;
 const LANES: usize = if cfg!(target_feature = "simd128") {
     16

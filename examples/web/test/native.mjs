@@ -1,8 +1,8 @@
-// Native results: the repository's examples, run with these arguments.
+// Native results, from the repository's examples.
 
 import { spawnSync } from "node:child_process";
 
-// Not this folder, whose configuration builds for WebAssembly.
+// Not this folder, whose Cargo configuration builds for WebAssembly.
 const root = new URL("../../..", import.meta.url);
 
 /** The actions of several tests. */
@@ -15,7 +15,7 @@ function example(name, args, input) {
   return { status, stdout, stderr };
 }
 
-/** The bits of θ1, θ2, θ̇1 and θ̇2 in single precision, initially and after each action. */
+/** The bits of θ1, θ2, θ̇1 and θ̇2 in single precision, of the initial state and after each action. */
 export function trace(seed, actions, ...args) {
   const { status, stdout, stderr } = example("trace", ["--arithmetic", "fast", "--seed", seed, ...args], actions.join(""));
   if (status !== 0) throw new Error(stderr);
@@ -29,7 +29,7 @@ export function trace(seed, actions, ...args) {
   );
 }
 
-/** Why `trace` rejects its arguments. */
+/** The reason for which `trace` rejects its arguments. */
 export function rejection(...args) {
   return example("trace", ["--seed", "0", ...args], "").stderr.trim().replace(/^error: /, "");
 }

@@ -1,4 +1,4 @@
-// The page in Chromium. Its results are compared with native ones.
+// Tests the page in Chromium, and compares its results with native ones.
 
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
@@ -8,7 +8,7 @@ import { test } from "node:test";
 import { ACTIONS, rejection, swingUp, trace } from "./native.mjs";
 import { bits, dist, downloaded, folder, linkedActions, open, paused, press, text } from "./player.mjs";
 
-test("the page loads, swings by itself, and has a strict content security policy", () =>
+test("the page loads, plays a policy, and has a strict content security policy", () =>
   open(async (page) => {
     const policy = await page.getAttribute("meta[http-equiv]", "content");
     assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
@@ -19,11 +19,11 @@ test("the page loads, swings by itself, and has a strict content security policy
       const { data } = document.querySelector("#picture").getContext("2d").getImageData(0, 0, 900, 900);
       return new Set(new Uint32Array(data.buffer)).size;
     });
-    // Ground, line, links, joints, and the arrow.
+    // The colours of background, target height, links, joints and torque.
     assert.equal(await drawn(), 5);
   }));
 
-test("keys move it, bit-identical to native", () =>
+test("keys apply torque, and states are bit-identical to native", () =>
   open(async (page) => {
     await paused(page, 42);
     await press(page, ACTIONS);
@@ -31,7 +31,7 @@ test("keys move it, bit-identical to native", () =>
     assert.equal(await text(page, "#step"), String(ACTIONS.length));
     assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
 
-    // The page decides when to step; the link has the actions.
+    // The page decides when it steps, so the actions are read from its link.
     await page.keyboard.press("Space");
     await page.keyboard.down("ArrowRight");
     await page.waitForTimeout(700);
@@ -46,7 +46,7 @@ test("keys move it, bit-identical to native", () =>
     assert.deepEqual(await bits(page), trace("42", actions).at(-1));
   }));
 
-test("seeds are Gymnasium's, of any size, and others are rejected", () =>
+test("seeds give Gymnasium's initial states, and invalid seeds are rejected", () =>
   open(async (page) => {
     const seed = "123456789012345678901234567890";
     await paused(page, seed);
@@ -68,7 +68,7 @@ test("seeds are Gymnasium's, of any size, and others are rejected", () =>
     assert.deepEqual(await bits(page), trace("5", [])[0]);
   }));
 
-test("reset, pause and the next seed", () =>
+test("reset, pause and next seed do what they say", () =>
   open(async (page) => {
     await paused(page, 42);
     const start = await bits(page);
@@ -90,7 +90,7 @@ test("reset, pause and the next seed", () =>
     assert.equal(await text(page, "#pause"), "Pause");
   }));
 
-test("parameters change the physics as in the crate, and bad ones are rejected in its words", () =>
+test("parameters change the physics as in the crate, and invalid ones are rejected with its message", () =>
   open(async (page) => {
     await paused(page, 42);
     await page.fill("#dt", "0.05");
@@ -130,7 +130,7 @@ test("a tiny time step does not freeze the page", () =>
     assert.match(await text(page, "#status"), /^Out of time/);
   }));
 
-test("a link reproduces a run, and a bad one is rejected", async () => {
+test("a link replays a run, and an invalid link is rejected", async () => {
   let link, state;
   await open(async (page) => {
     await paused(page, 7);
@@ -148,7 +148,7 @@ test("a link reproduces a run, and a bad one is rejected", async () => {
   await open(
     async (page) => {
       await page.selectOption("#pace", "4");
-      await page.waitForFunction(() => document.querySelector("#status").textContent === "The link ends here.");
+      await page.waitForFunction(() => document.querySelector("#status").textContent === "The replay has ended.");
       assert.deepEqual(await bits(page), state);
       assert.equal(await page.inputValue("#length2"), "1.5");
     },
@@ -175,7 +175,7 @@ test("a link reproduces a run, and a bad one is rejected", async () => {
   }
 });
 
-test("the CSV has every bit of the episode", () =>
+test("the CSV file is bit-identical to the episode", () =>
   open(async (page) => {
     await paused(page, 42);
     await press(page, ACTIONS);
@@ -195,7 +195,7 @@ test("the CSV has every bit of the episode", () =>
     assert.equal(lines.length, ACTIONS.length);
   }));
 
-test("policies drive: Gymnasium's samples, and two that reach the line", () =>
+test("the random policy draws Gymnasium's samples, and two other policies reach the goal", () =>
   open(async (page) => {
     await paused(page, 42);
     await page.selectOption("#policy", "random");
@@ -211,7 +211,7 @@ test("policies drive: Gymnasium's samples, and two that reach the line", () =>
     }
   }));
 
-test("training ends with native weights, and weights go both ways", () =>
+test("trained weights are bit-identical to native ones, and `swing_up` loads them", () =>
   open(async (page) => {
     for (const [preset, seed] of [["fast", "42"], ["quality", "123456789012345678901"]]) {
       await page.selectOption("#preset", preset);
@@ -231,7 +231,7 @@ test("training ends with native weights, and weights go both ways", () =>
     }
   }));
 
-test("native weights drive, and bad ones are rejected in the learner's words", () =>
+test("native weights reach the goal, and invalid ones are rejected with the learner's message", () =>
   open(async (page) => {
     const native = join(folder, "native.bin");
     assert.equal(swingUp("--preset", "quality", "--episodes", "300", "--save", native), null);
@@ -264,7 +264,7 @@ test("native weights drive, and bad ones are rejected in the learner's words", (
     await page.setInputFiles("#load", huge);
     await page.waitForFunction(() => document.querySelector("#weights-reason").textContent.startsWith("huge"));
     assert.equal(await text(page, "#weights-reason"), "huge.bin: weights must have at most 131072 bytes, got 1000000");
-    // The weights before are kept.
+    // The weights that were loaded before are kept.
     assert.ok((await downloaded(page, "#save")).equals(good));
     for (const [id, value] of [["episodes", "0"], ["episodes", "1.5"], ["episodes", "1e9"], ["training-seed", "x"]]) {
       await page.fill("#episodes", "10");
@@ -275,7 +275,7 @@ test("native weights drive, and bad ones are rejected in the learner's words", (
     }
   }));
 
-test("speed is measured, and the page goes on meanwhile", () =>
+test("speed is measured while the page continues to draw", () =>
   open(async (page) => {
     await page.click("#measure");
     const frames = await page.evaluate(() => new Promise((resolve) => {
@@ -287,7 +287,7 @@ test("speed is measured, and the page goes on meanwhile", () =>
     for (const id of ["scalar", "batch"]) assert.match(await text(page, `#${id}`), /^\d+\.\d million$/);
   }));
 
-test("without simd128 the scalar module has the same bits, and the page says so", () =>
+test("without simd128 the page says so and is bit-identical", () =>
   open(
     async (page) => {
       assert.match(await text(page, "#module"), /no simd128/);
@@ -301,7 +301,7 @@ test("without simd128 the scalar module has the same bits, and the page says so"
 test("without WebAssembly the page says so", () =>
   open(
     async (page) => {
-      assert.match(await text(page, "#notice"), /no WebAssembly/);
+      assert.match(await text(page, "#notice"), /needs WebAssembly/);
       assert.ok(await page.isHidden("#app"));
     },
     { prepare: () => delete globalThis.WebAssembly, starts: false },
@@ -310,18 +310,18 @@ test("without WebAssembly the page says so", () =>
 test("without JavaScript the page says so", () =>
   open(async (page) => assert.match(await page.textContent("#notice"), /needs JavaScript/), { javaScriptEnabled: false, starts: false }));
 
-test("with less motion it starts paused and is shown step by step", () =>
+test("with reduced motion the page begins paused and moves step by step", () =>
   open(
     async (page) => {
       assert.equal(await text(page, "#pause"), "Play");
-      assert.match(await text(page, "#between"), /less motion/);
+      assert.match(await text(page, "#between"), /Reduced motion/);
       await page.waitForTimeout(500);
       assert.equal(await text(page, "#step"), "0");
     },
     { reducedMotion: "reduce" },
   ));
 
-test("touch applies torque while it lasts", () =>
+test("a touched button applies torque until it is released", () =>
   open(
     async (page) => {
       await paused(page, 42);
@@ -339,7 +339,7 @@ test("touch applies torque while it lasts", () =>
     { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true },
   ));
 
-test("screenshots, in which nothing is wider than the screen", async () => {
+test("nothing is wider than the screen (leaves screenshots)", async () => {
   mkdirSync(join(dist, "screenshots"), { recursive: true });
   for (const [size, options] of Object.entries({
     phone: { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },

@@ -1,4 +1,4 @@
-// Opens the page in Chromium and plays with it, for the tests in a file that imports this.
+// Opens the page in Chromium and operates it, for the tests in a file that imports this.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -28,8 +28,8 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Opens the page and plays with it once it has started. Asserts that there are no errors in its console, and no requests except
- * for its own files. */
+/** Opens the page and calls `play` once it has loaded. Asserts that its console has no errors or warnings, and that it requests
+ * only its own files. */
 export async function open(play, { hash = "", prepare, starts = true, ...options } = {}) {
   const context = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
   const page = await context.newPage();
@@ -65,14 +65,14 @@ export const bits = async (page) => {
   return page.locator("#state code").allTextContents();
 };
 
-/** Pauses the page in the initial state of a seed, with the keys as policy. */
+/** Pauses the page in the initial state of a seed, and lets the keys play. */
 export async function paused(page, seed) {
   await page.selectOption("#policy", "keys");
   if ((await text(page, "#pause")) === "Pause") await page.click("#pause");
   await page.fill("#seed", String(seed));
 }
 
-/** Holds the key of each action for a single step. */
+/** Steps once for each action while the action's key is down. */
 export async function press(page, actions) {
   await page.focus("#stage");
   for (const action of actions) {

@@ -1,4 +1,4 @@
-// The development server answers every request and goes on serving.
+// The development server answers every request and continues to serve.
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
@@ -26,11 +26,11 @@ async function answer(request) {
   const socket = connect(port, "127.0.0.1");
   const chunks = [];
   socket.on("data", (chunk) => chunks.push(chunk));
-  // A server that closes before it has read everything resets the connection, which can take its answer away.
+  // If the server closes before it has read everything, the connection is reset, and its answer can be lost.
   let reset = false;
   socket.on("error", ({ code }) => (reset = code === "ECONNRESET" || code === "EPIPE"));
   socket.write(request);
-  // Not `once`, which an error would end.
+  // Not `once`, which rejects on an error.
   await new Promise((resolve) => socket.on("close", resolve));
   const text = Buffer.concat(chunks).toString();
   const [head, ...body] = text.split("\r\n\r\n");
@@ -39,15 +39,15 @@ async function answer(request) {
 
 const ask = (path, method = "GET") => answer(`${method} ${path} HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\n\r\n`);
 
-async function goesOn() {
+async function stillServes() {
   const { status, head, body } = await ask("/main.js");
   assert.equal(status, 200);
   assert.match(head, /^content-type: text\/javascript$/im);
   assert.ok(body.includes(main));
 }
 
-test("files are served, also by absolute addresses", async () => {
-  await goesOn();
+test("files are served, for relative and absolute addresses", async () => {
+  await stillServes();
   for (const path of ["/", "//", "/index.html?a=b#c", "/./x/../", "http://localhost/", "/%2e%2e/"]) {
     const { status, body } = await ask(path);
     assert.equal(status, 200, path);
@@ -55,7 +55,7 @@ test("files are served, also by absolute addresses", async () => {
   }
 });
 
-test("every other address is 400 or 404", async () => {
+test("every other address is answered with 400 or 404", async () => {
   const long = "n".repeat(256);
   for (const path of [
     "/main.js/", "/index.html/x", "/main.js/..%2f", `/${long}`, `/${long}/${long}.js`, "//[", "//%", "///[::1", "/\\[", "/\\\\%", "/%", "/%zz",
@@ -65,7 +65,7 @@ test("every other address is 400 or 404", async () => {
     const { status, body } = await ask(path);
     assert.ok([400, 404].includes(status), `${status} for ${path}`);
     assert.ok(!body.includes("createServer") && !body.includes("root:"), path);
-    await goesOn();
+    await stillServes();
   }
 });
 
@@ -79,19 +79,19 @@ test("HEAD has no body, and other methods are rejected", async () => {
   }
   const { status: posted } = await answer(`POST / HTTP/1.1\r\nhost: localhost\r\nconnection: close\r\ncontent-length: 1000000\r\n\r\n${"x".repeat(1e6)}`);
   assert.ok([405, "reset"].includes(posted), `${posted}`);
-  await goesOn();
+  await stillServes();
 });
 
-test("what is no HTTP is rejected", async () => {
+test("bytes that are not HTTP are rejected", async () => {
   const { status } = await ask(`/${"x".repeat(100_000)}`);
   assert.ok([431, "reset"].includes(status), `${status}`);
   for (const request of ["\r\n\r\n\0", "GET\r\n\r\n", "\x16\x03\x01\x02\x00\x01\x00\x01", "GET / HTTP/9.9\r\n\r\n"]) {
     assert.equal((await answer(request)).status, 400, request);
   }
-  await goesOn();
+  await stillServes();
 });
 
-test("a client may leave at any time", async () => {
+test("a client may disconnect at any time", async () => {
   for (let i = 0; i < 50; i++) {
     const socket = connect(port, "127.0.0.1");
     await once(socket, "connect");
@@ -106,10 +106,10 @@ test("a client may leave at any time", async () => {
       await new Promise((resolve) => socket.on("close", resolve));
     }
   }
-  await goesOn();
+  await stillServes();
 });
 
-test("a port that cannot be had is an error", async () => {
+test("a port that is taken or invalid is an error", async () => {
   const taken = createServer().listen(0, "127.0.0.1");
   await once(taken, "listening");
   for (const [argument, reason] of [
