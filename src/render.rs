@@ -45,9 +45,9 @@ use crate::arithmetic::{Arithmetic, Real};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Theme<C> {
     /// The background.
-    pub ground: C,
+    pub background: C,
     /// The line at the target height.
-    pub line: C,
+    pub target: C,
     /// Both links.
     pub link: C,
     /// Both joints.
@@ -60,8 +60,8 @@ impl Theme<Rgb888> {
     /// Gymnasium's colours: cyan links, olive joints and a black line on white. The arrow, which Gymnasium does not
     /// have, is red.
     pub const GYMNASIUM: Self = Self {
-        ground: Rgb888::new(255, 255, 255),
-        line: Rgb888::new(0, 0, 0),
+        background: Rgb888::new(255, 255, 255),
+        target: Rgb888::new(0, 0, 0),
         link: Rgb888::new(0, 204, 204),
         joint: Rgb888::new(204, 204, 0),
         torque: Rgb888::new(204, 0, 0),
@@ -71,8 +71,8 @@ impl Theme<Rgb888> {
 impl Theme<BinaryColor> {
     /// For monochrome displays: lit links on a dark background, with dark joints.
     pub const MONOCHROME: Self = Self {
-        ground: BinaryColor::Off,
-        line: BinaryColor::On,
+        background: BinaryColor::Off,
+        target: BinaryColor::On,
         link: BinaryColor::On,
         joint: BinaryColor::Off,
         torque: BinaryColor::On,
@@ -98,8 +98,8 @@ impl<C> Theme<C> {
     #[must_use]
     pub fn map<D>(self, mut color: impl FnMut(C) -> D) -> Theme<D> {
         Theme {
-            ground: color(self.ground),
-            line: color(self.line),
+            background: color(self.background),
+            target: color(self.target),
             link: color(self.link),
             joint: color(self.joint),
             torque: color(self.torque),

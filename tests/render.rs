@@ -262,14 +262,14 @@ fn a_link_of_almost_no_length_is_not_drawn() {
 fn default_themes_fit_their_colours() {
     assert_eq!(Theme::<Rgb888>::default(), Theme::GYMNASIUM);
     assert_eq!(Theme::<BinaryColor>::default(), Theme::MONOCHROME);
-    assert_eq!(Theme::<Rgb888>::default().ground, Rgb888::WHITE);
+    assert_eq!(Theme::<Rgb888>::default().background, Rgb888::WHITE);
     assert_eq!(Theme::<BinaryColor>::default().link, BinaryColor::On);
 }
 
 #[test]
 fn a_frame_ignores_pixels_outside_it() {
     let mut frame = Frame::new(3, 2);
-    let white = Theme::GYMNASIUM.ground;
+    let white = Theme::GYMNASIUM.background;
     let around = [(-1, 0), (3, 0), (0, -1), (0, 2)].map(|(x, y)| Pixel(Point::new(x, y), white));
     frame.draw_iter(around).unwrap();
     assert!(frame.bytes().iter().all(|&byte| byte == 0));
@@ -286,7 +286,7 @@ fn empty_frames_keep_their_size() {
         assert_eq!((frame.width(), frame.height()), (width, height));
         assert_eq!(frame.size(), Size::new(width, height));
         assert!(frame.bytes().is_empty());
-        let pixel = Pixel(Point::zero(), Theme::GYMNASIUM.line);
+        let pixel = Pixel(Point::zero(), Theme::GYMNASIUM.target);
         frame.draw_iter([pixel]).unwrap();
         figure(0.6, -1.5)
             .draw(&mut frame, &Theme::GYMNASIUM)

@@ -87,9 +87,9 @@ impl Scene {
         let [link1, link2] = &self.links;
         let [joint1, joint2] = &self.joints;
         let line_or_ground = if point.y == self.line {
-            theme.line
+            theme.target
         } else {
-            theme.ground
+            theme.background
         };
         let [first, last] = self.corners;
         let inside =

@@ -29,8 +29,8 @@ static PIXELS: Shared<[Rgba; SIDE * SIDE]> = Shared::new([Rgba(0); SIDE * SIDE])
 static CANVAS: Shared<Canvas> = Shared::new(Canvas {
     size: Size::zero(),
     theme: Theme {
-        ground: Rgba(0),
-        line: Rgba(0),
+        background: Rgba(0),
+        target: Rgba(0),
         link: Rgba(0),
         joint: Rgba(0),
         torque: Rgba(0),
@@ -107,8 +107,8 @@ pub extern "C" fn resize(width: u32, height: u32) {
 pub extern "C" fn paint(line: u32, link: u32, joint: u32, torque: u32) {
     let mut canvas = CANVAS.borrow();
     canvas.theme = Theme {
-        ground: Rgba(0),
-        line: Rgba(line),
+        background: Rgba(0),
+        target: Rgba(line),
         link: Rgba(link),
         joint: Rgba(joint),
         torque: Rgba(torque),

@@ -15,8 +15,8 @@ use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 
 const THEME: Theme<Gray8> = Theme {
-    ground: Gray8::new(0),
-    line: Gray8::new(1),
+    background: Gray8::new(0),
+    target: Gray8::new(1),
     link: Gray8::new(2),
     joint: Gray8::new(3),
     torque: Gray8::new(4),
