@@ -1,5 +1,5 @@
-//! Gymnasium's `Acrobot-v1`, the two-link swing-up task, without a heap and without a panic, for microcontrollers, browsers
-//! and servers. It is hundreds of times as fast as Gymnasium, and a seed gives the same episode everywhere, bit for bit.
+//! Gymnasium's `Acrobot-v1`, the two-link swing-up task, as a `no_std` crate that needs no heap and never panics. It is
+//! hundreds of times as fast as Gymnasium, and an episode has the same bits on a microcontroller, in a browser and on a server.
 //!
 #![doc = include_str!("../docs/episode.svg")]
 //!
@@ -24,7 +24,7 @@
 //! # What everybody uses
 //!
 //! - [`Acrobot`] is the environment. Its type parameter is the arithmetic: [`Fast`] (`f32`), [`Portable`] (`f64`), or
-//!   [another one](arithmetic). Always write it, because it decides the bits.
+//!   [another one](arithmetic). Always write it: `Acrobot` alone is `Acrobot<Portable>`.
 //! - [`TimeLimit`] truncates episodes, after 500 steps as `Acrobot-v1`.
 //! - [`Action`] goes into a step. [`Step`] comes out, with the [`Observation`], the reward, and whether the episode is done.
 //! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques. Both can be set at any time.
@@ -46,11 +46,11 @@
 //!
 //! None is on by default. Features are additive and never change a result.
 //!
-//! - `std`: `graphics`; `env`; the arithmetic `Host`; batches with AVX2 or AVX-512.
-//! - `graphics`: `render`.
-//! - `rayon`: `std`; batches on all cores.
-//! - `serde`: snapshots, whose version and arithmetic are checked when loaded.
-//! - `defmt`: `defmt::Format` for all public types except those of `env` and batches.
+//! - `std` enables `graphics`, and adds `env`, the arithmetic `Host`, and batches with AVX2 or AVX-512.
+//! - `graphics` adds `render`.
+//! - `rayon` enables `std`, and adds batches on all cores.
+//! - `serde` adds snapshots, whose version and arithmetic are checked when loaded.
+//! - `defmt` adds `defmt::Format` for all public types except those of `env` and batches.
 #![no_std]
 #![deny(missing_docs, unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]

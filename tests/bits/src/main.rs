@@ -17,7 +17,8 @@ use bits::{episodes, training};
 #[cfg(target_os = "none")]
 use semihosting::{println, process};
 
-#[cfg_attr(target_os = "none", cortex_m_rt::entry)]
+#[cfg_attr(all(target_os = "none", target_arch = "arm"), cortex_m_rt::entry)]
+#[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
 fn main() -> ! {
     let equal = [
         check::<Reference>(&episodes::REFERENCE),
