@@ -2,7 +2,7 @@
 
     python3 figures.py             fails if a figure has grown by more than 5 %, and prints every figure
     python3 figures.py --update    writes the tables
-    python3 figures.py cores       only the tables that are named: m4f, cores, levels
+    python3 figures.py cores       only the tables that are named: m4f, cores, sizes, levels
 
 `steps`, `bench` and `learn` count instructions, stack and RAM. Flash is that of `minimal_fast` and the others minus that of
 `minimal_without`. `cycles.py` estimates the cycles per instruction.
@@ -50,13 +50,13 @@ ROWS = {
     "ram": "RAM of the whole firmware that trains and draws, bytes",
 }
 CORES = {
-    "thumbv6m-none-eabi": "Cortex-M0",
-    "thumbv7m-none-eabi": "Cortex-M3",
-    M4F: "Cortex-M4F",
-    "thumbv8m.main-none-eabihf": "Cortex-M33 with FPU",
-    "riscv32i-unknown-none-elf": "RV32I",
-    "riscv32imc-unknown-none-elf": "RV32IMC",
-    "riscv32imafc-unknown-none-elf": "RV32IMAFC",
+    "thumbv6m-none-eabi": "Cortex-M0, `thumbv6m-none-eabi`",
+    "thumbv7m-none-eabi": "Cortex-M3, `thumbv7m-none-eabi`",
+    M4F: f"Cortex-M4F, `{M4F}`",
+    "thumbv8m.main-none-eabihf": "Cortex-M33 with FPU, `thumbv8m.main-none-eabihf`",
+    "riscv32i-unknown-none-elf": "RV32I, `riscv32i-unknown-none-elf`",
+    "riscv32imc-unknown-none-elf": "RV32IMC, `riscv32imc-unknown-none-elf`",
+    "riscv32imafc-unknown-none-elf": "RV32IMAFC, `riscv32imafc-unknown-none-elf`",
 }
 LEVELS = ["3", "2", '"s"', '"z"']
 CLOCKS = {
@@ -86,16 +86,16 @@ def printed(binary, **options):
     return {(arithmetic, figure): int(value) for arithmetic, figure, value in lines}
 
 
-def images(*binaries, **options):
+def images(*binaries, target=M4F, **options):
     """The paths of the firmware, once built: {binary: path}."""
-    cargo("build", *binaries, **options)
-    return {binary: f"target/{M4F}/release/{binary}" for binary in binaries}
+    cargo("build", *binaries, target=target, **options)
+    return {binary: f"target/{target}/release/{binary}" for binary in binaries}
 
 
 def flash(path):
     """Bytes of code, constants and initial values."""
-    sections = run("arm-none-eabi-size", "-A", path)
-    return sum(int(size) for size in re.findall(r"^\.(?:text|rodata|data)\s+(\d+)", sections, re.MULTILINE))
+    sections = run("readelf", "--sections", "--wide", path)  # of any architecture
+    return sum(int(size, 16) for size in re.findall(r" \.(?:text|rodata|data) +PROGBITS +\w+ +\w+ +(\w+)", sections))
 
 
 def minimal(arithmetics, **options):
@@ -139,6 +139,14 @@ def measure_cores():
     }
 
 
+def measure_sizes():
+    return {
+        (arithmetic, target): size
+        for target in CORES
+        for arithmetic, size in minimal(ARITHMETICS, target=target)[1].items()
+    }
+
+
 def measure_levels():
     figures = {}
     for level in LEVELS:
@@ -153,9 +161,8 @@ def measure_levels():
 Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
-    "cores": Table(
-        "instructions per step", ARITHMETICS, {target: f"{core}, `{target}`" for target, core in CORES.items()}, measure_cores
-    ),
+    "cores": Table("instructions per step", ARITHMETICS, CORES, measure_cores),
+    "sizes": Table("bytes of flash", ARITHMETICS, CORES, measure_sizes),
     "levels": Table(
         "`opt-level` on a Cortex-M4F",
         ARITHMETICS,

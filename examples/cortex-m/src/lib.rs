@@ -5,6 +5,10 @@
 pub mod counter;
 pub mod episode;
 pub mod micromath;
-#[cfg(target_arch = "arm")]
 pub mod minimal;
 pub mod panel;
+
+#[cfg(target_arch = "arm")]
+pub use {cortex_m::asm::nop, cortex_m_rt::entry};
+#[cfg(target_arch = "riscv32")]
+pub use {riscv::asm::nop, riscv_rt::entry};

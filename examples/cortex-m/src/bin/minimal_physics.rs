@@ -9,12 +9,12 @@ use acrobot::Fast;
 use acrobot::physics::Pendulum;
 use panic_halt as _;
 
-#[cortex_m_rt::entry]
+#[acrobot_cortex_m::entry]
 fn main() -> ! {
     static mut PENDULUM: Pendulum<Fast> = Pendulum::hanging();
     loop {
         // `cycles.py` counts a step here.
-        cortex_m::asm::nop();
+        acrobot_cortex_m::nop();
         // The compiler must not know the torque, and must compute the whole state.
         if PENDULUM.step(black_box(0.0)).is_ok() {
             black_box(PENDULUM.state());

@@ -7,7 +7,7 @@ use acrobot::Portable;
 use acrobot_cortex_m::minimal;
 use panic_halt as _;
 
-#[cortex_m_rt::entry]
+#[acrobot_cortex_m::entry]
 fn main() -> ! {
     minimal::run::<Portable>()
 }

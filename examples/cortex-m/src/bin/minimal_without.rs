@@ -8,11 +8,11 @@ use core::hint::black_box;
 use acrobot::Action;
 use panic_halt as _;
 
-#[cortex_m_rt::entry]
+#[acrobot_cortex_m::entry]
 fn main() -> ! {
     loop {
         // `cycles.py` counts a step here.
-        cortex_m::asm::nop();
+        acrobot_cortex_m::nop();
         black_box(black_box(Action::Zero));
     }
 }

@@ -10,11 +10,8 @@ use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
+use acrobot_cortex_m::entry;
 use acrobot_cortex_m::micromath::Micromath;
-#[cfg(target_arch = "arm")]
-use cortex_m_rt::entry;
-#[cfg(target_arch = "riscv32")]
-use riscv_rt::entry;
 use semihosting::{println, process};
 
 #[entry]
