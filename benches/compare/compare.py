@@ -17,7 +17,7 @@ import sys
 import venv
 
 PAGE = pathlib.Path("../../docs/benchmarks.md")
-HEAD = "| one core | version | M steps/s | to Gymnasium |"
+HEAD = "| one core | version | M steps/s | times Gymnasium |"
 BASE = "make"
 # The package of each Python implementation, and the names of all implementations in the table.
 PACKAGES = {

@@ -1,4 +1,4 @@
-"""Gymnasium's Acrobot in Rust: bit-identical episodes, and a vector environment a thousand times as fast.
+"""Gymnasium's Acrobot in Rust: bit-identical episodes, and a vector environment thousands of times as fast.
 
 Importing this package registers ``acrobot_rs/Acrobot-v1`` and ``acrobot_rs/Acrobot-v0``:
 

@@ -19,7 +19,7 @@ Bools = NDArray[np.bool_]
 
 
 class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], np.ndarray]):
-    """Many ``Acrobot-v1`` environments, a thousand times as fast as ``SyncVectorEnv``.
+    """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
     All have the same parameters. They are computed in ``float32``, bit-identically on every machine. Each step is as close to
     Gymnasium's as ``float32`` is, but whole episodes drift apart, because an Acrobot is chaotic.
@@ -51,7 +51,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         copy: bool = True,
     ) -> None:
-        """Make environments in the initial states of a random seed, ``np_random_seed``.
+        """Make environments and reset them with a random seed, ``np_random_seed``.
 
         Args:
             num_envs: The number of environments, at least 1.
