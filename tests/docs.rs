@@ -25,7 +25,7 @@ fn the_figures_of_the_readme_are_those_of_the_pages() {
 
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split([' ', '\n', '|'])
-        .map(|word| word.trim_end_matches(['.', ',', ';', ':']))
+        .map(|word| word.trim_end_matches(['.', ',', ';', ':', ')', '`']))
 }
 
 /// A block that is not compiled with the crate names the file that it is from: "```rust,ignore (path)".
