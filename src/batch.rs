@@ -71,10 +71,8 @@ pub enum Autoreset {
 /// the widest SIMD instructions that the machine has. Neither `N` nor the instructions change a bit.
 ///
 /// `B` holds a [`Block`] for each `N` acrobots, and `G` a generator for each acrobot: arrays, slices or `Vec`s. They
-/// are separate because a step seldom draws. See [the example](self).
-///
-/// `N` must be from 1 to 32, because a step keeps arrays of `N` numbers on the stack: with `N` = 64 and `f64` a debug
-/// build would need more than a thread's 2 MiB.
+/// are separate because most steps draw no random number. See [the example](self), and compile with
+/// [`codegen-units = 1`](crate::guide::rust#many-at-once). `N` must be from 1 to 32:
 ///
 /// ```compile_fail,E0080
 /// use acrobot::Fast;
@@ -107,8 +105,8 @@ where
     B: AsRef<[Block<A::Scalar, N>]> + AsMut<[Block<A::Scalar, N>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
 {
-    /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child of `seed`. The batch
-    /// has the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
+    /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child of `seed` and is in its
+    /// initial state. The batch has the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
     ///
     /// # Errors
     ///

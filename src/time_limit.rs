@@ -15,7 +15,7 @@ pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
 const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they reach the limit. It
-/// does not change `terminated`.
+/// does not change `terminated`. Steps after the end continue, with `truncated` true.
 ///
 /// ```
 /// use acrobot::{Acrobot, Action, Fast, TimeLimit};

@@ -114,7 +114,7 @@ mod sealed {
 
 /// The last `N` transitions, oldest first. Older ones are dropped.
 ///
-/// With `f32` it takes about 44 `N` bytes, and no heap. See [the example](self).
+/// With `f32` it takes about 44 bytes for each transition, and no heap. See [the example](self).
 #[derive(Clone, Debug)]
 pub struct Trajectory<S, const N: usize> {
     /// Not heapless's history buffer, whose indexing has a bounds check that can panic.
