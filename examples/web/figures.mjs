@@ -70,19 +70,19 @@ const size = (name) => {
   return `${plain} KB, with gzip ${zipped} KB`;
 };
 const rows = [
-  ["browser", `Chromium ${Number.parseInt(version)}`],
   ["module of the page, with simd128", size("acrobot-simd128")],
   ["module of the page, without simd128", size("acrobot")],
-  ["module with the physics alone", size("simulation")],
-  ["from the module's arrival to the first frame", `${median("firstFrame").toFixed(0)} ms`],
+  ["module with one acrobot, without drawing and learning", size("simulation")],
+  ["from the loaded module to the first frame", `${median("firstFrame").toFixed(0)} ms`],
   ["frames per second", median("frames").toFixed(0)],
   ["physics per frame", `${median("physics").toFixed(2)} ms`],
   ["drawing per frame", `${median("drawing").toFixed(1)} ms`],
   ["one acrobot, `Fast`", steps("scalar"), steps("nativeScalar")],
-  ["batch of 1,024, `Fast`, with simd128 or native SIMD", steps("batch"), steps("nativeBatch")],
+  ["batch of 1,024, `Fast`, without observations, with simd128 or native SIMD", steps("batch"), steps("nativeBatch")],
   ["training, preset `fast`", `${Number(median("training").toPrecision(2)).toLocaleString("en")} episodes per minute`],
 ];
 const table = [HEAD, "|---|---|---|", ...rows.map(([name, here, there = ""]) => `| ${name} | ${here} | ${there} |`)];
+console.log(`Measured in Chromium ${version}.\n`);
 console.log(table.join("\n"));
 
 if (process.argv[2] === "--update") {

@@ -13,6 +13,7 @@ const $ = (id) => document.getElementById(id);
 
 /** How long a policy's ended episode stays on the screen before the next begins, ms. */
 const INTERVAL = 1500;
+const NO_ACTIONS = "The link has no actions.";
 
 async function load() {
   const simd = hasSimd128();
@@ -20,10 +21,10 @@ async function load() {
   if (!response.ok) throw new Error(`${response.url} answered ${response.status}`);
   const bytes = await response.arrayBuffer();
   performance.mark("module");
-  const kib = (bytes.byteLength / 1024).toFixed(1);
+  const kilobytes = (bytes.byteLength / 1000).toFixed(1);
   $("module").textContent = simd
-    ? `WebAssembly with simd128, ${kib} KiB.`
-    : `WebAssembly, ${kib} KiB. This browser has no simd128: results are bit-identical, but a batch is no faster than one acrobot.`;
+    ? `WebAssembly with simd128, ${kilobytes} KB.`
+    : `WebAssembly, ${kilobytes} KB. This browser has no simd128: results are bit-identical, but a batch is no faster than one acrobot.`;
   $("vectors").textContent = simd ? ", with simd128" : ", without simd128";
   const module = await WebAssembly.compile(bytes);
   start(module, await Acrobot.load(module));
@@ -56,14 +57,15 @@ function start(module, acrobot) {
 
   const step = () => {
     const next = action();
-    if (next === undefined) return pause("The replay has ended.");
+    if (next === undefined) return pause(recorded.length > 0 ? "The replay has ended." : NO_ACTIONS);
     game.step(next);
     shown = 0;
     if (game.end === null) return;
     if (game.end === "goal" && (best === null || game.steps < best)) best = game.steps;
-    const goal = `Goal: the tip is above the target height after ${game.steps} steps.`;
-    say(game.end === "goal" ? goal : `Out of time after ${LIMIT} steps.`);
-    if (!["keys", "link"].includes($("policy").value)) nextAt = performance.now() + INTERVAL;
+    const result = game.end === "goal" ? `Goal after ${game.steps} steps.` : `Out of time after ${LIMIT} steps.`;
+    const continues = playing && !["keys", "link"].includes($("policy").value);
+    if (continues) nextAt = performance.now() + INTERVAL;
+    say(continues ? `${result} The next seed follows.` : result);
   };
 
   const begin = (seed, params = game.params) => {
@@ -80,21 +82,23 @@ function start(module, acrobot) {
 
   const reset = () => {
     begin(game.seed);
-    say(`Reset to the initial state of seed ${name(game.seed)}.`);
+    say(`Restarted from the initial state of seed ${name(game.seed)}.`);
   };
   const next = () => {
     begin(game.seed + 1n);
-    say(`Seed ${name(game.seed)}.`);
+    say(`Seed ${name(game.seed)}.${playing ? ` ${player()}` : ""}`);
   };
 
   const play = () => {
     playing = true;
     if (game.end !== null) reset();
-    say("Running.");
+    say(player());
     changed();
   };
   const pause = (message) => {
     playing = false;
+    // The picture shows the last step, as the numbers do.
+    shown = game.params.dt;
     nextAt = Infinity;
     say(message);
     changed();
@@ -102,7 +106,7 @@ function start(module, acrobot) {
   const toggle = () => (playing ? pause("Paused.") : play());
   const single = () => {
     if (playing) pause("Paused.");
-    if (game.end !== null) return say("The episode has ended. Press Reset or Next seed.");
+    if (game.end !== null) return say("The episode has ended. Press Restart or Next seed.");
     step();
     shown = game.params.dt;
     changed();
@@ -112,16 +116,23 @@ function start(module, acrobot) {
   const name = (seed) => (`${seed}`.length > 24 ? `${`${seed}`.slice(0, 20)}…` : `${seed}`);
   const say = (message) => ($("status").textContent = message);
 
+  /** Who applies the torque, as a sentence. */
+  const player = () => {
+    const { value, selectedOptions: [{ textContent: policy }] } = $("policy");
+    return { keys: "You play.", link: "The replay runs." }[value] ?? `${policy} plays. Press ← or → to take over.`;
+  };
+
   const choose = (policy) => {
     $("policy").value = policy;
     if (policy !== "keys" && game.end !== null) begin(game.seed);
+    if (playing) say(player());
     changed();
   };
 
   // ---- what the page shows
 
   const rows = [
-    ["θ1", "rad"], ["θ2", "rad"], ["θ̇1", "rad/s"], ["θ̇2", "rad/s"],
+    ["θ1", "rad"], ["θ2", "rad"], ["θ1′", "rad/s"], ["θ2′", "rad/s"],
   ].map(([name, unit]) => {
     const row = $("state").insertRow();
     row.innerHTML = `<th scope="row">${name}</th><td></td><td><code></code></td>`;
@@ -151,13 +162,15 @@ function start(module, acrobot) {
       range: rangeOf([...energies, standing, -standing]),
       marks: [standing],
       end,
+      unit: "steps",
     });
     caption("energy-caption", [["Energy"], [`${number(energy)} J`, "first"], [`upright: ${number(standing)} J`, "mark"], [`tip height ${number(height)} m`]]);
     plot($("angles"), {
       series: [{ values: game.column(0), color: first }, { values: game.column(1), color: second }],
       range: [-Math.PI, Math.PI],
-      jump: Math.PI,
+      period: 2 * Math.PI,
       end,
+      unit: "steps",
     });
     caption("angles-caption", [["Angles"], [`θ1 ${number(theta1)} rad`, "first"], [`θ2 ${number(theta2)} rad`, "second"]]);
     const velocities = [game.column(2), game.column(3)];
@@ -166,8 +179,9 @@ function start(module, acrobot) {
       series: [{ values: velocities[0], color: first }, { values: velocities[1], color: second }],
       range: [-1.06 * fastest, 1.06 * fastest],
       end,
+      unit: "steps",
     });
-    caption("velocities-caption", [["Velocities"], [`θ̇1 ${number(dtheta1)} rad/s`, "first"], [`θ̇2 ${number(dtheta2)} rad/s`, "second"]]);
+    caption("velocities-caption", [["Velocities"], [`θ1′ ${number(dtheta1)} rad/s`, "first"], [`θ2′ ${number(dtheta2)} rad/s`, "second"]]);
   };
 
   let dirty = true;
@@ -183,8 +197,8 @@ function start(module, acrobot) {
     $("verdict").textContent = { goal: `${game.steps} steps`, limit: "Out of time" }[game.end] ?? "";
     $("drive").disabled = document.querySelector("[value=learnt]").disabled;
     $("between").textContent = calm.matches
-      ? "Reduced motion: the picture moves step by step, without a trail."
-      : `The physics steps every ${game.params.dt} s. Between steps the picture is interpolated.`;
+      ? "The red arrow is the torque. Reduced motion: the picture moves step by step, without a trail."
+      : `The red arrow is the torque. The physics steps every ${game.params.dt} s. Between steps the picture is interpolated, at most one step behind the numbers.`;
     const bits = new Uint32Array(game.numbers.buffer);
     rows.forEach(({ unit, value, bits: code }, i) => {
       value.textContent = `${number(game.numbers[i], 4)} ${unit}`;
@@ -211,7 +225,7 @@ function start(module, acrobot) {
         changed();
       }
     } else {
-      shown = Math.min(shown + elapsed * Number($("pace").value), playing ? dt : shown);
+      shown = Math.min(shown + elapsed * Number($("pace").value), dt);
     }
     const stepped = performance.now();
     if (now >= nextAt && playing) next();
@@ -291,7 +305,7 @@ function start(module, acrobot) {
       recorded = run.actions;
       document.querySelector("[value=link]").disabled = false;
       choose("link");
-      say(`Replay of a link: ${recorded.length} steps of seed ${name(run.seed)}.`);
+      say(recorded.length > 0 ? `Replay of a link: ${recorded.length} steps of seed ${name(run.seed)}.` : NO_ACTIONS);
     });
   };
   addEventListener("hashchange", open);
@@ -335,6 +349,7 @@ function start(module, acrobot) {
 
   showParams();
   choose("bang_bang");
+  if (!playing) say("Press Play to watch Bang-bang, or ← or → to take over.");
   open();
   requestAnimationFrame(frame);
 }

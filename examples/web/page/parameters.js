@@ -20,15 +20,16 @@ export function attempt(field, reason, set) {
 
 /** `get` returns the parameters, and `set` takes them or throws. Returns a function that shows the current parameters. */
 export function parametersPanel(get, set) {
-  const fields = PARAMETERS.map(({ name, label, unit, end, step }) => {
+  const fields = PARAMETERS.map(({ name, label, unit, end, step, hint }) => {
     const field = document.createElement("div");
     field.className = "field parameter";
     field.innerHTML = `
       <label for="${name}">${label}</label>
-      <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-reason">
-      <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-reason">
+      <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-hint ${name}-reason">
+      <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-hint ${name}-reason">
       <span class="unit">${unit}</span>
-      <p id="${name}-reason" class="reason" role="alert"></p>`;
+      <p id="${name}-reason" class="reason" role="alert"></p>
+      <p id="${name}-hint" class="hint">${hint}</p>`;
     $("params").append(field);
     const [slider, text] = field.querySelectorAll("input");
     const reason = field.querySelector(".reason");

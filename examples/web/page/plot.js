@@ -2,6 +2,9 @@
 
 const MARGIN = { left: 40, right: 8, top: 6, bottom: 18 };
 
+/** The labelled angles, rad. */
+const RIGHT_ANGLES = [[-Math.PI, "−π"], [-Math.PI / 2, "−π/2"], [0, "0"], [Math.PI / 2, "π/2"], [Math.PI, "π"]];
+
 /** A colour of the style sheet, by the name of its custom property. */
 export function color(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -9,9 +12,10 @@ export function color(name) {
 
 /**
  * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of `marks` is a value, drawn as a
- * dashed horizontal line. Neighbouring values that differ by more than `jump` are not connected: an angle jumps from π to −π.
+ * dashed horizontal line, and `unit` is that of x. If there is a `period`, as of an angle, a line leaves the plot at one edge
+ * and returns at the other.
  */
-export function plot(canvas, { series, range, start = 0, end, marks = [], jump = Infinity }) {
+export function plot(canvas, { series, range, start = 0, end, unit, marks = [], period = Infinity }) {
   const { clientWidth: width, clientHeight: height } = canvas;
   const scale = devicePixelRatio;
   canvas.width = Math.round(width * scale);
@@ -34,24 +38,33 @@ export function plot(canvas, { series, range, start = 0, end, marks = [], jump =
   context.fillStyle = color("--muted");
   context.textBaseline = "middle";
   context.textAlign = "right";
-  for (const tick of ticks(low, high, 4)) {
-    context.fillText(label(tick), MARGIN.left - 6, y(tick));
+  for (const [tick, text] of period === Infinity ? ticks(low, high, 4).map((tick) => [tick, label(tick)]) : RIGHT_ANGLES) {
+    context.fillText(text, MARGIN.left - 6, y(tick));
     line([[MARGIN.left, y(tick)], [width - MARGIN.right, y(tick)]], color("--grid"));
   }
   context.textBaseline = "alphabetic";
+  context.textAlign = "left";
+  context.fillText(unit, 2, height - 4);
   for (const tick of ticks(start, end, 5)) {
     context.textAlign = tick === start ? "left" : x(tick) > width - 20 ? "right" : "center";
     context.fillText(label(tick), x(tick), height - 4);
   }
   for (const mark of marks) line([[MARGIN.left, y(mark)], [width - MARGIN.right, y(mark)]], color("--muted"), [4, 4]);
 
+  context.beginPath();
+  context.rect(MARGIN.left, MARGIN.top - 1, width - MARGIN.left, height - MARGIN.top - MARGIN.bottom + 2);
+  context.clip();
   context.lineWidth = 1.5;
   context.lineJoin = "round";
   for (const { values, color } of series) {
-    line(
-      Array.from(values, (value, i) => [x(start + i), y(value), Math.abs(value - values[i - 1]) > jump]),
-      color,
-    );
+    const points = values.flatMap((value, i) => {
+      const point = [x(start + i), y(value)];
+      const before = values[i - 1];
+      if (!(Math.abs(value - before) > period / 2)) return [point];
+      const turn = Math.sign(value - before) * period;
+      return [[point[0], y(value - turn)], [x(start + i - 1), y(before + turn), true], point];
+    });
+    line(points, color);
   }
 }
 

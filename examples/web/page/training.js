@@ -19,7 +19,7 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
   const draw = () => {
     const range = rangeOf([...means, 2 * SOLVED, 0]);
     const series = [{ values: means, color: color("--link") }];
-    plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), marks: [SOLVED] });
+    plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), unit: "episodes", marks: [SOLVED] });
   };
 
   /** Loads weights into the page's module. Throws an `Error` with the reason if they are rejected. */

@@ -19,7 +19,7 @@ test("the modules do not exceed their limits of size", () => {
   }
 });
 
-test("the module with the physics alone is bit-identical to native", async () => {
+test("the module with one acrobot, without drawing and learning, is bit-identical to native", async () => {
   const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(new URL("simulation.wasm", dist))));
   const now = () => Array.from(new Uint32Array(acrobot.numbers().buffer, 0, 4), (word) => word.toString(16).padStart(8, "0"));
   acrobot.setParams({ ...DEFAULTS, dynamics: "nips" });

@@ -14,7 +14,8 @@ test("the page loads, plays a policy, and has a strict content security policy",
     assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
     assert.match(policy, /default-src 'none'/);
     await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 2);
-    assert.match(await text(page, "#module"), /^WebAssembly with simd128/);
+    assert.match(await text(page, "#module"), /^WebAssembly with simd128, \d+\.\d KB\.$/);
+    assert.equal(await text(page, "#status"), "Bang-bang plays. Press ← or → to take over.");
     const drawn = () => page.evaluate(() => {
       const { data } = document.querySelector("#picture").getContext("2d").getImageData(0, 0, 900, 900);
       return new Set(new Uint32Array(data.buffer)).size;
@@ -30,6 +31,16 @@ test("keys apply torque, and states are bit-identical to native", () =>
     assert.deepEqual(await bits(page), trace("42", ACTIONS).at(-1));
     assert.equal(await text(page, "#step"), String(ACTIONS.length));
     assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
+
+    // → turns link 2 counter-clockwise and ← clockwise, as the page says.
+    for (const [action, sign] of [[2, 1], [0, -1]]) {
+      await page.click("#reset");
+      await press(page, [action]);
+      const velocity = (await text(page, "#state tr:nth-child(4) td")).replace("−", "-");
+      assert.equal(Math.sign(Number.parseFloat(velocity)), sign);
+    }
+    await page.click("#reset");
+    await press(page, ACTIONS);
 
     // The page decides when it steps, so the actions are read from its link.
     await page.keyboard.press("Space");
@@ -88,6 +99,39 @@ test("reset, pause and next seed do what they say", () =>
     await page.click("#pause");
     await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) > 0);
     assert.equal(await text(page, "#pause"), "Pause");
+  }));
+
+test("when paused, the picture shows the last step, as the numbers do", () =>
+  open(async (page) => {
+    const picture = () => page.evaluate(() => document.querySelector("#picture").toDataURL());
+    await page.selectOption("#pace", "4");
+    await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 30);
+    // A step now takes 0.8 s, so the page is amid a step when it pauses.
+    await page.selectOption("#pace", "0.25");
+    await page.click("#pause");
+    assert.equal(await text(page, "#status"), "Paused.");
+    const [state, last] = [await bits(page), await picture()];
+    const actions = await linkedActions(page);
+    await page.selectOption("#policy", "keys");
+    await page.click("#reset");
+    assert.ok((await bits(page)) && (await picture()) !== last);
+    await press(page, actions);
+    assert.deepEqual(await bits(page), state);
+    assert.ok((await picture()) === last, "the picture differs from that of the last step");
+  }));
+
+test("after a policy's goal the next seed follows, and a key takes over", () =>
+  open(async (page) => {
+    await page.selectOption("#pace", "4");
+    // The goal depends on the angles only.
+    await page.fill("#length2", "2");
+    const status = (pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector("#status").textContent), pattern);
+    await status("^Goal after \\d+ steps\\. The next seed follows\\.$");
+    await status("^Seed 43\\. Bang-bang plays\\.");
+    await page.focus("#stage");
+    await page.keyboard.press("ArrowLeft");
+    assert.equal(await text(page, "#status"), "You play.");
+    assert.equal(await page.inputValue("#policy"), "keys");
   }));
 
 test("parameters change the physics as in the crate, and invalid ones are rejected with its message", () =>
@@ -154,6 +198,14 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     },
     { hash },
   );
+  await open(
+    async (page) => {
+      await page.waitForFunction(() => document.querySelector("#pause").textContent === "Play");
+      assert.equal(await text(page, "#status"), "The link has no actions.");
+      assert.equal(await page.inputValue("#seed"), "7");
+    },
+    { hash: "#seed=7" },
+  );
   for (const [bad, reason] of [
     ["#seed=4&actions=a*", /^actions must be .*, got '\*' as character 2$/],
     ["#seed=4&actions=abcde", /^actions must not have .*, got 5 characters$/],
@@ -207,6 +259,7 @@ test("the random policy draws Gymnasium's samples, and two other policies reach 
       await page.click("#reset");
       for (let step = 0; step < 200; step++) await page.keyboard.press("s");
       assert.match(await text(page, "#verdict"), /^\d+ steps$/, policy);
+      assert.equal(await text(page, "#status"), "The episode has ended. Press Restart or Next seed.");
       assert.ok(Number(await text(page, "#best")) < 200);
     }
   }));
@@ -315,6 +368,7 @@ test("with reduced motion the page begins paused and moves step by step", () =>
     async (page) => {
       assert.equal(await text(page, "#pause"), "Play");
       assert.match(await text(page, "#between"), /Reduced motion/);
+      assert.match(await text(page, "#status"), /^Press Play/);
       await page.waitForTimeout(500);
       assert.equal(await text(page, "#step"), "0");
     },
