@@ -6,16 +6,21 @@
 //! ```
 //! use acrobot::{Acrobot, Action, Fast, TimeLimit};
 //!
-//! let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42)); // make, and reset(seed=42)
-//! let mut step = acrobot.step(Action::Positive);
-//! while !step.done() {
+//! let mut env = TimeLimit::v1(Acrobot::<Fast>::new(0)); // env = gym.make("Acrobot-v1")
+//! let mut observation = env.reset_with_seed(42); // env.reset(seed=42)
+//! loop {
 //!     // Torque against the velocity of link 1.
-//!     step = acrobot.step(match step.observation.dtheta1() > 0.0 {
+//!     let action = match observation.dtheta1() > 0.0 {
 //!         true => Action::Negative,
 //!         false => Action::Positive,
-//!     });
+//!     };
+//!     let step = env.step(action);
+//!     if step.done() {
+//!         break;
+//!     }
+//!     observation = step.observation;
 //! }
-//! assert!(acrobot.elapsed() < 100);
+//! assert_eq!(env.elapsed(), 94);
 //! ```
 //!
 //! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in a browser](guide::wasm) or
