@@ -8,7 +8,7 @@
 //! |---|---|---|---|---|
 //! | [`Reference`] | `f64` | correctly rounded | Gymnasium's | bits defined by mathematics, and nearest to Gymnasium's |
 //! | `Host` (feature `std`) | `f64` | the platform's C library | Gymnasium's | Gymnasium's own bits |
-//! | [`Portable`] | `f64` | the crate `libm` | lean | the fastest `f64` on desktops and servers, with the same bits everywhere |
+//! | [`Portable`] | `f64` | the crate `libm` | lean | the fastest `f64` on desktops, the same bits everywhere |
 //! | [`Fast`] | `f32` | polynomial | lean | single-precision FPUs, WASM, SIMD batches |
 //! | [`Micro`] | `f32` | table | lean | the fewest instructions on a microcontroller |
 //!

@@ -70,7 +70,7 @@ fn joint(frame: &[u8], (column, row): (f64, f64)) -> (f64, f64, usize) {
     )
 }
 
-/// The share of close pixels in the worst frame, as in the README.
+/// The share of close pixels in the worst frame, as in docs/rust.md.
 const LEAST_SHARE: f64 = 0.998;
 
 #[test]

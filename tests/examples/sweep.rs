@@ -74,7 +74,7 @@ fn the_sweep_counts_every_episode_once() {
     );
 }
 
-/// The command next to the README's heat map draws it.
+/// The command of docs/benchmarks.md draws the committed heat map.
 #[test]
 #[cfg_attr(
     debug_assertions,
