@@ -330,6 +330,11 @@ where
         Ok(())
     }
 
+    /// The generators, one for each acrobot, to draw from them or to replace them.
+    pub fn generators_mut(&mut self) -> &mut [Pcg64] {
+        self.generators.as_mut()
+    }
+
     /// The state of acrobot `index`, if there is one.
     #[must_use]
     pub fn state(&self, index: usize) -> Option<State<A::Scalar>> {

@@ -647,3 +647,17 @@ fn members_resume_in_another_batch() {
     }
     twins.play_randomly(600);
 }
+
+/// Gymnasium's `SyncVectorEnv` seeds environment `i` with `seed + i`.
+#[test]
+fn replaced_generators_equal_those_of_single_acrobots() {
+    let mut twins = Twins::<Host>::new(19, Autoreset::NextStep);
+    for (rng, i) in twins.batch.generators_mut().iter_mut().zip(0..) {
+        *rng = Pcg64::new(7 + i);
+    }
+    twins.batch.reset();
+    twins.reset_alone(|i, alone| {
+        alone.reset_with_seed(7 + i);
+    });
+    twins.swing(100);
+}
