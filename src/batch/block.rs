@@ -346,5 +346,16 @@ fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(
 #[inline(always)]
 fn write<T: Copy, const N: usize>(to: &mut &mut [T], from: &[T; N]) {
     let to = take_mut(to, N);
+    match <&mut [T; N]>::try_from(&mut *to) {
+        Ok(to) => *to = *from,
+        Err(_) => write_some(to, from),
+    }
+}
+
+/// Only the last block can have fewer than `N` acrobots. Out of line, because a copy of a constant length takes less
+/// time.
+#[cold]
+#[inline(never)]
+fn write_some<T: Copy>(to: &mut [T], from: &[T]) {
     to.iter_mut().zip(from).for_each(|(to, &from)| *to = from);
 }
