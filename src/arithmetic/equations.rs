@@ -7,7 +7,8 @@ use super::{Arithmetic, Real, SinCos};
 use crate::physics::{Common, Dynamics, Params};
 
 /// The constants that the form of the equations computes from the parameters.
-pub type Constants<A, V> = <<A as Arithmetic>::Form as Equations<<A as Arithmetic>::Scalar>>::Constants<V>;
+pub type Constants<A, V> =
+    <<A as Arithmetic>::Form as Equations<<A as Arithmetic>::Scalar>>::Constants<V>;
 
 /// The parameters, and the constants that follow from them.
 #[derive(Clone, Copy, Debug)]
@@ -129,6 +130,10 @@ pub trait Equations<S: Real>: Copy + fmt::Debug {
 pub trait Zeroed {
     /// All numbers are 0.
     const ZEROED: Self;
+}
+
+impl Zeroed for () {
+    const ZEROED: Self = ();
 }
 
 /// One number, or many side by side. The code of a step is generic over this, so it is written once.

@@ -7,7 +7,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use super::{Arithmetic, Numbers, Real, SinCos, Zeroed};
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes<S, const N: usize>(pub(crate) [S; N]);
+pub struct Lanes<S, const N: usize>(pub(crate) [S; N]);
 
 impl<S: Zeroed + Copy, const N: usize> Zeroed for Lanes<S, N> {
     const ZEROED: Self = Self([S::ZEROED; N]);
@@ -34,6 +34,16 @@ impl<S: Real, const N: usize> Neg for Lanes<S, N> {
     #[inline(always)]
     fn neg(self) -> Self {
         self.map(S::neg)
+    }
+}
+
+impl<S: Real, const N: usize> Lanes<S, N> {
+    /// The same numbers, but `x` in one lane.
+    pub(crate) fn with(mut self, lane: usize, x: S) -> Self {
+        if let Some(to) = self.0.get_mut(lane) {
+            *to = x;
+        }
+        self
     }
 }
 

@@ -1,7 +1,7 @@
 //! Gymnasium's expressions, operation by operation.
 
-use super::model::{Common, FromParams};
 use super::Params;
+use super::model::{Common, FromParams};
 use crate::arithmetic::{Arithmetic, Coefficients, Equations, Numbers, Real, SinCos, Zeroed};
 
 /// The equations as Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
