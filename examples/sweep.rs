@@ -27,8 +27,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use acrobot::batch::{Batch, Block, Observations, StepBuffers};
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::batch::VecBatch;
+use acrobot::numpy::SeedSequence;
 use acrobot::{Action, Fast, Params};
 use clap::Parser;
 use examples_common::{bang_bang, exit, files};
@@ -94,9 +94,7 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let grid = grid(options);
     let episodes = episodes_of_a_cell(options.episodes, grid.len())?;
-    let blocks = vec![Block::EMPTY; episodes.div_ceil(Block::<f32>::LANES)];
-    let generators = vec![Pcg64::UNSEEDED; episodes];
-    let seeded = Batch::with_seed(options.seed.clone(), blocks, generators)?;
+    let seeded = VecBatch::with_seed(options.seed.clone(), episodes)?;
 
     let began = Instant::now();
     let progress = ProgressBar::new(options.episodes as u64);
@@ -155,19 +153,13 @@ const LIMIT: usize = 500;
 
 /// Plays one episode of each acrobot. Acrobots that reached the goal step on, but no longer count. Counting the
 /// episodes that end first would favour short ones.
-fn play(
-    mut batch: Batch<Fast, Vec<Block>, Vec<Pcg64>>,
-    params: Params<f32>,
-) -> Result<Cell, acrobot::Error> {
+fn play(mut batch: VecBatch<Fast>, params: Params<f32>) -> Result<Cell, acrobot::Error> {
+    let against = |&[.., dtheta1, _]: &[f32; 6]| bang_bang(dtheta1);
     batch.set_params(params)?;
     let len = batch.len();
-    let (mut rewards, mut terminated, mut truncated) =
-        (vec![0.0; len], vec![false; len], vec![false; len]);
-    let mut observations = vec![[0.0; 6]; len];
-    let mut actions = vec![Action::Zero; len];
+    let mut actions: Vec<Action> = batch.observations().iter().map(against).collect();
     let mut running = vec![true; len];
 
-    batch.observe(Observations::Rows(&mut observations))?;
     let mut cell = Cell {
         params,
         episodes: len,
@@ -175,20 +167,11 @@ fn play(
         steps: 0,
     };
     for step in 1..=LIMIT {
-        for (action, &[.., dtheta1, _]) in actions.iter_mut().zip(&observations) {
-            *action = bang_bang(dtheta1);
+        let results = batch.step(&actions)?;
+        for (action, observation) in actions.iter_mut().zip(results.observations) {
+            *action = against(observation);
         }
-        batch.step(
-            &actions,
-            StepBuffers {
-                rewards: &mut rewards,
-                terminated: &mut terminated,
-                truncated: &mut truncated,
-                observations: Observations::Rows(&mut observations),
-                final_observations: Observations::None,
-            },
-        )?;
-        for (running, &terminated) in running.iter_mut().zip(&terminated) {
+        for (running, &terminated) in running.iter_mut().zip(results.terminated) {
             if *running && terminated {
                 *running = false;
                 cell.reached += 1;

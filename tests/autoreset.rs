@@ -1,15 +1,12 @@
 //! Acrobots wait for their reset only in mode `NextStep`, also those that `set_member` placed in the batch.
 
-use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, StepBuffers};
-use acrobot::numpy::Pcg64;
+use acrobot::batch::{Autoreset, Member, VecBatch};
 use acrobot::physics::ResetBounds;
 use acrobot::{Fast, Params};
 
-type One = Batch<Fast, [Block; 1], [Pcg64; 1]>;
-
 /// One acrobot with noise, and with reset bounds that tell its initial states from others.
-fn one(autoreset: Autoreset) -> One {
-    let mut batch = One::new(42, [Block::EMPTY], [Pcg64::UNSEEDED]).unwrap();
+fn one(autoreset: Autoreset) -> VecBatch<Fast> {
+    let mut batch = VecBatch::new(42, 1).unwrap();
     let noisy = Params {
         torque_noise: 1.0,
         ..Params::default()
@@ -29,7 +26,7 @@ fn waiting() -> Member<Fast> {
 }
 
 /// The acrobot is in an initial state, and does not wait.
-fn assert_reset(batch: One) {
+fn assert_reset(batch: VecBatch<Fast>) {
     let initial = batch.member(0).unwrap();
     assert!((0.5..0.6).contains(&initial.state.theta1), "{initial:?}");
     assert_eq!(initial.elapsed, 0);
@@ -37,17 +34,10 @@ fn assert_reset(batch: One) {
 }
 
 /// The acrobot does not wait: a step counts and draws noise.
-fn assert_steps(mut batch: One) {
+fn assert_steps(mut batch: VecBatch<Fast>) {
     let before = batch.member(0).unwrap();
     assert!(!before.ended);
-    let buffers = StepBuffers {
-        rewards: &mut [0.0],
-        terminated: &mut [false],
-        truncated: &mut [false],
-        observations: Observations::None,
-        final_observations: Observations::None,
-    };
-    batch.step(&[1_u8], buffers).unwrap();
+    batch.step(&[1_u8]).unwrap();
     let stepped = batch.member(0).unwrap();
     assert_eq!(
         (stepped.elapsed, stepped.ended),

@@ -287,7 +287,7 @@ fn other_parameters_noise_and_initial_states_equal_single_acrobots() {
 #[test]
 fn threads_change_no_bit() {
     let len = 50_003_usize;
-    let blocks = vec![Block::EMPTY; len.div_ceil(Block::<f32>::LANES)];
+    let blocks = vec![Block::EMPTY; len.div_ceil(Block::<Fast>::LANES)];
     let mut one = Batch::new(3, blocks, vec![Pcg64::UNSEEDED; len]).unwrap();
     one.set_autoreset(Autoreset::SameStep);
     one.set_limit(NonZeroU32::new(7).unwrap());
@@ -360,7 +360,7 @@ fn slices_that_change_their_length_cannot_panic() {
     }
 
     let len = 5000_usize;
-    let all = len.div_ceil(Block::<f64>::LANES);
+    let all = len.div_ceil(Block::<Portable>::LANES);
     for (blocks, generators) in [(all, 17), (all, 0), (100, len), (0, len), (all, len)] {
         let blocks = Fickle {
             all: vec![Block::EMPTY; all],

@@ -4,7 +4,7 @@
 use std::fmt::Debug;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real};
-use acrobot::batch::{Batch, Block, Member, Observations, StepBuffers};
+use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Lean;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
@@ -125,8 +125,8 @@ fn member() -> Member<Fast> {
     batch.member(0).unwrap()
 }
 
-fn batch_of_one() -> Batch<Fast, [Block; 1], [Pcg64; 1]> {
-    Batch::new(42, [Block::EMPTY], [Pcg64::UNSEEDED]).unwrap()
+fn batch_of_one() -> VecBatch<Fast> {
+    VecBatch::new(42, 1).unwrap()
 }
 
 /// 100 steps of an acrobot, and its reset.
@@ -153,18 +153,9 @@ fn play_member(member: Member<Fast>) -> u64 {
     batch.set_member(0, member).unwrap();
     let mut digest = Digest::default();
     for _ in 0..100 {
-        let mut rows = [[0.0; 6]];
-        let buffers = StepBuffers {
-            rewards: &mut [0.0],
-            terminated: &mut [false],
-            truncated: &mut [false],
-            observations: Observations::Rows(&mut rows),
-            final_observations: Observations::None,
-        };
-        batch.step(&[2_u8], buffers).unwrap();
-        rows.as_flattened()
-            .iter()
-            .for_each(|x| digest.add(x.to_bits().into()));
+        let results = batch.step(&[2_u8]).unwrap();
+        let rows = results.observations.as_flattened();
+        rows.iter().for_each(|x| digest.add(x.to_bits().into()));
     }
     digest.0
 }

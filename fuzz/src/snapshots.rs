@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, StepBuffers};
+use acrobot::batch::{Autoreset, Member, VecBatch};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Dynamics;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
@@ -156,19 +156,11 @@ where
             Autoreset::SameStep,
             Autoreset::Disabled,
         ] {
-            let batch = Batch::<A, _, _, 1>::new(0, [Block::EMPTY], [Pcg64::UNSEEDED]);
-            let mut batch = batch.expect("a block for one acrobot");
+            let mut batch = VecBatch::<A>::new(0, 1).expect("memory for one acrobot");
             batch.set_autoreset(autoreset);
             batch.set_limit(NonZeroU32::MAX);
             assert!(batch.set_member(0, self.clone()).is_ok());
-            let buffers = StepBuffers {
-                rewards: &mut [0.0],
-                terminated: &mut [false],
-                truncated: &mut [false],
-                observations: Observations::None,
-                final_observations: Observations::None,
-            };
-            assert!(batch.step(&[2_u8], buffers).is_ok());
+            assert!(batch.step(&[2_u8]).is_ok());
             assert_settled(batch.state(0).expect("it has one acrobot"), batch.params());
         }
         true

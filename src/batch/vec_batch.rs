@@ -104,6 +104,14 @@ impl<A: Arithmetic, P: ParamsKind<A>> VecBatch<A, P> {
         Ok(Self { batch, results })
     }
 
+    /// The observations of the states, for example after a reset.
+    pub fn observations(&mut self) -> &[[f32; 6]] {
+        let to = Observations::Rows(&mut self.results.observations);
+        // It fails only for another length, which only another batch in place of this one has.
+        let _ = self.batch.observe(to);
+        &self.results.observations
+    }
+
     /// Applies an action to each acrobot for one dt: the numbers 0, 1 and 2, or [`Action`](crate::Action)s.
     ///
     /// # Errors

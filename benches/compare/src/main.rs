@@ -146,7 +146,7 @@ fn ours<A: Arithmetic + 'static>() -> Implementation {
 
 fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Implementation {
     const N: usize = ACROBOTS;
-    let blocks = vec![Block::EMPTY; N.div_ceil(Block::<f32>::LANES)];
+    let blocks = vec![Block::EMPTY; N.div_ceil(Block::<Fast>::LANES)];
     let generators = vec![Pcg64::UNSEEDED; N];
     let mut batch =
         Batch::<Fast, _, _>::new(0, blocks, generators).expect("blocks for all acrobots");

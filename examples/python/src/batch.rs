@@ -180,7 +180,7 @@ impl Batch {
         limit: NonZeroU32,
         autoreset: Autoreset,
     ) -> PyResult<Self> {
-        let blocks = num_envs.div_ceil(Block::<f32>::LANES);
+        let blocks = num_envs.div_ceil(Block::<Fast>::LANES);
         let (Some(blocks), Some(generators), Some(actions)) = (
             memory(Block::EMPTY, blocks),
             memory(Pcg64::UNSEEDED, num_envs),
