@@ -33,6 +33,20 @@ def sync_vector_env():
     return together(gymnasium.make_vec("Acrobot-v1", num_envs=64, vectorization_mode="sync"), 64)
 
 
+def acrobot_make():
+    import acrobot_rs  # noqa: F401 registers
+    import gymnasium
+
+    return alone(gymnasium.make("acrobot_rs/Acrobot-v1"))
+
+
+def acrobot_make_vec():
+    import acrobot_rs  # noqa: F401 registers
+    import gymnasium
+
+    return together(gymnasium.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024), 1024)
+
+
 def envpool():
     import envpool
 
@@ -113,6 +127,8 @@ PEERS = {
     "make": (make, ["gymnasium"]),
     "unwrapped": (unwrapped, ["gymnasium"]),
     "sync_vector_env": (sync_vector_env, ["gymnasium"]),
+    "acrobot_make": (acrobot_make, ["acrobot-rs"]),
+    "acrobot_make_vec": (acrobot_make_vec, ["acrobot-rs"]),
     "envpool": (envpool, ["envpool"]),
     "gymnax": (gymnax, ["gymnax", "jax"]),
 }

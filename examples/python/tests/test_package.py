@@ -38,7 +38,7 @@ def test_recorded_returns():
         observation, _ = env.reset(seed=seed)
         episode_return, done = 0.0, False
         while not done:
-            observation, reward, terminated, truncated, _ = env.step(against_velocity(observation))
+            observation, reward, terminated, truncated, _ = env.step(int(against_velocity(observation)))
             episode_return += reward
             done = terminated or truncated
         assert episode_return == recorded
