@@ -14,7 +14,6 @@ import pathlib
 import statistics
 import subprocess
 import sys
-import venv
 
 PAGE = pathlib.Path("../../docs/benchmarks.md")
 HEAD = "| one core | version | M steps/s | times Gymnasium |"
@@ -24,6 +23,8 @@ PACKAGES = {
     "make": "gymnasium",
     "unwrapped": "gymnasium",
     "sync_vector_env": "gymnasium",
+    "acrobot_make": "acrobot_rs",
+    "acrobot_make_vec": "acrobot_rs",
     "envpool": "envpool",
     "gymnax": "gymnax",
 }
@@ -33,6 +34,9 @@ PEERS = {
     "sync_vector_env": "Gymnasium, `SyncVectorEnv` of 64",
     "envpool": "EnvPool of 1,024",
     "gymnax": "gymnax and jax on the CPU, 4,096 in `jit`, `vmap` and `scan`",
+    "acrobot_make": "acrobot_rs for Python, `make`",
+    "acrobot_make_vec": "acrobot_rs for Python, `make_vec` of 1,024",
+    "ogym": "ogym, f64",
     "gmgn": "gmgn, f64",
     "rlevo": "rlevo-environments, f32",
     "host": "acrobot, `Host`",
@@ -46,16 +50,16 @@ CARGO = ["--quiet", "--release", "--locked"]
 
 
 def install(package):
-    """A Python with this package, and the error if it does not install. Each package has its own
-    virtual environment, because gymnax needs an older Gymnasium."""
+    """A Python with this package. Each package has its own virtual environment, because gymnax needs an older Gymnasium.
+    EnvPool needs Python 3.12."""
     folder = pathlib.Path(".venv", package)
-    venv.create(folder, with_pip=True)
     python = folder / "bin" / "python"
-    command = [python, "-m", "pip", "install", "--quiet", "--requirement", f"requirements/{package}.txt"]
-    pip = subprocess.run(command, stderr=subprocess.PIPE, text=True)
-    lines = pip.stderr.splitlines() or ["pip fails"]
-    errors = [line.removeprefix("ERROR: ") for line in lines if line.startswith("ERROR: ")]
-    return python, (errors or lines)[-1] if pip.returncode else None
+    requirements = f"requirements/{package}.txt"
+    subprocess.run(["uv", "venv", "--quiet", "--clear", "--python", "3.12", folder], check=True)
+    # uv would not notice that the source of ours has changed.
+    command = ["uv", "pip", "install", "--quiet", "--refresh-package", "acrobot-rs", "--python", python]
+    subprocess.run([*command, "--requirement", requirements], check=True)
+    return python
 
 
 def run(*command):
@@ -83,15 +87,11 @@ def digits(number):
     return f"{float(f'{number:.3g}'):,g}"
 
 
-def table(versions, rates, missing):
+def table(versions, rates):
     yield HEAD
     yield "|---|---|---|---|"
     for name, words in PEERS.items():
-        if reason := missing.get(PACKAGES.get(name)):
-            yield f"| {words} | does not install: {reason} | | |"
-            continue
-        ratio = digits(rates[name] / rates[BASE]) if BASE in rates else ""
-        yield f"| {words} | {versions[name]} | {digits(rates[name] / 1e6)} | {ratio} |"
+        yield f"| {words} | {versions[name]} | {digits(rates[name] / 1e6)} | {digits(rates[name] / rates[BASE])} |"
 
 
 def update(rows):
@@ -109,22 +109,17 @@ def main():
     options = parser.parse_args()
 
     subprocess.run(["cargo", "build", *CARGO], check=True)
-    pythons, missing = {}, {}
-    for package in sorted(set(PACKAGES.values())):
-        pythons[package], missing[package] = install(package)
-    commands = {}
-    for name in PEERS:
-        package = PACKAGES.get(name)
-        if package is None:
-            commands[name] = ["cargo", "run", *CARGO]
-        elif not missing[package]:
-            commands[name] = [pythons[package], "-W", "ignore", "peers.py"]
+    pythons = {package: install(package) for package in sorted(set(PACKAGES.values()))}
+    commands = {
+        name: [pythons[PACKAGES[name]], "-W", "ignore", "peers.py"] if name in PACKAGES else ["cargo", "run", *CARGO]
+        for name in PEERS
+    }
 
     # One core for everything below, also for XLA's threads.
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     rounds, seconds = (1, "0.1") if options.quick else (7, "1")
     versions, rates, ratio = measure(commands, rounds, seconds)
-    rows = list(table(versions, rates, missing))
+    rows = list(table(versions, rates))
     print("\n".join(rows))
     print(f"interleaved in one process, `Fast` is {ratio:.2f} times as fast as rlevo-environments")
     if options.update:

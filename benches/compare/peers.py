@@ -33,6 +33,20 @@ def sync_vector_env():
     return together(gymnasium.make_vec("Acrobot-v1", num_envs=64, vectorization_mode="sync"), 64)
 
 
+def acrobot_make():
+    import acrobot_rs  # noqa: F401 registers
+    import gymnasium
+
+    return alone(gymnasium.make("acrobot_rs/Acrobot-v1"))
+
+
+def acrobot_make_vec():
+    import acrobot_rs  # noqa: F401 registers
+    import gymnasium
+
+    return together(gymnasium.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024), 1024)
+
+
 def envpool():
     import envpool
 
@@ -76,20 +90,19 @@ def gymnax():
 def alone(env):
     import numpy
 
-    rng = numpy.random.default_rng(0)
+    actions = numpy.random.default_rng(0).integers(3, size=10_000).tolist()
     env.reset(seed=0)
     length = 0
 
     def run():
         nonlocal length
-        # Drawing many at once is cheaper than `action_space.sample()`.
-        for action in rng.integers(3, size=1000).tolist():
+        for action in actions:
             _, _, terminated, _, _ = env.step(action)
             length += 1
             if terminated or length == LIMIT:  # `unwrapped` has no limit
                 env.reset()
                 length = 0
-        return 1000
+        return len(actions)
 
     return run
 
@@ -97,13 +110,14 @@ def alone(env):
 def together(envs, count):
     import numpy
 
-    rng = numpy.random.default_rng(0)
+    # EnvPool takes no other integers.
+    actions = numpy.random.default_rng(0).integers(3, size=(LIMIT, count), dtype=numpy.int32)
     envs.reset()
 
     def run():
-        for actions in rng.integers(3, size=(LIMIT, count), dtype=numpy.int32):
-            envs.step(actions)  # the step after an end resets
-        return LIMIT * count
+        for each in actions:
+            envs.step(each)  # the step after an end resets
+        return actions.size
 
     return run
 
@@ -113,6 +127,8 @@ PEERS = {
     "make": (make, ["gymnasium"]),
     "unwrapped": (unwrapped, ["gymnasium"]),
     "sync_vector_env": (sync_vector_env, ["gymnasium"]),
+    "acrobot_make": (acrobot_make, ["acrobot-rs"]),
+    "acrobot_make_vec": (acrobot_make_vec, ["acrobot-rs"]),
     "envpool": (envpool, ["envpool"]),
     "gymnax": (gymnax, ["gymnax", "jax"]),
 }

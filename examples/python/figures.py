@@ -1,6 +1,6 @@
 """Measures steps per second of this package, Gymnasium and EnvPool on one core, and prints the table of docs/python.md.
 
-    pip install envpool==1.2.5
+    pip install envpool==1.2.7    # needs Python 3.12
     python figures.py             prints the table
     python figures.py --update    also writes it into docs/python.md
 

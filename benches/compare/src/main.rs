@@ -20,6 +20,9 @@ use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use cpu_time::ProcessTime;
 use gmgn::env::Env as _;
 use gmgn::envs::classic_control::AcrobotEnv;
+use ogym::env::control::acrobot::{Acrobot as OgymAcrobot, AcrobotConfig};
+use ogym::env::environment::Environment as _;
+use ogym::spaces::MixedItem;
 use rlevo_core::action::DiscreteAction as _;
 use rlevo_core::environment::Environment as _;
 use rlevo_environments::classic::acrobot::{Acrobot as RlevoAcrobot, AcrobotAction};
@@ -30,7 +33,7 @@ type Implementation = Box<dyn FnMut(usize) -> usize>;
 type New = fn() -> Implementation;
 
 /// The name of each implementation, its package, and how to make it.
-const IMPLEMENTATIONS: [(&str, &str, New); 8] = [
+const IMPLEMENTATIONS: [(&str, &str, New); 9] = [
     ("host", "acrobot", ours::<Host>),
     ("reference", "acrobot", ours::<Reference>),
     ("portable", "acrobot", ours::<Portable>),
@@ -40,6 +43,7 @@ const IMPLEMENTATIONS: [(&str, &str, New); 8] = [
         batch(|rows| Observations::Rows(rows))
     }),
     ("gmgn", "gmgn", gmgn),
+    ("ogym", "ogym", ogym),
     ("rlevo", "rlevo-environments", rlevo),
 ];
 
@@ -95,9 +99,9 @@ fn find(name: &str) -> Option<(Implementation, String)> {
     Some((new(), rest.split_once('"')?.0.to_owned()))
 }
 
-/// The workspace's lock file, which has the versions.
+/// The lock file, which has the versions.
 fn lock() -> String {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.lock");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.lock");
     std::fs::read_to_string(path).unwrap_or_default()
 }
 
@@ -190,6 +194,21 @@ fn gmgn() -> Implementation {
     })
 }
 
+fn ogym() -> Implementation {
+    let config = AcrobotConfig::default().with_max_steps(LIMIT.into());
+    let mut acrobot = OgymAcrobot::new(config).expect("its default is valid");
+    acrobot.reset(Some(0)).expect("it resets");
+    alone(move |action| {
+        let action = MixedItem::Discrete(action.into());
+        let step = black_box(acrobot.step(action)).expect("the episode goes on");
+        let ended = step.terminal.is_done();
+        if ended {
+            acrobot.reset(None).expect("it resets");
+        }
+        ended
+    })
+}
+
 fn rlevo() -> Implementation {
     let acrobot = <RlevoAcrobot>::default();
     let mut acrobot = rlevo_environments::wrappers::TimeLimit::new(acrobot, LIMIT.into());
@@ -208,6 +227,7 @@ fn rlevo() -> Implementation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use acrobot::physics::{Pendulum, State};
 
     #[test]
     fn every_implementation_steps_and_reports_its_version() {
@@ -232,6 +252,35 @@ mod tests {
             let steps = 1200 * ACROBOTS; // a batch is in its third episodes then
             let ends = new()(steps);
             assert!((steps / 600..steps / 450).contains(&ends), "{name} {ends}");
+        }
+    }
+
+    /// Ogym shows only observations, so each step of ours begins at the state that its last observation tells.
+    #[test]
+    fn ogym_steps_as_we_do() {
+        let mut theirs = OgymAcrobot::new(AcrobotConfig::default()).unwrap();
+        theirs.reset(Some(0)).unwrap();
+        let mut ours = Pendulum::<Portable>::hanging();
+        let mut stream = 0;
+        for _ in 0..LIMIT {
+            let action = draw(&mut stream);
+            let step = theirs.step(MixedItem::Discrete(action.into())).unwrap();
+            let [cos1, sin1, cos2, sin2, dtheta1, dtheta2]: [f64; 6] = step.curr_state.into();
+            let state = State {
+                theta1: sin1.atan2(cos1),
+                theta2: sin2.atan2(cos2),
+                dtheta1,
+                dtheta2,
+            };
+            ours.set_state(state).unwrap();
+            let goal = ours.step(f64::from(action) - 1.0).unwrap();
+            let [(sin1, cos1), (sin2, cos2)] = ours.sin_cos();
+            let after = ours.state();
+            let expected = [cos1, sin1, cos2, sin2, after.dtheta1, after.dtheta2];
+            for (theirs, ours) in step.next_state.iter().zip(expected) {
+                assert!((theirs - ours).abs() < 1e-12, "{theirs} {ours}");
+            }
+            assert_eq!(step.terminal.is_terminated(), goal);
         }
     }
 

@@ -10,12 +10,15 @@ Importing this package registers ``acrobot_rs/Acrobot-v1`` and ``acrobot_rs/Acro
 ``gym.make("acrobot_rs:acrobot_rs/Acrobot-v1")`` works without that import.
 """
 
+from importlib.metadata import version
+
 from gymnasium.envs.registration import register
 
 from acrobot_rs.env import AcrobotEnv, AcrobotV0Env
 from acrobot_rs.vector import AcrobotVectorEnv
 
 __all__ = ["AcrobotEnv", "AcrobotV0Env", "AcrobotVectorEnv"]
+__version__ = version("acrobot-rs")
 
 register(
     id="acrobot_rs/Acrobot-v1",

@@ -55,7 +55,8 @@ class Parameters:
     def __init__(self, native: Acrobot | Batch, render_mode: str | None) -> None:
         """Pass the class's parameters, which a subclass may have changed, to the native part."""
         modes = self.metadata["render_modes"]
-        if render_mode is not None and render_mode not in modes:
+        # A comparison with an array is no bool.
+        if render_mode is not None and not (isinstance(render_mode, str) and render_mode in modes):
             raise ValueError(f"render_mode must be None or one of {modes}, got {render_mode!r}")
         self.render_mode = render_mode
         self._native = native
