@@ -11,7 +11,7 @@
 use std::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
-use acrobot::batch::{Batch, SimdLevel};
+use acrobot::batch::SimdLevel;
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use benches::Play;
@@ -61,8 +61,7 @@ fn play_alone<A: Arithmetic>((mut acrobot, actions): Alone<A>) -> Alone<A> {
 #[inline(always)]
 fn play_batch<A: Arithmetic>(mut play: Play<A>, observe: bool) -> Play<A> {
     for _ in 0..STEPS {
-        play.draw_actions();
-        play.step(observe, Batch::step);
+        play.play(observe);
     }
     play
 }

@@ -56,19 +56,17 @@ fn bare(bencher: Bencher, bits: u32) {
 #[divan::bench(types = [Host, Reference, Portable, Fast, Micro], args = SIZES)]
 fn batch<A: Arithmetic>(bencher: Bencher, len: usize) {
     let mut play = Play::<A>::new(len);
-    bencher.counter(ItemsCount::new(len)).bench_local(|| {
-        play.draw_actions();
-        play.step(false, Batch::step)
-    });
+    bencher
+        .counter(ItemsCount::new(len))
+        .bench_local(|| play.play(false));
 }
 
 #[divan::bench(types = [Host, Reference, Portable, Fast, Micro], args = SIZES)]
 fn batch_with_observations<A: Arithmetic>(bencher: Bencher, len: usize) {
     let mut play = Play::<A>::new(len);
-    bencher.counter(ItemsCount::new(len)).bench_local(|| {
-        play.draw_actions();
-        play.step(true, Batch::step)
-    });
+    bencher
+        .counter(ItemsCount::new(len))
+        .bench_local(|| play.play(true));
 }
 
 /// The actions stay the same, because only the step runs on all cores.

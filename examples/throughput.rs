@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
-use acrobot::batch::{Batch, SimdLevel};
+use acrobot::batch::{Batch, OwnParams, SimdLevel};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use benches::{Lanes, Play, bare_f32, bare_f64};
@@ -40,6 +40,7 @@ fn measure() -> io::Result<()> {
     for len in [1024, 1 << 20] {
         batch::<Fast>("fast", len, SimdLevel::widest())?;
     }
+    own_params(1024)?;
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2)?;
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline)?;
     batch::<Portable>("portable", 1024, SimdLevel::Baseline)?;
@@ -100,8 +101,7 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) -> io::R
     for (suffix, observe) in [("", false), ("_observations", true)] {
         let mut ours = || {
             for _ in 0..steps {
-                play.draw_actions();
-                play.step(observe, Batch::step);
+                play.play(observe);
             }
             steps * len
         };
@@ -118,6 +118,16 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) -> io::R
         }
     }
     Ok(())
+}
+
+/// Each acrobot has its own parameters; the ratio is to a batch that shares them.
+fn own_params(len: usize) -> io::Result<()> {
+    let (mut own, mut shared) = (Play::<Fast, OwnParams>::new(len), Play::<Fast>::new(len));
+    let rates = compare(
+        || (0..2000).map(|_| own.play(true)).sum(),
+        || (0..2000).map(|_| shared.play(true)).sum(),
+    );
+    report(&format!("batch_fast_{len}_own_params"), rates)
 }
 
 /// Steps on all cores; the ratio is to the same steps on one core. The actions stay the same, because only the step

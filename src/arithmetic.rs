@@ -52,7 +52,7 @@ mod reference;
 
 use core::fmt;
 
-pub(crate) use equations::{Coefficients, Constants, Equations, Model, Numbers, Zeroed};
+pub(crate) use equations::{Coefficients, Constants, Equations, Model, Numbers};
 pub use fast::Fast;
 #[cfg(feature = "std")]
 pub use host::Host;
@@ -60,7 +60,7 @@ pub(crate) use lanes::Lanes;
 pub use micro::Micro;
 pub use portable::Portable;
 pub use real::Real;
-pub(crate) use real::SinCos;
+pub(crate) use real::{SinCos, Zeroed};
 pub use reference::Reference;
 
 /// A scalar, its sines and the form of the equations: they determine every bit of a result.

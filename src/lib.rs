@@ -51,7 +51,8 @@
 //!
 //! None is on by default. Features are additive and never change a result.
 //!
-//! - `std` enables `graphics`, and adds `env`, the arithmetic `Host`, and batches with AVX2 or AVX-512.
+//! - `alloc` adds a batch that owns its memory.
+//! - `std` enables `alloc` and `graphics`, and adds `env`, the arithmetic `Host`, and batches with AVX2 or AVX-512.
 //! - `graphics` adds `render`.
 //! - `rayon` enables `std`, and adds batches on all cores.
 //! - `serde` adds snapshots, whose version and arithmetic are checked when loaded.

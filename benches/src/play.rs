@@ -38,11 +38,17 @@ impl<A: Arithmetic, P: ParamsKind<A>> Play<A, P> {
         }
     }
 
-    pub fn draw_actions(&mut self) {
+    fn draw_actions(&mut self) {
         for (stream, action) in self.streams.iter_mut().zip(&mut self.actions) {
             *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             *action = (((*stream >> 16) * 3) >> 16) as u8;
         }
+    }
+
+    /// Draws actions and steps. Returns the number of acrobots.
+    pub fn play(&mut self, observe: bool) -> usize {
+        self.draw_actions();
+        self.step(observe, Batch::step)
     }
 
     /// Steps with `step`. Returns the number of acrobots.

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Arithmetic, Real, SinCos};
+use super::{Arithmetic, Real, SinCos, Zeroed};
 use crate::physics::{Common, Dynamics, Params};
 
 /// The constants that the form of the equations computes from the parameters.
@@ -124,16 +124,6 @@ pub trait Equations<S: Real>: Copy + fmt::Debug {
         angles: [V; 2],
         sin_cos: [SinCos<V>; 2],
     ) -> V::Mask;
-}
-
-/// Numbers with a value to fill memory with.
-pub trait Zeroed {
-    /// All numbers are 0.
-    const ZEROED: Self;
-}
-
-impl Zeroed for () {
-    const ZEROED: Self = ();
 }
 
 /// One number, or many side by side. The code of a step is generic over this, so it is written once.

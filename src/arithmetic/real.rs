@@ -3,8 +3,6 @@
 use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Zeroed;
-
 /// A scalar that the physics can be computed in: `f32` or `f64`.
 ///
 /// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are the same on every
@@ -49,6 +47,16 @@ pub trait Real:
 
     /// The exact remainder of the division by `divisor`, with the sign of `self`.
     fn remainder(self, divisor: Self) -> Self;
+}
+
+/// Numbers with a value to fill memory with.
+pub trait Zeroed {
+    /// All numbers are 0.
+    const ZEROED: Self;
+}
+
+impl Zeroed for () {
+    const ZEROED: Self = ();
 }
 
 /// Sine and cosine of one angle.
