@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NoReturn
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -12,19 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
 from acrobot_rs.parameters import Parameters, reset_bounds
-
-_EQUATIONS = "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
-#: Names of Gymnasium's environment that would have no effect here, and what to do instead.
-_WITHOUT_EFFECT = {
-    "_dsdt": _EQUATIONS,
-    "rk4": _EQUATIONS,
-    "wrap": _EQUATIONS,
-    "bound": _EQUATIONS,
-    "_get_ob": "change observations by a gymnasium.ObservationWrapper",
-    "_terminal": "change the end of episodes by a gymnasium.Wrapper",
-    "SCREEN_DIM": "pictures have 500 x 500 pixels: resize what render returns",
-}
-
 
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between the links must swing them up.
@@ -82,20 +69,12 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     """
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "ansi"], "render_fps": 15}
-    #: The width and the height of pictures, in pixels.
-    SCREEN_DIM = 500
 
     _native: Acrobot
     #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
     #: Whether actions are torques.
     _CONTINUOUS = False
-
-    def __init_subclass__(cls, **kwargs: Any) -> None:
-        super().__init_subclass__(**kwargs)
-        for name in _WITHOUT_EFFECT:
-            if getattr(cls, name, None) is not getattr(AcrobotEnv, name, None):
-                _reject_without_effect(name)
 
     def __init__(self, render_mode: str | None = None) -> None:
         """Make an environment. Reset it before its first step.
@@ -113,11 +92,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         self.isopen = True
         self.action_space = self._action_space
         self.observation_space = self._observation_space
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name in _WITHOUT_EFFECT:
-            _reject_without_effect(name)
-        super().__setattr__(name, value)
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the window, which a copy opens itself."""
@@ -231,10 +205,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             pygame.display.quit()
             pygame.quit()
             self.screen, self.isopen = None, False
-
-
-def _reject_without_effect(name: str) -> NoReturn:
-    raise TypeError(f"{name} would have no effect; {_WITHOUT_EFFECT[name]}")
 
 
 class AcrobotContinuousEnv(AcrobotEnv):

@@ -17,9 +17,19 @@ from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 
 from acrobot_rs._native import Acrobot, Batch, check_reset_bounds
 
-
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()
+_EQUATIONS = "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
+#: What Gymnasium's environment calls or reads, but ours does not, and what to do instead.
+_IGNORED = {
+    "_dsdt": _EQUATIONS,
+    "rk4": _EQUATIONS,
+    "wrap": _EQUATIONS,
+    "bound": _EQUATIONS,
+    "_get_ob": "change observations with a wrapper",
+    "_terminal": "change the end of episodes with a wrapper",
+    "SCREEN_DIM": "pictures have 500 x 500 pixels: resize what render returns",
+}
 #: All environments, for changes of class attributes.
 _LIVE: weakref.WeakSet[Parameters] = weakref.WeakSet()
 
@@ -44,7 +54,9 @@ def _fixed(name: str, value: Any) -> Any:
     return Torques(map(float, value)) if name == "AVAIL_TORQUE" else float(value)
 
 
-def _reject_misspelt(cls: type, name: str) -> None:
+def _reject_ignored(cls: type, name: str) -> None:
+    if name in _IGNORED:
+        raise TypeError(f"{name} would have no effect on {cls.__name__}; {_IGNORED[name]}")
     if meant := _meant(name):
         raise AttributeError(f"{cls.__name__} has no parameter {name}; did you mean {meant}?")
 
@@ -52,7 +64,7 @@ def _reject_misspelt(cls: type, name: str) -> None:
 @functools.cache
 def _meant(name: str) -> str | None:
     """The parameter that a name resembles."""
-    if name.startswith("_"):
+    if name.startswith("_") or name in _NAMES:
         return None
     names = {each.lower(): each for each in _NAMES}
     close = difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.8)
@@ -67,14 +79,17 @@ class Live(abc.ABCMeta):
         for each, value in namespace.items() if bases else ():
             if each in _NAMES:
                 super().__setattr__(each, _checked(each, value))
-            elif not callable(value):
-                _reject_misspelt(cls, each)
+        # Also what a class inherits from one without parameters.
+        for base in cls.__mro__ if bases else ():
+            for each, value in vars(base).items() if base is cls or not isinstance(base, Live) else ():
+                if each in _IGNORED or not callable(value):
+                    _reject_ignored(cls, each)
 
     def __setattr__(cls, name: str, value: Any) -> None:
         if name in _NAMES:
             value = _checked(name, value)
         else:
-            _reject_misspelt(cls, name)
+            _reject_ignored(cls, name)
         before = vars(cls).get(name)
         super().__setattr__(name, value)
         try:
@@ -131,6 +146,9 @@ class Parameters(metaclass=Live):
     #: The equations of motion: those of Sutton and Barto's book, or those printed in the 1996 paper.
     book_or_nips: Literal["book", "nips"] = "book"
 
+    #: The width and the height of pictures, in pixels. It cannot be changed.
+    SCREEN_DIM = 500
+
     metadata: dict[str, Any]
     spec: Any
     render_mode: str | None
@@ -159,7 +177,7 @@ class Parameters(metaclass=Live):
             self._native.set(name, value)
             value = _fixed(name, value)
         else:
-            _reject_misspelt(type(self), name)
+            _reject_ignored(type(self), name)
         super().__setattr__(name, value)
 
     def __delattr__(self, name: str) -> None:
