@@ -154,6 +154,16 @@ impl Acrobot {
         Ok(())
     }
 
+    #[getter]
+    fn human(&self) -> bool {
+        self.kind.human
+    }
+
+    #[setter]
+    fn set_human(&mut self, human: bool) {
+        self.kind.human = human;
+    }
+
     /// Steps by an action of the environment, whose generator draws the noise.
     fn step<'py>(
         slf: &Bound<'py, Self>,

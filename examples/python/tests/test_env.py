@@ -113,7 +113,13 @@ def test_a_window_shows_each_reset_and_step(monkeypatch):
     assert env.render() is None and shown.call_count == 6
     pygame.display.set_mode.assert_called_once_with((500, 500))
     pygame.time.Clock.return_value.tick.assert_called_with(15)
-    assert copy.deepcopy(env).unwrapped.screen is None
+    twin = copy.deepcopy(env).unwrapped
+    assert twin.screen is None
+    twin.step(0)
+    assert shown.call_count == 7
+    twin.render_mode = None
+    twin.step(0)
+    assert shown.call_count == 7
     env.close()
     assert pygame.quit.called and env.unwrapped.screen is None and not env.unwrapped.isopen
 

@@ -84,7 +84,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         Raises:
             ValueError: If parameters that a subclass sets are invalid.
         """
-        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS, render_mode == "human"), None)
+        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS), None)
         self.render_mode = render_mode
         # The window, by the names of Gymnasium's environment.
         self.screen: Any = None
@@ -92,6 +92,12 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         self.isopen = True
         self.action_space = self._action_space
         self.observation_space = self._observation_space
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, value)
+        if name == "render_mode":
+            # Then each step calls `render`.
+            self._native.human = value == "human"
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the window, which a copy opens itself."""
@@ -112,8 +118,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     @state.setter
     def state(self, state: ArrayLike) -> None:
+        single = getattr(state, "dtype", None) == np.float32
         try:
-            array = np.array(state, dtype=np.float32 if getattr(state, "dtype", None) == np.float32 else np.float64)
+            array: NDArray[Any] = np.array(state, dtype=np.float32 if single else np.float64)
         except (TypeError, ValueError) as error:
             raise ValueError(f"state must be four finite numbers, got {state!r}") from error
         self._native.state = array
@@ -226,6 +233,22 @@ class AcrobotContinuousEnv(AcrobotEnv):
     @property
     def _action_space(self) -> spaces.Space[Any]:
         return spaces.Box(min(self.AVAIL_TORQUE), max(self.AVAIL_TORQUE), (1,), np.float32)
+
+    def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Apply a torque for ``dt``.
+
+        Args:
+            action: An array or a list of one number, the torque in N m. It is clipped to the bounds.
+
+        Returns:
+            As :meth:`AcrobotEnv.step`.
+
+        Raises:
+            gymnasium.error.InvalidAction: If the action is NaN or of another shape. Nothing changes then.
+            ValueError: If a number that is not finite was assigned to an element of ``state``.
+            AssertionError: If the environment was never reset.
+        """
+        return self._native.step(self, action)
 
 
 class AcrobotV0Env(AcrobotEnv):

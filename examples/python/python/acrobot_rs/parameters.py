@@ -159,8 +159,8 @@ class Parameters(metaclass=Live):
         modes = self.metadata["render_modes"]
         if render_mode is not None and render_mode not in modes:
             raise ValueError(f"render_mode must be None or one of {modes}, got {render_mode!r}")
-        self.render_mode = render_mode
         self._native = native
+        self.render_mode = render_mode
         self._set_all()
 
     def _set_all(self) -> None:
