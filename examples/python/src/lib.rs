@@ -118,7 +118,14 @@ fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params
         }
         "MAX_VEL_1" => params.max_velocity1 = number()?,
         "MAX_VEL_2" => params.max_velocity2 = number()?,
-        "AVAIL_TORQUE" => params.torques = convert(name, "a sequence of 3 numbers", value)?,
+        "AVAIL_TORQUE" => {
+            if let Ok(count) = value.len()
+                && count != 3
+            {
+                return Err(PyValueError::new_err(must_be(name, "3 numbers", count)));
+            }
+            params.torques = convert(name, "a sequence of 3 numbers", value)?;
+        }
         "torque_noise_max" => params.torque_noise = number()?,
         "book_or_nips" => {
             let rule = r#""book" or "nips""#;

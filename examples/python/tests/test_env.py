@@ -325,6 +325,11 @@ def test_class_attributes_act_from_the_next_step():
     assert masses() == [1.0, 1.0, 3.0, 1.0]
     with unittest.mock.patch.object(acrobot_rs.AcrobotEnv, "LINK_MASS_1", 2.0):
         assert moves(pickle.loads(pickled), 2.0), "a pickle takes the class's values"
+    # In whatever order: no link may be without inertia meanwhile.
+    no_moment = acrobot_rs.AcrobotEnv()
+    no_moment.LINK_MOI = 0.0
+    state = {**no_moment.__getstate__(), "LINK_MOI": 1.0, "LINK_COM_POS_1": 0.0}
+    no_moment.__setstate__(state)
     # An error changes nothing.
     with pytest.raises(ValueError, match="LINK_MASS_1 must be finite and above 0 kg, got 0"):
         Base.LINK_MASS_1 = 0.0
@@ -333,6 +338,22 @@ def test_class_attributes_act_from_the_next_step():
         Base.LINK_MOI = 0.0
     del own.LINK_COM_POS_2
     assert Base.LINK_MOI == 1.0 and masses() == [1.0, 1.0, 3.0, 1.0]
+
+
+def test_parameters_can_be_set_through_wrappers():
+    env = make(V1)
+    env.set_wrapper_attr("LINK_MASS_1", 2.0)
+    with pytest.raises(ValueError, match="LINK_MASS_1 must"):
+        env.set_wrapper_attr("LINK_MASS_1", -2.0)
+    assert env.unwrapped.LINK_MASS_1 == 2.0
+
+
+def test_a_vector_environment_has_three_torques():
+    envs = acrobot_rs.AcrobotVectorEnv(2)
+    for target in (envs, acrobot_rs.AcrobotVectorEnv):
+        with pytest.raises(ValueError, match="AVAIL_TORQUE must be 3 numbers, got 2"):
+            target.AVAIL_TORQUE = [-1.0, 1.0]
+        assert target.AVAIL_TORQUE == (-1.0, 0.0, 1.0)
 
 
 def test_values_cannot_change_in_place(env):

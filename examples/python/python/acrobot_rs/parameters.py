@@ -71,6 +71,12 @@ def _meant(name: str) -> str | None:
     return names[close[0]] if close else None
 
 
+def _tell(name: str) -> None:
+    """Pass a parameter that a class has changed to the environments."""
+    for env in list(_LIVE) if name in _NAMES else ():
+        env._native.set(name, getattr(env, name))
+
+
 class Live(abc.ABCMeta):
     """The type of classes with parameters. What is set on a class acts on its environments from the next step."""
 
@@ -93,23 +99,18 @@ class Live(abc.ABCMeta):
         before = vars(cls).get(name)
         super().__setattr__(name, value)
         try:
-            cls._tell(name)
-        except ValueError:  # in combination with another value of an environment
+            _tell(name)
+        except (TypeError, ValueError):  # an environment rejects it, perhaps in combination with another value
             if before is None:
                 super().__delattr__(name)
             else:
                 super().__setattr__(name, before)
-            cls._tell(name)
+            _tell(name)
             raise
 
     def __delattr__(cls, name: str) -> None:
         super().__delattr__(name)
-        cls._tell(name)
-
-    def _tell(cls, name: str) -> None:
-        for env in list(_LIVE) if name in _NAMES else ():
-            if isinstance(env, cls) and name not in vars(env):
-                env._native.set(name, getattr(env, name))
+        _tell(name)
 
 
 class Parameters(metaclass=Live):
