@@ -525,9 +525,11 @@ def test_damaged_snapshots_are_rejected(env):
     not_finite = good.replace(env.state[:1].tobytes(), np.float64(np.nan).tobytes())
     no_torques = good.replace(b"\3" + np.float64([-1, 0, 1]).tobytes(), b"\0")
     bad_torque = good.replace(b"\3" + np.float64(-1).tobytes(), b"\3" + np.float64(np.inf).tobytes())
-    assert len({good, not_finite, no_torques, bad_torque}) == 4
-    for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good), not_finite, no_torques, bad_torque]:
-        with pytest.raises(ValueError, match="snapshot|AVAIL_TORQUE"):
+    bad_noise = good.replace(np.float64([1, 0]).tobytes(), np.float64([1, -1]).tobytes())
+    wrong = [not_finite, no_torques, bad_torque, bad_noise]
+    assert len({good, *wrong}) == 5
+    for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good), *wrong]:
+        with pytest.raises(ValueError, match="snapshot|AVAIL_TORQUE|torque_noise_max"):
             native.__setstate__(bad)
     with pytest.raises(ValueError, match="the snapshot's version must be 1, got 2"):
         native.__setstate__(b"\x02" + good[1:])
