@@ -534,3 +534,6 @@ def test_damaged_snapshots_are_rejected(env):
     with pytest.raises(ValueError, match="the snapshot's version must be 1, got 2"):
         native.__setstate__(b"\x02" + good[1:])
     assert native.__getstate__() == good
+    env.state = np.float32([1, 2, 3, 4])
+    native.__setstate__(native.__getstate__().replace(np.float64(3).tobytes(), np.float64(1e300).tobytes()))
+    assert list(env.state) == [1, 2, 1e300, 4]
