@@ -48,7 +48,7 @@ struct Kind {
 }
 
 /// What a snapshot contains.
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 struct Inner {
     /// Without noise and with the default torques: the crate has three.
     acrobot: acrobot::Acrobot<Host>,

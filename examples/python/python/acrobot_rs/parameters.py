@@ -140,7 +140,7 @@ class Parameters(metaclass=Live):
     MAX_VEL_1: float = 4 * math.pi
     #: Bound of link 2's velocity, relative to link 1, after a step, rad/s; above 0.
     MAX_VEL_2: float = 9 * math.pi
-    #: Torques of the actions 0, 1 and 2, N m.
+    #: Torques of the actions 0, 1 and 2, N m. A single environment may have another number of actions.
     AVAIL_TORQUE: Sequence[float] = Torques((-1.0, 0.0, 1.0))
     #: Each step adds a uniform draw from [-torque_noise_max, torque_noise_max) to the torque, N m; 0 or more. 0 draws nothing.
     torque_noise_max: float = 0.0
