@@ -525,7 +525,7 @@ def test_damaged_snapshots_are_rejected(env):
     not_finite = good.replace(env.state[:1].tobytes(), np.float64(np.nan).tobytes())
     no_torques = good.replace(b"\3" + np.float64([-1, 0, 1]).tobytes(), b"\0")
     bad_torque = good.replace(b"\3" + np.float64(-1).tobytes(), b"\3" + np.float64(np.inf).tobytes())
-    bad_noise = good.replace(np.float64([1, 0]).tobytes(), np.float64([1, -1]).tobytes())
+    bad_noise = good.replace(b"\3" + np.float64([-1, 0, 1, 0]).tobytes(), b"\3" + np.float64([-1, 0, 1, -1]).tobytes())
     wrong = [not_finite, no_torques, bad_torque, bad_noise]
     assert len({good, *wrong}) == 5
     for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good), *wrong]:
