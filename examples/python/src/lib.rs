@@ -11,7 +11,7 @@ use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::{PyAttributeError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -35,9 +35,31 @@ fn check_reset_bounds(low: f64, high: f64) -> PyResult<()> {
     Ok(())
 }
 
-/// Turns an error of the crate into a `ValueError` with its message.
+/// The crate's names of parameters, with Gymnasium's where they differ.
+const NAMES: [(&str, &str); 12] = [
+    ("length1", "LINK_LENGTH_1"),
+    ("length2", "LINK_LENGTH_2"),
+    ("mass1", "LINK_MASS_1"),
+    ("mass2", "LINK_MASS_2"),
+    ("center_of_mass1", "LINK_COM_POS_1"),
+    ("center_of_mass2", "LINK_COM_POS_2"),
+    ("inertia1", "LINK_MOI"),
+    ("inertia2", "LINK_MOI"),
+    ("max_velocity1", "MAX_VEL_1"),
+    ("max_velocity2", "MAX_VEL_2"),
+    ("torques", "AVAIL_TORQUE"),
+    ("torque_noise", "torque_noise_max"),
+];
+
+/// Turns an error of the crate into a `ValueError` with its message, which begins with Gymnasium's name of a parameter.
 fn rejected(error: impl std::error::Error) -> PyErr {
-    PyValueError::new_err(error.to_string())
+    let message = error.to_string();
+    let renamed = NAMES.iter().find_map(|(name, gymnasiums)| {
+        let rest = message.strip_prefix(name)?;
+        rest.starts_with([' ', '['])
+            .then(|| format!("{gymnasiums}{rest}"))
+    });
+    PyValueError::new_err(renamed.unwrap_or(message))
 }
 
 /// An error message in the form of the crate's.
@@ -45,7 +67,23 @@ fn must_be(name: &str, rule: impl Display, got: impl Display) -> String {
     format!("{name} must be {rule}, got {got}")
 }
 
-/// What an action must be.
+/// Converts a parameter from Python, or raises a `TypeError` that names it.
+fn convert<'a, 'py, T: FromPyObject<'a, 'py>>(
+    name: &str,
+    rule: &str,
+    value: &'a Bound<'py, PyAny>,
+) -> PyResult<T> {
+    let wrong = |_| PyTypeError::new_err(must_be(name, rule, shown(value)));
+    value.extract().map_err(wrong)
+}
+
+/// A value in an error message.
+fn shown(value: &Bound<'_, PyAny>) -> String {
+    let text = value.repr().map(|text| text.to_string());
+    text.unwrap_or_else(|_| format!("{}", value.get_type()))
+}
+
+/// What an action of the vector environment must be.
 const ACTIONS: &str = "0 (negative torque), 1 (none) or 2 (positive)";
 
 /// The error for a text from Python that is not one of the names in `rule`.
@@ -65,27 +103,36 @@ fn positive(name: &str, value: i64) -> PyResult<NonZeroU32> {
 /// The parameters with one of them changed. `name` is Gymnasium's name of it.
 fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     let mut params = params;
+    let number = || convert(name, "a number", value);
     match name {
-        "dt" => params.dt = value.extract()?,
-        "LINK_LENGTH_1" => params.length1 = value.extract()?,
-        "LINK_LENGTH_2" => params.length2 = value.extract()?,
-        "LINK_MASS_1" => params.mass1 = value.extract()?,
-        "LINK_MASS_2" => params.mass2 = value.extract()?,
-        "LINK_COM_POS_1" => params.center_of_mass1 = value.extract()?,
-        "LINK_COM_POS_2" => params.center_of_mass2 = value.extract()?,
+        "dt" => params.dt = number()?,
+        "LINK_LENGTH_1" => params.length1 = number()?,
+        "LINK_LENGTH_2" => params.length2 = number()?,
+        "LINK_MASS_1" => params.mass1 = number()?,
+        "LINK_MASS_2" => params.mass2 = number()?,
+        "LINK_COM_POS_1" => params.center_of_mass1 = number()?,
+        "LINK_COM_POS_2" => params.center_of_mass2 = number()?,
         "LINK_MOI" => {
-            params.inertia1 = value.extract()?;
+            params.inertia1 = number()?;
             params.inertia2 = params.inertia1;
         }
-        "MAX_VEL_1" => params.max_velocity1 = value.extract()?,
-        "MAX_VEL_2" => params.max_velocity2 = value.extract()?,
-        "AVAIL_TORQUE" => params.torques = value.extract()?,
-        "torque_noise_max" => params.torque_noise = value.extract()?,
+        "MAX_VEL_1" => params.max_velocity1 = number()?,
+        "MAX_VEL_2" => params.max_velocity2 = number()?,
+        "AVAIL_TORQUE" => {
+            if let Ok(count) = value.len()
+                && count != 3
+            {
+                return Err(PyValueError::new_err(must_be(name, "3 numbers", count)));
+            }
+            params.torques = convert(name, "a sequence of 3 numbers", value)?;
+        }
+        "torque_noise_max" => params.torque_noise = number()?,
         "book_or_nips" => {
-            params.dynamics = match value.extract()? {
+            let rule = r#""book" or "nips""#;
+            params.dynamics = match convert(name, rule, value)? {
                 "book" => Dynamics::Book,
                 "nips" => Dynamics::Nips,
-                other => return Err(unknown(name, r#""book" or "nips""#, other)),
+                other => return Err(unknown(name, rule, other)),
             }
         }
         _ => return Err(PyAttributeError::new_err(format!("no parameter {name}"))),

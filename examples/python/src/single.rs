@@ -1,13 +1,16 @@
 //! The single environment: one acrobot, bit-identical to Gymnasium's.
 
-use acrobot::arithmetic::Host;
-use acrobot::{Action, Observation, Params, State};
-use numpy::PyArray1;
-use pyo3::exceptions::PyAssertionError;
-use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use std::mem;
 
-use crate::{ACTIONS, InvalidAction, load, must_be, rejected, render, save, with};
+use acrobot::arithmetic::Host;
+use acrobot::{Observation, Params, State};
+use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::exceptions::{PyAssertionError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyType};
+use serde::{Deserialize, Serialize};
+
+use crate::{InvalidAction, convert, load, must_be, rejected, render, save, shown, with};
 
 /// What `Env.step` returns: observation, reward, terminated, truncated and info.
 type Step<'py> = (
@@ -18,81 +21,187 @@ type Step<'py> = (
     Bound<'py, PyDict>,
 );
 
-/// One acrobot: its parameters and its state. Python draws all random numbers, from the environment's generator.
+/// What `__reduce__` returns: the type, the arguments of `new` and the argument of `__setstate__`.
+type Reduced<'py> = (Bound<'py, PyType>, (bool, bool, bool), Bound<'py, PyBytes>);
+
+/// The largest number of torques.
+const MAX_TORQUES: usize = 65_536;
+
+/// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Acrobot {
-    acrobot: acrobot::Acrobot<Host>,
+    kind: Kind,
+    inner: Inner,
+    /// The array that Python has as the state, since the last step. Its elements can be assigned.
+    lent: Option<Py<PyAny>>,
+}
+
+/// What an environment chooses when it is made.
+#[derive(Clone, Copy)]
+struct Kind {
     /// Whether observations are those of `Acrobot-v0`.
     angles: bool,
+    /// Whether actions are torques.
+    continuous: bool,
+    /// Whether each step calls the environment's `render`.
+    human: bool,
+}
+
+/// What a snapshot contains.
+#[derive(Serialize, Deserialize)]
+struct Inner {
+    /// Without noise and with the default torques: the crate has three.
+    acrobot: acrobot::Acrobot<Host>,
+    torques: Vec<f64>,
+    noise: f64,
     /// Whether the state was set or reset: Gymnasium's environment has none before the first reset.
     started: bool,
+    /// Whether the state is an array of `f32`, as Gymnasium's after a reset.
+    single: bool,
+}
+
+impl Inner {
+    fn set_noise(&mut self, noise: f64) -> PyResult<()> {
+        let params = Params {
+            torque_noise: noise,
+            ..*self.acrobot.params()
+        };
+        params.validate().map_err(rejected)?;
+        self.noise = noise;
+        Ok(())
+    }
+
+    fn set_torques(&mut self, torques: Vec<f64>) -> PyResult<()> {
+        if torques.is_empty() || torques.iter().any(|torque| !torque.is_finite()) {
+            let message = must_be(
+                "AVAIL_TORQUE",
+                "one or more finite numbers of N m",
+                format_args!("{torques:?}"),
+            );
+            return Err(PyValueError::new_err(message));
+        }
+        self.torques = torques;
+        Ok(())
+    }
 }
 
 #[pymethods]
 impl Acrobot {
     #[new]
-    fn new(angles: bool) -> Self {
+    #[pyo3(signature = (angles = false, continuous = false, human = false))]
+    fn new(angles: bool, continuous: bool, human: bool) -> Self {
         Self {
-            acrobot: acrobot::Acrobot::new(0),
-            angles,
-            started: false,
+            kind: Kind {
+                angles,
+                continuous,
+                human,
+            },
+            inner: Inner {
+                acrobot: acrobot::Acrobot::new(0),
+                torques: Params::<f64>::DEFAULT.torques.into(),
+                noise: 0.0,
+                started: false,
+                single: false,
+            },
+            lent: None,
         }
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let params = with(*self.acrobot.params(), name, value)?;
-        // No noise from the crate: `step` gets it as an argument.
-        let params = Params {
-            torque_noise: 0.0,
-            ..params
-        };
-        self.acrobot.set_params(params).map_err(rejected)
+        match name {
+            "AVAIL_TORQUE" => {
+                if value.len().is_ok_and(|count| count > MAX_TORQUES) {
+                    let rule = format_args!("at most {MAX_TORQUES} numbers");
+                    return Err(PyValueError::new_err(must_be(name, rule, value.len()?)));
+                }
+                let torques = convert(name, "a sequence of numbers", value)?;
+                self.inner.set_torques(torques)
+            }
+            "torque_noise_max" => self.inner.set_noise(convert(name, "a number", value)?),
+            _ => {
+                let params = with(*self.inner.acrobot.params(), name, value)?;
+                self.inner.acrobot.set_params(params).map_err(rejected)
+            }
+        }
     }
 
+    /// The state, as an array whose elements can be assigned until the next step.
     #[getter]
-    fn state<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        let state: [f64; 4] = self.acrobot.state().into();
-        self.started.then(|| PyArray1::from_slice(py, &state))
+    fn state<'py>(&mut self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
+        if !self.inner.started {
+            return None;
+        }
+        let lent = self.lent.get_or_insert_with(|| {
+            let state: [f64; 4] = self.inner.acrobot.state().into();
+            let array = if self.inner.single {
+                PyArray1::from_slice(py, &state.map(|x| x as f32)).into_any()
+            } else {
+                PyArray1::from_slice(py, &state).into_any()
+            };
+            array.unbind()
+        });
+        Some(lent.bind(py).clone())
     }
 
+    /// Sets the state from an array of `f32` or `f64`.
     #[setter]
-    fn set_state(&mut self, state: [f64; 4]) -> PyResult<()> {
-        self.acrobot
-            .set_state(State::from(state))
-            .map_err(rejected)?;
-        self.started = true;
+    fn set_state(&mut self, state: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (state, single) = read(state)?;
+        self.inner.acrobot.set_state(state).map_err(rejected)?;
+        self.inner.started = true;
+        self.inner.single = single;
+        self.lent = None;
         Ok(())
     }
 
-    fn observation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        if self.angles {
-            PyArray1::from_slice(py, Observation::<4>::from(self.acrobot.state()).as_ref())
-        } else {
-            PyArray1::from_slice(py, self.acrobot.observation().as_ref())
-        }
+    #[getter]
+    fn human(&self) -> bool {
+        self.kind.human
     }
 
-    /// The torque of an action, N m. Rejects invalid actions, and any action before the first reset.
-    fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
-        if !self.started {
+    #[setter]
+    fn set_human(&mut self, human: bool) {
+        self.kind.human = human;
+    }
+
+    /// Steps by an action of the environment, whose generator draws the noise.
+    fn step<'py>(
+        slf: &Bound<'py, Self>,
+        env: &Bound<'py, PyAny>,
+        action: &Bound<'py, PyAny>,
+    ) -> PyResult<Step<'py>> {
+        let py = slf.py();
+        let mut this = slf.try_borrow_mut()?;
+        if !this.inner.started {
             let message = "the environment has no state yet; call reset before step";
             return Err(PyAssertionError::new_err(message));
         }
-        let number = action.extract::<u8>().ok();
-        let known = number.and_then(|number| Action::try_from(number).ok());
-        let known = known.ok_or_else(|| {
-            let shown = action.repr().map(|repr| repr.to_string());
-            InvalidAction::new_err(must_be("action", ACTIONS, shown.unwrap_or_default()))
-        })?;
-        Ok(self.acrobot.params().torque(known))
-    }
-
-    fn step<'py>(&mut self, action: &Bound<'py, PyAny>, noise: f64) -> PyResult<Step<'py>> {
-        let torque = self.torque(action)? + noise;
-        let step = self.acrobot.step_torque(torque).map_err(rejected)?;
-        let py = action.py();
+        this.read_lent(py)?;
+        let mut torque = this.torque(action)?;
+        let noise = this.inner.noise;
+        if noise > 0.0 {
+            drop(this); // the generator is Python code
+            let rng = env.getattr("np_random")?;
+            let draw: f64 = rng.call_method1("uniform", (-noise, noise))?.extract()?;
+            torque += draw;
+            this = slf.try_borrow_mut()?;
+        }
+        let step = this.inner.acrobot.step_torque(torque).map_err(rejected)?;
+        this.lent = None;
+        this.inner.single = false;
+        let observation = if this.kind.angles {
+            let state = this.inner.acrobot.state();
+            PyArray1::from_slice(py, Observation::<4>::from(state).as_ref())
+        } else {
+            PyArray1::from_slice(py, step.observation.as_ref())
+        };
+        let human = this.kind.human;
+        drop(this);
+        if human {
+            env.call_method0("render")?;
+        }
         Ok((
-            self.observation(py),
+            observation,
             step.reward.into(),
             step.terminated,
             false,
@@ -100,21 +209,104 @@ impl Acrobot {
         ))
     }
 
-    fn render<'py>(&self, py: Python<'py>, mode: &str) -> PyResult<Bound<'py, PyAny>> {
-        render(py, *self.acrobot.params(), self.acrobot.state(), mode)
+    fn render<'py>(&mut self, py: Python<'py>, mode: &str) -> PyResult<Bound<'py, PyAny>> {
+        self.read_lent(py)?;
+        let acrobot = &self.inner.acrobot;
+        render(py, *acrobot.params(), acrobot.state(), mode)
     }
 
-    fn __getnewargs__(&self) -> (bool,) {
-        (self.angles,)
+    /// Every protocol of pickle calls this; `__getnewargs__` would serve those from 2 only.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let Kind {
+            angles,
+            continuous,
+            human,
+        } = slf.try_borrow()?.kind;
+        let state = slf.try_borrow_mut()?.__getstate__(slf.py())?;
+        Ok((slf.get_type(), (angles, continuous, human), state))
     }
 
-    fn __getstate__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let bytes = save(&(&self.acrobot, self.started))?;
-        Ok(PyBytes::new(py, &bytes))
+    fn __getstate__<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.read_lent(py)?;
+        Ok(PyBytes::new(py, &save(&self.inner)?))
     }
 
     fn __setstate__(&mut self, bytes: &[u8]) -> PyResult<()> {
-        (self.acrobot, self.started) = load(bytes)?;
+        let mut inner: Inner = load(bytes)?;
+        inner.set_noise(inner.noise)?;
+        let torques = mem::take(&mut inner.torques);
+        inner.set_torques(torques)?;
+        // Damaged bytes may have numbers that are no `f32`.
+        let state: [f64; 4] = inner.acrobot.state().into();
+        inner.single &= state.iter().all(|&x| f64::from(x as f32) == x);
+        self.inner = inner;
+        self.lent = None;
         Ok(())
     }
+}
+
+impl Acrobot {
+    /// Takes over what Python assigned to elements of the state.
+    fn read_lent(&mut self, py: Python<'_>) -> PyResult<()> {
+        if let Some(lent) = &self.lent {
+            let (state, _) = read(lent.bind(py))?;
+            self.inner.acrobot.set_state(state).map_err(rejected)?;
+        }
+        Ok(())
+    }
+
+    /// The torque of an action, N m.
+    #[inline]
+    fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
+        if self.kind.continuous {
+            return self.clipped(action);
+        }
+        let number = action.extract::<usize>().ok();
+        let torque = number.and_then(|number| self.inner.torques.get(number));
+        torque.copied().ok_or_else(|| {
+            let rule = format_args!("an integer from 0 to {}", self.inner.torques.len() - 1);
+            InvalidAction::new_err(must_be("action", rule, shown(action)))
+        })
+    }
+
+    /// The torque of a continuous action, within the smallest and the largest of the torques.
+    fn clipped(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
+        let torque = only(action).filter(|torque| !torque.is_nan());
+        let torque = torque.ok_or_else(|| {
+            let rule = "a torque in N m, as an array of shape (1,)";
+            InvalidAction::new_err(must_be("action", rule, shown(action)))
+        })?;
+        let torques = &self.inner.torques;
+        let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Ok(torque.clamp(low, high))
+    }
+}
+
+/// The number in an array or a sequence of length 1.
+fn only(sequence: &Bound<'_, PyAny>) -> Option<f64> {
+    if let Ok(array) = sequence.cast::<PyArray1<f32>>()
+        && array.data().is_aligned()
+    {
+        return (array.len() == 1)
+            .then(|| array.get_owned(0))?
+            .map(f64::from);
+    }
+    let number = (sequence.len().ok()? == 1).then(|| sequence.get_item(0).ok())??;
+    // An array in an array converts to a number too.
+    number.len().is_err().then(|| number.extract().ok())?
+}
+
+/// A state from an array, and whether its numbers are `f32`.
+fn read(state: &Bound<'_, PyAny>) -> PyResult<(State, bool)> {
+    fn numbers<T: Element + Copy + Into<f64>>(state: &Bound<'_, PyAny>) -> Option<State> {
+        let array = state.cast::<PyArray1<T>>().ok()?.try_readonly().ok()?;
+        let numbers: [T; 4] = array.as_slice().ok()?.try_into().ok()?;
+        Some(numbers.map(Into::into).into())
+    }
+    let single = numbers::<f32>(state).map(|numbers| (numbers, true));
+    let read = single.or_else(|| Some((numbers::<f64>(state)?, false)));
+    read.ok_or_else(|| {
+        PyValueError::new_err(must_be("state", "an array of four numbers", shown(state)))
+    })
 }

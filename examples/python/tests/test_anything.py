@@ -81,15 +81,34 @@ SINGLE = calls(
     reset=st.tuples(SEEDS, OPTIONS),
     set=st.tuples(NAMES, VALUES),
     state=st.tuples(st.lists(NUMBERS, min_size=4, max_size=4) | ANYTHING),
-    step=st.tuples(st.integers(0, 2) | ANYTHING),
+    element=st.tuples(st.integers(0, 3), NUMBERS | ANYTHING),
+    step=st.tuples(st.integers(0, 2) | ANYTHING | st.lists(NUMBERS, min_size=1, max_size=1) | ARRAYS),
     render=st.tuples(),
 )
 
 
-@given(st.booleans(), st.sampled_from([None, "ansi", "ansi", "ansi", "rgb_array"]), SINGLE)
-def test_a_single_environment(angles, mode, sequence):
-    env = (acrobot_rs.AcrobotV0Env if angles else acrobot_rs.AcrobotEnv)(mode)
+def set_element(env, index, value):
+    """A wrong number is rejected by what reads it first."""
+    if env.state is not None:
+        before = env.state[index]
+        with contextlib.suppress(RuntimeWarning):
+            env.state[index] = value
+        try:
+            env._native.__getstate__()
+        except ValueError:
+            env.state[index] = before
+            raise
+
+
+@given(
+    st.sampled_from([acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env, acrobot_rs.AcrobotContinuousEnv]),
+    st.sampled_from([None, "ansi", "ansi", "ansi", "rgb_array"]),
+    SINGLE,
+)
+def test_a_single_environment(kind, mode, sequence):
+    env = kind(mode)
     do = {
+        "element": lambda index, value: set_element(env, index, value),
         "reset": lambda seed, options: env.reset(seed=seed, options=options)[0],
         "set": lambda name, value: setattr(env, name, value),
         "state": lambda value: setattr(env, "state", value),

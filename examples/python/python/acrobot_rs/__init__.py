@@ -1,6 +1,6 @@
 """Gymnasium's Acrobot in Rust: bit-identical episodes, and a vector environment thousands of times as fast.
 
-Importing this package registers ``acrobot_rs/Acrobot-v1`` and ``acrobot_rs/Acrobot-v0``:
+Importing this package registers ``acrobot_rs/Acrobot-v1``, ``acrobot_rs/AcrobotContinuous-v0`` and ``acrobot_rs/Acrobot-v0``:
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -14,16 +14,29 @@ from importlib.metadata import version
 
 from gymnasium.envs.registration import register
 
-from acrobot_rs.env import AcrobotEnv, AcrobotV0Env
-from acrobot_rs.vector import AcrobotVectorEnv
+from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env
+from acrobot_rs.vector import AcrobotContinuousVectorEnv, AcrobotVectorEnv
 
-__all__ = ["AcrobotEnv", "AcrobotV0Env", "AcrobotVectorEnv"]
+__all__ = [
+    "AcrobotContinuousEnv",
+    "AcrobotContinuousVectorEnv",
+    "AcrobotEnv",
+    "AcrobotV0Env",
+    "AcrobotVectorEnv",
+]
 __version__ = version("acrobot-rs")
 
 register(
     id="acrobot_rs/Acrobot-v1",
     entry_point="acrobot_rs.env:AcrobotEnv",
     vector_entry_point="acrobot_rs.vector:AcrobotVectorEnv",
+    reward_threshold=-100.0,
+    max_episode_steps=500,
+)
+register(
+    id="acrobot_rs/AcrobotContinuous-v0",
+    entry_point="acrobot_rs.env:AcrobotContinuousEnv",
+    vector_entry_point="acrobot_rs.vector:AcrobotContinuousVectorEnv",
     reward_threshold=-100.0,
     max_episode_steps=500,
 )

@@ -7,11 +7,11 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium import spaces
+from gymnasium.error import DependencyNotInstalled
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
 from acrobot_rs.parameters import Parameters, reset_bounds
-
 
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between the links must swing them up.
@@ -19,12 +19,12 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     ## Description
 
     A seed gives the same initial states, torque noise and episode ends as in Gymnasium's environment. On x86-64 Linux
-    with glibc, states, rewards and observations are bit-identical, except that the observation of an initial state may
-    differ by one unit in the last place.
+    with glibc, states, rewards and observations are bit-identical.
 
     ## Action Space
 
-    ``Discrete(3)``: a torque of -1 (action 0), 0 (1) or 1 N m (2) between the links.
+    ``Discrete(3)``: a torque of -1 (action 0), 0 (1) or 1 N m (2) between the links. A subclass with ``n`` numbers in
+    ``AVAIL_TORQUE`` has ``Discrete(n)``.
 
     ## Observation Space
 
@@ -57,8 +57,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     ## Arguments
 
-    ``render_mode``: ``None``, ``"rgb_array"`` (an array of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines
-    of braille characters and a line of numbers).
+    ``render_mode``: ``None``, ``"human"`` (a window, by pygame, which each reset and step updates), ``"rgb_array"`` (an array
+    of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines of braille characters and a line of numbers).
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -68,36 +68,62 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     (6,)
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 15}
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "ansi"], "render_fps": 15}
 
     _native: Acrobot
     #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
+    #: Whether actions are torques.
+    _CONTINUOUS = False
 
     def __init__(self, render_mode: str | None = None) -> None:
         """Make an environment. Reset it before its first step.
 
+        An unknown render mode is rejected by ``render``, because ``gymnasium.make`` only warns of it.
+
         Raises:
-            ValueError: If the render mode is unknown, or if a subclass sets an invalid parameter.
+            ValueError: If parameters that a subclass sets are invalid.
         """
-        super().__init__(Acrobot(self._ANGLES), render_mode)
-        self.action_space = spaces.Discrete(3)
+        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS), None)
+        self.render_mode = render_mode
+        # The window, by the names of Gymnasium's environment.
+        self.screen: Any = None
+        self.clock: Any = None
+        self.isopen = True
+        self.action_space = self._action_space
         self.observation_space = self._observation_space
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, value)
+        if name == "render_mode":
+            # Then each step calls `render`.
+            self._native.human = value == "human"
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the window, which a copy opens itself."""
+        return {**vars(self), "screen": None, "clock": None}
+
     @property
-    def state(self) -> NDArray[np.float64] | None:
+    def _action_space(self) -> spaces.Space[Any]:
+        return spaces.Discrete(len(self.AVAIL_TORQUE))
+
+    @property
+    def state(self) -> NDArray[np.floating[Any]] | None:
         """theta1, theta2 (rad) and their velocities (rad/s), of shape ``(4,)``; ``None`` before the first reset.
 
-        This is a read-only copy. To set the state, assign four finite numbers.
+        ``float32`` after a reset and ``float64`` after a step, as in Gymnasium. An element can be assigned, and acts from the
+        next step. Assigning four finite numbers copies them.
         """
-        state = self._native.state
-        if state is not None:
-            state.flags.writeable = False
-        return state
+        return self._native.state
 
     @state.setter
     def state(self, state: ArrayLike) -> None:
-        self._native.state = np.asarray(state, dtype=np.float64)
+        single = getattr(state, "dtype", None) == np.float32
+        try:
+            array: NDArray[Any] = np.array(state, dtype=np.float32 if single else np.float64)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"state must be four finite numbers, got {state!r}") from error
+        self._native.state = array
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -106,19 +132,28 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
         Args:
             seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its stream continues.
-            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by default -0.1 and 0.1.
+            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by default -0.1 and 0.1. No
+                other key.
 
         Returns:
             The observation of the initial state, and an empty info.
 
         Raises:
-            ValueError: If a bound is not a finite number, or if low is above high. Nothing changes then.
+            ValueError: If a bound is not a finite number, if low is above high, or if a key is unknown. Nothing changes
+                then.
         """
-        low, high = reset_bounds(options)
+        low, high = reset_bounds(options, ())
         super().reset(seed=seed)
         # Gymnasium rounds initial states to float32.
-        self.state = self.np_random.uniform(low, high, 4).astype(np.float32)
-        return self._native.observation(), {}
+        state = self.np_random.uniform(low, high, 4).astype(np.float32)
+        self._native.state = state
+        if self.render_mode == "human":
+            self.render()
+        return self._observe(state), {}
+
+    def _observe(self, s: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The observation of an initial state, by Gymnasium's calls of NumPy, whose float32 sines are its own."""
+        return np.array([np.cos(s[0]), np.sin(s[0]), np.cos(s[1]), np.sin(s[1]), s[2], s[3]], dtype=np.float32)
 
     def step(self, action: int | np.integer[Any]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
@@ -132,24 +167,88 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
         Raises:
             gymnasium.error.InvalidAction: If the action is not 0, 1 or 2. Nothing changes then.
+            ValueError: If a number that is not finite was assigned to an element of ``state``.
             AssertionError: If the environment was never reset.
         """
-        noise = self.torque_noise_max
-        if noise:
-            # This rejects an invalid action before noise is drawn for it.
-            self._native.torque(action)
-            noise = self.np_random.uniform(-noise, noise)
-        return self._native.step(action, noise)
+        return self._native.step(self, action)
 
     def render(self) -> NDArray[np.uint8] | str | None:
-        """An array of shape ``(500, 500, 3)`` or a text, depending on the render mode.
+        """An array of shape ``(500, 500, 3)`` or a text, depending on the render mode; ``"human"`` shows it in a window.
 
         Without a render mode, warns and returns ``None``.
+
+        Raises:
+            ValueError: If the render mode is unknown.
+            gymnasium.error.DependencyNotInstalled: If ``"human"`` does not find pygame.
         """
         if self.render_mode is None:
             self._warn_of_no_render_mode()
             return None
-        return self._native.render(self.render_mode)
+        if self.render_mode != "human":
+            return self._native.render(self.render_mode)
+        self._show(self._native.render("rgb_array"))
+        return None
+
+    def _show(self, frame: Any) -> None:
+        try:
+            import pygame
+        except ImportError as error:
+            message = 'pygame is not installed, run `pip install "gymnasium[classic-control]"`'
+            raise DependencyNotInstalled(message) from error
+        if self.screen is None:
+            pygame.display.init()
+            self.screen = pygame.display.set_mode((self.SCREEN_DIM, self.SCREEN_DIM))
+            self.clock = pygame.time.Clock()
+        pygame.surfarray.blit_array(self.screen, frame.swapaxes(0, 1))
+        pygame.event.pump()
+        self.clock.tick(self.metadata["render_fps"])
+        pygame.display.flip()
+
+    def close(self) -> None:
+        """Close the window."""
+        if self.screen is not None:
+            import pygame
+
+            pygame.display.quit()
+            pygame.quit()
+            self.screen, self.isopen = None, False
+
+
+class AcrobotContinuousEnv(AcrobotEnv):
+    """:class:`AcrobotEnv` with any torque between two bounds as its action.
+
+    The action space is a ``Box`` of shape ``(1,)``, ``float32``: a torque in N m. Its bounds are the smallest and the largest
+    number in ``AVAIL_TORQUE``, by default -1 and 1. A torque outside is clipped. NaN and another shape are invalid.
+    Observations, rewards and the end of an episode are those of :class:`AcrobotEnv`.
+
+    >>> import gymnasium as gym
+    >>> import acrobot_rs
+    >>> env = gym.make("acrobot_rs/AcrobotContinuous-v0")
+    >>> env.action_space
+    Box(-1.0, 1.0, (1,), float32)
+    """
+
+    _CONTINUOUS = True
+
+    @property
+    def _action_space(self) -> spaces.Space[Any]:
+        return spaces.Box(min(self.AVAIL_TORQUE), max(self.AVAIL_TORQUE), (1,), np.float32)
+
+    def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Apply a torque for ``dt``.
+
+        Args:
+            action: An array or a list of one number, the torque in N m. It is clipped to the bounds.
+
+        Returns:
+            As :meth:`AcrobotEnv.step`.
+
+        Raises:
+            gymnasium.error.InvalidAction: If the action is NaN or of another shape. Nothing changes then.
+            ValueError: If a number that is not finite was assigned to an element of ``state``.
+            AssertionError: If the environment was never reset.
+        """
+        return self._native.step(self, action)
 
 
 class AcrobotV0Env(AcrobotEnv):
@@ -165,3 +264,6 @@ class AcrobotV0Env(AcrobotEnv):
     def _observation_space(self) -> spaces.Box[np.float32]:
         high = np.array([np.pi, np.pi, *self._highest_velocities], dtype=np.float32)
         return spaces.Box(-high, high, dtype=np.float32)
+
+    def _observe(self, s: NDArray[np.float32]) -> NDArray[np.float32]:
+        return s

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import abc
+import copy
+import difflib
+import functools
 import math
-from collections.abc import Sequence
-from typing import Any, Literal
+import weakref
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal, NoReturn
 
 import numpy as np
 from gymnasium import logger, spaces
@@ -12,12 +17,107 @@ from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 
 from acrobot_rs._native import Acrobot, Batch, check_reset_bounds
 
+#: The names of the parameters. The class below defines them.
+_NAMES: tuple[str, ...] = ()
+_EQUATIONS = "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
+#: What Gymnasium's environment calls or reads, but ours does not, and what to do instead.
+_IGNORED = {
+    "_dsdt": _EQUATIONS,
+    "rk4": _EQUATIONS,
+    "wrap": _EQUATIONS,
+    "bound": _EQUATIONS,
+    "_get_ob": "change observations with a wrapper",
+    "_terminal": "change the end of episodes with a wrapper",
+    "SCREEN_DIM": "pictures have 500 x 500 pixels: resize what render returns",
+}
+#: All environments, for changes of class attributes.
+_LIVE: weakref.WeakSet[Parameters] = weakref.WeakSet()
 
-class Parameters:
-    """The parameters of the physics, with Gymnasium's names. Set them on an environment or in a subclass.
 
-    A value that is set on an environment is checked immediately and acts from the next step. A value that is set on a class
-    is checked when an environment is made. An invalid value raises a ``ValueError`` that says what is valid.
+class Torques(tuple[float, ...]):
+    """Torques in N m. A tuple, because a changed element of a list would have no effect."""
+
+    def __setitem__(self, index: Any, value: Any) -> NoReturn:
+        raise TypeError("set AVAIL_TORQUE as a whole, as in env.unwrapped.AVAIL_TORQUE = [-2.0, 0.0, 2.0]")
+
+
+def _checked(name: str, value: Any) -> Any:
+    """The value of a parameter, for a class."""
+    Acrobot().set(name, value)
+    return _fixed(name, value)
+
+
+def _fixed(name: str, value: Any) -> Any:
+    """A valid value, as an object that cannot change: a change of an array would have no effect."""
+    if name == "book_or_nips":
+        return value
+    return Torques(map(float, value)) if name == "AVAIL_TORQUE" else float(value)
+
+
+def _reject_ignored(cls: type, name: str) -> None:
+    if name in _IGNORED:
+        raise TypeError(f"{name} would have no effect on {cls.__name__}; {_IGNORED[name]}")
+    if meant := _meant(name):
+        raise AttributeError(f"{cls.__name__} has no parameter {name}; did you mean {meant}?")
+
+
+@functools.cache
+def _meant(name: str) -> str | None:
+    """The parameter that a name resembles."""
+    if name.startswith("_") or name in _NAMES:
+        return None
+    names = {each.lower(): each for each in _NAMES}
+    close = difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.8)
+    return names[close[0]] if close else None
+
+
+def _tell(name: str) -> None:
+    """Pass a parameter that a class has changed to the environments."""
+    for env in list(_LIVE) if name in _NAMES else ():
+        env._native.set(name, getattr(env, name))
+
+
+class Live(abc.ABCMeta):
+    """The type of classes with parameters. What is set on a class acts on its environments from the next step."""
+
+    def __init__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **kwargs: Any) -> None:
+        super().__init__(name, bases, namespace, **kwargs)
+        for each, value in namespace.items() if bases else ():
+            if each in _NAMES:
+                super().__setattr__(each, _checked(each, value))
+        # Also what a class inherits from one without parameters.
+        for base in cls.__mro__ if bases else ():
+            for each, value in vars(base).items() if base is cls or not isinstance(base, Live) else ():
+                if each in _IGNORED or not callable(value):
+                    _reject_ignored(cls, each)
+
+    def __setattr__(cls, name: str, value: Any) -> None:
+        if name in _NAMES:
+            value = _checked(name, value)
+        else:
+            _reject_ignored(cls, name)
+        before = vars(cls).get(name)
+        super().__setattr__(name, value)
+        try:
+            _tell(name)
+        except (TypeError, ValueError):  # an environment rejects it, perhaps in combination with another value
+            if before is None:
+                super().__delattr__(name)
+            else:
+                super().__setattr__(name, before)
+            _tell(name)
+            raise
+
+    def __delattr__(cls, name: str) -> None:
+        super().__delattr__(name)
+        _tell(name)
+
+
+class Parameters(metaclass=Live):
+    """The parameters of the physics, with Gymnasium's names. Set them on an environment, on a class or in a subclass.
+
+    A value is checked immediately and acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError``
+    that says what is valid, and a misspelt name an ``AttributeError``.
     """
 
     #: Duration of one step, s; above 0.
@@ -40,12 +140,15 @@ class Parameters:
     MAX_VEL_1: float = 4 * math.pi
     #: Bound of link 2's velocity, relative to link 1, after a step, rad/s; above 0.
     MAX_VEL_2: float = 9 * math.pi
-    #: Torques of the actions 0, 1 and 2, N m.
-    AVAIL_TORQUE: Sequence[float] = (-1.0, 0.0, 1.0)
+    #: Torques of the actions 0, 1 and 2, N m. A single environment may have another number of actions.
+    AVAIL_TORQUE: Sequence[float] = Torques((-1.0, 0.0, 1.0))
     #: Each step adds a uniform draw from [-torque_noise_max, torque_noise_max) to the torque, N m; 0 or more. 0 draws nothing.
     torque_noise_max: float = 0.0
     #: The equations of motion: those of Sutton and Barto's book, or those printed in the 1996 paper.
     book_or_nips: Literal["book", "nips"] = "book"
+
+    #: The width and the height of pictures, in pixels. It cannot be changed.
+    SCREEN_DIM = 500
 
     metadata: dict[str, Any]
     spec: Any
@@ -58,17 +161,25 @@ class Parameters:
         # A comparison with an array is no bool.
         if render_mode is not None and not (isinstance(render_mode, str) and render_mode in modes):
             raise ValueError(f"render_mode must be None or one of {modes}, got {render_mode!r}")
-        self.render_mode = render_mode
         self._native = native
+        self.render_mode = render_mode
+        self._set_all()
+
+    def _set_all(self) -> None:
+        """Pass all parameters to the native part: class attributes may have changed since a pickle."""
+        # Any centre of mass is valid with an inertia. LINK_MOI comes last.
+        self._native.set("LINK_MOI", 1.0)
         for name in _NAMES:
-            native.set(name, getattr(self, name))
+            self._native.set(name, getattr(self, name))
+        _LIVE.add(self)
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a parameter and set it."""
         if name in _NAMES:
             self._native.set(name, value)
-            # A tuple, because a changed element of a list would have no effect.
-            value = tuple(value) if name == "AVAIL_TORQUE" else value
+            value = _fixed(name, value)
+        else:
+            _reject_ignored(type(self), name)
         super().__setattr__(name, value)
 
     def __delattr__(self, name: str) -> None:
@@ -76,6 +187,16 @@ class Parameters:
         if name in _NAMES and name in vars(self):
             self._native.set(name, getattr(type(self), name))
         super().__delattr__(name)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state)
+        self._set_all()
+
+    def __copy__(self) -> Parameters:
+        """A copy with its own state. It shares the generator and the spaces, as a copy of Gymnasium's environment does."""
+        twin = type(self).__new__(type(self))
+        twin.__setstate__({**vars(self), "_native": copy.deepcopy(self._native)})
+        return twin
 
     def _warn_of_no_render_mode(self) -> None:
         logger.warn(
@@ -97,12 +218,17 @@ class Parameters:
 _NAMES = tuple(name for name in Parameters.__annotations__ if hasattr(Parameters, name))
 
 
-def reset_bounds(options: dict[str, Any] | None) -> tuple[float, float]:
+def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset_mask",)) -> tuple[float, float]:
     """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1.
 
     Raises:
-        ValueError: If a bound is not a finite number in the range of float32, or if low is above high.
+        ValueError: If a bound is not a finite number in the range of float32, if low is above high, or if the options have
+            another key, except ``others``.
     """
+    keys = ["low", "high", *others]
+    for key in options or ():
+        if key not in keys:
+            raise ValueError(f"the keys of options must be among {keys}, got {key!r}")
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
     check_reset_bounds(low, high)
     return low, high
