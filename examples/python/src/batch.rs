@@ -48,6 +48,7 @@ const MODES: [(&str, Autoreset); 3] = [
 #[pymethods]
 impl Batch {
     #[new]
+    #[pyo3(signature = (num_envs, seed, max_episode_steps, mode, gymnasium=false, continuous=false, threads=1))]
     fn new(
         num_envs: i64,
         seed: &str,
@@ -72,6 +73,10 @@ impl Batch {
             threads: positive("threads", threads)?,
         };
         Self::assemble(settings, parse(seed)?)
+    }
+
+    fn __len__(&self) -> usize {
+        self.settings.num_envs
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -196,8 +201,8 @@ impl Batch {
     }
 
     /// Arguments with which pickle makes the smallest batch. `__setstate__` then replaces it.
-    fn __getnewargs__(&self) -> (i64, &str, i64, &str, bool, bool, i64) {
-        (1, "0", 1, "NextStep", false, false, 1)
+    fn __getnewargs__(&self) -> (i64, &str, i64, &str) {
+        (1, "0", 1, "NextStep")
     }
 
     /// A header, and the members one after the other. They are serialized twice, first to learn their size: a buffer

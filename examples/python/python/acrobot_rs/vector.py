@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import os
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -159,7 +158,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         return elapsed
 
     def reset(
-        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+        self, *, seed: int | list[int | None] | tuple[int | None, ...] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment.
 
@@ -186,7 +185,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         low, high = reset_bounds(options)
         mask = self._mask(options)
         child_of, seeds = self._seeds(seed)
-        if seed is None or isinstance(seed, int):
+        if not isinstance(seed, list | tuple):
             super().reset(seed=seed)
         if seeds is not None:
             self._native.seed(seeds if mask is None else [each if some else None for each, some in zip(seeds, mask, strict=True)])
@@ -346,14 +345,16 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             raise ValueError(f"reset_mask must have shape ({self.num_envs},) and a true element, got {mask!r}")
         return mask.view(np.uint8) != 0  # a NumPy bool can be any byte, but Rust's only 0 or 1
 
-    def _seeds(self, seed: int | Sequence[int | None] | None) -> tuple[str | None, list[str | None] | None]:
+    def _seeds(self, seed: int | list[int | None] | tuple[int | None, ...] | None) -> tuple[str | None, list[str | None] | None]:
         """The digits of the seed whose children seed all environments, or of a seed for each environment."""
-        if seed is None or (isinstance(seed, int) and not self._gymnasium_episodes):
-            return None if seed is None else _digits(seed), None
-        seeds = [seed + i for i in range(self.num_envs)] if isinstance(seed, int) else seed
-        if len(seeds) != self.num_envs:
-            raise ValueError(f"seed must have one element for each of {self.num_envs} environments, got {len(seeds)}")
-        return None, [None if each is None else _digits(each) for each in seeds]
+        if isinstance(seed, list | tuple):
+            if len(seed) != self.num_envs:
+                raise ValueError(f"seed must have one element for each of {self.num_envs} environments, got {len(seed)}")
+            return None, [None if each is None else _digits(each) for each in seed]
+        digits = None if seed is None else _digits(seed)
+        if digits is None or not self._gymnasium_episodes:
+            return digits, None
+        return None, [_digits(seed + i) for i in range(self.num_envs)]
 
     def _observe_initial_states(self, observations: Floats, which: Bools) -> None:
         """Write the observations of initial states. Gymnasium computes their sines with NumPy in ``float32``."""
