@@ -142,11 +142,14 @@ impl Batch {
             },
         };
         let engine = &mut self.engine;
-        if self.settings.threads.get() == 1 {
-            py.detach(|| engine.step(buffers))
-        } else {
-            let pool = Pool::of_this_process(&mut self.pool, self.settings.threads)?;
-            py.detach(|| pool.install(|| engine.par_step(buffers)))
+        // The crate shares work in tasks of 512 acrobots or more.
+        let tasks = self.settings.num_envs / 512;
+        match tasks.min(self.settings.threads.get() as usize) {
+            0 | 1 => py.detach(|| engine.step(buffers)),
+            threads => {
+                let pool = Pool::of_this_process(&mut self.pool, threads)?;
+                py.detach(|| pool.install(|| engine.par_step(buffers)))
+            }
         }
         .map_err(rejected)
     }
@@ -475,12 +478,12 @@ struct Pool {
 impl Pool {
     fn of_this_process(
         pool: &mut Option<Self>,
-        threads: NonZeroU32,
+        threads: usize,
     ) -> PyResult<&rayon::ThreadPool> {
         let process = std::process::id();
         let is_ours = pool.as_ref().is_some_and(|pool| pool.process == process);
         if !is_ours {
-            let builder = rayon::ThreadPoolBuilder::new().num_threads(threads.get() as usize);
+            let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let error = |error: rayon::ThreadPoolBuildError| PyOSError::new_err(error.to_string());
             let threads = Some(builder.build().map_err(error)?);
             *pool = Some(Self { process, threads });

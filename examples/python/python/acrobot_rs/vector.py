@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from acrobot_rs._native import Batch
 from acrobot_rs.parameters import _NAMES, Parameters, reset_bounds
 
+Seed = int | list[int | None] | tuple[int | None, ...] | None
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
@@ -36,8 +37,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     So more environments do not change the first ones, and two seeds share no stream. ``SyncVectorEnv`` seeds environment
     ``i`` with ``seed + i``.
 
-    With ``gymnasium_episodes=True`` environments are computed and seeded as in ``SyncVectorEnv`` of Gymnasium's ``Acrobot-v1``.
-    All results are bit-identical to its results where those of :class:`acrobot_rs.AcrobotEnv` are.
+    With ``gymnasium_episodes=True`` environments are computed and seeded as in ``SyncVectorEnv`` of Gymnasium's
+    ``Acrobot-v1``. All results are bit-identical to its results where those of :class:`acrobot_rs.AcrobotEnv` are.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -157,9 +158,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         self._native.elapsed(elapsed)
         return elapsed
 
-    def reset(
-        self, *, seed: int | list[int | None] | tuple[int | None, ...] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Floats, dict[str, Any]]:
+    def reset(self, *, seed: Seed = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment.
 
         Args:
@@ -188,7 +187,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         if not isinstance(seed, list | tuple):
             super().reset(seed=seed)
         if seeds is not None:
-            self._native.seed(seeds if mask is None else [each if some else None for each, some in zip(seeds, mask, strict=True)])
+            every = np.ones(self.num_envs, np.bool_) if mask is None else mask
+            self._native.seed([each if some else None for each, some in zip(seeds, every, strict=True)])
         self._native.reset(child_of, low, high, mask)
         if mask is not None and options is not None:
             del options["reset_mask"]
@@ -345,7 +345,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             raise ValueError(f"reset_mask must have shape ({self.num_envs},) and a true element, got {mask!r}")
         return mask.view(np.uint8) != 0  # a NumPy bool can be any byte, but Rust's only 0 or 1
 
-    def _seeds(self, seed: int | list[int | None] | tuple[int | None, ...] | None) -> tuple[str | None, list[str | None] | None]:
+    def _seeds(self, seed: Seed) -> tuple[str | None, list[str | None] | None]:
         """The digits of the seed whose children seed all environments, or of a seed for each environment."""
         if isinstance(seed, list | tuple):
             if len(seed) != self.num_envs:
