@@ -19,6 +19,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from gymnasium.wrappers.vector import RecordEpisodeStatistics
 
 V1 = "acrobot_rs/Acrobot-v1"
+CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
 MODES = pytest.mark.parametrize("mode", AutoresetMode)
 
 
@@ -468,6 +469,24 @@ def test_gymnasium_s_episodes_bit_identically(mode, noise):
     assert (ends > 20).all()
 
 
+@MODES
+def test_observations_of_initial_states_bit_identically(mode):
+    """Gymnasium computes them in float32. One in 500 differs from the rounded sines of float64, so this takes thousands."""
+    theirs, ours = pair(500, mode, max_episode_steps=1)
+    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
+    mask = np.arange(500) % 2 == 0
+    for bounds in ({"low": -0.4, "high": 0.7}, {"low": -9.0, "high": 9.0}):
+        assert_equal(theirs.reset(options={**bounds}), ours.reset(options={**bounds}))
+        for some in (mask, ~mask):
+            one, other = ({**bounds, "reset_mask": some.copy()} for _ in range(2))
+            assert_equal(theirs.reset(options=one), ours.reset(options=other))
+    for actions in np.random.default_rng(0).integers(3, size=(20, 500)):
+        assert_equal(theirs.step(actions), ours.step(actions))
+        if mode is AutoresetMode.DISABLED:
+            one, other = ({"reset_mask": np.ones(500, bool)} for _ in range(2))
+            assert_equal(theirs.reset(options=one), ours.reset(options=other))
+
+
 def test_a_list_of_seeds_seeds_each_environment_as_a_single_one():
     for envs in pair(4):
         with pytest.raises(ValueError, match="4"):
@@ -475,7 +494,7 @@ def test_a_list_of_seeds_seeds_each_environment_as_a_single_one():
     envs = make_vec(4)
     envs.reset(seed=9)
     before = envs._native.__getstate__()
-    for seeds in [[1, 2, 3], (1,) * 5, [1, 2, 3, -1], [1, 2, 3, "4"], [1, 2, 3, 4.0], [1, 2, 3, np.int64(4)], [1, 2, 3, 10**5000]]:
+    for seeds in [[1, 2, 3], (1,) * 5, *([1, 2, 3, bad] for bad in (-1, "4", 4.0, np.int64(4), 10**5000))]:
         with pytest.raises((ValueError, gymnasium.error.Error)):
             envs.reset(seed=seeds)
         assert envs._native.__getstate__() == before
@@ -594,7 +613,7 @@ def test_states_can_be_set(gymnasium_episodes):
     for row, column, number in [(39, 3, np.nan), (0, 2, -np.inf), *([] if gymnasium_episodes else [(7, 0, 1e39)])]:
         bad = states.astype(np.float64) + 1.0
         bad[row, column] = number
-        with pytest.raises(ValueError, match=rf"state\[{row}, {column}\] must be a finite number, got {number}".replace("+", r"\+")):
+        with pytest.raises(ValueError, match=rf"state\[{row}, {column}\] must be a finite number, got "):
             envs.state = bad
     for bad in [states[:39], states.T, states[0], None, [["1"] * 4] * 40, states > 0]:
         with pytest.raises(ValueError, match=r"state must be numbers of shape \(40, 4\), got"):
@@ -608,7 +627,8 @@ def test_after_close_nothing_works():
     envs.close()
     envs.close()
     assert envs.closed
-    for call in (envs.reset, envs.render, lambda: envs.step([0, 1]), lambda: envs.call("dt"), lambda: envs.set_attr("dt", 0.1)):
+    calls = (lambda: envs.step([0, 1]), lambda: envs.call("dt"), lambda: envs.set_attr("dt", 0.1))
+    for call in (envs.reset, envs.render, *calls):
         with pytest.raises(ClosedEnvironmentError, match="closed"):
             call()
 
@@ -721,7 +741,25 @@ def test_continuous_torques(gymnasium_episodes):
     assert (discrete.state != torques.state).any()
 
 
-@pytest.mark.parametrize("actions", [[[0.5]], [0.5, 0.5], [[0.5, 0.5]], [[np.nan], [0.0]], [["0"], ["1"]], [[True], [False]], None])
+@pytest.mark.skipif(CONTINUOUS not in gymnasium.registry, reason="needs the single environment")
+@MODES
+def test_continuous_torques_give_the_episodes_of_single_environments(mode):
+    theirs = gymnasium.make_vec(
+        CONTINUOUS, num_envs=6, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, max_episode_steps=60
+    )
+    ours = gymnasium.make_vec(CONTINUOUS, num_envs=6, autoreset_mode=mode, gymnasium_episodes=True, max_episode_steps=60)
+    assert isinstance(ours, AcrobotContinuousVectorEnv) and ours.action_space == theirs.action_space
+    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
+    for actions in np.random.default_rng(0).uniform(-1.5, 1.5, (300, 6, 1)).astype(np.float32):
+        expected = theirs.step(actions)
+        assert_equal(expected, ours.step(actions))
+        for envs in (theirs, ours):
+            reset_ended(envs, expected[2] | expected[3])
+
+
+@pytest.mark.parametrize(
+    "actions", [[[0.5]], [0.5, 0.5], [[0.5, 0.5]], [[np.nan], [0.0]], [["0"], ["1"]], [[True], [False]], None]
+)
 def test_invalid_torques_are_rejected(actions):
     envs = AcrobotContinuousVectorEnv(2)
     envs.reset(seed=1)
