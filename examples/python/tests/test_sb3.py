@@ -107,6 +107,15 @@ def test_steps_are_those_of_the_vector_environment(sb3):
     assert (ends > 5).all()
 
 
+def test_an_episode_that_reaches_the_goal_at_the_limit_is_not_truncated(sb3):
+    envs = make(sb3, 2, max_episode_steps=1)
+    envs.reset()
+    envs.set_attr("state", np.array([np.pi, 0.0, 0.0, 0.0]), indices=0)
+    _, rewards, ended, infos = envs.step(np.array([1, 1]))
+    assert list(ended) == [True, True] and list(rewards) == [0.0, -1.0]
+    assert [info["TimeLimit.truncated"] for info in infos] == [False, True]
+
+
 @NEEDS_SB3
 def test_gymnasium_s_episodes_are_those_of_dummy_vec_env(sb3):
     from stable_baselines3.common.vec_env import DummyVecEnv

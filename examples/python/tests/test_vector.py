@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import acrobot_rs
 import gymnasium
@@ -675,6 +676,18 @@ def test_threads_change_no_bit(kind, count, gymnasium_episodes):
     np.testing.assert_equal(plays[0], plays[2])
     with pytest.raises(ValueError, match="threads must be an integer from 1"):
         kind(2, threads=0)
+
+
+def test_only_large_steps_start_threads():
+    tasks = Path("/proc/self/task")
+    if not tasks.exists():
+        pytest.skip("counts the threads of Linux")
+    before = len(list(tasks.iterdir()))
+    small, large = make_vec(512, threads=3), make_vec(40_000, threads=3)
+    for envs, started in [(small, 0), (large, 3)]:
+        envs.reset(seed=1)
+        envs.step(np.zeros(envs.num_envs, np.int64))
+        assert len(list(tasks.iterdir())) == before + started
 
 
 def step_in_a_child(envs, connection):
