@@ -142,10 +142,15 @@ impl Batch {
             },
         };
         let engine = &mut self.engine;
-        // The crate shares work in tasks of 512 acrobots or more.
-        let tasks = self.settings.num_envs / 512;
+        // The crate does not share less work than this between threads.
+        let task = if self.settings.gymnasium {
+            1024
+        } else {
+            16_384
+        };
+        let tasks = self.settings.num_envs.div_ceil(task);
         match tasks.min(self.settings.threads.get() as usize) {
-            0 | 1 => py.detach(|| engine.step(buffers)),
+            1 => py.detach(|| engine.step(buffers)),
             threads => {
                 let pool = Pool::of_this_process(&mut self.pool, threads)?;
                 py.detach(|| pool.install(|| engine.par_step(buffers)))
@@ -476,10 +481,7 @@ struct Pool {
 }
 
 impl Pool {
-    fn of_this_process(
-        pool: &mut Option<Self>,
-        threads: usize,
-    ) -> PyResult<&rayon::ThreadPool> {
+    fn of_this_process(pool: &mut Option<Self>, threads: usize) -> PyResult<&rayon::ThreadPool> {
         let process = std::process::id();
         let is_ours = pool.as_ref().is_some_and(|pool| pool.process == process);
         if !is_ours {
