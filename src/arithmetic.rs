@@ -52,7 +52,7 @@ mod reference;
 
 use core::fmt;
 
-pub(crate) use equations::{Equations, Model, Numbers};
+pub(crate) use equations::{Coefficients, Constants, Equations, Model, Numbers, Zeroed};
 pub use fast::Fast;
 #[cfg(feature = "std")]
 pub use host::Host;

@@ -29,24 +29,31 @@
 mod block;
 mod buffers;
 mod member;
+mod own_params;
+mod params;
 mod settings;
 mod simd;
+#[cfg(feature = "alloc")]
+mod vec_batch;
 
 use core::num::NonZeroU32;
 
 pub use block::Block;
 pub use buffers::{Observations, StepBuffers};
 pub use member::Member;
+pub use params::{OwnParams, ParamsKind, SharedParams};
 pub use simd::SimdLevel;
+#[cfg(feature = "alloc")]
+pub use vec_batch::{StepResults, VecBatch};
 
 use crate::acrobot::ResetOptions;
-use crate::arithmetic::{Arithmetic, Model};
+use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{ResetBounds, State};
 use crate::time_limit::V1;
 use block::{Actions, Drive, Torques};
-use buffers::{check_length, take, take_mut};
+use buffers::{check_length, take_mut};
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
@@ -64,15 +71,15 @@ pub enum Autoreset {
     Disabled,
 }
 
-/// Many acrobots with the same parameters, each with its own stream of random numbers.
+/// Many acrobots, each with its own stream of random numbers.
 ///
 /// Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th child, under a
 /// [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side; with the `std` feature it uses
 /// the widest SIMD instructions that the machine has. Neither `N` nor the instructions change a bit.
 ///
 /// `B` holds a [`Block`] for each `N` acrobots, and `G` a generator for each acrobot: arrays, slices or `Vec`s. They
-/// are separate because most steps draw no random number. See [the example](self), and compile with
-/// [`codegen-units = 1`](crate::guide::rust#many-at-once). `N` must be from 1 to 32:
+/// are separate because most steps draw no random number. See [the example](self). `P` says whether acrobots share
+/// their parameters: [`SharedParams`] or [`OwnParams`]. `N` must be from 1 to 32:
 ///
 /// ```compile_fail,E0080
 /// use acrobot::Fast;
@@ -83,27 +90,32 @@ pub enum Autoreset {
 /// let batch = Batch::<Fast, _, _, 33>::new(42, block, vec![Pcg64::UNSEEDED; 33]);
 /// ```
 #[derive(Clone, Debug)]
-pub struct Batch<A: Arithmetic, B, G, const N: usize = 16> {
-    shared: Shared<A>,
+pub struct Batch<A, B, G, const N: usize = 16, P = SharedParams>
+where
+    A: Arithmetic,
+    P: ParamsKind<A>,
+{
+    settings: Settings<A, P>,
     simd_level: SimdLevel,
     blocks: B,
     generators: G,
 }
 
-/// The settings that all acrobots of a batch share.
+/// What all acrobots of a batch share.
 #[derive(Clone, Debug)]
-struct Shared<A: Arithmetic> {
-    model: Model<A>,
+struct Settings<A: Arithmetic, P: ParamsKind<A>> {
+    params: P::Shared,
     bounds: ResetBounds,
     limit: NonZeroU32,
     autoreset: Autoreset,
 }
 
-impl<A, B, G, const N: usize> Batch<A, B, G, N>
+impl<A, B, G, const N: usize, P> Batch<A, B, G, N, P>
 where
     A: Arithmetic,
-    B: AsRef<[Block<A::Scalar, N>]> + AsMut<[Block<A::Scalar, N>]>,
+    B: AsRef<[Block<A, N, P>]> + AsMut<[Block<A, N, P>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
+    P: ParamsKind<A>,
 {
     /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child of `seed` and is in its
     /// initial state. The batch has the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
@@ -130,8 +142,8 @@ where
         }
         check_length("blocks", blocks.as_ref().len(), len.div_ceil(N))?;
         let mut batch = Self {
-            shared: Shared {
-                model: Model::DEFAULT,
+            settings: Settings {
+                params: P::SHARED,
                 bounds: ResetBounds::DEFAULT,
                 limit: V1,
                 autoreset: Autoreset::default(),
@@ -140,6 +152,9 @@ where
             blocks,
             generators,
         };
+        for block in batch.blocks.as_mut() {
+            block.own = P::own();
+        }
         batch.reset_with(ResetOptions {
             seed: Some(seed),
             bounds: None,
@@ -195,9 +210,11 @@ where
     }
 
     fn reset_some(&mut self, mut mask: impl Iterator<Item = bool>, options: ResetOptions) {
-        let bounds = options.bounds.unwrap_or(self.shared.bounds);
+        let bounds = options.bounds.unwrap_or(self.settings.bounds);
         let mut children = options.seed.map(|mut seed| seed.spawn(u64::MAX));
-        for (block, generators) in each_block(self.blocks.as_mut(), self.generators.as_mut()) {
+        for (block, generators) in
+            each_block::<_, N>(self.blocks.as_mut(), self.generators.as_mut())
+        {
             let mut some = [true; N];
             for (some, rng) in some.iter_mut().zip(&mut *generators) {
                 *some = mask.next().unwrap_or(true);
@@ -206,7 +223,7 @@ where
                     *rng = child.into();
                 }
             }
-            block.reset::<A>(&some, bounds, generators);
+            block.reset(&some, &self.settings.params, bounds, generators);
         }
     }
 
@@ -217,11 +234,39 @@ where
     /// [`Error::WrongLength`] unless there is one state for each acrobot, and [`Error::OutOfRange`] for a number that
     /// is not finite.
     pub fn reset_to(&mut self, states: &[State<A::Scalar>]) -> Result<(), Error> {
+        self.reset_some_to(core::iter::repeat(true), states)
+    }
+
+    /// As [`reset_to`](Self::reset_to), for the acrobots whose element of `mask` is true. The states of the others are
+    /// ignored, but must be finite.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::WrongLength`] unless each slice has one element for each acrobot, and [`Error::OutOfRange`] for a
+    /// number that is not finite.
+    pub fn reset_to_masked(
+        &mut self,
+        mask: &[bool],
+        states: &[State<A::Scalar>],
+    ) -> Result<(), Error> {
+        check_length("mask", mask.len(), self.len())?;
+        self.reset_some_to(mask.iter().copied(), states)
+    }
+
+    fn reset_some_to(
+        &mut self,
+        mask: impl Iterator<Item = bool>,
+        states: &[State<A::Scalar>],
+    ) -> Result<(), Error> {
         check_length("states", states.len(), self.len())?;
         states.iter().try_for_each(State::validate)?;
-        let mut states = states;
+        let mut states = mask.zip(states);
         for block in self.blocks.as_mut() {
-            block.reset_to::<A>(take(&mut states, N));
+            for (lane, (some, state)) in states.by_ref().take(N).enumerate() {
+                if some {
+                    block.resume(lane, *state, (0, false));
+                }
+            }
         }
         Ok(())
     }
@@ -282,7 +327,7 @@ where
         self.par_drive::<Torques>(torques, buffers)
     }
 
-    fn drive<D: Drive<A::Scalar>>(
+    fn drive<D: Drive<A>>(
         &mut self,
         inputs: &[D::Input],
         buffers: StepBuffers<'_>,
@@ -290,12 +335,12 @@ where
         self.check::<D>(inputs, &buffers)?;
         let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
         self.simd_level
-            .step::<A, D, N>(&self.shared, blocks, generators, inputs, buffers);
+            .step::<A, D, N, P>(&self.settings, blocks, generators, inputs, buffers);
         Ok(())
     }
 
     #[cfg(feature = "rayon")]
-    fn par_drive<D: Drive<A::Scalar>>(
+    fn par_drive<D: Drive<A>>(
         &mut self,
         inputs: &[D::Input],
         buffers: StepBuffers<'_>,
@@ -303,11 +348,11 @@ where
         self.check::<D>(inputs, &buffers)?;
         let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
         self.simd_level
-            .par_step::<A, D, N>(&self.shared, blocks, generators, inputs, buffers);
+            .par_step::<A, D, N, P>(&self.settings, blocks, generators, inputs, buffers);
         Ok(())
     }
 
-    fn check<D: Drive<A::Scalar>>(
+    fn check<D: Drive<A>>(
         &self,
         inputs: &[D::Input],
         buffers: &StepBuffers<'_>,
@@ -335,12 +380,18 @@ where
         self.generators.as_mut()
     }
 
+    /// The number of steps of acrobot `index` since its last reset, if there is one.
+    #[must_use]
+    pub fn elapsed(&self, index: usize) -> Option<u32> {
+        check_index(index, self.len()).ok()?;
+        let (elapsed, _) = self.blocks.as_ref().get(index / N)?.progress(index % N)?;
+        Some(elapsed)
+    }
+
     /// The state of acrobot `index`, if there is one.
     #[must_use]
     pub fn state(&self, index: usize) -> Option<State<A::Scalar>> {
-        if index >= self.len() {
-            return None;
-        }
+        check_index(index, self.len()).ok()?;
         self.blocks.as_ref().get(index / N)?.state(index % N)
     }
 
@@ -352,22 +403,30 @@ where
     /// that is not finite.
     pub fn set_state(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
-        let len = self.len();
-        match self.blocks.as_mut().get_mut(index / N) {
-            Some(block) if index < len => block.set_state::<A>(index % N, state),
-            _ => return Err(no_such_member(index, len)),
+        check_index(index, self.len())?;
+        if let Some(block) = self.blocks.as_mut().get_mut(index / N) {
+            block.set_state(index % N, state);
         }
         Ok(())
     }
 }
 
 /// Each block with its generators. The last may have fewer than `N`.
-fn each_block<'a, S, const N: usize>(
-    blocks: &'a mut [Block<S, N>],
+fn each_block<'a, B, const N: usize>(
+    blocks: &'a mut [B],
     mut generators: &'a mut [Pcg64],
-) -> impl Iterator<Item = (&'a mut Block<S, N>, &'a mut [Pcg64])> {
+) -> impl Iterator<Item = (&'a mut B, &'a mut [Pcg64])> {
     let blocks = blocks.iter_mut();
     blocks.map(move |block| (block, take_mut(&mut generators, N)))
+}
+
+/// Rejects an index that no acrobot has.
+fn check_index(index: usize, len: usize) -> Result<(), Error> {
+    if index < len {
+        Ok(())
+    } else {
+        Err(no_such_member(index, len))
+    }
 }
 
 fn no_such_member(index: usize, len: usize) -> Error {

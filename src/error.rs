@@ -43,8 +43,27 @@ pub enum Error {
         /// The upper bound given, rad and rad/s.
         high: f64,
     },
+    /// The lower bound of a parameter's range is above the upper one.
+    ReversedRange {
+        /// The parameter.
+        name: &'static str,
+        /// The lower bound given, in `unit`.
+        low: f64,
+        /// The upper bound given, in `unit`.
+        high: f64,
+        /// The SI unit.
+        unit: &'static str,
+    },
+    /// The two bounds of a range of parameters have different dynamics.
+    DifferentDynamics,
     /// A batch has no acrobots.
     EmptyBatch,
+    /// A batch does not fit into memory.
+    #[cfg(feature = "alloc")]
+    OutOfMemory {
+        /// The number of acrobots.
+        len: usize,
+    },
     /// A slice does not have the length that a batch needs.
     WrongLength {
         /// The argument.
@@ -107,8 +126,24 @@ impl fmt::Display for Error {
                 f,
                 "low must not be above high, got {low} and {high} rad and rad/s"
             ),
+            Self::ReversedRange {
+                name,
+                low,
+                high,
+                unit,
+            } => write!(
+                f,
+                "the lower {name} must not be above the upper one, got {low} and {high} {unit}"
+            ),
+            Self::DifferentDynamics => {
+                write!(f, "dynamics must be the same in both bounds of a range")
+            }
             Self::EmptyBatch => {
                 write!(f, "a batch must have at least 1 acrobot, got 0 generators")
+            }
+            #[cfg(feature = "alloc")]
+            Self::OutOfMemory { len } => {
+                write!(f, "a batch must fit into memory, got {len} acrobots")
             }
             Self::WrongLength {
                 name,

@@ -77,6 +77,8 @@ compile_error!(
     Compile for i686 instead of i586."
 );
 
+#[cfg(feature = "alloc")]
+extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 

@@ -11,9 +11,7 @@ use acrobot::{
 };
 use bits::against;
 
-type Blocks<A, const N: usize> = Vec<Block<<A as Arithmetic>::Scalar, N>>;
-
-type Vecs<A, const N: usize> = Batch<A, Blocks<A, N>, Vec<Pcg64>, N>;
+type Vecs<A, const N: usize> = Batch<A, Vec<Block<A, N>>, Vec<Pcg64>, N>;
 
 /// A batch and its scalar twins.
 struct Twins<A: Arithmetic, const N: usize = 16> {

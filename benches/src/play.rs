@@ -2,13 +2,13 @@
 
 use acrobot::Error;
 use acrobot::arithmetic::Arithmetic;
-use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+use acrobot::batch::{Batch, Block, Observations, ParamsKind, SharedParams, StepBuffers, VecBatch};
 use acrobot::numpy::Pcg64;
 
 /// A batch, the random policy that plays it, and the buffers of its steps.
 #[derive(Debug)]
-pub struct Play<A: Arithmetic> {
-    pub batch: Batch<A, Vec<Block<A::Scalar>>, Vec<Pcg64>>,
+pub struct Play<A: Arithmetic, P: ParamsKind<A> = SharedParams> {
+    pub batch: VecBatch<A, P>,
     streams: Vec<u32>,
     actions: Vec<u8>,
     rewards: Vec<f32>,
@@ -17,18 +17,16 @@ pub struct Play<A: Arithmetic> {
     rows: Vec<[f32; 6]>,
 }
 
-type Step<A> = fn(
-    &mut Batch<A, Vec<Block<<A as Arithmetic>::Scalar>>, Vec<Pcg64>>,
+type Step<A, P> = fn(
+    &mut Batch<A, Vec<Block<A, 16, P>>, Vec<Pcg64>, 16, P>,
     &[u8],
     StepBuffers<'_>,
 ) -> Result<(), Error>;
 
-impl<A: Arithmetic> Play<A> {
+impl<A: Arithmetic, P: ParamsKind<A>> Play<A, P> {
     pub fn new(len: usize) -> Self {
-        let blocks = vec![Block::EMPTY; len.div_ceil(Block::<A::Scalar>::LANES)];
-        let generators = vec![Pcg64::UNSEEDED; len];
         Self {
-            batch: Batch::new(0, blocks, generators).expect("a block for each 16 generators"),
+            batch: VecBatch::new(0, len).expect("memory for the batch"),
             streams: (0..len as u32)
                 .map(|i| i.wrapping_mul(0x9e37_79b9))
                 .collect(),
@@ -48,7 +46,7 @@ impl<A: Arithmetic> Play<A> {
     }
 
     /// Steps with `step`. Returns the number of acrobots.
-    pub fn step(&mut self, observe: bool, step: Step<A>) -> usize {
+    pub fn step(&mut self, observe: bool, step: Step<A, P>) -> usize {
         let buffers = StepBuffers {
             rewards: &mut self.rewards,
             terminated: &mut self.terminated,

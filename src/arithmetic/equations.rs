@@ -4,20 +4,69 @@ use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Arithmetic, Real, SinCos};
-use crate::physics::{FromParams, Params};
+use crate::physics::{Common, Dynamics, Params};
 
-/// The parameters, and the constants that the form of the equations computes from them.
+/// The constants that the form of the equations computes from the parameters.
+pub type Constants<A, V> =
+    <<A as Arithmetic>::Form as Equations<<A as Arithmetic>::Scalar>>::Constants<V>;
+
+/// The parameters, and the constants that follow from them.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<A: Arithmetic> {
     pub(crate) params: Params<A::Scalar>,
-    pub(crate) constants: <A::Form as Equations<A::Scalar>>::Constants,
+    pub(crate) constants: Constants<A, A::Scalar>,
+}
+
+/// What a step needs of a model: a number for all lanes, or one for each.
+pub trait Coefficients<A: Arithmetic, V: Numbers<A::Scalar>> {
+    /// The constants of the equations.
+    fn constants(&self) -> Constants<A, V>;
+
+    /// The duration of a step, s.
+    fn dt(&self) -> V;
+
+    /// The bounds of |θ̇1| and |θ̇2|, rad/s.
+    fn max_velocities(&self) -> [V; 2];
+
+    /// `book` where the equations are those of the book, `nips` where they are those of the 1996 paper.
+    fn select(&self, book: V, nips: V) -> V;
+}
+
+impl<A: Arithmetic, V: Numbers<A::Scalar>> Coefficients<A, V> for Model<A> {
+    #[inline(always)]
+    fn constants(&self) -> Constants<A, V> {
+        A::Form::zip(self.constants, self.constants, |_, x| V::splat(x))
+    }
+
+    #[inline(always)]
+    fn dt(&self) -> V {
+        V::splat(self.params.dt)
+    }
+
+    #[inline(always)]
+    fn max_velocities(&self) -> [V; 2] {
+        let Params {
+            max_velocity1,
+            max_velocity2,
+            ..
+        } = self.params;
+        [V::splat(max_velocity1), V::splat(max_velocity2)]
+    }
+
+    #[inline(always)]
+    fn select(&self, book: V, nips: V) -> V {
+        match self.params.dynamics {
+            Dynamics::Book => book,
+            Dynamics::Nips => nips,
+        }
+    }
 }
 
 impl<A: Arithmetic> Model<A> {
     /// The model of [`Params::DEFAULT`], computed by the compiler.
     pub(crate) const DEFAULT: Self = Self {
         params: Params::DEFAULT,
-        constants: FromParams::DEFAULT,
+        constants: A::Form::DEFAULT,
     };
 
     #[inline]
@@ -28,7 +77,7 @@ impl<A: Arithmetic> Model<A> {
             params.center_of_mass2,
         ];
         Self {
-            constants: FromParams::new(&params, lengths.map(A::square)),
+            constants: A::Form::constants(&params, lengths.map(A::square)),
             params,
         }
     }
@@ -37,7 +86,23 @@ impl<A: Arithmetic> Model<A> {
 /// A form of the equations of motion, in the scalar `S`.
 pub trait Equations<S: Real>: Copy + fmt::Debug {
     /// The constants, which depend only on the parameters.
-    type Constants: FromParams<S>;
+    type Constants<V: Numbers<S>>: Copy + fmt::Debug + Send + Sync + Zeroed;
+
+    /// The constants of [`Params::DEFAULT`], computed by the compiler.
+    const DEFAULT: Self::Constants<S>;
+
+    /// The constants of `params`, given l1², lc1² and lc2².
+    fn constants(params: &Params<S>, squares: [S; 3]) -> Self::Constants<S>;
+
+    /// The constants that both forms need.
+    fn common<V: Numbers<S>>(constants: &Self::Constants<V>) -> &Common<V>;
+
+    /// Applies `f` to each pair of constants.
+    fn zip<V: Numbers<S>, W: Numbers<S>>(
+        constants: Self::Constants<V>,
+        numbers: Self::Constants<S>,
+        f: impl Fn(V, S) -> W + Copy,
+    ) -> Self::Constants<W>;
 
     /// Whether the Runge-Kutta step adds each stage to the result at once, instead of in Gymnasium's order.
     const COMPACT: bool;
@@ -45,7 +110,7 @@ pub trait Equations<S: Real>: Copy + fmt::Debug {
     /// The derivative at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque, N m. `sin_cos` are the sines and cosines of θ1 and
     /// θ2, if they are known.
     fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
-        model: &Model<A>,
+        model: &impl Coefficients<A, V>,
         y: [V; 4],
         sin_cos: Option<[SinCos<V>; 2]>,
         torque: V,
@@ -61,9 +126,23 @@ pub trait Equations<S: Real>: Copy + fmt::Debug {
     ) -> V::Mask;
 }
 
+/// Numbers with a value to fill memory with.
+pub trait Zeroed {
+    /// All numbers are 0.
+    const ZEROED: Self;
+}
+
+impl Zeroed for () {
+    const ZEROED: Self = ();
+}
+
 /// One number, or many side by side. The code of a step is generic over this, so it is written once.
 pub trait Numbers<S: Real>:
     Copy
+    + fmt::Debug
+    + Send
+    + Sync
+    + Zeroed
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -86,7 +165,7 @@ pub trait Numbers<S: Real>:
     fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
 
     /// Whether |x| ≤ `limit` for all numbers x; false for NaN.
-    fn all_within(self, limit: S) -> bool;
+    fn all_within(self, limit: Self) -> bool;
 
     /// `inside` where |x| ≤ `limit`, `outside` elsewhere and for NaN.
     fn select_within(self, limit: S, inside: Self, outside: Self) -> Self;
@@ -99,9 +178,9 @@ pub trait Numbers<S: Real>:
 
     /// Each number clamped to \[−`limit`, `limit`\]; NaN stays NaN.
     #[inline(always)]
-    fn bound(self, limit: S) -> Self {
-        self.map(|x| if x > limit { limit } else { x })
-            .map(|x| if x < -limit { -limit } else { x })
+    fn bound(self, limit: Self) -> Self {
+        self.zip(limit, |x, limit| if x > limit { limit } else { x })
+            .zip(limit, |x, limit| if x < -limit { -limit } else { x })
     }
 }
 

@@ -4,10 +4,14 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Arithmetic, Numbers, Real, SinCos};
+use super::{Arithmetic, Numbers, Real, SinCos, Zeroed};
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lanes<S, const N: usize>(pub(crate) [S; N]);
+pub struct Lanes<S, const N: usize>(pub(crate) [S; N]);
+
+impl<S: Zeroed + Copy, const N: usize> Zeroed for Lanes<S, N> {
+    const ZEROED: Self = Self([S::ZEROED; N]);
+}
 
 macro_rules! lane_by_lane {
     ($($trait:ident $method:ident),*) => {$(
@@ -30,6 +34,16 @@ impl<S: Real, const N: usize> Neg for Lanes<S, N> {
     #[inline(always)]
     fn neg(self) -> Self {
         self.map(S::neg)
+    }
+}
+
+impl<S: Real, const N: usize> Lanes<S, N> {
+    /// The same numbers, but `x` in one lane.
+    pub(crate) fn with(mut self, lane: usize, x: S) -> Self {
+        if let Some(to) = self.0.get_mut(lane) {
+            *to = x;
+        }
+        self
     }
 }
 
@@ -60,8 +74,9 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     }
 
     #[inline(always)]
-    fn all_within(self, limit: S) -> bool {
-        self.0.iter().fold(true, |all, x| all & (x.abs() <= limit))
+    fn all_within(self, limit: Self) -> bool {
+        let pairs = self.0.iter().zip(&limit.0);
+        pairs.fold(true, |all, (x, limit)| all & (x.abs() <= *limit))
     }
 
     #[inline(always)]

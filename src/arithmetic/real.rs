@@ -3,6 +3,8 @@
 use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+use super::Zeroed;
+
 /// A scalar that the physics can be computed in: `f32` or `f64`.
 ///
 /// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are the same on every
@@ -21,6 +23,7 @@ pub trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
+    + Zeroed
     + sealed::Sealed
 {
     /// 0.
@@ -76,6 +79,10 @@ macro_rules! impl_real {
             fn abs(self) -> Self {
                 self.abs()
             }
+        }
+
+        impl Zeroed for $scalar {
+            const ZEROED: Self = 0.0;
         }
 
         impl Real for $scalar {

@@ -3,52 +3,57 @@
 use core::marker::PhantomData;
 
 use super::buffers::{take, take_mut};
-use super::{Autoreset, Observations, Shared, StepBuffers};
-use crate::arithmetic::{Arithmetic, Lanes, Real, SinCos};
+use super::params::{BlockModel, ParamsKind, SharedParams};
+use super::{Autoreset, Observations, Settings, StepBuffers};
+use crate::arithmetic::{Arithmetic, Fast, Lanes, Real, SinCos, Zeroed};
 use crate::error::Error;
 use crate::numpy::{Pcg64, uniform};
-use crate::physics::{Params, ResetBounds, State, check_torque, sin_cos, step};
+use crate::physics::{ResetBounds, State, check_torque, sin_cos, step};
 
 /// The memory of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) consists of these.
 ///
-/// `N` = 16 suits a machine with SIMD. For a few acrobots, a smaller `N` wastes less memory: a `Block<f32, 1>` takes 64
-/// bytes, a `Block<f32, 16>` 640.
+/// `N` = 16 suits a machine with SIMD. For a few acrobots, a smaller `N` wastes less memory: a `Block<Fast, 1>` takes 64
+/// bytes, a `Block<Fast, 16>` 640. With [`OwnParams`](super::OwnParams) it has the parameters of its acrobots, too.
 ///
 /// ```
-/// use acrobot::batch::Block;
+/// use acrobot::Fast;
+/// use acrobot::batch::{Block, OwnParams};
 ///
-/// let blocks = vec![Block::<f32>::EMPTY; 1000_usize.div_ceil(Block::<f32>::LANES)];
+/// let blocks = vec![Block::<Fast>::EMPTY; 1000_usize.div_ceil(Block::<Fast>::LANES)];
 /// assert_eq!(size_of_val(&blocks[..]), 63 * 640);
-/// assert_eq!(size_of::<Block<f32, 1>>(), 64);
+/// assert_eq!(size_of::<Block<Fast, 1>>(), 64);
+/// assert_eq!(size_of::<Block<Fast, 16, OwnParams>>(), 3072);
 /// ```
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub struct Block<S = f32, const N: usize = 16> {
+pub struct Block<A: Arithmetic = Fast, const N: usize = 16, P: ParamsKind<A> = SharedParams> {
     /// θ1, θ2, θ̇1 and θ̇2.
-    y: [Lanes<S, N>; 4],
+    y: [Lanes<A::Scalar, N>; 4],
     /// Sines and cosines of θ1 and θ2, for the observation and the next step.
-    sin_cos: [SinCos<Lanes<S, N>>; 2],
+    sin_cos: [SinCos<Lanes<A::Scalar, N>>; 2],
     elapsed: [u32; N],
     /// Whether the next step resets the lane.
     ended: [bool; N],
+    pub(super) own: P::Own<N>,
 }
 
-impl<S: Real, const N: usize> Block<S, N> {
+impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
     /// The number of acrobots in a block.
     pub const LANES: usize = N;
 
     /// A block to create a batch with, which resets it.
     pub const EMPTY: Self = Self {
-        y: [Lanes([S::ZERO; N]); 4],
-        sin_cos: [(Lanes([S::ZERO; N]), Lanes([S::ZERO; N])); 2],
+        y: [Zeroed::ZEROED; 4],
+        sin_cos: [(Zeroed::ZEROED, Zeroed::ZEROED); 2],
         elapsed: [0; N],
         ended: [false; N],
+        own: Zeroed::ZEROED,
     };
 }
 
 // Lanes are accessed by iterators or `get`, so no compiler has to prove that an index cannot panic.
-impl<S: Real, const N: usize> Block<S, N> {
-    pub(super) fn state(&self, lane: usize) -> Option<State<S>> {
+impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
+    pub(super) fn state(&self, lane: usize) -> Option<State<A::Scalar>> {
         let [theta1, theta2, dtheta1, dtheta2] = &self.y;
         Some(State {
             theta1: *theta1.0.get(lane)?,
@@ -59,9 +64,9 @@ impl<S: Real, const N: usize> Block<S, N> {
     }
 
     /// Sets the state of a lane. Its episode continues.
-    pub(super) fn set_state<A: Arithmetic<Scalar = S>>(&mut self, lane: usize, state: State<S>) {
+    pub(super) fn set_state(&mut self, lane: usize, state: State<A::Scalar>) {
         let new = sin_cos::<A>([state.theta1, state.theta2]);
-        for (numbers, number) in self.y.iter_mut().zip(<[S; 4]>::from(state)) {
+        for (numbers, number) in self.y.iter_mut().zip(<[A::Scalar; 4]>::from(state)) {
             set(&mut numbers.0, lane, number);
         }
         for ((sines, cosines), (sin, cos)) in self.sin_cos.iter_mut().zip(new) {
@@ -76,29 +81,23 @@ impl<S: Real, const N: usize> Block<S, N> {
     }
 
     /// Sets the state and the progress of a lane.
-    pub(super) fn resume<A: Arithmetic<Scalar = S>>(
+    pub(super) fn resume(
         &mut self,
         lane: usize,
-        state: State<S>,
+        state: State<A::Scalar>,
         (elapsed, ended): (u32, bool),
     ) {
-        self.set_state::<A>(lane, state);
+        self.set_state(lane, state);
         set(&mut self.elapsed, lane, elapsed);
         set(&mut self.ended, lane, ended);
     }
 
-    /// Begins an episode in the first lanes, one for each state.
-    pub(super) fn reset_to<A: Arithmetic<Scalar = S>>(&mut self, states: &[State<S>]) {
-        for (lane, state) in states.iter().enumerate() {
-            self.resume::<A>(lane, *state, (0, false));
-        }
-    }
-
     /// Resets the lanes in `some`, each with its generator. A lane without one has no acrobot and hangs at rest.
     #[cold]
-    pub(super) fn reset<A: Arithmetic<Scalar = S>>(
+    pub(super) fn reset(
         &mut self,
         some: &[bool; N],
+        params: &P::Shared,
         bounds: ResetBounds,
         generators: &mut [Pcg64],
     ) {
@@ -106,29 +105,30 @@ impl<S: Real, const N: usize> Block<S, N> {
         for (lane, resets) in some.iter().enumerate() {
             let rng = generators.next();
             if *resets {
-                let state = rng.map_or(State::HANGING, |rng| bounds.draw(rng).cast());
-                self.resume::<A>(lane, state, (0, false));
+                let state = rng.map_or(State::HANGING, |rng| {
+                    P::draw(params, &mut self.own, lane, rng);
+                    bounds.draw(rng).cast()
+                });
+                self.resume(lane, state, (0, false));
             }
         }
     }
 
     /// Ends pending resets: `SameStep` resets the lanes now, `Disabled` never.
-    pub(super) fn stop_waiting<A: Arithmetic<Scalar = S>>(
-        &mut self,
-        shared: &Shared<A>,
-        generators: &mut [Pcg64],
-    ) {
+    pub(super) fn stop_waiting(&mut self, settings: &Settings<A, P>, generators: &mut [Pcg64]) {
         let ended = self.ended;
-        match shared.autoreset {
+        match settings.autoreset {
             Autoreset::NextStep => {}
-            Autoreset::SameStep => self.reset::<A>(&ended, shared.bounds, generators),
+            Autoreset::SameStep => {
+                self.reset(&ended, &settings.params, settings.bounds, generators);
+            }
             Autoreset::Disabled => self.ended = [false; N],
         }
     }
 
     /// The observations: six columns with one number for each lane.
     #[inline(always)]
-    fn columns(&self) -> [&[S; N]; 6] {
+    fn columns(&self) -> [&[A::Scalar; N]; 6] {
         let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
         let [_, _, dtheta1, dtheta2] = &self.y;
         [&cos1.0, &sin1.0, &cos2.0, &sin2.0, &dtheta1.0, &dtheta2.0]
@@ -180,47 +180,45 @@ impl<S: Real, const N: usize> Block<S, N> {
 
     /// One step of all lanes. Writes the results, and removes the written elements from `buffers`.
     #[inline(always)]
-    fn step<A: Arithmetic<Scalar = S>>(
+    fn step<D: Drive<A>>(
         &mut self,
-        shared: &Shared<A>,
-        mut torques: [S; N],
+        settings: &Settings<A, P>,
+        inputs: &[D::Input],
         generators: &mut [Pcg64],
         buffers: &mut StepBuffers<'_>,
     ) {
-        if shared.model.params.torque_noise > S::ZERO {
-            self.add_noise(&mut torques, shared.model.params.torque_noise, generators);
+        let model = P::model(&settings.params, &self.own);
+        let mut torques = D::torques(model, inputs);
+        if let Some(noise) = model.noise() {
+            add_noise(&mut torques, &noise, &self.ended, generators);
         }
-        let mut terminated = step(
-            &shared.model,
-            &mut self.y,
-            &mut self.sin_cos,
-            Lanes(torques),
-        );
+        let torques = Lanes(torques);
+        let mut terminated = step::<A, _>(model, &mut self.y, &mut self.sin_cos, torques);
         let (mut rewards, mut truncated, mut ended) = ([-1.0; N], [false; N], [false; N]);
         let results = rewards.iter_mut().zip(&mut truncated).zip(&mut ended);
         for ((elapsed, terminated), ((reward, truncated), ended)) in
             self.elapsed.iter_mut().zip(&terminated).zip(results)
         {
             *elapsed = elapsed.saturating_add(1);
-            *truncated = *elapsed >= shared.limit.get();
+            *truncated = *elapsed >= settings.limit.get();
             if *terminated {
                 *reward = 0.0;
             }
             *ended = *terminated | *truncated;
         }
 
-        let resets = match shared.autoreset {
+        let resets = match settings.autoreset {
             Autoreset::NextStep => core::mem::replace(&mut self.ended, ended),
             Autoreset::SameStep => ended,
             Autoreset::Disabled => [false; N],
         };
         if resets.iter().fold(false, |any, &reset| any | reset) {
-            if shared.autoreset == Autoreset::NextStep {
+            if settings.autoreset == Autoreset::NextStep {
                 clear(&resets, &mut rewards, &mut terminated, &mut truncated);
             } else {
                 self.observe_some(&resets, &mut buffers.final_observations);
             }
-            self.reset::<A>(&resets, shared.bounds, generators);
+            self.reset(&resets, &settings.params, settings.bounds, generators);
         }
         buffers.final_observations.take(N);
         write(&mut buffers.rewards, &rewards);
@@ -228,15 +226,22 @@ impl<S: Real, const N: usize> Block<S, N> {
         write(&mut buffers.truncated, &truncated);
         self.observe(&mut buffers.observations);
     }
+}
 
-    /// Adds a noise draw to each torque, except in lanes that this step only resets.
-    #[cold]
-    fn add_noise(&self, torques: &mut [S; N], noise: S, generators: &mut [Pcg64]) {
+/// Adds a noise draw to each torque, except in lanes without noise and in those that this step only resets.
+#[cold]
+fn add_noise<S: Real, const N: usize>(
+    torques: &mut [S; N],
+    noise: &[S; N],
+    ended: &[bool; N],
+    generators: &mut [Pcg64],
+) {
+    let lanes = torques.iter_mut().zip(noise).zip(ended).zip(generators);
+    for (((torque, noise), _), rng) in
+        lanes.filter(|(((_, noise), ended), _)| **noise > S::ZERO && !**ended)
+    {
         let noise = noise.to_f64();
-        let lanes = torques.iter_mut().zip(&self.ended).zip(generators);
-        for ((torque, _), rng) in lanes.filter(|((_, ended), _)| !**ended) {
-            *torque = *torque + S::from_f64(uniform(rng, -noise, noise));
-        }
+        *torque = *torque + S::from_f64(uniform(rng, -noise, noise));
     }
 }
 
@@ -254,14 +259,14 @@ fn clear<const N: usize>(
     }
 }
 
-fn set<T>(lanes: &mut [T], lane: usize, x: T) {
+pub(super) fn set<T>(lanes: &mut [T], lane: usize, x: T) {
     if let Some(to) = lanes.get_mut(lane) {
         *to = x;
     }
 }
 
 /// The kind of input to a step: actions or torques.
-pub(super) trait Drive<S> {
+pub(super) trait Drive<A: Arithmetic> {
     /// The argument's name, for errors.
     const NAME: &'static str;
 
@@ -272,13 +277,16 @@ pub(super) trait Drive<S> {
     fn check(inputs: &[Self::Input]) -> Result<(), Error>;
 
     /// The torques of one block, N m. Lanes without an input get a valid torque.
-    fn torques<const N: usize>(params: &Params<S>, inputs: &[Self::Input]) -> [S; N];
+    fn torques<const N: usize>(
+        model: &impl BlockModel<A, N>,
+        inputs: &[Self::Input],
+    ) -> [A::Scalar; N];
 }
 
 /// Action numbers: 0, 1 and 2.
 pub(super) struct Actions<T>(PhantomData<T>);
 
-impl<S: Real, T: Copy + Into<u8> + Sync> Drive<S> for Actions<T> {
+impl<A: Arithmetic, T: Copy + Into<u8> + Sync> Drive<A> for Actions<T> {
     const NAME: &'static str = "actions";
 
     type Input = T;
@@ -291,44 +299,54 @@ impl<S: Real, T: Copy + Into<u8> + Sync> Drive<S> for Actions<T> {
     }
 
     #[inline(always)]
-    fn torques<const N: usize>(params: &Params<S>, inputs: &[T]) -> [S; N] {
-        let [_, idle, _] = params.torques;
-        read(inputs, idle, |action| {
-            S::pick(params.torques, action.into())
-        })
+    fn torques<const N: usize>(model: &impl BlockModel<A, N>, inputs: &[T]) -> [A::Scalar; N] {
+        choose(model.torques(), read(inputs, 1, T::into))
     }
+}
+
+/// The torque of each lane's action.
+#[inline(always)]
+fn choose<S: Real, const N: usize>(
+    [mut torques, zero, positive]: [[S; N]; 3],
+    actions: [u8; N],
+) -> [S; N] {
+    let lanes = torques.iter_mut().zip(zero).zip(positive).zip(actions);
+    for (((torque, zero), positive), action) in lanes {
+        *torque = S::pick([*torque, zero, positive], action);
+    }
+    torques
 }
 
 /// Finite torques, N m.
 pub(super) struct Torques;
 
-impl<S: Real> Drive<S> for Torques {
+impl<A: Arithmetic> Drive<A> for Torques {
     const NAME: &'static str = "torques";
 
-    type Input = S;
+    type Input = A::Scalar;
 
-    fn check(inputs: &[S]) -> Result<(), Error> {
+    fn check(inputs: &[A::Scalar]) -> Result<(), Error> {
         inputs.iter().try_for_each(|torque| check_torque(*torque))
     }
 
     #[inline(always)]
-    fn torques<const N: usize>(_: &Params<S>, inputs: &[S]) -> [S; N] {
-        read(inputs, S::ZERO, |torque| torque)
+    fn torques<const N: usize>(_: &impl BlockModel<A, N>, inputs: &[A::Scalar]) -> [A::Scalar; N] {
+        read(inputs, A::Scalar::ZERO, |torque| torque)
     }
 }
 
 #[inline(always)]
-pub(super) fn step_blocks<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
-    shared: &Shared<A>,
-    blocks: &mut [Block<A::Scalar, N>],
+pub(super) fn step_blocks<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
+    settings: &Settings<A, P>,
+    blocks: &mut [Block<A, N, P>],
     mut generators: &mut [Pcg64],
     mut inputs: &[D::Input],
     mut buffers: StepBuffers<'_>,
 ) {
     for block in blocks {
-        let torques = D::torques(&shared.model.params, take(&mut inputs, N));
+        let inputs = take(&mut inputs, N);
         let generators = take_mut(&mut generators, N);
-        block.step(shared, torques, generators, &mut buffers);
+        block.step::<D>(settings, inputs, generators, &mut buffers);
     }
 }
 
@@ -346,5 +364,16 @@ fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(
 #[inline(always)]
 fn write<T: Copy, const N: usize>(to: &mut &mut [T], from: &[T; N]) {
     let to = take_mut(to, N);
+    match <&mut [T; N]>::try_from(&mut *to) {
+        Ok(to) => *to = *from,
+        Err(_) => write_some(to, from),
+    }
+}
+
+/// Only the last block can have fewer than `N` acrobots. Out of line, because a copy of a constant length takes less
+/// time.
+#[cold]
+#[inline(never)]
+fn write_some<T: Copy>(to: &mut [T], from: &[T]) {
     to.iter_mut().zip(from).for_each(|(to, &from)| *to = from);
 }

@@ -1,7 +1,7 @@
 //! One acrobot of a batch, to save and to load.
 
 use super::buffers::take_mut;
-use super::{Batch, Block, no_such_member};
+use super::{Batch, Block, ParamsKind, check_index, no_such_member};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
@@ -36,11 +36,12 @@ pub struct Member<A: Arithmetic> {
     pub rng: Pcg64,
 }
 
-impl<A, B, G, const N: usize> Batch<A, B, G, N>
+impl<A, B, G, const N: usize, P> Batch<A, B, G, N, P>
 where
     A: Arithmetic,
-    B: AsRef<[Block<A::Scalar, N>]> + AsMut<[Block<A::Scalar, N>]>,
+    B: AsRef<[Block<A, N, P>]> + AsMut<[Block<A, N, P>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
+    P: ParamsKind<A>,
 {
     /// Acrobot `index`, if there is one.
     #[must_use]
@@ -67,15 +68,16 @@ where
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
         member.state.validate()?;
         let len = self.len();
+        check_index(index, len)?;
         let block = self.blocks.as_mut().get_mut(index / N);
         let mut generators = self.generators.as_mut().get_mut(index - index % N..);
         let generators = take_mut(generators.get_or_insert_default(), N);
         let (Some(block), Some(rng)) = (block, generators.get_mut(index % N)) else {
             return Err(no_such_member(index, len));
         };
-        block.resume::<A>(index % N, member.state, (member.elapsed, member.ended));
+        block.resume(index % N, member.state, (member.elapsed, member.ended));
         *rng = member.rng;
-        block.stop_waiting::<A>(&self.shared, generators);
+        block.stop_waiting(&self.settings, generators);
         Ok(())
     }
 }

@@ -3,7 +3,8 @@
 use super::block::{Block, Drive, step_blocks};
 #[cfg(feature = "rayon")]
 use super::buffers::{take, take_mut};
-use super::{Shared, StepBuffers};
+use super::params::ParamsKind;
+use super::{Settings, StepBuffers};
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
 
@@ -69,10 +70,10 @@ impl SimdLevel {
         unsafe_code,
         reason = "the one place that uses instructions which the machine has and the build does not assume"
     )]
-    pub(super) fn step<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
+    pub(super) fn step<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
         self,
-        shared: &Shared<A>,
-        blocks: &mut [Block<A::Scalar, N>],
+        settings: &Settings<A, P>,
+        blocks: &mut [Block<A, N, P>],
         generators: &mut [Pcg64],
         inputs: &[D::Input],
         buffers: StepBuffers<'_>,
@@ -82,14 +83,14 @@ impl SimdLevel {
             macro_rules! compiled_for {
                 ($name:ident, $features:literal) => {
                     #[target_feature(enable = $features)]
-                    fn $name<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
-                        shared: &Shared<A>,
-                        blocks: &mut [Block<A::Scalar, N>],
+                    fn $name<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
+                        settings: &Settings<A, P>,
+                        blocks: &mut [Block<A, N, P>],
                         generators: &mut [Pcg64],
                         inputs: &[D::Input],
                         buffers: StepBuffers<'_>,
                     ) {
-                        step_blocks::<A, D, N>(shared, blocks, generators, inputs, buffers);
+                        step_blocks::<A, D, N, P>(settings, blocks, generators, inputs, buffers);
                     }
                 };
             }
@@ -99,24 +100,28 @@ impl SimdLevel {
             unsafe {
                 match self {
                     Self::Avx2 if self.is_available() => {
-                        return with_avx2::<A, D, N>(shared, blocks, generators, inputs, buffers);
+                        return with_avx2::<A, D, N, P>(
+                            settings, blocks, generators, inputs, buffers,
+                        );
                     }
                     Self::Avx512 if self.is_available() => {
-                        return with_avx512::<A, D, N>(shared, blocks, generators, inputs, buffers);
+                        return with_avx512::<A, D, N, P>(
+                            settings, blocks, generators, inputs, buffers,
+                        );
                     }
                     _ => {}
                 }
             }
         }
-        step_blocks::<A, D, N>(shared, blocks, generators, inputs, buffers);
+        step_blocks::<A, D, N, P>(settings, blocks, generators, inputs, buffers);
     }
 
     /// As [`step`](Self::step), on all cores: halves the blocks until a task is too small to share.
     #[cfg(feature = "rayon")]
-    pub(super) fn par_step<A: Arithmetic, D: Drive<A::Scalar>, const N: usize>(
+    pub(super) fn par_step<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
         self,
-        shared: &Shared<A>,
-        blocks: &mut [Block<A::Scalar, N>],
+        settings: &Settings<A, P>,
+        blocks: &mut [Block<A, N, P>],
         mut generators: &mut [Pcg64],
         mut inputs: &[D::Input],
         mut buffers: StepBuffers<'_>,
@@ -127,7 +132,7 @@ impl SimdLevel {
             _ => 1024,
         };
         if blocks.len() * N <= acrobots_of_a_task {
-            return self.step::<A, D, N>(shared, blocks, generators, inputs, buffers);
+            return self.step::<A, D, N, P>(settings, blocks, generators, inputs, buffers);
         }
         let middle = blocks.len() / 2;
         let acrobots = middle * N;
@@ -137,8 +142,8 @@ impl SimdLevel {
         let inputs1 = take(&mut inputs, acrobots);
         let buffers1 = buffers.take(acrobots);
         rayon::join(
-            || self.par_step::<A, D, N>(shared, blocks1, generators1, inputs1, buffers1),
-            || self.par_step::<A, D, N>(shared, blocks2, generators, inputs, buffers),
+            || self.par_step::<A, D, N, P>(settings, blocks1, generators1, inputs1, buffers1),
+            || self.par_step::<A, D, N, P>(settings, blocks2, generators, inputs, buffers),
         );
     }
 }

@@ -1,26 +1,33 @@
 //! Gymnasium's expressions, operation by operation.
 
+use super::Params;
 use super::model::{Common, FromParams};
-use super::{Dynamics, Params};
-use crate::arithmetic::{Arithmetic, Equations, Model, Numbers, Real, SinCos};
+use crate::arithmetic::{Arithmetic, Coefficients, Equations, Numbers, Real, SinCos, Zeroed};
 
 /// The equations as Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
 #[derive(Clone, Copy, Debug)]
 pub struct Gymnasium;
 
-#[derive(Clone, Copy, Debug)]
-pub struct Constants<S> {
-    common: Common<S>,
-    /// m1 lc1², kg m².
-    link1: S,
-    /// l1² + lc2², m².
-    arms_squared: S,
-    /// l1 lc2, m².
-    arms_product: S,
-    /// lc2², m².
-    lc2_squared: S,
-    /// 2 m2 l1 lc2, kg m².
-    twice_coupling: S,
+numbers! {
+    /// The constants, and three parameters.
+    struct Constants(common: Common<V>) {
+        /// m1 lc1², kg m².
+        link1: V,
+        /// l1² + lc2², m².
+        arms_squared: V,
+        /// l1 lc2, m².
+        arms_product: V,
+        /// lc2², m².
+        lc2_squared: V,
+        /// 2 m2 l1 lc2, kg m².
+        twice_coupling: V,
+        /// kg.
+        m2: V,
+        /// kg m².
+        inertia1: V,
+        /// kg m².
+        inertia2: V,
+    }
 }
 
 constants_of_form!(|params, [l1_squared, lc1_squared, lc2_squared]| {
@@ -32,6 +39,9 @@ constants_of_form!(|params, [l1_squared, lc1_squared, lc2_squared]| {
         arms_product: params.length1 * params.center_of_mass2,
         lc2_squared,
         twice_coupling: 2.0 * common.coupling,
+        m2: params.mass2,
+        inertia1: params.inertia1,
+        inertia2: params.inertia2,
     }
 });
 
@@ -42,7 +52,7 @@ impl<S: Real> Equations<S> for Gymnasium
 where
     Constants<S>: FromParams<S>,
 {
-    type Constants = Constants<S>;
+    equations_with_constants!();
     const COMPACT: bool = false;
 
     /// `AcrobotEnv._dsdt`, except for the place of the factors 2, which are exact.
@@ -50,37 +60,34 @@ where
     // and gain nothing.
     #[cfg_attr(feature = "std", inline(always))]
     fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
-        model: &Model<A>,
+        model: &impl Coefficients<A, V>,
         [theta1, theta2, dtheta1, dtheta2]: [V; 4],
         sin_cos: Option<[SinCos<V>; 2]>,
         torque: V,
     ) -> [V; 4] {
-        let Params {
-            mass2,
-            inertia1,
-            inertia2,
-            dynamics,
-            ..
-        } = &model.params;
         let Constants {
-            common,
+            common:
+                Common {
+                    coupling,
+                    link2,
+                    gravity1,
+                    gravity2,
+                    ..
+                },
             link1,
             arms_squared,
             arms_product,
             lc2_squared,
             twice_coupling,
-        } = &model.constants;
+            m2,
+            inertia1,
+            inertia2,
+        } = model.constants();
         let (sin2, cos2) = match sin_cos {
             Some([_, second]) => second,
             None => theta2.sin_cos::<A>(),
         };
-        let [m2, inertia1, inertia2] = [*mass2, *inertia1, *inertia2].map(V::splat);
-        let [coupling, link2] = [common.coupling, common.link2].map(V::splat);
-        let [gravity1, gravity2] = [common.gravity1, common.gravity2].map(V::splat);
-        let [link1, arms_squared] = [*link1, *arms_squared].map(V::splat);
-        let [arms_product, lc2_squared] = [*arms_product, *lc2_squared].map(V::splat);
-        let twice_coupling = V::splat(*twice_coupling);
-        let [quarter, two] = [S::PI * S::HALF, S::from_f64(2.0)].map(V::splat);
+        let (quarter, two) = (V::splat(S::PI * S::HALF), V::splat(S::from_f64(2.0)));
         let square = |x: V| x.map(A::square);
 
         // Computed first, because no float stays in a register across a call on x86-64.
@@ -93,10 +100,7 @@ where
             + gravity1 * cos1
             + phi2;
         let driven = torque + d2 / d1 * phi1;
-        let driven = match dynamics {
-            Dynamics::Book => driven - coupling * square(dtheta1) * sin2,
-            Dynamics::Nips => driven,
-        };
+        let driven = model.select(driven - coupling * square(dtheta1) * sin2, driven);
         let ddtheta2 = (driven - phi2) / (link2 - square(d2) / d1);
         let ddtheta1 = -(d2 * ddtheta2 + phi1) / d1;
         [dtheta1, dtheta2, ddtheta1, ddtheta2]

@@ -2,25 +2,25 @@
 
 use super::model::{Common, FromParams};
 use super::{Dynamics, Params};
-use crate::arithmetic::{Arithmetic, Equations, Model, Numbers, Real, SinCos};
+use crate::arithmetic::{Arithmetic, Coefficients, Equations, Numbers, Real, SinCos, Zeroed};
 
 /// The equations solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Lean;
 
-/// The equations for the absolute angles θ1 and θ1 + θ2 have the mass matrix
-/// \[\[upper, c\], \[c, link2\]\] with c = coupling cos θ2.
-#[derive(Clone, Copy, Debug)]
-pub struct Constants<S> {
-    common: Common<S>,
-    /// m1 lc1² + I1 + m2 l1², kg m².
-    upper: S,
-    /// The determinant at θ2 = ±π/2, where c is 0, kg² m⁴.
-    determinant: S,
-    /// 1 for the equations of the book, otherwise 0.
-    book: S,
-    /// 1 for the equations of the 1996 paper, otherwise 0.
-    nips: S,
+numbers! {
+    /// The equations for the absolute angles θ1 and θ1 + θ2 have the mass matrix
+    /// \[\[upper, c\], \[c, link2\]\] with c = coupling cos θ2.
+    struct Constants(common: Common<V>) {
+        /// m1 lc1² + I1 + m2 l1², kg m².
+        upper: V,
+        /// The determinant at θ2 = ±π/2, where c is 0, kg² m⁴.
+        determinant: V,
+        /// 1 for the equations of the book, otherwise 0.
+        book: V,
+        /// 1 for the equations of the 1996 paper, otherwise 0.
+        nips: V,
+    }
 }
 
 constants_of_form!(|params, [l1_squared, lc1_squared, lc2_squared]| {
@@ -44,14 +44,14 @@ impl<S: Real> Equations<S> for Lean
 where
     Constants<S>: FromParams<S>,
 {
-    type Constants = Constants<S>;
+    equations_with_constants!();
     const COMPACT: bool = true;
 
     /// The determinant is a positive constant plus a square, so nothing cancels. Gymnasium's cos(θ1 − π/2) is sin θ1
     /// here, and its cos(θ1 + θ2 − π/2) is sin(θ1 + θ2), by the addition theorem.
     #[inline(always)]
     fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
-        model: &Model<A>,
+        model: &impl Coefficients<A, V>,
         [theta1, theta2, dtheta1, dtheta2]: [V; 4],
         sin_cos: Option<[SinCos<V>; 2]>,
         torque: V,
@@ -61,16 +61,19 @@ where
             None => [theta1.sin_cos::<A>(), theta2.sin_cos::<A>()],
         };
         let Constants {
-            common,
+            common:
+                Common {
+                    coupling,
+                    link2,
+                    gravity1,
+                    gravity2,
+                    ..
+                },
             upper,
             determinant,
             book,
             nips,
-        } = &model.constants;
-        let [upper, determinant] = [*upper, *determinant].map(V::splat);
-        let [book, nips] = [*book, *nips].map(V::splat);
-        let [coupling, link2] = [common.coupling, common.link2].map(V::splat);
-        let [gravity1, gravity2] = [common.gravity1, common.gravity2].map(V::splat);
+        } = model.constants();
         let coupling_cos = coupling * cos2;
         let coupling_sin = coupling * sin2;
         let sin_sum = sin1 * cos2 + cos1 * sin2;
@@ -95,7 +98,7 @@ where
         let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
         // The bound is for angles so large that neighbouring numbers are more than a turn apart. An angle within ±π
         // does not change, even where its turns round to ±1.
-        x.zip(turned.bound(S::PI), |x, turned| {
+        x.zip(turned.bound(V::splat(S::PI)), |x, turned| {
             if x.abs() <= S::PI { x } else { turned }
         })
     }

@@ -3,38 +3,34 @@
 //! M(θ2) θ̈ = f(θ, θ̇, torque), with the mass matrix M = \[\[d1, d2\], \[d2, m2 lc2² + I2\]\] and the names of
 //! Sutton & Barto, *Reinforcement Learning: An Introduction* (1998), section 11.3: d1, d2, phi1 and phi2.
 
-use core::fmt;
-
 use super::Params;
-use crate::arithmetic::{Real, SinCos};
+use crate::arithmetic::{Real, SinCos, Zeroed};
 
-/// The constants of a form of the equations.
-pub trait FromParams<S>: Copy + fmt::Debug + Send + Sync {
+/// The constants of a form of the equations, computed from parameters.
+pub trait FromParams<S>: Sized {
     /// The constants of [`Params::DEFAULT`], computed by the compiler.
     const DEFAULT: Self;
 
     /// The constants of `params`. l1², lc1² and lc2² are arguments, because `Host` squares with the platform's `pow`.
     fn new(params: &Params<S>, squares: [S; 3]) -> Self;
-
-    /// The constants that both forms need.
-    fn common(&self) -> &Common<S>;
 }
 
-/// The constants that both forms need.
-#[derive(Clone, Copy, Debug)]
-pub struct Common<S> {
-    /// m2 l1 lc2, kg m²: how strongly the links accelerate each other.
-    pub coupling: S,
-    /// m2 lc2² + I2, kg m²: the inertia of link 2 about its joint.
-    pub link2: S,
-    /// (m1 lc1 + m2 l1) g, N m.
-    pub gravity1: S,
-    /// m2 lc2 g, N m.
-    pub gravity2: S,
-    /// dt/2, s.
-    pub half_dt: S,
-    /// dt/6, s.
-    pub sixth_dt: S,
+numbers! {
+    /// The constants that both forms need.
+    struct Common {
+        /// m2 l1 lc2, kg m²: how strongly the links accelerate each other.
+        coupling: V,
+        /// m2 lc2² + I2, kg m²: the inertia of link 2 about its joint.
+        link2: V,
+        /// (m1 lc1 + m2 l1) g, N m.
+        gravity1: V,
+        /// m2 lc2 g, N m.
+        gravity2: V,
+        /// dt/2, s.
+        half_dt: V,
+        /// dt/6, s.
+        sixth_dt: V,
+    }
 }
 
 for_f32_and_f64! {

@@ -106,22 +106,32 @@ impl<S: Real> Params<S> {
     #[must_use]
     #[inline]
     pub fn cast<T: Real>(&self) -> Params<T> {
-        let to = |x: S| T::from_f64(x.to_f64());
+        self.zip(self, |x, _| T::from_f64(x.to_f64()))
+    }
+
+    /// Applies `f` to each number and that of `other`, in the order of the fields. The dynamics are those of `self`.
+    #[inline]
+    pub(super) fn zip<T>(&self, other: &Self, mut f: impl FnMut(S, S) -> T) -> Params<T> {
+        let ([negative, zero, positive], torques) = (self.torques, other.torques);
         Params {
-            length1: to(self.length1),
-            length2: to(self.length2),
-            mass1: to(self.mass1),
-            mass2: to(self.mass2),
-            center_of_mass1: to(self.center_of_mass1),
-            center_of_mass2: to(self.center_of_mass2),
-            inertia1: to(self.inertia1),
-            inertia2: to(self.inertia2),
-            gravity: to(self.gravity),
-            dt: to(self.dt),
-            max_velocity1: to(self.max_velocity1),
-            max_velocity2: to(self.max_velocity2),
-            torques: self.torques.map(to),
-            torque_noise: to(self.torque_noise),
+            length1: f(self.length1, other.length1),
+            length2: f(self.length2, other.length2),
+            mass1: f(self.mass1, other.mass1),
+            mass2: f(self.mass2, other.mass2),
+            center_of_mass1: f(self.center_of_mass1, other.center_of_mass1),
+            center_of_mass2: f(self.center_of_mass2, other.center_of_mass2),
+            inertia1: f(self.inertia1, other.inertia1),
+            inertia2: f(self.inertia2, other.inertia2),
+            gravity: f(self.gravity, other.gravity),
+            dt: f(self.dt, other.dt),
+            max_velocity1: f(self.max_velocity1, other.max_velocity1),
+            max_velocity2: f(self.max_velocity2, other.max_velocity2),
+            torques: [
+                f(negative, torques[0]),
+                f(zero, torques[1]),
+                f(positive, torques[2]),
+            ],
+            torque_noise: f(self.torque_noise, other.torque_noise),
             dynamics: self.dynamics,
         }
     }
@@ -147,10 +157,29 @@ impl<S: Real> Params<S> {
     /// [`Error::OutOfRange`] with the first field outside its range, and [`Error::NoInertia`] for a link without
     /// inertia about its joint.
     pub fn validate(&self) -> Result<(), Error> {
+        for (name, value, unit, range) in self.numbers() {
+            range.check(name, value.to_f64(), unit)?;
+        }
+
+        // The acceleration of a link without inertia about its joint is undetermined.
+        for (name, inertia, mass, center) in [
+            ("inertia1", self.inertia1, self.mass1, self.center_of_mass1),
+            ("inertia2", self.inertia2, self.mass2, self.center_of_mass2),
+        ] {
+            if inertia + mass * center * center <= S::ZERO {
+                let value = inertia.to_f64();
+                return Err(Error::NoInertia { name, value });
+            }
+        }
+        Ok(())
+    }
+
+    /// The name, value, unit and range of each number.
+    pub(super) fn numbers(&self) -> [(&'static str, S, &'static str, Range); 16] {
         use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
 
         let [negative, zero, positive] = self.torques;
-        for (name, value, unit, range) in [
+        [
             ("length1", self.length1, "m", AboveZero),
             ("length2", self.length2, "m", AboveZero),
             ("mass1", self.mass1, "kg", AboveZero),
@@ -167,20 +196,6 @@ impl<S: Real> Params<S> {
             ("torques[1]", zero, "N m", Finite),
             ("torques[2]", positive, "N m", Finite),
             ("torque_noise", self.torque_noise, "N m", AtLeastZero),
-        ] {
-            range.check(name, value.to_f64(), unit)?;
-        }
-
-        // The acceleration of a link without inertia about its joint is undetermined.
-        for (name, inertia, mass, center) in [
-            ("inertia1", self.inertia1, self.mass1, self.center_of_mass1),
-            ("inertia2", self.inertia2, self.mass2, self.center_of_mass2),
-        ] {
-            if inertia + mass * center * center <= S::ZERO {
-                let value = inertia.to_f64();
-                return Err(Error::NoInertia { name, value });
-            }
-        }
-        Ok(())
+        ]
     }
 }

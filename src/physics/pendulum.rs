@@ -1,6 +1,6 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
-use super::model::{self, FromParams};
+use super::model;
 use super::{Params, State, step};
 #[cfg(feature = "std")]
 use crate::arithmetic::Host;
@@ -175,7 +175,7 @@ impl<A: Arithmetic> Pendulum<A> {
     pub fn energy(&self) -> A::Scalar {
         let [_, _, dtheta1, dtheta2] = self.y;
         let Model { params, constants } = &self.model;
-        let common = constants.common();
+        let common = A::Form::common(constants);
         common.energy(params, [dtheta1, dtheta2], self.sin_cos())
     }
 
@@ -184,7 +184,7 @@ impl<A: Arithmetic> Pendulum<A> {
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
         let [_, (_, cos2)] = self.sin_cos();
         let Model { params, constants } = &self.model;
-        constants.common().mass_matrix(params, cos2)
+        A::Form::common(constants).mass_matrix(params, cos2)
     }
 
     /// [`positions`] of elbow and tip, m.

@@ -1,0 +1,160 @@
+//! Whether the acrobots of a batch share their parameters, or each has its own.
+
+use core::fmt;
+
+use super::{Batch, Block, check_index};
+use crate::arithmetic::{Arithmetic, Coefficients, Lanes, Model, Real, Zeroed};
+use crate::error::Error;
+use crate::numpy::Pcg64;
+use crate::physics::{Params, ParamsRange};
+
+/// All acrobots of a batch have the same parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct SharedParams;
+
+/// Each acrobot of a batch has its own parameters: for domain randomization.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnParams;
+
+/// Whether acrobots share their parameters: [`SharedParams`] or [`OwnParams`]. No other type can implement it.
+pub trait ParamsKind<A: Arithmetic>: Kind<A> {}
+
+impl<A: Arithmetic, P: Kind<A>> ParamsKind<A> for P {}
+
+/// Where the parameters are.
+pub trait Kind<A: Arithmetic>: Copy + fmt::Debug + Send + Sync {
+    /// What a batch stores.
+    type Shared: Clone + fmt::Debug + Send + Sync;
+
+    /// What a block stores.
+    type Own<const N: usize>: Zeroed + Clone + fmt::Debug + Send + Sync;
+
+    /// What a step reads.
+    type Model<const N: usize>: BlockModel<A, N>;
+
+    /// The default parameters.
+    const SHARED: Self::Shared;
+
+    /// The default parameters in all lanes.
+    fn own<const N: usize>() -> Self::Own<N>;
+
+    /// The model of a block.
+    fn model<'a, const N: usize>(
+        shared: &'a Self::Shared,
+        own: &'a Self::Own<N>,
+    ) -> &'a Self::Model<N>;
+
+    /// Draws the parameters of a lane that is reset, if a range is set.
+    fn draw<const N: usize>(
+        shared: &Self::Shared,
+        own: &mut Self::Own<N>,
+        lane: usize,
+        rng: &mut Pcg64,
+    );
+}
+
+/// What a step of a block needs of its model.
+pub trait BlockModel<A: Arithmetic, const N: usize>: Coefficients<A, Lanes<A::Scalar, N>> {
+    /// The torques of the three actions, N m.
+    fn torques(&self) -> [[A::Scalar; N]; 3];
+
+    /// The torque noise of each lane, N m; `None` if it is 0 in all.
+    fn noise(&self) -> Option<[A::Scalar; N]>;
+}
+
+impl<A: Arithmetic> Kind<A> for SharedParams {
+    type Shared = Model<A>;
+    type Own<const N: usize> = ();
+    type Model<const N: usize> = Model<A>;
+
+    const SHARED: Model<A> = Model::DEFAULT;
+
+    fn own<const N: usize>() {}
+
+    #[inline(always)]
+    fn model<'a, const N: usize>(shared: &'a Model<A>, (): &'a ()) -> &'a Model<A> {
+        shared
+    }
+
+    fn draw<const N: usize>(_: &Model<A>, (): &mut (), _: usize, _: &mut Pcg64) {}
+}
+
+impl<A: Arithmetic, const N: usize> BlockModel<A, N> for Model<A> {
+    #[inline(always)]
+    fn torques(&self) -> [[A::Scalar; N]; 3] {
+        let [negative, zero, positive] = self.params.torques;
+        [[negative; N], [zero; N], [positive; N]]
+    }
+
+    #[inline(always)]
+    fn noise(&self) -> Option<[A::Scalar; N]> {
+        let noise = self.params.torque_noise;
+        (noise > A::Scalar::ZERO).then_some([noise; N])
+    }
+}
+
+impl<A, B, G, const N: usize> Batch<A, B, G, N, SharedParams>
+where
+    A: Arithmetic,
+    B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
+    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
+{
+    /// The parameters of all acrobots.
+    #[must_use]
+    pub fn params(&self) -> &Params<A::Scalar> {
+        &self.settings.params.params
+    }
+
+    /// Sets the parameters of all acrobots for the next steps.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`].
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        self.settings.params = Model::new(params);
+        Ok(())
+    }
+}
+
+/// Parameters for each acrobot.
+impl<A, B, G, const N: usize> Batch<A, B, G, N, OwnParams>
+where
+    A: Arithmetic,
+    B: AsRef<[Block<A, N, OwnParams>]> + AsMut<[Block<A, N, OwnParams>]>,
+    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
+{
+    /// The parameters of acrobot `index`, if there is one.
+    #[must_use]
+    pub fn params_of(&self, index: usize) -> Option<&Params<A::Scalar>> {
+        check_index(index, self.len()).ok()?;
+        let block = self.blocks.as_ref().get(index / N)?;
+        block.own.params(index % N)
+    }
+
+    /// Sets the parameters of acrobot `index` for the next steps.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`], and [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len).
+    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        check_index(index, self.len())?;
+        if let Some(block) = self.blocks.as_mut().get_mut(index / N) {
+            block.own.set_params(index % N, params);
+        }
+        Ok(())
+    }
+
+    /// The range from which each reset draws the acrobot's parameters.
+    #[must_use]
+    pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
+        self.settings.params.as_ref()
+    }
+
+    /// Sets the range from which each reset, also one in a step, first draws the acrobot's parameters and then its
+    /// initial state. With `None`, the default, a reset does not change parameters.
+    pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) {
+        self.settings.params = range;
+    }
+}

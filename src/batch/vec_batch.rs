@@ -1,0 +1,198 @@
+//! A batch that owns its memory.
+
+use alloc::vec::Vec;
+use core::ops::{Deref, DerefMut};
+
+use super::{Batch, Block, Observations, ParamsKind, SharedParams, StepBuffers};
+use crate::arithmetic::Arithmetic;
+use crate::error::Error;
+use crate::numpy::{Pcg64, SeedSequence};
+
+type InVecs<A, P> = Batch<A, Vec<Block<A, 16, P>>, Vec<Pcg64>, 16, P>;
+
+/// A [`Batch`] in `Vec`s, with the memory for the results of its steps.
+///
+/// It has all methods of [`Batch`], except that its steps return their results instead of writing them into buffers.
+/// Only the feature `alloc` has it.
+///
+/// ```
+/// use acrobot::Fast;
+/// use acrobot::batch::VecBatch;
+///
+/// let mut batch = VecBatch::<Fast>::new(42, 1024)?;
+/// for _ in 0..100 {
+///     let results = batch.step(&[2_u8; 1024])?;
+///     assert_eq!(results.observations.len(), 1024);
+/// }
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// With [`OwnParams`](super::OwnParams) each acrobot has its own parameters. Here each episode draws new ones:
+///
+/// ```
+/// use acrobot::batch::{OwnParams, VecBatch};
+/// use acrobot::physics::ParamsRange;
+/// use acrobot::{Fast, Params};
+///
+/// let light = Params { mass1: 0.9, mass2: 0.9, ..Params::DEFAULT };
+/// let heavy = Params { mass1: 1.1, mass2: 1.1, ..Params::DEFAULT };
+/// let mut batch = VecBatch::<Fast, OwnParams>::new(42, 1024)?;
+/// batch.set_params_range(Some(ParamsRange::new(light, heavy)?));
+/// batch.reset();
+/// assert_ne!(batch.params_of(0), batch.params_of(1));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct VecBatch<A: Arithmetic, P: ParamsKind<A> = SharedParams> {
+    batch: InVecs<A, P>,
+    results: Memory,
+}
+
+/// What a step of a [`VecBatch`] returns. Each slice has one element for each acrobot. The next step overwrites them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepResults<'a> {
+    /// −1, or 0 if the acrobot terminated or was only reset.
+    pub rewards: &'a [f32],
+    /// Whether the new state is a goal state.
+    pub terminated: &'a [bool],
+    /// Whether the time limit is reached.
+    pub truncated: &'a [bool],
+    /// The observations of the new states.
+    pub observations: &'a [[f32; 6]],
+    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the episodes that this step
+    /// ended. Those of other acrobots are older, or 0.
+    pub final_observations: &'a [[f32; 6]],
+}
+
+#[derive(Clone, Debug, Default)]
+struct Memory {
+    rewards: Vec<f32>,
+    terminated: Vec<bool>,
+    truncated: Vec<bool>,
+    observations: Vec<[f32; 6]>,
+    final_observations: Vec<[f32; 6]>,
+}
+
+impl<A: Arithmetic, P: ParamsKind<A>> VecBatch<A, P> {
+    /// A batch of `len` acrobots. Acrobot `i` is seeded with the `i`-th child of `seed` and is in its initial state.
+    /// The batch has the default parameters, a limit of 500 steps and
+    /// [`Autoreset::NextStep`](super::Autoreset::NextStep).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::EmptyBatch`] for a `len` of 0, and [`Error::OutOfMemory`].
+    pub fn new(seed: u64, len: usize) -> Result<Self, Error> {
+        Self::with_seed(SeedSequence::new(seed), len)
+    }
+
+    /// As [`new`](Self::new), with a seed of any size. Acrobot `i` is seeded with the `i`-th child that `seed` has not
+    /// yet spawned.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new`](Self::new).
+    pub fn with_seed(seed: SeedSequence, len: usize) -> Result<Self, Error> {
+        let blocks = fill(Block::EMPTY, len.div_ceil(16), len)?;
+        let batch = Batch::with_seed(seed, blocks, fill(Pcg64::UNSEEDED, len, len)?)?;
+        let results = Memory {
+            rewards: fill(0.0, len, len)?,
+            terminated: fill(false, len, len)?,
+            truncated: fill(false, len, len)?,
+            observations: fill([0.0; 6], len, len)?,
+            final_observations: fill([0.0; 6], len, len)?,
+        };
+        Ok(Self { batch, results })
+    }
+
+    /// Applies an action to each acrobot for one dt: the numbers 0, 1 and 2, or [`Action`](crate::Action)s.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Batch::step`].
+    pub fn step<T: Copy + Into<u8> + Sync>(
+        &mut self,
+        actions: &[T],
+    ) -> Result<StepResults<'_>, Error> {
+        self.step_by(|batch, buffers| batch.step(actions, buffers))
+    }
+
+    /// Applies any finite torque, N m, to each acrobot for one dt: for controllers.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Batch::step_torques`].
+    pub fn step_torques(&mut self, torques: &[A::Scalar]) -> Result<StepResults<'_>, Error> {
+        self.step_by(|batch, buffers| batch.step_torques(torques, buffers))
+    }
+
+    /// As [`step`](Self::step), on all cores with rayon. The number of threads changes no bit.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Batch::step`].
+    #[cfg(feature = "rayon")]
+    pub fn par_step<T: Copy + Into<u8> + Sync>(
+        &mut self,
+        actions: &[T],
+    ) -> Result<StepResults<'_>, Error> {
+        self.step_by(|batch, buffers| batch.par_step(actions, buffers))
+    }
+
+    /// As [`step_torques`](Self::step_torques), on all cores with rayon. The number of threads changes no bit.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Batch::step_torques`].
+    #[cfg(feature = "rayon")]
+    pub fn par_step_torques(&mut self, torques: &[A::Scalar]) -> Result<StepResults<'_>, Error> {
+        self.step_by(|batch, buffers| batch.par_step_torques(torques, buffers))
+    }
+
+    #[inline(always)]
+    fn step_by(
+        &mut self,
+        step: impl FnOnce(&mut InVecs<A, P>, StepBuffers<'_>) -> Result<(), Error>,
+    ) -> Result<StepResults<'_>, Error> {
+        let Self { batch, results } = self;
+        step(
+            batch,
+            StepBuffers {
+                rewards: &mut results.rewards,
+                terminated: &mut results.terminated,
+                truncated: &mut results.truncated,
+                observations: Observations::Rows(&mut results.observations),
+                final_observations: Observations::Rows(&mut results.final_observations),
+            },
+        )?;
+        Ok(StepResults {
+            rewards: &results.rewards,
+            terminated: &results.terminated,
+            truncated: &results.truncated,
+            observations: &results.observations,
+            final_observations: &results.final_observations,
+        })
+    }
+}
+
+impl<A: Arithmetic, P: ParamsKind<A>> Deref for VecBatch<A, P> {
+    type Target = InVecs<A, P>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.batch
+    }
+}
+
+impl<A: Arithmetic, P: ParamsKind<A>> DerefMut for VecBatch<A, P> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.batch
+    }
+}
+
+/// `count` copies of a value, if they fit into memory.
+fn fill<T: Clone>(value: T, count: usize, len: usize) -> Result<Vec<T>, Error> {
+    let mut vec = Vec::new();
+    let reserved = vec.try_reserve_exact(count);
+    reserved.map_err(|_| Error::OutOfMemory { len })?;
+    vec.resize(count, value);
+    Ok(vec)
+}

@@ -1,0 +1,93 @@
+//! A range of parameters, to draw from.
+
+use rand_core::Rng;
+
+use super::Params;
+use crate::arithmetic::Real;
+use crate::error::Error;
+use crate::numpy::uniform;
+
+/// A range for each parameter, to draw from: domain randomization.
+///
+/// ```
+/// use acrobot::Params;
+/// use acrobot::numpy::Pcg64;
+/// use acrobot::physics::ParamsRange;
+///
+/// let params = Params::<f64>::DEFAULT;
+/// // Masses within 10 % of Gymnasium's.
+/// let range = ParamsRange::new(
+///     Params { mass1: 0.9, mass2: 0.9, ..params },
+///     Params { mass1: 1.1, mass2: 1.1, ..params },
+/// )?;
+/// let drawn = range.draw(&mut Pcg64::new(42));
+/// assert!((0.9..=1.1).contains(&drawn.mass1) && drawn.length1 == 1.0);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ParamsRange<S = f64> {
+    low: Params<S>,
+    high: Params<S>,
+}
+
+impl<S: Real> ParamsRange<S> {
+    /// The range from `low` to `high`. A parameter that is equal in both is fixed.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`], [`Error::ReversedRange`] for a parameter whose `low` is above its `high`,
+    /// [`Error::OutOfRange`] for a range so wide that its width is infinite, and [`Error::DifferentDynamics`].
+    pub fn new(low: Params<S>, high: Params<S>) -> Result<Self, Error> {
+        low.validate()?;
+        high.validate()?;
+        for ((name, low, unit, _), (_, high, ..)) in low.numbers().into_iter().zip(high.numbers()) {
+            let (low, high) = (low.to_f64(), high.to_f64());
+            if low > high {
+                return Err(Error::ReversedRange {
+                    name,
+                    low,
+                    high,
+                    unit,
+                });
+            }
+            let width = high - low;
+            if !width.is_finite() {
+                return Err(Error::OutOfRange {
+                    name,
+                    value: width,
+                    unit,
+                    rule: "a range of finite width in",
+                });
+            }
+        }
+        if low.dynamics != high.dynamics {
+            return Err(Error::DifferentDynamics);
+        }
+        Ok(Self { low, high })
+    }
+
+    /// The lower bounds.
+    #[must_use]
+    pub const fn low(&self) -> &Params<S> {
+        &self.low
+    }
+
+    /// The upper bounds.
+    #[must_use]
+    pub const fn high(&self) -> &Params<S> {
+        &self.high
+    }
+
+    /// Draws each parameter uniformly, in the order of the fields of [`Params`]. A fixed one draws nothing.
+    pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Params<S> {
+        self.low.zip(&self.high, |low, high| {
+            if low == high {
+                return low;
+            }
+            let drawn = S::from_f64(uniform(rng, low.to_f64(), high.to_f64()));
+            // The sum in `uniform` can round to a number above `high`.
+            if drawn > high { high } else { drawn }
+        })
+    }
+}
