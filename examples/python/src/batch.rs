@@ -308,7 +308,7 @@ trait Engine: Send + Sync {
 }
 
 struct Many<A: Arithmetic> {
-    batch: acrobot::batch::Batch<A, Vec<Block<A::Scalar>>, Vec<Pcg64>>,
+    batch: acrobot::batch::Batch<A, Vec<Block<A>>, Vec<Pcg64>>,
     /// Empty if the actions are torques.
     actions: Vec<u8>,
     /// Empty if they are not.
@@ -325,7 +325,7 @@ impl<A: Arithmetic> Many<A> {
             (len, 0)
         };
         let (Some(blocks), Some(generators), Some(actions), Some(torques)) = (
-            memory(Block::EMPTY, len.div_ceil(Block::<A::Scalar>::LANES)),
+            memory(Block::EMPTY, len.div_ceil(Block::<A>::LANES)),
             memory(Pcg64::UNSEEDED, len),
             memory(0, actions),
             memory(A::Scalar::ZERO, torques),

@@ -91,6 +91,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
             raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
         self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self._same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
         if threads is None:
             threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
         native = Batch(
@@ -228,20 +229,21 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; "
                 'reset it before the next step, with options={"reset_mask": terminated | truncated}'
             )
-        observations = self._empty() if self._observations is None else self._observations
-        rewards = np.empty(self.num_envs, np.float32)
+        n = self.num_envs
+        observations = np.empty((n, 6), np.float32) if self._observations is None else self._observations
+        rewards = np.empty(n, np.float32)
         # Zeros, not empty: a Rust bool must be 0 or 1, and another byte is undefined behaviour.
-        terminated, truncated = np.zeros((2, self.num_envs), np.bool_)
-        finals = self._empty() if self.autoreset_mode is AutoresetMode.SAME_STEP else None
+        terminated, truncated = np.zeros((2, n), np.bool_)
+        finals = np.empty((n, 6), np.float32) if self._same_step else None
         self._native.step(inputs, observations, rewards, terminated, truncated, finals)
         if self._ended is not None:
             np.logical_or(terminated, truncated, out=self._ended)
         infos = {} if finals is None else _final_infos(finals, terminated | truncated)
         if not self._gymnasium_episodes:
             return observations, rewards, terminated, truncated, infos
-        if self.autoreset_mode is AutoresetMode.SAME_STEP:
+        if self._same_step:
             self._observe_initial_states(observations, terminated | truncated)
-        elif self.autoreset_mode is AutoresetMode.NEXT_STEP:
+        elif self._ended is None:
             self._observe_initial_states(observations, (rewards == 0) & ~terminated)
         return observations, rewards.astype(np.float64), terminated, truncated, infos
 
