@@ -16,7 +16,10 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 #: What a call may raise. A panic in Rust raises none of these.
-REJECTIONS = (AssertionError, OverflowError, TypeError, ValueError, gymnasium.error.Error)
+REJECTIONS = (
+    *(AssertionError, AttributeError, NotImplementedError, OverflowError, TypeError, ValueError),
+    gymnasium.error.Error,
+)
 
 NUMBERS = st.one_of(
     st.integers(0, 2),
@@ -119,20 +122,24 @@ def test_a_single_environment(kind, mode, sequence):
 
 
 VECTOR = calls(
-    reset=st.tuples(SEEDS, OPTIONS),
+    reset=st.tuples(SEEDS | st.lists(SEEDS, max_size=4), OPTIONS),
     set=st.tuples(NAMES, VALUES),
+    set_attr=st.tuples(NAMES | st.just("state") | st.text(), VALUES | st.lists(VALUES, max_size=4)),
+    state=st.tuples(st.lists(st.lists(NUMBERS, min_size=4, max_size=4), max_size=4) | ANYTHING),
     step=st.tuples(st.integers(0, 2)),
     actions=st.tuples(st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING),
     render=st.tuples(),
 )
 
 
-@given(FEW, FEW, MODES, st.booleans(), VECTOR)
-def test_a_vector_environment(num_envs, limit, autoreset, copy, sequence):
-    envs = acrobot_rs.AcrobotVectorEnv(num_envs, limit, "ansi", autoreset, copy)
+@given(FEW, FEW, MODES, st.booleans(), st.booleans(), VECTOR)
+def test_a_vector_environment(num_envs, limit, autoreset, copy, gymnasium_episodes, sequence):
+    envs = acrobot_rs.AcrobotVectorEnv(num_envs, limit, "ansi", autoreset, copy, gymnasium_episodes)
     do = {
         "reset": lambda seed, options: envs.reset(seed=seed, options=options)[0],
         "set": lambda name, value: setattr(envs, name, value),
+        "set_attr": envs.set_attr,
+        "state": lambda value: setattr(envs, "state", value),
         "step": lambda action: envs.step([action] * num_envs)[0],
         "actions": lambda actions: envs.step(actions)[0],
         "render": envs.render,
@@ -188,12 +195,14 @@ def test_damaged_snapshots_of_a_batch(snapshot):
         batch.__setstate__(snapshot)
     except ValueError:
         assert batch.__getstate__() == before
-    count = len(batch.states()) // 4
+    count = len(batch)
     observations, finals = np.zeros((2, count, 6), np.float32)
     rewards, (terminated, truncated) = np.zeros(count, np.float32), np.zeros((2, count), np.bool_)
     batch.step(np.ones(count, np.int64), observations, rewards, terminated, truncated, finals)
     assert_numbers(observations)
-    assert np.isfinite(batch.states()).all()
+    states = np.empty((count, 4))
+    batch.states(states)
+    assert np.isfinite(states).all()
 
 
 @given(st.lists(ANYTHING | ARRAYS, min_size=6, max_size=6), MODES, st.booleans())

@@ -1,25 +1,48 @@
 """The vector environment has the documented streams, resets as SyncVectorEnv does, and steps as Gymnasium does within float32."""
 
 import copy
+import multiprocessing
 import pickle
 import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from gymnasium.error import InvalidAction
+from acrobot_rs.vector import AcrobotContinuousVectorEnv
+from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from gymnasium.wrappers.vector import RecordEpisodeStatistics
 
 V1 = "acrobot_rs/Acrobot-v1"
+CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
 MODES = pytest.mark.parametrize("mode", AutoresetMode)
 
 
 def make_vec(num_envs, **kwargs):
     return gymnasium.make_vec(V1, num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
+
+
+def pair(num_envs, mode="NextStep", **kwargs):
+    """Gymnasium's SyncVectorEnv of Gymnasium's Acrobot, and ours with the same episodes."""
+    theirs = gymnasium.make_vec(
+        "Acrobot-v1", num_envs=num_envs, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **kwargs
+    )
+    return theirs, make_vec(num_envs, autoreset_mode=mode, gymnasium_episodes=True, **kwargs)
+
+
+def assert_equal(one, other):
+    """Compares what `reset` or `step` returned: values, types and infos."""
+    for a, b in zip(one[:-1], other[:-1], strict=True):
+        assert a.dtype == b.dtype
+        np.testing.assert_array_equal(a, b)
+    # Lists, because NumPy does not compare arrays of arrays.
+    np.testing.assert_equal(*({key: list(value) for key, value in each[-1].items()} for each in (one, other)))
 
 
 def play(envs, steps, seed):
@@ -28,9 +51,16 @@ def play(envs, steps, seed):
     played = []
     for _ in range(steps):
         *results, infos = envs.step(rng.integers(3, size=envs.num_envs))
-        # Lists, because NumPy does not compare arrays of arrays.
         played.append([results, {key: list(value) for key, value in infos.items()}, envs.state])
+        reset_ended(envs, results[2] | results[3])
     return played
+
+
+def reset_ended(envs, ended):
+    """Resets environments whose episode has ended, if they have no autoreset."""
+    if ended.any() and envs.metadata["autoreset_mode"] is AutoresetMode.DISABLED:
+        return envs.reset(options={"reset_mask": ended.copy()})
+    return None
 
 
 def test_make_vec_gives_no_warning_and_gymnasium_s_spaces():
@@ -83,9 +113,8 @@ def test_resets_are_those_of_sync_vector_env(mode):
         if step % 20 == 10:
             expected, found = theirs.reset(options=bounds), ours.reset(options=bounds)
         elif mode is AutoresetMode.DISABLED and len(expected) == 5 and (ended := expected[2] | expected[3]).any():
-            options = bounds | {"reset_mask": ended.copy()}
-            found = ours.reset(options=options)
-            expected = theirs.reset(options=options)  # last, because it removes the mask from the options
+            found = ours.reset(options=bounds | {"reset_mask": ended.copy()})
+            expected = theirs.reset(options=bounds | {"reset_mask": ended})
         else:
             actions = rng.integers(3, size=count)
             expected, found = theirs.step(actions), ours.step(actions)
@@ -117,6 +146,7 @@ def test_goals_end_episodes_as_in_sync_vector_env(mode):
         assert not rewards[resets].any() and not terminated[resets].any()
         if mode is AutoresetMode.NEXT_STEP:
             resets = terminated | truncated
+        reset_ended(envs, terminated | truncated)
     assert reached > 20
 
 
@@ -159,7 +189,7 @@ def test_damaged_snapshots_are_rejected():
     envs = make_vec(3)
     native = envs._native
     good = native.__getstate__()
-    not_finite = good.replace(envs.state[2, 3].tobytes(), np.float32(np.nan).tobytes())
+    not_finite = good.replace(np.float64(envs.state[2, 3]).tobytes(), np.float64(np.nan).tobytes())
     reasons = "snapshot is damaged|no bytes after its end, got 1|dtheta2 must be a finite number"
     for bad in [b"", good[:-1], good + b"\0", b"\xff" * len(good), not_finite]:
         with pytest.raises(ValueError, match=reasons):
@@ -261,12 +291,38 @@ def test_more_than_memory_is_rejected():
     assert "MemoryError: num_envs must be so few that they fit into memory, got 4294967295" in run.stderr
 
 
+@pytest.mark.parametrize(
+    "call",
+    ["envs.state", "envs.elapsed_steps", "pickle.dumps(envs)", "copy.deepcopy(envs)", "envs.step(actions)",
+     "envs._native.__setstate__(snapshot)"],
+)  # fmt: skip
+def test_a_call_that_does_not_fit_into_memory_raises(call):
+    """In a process that may use 2 MB more than it has when the call begins. The call used to abort the process."""
+    code = f"""if True:
+        import copy, pickle, resource
+        import acrobot_rs
+        import numpy as np
+        envs = acrobot_rs.AcrobotVectorEnv(500_000)
+        observations = envs.reset()  # kept, because the call could use memory that was freed
+        actions, snapshot = np.zeros(envs.num_envs, np.int64), envs._native.__getstate__()
+        pages = int(open("/proc/self/statm").read().split()[0])
+        resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + 2**21,) * 2)
+        try:
+            {call}
+        except MemoryError:
+            print("a MemoryError")
+    """
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (run.returncode, run.stdout) == (0, "a MemoryError\n"), run.stderr
+
+
 def test_the_limit_of_steps_is_read_only():
     """An assignment would have no effect."""
     envs = make_vec(2, max_episode_steps=3)
     with pytest.raises(AttributeError):
         envs.max_episode_steps = 5
     assert envs.max_episode_steps == 3
+    envs.reset()
     assert [envs.step([1, 1])[3].all() for _ in range(3)] == [False, False, True]
 
 
@@ -289,13 +345,19 @@ def test_invalid_bounds_are_rejected(options):
     assert envs._native.__getstate__() == before
 
 
-@pytest.mark.parametrize("mask", [None, True, [1, 0], [False, False], [True], [True, False, True], [[True, False]]])
-def test_invalid_masks_are_rejected(mask):
-    envs = make_vec(2)
-    before = envs._native.__getstate__()
-    with pytest.raises(ValueError, match=r"reset_mask must be an array of bool of shape \(2,\) with a true element, got"):
-        envs.reset(seed=1, options={"reset_mask": mask})
-    assert envs._native.__getstate__() == before
+@pytest.mark.parametrize(
+    ("mask", "error"),
+    [(None, TypeError), ([1, 0], TypeError), (True, ValueError), ([False, False], ValueError), ([True], ValueError),
+     ([True, False, True], ValueError), ([[True, False]], ValueError)],
+)  # fmt: skip
+def test_invalid_masks_are_rejected_with_the_errors_of_sync_vector_env(mask, error):
+    theirs, ours = pair(2)
+    with pytest.raises(error):
+        theirs.reset(seed=1, options={"reset_mask": mask and np.array(mask)})
+    before, options = ours._native.__getstate__(), {"reset_mask": mask}
+    with pytest.raises(error, match=r"reset_mask must (be an array of bool|have shape \(2,\) and a true element), got"):
+        ours.reset(seed=1, options=options)
+    assert ours._native.__getstate__() == before and options == {"reset_mask": mask}
 
 
 @MODES
@@ -317,15 +379,6 @@ def test_other_bytes_than_0_and_1_in_a_mask_become_1():
     """A NumPy bool can be any byte. In Rust a bool that is not 0 or 1 is undefined behaviour."""
     mask = make_vec(4)._mask({"reset_mask": np.array([2, 0, 255, 0], np.uint8).view(np.bool_)})
     assert mask.tobytes() == b"\1\0\1\0"
-
-
-def test_without_autoreset_environments_continue_after_the_end():
-    envs = make_vec(3, autoreset_mode="Disabled", max_episode_steps=5)
-    envs.reset(seed=1)
-    ends = [envs.step([0, 1, 2])[3].any() for _ in range(8)]
-    assert ends == [False] * 4 + [True] * 4
-    envs.reset(options={"reset_mask": [False, True, False]})
-    assert list(envs.step([0, 1, 2])[3]) == [True, False, True]
 
 
 def test_frames_are_those_of_single_environments():
@@ -367,3 +420,375 @@ def test_other_threads_run_while_it_steps():
         done.set()
         thread.join()
         sys.setswitchinterval(interval)
+
+
+# SyncVectorEnv, row by row.
+
+
+def test_the_attributes_of_sync_vector_env():
+    theirs, ours = pair(3)
+    names = ("num_envs", "observation_space", "action_space", "single_observation_space", "single_action_space")
+    for name in (*names, "autoreset_mode", "render_mode", "copy", "closed"):
+        assert getattr(ours, name) == getattr(theirs, name)
+    assert repr(ours) == "AcrobotVectorEnv(acrobot_rs/Acrobot-v1, num_envs=3)"
+    assert ours.unwrapped is ours
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.5])
+@MODES
+def test_gymnasium_s_episodes_bit_identically(mode, noise):
+    """Resets with seeds, bounds and masks, a change of parameters, and thousands of steps of each environment."""
+    theirs, ours = pair(6, mode, max_episode_steps=150)
+    for envs in (theirs, ours):
+        envs.set_attr("torque_noise_max", noise)
+    assert_equal(expected := theirs.reset(seed=2**70), ours.reset(seed=2**70))
+    rng = np.random.default_rng(0)
+    ends = np.zeros(2, int)
+    for step in range(3000):
+        actions = np.where(rng.random(6) < 0.3, rng.integers(3, size=6), np.where(expected[0][:, 4] > 0, 0, 2))
+        expected, found = theirs.step(actions), ours.step(actions)
+        assert_equal(expected, found)
+        np.testing.assert_array_equal(np.array(theirs.get_attr("state"), np.float64), ours.state)
+        np.testing.assert_array_equal(theirs.get_attr("_elapsed_steps"), ours.elapsed_steps)
+        ended = expected[2] | expected[3]
+        ends += expected[2].sum(), expected[3].sum()
+        options = {"low": -0.4, "high": 0.7}
+        if step == 1000:
+            assert_equal(theirs.reset(options=options), ours.reset(options=options))
+        elif step == 1200:
+            for envs in (theirs, ours):
+                envs.set_attr("LINK_MASS_2", 1.5)
+                envs.set_attr("book_or_nips", "nips")
+        elif step == 1400:
+            seeds = [5, None, 7, 2**80, None, 5]
+            assert_equal(theirs.reset(seed=seeds), ours.reset(seed=seeds))
+        elif step in (1600, 1601) or (mode is AutoresetMode.DISABLED and ended.any()):
+            mask = ended | (np.arange(6) % 3 == step % 3)
+            options, twins = options | {"reset_mask": mask}, options | {"reset_mask": mask}
+            assert_equal(theirs.reset(seed=step, options=options), ours.reset(seed=step, options=twins))
+            assert options == twins, "the mask is removed"
+    assert (ends > 20).all()
+
+
+@MODES
+def test_observations_of_initial_states_bit_identically(mode):
+    """Gymnasium computes them in float32. One in 500 differs from the rounded sines of float64, so this takes thousands."""
+    theirs, ours = pair(500, mode, max_episode_steps=1)
+    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
+    mask = np.arange(500) % 2 == 0
+    for bounds in ({"low": -0.4, "high": 0.7}, {"low": -9.0, "high": 9.0}):
+        assert_equal(theirs.reset(options={**bounds}), ours.reset(options={**bounds}))
+        for some in (mask, ~mask):
+            one, other = ({**bounds, "reset_mask": some.copy()} for _ in range(2))
+            assert_equal(theirs.reset(options=one), ours.reset(options=other))
+    for actions in np.random.default_rng(0).integers(3, size=(20, 500)):
+        assert_equal(theirs.step(actions), ours.step(actions))
+        if mode is AutoresetMode.DISABLED:
+            one, other = ({"reset_mask": np.ones(500, bool)} for _ in range(2))
+            assert_equal(theirs.reset(options=one), ours.reset(options=other))
+
+
+def test_a_list_of_seeds_seeds_each_environment_as_a_single_one():
+    for envs in pair(4):
+        with pytest.raises(ValueError, match="4"):
+            envs.reset(seed=[1, 2, 3])
+    envs = make_vec(4)
+    envs.reset(seed=9)
+    before = envs._native.__getstate__()
+    for seeds in [[1, 2, 3], (1,) * 5, *([1, 2, 3, bad] for bad in (-1, "4", 4.0, np.int64(4), 10**5000))]:
+        with pytest.raises((ValueError, gymnasium.error.Error)):
+            envs.reset(seed=seeds)
+        assert envs._native.__getstate__() == before
+    twin = copy.deepcopy(envs)
+    observations, _ = envs.reset(seed=[3, None, 3, 2**100])
+    drawn = np.float32([np.random.default_rng(seed).uniform(-0.1, 0.1, 4) for seed in (3, 3, 2**100)])
+    assert (envs.state[[0, 2, 3]] == drawn).all()
+    twin.reset()
+    assert (envs.state[1] == twin.state[1]).all(), "None continues the stream"
+    assert envs.np_random_seed == 9
+
+
+def test_a_step_before_the_first_reset_is_rejected():
+    for envs in pair(2, render_mode="rgb_array"):
+        for call in (lambda: envs.step(np.array([0, 1])), envs.render):  # noqa: B023
+            with pytest.raises(ResetNeeded):
+                call()
+        envs.reset()
+        envs.step(np.array([0, 1]))
+
+
+def test_without_autoreset_an_ended_episode_must_be_reset():
+    theirs, ours = pair(3, "Disabled", max_episode_steps=5)
+    for envs in (theirs, ours, pickle.loads(pickle.dumps(ours))):
+        envs.reset(seed=1)
+        envs.reset(options={"reset_mask": np.array([True, False, True])})
+        for _ in range(5):
+            envs.step(np.array([0, 1, 2]))
+        twin = copy.deepcopy(envs) if envs is not theirs else envs
+        for each in (envs, twin):
+            with pytest.raises((AssertionError, ResetNeeded)):
+                each.step(np.array([0, 1, 2]))
+        envs.reset(options={"reset_mask": np.array([True, True, False])})
+        with pytest.raises((AssertionError, ResetNeeded)):
+            envs.step(np.array([0, 1, 2]))
+        envs.reset(options={"reset_mask": np.array([False, False, True])})
+        assert not envs.step(np.array([0, 1, 2]))[3].any()
+    before = ours._native.__getstate__()
+    for _ in range(4):
+        ours.step([0, 1, 2])
+    before = ours._native.__getstate__()
+    with pytest.raises(ResetNeeded, match="the episode of environment 0 has ended; reset it before the next step"):
+        ours.step([0, 1, 2])
+    assert ours._native.__getstate__() == before
+    ours.reset()
+    ours.step([0, 1, 2])
+
+
+def test_call_and_get_attr():
+    theirs, ours = pair(3, render_mode="rgb_array")
+    for envs in (theirs, ours):
+        envs.reset(seed=1)
+        envs.step(np.array([0, 1, 2]))
+    for name in ("action_space", "observation_space", "render_mode", "state"):
+        for get in ("get_attr", "call"):
+            expected, found = getattr(theirs, get)(name), getattr(ours, get)(name)
+            assert isinstance(found, tuple)
+            np.testing.assert_equal(found, expected)
+    for name in acrobot_rs.parameters._NAMES:
+        np.testing.assert_equal([list(x) if name == "AVAIL_TORQUE" else x for x in ours.get_attr(name)],
+                                [list(x) if name == "AVAIL_TORQUE" else x for x in theirs.get_attr(name)])  # fmt: skip
+    assert ours.get_attr("elapsed_steps") == theirs.get_attr("_elapsed_steps")
+    assert len(ours.call("render")) == 3 and (ours.call("render")[2] == ours.render()[2]).all()
+    for envs in (theirs, ours):
+        for get in (envs.call, envs.get_attr):
+            with pytest.raises(AttributeError):
+                get("length")
+    with pytest.raises(AttributeError, match="no attribute 'length'; they have .*elapsed_steps.*LINK_LENGTH_1"):
+        ours.call("length")
+
+
+def test_set_attr():
+    theirs, ours = pair(3)
+    for envs in (theirs, ours):
+        envs.reset(seed=1)
+        envs.set_attr("dt", 0.1)
+        envs.set_attr("LINK_MASS_1", [2.0, 2.0, 2.0])
+        envs.set_attr("AVAIL_TORQUE", ([-2.0, 0.5, 2.0],) * 3)
+        for values in ([1.0], (1.0,) * 4):
+            with pytest.raises(ValueError, match="3"):
+                envs.set_attr("LINK_MOI", values)
+    states = np.random.default_rng(0).uniform(-1, 1, (3, 4))
+    for values in (list(states), tuple(states), states[0]):
+        for envs in (theirs, ours):
+            envs.set_attr("state", values)
+        assert_equal(theirs.step(np.array([0, 1, 2])), ours.step([0, 1, 2]))
+    ours.set_attr("state", states)
+    assert (ours.state == states).all()
+    before = ours._native.__getstate__()
+    for name, values, error in [
+        ("dt", [0.1, 0.1, 0.2], NotImplementedError),
+        ("dt", [0.0] * 3, ValueError),
+        ("state", [1.0] * 3, ValueError),
+        ("length", 1, AttributeError),
+        ("elapsed_steps", 1, AttributeError),
+    ]:
+        with pytest.raises(error, match=name):
+            ours.set_attr(name, values)
+        assert ours._native.__getstate__() == before
+
+
+@pytest.mark.parametrize("gymnasium_episodes", [False, True])
+def test_states_can_be_set(gymnasium_episodes):
+    envs = make_vec(40, gymnasium_episodes=gymnasium_episodes, max_episode_steps=70)
+    envs.reset(seed=1)
+    play(envs, 100, 1)
+    twin = copy.deepcopy(envs)
+    envs.state = envs.state
+    np.testing.assert_equal(play(envs, 100, 2), play(twin, 100, 2))
+    elapsed = envs.elapsed_steps
+    states = envs.state
+    states[3] = 1.0, -1.0, 0.5, 300.0
+    states[5] = 7.0, 0.0, 0.0, 0.0
+    envs.state = states
+    assert (envs.state == states).all() and (envs.elapsed_steps == elapsed).all()
+    for row, column, number in [(39, 3, np.nan), (0, 2, -np.inf), *([] if gymnasium_episodes else [(7, 0, 1e39)])]:
+        bad = states.astype(np.float64) + 1.0
+        bad[row, column] = number
+        with pytest.raises(ValueError, match=rf"state\[{row}, {column}\] must be a finite number, got "):
+            envs.state = bad
+    for bad in [states[:39], states.T, states[0], None, [["1"] * 4] * 40, states > 0]:
+        with pytest.raises(ValueError, match=r"state must be numbers of shape \(40, 4\), got"):
+            envs.state = bad
+    assert (envs.state == states).all()
+
+
+def test_after_close_nothing_works():
+    envs = make_vec(2, render_mode="ansi")
+    envs.reset()
+    envs.close()
+    envs.close()
+    assert envs.closed
+    calls = (lambda: envs.step([0, 1]), lambda: envs.call("dt"), lambda: envs.set_attr("dt", 0.1))
+    for call in (envs.reset, envs.render, *calls):
+        with pytest.raises(ClosedEnvironmentError, match="closed"):
+            call()
+
+
+def test_an_unknown_autoreset_mode_lists_the_known_ones():
+    for mode in ("nextstep", None, 1, []):
+        with pytest.raises(ValueError, match=r"autoreset_mode must be one of \['NextStep', 'SameStep', 'Disabled'\], got"):
+            acrobot_rs.AcrobotVectorEnv(2, autoreset_mode=mode)
+
+
+@MODES
+def test_gymnasium_s_wrappers_see_the_same(mode):
+    theirs, ours = (RecordEpisodeStatistics(envs) for envs in pair(3, mode, max_episode_steps=7))
+    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
+    ends = 0
+    for actions in np.random.default_rng(0).integers(3, size=(40, 3)):
+        expected, found = theirs.step(actions), ours.step(actions)
+        if "episode" in expected[-1]:
+            for infos in (expected[-1], found[-1]):
+                infos["episode"].pop("t")  # the time
+            np.testing.assert_equal(found[-1].pop("episode"), expected[-1].pop("episode"))
+            ends += 1
+        assert_equal(expected, found)
+        if (ended := expected[3]).any() and mode is AutoresetMode.DISABLED:
+            expected = theirs.reset(options={"reset_mask": ended.copy()})
+            assert_equal(expected, ours.reset(options={"reset_mask": ended.copy()}))
+    assert ends >= 5
+
+
+# What SyncVectorEnv does not have.
+
+
+@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotVectorEnv, AcrobotContinuousVectorEnv])
+@pytest.mark.parametrize(("count", "gymnasium_episodes"), [(40_003, False), (3_003, True)])
+def test_threads_change_no_bit(kind, count, gymnasium_episodes):
+    plays = []
+    for threads in (1, 3, None):
+        envs = kind(count, 9, None, "SameStep", gymnasium_episodes=gymnasium_episodes, threads=threads)
+        envs.reset(seed=1)
+        envs.torque_noise_max = 0.5
+        envs.action_space.seed(1)
+        plays.append([[*envs.step(envs.action_space.sample())[:4], envs.state] for _ in range(12)])
+    np.testing.assert_equal(plays[0], plays[1])
+    np.testing.assert_equal(plays[0], plays[2])
+    with pytest.raises(ValueError, match="threads must be an integer from 1"):
+        kind(2, threads=0)
+
+
+def test_only_large_steps_start_threads():
+    tasks = Path("/proc/self/task")
+    if not tasks.exists():
+        pytest.skip("counts the threads of Linux")
+    before = len(list(tasks.iterdir()))
+    small, large = make_vec(512, threads=3), make_vec(40_000, threads=3)
+    for envs, started in [(small, 0), (large, 3)]:
+        envs.reset(seed=1)
+        envs.step(np.zeros(envs.num_envs, np.int64))
+        assert len(list(tasks.iterdir())) == before + started
+
+
+def step_in_a_child(envs, connection):
+    connection.send(envs.step(np.zeros(envs.num_envs, np.int64))[0])
+
+
+@pytest.mark.skipif("fork" not in multiprocessing.get_all_start_methods(), reason="needs fork")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+@pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")
+def test_threads_in_a_forked_process():
+    """A child has none of its parent's threads. Waiting for them would take forever."""
+    envs = make_vec(40_000, threads=2)
+    envs.reset(seed=1)
+    envs.step(np.zeros(envs.num_envs, np.int64))
+    ours, theirs = multiprocessing.Pipe()
+    child = multiprocessing.get_context("fork").Process(target=step_in_a_child, args=(envs, theirs))
+    child.start()
+    try:
+        assert ours.poll(30), "the child hangs"
+        assert (ours.recv() == envs.step(np.zeros(envs.num_envs, np.int64))[0]).all()
+    finally:
+        child.kill()
+        child.join()
+
+
+def test_a_thread_steps_while_the_program_does_something_else():
+    """As AsyncVectorEnv's step_async and step_wait."""
+    envs, twin = make_vec(8), make_vec(8)
+    envs.reset(seed=1), twin.reset(seed=1)
+    actions = np.arange(8) % 3
+    with ThreadPoolExecutor(1) as executor:
+        step = executor.submit(envs.step, actions)
+        assert_equal(step.result(), twin.step(actions))
+
+
+@pytest.mark.parametrize("gymnasium_episodes", [False, True])
+def test_copy_copy_shares_nothing(gymnasium_episodes):
+    for copies in (True, False):
+        envs = make_vec(5, copy=copies, gymnasium_episodes=gymnasium_episodes, autoreset_mode="Disabled")
+        observations, _ = envs.reset(seed=1)
+        twin = copy.copy(envs)
+        before, seen = envs.state, observations.copy()
+        twin.dt = 0.1
+        assert (twin.reset(seed=2)[0] != observations).any() and (twin.step([0, 1, 2, 0, 1])[0] != seen).any()
+        assert envs.dt == 0.2 and (envs.state == before).all() and (observations == seen).all()
+
+
+@pytest.mark.parametrize("gymnasium_episodes", [False, True])
+def test_continuous_torques(gymnasium_episodes):
+    """Torques of -1, 0 and 1 N m are the actions 0, 1 and 2. Torques beyond the bounds act as the bounds."""
+    kwargs = {"gymnasium_episodes": gymnasium_episodes, "autoreset_mode": "SameStep", "max_episode_steps": 60}
+    discrete, torques = make_vec(30, **kwargs), AcrobotContinuousVectorEnv(30, **kwargs)
+    assert torques.single_action_space == gymnasium.spaces.Box(-1.0, 1.0, (1,), np.float32)
+    assert torques.action_space == gymnasium.spaces.Box(-1.0, 1.0, (30, 1), np.float32)
+    assert_equal(discrete.reset(seed=1), torques.reset(seed=1))
+    for actions in np.random.default_rng(0).integers(3, size=(200, 30)):
+        expected = discrete.step(actions)
+        assert_equal(expected, torques.step(np.float32(actions[:, None] - 1)))
+    discrete.step(np.array([0, 2] * 15))
+    torques.step([[-3.0], [np.inf]] * 15)
+    assert (discrete.state == torques.state).all()
+    discrete.step([0] * 30)
+    torques.step(np.full((30, 1), 0.5))
+    assert (discrete.state != torques.state).any()
+
+
+@pytest.mark.skipif(CONTINUOUS not in gymnasium.registry, reason="needs the single environment")
+@MODES
+def test_continuous_torques_give_the_episodes_of_single_environments(mode):
+    theirs = gymnasium.make_vec(
+        CONTINUOUS, num_envs=6, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, max_episode_steps=60
+    )
+    ours = gymnasium.make_vec(CONTINUOUS, num_envs=6, autoreset_mode=mode, gymnasium_episodes=True, max_episode_steps=60)
+    assert isinstance(ours, AcrobotContinuousVectorEnv) and ours.action_space == theirs.action_space
+    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
+    for actions in np.random.default_rng(0).uniform(-1.5, 1.5, (300, 6, 1)).astype(np.float32):
+        expected = theirs.step(actions)
+        assert_equal(expected, ours.step(actions))
+        for envs in (theirs, ours):
+            reset_ended(envs, expected[2] | expected[3])
+
+
+@pytest.mark.parametrize(
+    "actions", [[[0.5]], [0.5, 0.5], [[0.5, 0.5]], [[np.nan], [0.0]], [["0"], ["1"]], [[True], [False]], None]
+)
+def test_invalid_torques_are_rejected(actions):
+    envs = AcrobotContinuousVectorEnv(2)
+    envs.reset(seed=1)
+    before = envs._native.__getstate__()
+    with pytest.raises(InvalidAction, match=r"actions(\[0\])? must be (numbers of shape \(2, 1\)|a number, N m), got"):
+        envs.step(actions)
+    assert envs._native.__getstate__() == before
+
+
+def test_the_bounds_of_torques_are_those_of_avail_torque():
+    class Strong(AcrobotContinuousVectorEnv):
+        AVAIL_TORQUE = (3.0, -2.0, 0.0)
+
+    envs, twin = Strong(2), Strong(2)
+    assert envs.single_action_space == gymnasium.spaces.Box(-2.0, 3.0, (1,), np.float32)
+    for each, actions in [(envs, [[-9.0], [9.0]]), (twin, [[-2.0], [3.0]])]:
+        each.reset(seed=1)
+        each.step(actions)
+    assert (envs.state == twin.state).all()

@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+import copy
+import os
 from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from gymnasium.error import InvalidAction
+from gymnasium.error import ClosedEnvironmentError, Error, InvalidAction, ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.parameters import Parameters, reset_bounds
+from acrobot_rs.parameters import _NAMES, Parameters, reset_bounds
 
+Seed = int | list[int | None] | tuple[int | None, ...] | None
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
+#: What ``get_attr`` and ``call`` know. ``set_attr`` knows the parameters and ``state``.
+_ATTRIBUTES = (
+    *("action_space", "elapsed_steps", "max_episode_steps", "metadata", "observation_space"),
+    *("render", "render_mode", "spec", "state", *_NAMES),
+)
 
-class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], np.ndarray]):
+
+class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
     All have the same parameters. They are computed in ``float32``, bit-identically on every machine. Each step is as close to
@@ -27,6 +36,9 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
     Environment ``i`` draws from the ``i``-th child of the seed, ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
     So more environments do not change the first ones, and two seeds share no stream. ``SyncVectorEnv`` seeds environment
     ``i`` with ``seed + i``.
+
+    With ``gymnasium_episodes=True`` environments are computed and seeded as in ``SyncVectorEnv`` of Gymnasium's
+    ``Acrobot-v1``. All results are bit-identical to its results where those of :class:`acrobot_rs.AcrobotEnv` are.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -42,6 +54,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
     }
 
     _native: Batch
+    #: Whether actions are torques.
+    _CONTINUOUS = False
 
     def __init__(
         self,
@@ -50,8 +64,10 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         render_mode: str | None = None,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         copy: bool = True,
+        gymnasium_episodes: bool = False,
+        threads: int | None = 1,
     ) -> None:
-        """Make environments and reset them with a random seed, ``np_random_seed``.
+        """Make environments. Reset them before their first step.
 
         Args:
             num_envs: The number of environments, at least 1.
@@ -59,27 +75,49 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
             render_mode: ``None``, ``"rgb_array"`` or ``"ansi"``.
             autoreset_mode: ``NextStep``: the step after an episode's end resets, ignores its action and returns a reward of 0.
                 ``SameStep``: the step that ends an episode also resets, and ``infos["final_obs"]`` has the episode's last
-                observation. ``Disabled``: an environment continues to step after an episode's end, until it is reset by a
-                ``reset`` of all or by one with a ``"reset_mask"``.
+                observation. ``Disabled``: a ``reset`` of all, or one with a ``"reset_mask"``, must reset an environment whose
+                episode has ended before the next step.
             copy: Whether each call returns observations in a new array. Otherwise all calls return the same array.
+            gymnasium_episodes: Whether to play Gymnasium's own episodes: computed in ``float64``, environment ``i`` seeded
+                with ``seed + i``, and rewards as ``float64``. Steps then take 25 times as long.
+            threads: The threads that compute a step; ``None``: as many as the process has cores. They change no bit. More
+                than one is faster only for more than 16,384 environments, or 1,024 with ``gymnasium_episodes``.
 
         Raises:
             ValueError: If a number is out of its range or a mode is unknown.
             MemoryError: If the environments do not fit into memory.
         """
-        autoreset_mode = AutoresetMode(autoreset_mode)
-        self._same_step = autoreset_mode is AutoresetMode.SAME_STEP
-        native = Batch(num_envs, str(self.np_random_seed), max_episode_steps, autoreset_mode.value)
+        modes = [mode.value for mode in AutoresetMode]
+        if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
+            raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self._same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
+        if threads is None:
+            threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        native = Batch(
+            num_envs,
+            str(self.np_random_seed),
+            max_episode_steps,
+            self.autoreset_mode.value,
+            gymnasium_episodes,
+            self._CONTINUOUS,
+            threads,
+        )
         super().__init__(native, render_mode)
-        self.metadata = {**self.metadata, "autoreset_mode": autoreset_mode}
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self.num_envs = num_envs
         self._max_episode_steps = max_episode_steps
+        self._gymnasium_episodes = gymnasium_episodes
         self.copy = copy
-        self.single_action_space = spaces.Discrete(3)
+        self.single_action_space = self._action_space
         self.single_observation_space = self._observation_space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self._observations = self._empty()
+        self._observations = None if copy else self._empty()
+        # Without autoreset: the environments that must be reset before the next step.
+        self._ended = np.zeros(num_envs, np.bool_) if self.autoreset_mode is AutoresetMode.DISABLED else None
+        #: Whether it was reset and not closed.
+        self._ready = False
 
     @property
     def max_episode_steps(self) -> int:
@@ -87,38 +125,84 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         return self._max_episode_steps
 
     @property
-    def state(self) -> Floats:
-        """theta1, theta2 (rad) and their velocities (rad/s) of each environment: a copy, of shape ``(num_envs, 4)``."""
-        return self._native.states().reshape(self.num_envs, 4)
+    def state(self) -> NDArray[np.floating[Any]]:
+        """theta1, theta2 (rad) and their velocities (rad/s) of each environment: a copy, of shape ``(num_envs, 4)``.
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
+        To set the states, assign an array of this shape. To set some, change rows of a copy and assign it. Episodes continue.
+        Their numbers of steps do not change.
+
+        Raises:
+            ValueError: If the shape is another one, or if a number is not finite. No state changes then.
+        """
+        states = np.empty((self.num_envs, 4), np.float64)
+        self._native.states(states)
+        return states if self._gymnasium_episodes else states.astype(np.float32)
+
+    @state.setter
+    def state(self, states: ArrayLike) -> None:
+        states = np.asarray(states)
+        if states.shape != (self.num_envs, 4) or states.dtype.kind not in "fiu":
+            raise ValueError(
+                f"state must be numbers of shape ({self.num_envs}, 4), got {states.dtype} of shape {states.shape}"
+            )
+        with np.errstate(over="ignore"):
+            finite = np.isfinite(states if self._gymnasium_episodes else states.astype(np.float32))
+        if not finite.all():
+            row, column = np.argwhere(~finite)[0]
+            raise ValueError(f"state[{row}, {column}] must be a finite number, got {states[row, column]}")
+        self._native.set_states(np.ascontiguousarray(states, np.float64))
+
+    @property
+    def elapsed_steps(self) -> NDArray[np.int64]:
+        """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
+        elapsed = np.empty(self.num_envs, np.int64)
+        self._native.elapsed(elapsed)
+        return elapsed
+
+    def reset(self, *, seed: Seed = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment.
 
         Args:
-            seed: An integer of at least 0 with at most 4,300 digits. Its children seed the environments' streams. With
-                ``None`` the streams continue.
+            seed: An integer of at least 0 with at most 4,300 digits. Its children seed the environments' streams; with
+                ``gymnasium_episodes``, ``seed + i`` seeds environment ``i``. Or a list with an integer or ``None`` for each
+                environment: its element seeds environment ``i`` as it seeds a single one. Where the seed is ``None`` the
+                stream continues. A list does not change ``np_random``.
             options: ``"low"`` and ``"high"``: the bounds of these initial states, rad and rad/s; by default -0.1 and 0.1.
                 Autoresets always use -0.1 and 0.1. ``"reset_mask"``: an array of ``bool`` of shape ``(num_envs,)``;
-                environments whose element is false are neither seeded nor reset.
+                environments whose element is false are neither seeded nor reset. As in ``SyncVectorEnv``, it is removed from
+                ``options``.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and empty infos.
 
         Raises:
-            ValueError: If a bound is not a finite number, if low is above high, or if the mask has another type or shape
-                or no true element. Nothing changes then.
+            TypeError: If the mask is not an array of ``bool``. Nothing changes then.
+            ValueError: If a bound is not a finite number, if low is above high, if the mask has another shape or no true
+                element, or if the list of seeds has another length. Nothing changes then.
+            gymnasium.error.Error: If a seed is not an integer of at least 0. Nothing changes then.
         """
+        self._check_open()
         low, high = reset_bounds(options)
         mask = self._mask(options)
-        # Gymnasium accepts True as 1. `str` rejects too many digits here, and `super().reset` rejects other types below.
-        digits = str(int(seed)) if isinstance(seed, int) else None
-        super().reset(seed=seed)
-        self._native.reset(digits, low, high, mask)
-        observations = self._empty() if self.copy else self._observations
+        child_of, seeds = self._seeds(seed)
+        if not isinstance(seed, list | tuple):
+            super().reset(seed=seed)
+        if seeds is not None:
+            every = np.ones(self.num_envs, np.bool_) if mask is None else mask
+            self._native.seed([each if some else None for each, some in zip(seeds, every, strict=True)])
+        self._native.reset(child_of, low, high, mask)
+        if mask is not None and options is not None:
+            del options["reset_mask"]
+        if self._ended is not None:
+            self._ended[slice(None) if mask is None else mask] = False
+        self._ready = True
+        observations = self._empty() if self._observations is None else self._observations
         self._native.observe(observations)
+        if self._gymnasium_episodes:
+            self._observe_initial_states(observations, self.elapsed_steps == 0)
         return observations, {}
 
-    def step(self, actions: ArrayLike) -> tuple[Floats, Floats, Bools, Bools, dict[str, Any]]:
+    def step(self, actions: ArrayLike) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
         """Step each environment. Other Python threads can run meanwhile.
 
         Args:
@@ -132,45 +216,192 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[np.integer[Any]], n
         Raises:
             gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the array. No environment steps
                 then.
+            gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an episode has ended and its
+                environment was not reset. No environment steps then.
+            gymnasium.error.ClosedEnvironmentError: After ``close``.
         """
-        actions = np.asarray(actions)
-        if actions.dtype.kind not in "iu" or actions.shape != (self.num_envs,):
-            raise InvalidAction(
-                f"actions must be integers of shape ({self.num_envs},), got {actions.dtype} of shape {actions.shape}"
+        if not self._ready:
+            self._check_open()
+            raise ResetNeeded("the environments have no states yet; call reset before step")
+        inputs = self._inputs(actions)
+        if self._ended is not None and self._ended.any():
+            raise ResetNeeded(
+                f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; "
+                'reset it before the next step, with options={"reset_mask": terminated | truncated}'
             )
-        observations = self._empty() if self.copy else self._observations
-        rewards = np.empty(self.num_envs, np.float32)
+        n = self.num_envs
+        observations = np.empty((n, 6), np.float32) if self._observations is None else self._observations
+        rewards = np.empty(n, np.float32)
         # Zeros, not empty: a Rust bool must be 0 or 1, and another byte is undefined behaviour.
-        terminated, truncated = np.zeros((2, self.num_envs), np.bool_)
-        finals = self._empty() if self._same_step else None
-        # An array over packed bytes is not aligned, which Rust requires.
-        actions = np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.int64)
-        self._native.step(actions, observations, rewards, terminated, truncated, finals)
+        terminated, truncated = np.zeros((2, n), np.bool_)
+        finals = np.empty((n, 6), np.float32) if self._same_step else None
+        self._native.step(inputs, observations, rewards, terminated, truncated, finals)
+        if self._ended is not None:
+            np.logical_or(terminated, truncated, out=self._ended)
         infos = {} if finals is None else _final_infos(finals, terminated | truncated)
-        return observations, rewards, terminated, truncated, infos
+        if not self._gymnasium_episodes:
+            return observations, rewards, terminated, truncated, infos
+        if self._same_step:
+            self._observe_initial_states(observations, terminated | truncated)
+        elif self._ended is None:
+            self._observe_initial_states(observations, (rewards == 0) & ~terminated)
+        return observations, rewards.astype(np.float64), terminated, truncated, infos
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """The value of an attribute for each environment, or the results of its method ``render``.
+
+        Args:
+            name: A parameter, ``"state"``, ``"elapsed_steps"`` or another attribute that the error message lists.
+            *args: The arguments of the method.
+            **kwargs: The keyword arguments of the method.
+
+        Raises:
+            AttributeError: If the name is unknown.
+        """
+        self._check_open()
+        if name not in _ATTRIBUTES:
+            raise AttributeError(f"the environments have no attribute {name!r}; they have {', '.join(_ATTRIBUTES)}")
+        if name in ("action_space", "observation_space"):
+            name = f"single_{name}"
+        value = getattr(self, name)
+        if name == "render":
+            frames = self.render(*args, **kwargs)
+            return (None,) * self.num_envs if frames is None else frames
+        return tuple(value) if name in ("state", "elapsed_steps") else (value,) * self.num_envs
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """The value of an attribute for each environment. As :meth:`call`."""
+        return self.call(name)
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Set a parameter or the state.
+
+        Args:
+            name: A parameter or ``"state"``.
+            values: A list or tuple with a value for each environment, or one value for all. Parameters of the environments
+                must be equal.
+
+        Raises:
+            AttributeError: If the name is neither a parameter nor ``"state"``.
+            ValueError: If a value is invalid, or if a list has another length. Nothing changes then.
+            NotImplementedError: If values of a parameter differ. Nothing changes then.
+        """
+        self._check_open()
+        if name not in (*_NAMES, "state"):
+            raise AttributeError(f"set_attr cannot set {name!r}; it can set state, {', '.join(_NAMES)}")
+        each = isinstance(values, list | tuple)
+        if each and len(values) != self.num_envs:
+            raise ValueError(f"values must have one element for each of {self.num_envs} environments, got {len(values)}")
+        if name == "state":
+            self.state = values if np.shape(values) != (4,) else np.tile(values, (self.num_envs, 1))
+            return
+        if each and not all(np.array_equal(value, values[0]) for value in values):
+            raise NotImplementedError(f"{name} must be the same in all environments")
+        setattr(self, name, values[0] if each else values)
 
     def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
         """For each environment an array of shape ``(500, 500, 3)`` or a text, depending on the render mode.
 
         Without a render mode, warns and returns ``None``.
         """
+        self._check_open()
         if self.render_mode is None:
             self._warn_of_no_render_mode()
             return None
+        if not self._ready:
+            raise ResetNeeded("the environments have no states yet; call reset before render")
         return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
+        self._ready = False
+
+    def __copy__(self) -> AcrobotVectorEnv:
+        """As ``copy.deepcopy``: two objects with the same states would be no copies."""
+        return copy.deepcopy(self)
+
+    @property
+    def _action_space(self) -> spaces.Space[Any]:
+        return spaces.Discrete(3)
+
+    def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
+        actions = np.asarray(actions)
+        if actions.dtype.kind not in "iu" or actions.shape != (self.num_envs,):
+            raise InvalidAction(
+                f"actions must be integers of shape ({self.num_envs},), got {actions.dtype} of shape {actions.shape}"
+            )
+        # An array over packed bytes is not aligned, which Rust requires.
+        return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.int64)
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError("the environments were closed; make new ones")
 
     def _mask(self, options: dict[str, Any] | None) -> Bools | None:
         if options is None or "reset_mask" not in options:
             return None
         mask = np.asarray(options["reset_mask"])
-        if mask.dtype != np.bool_ or mask.shape != (self.num_envs,) or not mask.any():
-            raise ValueError(
-                f"reset_mask must be an array of bool of shape ({self.num_envs},) with a true element, got {mask!r}"
-            )
+        if mask.dtype != np.bool_:
+            raise TypeError(f"reset_mask must be an array of bool, got {mask!r}")
+        if mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(f"reset_mask must have shape ({self.num_envs},) and a true element, got {mask!r}")
         return mask.view(np.uint8) != 0  # a NumPy bool can be any byte, but Rust's only 0 or 1
+
+    def _seeds(self, seed: Seed) -> tuple[str | None, list[str | None] | None]:
+        """The digits of the seed whose children seed all environments, or of a seed for each environment."""
+        if isinstance(seed, list | tuple):
+            if len(seed) != self.num_envs:
+                raise ValueError(f"seed must have one element for each of {self.num_envs} environments, got {len(seed)}")
+            return None, [None if each is None else _digits(each) for each in seed]
+        digits = None if seed is None else _digits(seed)
+        if digits is None or not self._gymnasium_episodes:
+            return digits, None
+        return None, [_digits(seed + i) for i in range(self.num_envs)]
+
+    def _observe_initial_states(self, observations: Floats, which: Bools) -> None:
+        """Write the observations of initial states. Gymnasium computes their sines with NumPy in ``float32``."""
+        if which.any():
+            angles = self.state[which, :2].astype(np.float32)
+            cosines, sines = np.cos(angles), np.sin(angles)
+            observations[which, :4] = np.stack([cosines, sines], axis=2).reshape(-1, 4)
 
     def _empty(self) -> Floats:
         return np.empty((self.num_envs, 6), np.float32)
+
+
+class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
+    """As :class:`AcrobotVectorEnv`, but the actions are torques: ``float32`` of shape ``(num_envs, 1)``, in N m.
+
+    A torque beyond the bounds of the action space, which are the smallest and the largest of ``AVAIL_TORQUE``, acts as the
+    nearest bound.
+
+    >>> import acrobot_rs.vector
+    >>> envs = acrobot_rs.vector.AcrobotContinuousVectorEnv(num_envs=1024)
+    >>> envs.action_space.shape
+    (1024, 1)
+    """
+
+    _CONTINUOUS = True
+
+    @property
+    def _action_space(self) -> spaces.Space[Any]:
+        return spaces.Box(min(self.AVAIL_TORQUE), max(self.AVAIL_TORQUE), (1,), np.float32)
+
+    def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
+        actions = np.asarray(actions)
+        if actions.dtype.kind not in "fiu" or actions.shape != (self.num_envs, 1):
+            raise InvalidAction(
+                f"actions must be numbers of shape ({self.num_envs}, 1), got {actions.dtype} of shape {actions.shape}"
+            )
+        return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.float32)
+
+
+def _digits(seed: Any) -> str:
+    """The digits of a seed. `str` rejects more than 4,300."""
+    # Gymnasium accepts True as 1.
+    if not isinstance(seed, int) or seed < 0:
+        raise Error(f"seed must be an integer of at least 0, got {seed!r}")
+    return str(int(seed))
 
 
 def _final_infos(finals: Floats, ended: Bools) -> dict[str, Any]:

@@ -1,0 +1,109 @@
+"""The vector environment for Stable-Baselines3, which does not take Gymnasium's vector environments.
+
+This module needs ``stable-baselines3``, which the package does not install.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from numpy.typing import NDArray
+from stable_baselines3.common.vec_env import VecEnv
+
+from acrobot_rs.vector import AcrobotVectorEnv
+
+Indices = int | Iterable[int] | None
+
+
+class AcrobotVecEnv(VecEnv):
+    """An :class:`acrobot_rs.AcrobotVectorEnv`, or its continuous kind, as Stable-Baselines3's ``VecEnv``.
+
+    Its results are those of ``DummyVecEnv``: a step that ends an episode also resets, and the environment's info has
+    ``"terminal_observation"`` and ``"TimeLimit.truncated"``. Returns of episodes are logged by Stable-Baselines3's
+    ``VecMonitor``.
+
+    >>> import gymnasium as gym
+    >>> import acrobot_rs
+    >>> from acrobot_rs.sb3 import AcrobotVecEnv
+    >>> envs = AcrobotVecEnv(gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=64, autoreset_mode="SameStep"))
+    >>> envs.reset().shape
+    (64, 6)
+    """
+
+    def __init__(self, envs: AcrobotVectorEnv) -> None:
+        """Take environments over.
+
+        Args:
+            envs: Environments with ``autoreset_mode="SameStep"``.
+
+        Raises:
+            ValueError: If they have another autoreset mode.
+        """
+        if envs.autoreset_mode is not AutoresetMode.SAME_STEP:
+            raise ValueError(f'autoreset_mode must be "SameStep", got "{envs.autoreset_mode.value}"')
+        self.envs = envs
+        super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
+
+    def reset(self) -> NDArray[np.float32]:
+        """Begin all episodes, with the seeds of :meth:`seed` and the options of ``set_options``, if there are new ones."""
+        if any(options != self._options[0] for options in self._options):
+            raise ValueError("options must be the same for all environments")
+        # Without seeds the streams continue.
+        seeds = self._seeds if any(seed is not None for seed in self._seeds) else None
+        observations, _ = self.envs.reset(seed=seeds, options=dict(self._options[0]))
+        self._reset_seeds()
+        self._reset_options()
+        return observations
+
+    def step_async(self, actions: NDArray[Any]) -> None:
+        """Keep the actions. :meth:`step_wait` steps."""
+        self._actions = actions
+
+    def step_wait(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
+        """Step, and reset the environments whose episode ends.
+
+        Returns:
+            Observations, rewards, whether the episodes ended, and an info for each environment.
+        """
+        observations, rewards, terminated, truncated, infos = self.envs.step(self._actions)
+        ended = terminated | truncated
+        each: list[dict[str, Any]] = [{"TimeLimit.truncated": False} for _ in range(self.num_envs)]
+        for index in np.flatnonzero(ended):
+            each[index] = {
+                "TimeLimit.truncated": bool(truncated[index] and not terminated[index]),
+                "terminal_observation": infos["final_obs"][index],
+            }
+        return observations, rewards.astype(np.float32, copy=False), ended, each
+
+    def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
+        """The value of an attribute for each of these environments. See :meth:`AcrobotVectorEnv.call`."""
+        values = self.envs.get_attr(attr_name)
+        return [values[index] for index in self._get_indices(indices)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
+        """Set the state of these environments, or a parameter of all. See :meth:`AcrobotVectorEnv.set_attr`."""
+        values = list(self.envs.get_attr(attr_name))
+        for index in self._get_indices(indices):
+            values[index] = value
+        self.envs.set_attr(attr_name, values)
+
+    def env_method(self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any) -> list[Any]:
+        """The results of a method, which can only be ``render``, for each of these environments."""
+        values = self.envs.call(method_name, *args, **kwargs)
+        return [values[index] for index in self._get_indices(indices)]
+
+    def env_is_wrapped(self, wrapper_class: type[gymnasium.Wrapper], indices: Indices = None) -> list[bool]:
+        """``False`` for each of these environments: they have no wrappers."""
+        return [False for _ in self._get_indices(indices)]
+
+    def get_images(self) -> Sequence[NDArray[np.uint8] | str | None]:
+        """A picture of each environment, which ``render`` joins."""
+        return self.envs.render() or [None] * self.num_envs
+
+    def close(self) -> None:
+        """Close the environments."""
+        self.envs.close()

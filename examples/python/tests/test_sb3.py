@@ -1,0 +1,181 @@
+"""The adapter for Stable-Baselines3 does what its DummyVecEnv does.
+
+Without Stable-Baselines3, which takes 5 GB, a base class with its abstract methods stands in, and tests that need more are
+skipped.
+"""
+
+import abc
+import importlib.util
+import sys
+import types
+
+import acrobot_rs.vector
+import gymnasium
+import numpy as np
+import pytest
+
+HAS_SB3 = importlib.util.find_spec("stable_baselines3") is not None
+NEEDS_SB3 = pytest.mark.skipif(not HAS_SB3, reason="needs stable-baselines3")
+METHODS = ("close", "env_is_wrapped", "env_method", "get_attr", "reset", "set_attr", "step_async", "step_wait")
+
+
+class VecEnv(abc.ABC):
+    """What the adapter uses of Stable-Baselines3 2.9's VecEnv."""
+
+    def __init__(self, num_envs, observation_space, action_space):
+        self.num_envs, self.observation_space, self.action_space = num_envs, observation_space, action_space
+        self._reset_seeds()
+        self._reset_options()
+        self.render_mode = self.get_attr("render_mode")[0]
+
+    def _reset_seeds(self):
+        self._seeds = [None] * self.num_envs
+
+    def _reset_options(self):
+        self._options = [{} for _ in range(self.num_envs)]
+
+    def _get_indices(self, indices):
+        return range(self.num_envs) if indices is None else [indices] if isinstance(indices, int) else indices
+
+    def seed(self, seed):
+        self._seeds = [seed + index for index in range(self.num_envs)]
+        return self._seeds
+
+    def set_options(self, options):
+        self._options = [dict(options) for _ in range(self.num_envs)] if isinstance(options, dict) else options
+
+    def step(self, actions):
+        self.step_async(actions)
+        return self.step_wait()
+
+
+for name in METHODS:
+    setattr(VecEnv, name, abc.abstractmethod(lambda self: None))
+VecEnv.__abstractmethods__ = frozenset(METHODS)
+
+
+@pytest.fixture(autouse=True)
+def sb3(monkeypatch):
+    """Our adapter, on the real base class or on the one above."""
+    if not HAS_SB3:
+        module = types.ModuleType("stable_baselines3.common.vec_env")
+        module.VecEnv = VecEnv
+        for path in ("stable_baselines3", "stable_baselines3.common"):
+            monkeypatch.setitem(sys.modules, path, types.ModuleType(path))
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+        monkeypatch.delitem(sys.modules, "acrobot_rs.sb3", raising=False)
+    import acrobot_rs.sb3
+
+    yield acrobot_rs.sb3
+    if not HAS_SB3:
+        sys.modules.pop("acrobot_rs.sb3")
+
+
+def make(sb3, num_envs, kind=acrobot_rs.AcrobotVectorEnv, **kwargs):
+    return sb3.AcrobotVecEnv(kind(num_envs, autoreset_mode="SameStep", **kwargs))
+
+
+@NEEDS_SB3
+def test_the_base_class_above_has_the_abstract_methods_of_stable_baselines3():
+    from stable_baselines3.common.vec_env import VecEnv as Theirs
+
+    assert Theirs.__abstractmethods__ == frozenset(METHODS)
+
+
+def test_steps_are_those_of_the_vector_environment(sb3):
+    """With the infos of DummyVecEnv."""
+    envs, twin = make(sb3, 8, max_episode_steps=90), acrobot_rs.AcrobotVectorEnv(8, 90, autoreset_mode="SameStep")
+    assert envs.seed(5) == list(range(5, 13))
+    envs.set_options({"low": -0.5})
+    assert (envs.reset() == twin.reset(seed=list(range(5, 13)), options={"low": -0.5})[0]).all()
+    assert (envs.reset() == twin.reset()[0]).all(), "seeds and options count once"
+    ends = np.zeros(2, int)
+    observations = envs.reset()
+    assert (observations == twin.reset()[0]).all()
+    for _ in range(400):
+        actions = np.where(observations[:, 4] > 0, 0, 2)
+        observations, rewards, ended, infos = envs.step(actions)
+        expected = twin.step(actions)
+        assert (observations == expected[0]).all() and (rewards == expected[1]).all()
+        assert (ended == expected[2] | expected[3]).all() and rewards.dtype == np.float32
+        for i in range(8):
+            assert infos[i]["TimeLimit.truncated"] is bool(expected[3][i] and not expected[2][i])
+            assert ("terminal_observation" in infos[i]) == ended[i]
+            if ended[i]:
+                assert (infos[i]["terminal_observation"] == expected[4]["final_obs"][i]).all()
+        ends += expected[2].sum(), expected[3].sum()
+    assert (ends > 5).all()
+
+
+def test_an_episode_that_reaches_the_goal_at_the_limit_is_not_truncated(sb3):
+    envs = make(sb3, 2, max_episode_steps=1)
+    envs.reset()
+    envs.set_attr("state", np.array([np.pi, 0.0, 0.0, 0.0]), indices=0)
+    _, rewards, ended, infos = envs.step(np.array([1, 1]))
+    assert list(ended) == [True, True] and list(rewards) == [0.0, -1.0]
+    assert [info["TimeLimit.truncated"] for info in infos] == [False, True]
+
+
+@NEEDS_SB3
+def test_gymnasium_s_episodes_are_those_of_dummy_vec_env(sb3):
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    theirs = DummyVecEnv([lambda: gymnasium.make("Acrobot-v1", max_episode_steps=70)] * 8)
+    ours = make(sb3, 8, max_episode_steps=70, gymnasium_episodes=True)
+    assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
+    for envs in (theirs, ours):
+        envs.seed(5)
+    observations = theirs.reset()
+    assert (ours.reset() == observations).all()
+    for _ in range(500):
+        actions = np.where(observations[:, 4] > 0, 0, 2)
+        expected, found = theirs.step(actions), ours.step(actions)
+        observations = expected[0]
+        np.testing.assert_equal(found, expected)
+        assert [each.dtype for each in found[:3]] == [each.dtype for each in expected[:3]]
+
+
+@NEEDS_SB3
+@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotVectorEnv, acrobot_rs.vector.AcrobotContinuousVectorEnv])
+def test_ppo_trains(sb3, kind):
+    from stable_baselines3 import PPO
+    from stable_baselines3.common.vec_env import VecMonitor
+
+    envs = VecMonitor(make(sb3, 16, kind, max_episode_steps=50))
+    model = PPO("MlpPolicy", envs, n_steps=64, seed=1, device="cpu")
+    model.learn(5000)
+    lengths = {episode["l"] for episode in model.ep_info_buffer}
+    assert max(lengths) == 50, "VecMonitor logs whole episodes"
+
+
+def test_attributes_and_methods(sb3):
+    envs = make(sb3, 3, render_mode="rgb_array")
+    envs.reset()
+    assert envs.get_attr("dt") == [0.2] * 3 and envs.get_attr("dt", 1) == [0.2] and envs.get_attr("dt", [0, 2]) == [0.2] * 2
+    envs.set_attr("dt", 0.1)
+    assert envs.get_attr("dt") == [0.1] * 3
+    before = envs.get_attr("state")
+    envs.set_attr("state", np.array([1.0, 2.0, 3.0, 4.0]), indices=[1])
+    after = envs.get_attr("state")
+    assert list(after[1]) == [1.0, 2.0, 3.0, 4.0] and (after[0] == before[0]).all() and (after[2] == before[2]).all()
+    with pytest.raises(NotImplementedError):
+        envs.set_attr("dt", 0.2, indices=0)
+    with pytest.raises(AttributeError):
+        envs.get_attr("length")
+    assert envs.env_is_wrapped(gymnasium.Wrapper) == [False] * 3
+    assert envs.env_is_wrapped(gymnasium.Wrapper, 0) == [False]
+    [frame] = envs.env_method("render", indices=2)
+    assert (frame == envs.get_images()[2]).all() and frame.shape == (500, 500, 3)
+    if HAS_SB3:
+        assert envs.render().shape == (1000, 1000, 3)
+    envs.set_options([{"low": -0.5}, {}, {}])
+    with pytest.raises(ValueError, match="options must be the same"):
+        envs.reset()
+    envs.close()
+    with pytest.raises(gymnasium.error.ClosedEnvironmentError):
+        envs.step(np.zeros(3, int))
+
+
+def test_other_autoreset_modes_are_rejected(sb3):
+    with pytest.raises(ValueError, match='autoreset_mode must be "SameStep", got "NextStep"'):
+        sb3.AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(2))
