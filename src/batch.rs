@@ -28,8 +28,8 @@
 
 mod block;
 mod buffers;
+mod lane_model;
 mod member;
-mod own_params;
 mod params;
 mod settings;
 mod simd;

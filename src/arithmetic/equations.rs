@@ -17,7 +17,7 @@ pub struct Model<A: Arithmetic> {
     pub(crate) constants: Constants<A, A::Scalar>,
 }
 
-/// What a step needs of a model: a number for all lanes, or one for each.
+/// What a step reads of a model: a number, or one for each lane.
 pub trait Coefficients<A: Arithmetic, V: Numbers<A::Scalar>> {
     /// The constants of the equations.
     fn constants(&self) -> Constants<A, V>;
@@ -32,29 +32,24 @@ pub trait Coefficients<A: Arithmetic, V: Numbers<A::Scalar>> {
     fn select(&self, book: V, nips: V) -> V;
 }
 
-impl<A: Arithmetic, V: Numbers<A::Scalar>> Coefficients<A, V> for Model<A> {
+impl<A: Arithmetic> Coefficients<A, A::Scalar> for Model<A> {
     #[inline(always)]
-    fn constants(&self) -> Constants<A, V> {
-        A::Form::zip(self.constants, self.constants, |_, x| V::splat(x))
+    fn constants(&self) -> Constants<A, A::Scalar> {
+        self.constants
     }
 
     #[inline(always)]
-    fn dt(&self) -> V {
-        V::splat(self.params.dt)
+    fn dt(&self) -> A::Scalar {
+        self.params.dt
     }
 
     #[inline(always)]
-    fn max_velocities(&self) -> [V; 2] {
-        let Params {
-            max_velocity1,
-            max_velocity2,
-            ..
-        } = self.params;
-        [V::splat(max_velocity1), V::splat(max_velocity2)]
+    fn max_velocities(&self) -> [A::Scalar; 2] {
+        [self.params.max_velocity1, self.params.max_velocity2]
     }
 
     #[inline(always)]
-    fn select(&self, book: V, nips: V) -> V {
+    fn select(&self, book: A::Scalar, nips: A::Scalar) -> A::Scalar {
         match self.params.dynamics {
             Dynamics::Book => book,
             Dynamics::Nips => nips,

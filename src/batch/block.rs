@@ -1,9 +1,11 @@
 //! `N` acrobots side by side, and their step.
 
+use core::hint::black_box;
 use core::marker::PhantomData;
 
 use super::buffers::{take, take_mut};
-use super::params::{BlockModel, ParamsKind, SharedParams};
+use super::lane_model::LaneModel;
+use super::params::{ParamsKind, SharedParams};
 use super::{Autoreset, Observations, Settings, StepBuffers};
 use crate::arithmetic::{Arithmetic, Fast, Lanes, Real, SinCos, Zeroed};
 use crate::error::Error;
@@ -183,14 +185,15 @@ impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
     fn step<D: Drive<A>>(
         &mut self,
         settings: &Settings<A, P>,
+        splat: &P::Splat<N>,
         inputs: &[D::Input],
         generators: &mut [Pcg64],
         buffers: &mut StepBuffers<'_>,
     ) {
-        let model = P::model(&settings.params, &self.own);
+        let model = P::model(splat, &self.own);
         let mut torques = D::torques(model, inputs);
-        if let Some(noise) = model.noise() {
-            add_noise(&mut torques, &noise, &self.ended, generators);
+        if model.has_noise {
+            add_noise(&mut torques, &model.noise, &self.ended, generators);
         }
         let torques = Lanes(torques);
         let mut terminated = step::<A, _>(model, &mut self.y, &mut self.sin_cos, torques);
@@ -277,10 +280,7 @@ pub(super) trait Drive<A: Arithmetic> {
     fn check(inputs: &[Self::Input]) -> Result<(), Error>;
 
     /// The torques of one block, N m. Lanes without an input get a valid torque.
-    fn torques<const N: usize>(
-        model: &impl BlockModel<A, N>,
-        inputs: &[Self::Input],
-    ) -> [A::Scalar; N];
+    fn torques<const N: usize>(model: &LaneModel<A, N>, inputs: &[Self::Input]) -> [A::Scalar; N];
 }
 
 /// Action numbers: 0, 1 and 2.
@@ -299,8 +299,8 @@ impl<A: Arithmetic, T: Copy + Into<u8> + Sync> Drive<A> for Actions<T> {
     }
 
     #[inline(always)]
-    fn torques<const N: usize>(model: &impl BlockModel<A, N>, inputs: &[T]) -> [A::Scalar; N] {
-        choose(model.torques(), read(inputs, 1, T::into))
+    fn torques<const N: usize>(model: &LaneModel<A, N>, inputs: &[T]) -> [A::Scalar; N] {
+        choose(model.torques, read(inputs, 1, T::into))
     }
 }
 
@@ -330,7 +330,7 @@ impl<A: Arithmetic> Drive<A> for Torques {
     }
 
     #[inline(always)]
-    fn torques<const N: usize>(_: &impl BlockModel<A, N>, inputs: &[A::Scalar]) -> [A::Scalar; N] {
+    fn torques<const N: usize>(_: &LaneModel<A, N>, inputs: &[A::Scalar]) -> [A::Scalar; N] {
         read(inputs, A::Scalar::ZERO, |torque| torque)
     }
 }
@@ -343,10 +343,13 @@ pub(super) fn step_blocks<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsK
     mut inputs: &[D::Input],
     mut buffers: StepBuffers<'_>,
 ) {
+    let splat = P::splat(&settings.params);
     for block in blocks {
+        // It hides that all blocks have the same model: LLVM would hold the model in registers and spill the state.
+        let splat = black_box(&splat);
         let inputs = take(&mut inputs, N);
         let generators = take_mut(&mut generators, N);
-        block.step::<D>(settings, inputs, generators, &mut buffers);
+        block.step::<D>(settings, splat, inputs, generators, &mut buffers);
     }
 }
 

@@ -2,8 +2,10 @@
 
 use core::fmt;
 
+use super::block::set;
+use super::lane_model::LaneModel;
 use super::{Batch, Block, check_index};
-use crate::arithmetic::{Arithmetic, Coefficients, Lanes, Model, Real, Zeroed};
+use crate::arithmetic::{Arithmetic, Model, Zeroed};
 use crate::error::Error;
 use crate::numpy::Pcg64;
 use crate::physics::{Params, ParamsRange};
@@ -29,8 +31,8 @@ pub trait Kind<A: Arithmetic>: Copy + fmt::Debug + Send + Sync {
     /// What a block stores.
     type Own<const N: usize>: Zeroed + Clone + fmt::Debug + Send + Sync;
 
-    /// What a step reads.
-    type Model<const N: usize>: BlockModel<A, N>;
+    /// The shared model in all lanes.
+    type Splat<const N: usize>;
 
     /// The default parameters.
     const SHARED: Self::Shared;
@@ -38,11 +40,14 @@ pub trait Kind<A: Arithmetic>: Copy + fmt::Debug + Send + Sync {
     /// The default parameters in all lanes.
     fn own<const N: usize>() -> Self::Own<N>;
 
+    /// The shared model in all lanes: a step computes it once, for all blocks.
+    fn splat<const N: usize>(shared: &Self::Shared) -> Self::Splat<N>;
+
     /// The model of a block.
     fn model<'a, const N: usize>(
-        shared: &'a Self::Shared,
+        splat: &'a Self::Splat<N>,
         own: &'a Self::Own<N>,
-    ) -> &'a Self::Model<N>;
+    ) -> &'a LaneModel<A, N>;
 
     /// Draws the parameters of a lane that is reset, if a range is set.
     fn draw<const N: usize>(
@@ -53,43 +58,81 @@ pub trait Kind<A: Arithmetic>: Copy + fmt::Debug + Send + Sync {
     );
 }
 
-/// What a step of a block needs of its model.
-pub trait BlockModel<A: Arithmetic, const N: usize>: Coefficients<A, Lanes<A::Scalar, N>> {
-    /// The torques of the three actions, N m.
-    fn torques(&self) -> [[A::Scalar; N]; 3];
-
-    /// The torque noise of each lane, N m; `None` if it is 0 in all.
-    fn noise(&self) -> Option<[A::Scalar; N]>;
-}
-
 impl<A: Arithmetic> Kind<A> for SharedParams {
     type Shared = Model<A>;
     type Own<const N: usize> = ();
-    type Model<const N: usize> = Model<A>;
+    type Splat<const N: usize> = LaneModel<A, N>;
 
     const SHARED: Model<A> = Model::DEFAULT;
 
     fn own<const N: usize>() {}
 
     #[inline(always)]
-    fn model<'a, const N: usize>(shared: &'a Model<A>, (): &'a ()) -> &'a Model<A> {
-        shared
+    fn splat<const N: usize>(shared: &Model<A>) -> LaneModel<A, N> {
+        LaneModel::splat(shared)
+    }
+
+    #[inline(always)]
+    fn model<'a, const N: usize>(splat: &'a LaneModel<A, N>, (): &'a ()) -> &'a LaneModel<A, N> {
+        splat
     }
 
     fn draw<const N: usize>(_: &Model<A>, (): &mut (), _: usize, _: &mut Pcg64) {}
 }
 
-impl<A: Arithmetic, const N: usize> BlockModel<A, N> for Model<A> {
-    #[inline(always)]
-    fn torques(&self) -> [[A::Scalar; N]; 3] {
-        let [negative, zero, positive] = self.params.torques;
-        [[negative; N], [zero; N], [positive; N]]
+impl<A: Arithmetic> Kind<A> for OwnParams {
+    type Shared = Option<ParamsRange<A::Scalar>>;
+    type Own<const N: usize> = Own<A, N>;
+    type Splat<const N: usize> = ();
+
+    const SHARED: Self::Shared = None;
+
+    fn own<const N: usize>() -> Own<A, N> {
+        let mut own = Own::ZEROED;
+        for lane in 0..N {
+            own.set_params(lane, Params::DEFAULT);
+        }
+        own
     }
 
+    fn splat<const N: usize>(_: &Self::Shared) {}
+
     #[inline(always)]
-    fn noise(&self) -> Option<[A::Scalar; N]> {
-        let noise = self.params.torque_noise;
-        (noise > A::Scalar::ZERO).then_some([noise; N])
+    fn model<'a, const N: usize>((): &'a (), own: &'a Own<A, N>) -> &'a LaneModel<A, N> {
+        &own.model
+    }
+
+    fn draw<const N: usize>(
+        range: &Self::Shared,
+        own: &mut Own<A, N>,
+        lane: usize,
+        rng: &mut Pcg64,
+    ) {
+        if let Some(range) = range {
+            own.set_params(lane, range.draw(rng));
+        }
+    }
+}
+
+/// The parameters of each acrobot of a block.
+#[derive(Clone, Debug)]
+pub struct Own<A: Arithmetic, const N: usize> {
+    model: LaneModel<A, N>,
+    params: [Params<A::Scalar>; N],
+}
+
+impl<A: Arithmetic, const N: usize> Zeroed for Own<A, N> {
+    const ZEROED: Self = Self {
+        model: Zeroed::ZEROED,
+        params: [Params::DEFAULT; N],
+    };
+}
+
+impl<A: Arithmetic, const N: usize> Own<A, N> {
+    /// Replaces the parameters of a lane by valid ones.
+    fn set_params(&mut self, lane: usize, params: Params<A::Scalar>) {
+        self.model.set(lane, Model::new(params));
+        set(&mut self.params, lane, params);
     }
 }
 
@@ -129,7 +172,7 @@ where
     pub fn params_of(&self, index: usize) -> Option<&Params<A::Scalar>> {
         check_index(index, self.len()).ok()?;
         let block = self.blocks.as_ref().get(index / N)?;
-        block.own.params(index % N)
+        block.own.params.get(index % N)
     }
 
     /// Sets the parameters of acrobot `index` for the next steps.
