@@ -100,13 +100,19 @@ fn the_shared_episodes_are_stable_in_the_other_arithmetics() {
 }
 
 #[test]
-fn the_shared_batch_is_stable_in_every_width() {
+fn batches_are_stable_in_every_width() {
     let widths = [
-        episodes::batch::<1, 20>(),
-        episodes::batch::<4, 5>(),
-        episodes::batch::<16, 2>(),
+        episodes::shared_params::<1, 20>(),
+        episodes::shared_params::<4, 5>(),
+        episodes::shared_params::<16, 2>(),
     ];
-    assert!(widths == [episodes::BATCH; 3], "{widths:#018x?}");
+    assert!(widths == [episodes::SHARED_PARAMS; 3], "{widths:#018x?}");
+    let widths = [
+        episodes::own_params::<1, 8>(),
+        episodes::own_params::<4, 2>(),
+        episodes::own_params::<16, 1>(),
+    ];
+    assert!(widths == [episodes::OWN_PARAMS; 3], "{widths:#018x?}");
 }
 
 /// The weights after 100 episodes. Any change in the learner or the task changes them.

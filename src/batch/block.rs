@@ -24,7 +24,7 @@ use crate::physics::{ResetBounds, State, check_torque, sin_cos, step};
 /// let blocks = vec![Block::<Fast>::EMPTY; 1000_usize.div_ceil(Block::<Fast>::LANES)];
 /// assert_eq!(size_of_val(&blocks[..]), 63 * 640);
 /// assert_eq!(size_of::<Block<Fast, 1>>(), 64);
-/// assert_eq!(size_of::<Block<Fast, 16, OwnParams>>(), 3072);
+/// assert_eq!(size_of::<Block<Fast, 16, OwnParams>>(), 2880);
 /// ```
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]

@@ -1,9 +1,12 @@
 //! Sixteen fixed episodes and a batch, and a digest of every bit of each.
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::batch::{
+    Autoreset, Batch, Block, Observations, OwnParams, ParamsKind, SharedParams, StepBuffers,
+};
 use acrobot::numpy::Pcg64;
-use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
+use acrobot::physics::ParamsRange;
+use acrobot::{Acrobot, Action, Fast, Observation, Params, TimeLimit};
 
 use crate::{Digest, against};
 
@@ -48,15 +51,46 @@ pub fn equal<A: Arithmetic>(expected: &[u64; 16]) -> usize {
     found.filter(|(found, expected)| found == *expected).count()
 }
 
-/// Every bit that a batch of twenty in `Fast` returns in 200 steps under torque against θ̇1, which ends episodes. It is
-/// the same for any width `N`.
-#[inline(never)] // each width frees its stack before the next, because RAM has 16 KiB
-pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
-    const LEN: usize = 20;
+type Arrays<const LEN: usize, const N: usize, const BLOCKS: usize, P> =
+    Batch<Fast, [Block<Fast, N, P>; BLOCKS], [Pcg64; LEN], N, P>;
+
+/// Every bit that a batch of twenty in `Fast` with the same parameters returns. It is the same for any width `N`.
+pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
+    batch::<20, N, BLOCKS, SharedParams>(|_| {})
+}
+
+/// As [`shared_params`] for eight, of which each reset draws parameters.
+pub fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
+    let low = Params {
+        mass1: 0.9,
+        inertia2: 0.9,
+        gravity: 9.0,
+        torque_noise: 0.0,
+        ..Params::DEFAULT
+    };
+    let high = Params {
+        mass1: 1.1,
+        inertia2: 1.1,
+        gravity: 10.0,
+        torque_noise: 0.1,
+        ..Params::DEFAULT
+    };
+    batch::<8, N, BLOCKS, OwnParams>(|batch| {
+        batch.set_params_range(ParamsRange::new(low, high).ok());
+        batch.reset();
+    })
+}
+
+/// Every bit that a batch returns in 200 steps under torque against θ̇1, which ends episodes.
+#[inline(never)] // each frees its stack before the next, because RAM has 16 KiB
+fn batch<const LEN: usize, const N: usize, const BLOCKS: usize, P: ParamsKind<Fast>>(
+    prepare: impl FnOnce(&mut Arrays<LEN, N, BLOCKS, P>),
+) -> u64 {
     let (blocks, generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]);
-    let Ok(mut batch) = Batch::<Fast, _, _, N>::new(42, blocks, generators) else {
+    let Ok(mut batch) = Arrays::new(42, blocks, generators) else {
         return 0;
     };
+    prepare(&mut batch);
     batch.set_autoreset(Autoreset::SameStep);
     let mut digest = Digest::default();
     let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
@@ -80,7 +114,9 @@ pub fn batch<const N: usize, const BLOCKS: usize>() -> u64 {
     digest.0
 }
 
-pub const BATCH: u64 = 0xeae8_bc44_fb2b_ab5e;
+pub const SHARED_PARAMS: u64 = 0xeae8_bc44_fb2b_ab5e;
+
+pub const OWN_PARAMS: u64 = 0xd88c_48c6_8c23_a5eb;
 
 pub const REFERENCE: [u64; 16] = [
     0x1814_77bc_77f4_e827,

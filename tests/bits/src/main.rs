@@ -27,20 +27,24 @@ fn main() -> ! {
         check::<Micro>(&episodes::MICRO),
         report(
             "batch of 1 lane",
-            episodes::batch::<1, 20>() == episodes::BATCH,
+            episodes::shared_params::<1, 20>() == episodes::SHARED_PARAMS,
         ),
         report(
             "batch of 4 lanes",
-            episodes::batch::<4, 5>() == episodes::BATCH,
+            episodes::shared_params::<4, 5>() == episodes::SHARED_PARAMS,
         ),
         report(
             "batch of 16 lanes",
-            episodes::batch::<16, 2>() == episodes::BATCH,
+            episodes::shared_params::<16, 2>() == episodes::SHARED_PARAMS,
+        ),
+        report(
+            "batch of 4 lanes with own parameters",
+            episodes::own_params::<4, 2>() == episodes::OWN_PARAMS,
         ),
         // The weights do not fit into 16 KiB of RAM. The firmware `learn` compares them.
         cfg!(target_os = "none") || report("training", training::weights() == training::WEIGHTS),
     ];
-    process::exit(if equal == [true; 8] { 0 } else { 1 })
+    process::exit(if equal == [true; 9] { 0 } else { 1 })
 }
 
 fn check<A: Arithmetic>(expected: &[u64; 16]) -> bool {

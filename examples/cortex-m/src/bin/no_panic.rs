@@ -12,9 +12,9 @@ use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, Observations, OwnParams, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::physics::{self, Pendulum, ResetBounds};
+use acrobot::physics::{self, ParamsRange, Pendulum, ResetBounds};
 use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
@@ -47,6 +47,7 @@ fn main() -> ! {
         environment::<Portable>();
         environment::<Reference>();
         batch::<Fast>();
+        own_params::<Fast>();
         batch::<Micro>();
         batch::<Portable>();
         batch::<Reference>();
@@ -185,6 +186,36 @@ fn batch<A: Arithmetic>() {
         }
         batch.reset_with(ResetOptions::default());
         batch.reset_with_seed(black_box(7));
+    }
+}
+
+/// A batch whose acrobots have their own parameters.
+fn own_params<A: Arithmetic>() {
+    const LEN: usize = 6;
+    let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; LEN]);
+    let batch = Batch::<A, _, _, 4, OwnParams>::new(black_box(42), blocks, generators);
+    let Ok(mut batch) = batch else {
+        return;
+    };
+    let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
+    for _ in 0..black_box(10) {
+        let _ = black_box(batch.set_params_of(black_box(3), params()));
+        batch.set_params_range(ParamsRange::new(params(), params()).ok());
+        batch.reset();
+        let buffers = StepBuffers {
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
+            observations: Observations::None,
+            final_observations: Observations::None,
+        };
+        let _ = black_box(batch.step(&black_box([1_u8; LEN]), buffers));
+        let _ = black_box(batch.reset_to_masked(
+            &black_box([true; LEN]),
+            &black_box([State::default(); LEN]),
+        ));
+        black_box((batch.params_of(black_box(3)), batch.elapsed(black_box(3))));
+        black_box((&rewards, &terminated, &truncated, batch.generators_mut()));
     }
 }
 
