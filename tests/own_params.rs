@@ -1,9 +1,7 @@
 //! Promise 2 for batches in which each acrobot has its own parameters.
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
-use acrobot::batch::{
-    Autoreset, Batch, Block, Observations, OwnParams, SimdLevel, StepBuffers, StepResults, VecBatch,
-};
+use acrobot::batch::{Autoreset, OwnParams, SimdLevel, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::{Dynamics, ParamsRange};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
@@ -343,51 +341,4 @@ fn draws_are_within_the_range() {
         assert!(ParamsRange::new(*range.low(), drawn).is_ok());
         assert!(ParamsRange::new(drawn, *range.high()).is_ok());
     }
-}
-
-/// The owning batch steps as the one that borrows its memory.
-#[test]
-fn a_batch_in_vecs_equals_one_in_arrays() {
-    let mut owning = VecBatch::<Fast>::new(9, 20).unwrap();
-    let mut arrays = Batch::<Fast, _, _>::new(9, [Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]).unwrap();
-    let (mut rewards, mut terminated, mut truncated) = ([0.0; 20], [false; 20], [false; 20]);
-    let (mut observations, mut final_observations) = ([[0.0; 6]; 20], [[0.0; 6]; 20]);
-    owning.set_limit(5.try_into().unwrap());
-    owning.set_autoreset(Autoreset::SameStep);
-    arrays.set_limit(5.try_into().unwrap());
-    arrays.set_autoreset(Autoreset::SameStep);
-    for _ in 0..30 {
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::Rows(&mut observations),
-            final_observations: Observations::Rows(&mut final_observations),
-        };
-        arrays.step(&[2_u8; 20], buffers).unwrap();
-        let expected = StepResults {
-            rewards: &rewards,
-            terminated: &terminated,
-            truncated: &truncated,
-            observations: &observations,
-            final_observations: &final_observations,
-        };
-        assert_eq!(owning.step(&[2_u8; 20]).unwrap(), expected);
-    }
-}
-
-#[test]
-fn a_batch_that_does_not_fit_into_memory_is_rejected() {
-    let new = |len| VecBatch::<Fast>::new(0, len).unwrap_err().to_string();
-    assert_eq!(
-        new(usize::MAX / 2),
-        format!(
-            "a batch must fit into memory, got {} acrobots",
-            usize::MAX / 2
-        )
-    );
-    assert_eq!(
-        new(0),
-        "a batch must have at least 1 acrobot, got 0 generators"
-    );
 }

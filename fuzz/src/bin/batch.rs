@@ -23,8 +23,6 @@ fuzz_target!(|bytes: &[u8]| {
     };
 });
 
-type Scalar<A> = <A as Arithmetic>::Scalar;
-
 type Many<A, const N: usize> = Batch<A, Vec<Block<A, N>>, Vec<Pcg64>, N>;
 
 /// A single acrobot that follows the rules of a batch.
