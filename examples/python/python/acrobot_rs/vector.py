@@ -39,8 +39,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     A parameter has one value for all environments, a list or an array with one for each, or an :class:`acrobot_rs.Uniform`,
     from which each reset draws. Reading it gives what was set, different values as an array, and :meth:`get_attr` what each
-    environment has. While one parameter has different values, none can be a ``Uniform``, and vice versa. ``LINK_MOI`` and
-    ``book_or_nips`` cannot.
+    environment has. ``LINK_MOI`` and ``book_or_nips`` cannot be a ``Uniform``, and no parameter can while another one has
+    different values.
 
     With ``gymnasium_episodes=True`` environments are computed and seeded as in ``SyncVectorEnv`` of Gymnasium's
     ``Acrobot-v1``. All results are bit-identical to its results where those of :class:`acrobot_rs.AcrobotEnv` are.
