@@ -361,7 +361,7 @@ def test_invalid_bounds_are_rejected(options):
 )  # fmt: skip
 def test_invalid_masks_are_rejected_with_the_errors_of_sync_vector_env(mask, error):
     theirs, ours = pair(2)
-    with pytest.raises(error):
+    with pytest.raises((error, AssertionError)):  # the latter with Gymnasium 1.1
         theirs.reset(seed=1, options={"reset_mask": mask and np.array(mask)})
     before, options = ours._native.__getstate__(), {"reset_mask": mask}
     with pytest.raises(error, match=r"reset_mask must (be an array of bool|have shape \(2,\) and a true element), got"):
@@ -497,9 +497,11 @@ def test_observations_of_initial_states_bit_identically(mode):
 
 
 def test_a_list_of_seeds_seeds_each_environment_as_a_single_one():
-    for envs in pair(4):
-        with pytest.raises(ValueError, match="4"):
-            envs.reset(seed=[1, 2, 3])
+    theirs, envs = pair(4)
+    with pytest.raises((ValueError, AssertionError), match="4"):  # the latter with Gymnasium 1.1
+        theirs.reset(seed=[1, 2, 3])
+    with pytest.raises(ValueError, match="seed must have one element for each of 4 environments, got 3"):
+        envs.reset(seed=[1, 2, 3])
     envs = make_vec(4)
     envs.reset(seed=9)
     before = envs._native.__getstate__()
@@ -915,7 +917,7 @@ def test_resets_draw_parameters_as_numpy_does(names, gymnasium_episodes):
     first = names[0]
     setattr(envs, first, 1.0)
     envs.reset()
-    assert getattr(envs, first) == 1.0 and envs.get_attr(first) == (1.0,) * count
+    assert getattr(envs, first) == 1.0 and envs._native.get(first) == [1.0] * count
 
 
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
