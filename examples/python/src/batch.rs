@@ -3,28 +3,47 @@
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Real};
-use acrobot::batch::{Autoreset, Block, Member, Observations, StepBuffers};
+use acrobot::batch::{
+    Autoreset, Block, Member, Observations, OwnParams, ParamsKind, SharedParams, StepBuffers,
+};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::ResetBounds;
+use acrobot::physics::{ParamsRange, ResetBounds};
 use acrobot::{Error, Fast, Params, ResetOptions, State};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2};
+use numpy::{
+    PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyReadwriteArray1, PyReadwriteArray2, PyUntypedArrayMethods,
+};
 use postcard::experimental::serialized_size;
 use pyo3::exceptions::{PyIndexError, PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyType};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::{ACTIONS, InvalidAction, VERSION, must_be, positive, rejected, render, unknown, with};
+use crate::{
+    ACTIONS, InvalidAction, VERSION, must_be, number, positive, rejected, render, unknown, with,
+};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
     settings: Settings,
+    /// The bounds between which each reset draws parameters, once there were any.
+    range: Option<Range>,
     engine: Box<dyn Engine>,
     pool: Option<Pool>,
 }
 
-/// What cannot change after a batch is made.
+/// The lower and the upper bounds of all parameters. Those that are equal are not drawn.
+type Range = [Params; 2];
+
+/// What `__reduce__` returns: the type, the arguments of `new` and the argument of `__setstate__`.
+type Reduced<'py> = (
+    Bound<'py, PyType>,
+    (i64, &'static str, i64, &'static str),
+    Bound<'py, PyBytes>,
+);
+
+/// What a batch is made of. All but `own` is fixed.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 struct Settings {
     num_envs: usize,
@@ -36,6 +55,8 @@ struct Settings {
     /// Whether the actions are torques.
     continuous: bool,
     threads: NonZeroU32,
+    /// Whether each acrobot has its own parameters, which takes more memory.
+    own: bool,
 }
 
 /// All autoreset modes, with Gymnasium's names.
@@ -71,17 +92,85 @@ impl Batch {
             gymnasium,
             continuous,
             threads: positive("threads", threads)?,
+            own: false,
         };
-        Self::assemble(settings, parse(seed)?)
+        Ok(Self {
+            settings,
+            range: None,
+            engine: assemble(&settings, parse(seed)?)?,
+            pool: None,
+        })
     }
 
     fn __len__(&self) -> usize {
         self.settings.num_envs
     }
 
+    /// Sets a parameter of all acrobots.
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let params = with(self.engine.params(), name, value)?;
-        self.engine.set_params(params).map_err(rejected)
+        let range = self
+            .range
+            .map(|[low, high]| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]));
+        let range = range.transpose()?;
+        let count = if self.settings.own {
+            self.settings.num_envs
+        } else {
+            1
+        };
+        let each = (0..count).map(|index| self.changed(index, name, value));
+        self.set_params(each.collect::<PyResult<_>>()?, range)
+    }
+
+    /// Sets a parameter of each acrobot. No parameter is drawn then.
+    fn set_each(&mut self, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
+        let num_envs = self.settings.num_envs;
+        if values.len() != num_envs {
+            let rule = format_args!("one value, or one for each of {num_envs} environments");
+            let got = format_args!("{} values", values.len());
+            return Err(PyValueError::new_err(must_be(name, rule, got)));
+        }
+        let each = values.iter().enumerate().map(|(index, value)| {
+            let changed = self.changed(index, name, value);
+            changed.map_err(|error| indexed(value.py(), error, index))
+        });
+        self.set_params(each.collect::<PyResult<_>>()?, None)
+    }
+
+    /// Sets the bounds between which each reset draws a parameter.
+    fn set_range(
+        &mut self,
+        name: &str,
+        low: &Bound<'_, PyAny>,
+        high: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        // The crate would draw another LINK_MOI for each link, and knows no range of equations.
+        if matches!(name, "LINK_MOI" | "book_or_nips") {
+            let message = format!("{name} must be a value or an array, not a Uniform");
+            return Err(PyValueError::new_err(message));
+        }
+        let [lows, highs] = match self.range {
+            Some(range) => range,
+            None => [self.params(0)?; 2],
+        };
+        let range = [with(lows, name, low)?, with(highs, name, high)?];
+        // A batch with shared parameters only checks it.
+        self.engine.set_range(Some(range)).map_err(rejected)?;
+        self.own()?;
+        self.engine.set_range(Some(range)).map_err(rejected)?;
+        self.range = Some(range);
+        Ok(())
+    }
+
+    /// A parameter of each acrobot.
+    fn get<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let each = (0..self.settings.num_envs).map(|index| {
+            let mut params = self.params(index)?;
+            Ok(match number(&mut params, name) {
+                Some(number) => number.into_pyobject(py)?.into_any(),
+                None => params.torques.into_pyobject(py)?.into_any(),
+            })
+        });
+        each.collect()
     }
 
     /// Gives acrobots streams of their own: those of `default_rng(seed)`, for each seed that is not `None`.
@@ -118,45 +207,59 @@ impl Batch {
         self.engine.observe(rows).map_err(rejected)
     }
 
-    /// Steps, and writes the results into the arrays. Releases Python's lock meanwhile.
-    #[expect(clippy::too_many_arguments, reason = "an array for each result")]
-    fn step(
-        &mut self,
-        py: Python<'_>,
-        inputs: Inputs<'_>,
-        mut observations: PyReadwriteArray2<'_, f32>,
-        mut rewards: PyReadwriteArray1<'_, f32>,
-        mut terminated: PyReadwriteArray1<'_, bool>,
-        mut truncated: PyReadwriteArray1<'_, bool>,
-        mut finals: Option<PyReadwriteArray2<'_, f32>>,
-    ) -> PyResult<()> {
-        self.engine.read(inputs)?;
+    /// Steps, and writes the observations into an array. Releases Python's lock meanwhile. The environment converts the
+    /// actions that are in another type or shape, or rejects them.
+    #[pyo3(signature = (env, actions, observations, finals=None))]
+    fn step<'py>(
+        slf: &Bound<'py, Self>,
+        env: &Bound<'py, PyAny>,
+        actions: &Bound<'py, PyAny>,
+        mut observations: PyReadwriteArray2<'py, f32>,
+        mut finals: Option<PyReadwriteArray2<'py, f32>>,
+    ) -> PyResult<Results<'py>> {
+        let py = slf.py();
+        let len = slf.try_borrow()?.settings.num_envs;
+        let inputs = match Inputs::of(actions, len) {
+            Some(inputs) => inputs,
+            None => env.call_method1("_inputs", (actions,))?.extract()?,
+        };
+        let this = &mut *slf.try_borrow_mut()?;
+        this.engine.read(inputs)?;
+        let no_memory = || PyMemoryError::new_err("the results do not fit into memory");
+        let mut rewards = memory(0.0, len).ok_or_else(no_memory)?;
+        let mut terminated = memory(false, len).ok_or_else(no_memory)?;
+        let mut truncated = memory(false, len).ok_or_else(no_memory)?;
         let buffers = StepBuffers {
-            rewards: rewards.as_slice_mut()?,
-            terminated: terminated.as_slice_mut()?,
-            truncated: truncated.as_slice_mut()?,
+            rewards: &mut rewards,
+            terminated: &mut terminated,
+            truncated: &mut truncated,
             observations: Observations::Rows(observations.as_slice_mut()?.as_chunks_mut().0),
             final_observations: match &mut finals {
                 Some(finals) => Observations::Rows(finals.as_slice_mut()?.as_chunks_mut().0),
                 None => Observations::None,
             },
         };
-        let engine = &mut self.engine;
+        let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
-        let task = if self.settings.gymnasium {
+        let task = if this.settings.gymnasium {
             1024
         } else {
             16_384
         };
-        let tasks = self.settings.num_envs.div_ceil(task);
-        match tasks.min(self.settings.threads.get() as usize) {
+        let tasks = len.div_ceil(task);
+        match tasks.min(this.settings.threads.get() as usize) {
             1 => py.detach(|| engine.step(buffers)),
             threads => {
-                let pool = Pool::of_this_process(&mut self.pool, threads)?;
+                let pool = Pool::of_this_process(&mut this.pool, threads)?;
                 py.detach(|| pool.install(|| engine.par_step(buffers)))
             }
         }
-        .map_err(rejected)
+        .map_err(rejected)?;
+        Ok((
+            PyArray1::from_vec(py, rewards),
+            PyArray1::from_vec(py, terminated),
+            PyArray1::from_vec(py, truncated),
+        ))
     }
 
     /// Writes θ1, θ2 and their velocities, a row for each acrobot.
@@ -193,38 +296,38 @@ impl Batch {
         mode: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let state = self.engine.state(index).ok_or_else(no_such(index))?;
-        render(py, self.engine.params(), state, mode)
+        render(py, self.params(index)?, state, mode)
     }
 
     /// Not a clone of the memory, which would abort the process where it does not fit.
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let mut twin = Self::assemble(self.settings, SeedSequence::new(0))?;
-        let engine = &mut twin.engine;
-        engine.set_params(self.engine.params()).map_err(rejected)?;
-        for index in 0..self.settings.num_envs {
-            let member = self.member(index)?;
-            engine.set_member(index, member).map_err(rejected)?;
-        }
-        Ok(twin)
+        Ok(Self {
+            settings: self.settings,
+            range: self.range,
+            engine: self.copied(&self.settings)?,
+            pool: None,
+        })
     }
 
-    /// Arguments with which pickle makes the smallest batch. `__setstate__` then replaces it.
-    fn __getnewargs__(&self) -> (i64, &str, i64, &str) {
-        (1, "0", 1, "NextStep")
+    /// With arguments that make the smallest batch, which `__setstate__` then replaces. Every protocol of pickle calls this;
+    /// `__getnewargs__` would serve those from 2 only.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let state = slf.try_borrow()?.__getstate__(slf.py())?;
+        Ok((slf.get_type(), (1, "0", 1, "NextStep"), state))
     }
 
-    /// A header, and the members one after the other. They are serialized twice, first to learn their size: a buffer
+    /// A header, and the records one after the other. They are serialized twice, first to learn their size: a buffer
     /// that grows would need twice the memory, and abort the process where there is none.
     fn __getstate__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let header = (VERSION, self.settings, self.engine.params());
+        let header = (VERSION, self.settings, self.range);
         let mut size = serialized_size(&header).map_err(failed)?;
         for index in 0..self.settings.num_envs {
-            size += serialized_size(&self.member(index)?).map_err(failed)?;
+            size += serialized_size(&self.record(index)?).map_err(failed)?;
         }
         PyBytes::new_with(py, size, |mut bytes| {
             bytes = put(&header, bytes)?;
             for index in 0..self.settings.num_envs {
-                bytes = put(&self.member(index)?, bytes)?;
+                bytes = put(&self.record(index)?, bytes)?;
             }
             Ok(())
         })
@@ -236,50 +339,129 @@ impl Batch {
             let message = must_be("the snapshot's version", VERSION, version);
             return Err(PyValueError::new_err(message));
         }
-        let (settings, params): (Settings, Params) = take(&mut bytes)?;
-        // A member takes at least a byte, so a damaged number cannot ask for more memory than this.
+        let (settings, range): (Settings, Option<Range>) = take(&mut bytes)?;
+        // A record takes at least a byte, so a damaged number cannot ask for more memory than this.
         if settings.num_envs > bytes.len() {
             let rule = format_args!("at most {}", bytes.len());
             let message = must_be("the snapshot's num_envs", rule, settings.num_envs);
             return Err(PyValueError::new_err(message));
         }
-        let mut batch = Self::assemble(settings, SeedSequence::new(0))?;
-        batch.engine.set_params(params).map_err(rejected)?;
+        let mut engine = assemble(&settings, SeedSequence::new(0))?;
+        engine.set_range(range).map_err(rejected)?;
         for index in 0..settings.num_envs {
-            let member = take(&mut bytes)?;
-            batch.engine.set_member(index, member).map_err(rejected)?;
+            let (params, member): Record = take(&mut bytes)?;
+            if let Some(params) = params {
+                engine.set_params(index, params).map_err(rejected)?;
+            }
+            engine.set_member(index, member).map_err(rejected)?;
         }
         if !bytes.is_empty() {
             let count = bytes.len();
             let message = format!("the snapshot must have no bytes after its end, got {count}");
             return Err(PyValueError::new_err(message));
         }
-        *self = batch;
+        *self = Self {
+            settings,
+            range,
+            engine,
+            pool: None,
+        };
         Ok(())
     }
 }
 
+/// An acrobot of a snapshot. If the acrobots share their parameters, only the first has them.
+type Record = (Option<Params>, Member<Host>);
+
+/// Rewards, terminated and truncated.
+type Results<'py> = (
+    Bound<'py, PyArray1<f32>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<bool>>,
+);
+
 impl Batch {
-    fn assemble(settings: Settings, seed: SeedSequence) -> PyResult<Self> {
-        let engine: Option<Box<dyn Engine>> = if settings.gymnasium {
-            Many::<Host>::assemble(&settings, seed)?
-        } else {
-            Many::<Fast>::assemble(&settings, seed)?
-        };
-        let engine = engine.ok_or_else(|| {
-            let rule = "so few that they fit into memory";
-            PyMemoryError::new_err(must_be("num_envs", rule, settings.num_envs))
-        })?;
-        Ok(Self {
-            settings,
-            engine,
-            pool: None,
-        })
+    fn params(&self, index: usize) -> PyResult<Params> {
+        self.engine.params(index).ok_or_else(no_such(index))
+    }
+
+    /// The parameters of an acrobot with one of them changed.
+    fn changed(&self, index: usize, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+        let params = with(self.params(index)?, name, value)?;
+        self.engine.check(params).map_err(rejected)?;
+        Ok(params)
+    }
+
+    /// Sets checked parameters of each acrobot, and the range of those that are drawn.
+    fn set_params(&mut self, each: Vec<Params>, range: Option<Range>) -> PyResult<()> {
+        if each.iter().any(|params| *params != each[0]) {
+            self.own()?;
+        }
+        self.engine.set_range(range).map_err(rejected)?;
+        self.range = range;
+        for (index, params) in each.into_iter().enumerate() {
+            self.engine.set_params(index, params).map_err(rejected)?;
+        }
+        Ok(())
+    }
+
+    /// Gives each acrobot its own parameters.
+    fn own(&mut self) -> PyResult<()> {
+        if !self.settings.own {
+            let settings = Settings {
+                own: true,
+                ..self.settings
+            };
+            self.engine = self.copied(&settings)?;
+            self.settings = settings;
+        }
+        Ok(())
+    }
+
+    /// A copy of the acrobots, with these settings.
+    fn copied(&self, settings: &Settings) -> PyResult<Box<dyn Engine>> {
+        let mut engine = assemble(settings, SeedSequence::new(0))?;
+        engine.set_range(self.range).map_err(rejected)?;
+        for index in 0..settings.num_envs {
+            let params = self.params(index)?;
+            engine.set_params(index, params).map_err(rejected)?;
+            let member = self.member(index)?;
+            engine.set_member(index, member).map_err(rejected)?;
+        }
+        Ok(engine)
     }
 
     fn member(&self, index: usize) -> PyResult<Member<Host>> {
         self.engine.member(index).ok_or_else(no_such(index))
     }
+
+    fn record(&self, index: usize) -> PyResult<Record> {
+        let has_params = self.settings.own || index == 0;
+        let params = has_params.then(|| self.params(index)).transpose()?;
+        Ok((params, self.member(index)?))
+    }
+}
+
+/// An engine with these settings, if it fits into memory.
+fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Box<dyn Engine>> {
+    let engine: Option<Box<dyn Engine>> = match (settings.gymnasium, settings.own) {
+        (false, false) => Many::<Fast, SharedParams>::assemble(settings, seed)?,
+        (false, true) => Many::<Fast, OwnParams>::assemble(settings, seed)?,
+        (true, false) => Many::<Host, SharedParams>::assemble(settings, seed)?,
+        (true, true) => Many::<Host, OwnParams>::assemble(settings, seed)?,
+    };
+    engine.ok_or_else(|| {
+        let rule = "so few that they fit into memory";
+        PyMemoryError::new_err(must_be("num_envs", rule, settings.num_envs))
+    })
+}
+
+/// The same error with an index after the parameter's name, with which its message begins.
+fn indexed(py: Python<'_>, error: PyErr, index: usize) -> PyErr {
+    let message = error.value(py).to_string();
+    let end = message.find([' ', '[']).unwrap_or(message.len());
+    let (name, rest) = message.split_at(end);
+    PyErr::from_type(error.get_type(py), format!("{name}[{index}]{rest}"))
 }
 
 /// Actions (0, 1 or 2), or torques, N m.
@@ -289,10 +471,33 @@ enum Inputs<'py> {
     Torques(PyReadonlyArray2<'py, f32>),
 }
 
+impl<'py> Inputs<'py> {
+    /// The actions, if no conversion is necessary.
+    fn of(actions: &Bound<'py, PyAny>, len: usize) -> Option<Self> {
+        if let Ok(actions) = actions.cast::<PyArray1<i64>>() {
+            let fits = actions.len() == len && is_slice(actions);
+            return fits.then(|| Some(Self::Actions(actions.try_readonly().ok()?)))?;
+        }
+        let torques = actions.cast::<PyArray2<f32>>().ok()?;
+        let fits = torques.shape() == [len, 1] && is_slice(torques);
+        fits.then(|| Some(Self::Torques(torques.try_readonly().ok()?)))?
+    }
+}
+
+/// Whether Rust can read the elements: an array over packed bytes is not aligned.
+fn is_slice<T, D>(array: &Bound<'_, PyArray<T, D>>) -> bool {
+    array.is_c_contiguous() && array.data().is_aligned()
+}
+
 /// A batch of any arithmetic, and memory for its inputs. Numbers are `f64` here: conversions from `f32` and back are exact.
 trait Engine: Send + Sync {
-    fn params(&self) -> Params;
-    fn set_params(&mut self, params: Params) -> Result<(), Error>;
+    fn params(&self, index: usize) -> Option<Params>;
+    /// Rejects what `set_params` rejects.
+    fn check(&self, params: Params) -> Result<(), Error>;
+    /// Sets the parameters of an acrobot, or of all if they share them.
+    fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error>;
+    /// Checks a range, and draws parameters from it if the acrobots do not share them.
+    fn set_range(&mut self, range: Option<Range>) -> Result<(), Error>;
     fn generators_mut(&mut self) -> &mut [Pcg64];
     fn state(&self, index: usize) -> Option<State>;
     fn set_state(&mut self, index: usize, state: State) -> Result<(), Error>;
@@ -307,15 +512,69 @@ trait Engine: Send + Sync {
     fn par_step(&mut self, buffers: StepBuffers<'_>) -> Result<(), Error>;
 }
 
-struct Many<A: Arithmetic> {
-    batch: acrobot::batch::Batch<A, Vec<Block<A>>, Vec<Pcg64>>,
+type Acrobots<A, P> = acrobot::batch::Batch<A, Vec<Block<A, 16, P>>, Vec<Pcg64>, 16, P>;
+
+/// How to access the parameters of a batch.
+trait Access<A: Arithmetic>: ParamsKind<A> {
+    /// Whether each acrobot has its own.
+    const OWN: bool;
+
+    fn params(batch: &Acrobots<A, Self>, index: usize) -> Option<&Params<A::Scalar>>;
+    fn set_params(
+        batch: &mut Acrobots<A, Self>,
+        index: usize,
+        params: Params<A::Scalar>,
+    ) -> Result<(), Error>;
+    fn set_range(batch: &mut Acrobots<A, Self>, range: Option<ParamsRange<A::Scalar>>);
+}
+
+impl<A: Arithmetic> Access<A> for SharedParams {
+    const OWN: bool = false;
+
+    fn params(batch: &Acrobots<A, Self>, _: usize) -> Option<&Params<A::Scalar>> {
+        Some(batch.params())
+    }
+
+    fn set_params(
+        batch: &mut Acrobots<A, Self>,
+        _: usize,
+        params: Params<A::Scalar>,
+    ) -> Result<(), Error> {
+        batch.set_params(params)
+    }
+
+    fn set_range(_: &mut Acrobots<A, Self>, _: Option<ParamsRange<A::Scalar>>) {}
+}
+
+impl<A: Arithmetic> Access<A> for OwnParams {
+    const OWN: bool = true;
+
+    fn params(batch: &Acrobots<A, Self>, index: usize) -> Option<&Params<A::Scalar>> {
+        batch.params_of(index)
+    }
+
+    fn set_params(
+        batch: &mut Acrobots<A, Self>,
+        index: usize,
+        params: Params<A::Scalar>,
+    ) -> Result<(), Error> {
+        batch.set_params_of(index, params)
+    }
+
+    fn set_range(batch: &mut Acrobots<A, Self>, range: Option<ParamsRange<A::Scalar>>) {
+        batch.set_params_range(range);
+    }
+}
+
+struct Many<A: Arithmetic, P: Access<A>> {
+    batch: Acrobots<A, P>,
     /// Empty if the actions are torques.
     actions: Vec<u8>,
     /// Empty if they are not.
     torques: Vec<A::Scalar>,
 }
 
-impl<A: Arithmetic> Many<A> {
+impl<A: Arithmetic, P: Access<A> + 'static> Many<A, P> {
     /// `None` if it does not fit into memory.
     fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Option<Box<dyn Engine>>> {
         let len = settings.num_envs;
@@ -325,7 +584,7 @@ impl<A: Arithmetic> Many<A> {
             (len, 0)
         };
         let (Some(blocks), Some(generators), Some(actions), Some(torques)) = (
-            memory(Block::EMPTY, len.div_ceil(Block::<A>::LANES)),
+            memory(Block::EMPTY, len.div_ceil(16)),
             memory(Pcg64::UNSEEDED, len),
             memory(0, actions),
             memory(A::Scalar::ZERO, torques),
@@ -352,13 +611,23 @@ impl<A: Arithmetic> Many<A> {
     }
 }
 
-impl<A: Arithmetic> Engine for Many<A> {
-    fn params(&self) -> Params {
-        self.batch.params().cast()
+impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
+    fn params(&self, index: usize) -> Option<Params> {
+        P::params(&self.batch, index).map(Params::cast)
     }
 
-    fn set_params(&mut self, params: Params) -> Result<(), Error> {
-        self.batch.set_params(params.cast())
+    fn check(&self, params: Params) -> Result<(), Error> {
+        params.cast::<A::Scalar>().validate()
+    }
+
+    fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error> {
+        P::set_params(&mut self.batch, index, params.cast())
+    }
+
+    fn set_range(&mut self, range: Option<Range>) -> Result<(), Error> {
+        let cast = |[low, high]: Range| ParamsRange::new(low.cast(), high.cast());
+        P::set_range(&mut self.batch, range.map(cast).transpose()?);
+        Ok(())
     }
 
     fn generators_mut(&mut self) -> &mut [Pcg64] {
@@ -401,17 +670,24 @@ impl<A: Arithmetic> Engine for Many<A> {
                 from.as_slice()?,
                 &mut self.actions,
                 |action| (0..3).contains(action),
-                |action| action as u8,
+                |_, action| action as u8,
                 ACTIONS,
             ),
             Inputs::Torques(from) => {
-                let [a, b, c] = self.batch.params().torques.map(Real::to_f64);
-                let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+                let bounds = |index| {
+                    let params = P::params(&self.batch, index).copied().unwrap_or_default();
+                    let [a, b, c] = params.torques.map(Real::to_f64);
+                    (a.min(b).min(c), a.max(b).max(c))
+                };
+                let first = bounds(0);
                 read(
                     from.as_slice()?,
                     &mut self.torques,
                     |torque| !torque.is_nan(),
-                    |torque| A::Scalar::from_f64(f64::from(torque).max(low).min(high)),
+                    |index, torque| {
+                        let (low, high) = if P::OWN { bounds(index) } else { first };
+                        A::Scalar::from_f64(f64::from(torque).max(low).min(high))
+                    },
                     "a number, N m",
                 )
             }
@@ -440,7 +716,7 @@ fn read<T: Copy + std::fmt::Display, U>(
     from: &[T],
     to: &mut [U],
     valid: impl Fn(&T) -> bool,
-    convert: impl Fn(T) -> U,
+    convert: impl Fn(usize, T) -> U,
     rule: &str,
 ) -> PyResult<()> {
     if from.len() != to.len() {
@@ -458,8 +734,8 @@ fn read<T: Copy + std::fmt::Display, U>(
         let name = format!("actions[{index}]");
         return Err(InvalidAction::new_err(must_be(&name, rule, input)));
     }
-    for (to, &input) in to.iter_mut().zip(from) {
-        *to = convert(input);
+    for (index, (to, &input)) in to.iter_mut().zip(from).enumerate() {
+        *to = convert(index, input);
     }
     Ok(())
 }

@@ -51,13 +51,21 @@ const NAMES: [(&str, &str); 12] = [
     ("torque_noise", "torque_noise_max"),
 ];
 
+/// What precedes the name of a parameter in the error for a reversed range.
+const LOWER: &str = "the lower ";
+
 /// Turns an error of the crate into a `ValueError` with its message, which begins with Gymnasium's name of a parameter.
 fn rejected(error: impl std::error::Error) -> PyErr {
     let message = error.to_string();
+    let start = if message.starts_with(LOWER) {
+        LOWER
+    } else {
+        ""
+    };
     let renamed = NAMES.iter().find_map(|(name, gymnasiums)| {
-        let rest = message.strip_prefix(name)?;
+        let rest = message[start.len()..].strip_prefix(name)?;
         rest.starts_with([' ', '['])
-            .then(|| format!("{gymnasiums}{rest}"))
+            .then(|| format!("{start}{gymnasiums}{rest}"))
     });
     PyValueError::new_err(renamed.unwrap_or(message))
 }
@@ -100,24 +108,30 @@ fn positive(name: &str, value: i64) -> PyResult<NonZeroU32> {
     })
 }
 
-/// The parameters with one of them changed. `name` is Gymnasium's name of it.
-fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
-    let mut params = params;
-    let number = || convert(name, "a number", value);
+/// A parameter that is one number. `name` is Gymnasium's name of it.
+fn number<'a>(params: &'a mut Params, name: &str) -> Option<&'a mut f64> {
+    Some(match name {
+        "dt" => &mut params.dt,
+        "LINK_LENGTH_1" => &mut params.length1,
+        "LINK_LENGTH_2" => &mut params.length2,
+        "LINK_MASS_1" => &mut params.mass1,
+        "LINK_MASS_2" => &mut params.mass2,
+        "LINK_COM_POS_1" => &mut params.center_of_mass1,
+        "LINK_COM_POS_2" => &mut params.center_of_mass2,
+        "MAX_VEL_1" => &mut params.max_velocity1,
+        "MAX_VEL_2" => &mut params.max_velocity2,
+        "torque_noise_max" => &mut params.torque_noise,
+        _ => return None,
+    })
+}
+
+/// The parameters with one of them changed.
+fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     match name {
-        "dt" => params.dt = number()?,
-        "LINK_LENGTH_1" => params.length1 = number()?,
-        "LINK_LENGTH_2" => params.length2 = number()?,
-        "LINK_MASS_1" => params.mass1 = number()?,
-        "LINK_MASS_2" => params.mass2 = number()?,
-        "LINK_COM_POS_1" => params.center_of_mass1 = number()?,
-        "LINK_COM_POS_2" => params.center_of_mass2 = number()?,
         "LINK_MOI" => {
-            params.inertia1 = number()?;
+            params.inertia1 = convert(name, "a number", value)?;
             params.inertia2 = params.inertia1;
         }
-        "MAX_VEL_1" => params.max_velocity1 = number()?,
-        "MAX_VEL_2" => params.max_velocity2 = number()?,
         "AVAIL_TORQUE" => {
             if let Ok(count) = value.len()
                 && count != 3
@@ -126,7 +140,6 @@ fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params
             }
             params.torques = convert(name, "a sequence of 3 numbers", value)?;
         }
-        "torque_noise_max" => params.torque_noise = number()?,
         "book_or_nips" => {
             let rule = r#""book" or "nips""#;
             params.dynamics = match convert(name, rule, value)? {
@@ -135,7 +148,11 @@ fn with(params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params
                 other => return Err(unknown(name, rule, other)),
             }
         }
-        _ => return Err(PyAttributeError::new_err(format!("no parameter {name}"))),
+        _ => {
+            let number = number(&mut params, name);
+            let unknown = || PyAttributeError::new_err(format!("no parameter {name}"));
+            *number.ok_or_else(unknown)? = convert(name, "a number", value)?;
+        }
     }
     params.validate().map_err(rejected)?;
     Ok(params)

@@ -158,8 +158,10 @@ def test_attributes_and_methods(sb3):
     envs.set_attr("state", np.array([1.0, 2.0, 3.0, 4.0]), indices=[1])
     after = envs.get_attr("state")
     assert list(after[1]) == [1.0, 2.0, 3.0, 4.0] and (after[0] == before[0]).all() and (after[2] == before[2]).all()
-    with pytest.raises(NotImplementedError):
-        envs.set_attr("dt", 0.2, indices=0)
+    envs.set_attr("dt", 0.2, indices=0)
+    envs.set_attr("AVAIL_TORQUE", [-2.0, 0.0, 2.0], indices=[0, 2])
+    assert envs.get_attr("dt") == [0.2, 0.1, 0.1]
+    assert envs.get_attr("AVAIL_TORQUE") == [(-2.0, 0.0, 2.0), (-1.0, 0.0, 1.0), (-2.0, 0.0, 2.0)]
     with pytest.raises(AttributeError):
         envs.get_attr("length")
     assert envs.env_is_wrapped(gymnasium.Wrapper) == [False] * 3

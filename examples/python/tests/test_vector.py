@@ -1,6 +1,7 @@
 """The vector environment has the documented streams, resets as SyncVectorEnv does, and steps as Gymnasium does within float32."""
 
 import copy
+import functools
 import multiprocessing
 import pickle
 import subprocess
@@ -14,6 +15,8 @@ import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
+from acrobot_rs import Uniform
+from acrobot_rs.parameters import _NAMES as NAMES
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
@@ -168,16 +171,22 @@ def test_streams_are_the_seed_s_children_whatever_the_number_of_environments():
         small.reset(seed=-1)
 
 
-@pytest.mark.parametrize("again", [copy.deepcopy, lambda envs: pickle.loads(pickle.dumps(envs))])
+PROTOCOLS = [functools.partial(pickle.dumps, protocol=protocol) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
+
+
+@pytest.mark.parametrize("noise", [0.3, np.linspace(0, 0.3, 37), Uniform(0.0, 0.3)], ids=["shared", "each", "drawn"])
+@pytest.mark.parametrize("again", [copy.deepcopy, *(lambda envs, dumps=dumps: pickle.loads(dumps(envs)) for dumps in PROTOCOLS)])
 @MODES
-def test_copies_continue_bit_identically(mode, again):
+def test_copies_continue_bit_identically(mode, again, noise):
     envs = make_vec(37, autoreset_mode=mode, max_episode_steps=90)
-    envs.torque_noise_max = 0.3
+    envs.torque_noise_max = noise
     envs.book_or_nips = "nips"
     envs.reset(seed=1, options={"low": -1.0, "high": 0.5})
     play(envs, 90, 2)  # in mode NEXT_STEP the next step resets all
     twin = again(envs)
     np.testing.assert_equal(play(envs, 300, 3), play(twin, 300, 3))
+    for name in NAMES:
+        assert envs.get_attr(name) == twin.get_attr(name)
 
 
 def test_true_is_the_seed_1_as_in_gymnasium():
@@ -352,7 +361,7 @@ def test_invalid_bounds_are_rejected(options):
 )  # fmt: skip
 def test_invalid_masks_are_rejected_with_the_errors_of_sync_vector_env(mask, error):
     theirs, ours = pair(2)
-    with pytest.raises(error):
+    with pytest.raises((error, AssertionError)):  # the latter with Gymnasium 1.1
         theirs.reset(seed=1, options={"reset_mask": mask and np.array(mask)})
     before, options = ours._native.__getstate__(), {"reset_mask": mask}
     with pytest.raises(error, match=r"reset_mask must (be an array of bool|have shape \(2,\) and a true element), got"):
@@ -409,10 +418,9 @@ def test_other_threads_run_while_it_steps():
     thread = threading.Thread(target=loop)
     thread.start()
     try:
-        results = [np.empty(envs.num_envs, dtype) for dtype in (np.float32, np.bool_, np.bool_)]
         for _ in range(200):  # the other thread may wait for a core
             before = loops
-            envs._native.step(actions, envs._observations, *results, None)
+            envs._native.step(envs, actions, envs._observations)
             if loops > before:
                 break
         assert loops > before
@@ -489,9 +497,11 @@ def test_observations_of_initial_states_bit_identically(mode):
 
 
 def test_a_list_of_seeds_seeds_each_environment_as_a_single_one():
-    for envs in pair(4):
-        with pytest.raises(ValueError, match="4"):
-            envs.reset(seed=[1, 2, 3])
+    theirs, envs = pair(4)
+    with pytest.raises((ValueError, AssertionError), match="4"):  # the latter with Gymnasium 1.1
+        theirs.reset(seed=[1, 2, 3])
+    with pytest.raises(ValueError, match="seed must have one element for each of 4 environments, got 3"):
+        envs.reset(seed=[1, 2, 3])
     envs = make_vec(4)
     envs.reset(seed=9)
     before = envs._native.__getstate__()
@@ -554,7 +564,7 @@ def test_call_and_get_attr():
             expected, found = getattr(theirs, get)(name), getattr(ours, get)(name)
             assert isinstance(found, tuple)
             np.testing.assert_equal(found, expected)
-    for name in acrobot_rs.parameters._NAMES:
+    for name in NAMES:
         np.testing.assert_equal([list(x) if name == "AVAIL_TORQUE" else x for x in ours.get_attr(name)],
                                 [list(x) if name == "AVAIL_TORQUE" else x for x in theirs.get_attr(name)])  # fmt: skip
     assert ours.get_attr("elapsed_steps") == theirs.get_attr("_elapsed_steps")
@@ -586,7 +596,6 @@ def test_set_attr():
     assert (ours.state == states).all()
     before = ours._native.__getstate__()
     for name, values, error in [
-        ("dt", [0.1, 0.1, 0.2], NotImplementedError),
         ("dt", [0.0] * 3, ValueError),
         ("state", [1.0] * 3, ValueError),
         ("length", 1, AttributeError),
@@ -679,15 +688,21 @@ def test_threads_change_no_bit(kind, count, gymnasium_episodes):
 
 
 def test_only_large_steps_start_threads():
-    tasks = Path("/proc/self/task")
-    if not tasks.exists():
+    """In a process of its own, because other tests start threads too."""
+    if not Path("/proc/self/task").exists():
         pytest.skip("counts the threads of Linux")
-    before = len(list(tasks.iterdir()))
-    small, large = make_vec(512, threads=3), make_vec(40_000, threads=3)
-    for envs, started in [(small, 0), (large, 3)]:
-        envs.reset(seed=1)
-        envs.step(np.zeros(envs.num_envs, np.int64))
-        assert len(list(tasks.iterdir())) == before + started
+    code = """if True:
+        import pathlib, acrobot_rs
+        tasks = pathlib.Path("/proc/self/task")
+        before = len(list(tasks.iterdir()))
+        for count in (512, 40_000):
+            envs = acrobot_rs.AcrobotVectorEnv(count, threads=3)
+            envs.reset(seed=1)
+            envs.step([0] * count)
+            print(len(list(tasks.iterdir())) - before)
+    """
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert run.stdout.split() == ["0", "3"], run.stderr
 
 
 def step_in_a_child(envs, connection):
@@ -754,7 +769,6 @@ def test_continuous_torques(gymnasium_episodes):
     assert (discrete.state != torques.state).any()
 
 
-@pytest.mark.skipif(CONTINUOUS not in gymnasium.registry, reason="needs the single environment")
 @MODES
 def test_continuous_torques_give_the_episodes_of_single_environments(mode):
     theirs = gymnasium.make_vec(
@@ -792,3 +806,195 @@ def test_the_bounds_of_torques_are_those_of_avail_torque():
         each.reset(seed=1)
         each.step(actions)
     assert (envs.state == twin.state).all()
+
+
+def different(count, seed):
+    """A value of each parameter for each of these environments."""
+    rng = np.random.default_rng(seed)
+    values = {name: list(rng.uniform(0.8, 1.2, count)) for name in NAMES if name.startswith("LINK")}
+    values["dt"] = tuple(rng.uniform(0.05, 0.25, count).tolist())
+    values["MAX_VEL_1"] = rng.uniform(2, 12, count)
+    values["MAX_VEL_2"] = rng.uniform(2, 28, count).astype(np.float32)
+    values["AVAIL_TORQUE"] = rng.uniform(-2, 2, (count, 3))
+    values["torque_noise_max"] = rng.choice([0.0, 0.5], count)
+    values["book_or_nips"] = rng.choice(["book", "nips"], count).tolist()
+    assert values.keys() == set(NAMES)
+    return values
+
+
+@MODES
+def test_parameters_of_each_environment(mode):
+    """All of them, set before and during episodes. Gymnasium's environments have the same."""
+    theirs, ours = pair(19, mode, max_episode_steps=60)
+    for envs in (theirs, ours):
+        envs.reset(seed=1)
+    rng = np.random.default_rng(0)
+    for seed in range(4):
+        for name, values in different(19, seed).items():
+            theirs.set_attr(name, list(values))
+            ours.set_attr(name, values) if seed % 2 else setattr(ours, name, values)
+            np.testing.assert_array_equal(getattr(ours, name), values)
+            np.testing.assert_array_equal(ours.get_attr(name), theirs.get_attr(name))
+        for actions in rng.integers(3, size=(70, 19)):
+            expected = theirs.step(actions)
+            assert_equal(expected, ours.step(actions))
+            np.testing.assert_array_equal(ours.state, np.array(theirs.get_attr("state")))
+            for envs in (theirs, ours):
+                reset_ended(envs, expected[2] | expected[3])
+    ours.dt = 0.1
+    assert ours.dt == 0.1 and ours.get_attr("dt") == (0.1,) * 19 and not ours.LINK_MASS_1.flags.writeable
+
+
+@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotVectorEnv, AcrobotContinuousVectorEnv])
+def test_float32_episodes_with_parameters_of_each_are_those_of_environments_that_share_them(kind):
+    values = different(5, 0)
+    envs = kind(5)
+    envs.reset(seed=1)
+    for name in NAMES:
+        setattr(envs, name, values[name])
+    played = play_any(envs)
+    for i in range(5):
+        alike = kind(5)
+        alike.reset(seed=1)
+        for name in NAMES:
+            setattr(alike, name, values[name][i])
+        assert (played[:, i] == play_any(alike)[:, i]).all()
+
+
+def play_any(envs):
+    """Plays actions or torques, and returns the observations."""
+    envs.action_space.seed(1)
+    return np.array([envs.step(envs.action_space.sample())[0] for _ in range(700)])
+
+
+#: All parameters that can be drawn, in the order of their draws.
+DRAWN = (
+    *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"),
+    *("dt", "MAX_VEL_1", "MAX_VEL_2", "AVAIL_TORQUE", "torque_noise_max"),
+)
+
+
+@pytest.mark.parametrize("names", [DRAWN, ("LINK_MASS_1",), ("dt", "AVAIL_TORQUE")])
+@pytest.mark.parametrize("gymnasium_episodes", [False, True])
+def test_resets_draw_parameters_as_numpy_does(names, gymnasium_episodes):
+    """Those of all environments, those with a mask, and those within steps."""
+    count, rounded = 20, np.float64 if gymnasium_episodes else np.float32
+    envs = make_vec(count, max_episode_steps=2, gymnasium_episodes=gymnasium_episodes)
+    envs.reset(seed=3)
+    ranges = {}
+    for name in names[::-1]:  # the order of draws is not that of the assignments
+        low, high = ((-1.5, 0.0, 0.5), (-0.5, 0.0, 1.5)) if name == "AVAIL_TORQUE" else (0.3, 1.7)
+        setattr(envs, name, Uniform(low, high))
+        assert getattr(envs, name) == Uniform(low, high)
+        ranges[name] = rounded(low).astype(float), rounded(high).astype(float)
+        assert len(set(envs.get_attr(name))) == 1, "the next reset draws"
+    if gymnasium_episodes:
+        streams = [np.random.default_rng(42 + i) for i in range(count)]
+    else:
+        streams = [np.random.default_rng(child) for child in np.random.SeedSequence(42).spawn(count)]
+
+    def check(which):
+        for i in np.flatnonzero(which):
+            for name in names:
+                low, high = ranges[name]
+                # What has equal bounds, here a torque, is not drawn.
+                bounds = np.transpose([np.ravel(low), np.ravel(high)])
+                drawn = [rounded(streams[i].uniform(*both)) if both[0] < both[1] else both[0] for both in bounds]
+                assert (np.ravel(envs.get_attr(name)[i]) == drawn).all(), name
+            assert (envs.state[i] == np.float32(streams[i].uniform(-0.1, 0.1, 4))).all()
+
+    every = np.ones(count, bool)
+    envs.reset(seed=42)
+    check(every)
+    envs.reset(options={"reset_mask": every & (np.arange(count) % 3 == 0)})
+    check(np.arange(count) % 3 == 0)
+    for _ in range(6):
+        before = envs.elapsed_steps
+        envs.step(np.ones(count, int))
+        for i in np.flatnonzero(before < 2):
+            streams[i].uniform(size=int("torque_noise_max" in names))
+        check(before == 2)
+    first = names[0]
+    setattr(envs, first, 1.0)
+    envs.reset()
+    assert getattr(envs, first) == 1.0 and envs._native.get(first) == [1.0] * count
+
+
+@pytest.mark.parametrize("gymnasium_episodes", [False, True])
+@pytest.mark.parametrize(
+    ("name", "value", "error", "message"),
+    [
+        ("LINK_MASS_1", [1.0, 0.0, 2.0], ValueError, r"LINK_MASS_1\[1\] must be finite and above 0 kg, got 0"),
+        ("LINK_MASS_1", [1.0, 2.0, None], TypeError, r"LINK_MASS_1\[2\] must be a number, got None"),
+        ("LINK_MASS_1", [1.0, 2.0], ValueError, "LINK_MASS_1 must be one value, or one for each of 3 environments, got 2 values"),
+        ("LINK_COM_POS_1", [0.1, 0.0, 0.0], ValueError, r"LINK_MOI\[1\] must be above 0 kg m² if the centre of mass"),
+        ("AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, np.inf, 3]], ValueError, r"AVAIL_TORQUE\[2\]\[1\] must be a finite number"),
+        ("AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], ValueError, r"AVAIL_TORQUE\[1\] must be 3 numbers, got 2"),
+        ("book_or_nips", ["book", "nips", "bok"], ValueError, r'book_or_nips\[2\] must be "book" or "nips", got "bok"'),
+        ("dt", Uniform(0.0, 1.0), ValueError, "dt must be finite and above 0 s, got 0"),
+        ("dt", Uniform(0.2, None), TypeError, "dt must be a number, got None"),
+        ("LINK_MASS_1", Uniform(1.2, 0.8), ValueError, "the lower LINK_MASS_1 must not be above the upper one, got 1.2"),
+        ("LINK_MOI", Uniform(1.0, 2.0), ValueError, "LINK_MOI must be a value or an array, not a Uniform"),
+        ("book_or_nips", Uniform("book", "nips"), ValueError, "book_or_nips must be a value or an array, not a Uniform"),
+    ],
+)  # fmt: skip
+def test_a_rejected_parameter_changes_nothing(name, value, error, message, gymnasium_episodes):
+    envs = make_vec(3, gymnasium_episodes=gymnasium_episodes)
+    envs.LINK_MOI = 0.0
+    for mass in (1.0, [1.0, 1.5, 2.0], Uniform(1.0, 2.0)):
+        # A range and different values of another parameter are rejected together, for which there is another test.
+        if isinstance(mass, Uniform if isinstance(value, list) else list) and name != "LINK_MASS_1":
+            continue
+        envs.LINK_MASS_1 = mass
+        envs.reset(seed=1)
+        before = envs._native.__getstate__(), envs.get_attr(name)
+        for attempt in (setattr, acrobot_rs.AcrobotVectorEnv.set_attr):
+            with pytest.raises(error, match=f"^{message}"):
+                attempt(envs, name, value)
+            assert (envs._native.__getstate__(), envs.get_attr(name)) == before
+
+
+def test_a_range_and_different_values_are_rejected_together():
+    """A reset would draw all parameters, also those with different values."""
+    envs = make_vec(3)
+    envs.LINK_MASS_1 = [1.0, 1.5, 2.0]
+    message = "LINK_MASS_1 must be one value for all environments, if dt has a Uniform"
+    with pytest.raises(ValueError, match=message):
+        envs.dt = Uniform(0.1, 0.2)
+    envs.LINK_MASS_1 = Uniform(1.0, 2.0)
+    message = "LINK_MASS_1 must be a value or an array, not a Uniform, if dt has different values"
+    with pytest.raises(ValueError, match=message):
+        envs.dt = [0.1, 0.2, 0.3]
+    envs.LINK_MASS_1 = 1.0
+    envs.dt = [0.1, 0.2, 0.3]
+    assert envs.get_attr("dt") == (0.1, 0.2, 0.3)
+
+
+def test_subclasses_can_draw_parameters():
+    class Random(AcrobotContinuousVectorEnv):
+        MAX_VEL_1 = Uniform(20.0, 30.0)
+        AVAIL_TORQUE = Uniform([-3.0, 0.0, 1.0], [-2.0, 0.0, 2.0])
+
+    envs = Random(50)
+    assert envs.single_observation_space.high[4] == 30
+    assert envs.single_action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
+    envs.reset(seed=1)
+    assert len(set(envs.get_attr("MAX_VEL_1"))) == 50
+    Random.MAX_VEL_1 = 25.0
+    assert envs.get_attr("MAX_VEL_1") == (25.0,) * 50
+    with pytest.raises(ValueError, match="the lower MAX_VEL_1 must not be above"):
+        Random.MAX_VEL_1 = Uniform(3.0, 2.0)
+    with pytest.raises(TypeError, match="LINK_MASS_1 must be a number, got Uniform"):
+        acrobot_rs.AcrobotEnv().LINK_MASS_1 = Uniform(1.0, 2.0)
+
+
+def test_pictures_have_the_lengths_of_their_environment():
+    envs = make_vec(2, render_mode="ansi")
+    envs.LINK_LENGTH_1 = [1.0, 0.3]
+    envs.reset(seed=1)
+    envs.state = np.zeros((2, 4))
+    for length, picture in zip((1.0, 0.3), envs.render(), strict=True):
+        single = acrobot_rs.AcrobotEnv("ansi")
+        single.LINK_LENGTH_1 = length
+        single.state = np.zeros(4)
+        assert single.render() == picture

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import abc
 import copy
+import dataclasses
 import difflib
 import functools
 import math
@@ -41,17 +42,45 @@ class Torques(tuple[float, ...]):
         raise TypeError("set AVAIL_TORQUE as a whole, as in env.unwrapped.AVAIL_TORQUE = [-2.0, 0.0, 2.0]")
 
 
+@dataclasses.dataclass(frozen=True)
+class Uniform:
+    """A parameter of a vector environment that each reset draws uniformly between two bounds, in each environment.
+
+    >>> import acrobot_rs
+    >>> envs = acrobot_rs.AcrobotVectorEnv(1024)
+    >>> envs.LINK_MASS_1 = acrobot_rs.Uniform(0.8, 1.2)
+    """
+
+    low: Any
+    high: Any
+
+
 def _checked(name: str, value: Any) -> Any:
     """The value of a parameter, for a class."""
-    Acrobot().set(name, value)
+    if isinstance(value, Uniform):
+        Batch(1, "0", 1, "NextStep").set_range(name, value.low, value.high)
+    else:
+        Acrobot().set(name, value)
     return _fixed(name, value)
 
 
 def _fixed(name: str, value: Any) -> Any:
     """A valid value, as an object that cannot change: a change of an array would have no effect."""
+    if isinstance(value, Uniform):
+        return Uniform(_fixed(name, value.low), _fixed(name, value.high))
     if name == "book_or_nips":
         return value
     return Torques(map(float, value)) if name == "AVAIL_TORQUE" else float(value)
+
+
+def _lowest(value: Any) -> Any:
+    """The lower bound, if the value of a parameter is drawn."""
+    return value.low if isinstance(value, Uniform) else value
+
+
+def _highest(value: Any) -> Any:
+    """The upper bound, if the value of a parameter is drawn."""
+    return value.high if isinstance(value, Uniform) else value
 
 
 def _reject_ignored(cls: type, name: str) -> None:
@@ -74,7 +103,7 @@ def _meant(name: str) -> str | None:
 def _tell(name: str) -> None:
     """Pass a parameter that a class has changed to the environments."""
     for env in list(_LIVE) if name in _NAMES else ():
-        env._native.set(name, getattr(env, name))
+        env._pass(name, getattr(env, name))
 
 
 class Live(abc.ABCMeta):
@@ -170,14 +199,18 @@ class Parameters(metaclass=Live):
         # Any centre of mass is valid with an inertia. LINK_MOI comes last.
         self._native.set("LINK_MOI", 1.0)
         for name in _NAMES:
-            self._native.set(name, getattr(self, name))
+            self._pass(name, getattr(self, name))
         _LIVE.add(self)
+
+    def _pass(self, name: str, value: Any) -> Any:
+        """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
+        self._native.set(name, value)
+        return _fixed(name, value)
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a parameter and set it."""
         if name in _NAMES:
-            self._native.set(name, value)
-            value = _fixed(name, value)
+            value = self._pass(name, value)
         else:
             _reject_ignored(type(self), name)
         super().__setattr__(name, value)
@@ -185,7 +218,7 @@ class Parameters(metaclass=Live):
     def __delattr__(self, name: str) -> None:
         """Set a parameter back to the value of its class. ``unittest.mock.patch.object`` does this when it ends."""
         if name in _NAMES and name in vars(self):
-            self._native.set(name, getattr(type(self), name))
+            self._pass(name, getattr(type(self), name))
         super().__delattr__(name)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -207,7 +240,7 @@ class Parameters(metaclass=Live):
     @property
     def _highest_velocities(self) -> tuple[float, float]:
         """The largest velocities after a step, or after a reset with the default bounds of 0.1, rad/s."""
-        return max(self.MAX_VEL_1, 0.1), max(self.MAX_VEL_2, 0.1)
+        return max(_highest(self.MAX_VEL_1), 0.1), max(_highest(self.MAX_VEL_2), 0.1)
 
     @property
     def _observation_space(self) -> spaces.Box[np.float32]:

@@ -85,7 +85,7 @@ class AcrobotVecEnv(VecEnv):
         return [values[index] for index in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
-        """Set the state of these environments, or a parameter of all. See :meth:`AcrobotVectorEnv.set_attr`."""
+        """Set a parameter or the state of these environments. See :meth:`AcrobotVectorEnv.set_attr`."""
         values = list(self.envs.get_attr(attr_name))
         for index in self._get_indices(indices):
             values[index] = value

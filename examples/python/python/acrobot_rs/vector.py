@@ -14,7 +14,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.parameters import _NAMES, Parameters, reset_bounds
+from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, _highest, _lowest, reset_bounds
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 Floats = NDArray[np.float32]
@@ -30,12 +30,17 @@ _ATTRIBUTES = (
 class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
-    All have the same parameters. They are computed in ``float32``, bit-identically on every machine. Each step is as close to
-    Gymnasium's as ``float32`` is, but whole episodes drift apart, because an Acrobot is chaotic.
+    They are computed in ``float32``, bit-identically on every machine. Each step is as close to Gymnasium's as ``float32``
+    is, but whole episodes drift apart, because an Acrobot is chaotic.
 
     Environment ``i`` draws from the ``i``-th child of the seed, ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
     So more environments do not change the first ones, and two seeds share no stream. ``SyncVectorEnv`` seeds environment
     ``i`` with ``seed + i``.
+
+    A parameter has one value for all environments, a list or an array with one for each, or an :class:`acrobot_rs.Uniform`,
+    from which each reset draws. Reading it gives what was set, different values as an array, and :meth:`get_attr` what each
+    environment has. ``LINK_MOI`` and ``book_or_nips`` cannot be a ``Uniform``, and no parameter can while another one has
+    different values.
 
     With ``gymnasium_episodes=True`` environments are computed and seeded as in ``SyncVectorEnv`` of Gymnasium's
     ``Acrobot-v1``. All results are bit-identical to its results where those of :class:`acrobot_rs.AcrobotEnv` are.
@@ -223,19 +228,14 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         if not self._ready:
             self._check_open()
             raise ResetNeeded("the environments have no states yet; call reset before step")
-        inputs = self._inputs(actions)
         if self._ended is not None and self._ended.any():
             raise ResetNeeded(
                 f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; "
                 'reset it before the next step, with options={"reset_mask": terminated | truncated}'
             )
-        n = self.num_envs
-        observations = np.empty((n, 6), np.float32) if self._observations is None else self._observations
-        rewards = np.empty(n, np.float32)
-        # Zeros, not empty: a Rust bool must be 0 or 1, and another byte is undefined behaviour.
-        terminated, truncated = np.zeros((2, n), np.bool_)
-        finals = np.empty((n, 6), np.float32) if self._same_step else None
-        self._native.step(inputs, observations, rewards, terminated, truncated, finals)
+        observations = self._empty() if self._observations is None else self._observations
+        finals = self._empty() if self._same_step else None
+        rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
         if self._ended is not None:
             np.logical_or(terminated, truncated, out=self._ended)
         infos = {} if finals is None else _final_infos(finals, terminated | truncated)
@@ -264,6 +264,10 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         if name in ("action_space", "observation_space"):
             name = f"single_{name}"
         value = getattr(self, name)
+        if isinstance(value, Uniform):
+            return tuple(_fixed(name, each) for each in self._native.get(name))
+        if isinstance(value, np.ndarray) and name in _NAMES:
+            return tuple(_fixed(name, each) for each in value.tolist())
         if name == "render":
             frames = self.render(*args, **kwargs)
             return (None,) * self.num_envs if frames is None else frames
@@ -278,26 +282,20 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
         Args:
             name: A parameter or ``"state"``.
-            values: A list or tuple with a value for each environment, or one value for all. Parameters of the environments
-                must be equal.
+            values: One value for all environments, or a list, tuple or array with a value for each. A parameter can also
+                be an :class:`acrobot_rs.Uniform`.
 
         Raises:
             AttributeError: If the name is neither a parameter nor ``"state"``.
+            TypeError: If a value is of a wrong type. Nothing changes then.
             ValueError: If a value is invalid, or if a list has another length. Nothing changes then.
-            NotImplementedError: If values of a parameter differ. Nothing changes then.
         """
         self._check_open()
         if name not in (*_NAMES, "state"):
             raise AttributeError(f"set_attr cannot set {name!r}; it can set state, {', '.join(_NAMES)}")
-        each = isinstance(values, list | tuple)
-        if each and len(values) != self.num_envs:
-            raise ValueError(f"values must have one element for each of {self.num_envs} environments, got {len(values)}")
-        if name == "state":
-            self.state = values if np.shape(values) != (4,) else np.tile(values, (self.num_envs, 1))
-            return
-        if each and not all(np.array_equal(value, values[0]) for value in values):
-            raise NotImplementedError(f"{name} must be the same in all environments")
-        setattr(self, name, values[0] if each else values)
+        if name == "state" and np.shape(values) == (4,):
+            values = np.tile(values, (self.num_envs, 1))
+        setattr(self, name, values)
 
     def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
         """For each environment an array of shape ``(500, 500, 3)`` or a text, depending on the render mode.
@@ -324,7 +322,29 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     def _action_space(self) -> spaces.Space[Any]:
         return spaces.Discrete(3)
 
+    def _pass(self, name: str, value: Any) -> Any:
+        ranged = isinstance(value, Uniform)
+        each = _each(name, value)
+        for other in _NAMES if ranged or each is not None else ():
+            if other != name and isinstance(getattr(self, other), np.ndarray if ranged else Uniform):
+                found = "a Uniform" if ranged else "different values"
+                rule = "one value for all environments" if ranged else "a value or an array, not a Uniform"
+                raise ValueError(f"{other} must be {rule}, if {name} has {found}")
+        if ranged:
+            self._native.set_range(name, value.low, value.high)
+        elif each is None:
+            self._native.set(name, value)
+        else:
+            self._native.set_each(name, each)
+            value = np.array([_fixed(name, one) for one in each])
+            if (value != value[0]).any():
+                value.flags.writeable = False
+                return value
+            value = each[0]
+        return _fixed(name, value)
+
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
+        """The actions, checked and converted to an array that the native part reads. It calls this where necessary."""
         actions = np.asarray(actions)
         if actions.dtype.kind not in "iu" or actions.shape != (self.num_envs,):
             raise InvalidAction(
@@ -354,7 +374,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 raise ValueError(f"seed must have one element for each of {self.num_envs} environments, got {len(seed)}")
             return None, [None if each is None else _digits(each) for each in seed]
         digits = None if seed is None else _digits(seed)
-        if digits is None or not self._gymnasium_episodes:
+        if seed is None or not self._gymnasium_episodes:
             return digits, None
         return None, [_digits(seed + i) for i in range(self.num_envs)]
 
@@ -385,7 +405,7 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
 
     @property
     def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Box(min(self.AVAIL_TORQUE), max(self.AVAIL_TORQUE), (1,), np.float32)
+        return spaces.Box(min(_lowest(self.AVAIL_TORQUE)), max(_highest(self.AVAIL_TORQUE)), (1,), np.float32)
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
         actions = np.asarray(actions)
@@ -394,6 +414,17 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
                 f"actions must be numbers of shape ({self.num_envs}, 1), got {actions.dtype} of shape {actions.shape}"
             )
         return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.float32)
+
+
+def _each(name: str, value: Any) -> list[Any] | None:
+    """The values of a parameter, if there is one for each environment."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, list | tuple):
+        return None
+    if name == "AVAIL_TORQUE" and not any(isinstance(one, list | tuple | np.ndarray) for one in value):
+        return None
+    return list(value)
 
 
 def _digits(seed: Any) -> str:
