@@ -30,7 +30,7 @@ ROUNDS = [
     (["src/arithmetic*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
     (["src/arithmetic/reference*"], ["sines"]),
     (["src/trajectory.rs"], ["trajectory"]),
-    (["src/batch*", "src/arithmetic/lanes.rs"], ["autoreset", "batch_slices", "stability"]),
+    (["src/batch*", "src/arithmetic/lanes.rs"], ["autoreset", "batch_slices", "own_params", "stability", "vec_batch"]),
     (["src/env*", "src/render*"], ["check_env", "env", "render"]),
     (["src/*"], ["acrobot", "validation", "seeding", "snapshot", "trajectory"]),
     (["src/*"], OTHERS),
