@@ -92,21 +92,21 @@ fn micro(alone: Alone<Micro>) -> Alone<Micro> {
 }
 
 #[library_benchmark(setup = batch::<Fast>)]
-#[bench::baseline(args = (SimdLevel::Baseline), config = limit(256.0, ACROBOTS))]
-#[bench::avx2(args = (SimdLevel::Avx2), config = limit(114.0, ACROBOTS))]
+#[bench::baseline(args = (SimdLevel::Baseline), config = limit(248.0, ACROBOTS))]
+#[bench::avx2(args = (SimdLevel::Avx2), config = limit(113.0, ACROBOTS))]
 fn batch_fast(play: Play<Fast>) -> Play<Fast> {
     play_batch(play, false)
 }
 
 #[library_benchmark(setup = batch::<Fast>)]
-#[bench::baseline(args = (SimdLevel::Baseline), config = limit(273.0, ACROBOTS))]
+#[bench::baseline(args = (SimdLevel::Baseline), config = limit(265.0, ACROBOTS))]
 #[bench::avx2(args = (SimdLevel::Avx2), config = limit(123.0, ACROBOTS))]
 fn batch_fast_with_observations(play: Play<Fast>) -> Play<Fast> {
     play_batch(play, true)
 }
 
 #[library_benchmark(setup = batch::<Portable>)]
-#[bench::baseline(args = (SimdLevel::Baseline), config = limit(989.0, ACROBOTS))]
+#[bench::baseline(args = (SimdLevel::Baseline), config = limit(945.0, ACROBOTS))]
 fn batch_portable(play: Play<Portable>) -> Play<Portable> {
     play_batch(play, false)
 }

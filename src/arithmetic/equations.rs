@@ -20,7 +20,7 @@ pub struct Model<A: Arithmetic> {
 /// What a step reads of a model: a number, or one for each lane.
 pub trait Coefficients<A: Arithmetic, V: Numbers<A::Scalar>> {
     /// The constants of the equations.
-    fn constants(&self) -> Constants<A, V>;
+    fn constants(&self) -> &Constants<A, V>;
 
     /// The duration of a step, s.
     fn dt(&self) -> V;
@@ -34,8 +34,8 @@ pub trait Coefficients<A: Arithmetic, V: Numbers<A::Scalar>> {
 
 impl<A: Arithmetic> Coefficients<A, A::Scalar> for Model<A> {
     #[inline(always)]
-    fn constants(&self) -> Constants<A, A::Scalar> {
-        self.constants
+    fn constants(&self) -> &Constants<A, A::Scalar> {
+        &self.constants
     }
 
     #[inline(always)]

@@ -335,18 +335,23 @@ impl<A: Arithmetic> Drive<A> for Torques {
     }
 }
 
+/// Steps all blocks. `HIDE` hides from the compiler that they share a model. With AVX-512 it would otherwise hold the
+/// model in registers and spill the state.
 #[inline(always)]
-pub(super) fn step_blocks<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
+pub(super) fn step_blocks<A, D, const N: usize, P, const HIDE: bool>(
     settings: &Settings<A, P>,
     blocks: &mut [Block<A, N, P>],
     mut generators: &mut [Pcg64],
     mut inputs: &[D::Input],
     mut buffers: StepBuffers<'_>,
-) {
+) where
+    A: Arithmetic,
+    D: Drive<A>,
+    P: ParamsKind<A>,
+{
     let splat = P::splat(&settings.params);
     for block in blocks {
-        // It hides that all blocks have the same model: LLVM would hold the model in registers and spill the state.
-        let splat = black_box(&splat);
+        let splat = if HIDE { black_box(&splat) } else { &splat };
         let inputs = take(&mut inputs, N);
         let generators = take_mut(&mut generators, N);
         block.step::<D>(settings, splat, inputs, generators, &mut buffers);

@@ -71,8 +71,8 @@ impl<A: Arithmetic, const N: usize> LaneModel<A, N> {
 
 impl<A: Arithmetic, const N: usize> Coefficients<A, Lanes<A::Scalar, N>> for LaneModel<A, N> {
     #[inline(always)]
-    fn constants(&self) -> Constants<A, Lanes<A::Scalar, N>> {
-        self.constants
+    fn constants(&self) -> &Constants<A, Lanes<A::Scalar, N>> {
+        &self.constants
     }
 
     #[inline(always)]

@@ -81,7 +81,7 @@ impl SimdLevel {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {
             macro_rules! compiled_for {
-                ($name:ident, $features:literal) => {
+                ($name:ident, $features:literal, $hide:literal) => {
                     #[target_feature(enable = $features)]
                     fn $name<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
                         settings: &Settings<A, P>,
@@ -90,12 +90,14 @@ impl SimdLevel {
                         inputs: &[D::Input],
                         buffers: StepBuffers<'_>,
                     ) {
-                        step_blocks::<A, D, N, P>(settings, blocks, generators, inputs, buffers);
+                        step_blocks::<A, D, N, P, $hide>(
+                            settings, blocks, generators, inputs, buffers,
+                        );
                     }
                 };
             }
-            compiled_for!(with_avx2, "avx2");
-            compiled_for!(with_avx512, "avx512f,avx512bw,avx512dq,avx512vl");
+            compiled_for!(with_avx2, "avx2", false);
+            compiled_for!(with_avx512, "avx512f,avx512bw,avx512dq,avx512vl", true);
             // SAFETY: the machine has the features that the function was compiled for.
             unsafe {
                 match self {
@@ -113,7 +115,7 @@ impl SimdLevel {
                 }
             }
         }
-        step_blocks::<A, D, N, P>(settings, blocks, generators, inputs, buffers);
+        step_blocks::<A, D, N, P, false>(settings, blocks, generators, inputs, buffers);
     }
 
     /// As [`step`](Self::step), on all cores: halves the blocks until a task is too small to share.

@@ -65,7 +65,7 @@ where
         sin_cos: Option<[SinCos<V>; 2]>,
         torque: V,
     ) -> [V; 4] {
-        let Constants {
+        let &Constants {
             common:
                 Common {
                     coupling,

@@ -60,7 +60,7 @@ where
             Some(sin_cos) => sin_cos,
             None => [theta1.sin_cos::<A>(), theta2.sin_cos::<A>()],
         };
-        let Constants {
+        let &Constants {
             common:
                 Common {
                     coupling,

@@ -14,8 +14,7 @@ pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
     sin_cos: &mut [SinCos<V>; 2],
     torque: V,
 ) -> V::Mask {
-    let constants = model.constants();
-    let common = A::Form::common(&constants);
+    let common = A::Form::common(model.constants());
     let dts = [common.half_dt, model.dt(), common.sixth_dt];
     let k1 = A::Form::derivative(model, *y, Some(*sin_cos), torque);
     let forced = Forced {
