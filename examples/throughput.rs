@@ -43,7 +43,7 @@ fn measure() -> io::Result<()> {
     own_params(1024)?;
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2)?;
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline)?;
-    batch::<Portable>("portable", 1024, SimdLevel::Baseline)?;
+    batch::<Portable>("portable", 1024, SimdLevel::widest())?;
     threads(1 << 20)
 }
 
