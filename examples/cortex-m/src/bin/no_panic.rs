@@ -210,10 +210,9 @@ fn own_params<A: Arithmetic>() {
             final_observations: Observations::None,
         };
         let _ = black_box(batch.step(&black_box([1_u8; LEN]), buffers));
-        let _ = black_box(batch.reset_to_masked(
-            &black_box([true; LEN]),
-            &black_box([State::default(); LEN]),
-        ));
+        let _ = black_box(
+            batch.reset_to_masked(&black_box([true; LEN]), &black_box([State::default(); LEN])),
+        );
         black_box((batch.params_of(black_box(3)), batch.elapsed(black_box(3))));
         black_box((&rewards, &terminated, &truncated, batch.generators_mut()));
     }
