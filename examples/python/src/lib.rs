@@ -1,6 +1,8 @@
 //! The native part of `acrobot_rs`, which calls the crate. Gymnasium's interface is written in Python, in `python/`.
 
 mod batch;
+mod engine;
+mod pool;
 mod single;
 
 use std::fmt::Display;

@@ -688,7 +688,7 @@ def test_threads_change_no_bit(kind, count, gymnasium_episodes):
 
 
 def test_only_large_steps_start_threads():
-    """In a process of its own, because other tests start threads too."""
+    """In another process, because other tests start threads too."""
     if not Path("/proc/self/task").exists():
         pytest.skip("counts the threads of Linux")
     code = """if True:
