@@ -115,6 +115,18 @@ fn batches_are_stable_in_every_width() {
     assert!(widths == [episodes::OWN_PARAMS; 3], "{widths:#018x?}");
 }
 
+#[test]
+fn subnormal_numbers_are_stable() {
+    let alone = episodes::subnormal();
+    assert!(alone == episodes::SUBNORMAL, "{alone:#018x?}");
+    let widths = [
+        episodes::subnormal_batch::<1, 20>(),
+        episodes::subnormal_batch::<4, 5>(),
+        episodes::subnormal_batch::<16, 2>(),
+    ];
+    assert!(widths == [episodes::SUBNORMAL_BATCH; 3], "{widths:#018x?}");
+}
+
 /// The weights after 100 episodes. Any change in the learner or the task changes them.
 #[test]
 fn the_shared_training_is_stable() {

@@ -1,12 +1,12 @@
-//! Sixteen fixed episodes and a batch, and a digest of every bit of each.
+//! Fixed episodes and batches, and a digest of every bit of each.
 
-use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::batch::{
     Autoreset, Batch, Block, Observations, OwnParams, ParamsKind, SharedParams, StepBuffers,
 };
 use acrobot::numpy::Pcg64;
 use acrobot::physics::ParamsRange;
-use acrobot::{Acrobot, Action, Fast, Observation, Params, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, TimeLimit};
 
 use crate::{Digest, against};
 
@@ -51,12 +51,59 @@ pub fn equal<A: Arithmetic>(expected: &[u64; 16]) -> usize {
     found.filter(|(found, expected)| found == *expected).count()
 }
 
+/// Torques so small that angles and velocities stay subnormal for 200 steps.
+fn subnormal_torques<A: Arithmetic>(params: &mut Params<A::Scalar>) {
+    let smallest_normal = if size_of::<A::Scalar>() == 4 {
+        f64::from(f32::MIN_POSITIVE)
+    } else {
+        f64::MIN_POSITIVE
+    };
+    let torque = A::Scalar::from_f64(smallest_normal / 100.0);
+    params.torques = [-torque, A::Scalar::ZERO, torque];
+}
+
+/// Every bit of 200 steps with subnormal numbers, which some FPUs flush to zero, in each arithmetic.
+pub fn subnormal() -> [u64; 4] {
+    [
+        subnormal_in::<Reference>(),
+        subnormal_in::<Portable>(),
+        subnormal_in::<Fast>(),
+        subnormal_in::<Micro>(),
+    ]
+}
+
+fn subnormal_in<A: Arithmetic>() -> u64 {
+    let mut acrobot = Acrobot::<A>::hanging(Pcg64::new(0));
+    let mut params = *acrobot.params();
+    subnormal_torques::<A>(&mut params);
+    if acrobot.set_params(params).is_err() {
+        return 0;
+    }
+    let mut digest = Digest::default();
+    for _ in 0..200 {
+        let step = acrobot.step(against(acrobot.state().dtheta1));
+        add_seen(&mut digest, &acrobot, step.observation);
+    }
+    digest.0
+}
+
 type Arrays<const LEN: usize, const N: usize, const BLOCKS: usize, P> =
     Batch<Fast, [Block<Fast, N, P>; BLOCKS], [Pcg64; LEN], N, P>;
 
 /// Every bit that a batch of twenty in `Fast` with the same parameters returns. It is the same for any width `N`.
 pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
     batch::<20, N, BLOCKS, SharedParams>(|_| {})
+}
+
+/// As [`shared_params`] with subnormal numbers.
+pub fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
+    batch::<20, N, BLOCKS, SharedParams>(|batch| {
+        let mut params = *batch.params();
+        subnormal_torques::<Fast>(&mut params);
+        // Neither fails: a failure changes the digest.
+        let _ = batch.set_params(params);
+        let _ = batch.reset_to(&[State::HANGING; 20]);
+    })
 }
 
 /// As [`shared_params`] for eight, of which each reset draws parameters.
@@ -117,6 +164,15 @@ fn batch<const LEN: usize, const N: usize, const BLOCKS: usize, P: ParamsKind<Fa
 pub const SHARED_PARAMS: u64 = 0xeae8_bc44_fb2b_ab5e;
 
 pub const OWN_PARAMS: u64 = 0xd88c_48c6_8c23_a5eb;
+
+pub const SUBNORMAL: [u64; 4] = [
+    0x9042_c808_54ae_9aad,
+    0x155b_5f68_7777_a84a,
+    0x2460_ddd8_8094_68c1, // where angles are that small, sin x is x in both
+    0x2460_ddd8_8094_68c1,
+];
+
+pub const SUBNORMAL_BATCH: u64 = 0xcc78_d474_8108_4cf5;
 
 pub const REFERENCE: [u64; 16] = [
     0x1814_77bc_77f4_e827,

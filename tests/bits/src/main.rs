@@ -18,13 +18,21 @@ use bits::{episodes, training};
 use semihosting::{println, process};
 
 #[cfg_attr(all(target_os = "none", target_arch = "arm"), cortex_m_rt::entry)]
-#[cfg_attr(target_arch = "riscv32", riscv_rt::entry)]
+#[cfg_attr(all(target_os = "none", not(target_arch = "arm")), riscv_rt::entry)]
 fn main() -> ! {
     let equal = [
         check::<Reference>(&episodes::REFERENCE),
         check::<Portable>(&episodes::PORTABLE),
         check::<Fast>(&episodes::FAST),
         check::<Micro>(&episodes::MICRO),
+        report(
+            "subnormal numbers",
+            episodes::subnormal() == episodes::SUBNORMAL,
+        ),
+        report(
+            "subnormal numbers in a batch of 4 lanes",
+            episodes::subnormal_batch::<4, 5>() == episodes::SUBNORMAL_BATCH,
+        ),
         report(
             "batch of 1 lane",
             episodes::shared_params::<1, 20>() == episodes::SHARED_PARAMS,
@@ -44,7 +52,7 @@ fn main() -> ! {
         // The weights do not fit into 16 KiB of RAM. The firmware `learn` compares them.
         cfg!(target_os = "none") || report("training", training::weights() == training::WEIGHTS),
     ];
-    process::exit(if equal == [true; 9] { 0 } else { 1 })
+    process::exit(if equal == [true; 11] { 0 } else { 1 })
 }
 
 fn check<A: Arithmetic>(expected: &[u64; 16]) -> bool {

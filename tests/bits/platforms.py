@@ -1,0 +1,105 @@
+"""Compares the bits of each platform with the recorded digests, and the outcome with the table in `docs/determinism.md`.
+
+    python3 platforms.py                  all platforms
+    python3 platforms.py Cortex s390x     those whose name contains one of these words
+    python3 platforms.py --update         writes the table
+"""
+
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+from typing import NamedTuple
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCUMENT = ROOT / "docs/determinism.md"
+
+
+class Platform(NamedTuple):
+    name: str
+    target: str
+    flags: str = ""
+    machine: str = ""  # of QEMU, if not the one in .cargo/config.toml
+    equal: bool = True
+
+
+M4F, M33 = "thumbv7em-none-eabihf", "thumbv8m.main-none-eabihf"
+PLATFORMS = [
+    Platform("x86-64", "x86_64-unknown-linux-gnu"),
+    Platform("x86 with SSE2", "i686-unknown-linux-musl"),
+    Platform("AArch64 with NEON", "aarch64-unknown-linux-musl"),
+    Platform("s390x, big-endian", "s390x-unknown-linux-gnu"),
+    Platform("Cortex-M0", "thumbv6m-none-eabi"),
+    Platform("Cortex-M3", "thumbv7m-none-eabi"),
+    Platform("Cortex-M4 without FPU", "thumbv7em-none-eabi"),
+    Platform("Cortex-M4F", M4F),
+    # This machine has its RAM at another address.
+    Platform("Cortex-M7 with `f64`", M4F, "-C target-cpu=cortex-m7 -C link-arg=--defsym=RAM_ORIGIN=0x60000000", "mps2-an500"),
+    Platform("Cortex-M33", M33),
+    Platform("RV32IMC", "riscv32imc-unknown-none-elf"),
+    Platform("RV32IMAFC", "riscv32imafc-unknown-none-elf"),
+    Platform("RV64GC", "riscv64gc-unknown-none-elf"),
+    Platform("WebAssembly", "wasm32-wasip1"),
+    Platform("WebAssembly with SIMD", "wasm32-wasip1", "-C target-feature=+simd128"),
+    # These show that a difference is found.
+    Platform("Cortex-M4F, fused by LLVM", M4F, "-C llvm-args=-fp-contract=fast", equal=False),
+    Platform("Cortex-M55 with Helium", M33, "-C target-cpu=cortex-m55", "mps3-an547", equal=False),
+]
+HEAD = ["| platform | Rust target | flags | bits |", "|---|---|---|---|"]
+
+
+def row(platform):
+    flags = f"`{platform.flags}`" if platform.flags else ""
+    cells = platform.name, f"`{platform.target}`", flags, "equal" if platform.equal else "differ"
+    return f"| {' | '.join(cells)} |"
+
+
+def wrong(platform):
+    """Runs the program on a platform. Returns what is wrong."""
+    print(f"\n=== {row(platform)}", flush=True)
+    environment = os.environ | {"RUSTFLAGS": platform.flags}
+    if platform.machine:
+        name = platform.target.upper().replace("-", "_").replace(".", "_")
+        environment[f"CARGO_TARGET_{name}_RUNNER"] = f"{ROOT}/.cargo/qemu arm {platform.machine}"
+    cargo = ["cargo", "--quiet", "--locked", "--release", "--package=bits", f"--target={platform.target}"]
+    build, run = ([cargo[0], command, *cargo[1:]] for command in ("build", "run"))
+    if subprocess.run(build, cwd=ROOT, env=environment).returncode != 0:
+        return "does not compile"
+    try:
+        # A stack overflow makes a microcontroller loop forever.
+        done = subprocess.run(run, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True, timeout=300)
+    except subprocess.TimeoutExpired:
+        return "takes more than 300 s"
+    print(done.stdout, end="", flush=True)
+    if done.stdout.count("\n") < 10 or done.returncode > 1:
+        return "does not run to the end"
+    equal = done.returncode == 0
+    if equal != platform.equal:
+        return "has equal bits, but should not" if equal else "has other bits"
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Compares the bits of each platform with the recorded digests.")
+    parser.add_argument("words", nargs="*", metavar="WORD", help="only platforms whose name contains one; default: all")
+    parser.add_argument("--update", action="store_true", help="write the table into docs/determinism.md")
+    options = parser.parse_args()
+    chosen = [each for each in PLATFORMS if not options.words or any(word in each.name for word in options.words)]
+    if not chosen:
+        parser.error(f"no platform's name contains {' or '.join(options.words)}")
+    failures = [f"{each.name} {reason}" for each in chosen if (reason := wrong(each))]
+
+    table = "\n".join([*HEAD, *map(row, PLATFORMS)])
+    text = DOCUMENT.read_text()
+    start = text.index(HEAD[0])
+    end = text.index("\n\n", start)
+    if text[start:end] != table:
+        if options.update and not failures:
+            DOCUMENT.write_text(text[:start] + table + text[end:])
+        else:
+            failures.append("the table in docs/determinism.md is another one; --update writes it")
+    if failures:
+        sys.exit("\n" + "\n".join(failures))
+
+
+main()
