@@ -2,14 +2,15 @@
 
     python3 figures.py             fails if a figure has grown by more than 5 %, and prints every figure
     python3 figures.py --update    writes the tables
-    python3 figures.py cores       only the tables that are named: m4f, cores, sizes, levels
+    python3 figures.py cores       only the tables that are named: m4f, cores, stacks, sizes, levels
 
-`steps`, `bench` and `learn` count instructions, stack and RAM. Flash is that of `minimal_fast` and the others minus that of
+`steps` counts instructions, stack and RAM, `bench` and `learn` count instructions. Flash is that of `minimal_fast` and the others minus that of
 `minimal_without`. `cycles.py` estimates the cycles per instruction.
 """
 
 import argparse
 import collections
+import functools
 import os
 import pathlib
 import re
@@ -80,6 +81,7 @@ def cargo(command, *binaries, target=M4F, features="", level="3", rustflags=""):
     return run("cargo", command, *options, *(f"--bin={binary}" for binary in binaries), rustflags=rustflags)
 
 
+@functools.cache
 def printed(binary, **options):
     """The figures that a binary prints: {(arithmetic, figure): value}."""
     lines = re.findall(r"^(\w+) (\w+) (\d+)$", cargo("run", binary, **options), re.MULTILINE)
@@ -131,11 +133,12 @@ def measure_m4f():
     return figures
 
 
-def measure_cores():
+def measure_cores(figure):
     return {
         (arithmetic, target): value
         for target in CORES
-        for (arithmetic, _), value in printed("steps", target=target).items()
+        for (arithmetic, each), value in printed("steps", target=target).items()
+        if each == figure
     }
 
 
@@ -161,7 +164,8 @@ def measure_levels():
 Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
-    "cores": Table("instructions per step", ARITHMETICS, CORES, measure_cores),
+    "cores": Table("instructions per step", ARITHMETICS, CORES, lambda: measure_cores("step")),
+    "stacks": Table("bytes of stack of a step", ARITHMETICS, CORES, lambda: measure_cores("stack")),
     "sizes": Table("bytes of flash", ARITHMETICS, CORES, measure_sizes),
     "levels": Table(
         "`opt-level` on a Cortex-M4F",

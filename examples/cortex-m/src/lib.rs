@@ -7,6 +7,7 @@ pub mod episode;
 pub mod micromath;
 pub mod minimal;
 pub mod panel;
+pub mod stack;
 
 #[cfg(target_arch = "arm")]
 pub use {cortex_m::asm::nop, cortex_m_rt::entry};

@@ -1,4 +1,4 @@
-//! Counts instructions, and bytes of stack and RAM. Prints one figure a line, `arithmetic figure value`, the same in every run.
+//! Counts instructions. Prints one figure a line, `arithmetic figure value`, the same in every run.
 //! Then it compares the bits of `Reference` and `Portable` with the crate's tests.
 
 #![no_std]
@@ -9,11 +9,10 @@ use core::hint::black_box;
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
 use acrobot::render::{Figure, Theme};
-use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Portable, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::micromath::Micromath;
 use bits::episodes;
-use cortex_m::register::msp;
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
@@ -76,48 +75,9 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
         shown = figure;
     });
     println!("{name} redraw {count}");
-
-    // With noise this large the steps take every branch: noise, bounds and goal.
-    let params = *acrobot.inner().params();
-    let noise = A::Scalar::from_f64(20.0);
-    let changed = acrobot.inner_mut().set_params(Params {
-        torque_noise: noise,
-        ..params
-    });
-    let mut deepest = 0;
-    for _ in 0..1000 {
-        let action = action();
-        deepest = deepest.max(stack(|| {
-            black_box(step(&mut acrobot, action));
-        }));
-    }
-    println!("{name} stack {deepest}");
-    println!("{name} size {}", size_of::<Acrobot<A>>());
-    if changed.is_err() {
-        process::exit(1);
-    }
 }
 
 #[inline(never)]
 fn step<A: Arithmetic>(acrobot: &mut TimeLimit<Acrobot<A>>, action: Action) -> Step {
     acrobot.step(action)
-}
-
-/// The bytes of stack that `run` takes. Paints the stack below, calls `run`, and finds the deepest word that changed.
-#[inline(never)]
-fn stack(run: impl FnOnce()) -> usize {
-    const PAINT: u32 = 0xa5c3_9617;
-    const WORDS: usize = 512;
-    // The paint begins below this function's own frame.
-    let end = msp::read() as usize as *mut u32;
-    for i in 1..=WORDS {
-        // SAFETY: the 2 KiB below the stack pointer are unused stack, because no interrupt is enabled.
-        unsafe { end.sub(i).write_volatile(PAINT) };
-    }
-    run();
-    (1..=WORDS)
-        .rev()
-        // SAFETY: as above.
-        .find(|&i| unsafe { end.sub(i).read_volatile() } != PAINT)
-        .map_or(0, |deepest| deepest * size_of::<u32>())
 }

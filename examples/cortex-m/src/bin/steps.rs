@@ -1,18 +1,24 @@
-//! Prints the instructions per environment step with each arithmetic, one a line: `arithmetic step value`. It builds for each
-//! target of the table of cores in `docs/embedded.md`.
+//! Prints the instructions and the stack of an environment step and the size of an acrobot, with each arithmetic, one figure a
+//! line: `arithmetic figure value`. It builds for each target of the tables of cores in `docs/embedded.md`.
 
 #![no_std]
 #![no_main]
 
 use core::hint::black_box;
 
-use acrobot::arithmetic::{Arithmetic, Micro, Reference};
+use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
-use acrobot::{Acrobot, Action, Fast, Portable, Step, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::entry;
 use acrobot_cortex_m::micromath::Micromath;
+use acrobot_cortex_m::stack;
 use semihosting::{println, process};
+
+// docs/embedded.md says that this is the same on each core.
+const _: () = assert!(size_of::<Acrobot<Fast>>() == 184 && size_of::<Acrobot<Micro>>() == 184);
+const _: () =
+    assert!(size_of::<Acrobot<Reference>>() == 360 && size_of::<Acrobot<Portable>>() == 328);
 
 #[entry]
 fn main() -> ! {
@@ -39,6 +45,32 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
         }
     });
     println!("{name} step {count}");
+    println!("{name} size {}", size_of::<Acrobot<A>>());
+    let Some(bytes) = stack_of_a_step::<A>() else {
+        process::exit(1)
+    };
+    println!("{name} stack {bytes}");
+}
+
+#[inline(never)] // otherwise the loop above takes more instructions
+fn stack_of_a_step<A: Arithmetic>() -> Option<usize> {
+    // With noise this large the steps take every branch: noise, bounds and goal.
+    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(42));
+    let params = Params {
+        torque_noise: A::Scalar::from_f64(20.0),
+        ..*acrobot.inner().params()
+    };
+    acrobot.inner_mut().set_params(params).ok()?;
+    let mut action_space = Pcg64::new(42);
+    let mut deepest = 0;
+    for _ in 0..1000 {
+        let action = Action::sample(&mut action_space);
+        let depth = stack::depth(|| {
+            black_box(step(&mut acrobot, action));
+        });
+        deepest = deepest.max(depth?);
+    }
+    Some(deepest)
 }
 
 #[inline(never)]
