@@ -100,31 +100,32 @@ fn the_shared_episodes_are_stable_in_the_other_arithmetics() {
 }
 
 #[test]
+fn subnormal_numbers_are_stable() {
+    let found = episodes::subnormal();
+    assert!(found == episodes::SUBNORMAL, "{found:#018x?}");
+}
+
+#[test]
 fn batches_are_stable_in_every_width() {
-    let widths = [
+    let check = |found: [u64; 3], expected| assert!(found == [expected; 3], "{found:#018x?}");
+    let shared = [
         episodes::shared_params::<1, 20>(),
         episodes::shared_params::<4, 5>(),
         episodes::shared_params::<16, 2>(),
     ];
-    assert!(widths == [episodes::SHARED_PARAMS; 3], "{widths:#018x?}");
-    let widths = [
-        episodes::own_params::<1, 8>(),
-        episodes::own_params::<4, 2>(),
-        episodes::own_params::<16, 1>(),
-    ];
-    assert!(widths == [episodes::OWN_PARAMS; 3], "{widths:#018x?}");
-}
-
-#[test]
-fn subnormal_numbers_are_stable() {
-    let alone = episodes::subnormal();
-    assert!(alone == episodes::SUBNORMAL, "{alone:#018x?}");
-    let widths = [
+    check(shared, episodes::SHARED_PARAMS);
+    let subnormal = [
         episodes::subnormal_batch::<1, 20>(),
         episodes::subnormal_batch::<4, 5>(),
         episodes::subnormal_batch::<16, 2>(),
     ];
-    assert!(widths == [episodes::SUBNORMAL_BATCH; 3], "{widths:#018x?}");
+    check(subnormal, episodes::SUBNORMAL_BATCH);
+    let own = [
+        episodes::own_params::<1, 8>(),
+        episodes::own_params::<4, 2>(),
+        episodes::own_params::<16, 1>(),
+    ];
+    check(own, episodes::OWN_PARAMS);
 }
 
 /// The weights after 100 episodes. Any change in the learner or the task changes them.
