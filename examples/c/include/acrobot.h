@@ -1,13 +1,12 @@
 // Gymnasium's Acrobot in C and C++: one acrobot, or a batch, in single precision and with the limit of 500 steps.
 //
-// - Memory is the caller's. No function allocates, and nothing has to be freed.
-// - No function panics, aborts or keeps global state. A function that can fail returns an acrobot_status_t. Unless that is
-//   ACROBOT_OK, no acrobot has changed, and nothing was written to results except where the function says so.
-// - A pointer must be null or point to what its type says. Null, misaligned and uninitialized memory are reported; a pointer
-//   to freed memory cannot be. Memory that was never written may contain anything, so put zeros into it if acrobot_init
-//   may not have been called.
-// - The arguments of a call must not overlap. Only those of batches are checked.
-// - Threads and interrupts may use different acrobots at the same time. One that they share needs a lock.
+// - You provide the memory. No function allocates, and there is nothing to free.
+// - No function aborts or has global state. If a function can fail, it returns an acrobot_status_t. Unless that is OK,
+//   no acrobot has changed, and results are as before the call unless the function's comment says otherwise.
+// - A pointer must be null or point to what its type says. The functions report pointers that are null or misaligned,
+//   and zeroed memory that no acrobot_init has seen. They cannot detect a pointer to freed memory.
+// - The arguments of a call must not overlap. Functions for batches check their arrays.
+// - Threads and interrupts may use different acrobots at the same time. Sharing one takes a lock.
 
 
 #ifndef ACROBOT_H
@@ -55,6 +54,15 @@
 // The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is not conserved.
 #define ACROBOT_DYNAMICS_NIPS 1
 
+// The bytes of an acrobot_t: the most that any target needs.
+#define ACROBOT_SIZE 224
+
+// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
+#define ACROBOT_ALIGN 16
+
+// The bytes of an acrobot_action_space_t.
+#define ACROBOT_ACTION_SPACE_SIZE 80
+
 // The alignment of the memory for a batch, bytes.
 #define ACROBOT_BATCH_ALIGN 64
 
@@ -84,17 +92,18 @@
 // Part of ACROBOT_BATCH_SIZE: the bytes of an acrobot's generator.
 #define ACROBOT_BATCH_GENERATOR 64
 
-// In the next step, which ignores its action and returns the initial observation and a reward of 0. The default, as in Gymnasium.
+// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
+// observation and a reward of 0. The default, as in Gymnasium.
 #define ACROBOT_AUTORESET_NEXT_STEP 0
 
-// In the step that ends the episode. It returns the initial observation of the next episode, and the last one of the ended
-// episode in `final_observations`.
+// They are reset in the step that ends the episode. It returns the initial observation of the next episode, and the
+// last one of the ended episode in `final_observations`.
 #define ACROBOT_AUTORESET_SAME_STEP 1
 
-// Never: acrobots step on until acrobot_batch_reset_masked or another reset.
+// They step on until acrobot_batch_reset_masked or another reset.
 #define ACROBOT_AUTORESET_DISABLED 2
 
-// What a function returns. Unless it is `ACROBOT_OK`, the function has changed nothing.
+// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 enum acrobot_status_t
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint8_t
@@ -110,7 +119,7 @@ enum acrobot_status_t
   ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
   // The memory was not initialized by the `_init` function of its type, or has been overwritten.
   ACROBOT_ERROR_NOT_INITIALIZED = 4,
-  // The memory of a batch was copied to another address. Only an acrobot_t and an acrobot_action_space_t may be copied.
+  // The memory of a batch was copied to another address.
   ACROBOT_ERROR_MOVED = 5,
   // The action is not 0, 1 or 2.
   ACROBOT_ERROR_UNKNOWN_ACTION = 6,
@@ -131,14 +140,15 @@ typedef uint8_t acrobot_status_t;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// A batch of acrobots in memory that acrobot_batch_init was given. It contains pointers into this memory, so it must not be moved
-// or copied. There is nothing to free: use the memory for something else when you no longer need the batch.
+// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
+// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
 typedef struct acrobot_batch_t acrobot_batch_t;
 
-// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it anywhere: in a static, on the stack, in a struct. It contains
-// no pointer, so it may be copied and moved, and there is nothing to free. Before any other function call acrobot_init.
+// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
+// call acrobot_init before any other function. It contains no pointer, so you may copy and move it. There is nothing
+// to free.
 typedef struct ACROBOT_ALIGNED(16) acrobot_t {
-  uint64_t words[28];
+  uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
 
 // An observation: six floats without padding, in Gymnasium's order.
@@ -157,8 +167,8 @@ typedef struct acrobot_observation_t {
   float dtheta2;
 } acrobot_observation_t;
 
-// Why a number was rejected with ACROBOT_ERROR_OUT_OF_RANGE. After other results it is unchanged. The texts are UTF-8 and end
-// with a zero byte. To print it: `"%s must be %s %s, got %g\n", error.name, error.rule, error.unit, error.value`.
+// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
+// with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
 typedef struct acrobot_error_t {
   // The value that was rejected, in `unit`.
   double value;
@@ -208,8 +218,8 @@ typedef struct acrobot_params_t {
   float center_of_mass1;
   // Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
   float center_of_mass2;
-  // Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on the
-  // joint. Default 1.
+  // Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on
+  // the joint. Default 1.
   float inertia1;
   // Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
   float inertia2;
@@ -223,16 +233,17 @@ typedef struct acrobot_params_t {
   float max_velocity2;
   // Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and 1.
   float torques[3];
-  // Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque. Default 0: no draw.
+  // Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque; 0, the default,
+  // draws nothing.
   float torque_noise;
   // The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
   uint8_t dynamics;
 } acrobot_params_t;
 
-// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so it may be copied and moved, and there is nothing
-// to free.
+// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
+// nothing to free.
 typedef struct ACROBOT_ALIGNED(16) acrobot_action_space_t {
-  uint64_t words[10];
+  uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
 } acrobot_action_space_t;
 
 // Where acrobot_batch_step writes. Each array has one element for each acrobot.
@@ -245,8 +256,8 @@ typedef struct acrobot_batch_results_t {
   bool *truncated;
   // The observations of the new states; null if you do not need them.
   struct acrobot_observation_t *observations;
-  // The last observations of the episodes that this step ended, with ACROBOT_AUTORESET_SAME_STEP; null if you do not need them.
-  // Elements of other acrobots become 0.
+  // With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step ended. Elements of other
+  // acrobots are not written. Null if you do not need them.
   struct acrobot_observation_t *final_observations;
 } acrobot_batch_results_t;
 
@@ -254,14 +265,11 @@ typedef struct acrobot_batch_results_t {
 extern "C" {
 #endif // __cplusplus
 
-// Does not exist: a program links only if no branch that panics is left.
-extern void acrobot_has_a_panicking_branch(void);
-
-// The text of a status, in English, without a full stop. It never changes and need not be freed. An unknown status has one, too.
+// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
 const char *acrobot_status_text(uint8_t status);
 
-// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. Call it again to start from
-// scratch.
+// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
+// starts from scratch.
 acrobot_status_t acrobot_init(struct acrobot_t *acrobot,
                               uint64_t seed);
 
@@ -274,16 +282,16 @@ acrobot_status_t acrobot_reset_with_seed(struct acrobot_t *acrobot,
                                          uint64_t seed,
                                          struct acrobot_observation_t *observation);
 
-// As acrobot_reset, with each of the four numbers of the initial state drawn between `low` and `high`, rad and rad/s. The default is
-// from −0.1 to 0.1. Both must be finite as `float`, and `low` at most `high`. `observation` and `error` may be null.
+// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and rad/s. The default
+// is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`. `observation` and `error` may be null.
 acrobot_status_t acrobot_reset_within(struct acrobot_t *acrobot,
                                       double low,
                                       double high,
                                       struct acrobot_observation_t *observation,
                                       struct acrobot_error_t *error);
 
-// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE. After the end of
-// an episode an acrobot steps on, as in Gymnasium; call acrobot_reset.
+// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
+// When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 acrobot_status_t acrobot_step(struct acrobot_t *acrobot,
                               uint8_t action,
                               struct acrobot_step_t *step);
@@ -334,16 +342,17 @@ acrobot_status_t acrobot_action_space_sample(struct acrobot_action_space_t *acti
 // The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if that is larger.
 size_t acrobot_batch_size(size_t count);
 
-// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its initial
-// state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
+// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
+// initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
 acrobot_status_t acrobot_batch_init(void *memory,
                                     size_t size,
                                     size_t count,
                                     uint64_t seed,
                                     struct acrobot_batch_t **batch);
 
-// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count` elements, one for
-// each acrobot. No two arrays may overlap. If one action is rejected, no acrobot steps, but `results` may have been overwritten.
+// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
+// elements, one for each acrobot. No two arrays may overlap. If one action is rejected, no acrobot steps, but
+// `terminated` and `truncated` become false.
 acrobot_status_t acrobot_batch_step(struct acrobot_batch_t *batch,
                                     const uint8_t *actions,
                                     const struct acrobot_batch_results_t *results,
@@ -363,8 +372,8 @@ acrobot_status_t acrobot_batch_reset(struct acrobot_batch_t *batch);
 // As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
 acrobot_status_t acrobot_batch_reset_with_seed(struct acrobot_batch_t *batch, uint64_t seed);
 
-// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count` elements, one for each acrobot. A byte
-// that is neither true nor false is ACROBOT_ERROR_OUT_OF_RANGE.
+// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count` elements, one for each
+// acrobot. If a byte is neither true nor false, the function returns ACROBOT_ERROR_OUT_OF_RANGE.
 acrobot_status_t acrobot_batch_reset_masked(struct acrobot_batch_t *batch,
                                             const bool *mask,
                                             size_t count);

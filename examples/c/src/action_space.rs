@@ -6,11 +6,14 @@ use acrobot::numpy::Pcg64;
 use crate::memory::{Holder, Out, fits};
 use crate::status::{acrobot_status_t, status};
 
-/// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so it may be copied and moved, and there is nothing
-/// to free.
+/// The bytes of an acrobot_action_space_t.
+pub const ACROBOT_ACTION_SPACE_SIZE: usize = 80;
+
+/// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
+/// nothing to free.
 #[repr(C, align(16))]
 pub struct acrobot_action_space_t {
-    words: [u64; 10],
+    bytes: [u8; ACROBOT_ACTION_SPACE_SIZE],
 }
 
 impl Holder for acrobot_action_space_t {

@@ -38,18 +38,19 @@ pub const ACROBOT_BATCH_BLOCK: usize = 64;
 /// Part of ACROBOT_BATCH_SIZE: the bytes of an acrobot's generator.
 pub const ACROBOT_BATCH_GENERATOR: usize = 64;
 
-/// In the next step, which ignores its action and returns the initial observation and a reward of 0. The default, as in Gymnasium.
+/// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
+/// observation and a reward of 0. The default, as in Gymnasium.
 pub const ACROBOT_AUTORESET_NEXT_STEP: u8 = 0;
 
-/// In the step that ends the episode. It returns the initial observation of the next episode, and the last one of the ended
-/// episode in `final_observations`.
+/// They are reset in the step that ends the episode. It returns the initial observation of the next episode, and the
+/// last one of the ended episode in `final_observations`.
 pub const ACROBOT_AUTORESET_SAME_STEP: u8 = 1;
 
-/// Never: acrobots step on until acrobot_batch_reset_masked or another reset.
+/// They step on until acrobot_batch_reset_masked or another reset.
 pub const ACROBOT_AUTORESET_DISABLED: u8 = 2;
 
-/// A batch of acrobots in memory that acrobot_batch_init was given. It contains pointers into this memory, so it must not be moved
-/// or copied. There is nothing to free: use the memory for something else when you no longer need the batch.
+/// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
+/// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
 #[repr(align(64))]
 pub struct acrobot_batch_t {
     _header: [u8; ACROBOT_BATCH_HEADER],
@@ -67,8 +68,8 @@ pub struct acrobot_batch_results_t {
     pub truncated: *mut bool,
     /// The observations of the new states; null if you do not need them.
     pub observations: *mut acrobot_observation_t,
-    /// The last observations of the episodes that this step ended, with ACROBOT_AUTORESET_SAME_STEP; null if you do not need them.
-    /// Elements of other acrobots are not written.
+    /// With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step ended. Elements of other
+    /// acrobots are not written. Null if you do not need them.
     pub final_observations: *mut acrobot_observation_t,
 }
 
@@ -135,8 +136,8 @@ pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
         .saturating_add(ACROBOT_BATCH_HEADER)
 }
 
-/// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its initial
-/// state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
+/// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
+/// initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,
@@ -176,8 +177,9 @@ pub unsafe extern "C" fn acrobot_batch_init(
     })
 }
 
-/// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count` elements, one for
-/// each acrobot. No two arrays may overlap. If one action is rejected, no acrobot steps, but `terminated` and `truncated` become false.
+/// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
+/// elements, one for each acrobot. No two arrays may overlap. If one action is rejected, no acrobot steps, but
+/// `terminated` and `truncated` become false.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_step(
     batch: *mut acrobot_batch_t,
@@ -283,8 +285,8 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     })
 }
 
-/// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count` elements, one for each acrobot. A byte
-/// that is neither true nor false is ACROBOT_ERROR_OUT_OF_RANGE.
+/// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count` elements, one for each
+/// acrobot. If a byte is neither true nor false, the function returns ACROBOT_ERROR_OUT_OF_RANGE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_masked(
     batch: *mut acrobot_batch_t,

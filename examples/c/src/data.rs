@@ -137,8 +137,8 @@ pub struct acrobot_params_t {
     pub center_of_mass1: f32,
     /// Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
     pub center_of_mass2: f32,
-    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on the
-    /// joint. Default 1.
+    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on
+    /// the joint. Default 1.
     pub inertia1: f32,
     /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
     pub inertia2: f32,
@@ -152,7 +152,8 @@ pub struct acrobot_params_t {
     pub max_velocity2: f32,
     /// Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and 1.
     pub torques: [f32; 3],
-    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque. Default 0: no draw.
+    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque; 0, the default,
+    /// draws nothing.
     pub torque_noise: f32,
     /// The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
     pub dynamics: u8,

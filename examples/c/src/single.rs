@@ -7,11 +7,18 @@ use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acro
 use crate::memory::{Holder, Out, fits, read};
 use crate::status::{acrobot_error_t, acrobot_status_t, explained, status};
 
-/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it anywhere: in a static, on the stack, in a struct. It contains
-/// no pointer, so it may be copied and moved, and there is nothing to free. Before any other function call acrobot_init.
+/// The bytes of an acrobot_t: the most that any target needs.
+pub const ACROBOT_SIZE: usize = 224;
+
+/// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
+pub const ACROBOT_ALIGN: usize = 16;
+
+/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
+/// call acrobot_init before any other function. It contains no pointer, so you may copy and move it. There is nothing
+/// to free.
 #[repr(C, align(16))]
 pub struct acrobot_t {
-    words: [u64; 28],
+    bytes: [u8; ACROBOT_SIZE],
 }
 
 impl Holder for acrobot_t {
@@ -20,10 +27,13 @@ impl Holder for acrobot_t {
     const TAG: u32 = u32::from_le_bytes(*b"acro");
 }
 
-const _: () = fits::<acrobot_t>();
+const _: () = {
+    fits::<acrobot_t>();
+    assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
+};
 
-/// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. Call it again to start from
-/// scratch.
+/// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
+/// starts from scratch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
     status(|| unsafe { Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))) })
@@ -56,8 +66,8 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
     })
 }
 
-/// As acrobot_reset, with each of the four numbers of the initial state drawn between `low` and `high`, rad and rad/s. The default is
-/// from −0.1 to 0.1. Both must be finite as `float`, and `low` at most `high`. `observation` and `error` may be null.
+/// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and rad/s. The default
+/// is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`. `observation` and `error` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_within(
     acrobot: *mut acrobot_t,
@@ -76,8 +86,8 @@ pub unsafe extern "C" fn acrobot_reset_within(
     unsafe { explained(error, reset) }
 }
 
-/// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE. After the end of
-/// an episode an acrobot steps on, as in Gymnasium; call acrobot_reset.
+/// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
+/// When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step(
     acrobot: *mut acrobot_t,

@@ -4,7 +4,7 @@ use core::ffi::{CStr, c_char};
 
 use acrobot::Error;
 
-/// What a function returns. Unless it is `ACROBOT_OK`, the function has changed nothing.
+/// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 #[repr(u8)]
 #[derive(Clone, Copy)]
 pub enum acrobot_status_t {
@@ -18,7 +18,7 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
     /// The memory was not initialized by the `_init` function of its type, or has been overwritten.
     ACROBOT_ERROR_NOT_INITIALIZED = 4,
-    /// The memory of a batch was copied to another address. Only an acrobot_t and an acrobot_action_space_t may be copied.
+    /// The memory of a batch was copied to another address.
     ACROBOT_ERROR_MOVED = 5,
     /// The action is not 0, 1 or 2.
     ACROBOT_ERROR_UNKNOWN_ACTION = 6,
@@ -34,8 +34,8 @@ pub enum acrobot_status_t {
 
 use acrobot_status_t::*;
 
-/// Why a number was rejected with ACROBOT_ERROR_OUT_OF_RANGE. After other results it is unchanged. The texts are UTF-8 and end
-/// with a zero byte. To print it: `"%s must be %s %s, got %g\n", error.name, error.rule, error.unit, error.value`.
+/// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
+/// with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
 #[repr(C)]
 pub struct acrobot_error_t {
     /// The value that was rejected, in `unit`.
@@ -147,7 +147,7 @@ fn text<const N: usize>(text: &str) -> [c_char; N] {
     to
 }
 
-/// The text of a status, in English, without a full stop. It never changes and need not be freed. An unknown status has one, too.
+/// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: u8) -> *const c_char {
     const TEXTS: [&CStr; 11] = [

@@ -98,12 +98,14 @@ static void memory_of_an_acrobot(void)
     acrobot_action_space_t action_space;
     uint8_t action;
 
+    CHECK(sizeof acrobot == ACROBOT_SIZE && sizeof action_space == ACROBOT_ACTION_SPACE_SIZE);
     // A static contains zeros.
     expect_of_acrobot(&acrobot, ACROBOT_ERROR_NOT_INITIALIZED);
     expect_of_acrobot(NULL, ACROBOT_ERROR_NULL);
     expect_of_acrobot((acrobot_t *)misaligned(&acrobot), ACROBOT_ERROR_MISALIGNED);
     CHECK(acrobot_init(NULL, 42) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_init((acrobot_t *)misaligned(&acrobot), 42) == ACROBOT_ERROR_MISALIGNED);
+    CHECK(acrobot_init((acrobot_t *)(void *)((uint8_t *)&acrobot + ACROBOT_ALIGN / 2), 42) == ACROBOT_ERROR_MISALIGNED);
 
     // A second initialization begins from scratch; there is nothing to free.
     CHECK(acrobot_init(&acrobot, 1) == ACROBOT_OK);
