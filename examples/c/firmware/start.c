@@ -19,10 +19,12 @@ static void fault(void)
 
 void reset(void)
 {
+#ifdef __ARM_FP
     // Coprocessor Access Control Register: full access to the FPU, before the first instruction that uses it.
     volatile uint32_t *cpacr = (volatile uint32_t *)0xE000ED88;
     *cpacr |= 0xFu << 20;
     __asm__ volatile("dsb\nisb");
+#endif
     for (uint32_t *to = data_start, *from = data_in_flash; to != data_end;) {
         *to++ = *from++;
     }
