@@ -61,13 +61,13 @@
 #define ACROBOT_ALIGN 16
 
 // The bytes of an acrobot_action_space_t.
-#define ACROBOT_ACTION_SPACE_SIZE 80
+#define ACROBOT_ACTION_SPACE_SIZE 64
 
 // The alignment of the memory for a batch, bytes.
 #define ACROBOT_BATCH_ALIGN 64
 
 // Part of ACROBOT_BATCH_SIZE.
-#define ACROBOT_BATCH_HEADER 256
+#define ACROBOT_BATCH_HEADER 192
 
 #if defined(ACROBOT_64_BIT)
 // Part of ACROBOT_BATCH_SIZE: acrobots that are stepped side by side, by SIMD if there is any.
@@ -90,7 +90,7 @@
 #endif
 
 // Part of ACROBOT_BATCH_SIZE: the bytes of an acrobot's generator.
-#define ACROBOT_BATCH_GENERATOR 64
+#define ACROBOT_BATCH_GENERATOR 48
 
 // Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
 // observation and a reward of 0. The default, as in Gymnasium.

@@ -7,7 +7,7 @@ use crate::memory::{Holder, Out, fits};
 use crate::status::{acrobot_status_t, status};
 
 /// The bytes of an acrobot_action_space_t.
-pub const ACROBOT_ACTION_SPACE_SIZE: usize = 80;
+pub const ACROBOT_ACTION_SPACE_SIZE: usize = 64;
 
 /// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
 /// nothing to free.

@@ -17,7 +17,7 @@ use crate::status::{
 pub const ACROBOT_BATCH_ALIGN: usize = 64;
 
 /// Part of ACROBOT_BATCH_SIZE.
-pub const ACROBOT_BATCH_HEADER: usize = 256;
+pub const ACROBOT_BATCH_HEADER: usize = 192;
 
 /// Part of ACROBOT_BATCH_SIZE: acrobots that are stepped side by side, by SIMD if there is any.
 #[cfg(target_pointer_width = "64")]
@@ -36,7 +36,7 @@ pub const ACROBOT_BATCH_BLOCK: usize = 640;
 pub const ACROBOT_BATCH_BLOCK: usize = 64;
 
 /// Part of ACROBOT_BATCH_SIZE: the bytes of an acrobot's generator.
-pub const ACROBOT_BATCH_GENERATOR: usize = 64;
+pub const ACROBOT_BATCH_GENERATOR: usize = 48;
 
 /// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
 /// observation and a reward of 0. The default, as in Gymnasium.
