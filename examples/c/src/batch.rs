@@ -126,6 +126,10 @@ fn check_count(placed: &Placed, count: usize) -> Result<(), Rejected> {
     }
 }
 
+fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
+    Span::new(batch.cast::<u8>(), acrobot_batch_size(count))
+}
+
 /// The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if that is larger.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
@@ -198,7 +202,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
         let observations = Array::optional(rows(results.observations), count)?;
         let finals = Array::optional(rows(results.final_observations), count)?;
         check_apart(&[
-            Span::new(batch.cast::<u8>(), acrobot_batch_size(count)),
+            memory_of(batch, count),
             actions.span(),
             rewards.span(),
             terminated.span(),
@@ -241,10 +245,7 @@ pub unsafe extern "C" fn acrobot_batch_observe(
         let placed = placed(batch)?;
         check_count(placed, count)?;
         let observations = Array::new(rows(observations), count)?;
-        check_apart(&[
-            Span::new(batch.cast::<u8>(), acrobot_batch_size(count)),
-            observations.span(),
-        ])?;
+        check_apart(&[memory_of(batch, count), observations.span()])?;
         Ok(placed
             .batch
             .observe(Observations::Rows(observations.get_mut()))?)
@@ -297,6 +298,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
         let placed = placed_mut(batch)?;
         check_count(placed, count)?;
         let mask = Array::new(mask.cast_mut(), count)?;
+        check_apart(&[memory_of(batch, count), mask.span()])?;
         let bytes = slice::from_raw_parts(mask.start().cast::<u8>(), count);
         if bytes.iter().any(|byte| *byte > 1) {
             return Err(ACROBOT_ERROR_OUT_OF_RANGE.into());

@@ -159,28 +159,36 @@ pub struct acrobot_params_t {
     pub dynamics: u8,
 }
 
+/// A struct of another type with the same parameters. Only `dynamics` has another type, too.
+macro_rules! same_params {
+    ($type:ident, $params:expr, $dynamics:expr) => {
+        $type {
+            length1: $params.length1,
+            length2: $params.length2,
+            mass1: $params.mass1,
+            mass2: $params.mass2,
+            center_of_mass1: $params.center_of_mass1,
+            center_of_mass2: $params.center_of_mass2,
+            inertia1: $params.inertia1,
+            inertia2: $params.inertia2,
+            gravity: $params.gravity,
+            dt: $params.dt,
+            max_velocity1: $params.max_velocity1,
+            max_velocity2: $params.max_velocity2,
+            torques: $params.torques,
+            torque_noise: $params.torque_noise,
+            dynamics: $dynamics,
+        }
+    };
+}
+
 impl From<&Params<f32>> for acrobot_params_t {
     fn from(params: &Params<f32>) -> Self {
-        Self {
-            length1: params.length1,
-            length2: params.length2,
-            mass1: params.mass1,
-            mass2: params.mass2,
-            center_of_mass1: params.center_of_mass1,
-            center_of_mass2: params.center_of_mass2,
-            inertia1: params.inertia1,
-            inertia2: params.inertia2,
-            gravity: params.gravity,
-            dt: params.dt,
-            max_velocity1: params.max_velocity1,
-            max_velocity2: params.max_velocity2,
-            torques: params.torques,
-            torque_noise: params.torque_noise,
-            dynamics: match params.dynamics {
-                Dynamics::Nips => ACROBOT_DYNAMICS_NIPS,
-                _ => ACROBOT_DYNAMICS_BOOK,
-            },
-        }
+        let dynamics = match params.dynamics {
+            Dynamics::Nips => ACROBOT_DYNAMICS_NIPS,
+            _ => ACROBOT_DYNAMICS_BOOK,
+        };
+        same_params!(acrobot_params_t, params, dynamics)
     }
 }
 
@@ -189,27 +197,12 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
 
     /// Rejects unknown dynamics only.
     fn try_from(params: acrobot_params_t) -> Result<Self, Rejected> {
-        Ok(Self {
-            length1: params.length1,
-            length2: params.length2,
-            mass1: params.mass1,
-            mass2: params.mass2,
-            center_of_mass1: params.center_of_mass1,
-            center_of_mass2: params.center_of_mass2,
-            inertia1: params.inertia1,
-            inertia2: params.inertia2,
-            gravity: params.gravity,
-            dt: params.dt,
-            max_velocity1: params.max_velocity1,
-            max_velocity2: params.max_velocity2,
-            torques: params.torques,
-            torque_noise: params.torque_noise,
-            dynamics: match params.dynamics {
-                ACROBOT_DYNAMICS_BOOK => Dynamics::Book,
-                ACROBOT_DYNAMICS_NIPS => Dynamics::Nips,
-                other => return Err(unknown("dynamics", other, "0 (book) or 1 (NIPS)")),
-            },
-        })
+        let dynamics = match params.dynamics {
+            ACROBOT_DYNAMICS_BOOK => Dynamics::Book,
+            ACROBOT_DYNAMICS_NIPS => Dynamics::Nips,
+            other => return Err(unknown("dynamics", other, "0 (book) or 1 (NIPS)")),
+        };
+        Ok(same_params!(Params, params, dynamics))
     }
 }
 

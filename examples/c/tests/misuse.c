@@ -267,6 +267,7 @@ static void arguments_of_a_batch(void)
     CHECK(acrobot_batch_count(batch, NULL) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_batch_reset_masked(batch, NULL, COUNT) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_batch_reset_masked(batch, mask, COUNT - 1) == ACROBOT_ERROR_WRONG_COUNT);
+    CHECK(acrobot_batch_reset_masked(batch, (const bool *)memory, COUNT) == ACROBOT_ERROR_OVERLAP);
     copy(&mask[2], &odd, 1);
     CHECK(acrobot_batch_reset_masked(batch, mask, COUNT) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(acrobot_batch_set_autoreset(batch, 3, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
