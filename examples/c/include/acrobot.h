@@ -1,8 +1,8 @@
 // Gymnasium's Acrobot in C and C++: one acrobot, or a batch, in single precision and with the limit of 500 steps.
 //
 // - You provide the memory. No function allocates, and there is nothing to free.
-// - No function aborts or has global state. If a function can fail, it returns an acrobot_status_t. Unless that is OK,
-//   no acrobot has changed, and results are as before the call unless the function's comment says otherwise.
+// - No function aborts or has global state. A function that can fail returns an acrobot_status_t. Unless it is
+//   ACROBOT_OK, no acrobot has changed, and results are as before the call if the function's comment says nothing else.
 // - A pointer must be null or point to what its type says. The functions report pointers that are null or misaligned,
 //   and zeroed memory that no acrobot_init has seen. They cannot detect a pointer to freed memory.
 // - The arguments of a call must not overlap. Functions for batches check their arrays.
