@@ -4,6 +4,7 @@
 //! |---|---|
 //! | Rust on a desktop or a server | [`rust`] |
 //! | firmware | [`embedded`] |
+//! | C or C++ | [`c`] |
 //! | a web page | [`wasm`] |
 //! | Python | [`python`] |
 //!
@@ -44,6 +45,10 @@ pub mod rust {}
     doc = include_str!("../docs/embedded.md")
 )]
 pub mod embedded {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/c.md")]
+pub mod c {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/wasm.md")]

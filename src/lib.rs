@@ -23,8 +23,8 @@
 //! assert_eq!(env.elapsed(), 94);
 //! ```
 //!
-//! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in a browser](guide::wasm) or
-//! [in Python](guide::python).
+//! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c), [in a browser](guide::wasm)
+//! or [in Python](guide::python).
 //!
 //! # What everybody uses
 //!

@@ -27,7 +27,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
         .map(|word| word.trim_end_matches(['.', ',', ';', ':', ')', '`']))
 }
 
-/// A block that is not compiled with the crate names the file that it is from: "```rust,ignore (path)".
+/// A block that is not compiled with the crate names the file that it is from: "```rust,ignore (path)" or "```c (path)".
 #[test]
 fn excerpts_are_in_their_files() {
     let unindented = |text: &str| {
@@ -36,16 +36,21 @@ fn excerpts_are_in_their_files() {
             .collect::<Vec<_>>()
             .join("\n")
     };
-    let embedded = text_of("docs/embedded.md");
-    let blocks: Vec<&str> = embedded.split("```rust,ignore (").skip(1).collect();
-    for block in &blocks {
-        let (path, rest) = block.split_once(")\n").unwrap();
-        let (excerpt, _) = rest.split_once("```").unwrap();
-        let file = unindented(&text_of(path));
-        assert!(
-            file.contains(&unindented(excerpt)),
-            "{path} has no such lines:\n{excerpt}"
-        );
+    for (page, fence, count) in [
+        ("docs/embedded.md", "```rust,ignore (", 3),
+        ("docs/c.md", "```c (", 3),
+    ] {
+        let page = text_of(page);
+        let blocks: Vec<&str> = page.split(fence).skip(1).collect();
+        for block in &blocks {
+            let (path, rest) = block.split_once(")\n").unwrap();
+            let (excerpt, _) = rest.split_once("```").unwrap();
+            let file = unindented(&text_of(path));
+            assert!(
+                file.contains(&unindented(excerpt)),
+                "{path} has no such lines:\n{excerpt}"
+            );
+        }
+        assert_eq!(blocks.len(), count);
     }
-    assert_eq!(blocks.len(), 3, "the first program, Embassy and RTIC");
 }

@@ -1,0 +1,51 @@
+// A batch in static memory: torque against the velocity of link 1, and how long the episodes are.
+
+#include <stdio.h>
+
+#include "acrobot.h"
+
+#define COUNT 1000
+
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_SIZE(COUNT)];
+static uint8_t actions[COUNT];
+static float rewards[COUNT];
+static bool terminated[COUNT], truncated[COUNT];
+static acrobot_observation_t observations[COUNT];
+
+static int failed(acrobot_status_t status)
+{
+    fprintf(stderr, "%s\n", acrobot_status_text(status));
+    return 1;
+}
+
+int main(void)
+{
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, observations, NULL};
+    acrobot_batch_t *batch;
+    long episodes = 0;
+
+    acrobot_status_t status = acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch);
+    if (status == ACROBOT_OK) {
+        status = acrobot_batch_set_autoreset(batch, ACROBOT_AUTORESET_SAME_STEP, NULL);
+    }
+    if (status == ACROBOT_OK) {
+        status = acrobot_batch_observe(batch, observations, COUNT);
+    }
+    if (status != ACROBOT_OK) {
+        return failed(status);
+    }
+    for (int step = 0; step < 1000; step++) {
+        for (int i = 0; i < COUNT; i++) {
+            actions[i] = observations[i].dtheta1 > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
+        }
+        status = acrobot_batch_step(batch, actions, &results, COUNT);
+        if (status != ACROBOT_OK) {
+            return failed(status);
+        }
+        for (int i = 0; i < COUNT; i++) {
+            episodes += terminated[i] || truncated[i];
+        }
+    }
+    printf("%ld episodes ended in 1000 steps of %d acrobots\n", episodes, COUNT);
+    return 0;
+}

@@ -1,0 +1,47 @@
+//! Random actions.
+
+use acrobot::Action;
+use acrobot::numpy::Pcg64;
+
+use crate::memory::{Holder, Out, fits};
+use crate::status::{acrobot_status_t, status};
+
+/// The bytes of an acrobot_action_space_t.
+pub const ACROBOT_ACTION_SPACE_SIZE: usize = 64;
+
+/// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
+/// nothing to free.
+#[repr(C, align(16))]
+pub struct acrobot_action_space_t {
+    bytes: [u8; ACROBOT_ACTION_SPACE_SIZE],
+}
+
+impl Holder for acrobot_action_space_t {
+    type Value = Pcg64;
+
+    const TAG: u32 = u32::from_le_bytes(*b"acts");
+}
+
+const _: () = fits::<acrobot_action_space_t>();
+
+/// Gymnasium's `action_space.seed(seed)`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_action_space_init(
+    action_space: *mut acrobot_action_space_t,
+    seed: u64,
+) -> acrobot_status_t {
+    status(|| unsafe { Holder::init(action_space, Pcg64::new(seed)) })
+}
+
+/// Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_action_space_sample(
+    action_space: *mut acrobot_action_space_t,
+    action: *mut u8,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let action = Out::new(action)?;
+        action.write(Action::sample(Holder::value_mut(action_space)?).into());
+        Ok(())
+    })
+}

@@ -1,0 +1,390 @@
+//! A batch in the caller's memory: its header, then its blocks, then its generators.
+
+use core::ffi::c_void;
+use core::slice;
+
+use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::{Fast, ResetOptions};
+
+use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, unknown};
+use crate::memory::{Array, Holder, Out, Span, check, check_apart, fits, read};
+use crate::status::{
+    Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, explained, status,
+};
+
+/// The alignment of the memory for a batch, bytes.
+pub const ACROBOT_BATCH_ALIGN: usize = 64;
+
+/// Part of ACROBOT_BATCH_SIZE.
+pub const ACROBOT_BATCH_HEADER: usize = 192;
+
+/// Part of ACROBOT_BATCH_SIZE: acrobots that are stepped side by side, by SIMD if there is any.
+#[cfg(target_pointer_width = "64")]
+pub const ACROBOT_BATCH_LANES: usize = 16;
+
+/// Part of ACROBOT_BATCH_SIZE: a microcontroller has no SIMD for floats, so it steps one acrobot after the other.
+#[cfg(target_pointer_width = "32")]
+pub const ACROBOT_BATCH_LANES: usize = 1;
+
+/// Part of ACROBOT_BATCH_SIZE: the bytes of ACROBOT_BATCH_LANES acrobots.
+#[cfg(target_pointer_width = "64")]
+pub const ACROBOT_BATCH_BLOCK: usize = 640;
+
+/// Part of ACROBOT_BATCH_SIZE: the bytes of ACROBOT_BATCH_LANES acrobots.
+#[cfg(target_pointer_width = "32")]
+pub const ACROBOT_BATCH_BLOCK: usize = 64;
+
+/// Part of ACROBOT_BATCH_SIZE: the bytes of an acrobot's generator.
+pub const ACROBOT_BATCH_GENERATOR: usize = 48;
+
+/// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
+/// observation and a reward of 0. The default, as in Gymnasium.
+pub const ACROBOT_AUTORESET_NEXT_STEP: u8 = 0;
+
+/// They are reset in the step that ends the episode. It returns the initial observation of the next episode, and the
+/// last one of the ended episode in `final_observations`.
+pub const ACROBOT_AUTORESET_SAME_STEP: u8 = 1;
+
+/// They step on until acrobot_batch_reset_masked or another reset.
+pub const ACROBOT_AUTORESET_DISABLED: u8 = 2;
+
+/// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
+/// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
+#[repr(align(64))]
+pub struct acrobot_batch_t {
+    _header: [u8; ACROBOT_BATCH_HEADER],
+}
+
+/// Where acrobot_batch_step writes. Each array has one element for each acrobot.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_batch_results_t {
+    /// −1, or 0 if the acrobot terminated or was only reset.
+    pub rewards: *mut f32,
+    /// Whether the new state is a goal state.
+    pub terminated: *mut bool,
+    /// Whether the limit of 500 steps is reached.
+    pub truncated: *mut bool,
+    /// The observations of the new states; null if you do not need them.
+    pub observations: *mut acrobot_observation_t,
+    /// With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step ended. Elements of other
+    /// acrobots are not written. Null if you do not need them.
+    pub final_observations: *mut acrobot_observation_t,
+}
+
+type LanesBlock = Block<Fast, ACROBOT_BATCH_LANES>;
+
+pub struct Placed {
+    /// Where `acrobot_batch_init` put it.
+    address: usize,
+    batch: Batch<Fast, &'static mut [LanesBlock], &'static mut [Pcg64], ACROBOT_BATCH_LANES>,
+}
+
+impl Holder for acrobot_batch_t {
+    type Value = Placed;
+
+    const TAG: u32 = u32::from_le_bytes(*b"bats");
+}
+
+const _: () = {
+    fits::<acrobot_batch_t>();
+    assert!(align_of::<acrobot_batch_t>() == ACROBOT_BATCH_ALIGN);
+    assert!(align_of::<LanesBlock>() <= ACROBOT_BATCH_ALIGN);
+    assert!(size_of::<LanesBlock>() == ACROBOT_BATCH_BLOCK);
+    assert!(size_of::<Pcg64>() <= ACROBOT_BATCH_GENERATOR);
+    assert!(size_of::<[f32; 6]>() == size_of::<acrobot_observation_t>());
+    assert!(align_of::<[f32; 6]>() == align_of::<acrobot_observation_t>());
+};
+
+/// The batch, if it is where it was initialized.
+unsafe fn placed<'a>(batch: *const acrobot_batch_t) -> Result<&'a Placed, Rejected> {
+    // SAFETY: as in the caller.
+    let placed = unsafe { Holder::value(batch)? };
+    if placed.address == batch.addr() {
+        Ok(placed)
+    } else {
+        Err(ACROBOT_ERROR_MOVED.into())
+    }
+}
+
+/// As [`placed`], to change it.
+unsafe fn placed_mut<'a>(batch: *mut acrobot_batch_t) -> Result<&'a mut Placed, Rejected> {
+    // SAFETY: as in the caller.
+    unsafe {
+        placed(batch)?;
+        Holder::value_mut(batch)
+    }
+}
+
+/// Rejects an array that does not have one element for each acrobot.
+fn check_count(placed: &Placed, count: usize) -> Result<(), Rejected> {
+    if placed.batch.len() == count {
+        Ok(())
+    } else {
+        Err(ACROBOT_ERROR_WRONG_COUNT.into())
+    }
+}
+
+fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
+    Span::new(batch.cast::<u8>(), acrobot_batch_size(count))
+}
+
+/// The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if that is larger.
+#[unsafe(no_mangle)]
+pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
+    let blocks = count.div_ceil(ACROBOT_BATCH_LANES);
+    blocks
+        .saturating_mul(ACROBOT_BATCH_BLOCK)
+        .saturating_add(count.saturating_mul(ACROBOT_BATCH_GENERATOR))
+        .saturating_add(ACROBOT_BATCH_HEADER)
+}
+
+/// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
+/// initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_init(
+    memory: *mut c_void,
+    size: usize,
+    count: usize,
+    seed: u64,
+    batch: *mut *mut acrobot_batch_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let to: *mut acrobot_batch_t = memory.cast();
+        check(to)?;
+        let batch = Out::new(batch)?;
+        if count == 0 {
+            return Err(ACROBOT_ERROR_WRONG_COUNT.into());
+        }
+        if size < acrobot_batch_size(count) {
+            return Err(ACROBOT_ERROR_BUFFER_TOO_SMALL.into());
+        }
+        let blocks: *mut LanesBlock = to.add(1).cast();
+        let block_count = count.div_ceil(ACROBOT_BATCH_LANES);
+        let generators: *mut Pcg64 = blocks.add(block_count).cast();
+        for index in 0..block_count {
+            blocks.add(index).write(Block::EMPTY);
+        }
+        for index in 0..count {
+            generators.add(index).write(Pcg64::UNSEEDED);
+        }
+        let blocks = slice::from_raw_parts_mut(blocks, block_count);
+        let generators = slice::from_raw_parts_mut(generators, count);
+        let value = Placed {
+            address: to.addr(),
+            batch: Batch::new(seed, blocks, generators)?,
+        };
+        Holder::init(to, value)?;
+        batch.write(to);
+        Ok(())
+    })
+}
+
+/// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
+/// elements, one for each acrobot. No two arrays may overlap. If one action is rejected, no acrobot steps, but
+/// `terminated` and `truncated` become false.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_step(
+    batch: *mut acrobot_batch_t,
+    actions: *const u8,
+    results: *const acrobot_batch_results_t,
+    count: usize,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let placed = placed_mut(batch)?;
+        check_count(placed, count)?;
+        let results = read(results)?;
+        let actions = Array::new(actions.cast_mut(), count)?;
+        let rewards = Array::new(results.rewards, count)?;
+        let terminated = Array::new(results.terminated, count)?;
+        let truncated = Array::new(results.truncated, count)?;
+        let observations = Array::optional(rows(results.observations), count)?;
+        let finals = Array::optional(rows(results.final_observations), count)?;
+        check_apart(&[
+            memory_of(batch, count),
+            actions.span(),
+            rewards.span(),
+            terminated.span(),
+            truncated.span(),
+            Array::span_of(&observations),
+            Array::span_of(&finals),
+        ])?;
+        let written = |array: Option<Array<_>>| {
+            array.map_or(Observations::None, |array| {
+                Observations::Rows(array.get_mut())
+            })
+        };
+        placed.batch.step(
+            actions.get(),
+            StepBuffers {
+                rewards: rewards.get_mut(),
+                terminated: terminated.cleared(),
+                truncated: truncated.cleared(),
+                observations: written(observations),
+                final_observations: written(finals),
+            },
+        )?;
+        Ok(())
+    })
+}
+
+/// An observation is six floats, as the batch writes them.
+fn rows(observations: *mut acrobot_observation_t) -> *mut [f32; 6] {
+    observations.cast()
+}
+
+/// Writes the observations of the states. The array has `count` elements, one for each acrobot.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_observe(
+    batch: *const acrobot_batch_t,
+    observations: *mut acrobot_observation_t,
+    count: usize,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let placed = placed(batch)?;
+        check_count(placed, count)?;
+        let observations = Array::new(rows(observations), count)?;
+        check_apart(&[memory_of(batch, count), observations.span()])?;
+        Ok(placed
+            .batch
+            .observe(Observations::Rows(observations.get_mut()))?)
+    })
+}
+
+/// The number of acrobots.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_count(
+    batch: *const acrobot_batch_t,
+    count: *mut usize,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let count = Out::new(count)?;
+        count.write(placed(batch)?.batch.len());
+        Ok(())
+    })
+}
+
+/// Draws the next initial state of each acrobot and begins their episodes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_reset(batch: *mut acrobot_batch_t) -> acrobot_status_t {
+    status(|| unsafe {
+        placed_mut(batch)?.batch.reset();
+        Ok(())
+    })
+}
+
+/// As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
+    batch: *mut acrobot_batch_t,
+    seed: u64,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        placed_mut(batch)?.batch.reset_with_seed(seed);
+        Ok(())
+    })
+}
+
+/// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count` elements, one for each
+/// acrobot. If a byte is neither true nor false, the function returns ACROBOT_ERROR_OUT_OF_RANGE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_reset_masked(
+    batch: *mut acrobot_batch_t,
+    mask: *const bool,
+    count: usize,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let placed = placed_mut(batch)?;
+        check_count(placed, count)?;
+        let mask = Array::new(mask.cast_mut(), count)?;
+        check_apart(&[memory_of(batch, count), mask.span()])?;
+        let bytes = slice::from_raw_parts(mask.start().cast::<u8>(), count);
+        if bytes.iter().any(|byte| *byte > 1) {
+            return Err(ACROBOT_ERROR_OUT_OF_RANGE.into());
+        }
+        Ok(placed
+            .batch
+            .reset_masked(mask.get(), ResetOptions::default())?)
+    })
+}
+
+/// Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP, ACROBOT_AUTORESET_SAME_STEP or
+/// ACROBOT_AUTORESET_DISABLED. `error` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_set_autoreset(
+    batch: *mut acrobot_batch_t,
+    autoreset: u8,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    let set = || unsafe {
+        let autoreset = match autoreset {
+            ACROBOT_AUTORESET_NEXT_STEP => Autoreset::NextStep,
+            ACROBOT_AUTORESET_SAME_STEP => Autoreset::SameStep,
+            ACROBOT_AUTORESET_DISABLED => Autoreset::Disabled,
+            other => return Err(unknown("autoreset", other, "0, 1 or 2")),
+        };
+        placed_mut(batch)?.batch.set_autoreset(autoreset);
+        Ok(())
+    };
+    unsafe { explained(error, set) }
+}
+
+/// The state of acrobot `index`, counted from 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_state(
+    batch: *const acrobot_batch_t,
+    index: usize,
+    state: *mut acrobot_state_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let state = Out::new(state)?;
+        let found = placed(batch)?.batch.state(index);
+        state.write(found.ok_or(ACROBOT_ERROR_NO_SUCH_INDEX)?.into());
+        Ok(())
+    })
+}
+
+/// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change. `error` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_set_state(
+    batch: *mut acrobot_batch_t,
+    index: usize,
+    state: *const acrobot_state_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    let set = || unsafe {
+        let state = read(state)?;
+        let placed = placed_mut(batch)?;
+        Ok(placed.batch.set_state(index, state.into())?)
+    };
+    unsafe { explained(error, set) }
+}
+
+/// The parameters of all acrobots.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_params(
+    batch: *const acrobot_batch_t,
+    params: *mut acrobot_params_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let params = Out::new(params)?;
+        params.write(placed(batch)?.batch.params().into());
+        Ok(())
+    })
+}
+
+/// Sets the parameters of all acrobots for the next steps. `error` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_set_params(
+    batch: *mut acrobot_batch_t,
+    params: *const acrobot_params_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    let set = || unsafe {
+        let params = read(params)?;
+        let placed = placed_mut(batch)?;
+        Ok(placed.batch.set_params(params.try_into()?)?)
+    };
+    unsafe { explained(error, set) }
+}

@@ -1,0 +1,217 @@
+//! The structs that pass data.
+
+use acrobot::physics::Dynamics;
+use acrobot::{Observation, Params, State, Step};
+
+use crate::status::Rejected;
+
+/// Action 0: −1 N m by default.
+pub const ACROBOT_ACTION_NEGATIVE: u8 = 0;
+
+/// Action 1: no torque by default.
+pub const ACROBOT_ACTION_ZERO: u8 = 1;
+
+/// Action 2: +1 N m by default.
+pub const ACROBOT_ACTION_POSITIVE: u8 = 2;
+
+/// The equations of Sutton & Barto's book: the physical double pendulum. Gymnasium's default.
+pub const ACROBOT_DYNAMICS_BOOK: u8 = 0;
+
+/// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is not conserved.
+pub const ACROBOT_DYNAMICS_NIPS: u8 = 1;
+
+/// An observation: six floats without padding, in Gymnasium's order.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_observation_t {
+    /// Cosine of the angle of link 1.
+    pub cos_theta1: f32,
+    /// Sine of the angle of link 1.
+    pub sin_theta1: f32,
+    /// Cosine of the angle of link 2.
+    pub cos_theta2: f32,
+    /// Sine of the angle of link 2.
+    pub sin_theta2: f32,
+    /// Angular velocity of link 1, rad/s.
+    pub dtheta1: f32,
+    /// Angular velocity of link 2 relative to link 1, rad/s.
+    pub dtheta2: f32,
+}
+
+impl From<Observation> for acrobot_observation_t {
+    fn from(observation: Observation) -> Self {
+        let [
+            cos_theta1,
+            sin_theta1,
+            cos_theta2,
+            sin_theta2,
+            dtheta1,
+            dtheta2,
+        ] = observation.to_array();
+        Self {
+            cos_theta1,
+            sin_theta1,
+            cos_theta2,
+            sin_theta2,
+            dtheta1,
+            dtheta2,
+        }
+    }
+}
+
+/// The result of a step.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_step_t {
+    /// The observation of the new state.
+    pub observation: acrobot_observation_t,
+    /// −1, or 0 if `terminated`.
+    pub reward: f32,
+    /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
+    pub terminated: bool,
+    /// Whether the limit of 500 steps is reached.
+    pub truncated: bool,
+}
+
+impl From<Step> for acrobot_step_t {
+    fn from(step: Step) -> Self {
+        Self {
+            observation: step.observation.into(),
+            reward: step.reward,
+            terminated: step.terminated,
+            truncated: step.truncated,
+        }
+    }
+}
+
+/// A state. After a step the angles are within ±π and the velocities within their bounds. Each number must be finite.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_state_t {
+    /// Angle of link 1, rad; 0 = hanging straight down, counter-clockwise positive.
+    pub theta1: f32,
+    /// Angle of link 2 relative to link 1, rad; 0 = in line with it.
+    pub theta2: f32,
+    /// Angular velocity of link 1, rad/s.
+    pub dtheta1: f32,
+    /// Angular velocity of link 2 relative to link 1, rad/s.
+    pub dtheta2: f32,
+}
+
+impl From<State<f32>> for acrobot_state_t {
+    fn from(state: State<f32>) -> Self {
+        let State {
+            theta1,
+            theta2,
+            dtheta1,
+            dtheta2,
+        } = state;
+        Self {
+            theta1,
+            theta2,
+            dtheta1,
+            dtheta2,
+        }
+    }
+}
+
+impl From<acrobot_state_t> for State<f32> {
+    fn from(state: acrobot_state_t) -> Self {
+        [state.theta1, state.theta2, state.dtheta1, state.dtheta2].into()
+    }
+}
+
+/// Parameters, in SI units. To change one, read all with acrobot_params, and set them.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_params_t {
+    /// Length of link 1, m; above 0. Default 1.
+    pub length1: f32,
+    /// Length of link 2, m; above 0. Default 1. Only the height of the tip depends on it.
+    pub length2: f32,
+    /// Mass of link 1, kg; above 0. Default 1.
+    pub mass1: f32,
+    /// Mass of link 2, kg; above 0. Default 1.
+    pub mass2: f32,
+    /// Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
+    pub center_of_mass1: f32,
+    /// Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
+    pub center_of_mass2: f32,
+    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on
+    /// the joint. Default 1.
+    pub inertia1: f32,
+    /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
+    pub inertia2: f32,
+    /// Acceleration of gravity, m/s², downwards; finite. Default 9.8.
+    pub gravity: f32,
+    /// Duration of one step, s; above 0. Default 0.2.
+    pub dt: f32,
+    /// Bound of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default 4 π.
+    pub max_velocity1: f32,
+    /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
+    pub max_velocity2: f32,
+    /// Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and 1.
+    pub torques: [f32; 3],
+    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque; 0, the default,
+    /// draws nothing.
+    pub torque_noise: f32,
+    /// The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
+    pub dynamics: u8,
+}
+
+/// A struct of another type with the same parameters. Only `dynamics` has another type, too.
+macro_rules! same_params {
+    ($type:ident, $params:expr, $dynamics:expr) => {
+        $type {
+            length1: $params.length1,
+            length2: $params.length2,
+            mass1: $params.mass1,
+            mass2: $params.mass2,
+            center_of_mass1: $params.center_of_mass1,
+            center_of_mass2: $params.center_of_mass2,
+            inertia1: $params.inertia1,
+            inertia2: $params.inertia2,
+            gravity: $params.gravity,
+            dt: $params.dt,
+            max_velocity1: $params.max_velocity1,
+            max_velocity2: $params.max_velocity2,
+            torques: $params.torques,
+            torque_noise: $params.torque_noise,
+            dynamics: $dynamics,
+        }
+    };
+}
+
+impl From<&Params<f32>> for acrobot_params_t {
+    fn from(params: &Params<f32>) -> Self {
+        let dynamics = match params.dynamics {
+            Dynamics::Nips => ACROBOT_DYNAMICS_NIPS,
+            _ => ACROBOT_DYNAMICS_BOOK,
+        };
+        same_params!(acrobot_params_t, params, dynamics)
+    }
+}
+
+impl TryFrom<acrobot_params_t> for Params<f32> {
+    type Error = Rejected;
+
+    /// Rejects unknown dynamics only.
+    fn try_from(params: acrobot_params_t) -> Result<Self, Rejected> {
+        let dynamics = match params.dynamics {
+            ACROBOT_DYNAMICS_BOOK => Dynamics::Book,
+            ACROBOT_DYNAMICS_NIPS => Dynamics::Nips,
+            other => return Err(unknown("dynamics", other, "0 (book) or 1 (NIPS)")),
+        };
+        Ok(same_params!(Params, params, dynamics))
+    }
+}
+
+/// Rejects a number that none of the constants has.
+pub fn unknown(name: &'static str, number: u8, rule: &'static str) -> Rejected {
+    Rejected::OutOfRange {
+        name,
+        value: number.into(),
+        unit: "",
+        rule,
+    }
+}

@@ -1,0 +1,34 @@
+//! Gymnasium's Acrobot for C and C++: the functions of `include/acrobot.h`, which cbindgen writes from these files.
+//!
+//! Names are those of the header. All `unsafe` is here: the library that this one wraps sees only valid references.
+
+#![no_std]
+#![expect(non_camel_case_types, reason = "the names of the header")]
+#![expect(
+    clippy::missing_safety_doc,
+    reason = "the header states it once, in cbindgen.toml"
+)]
+
+// The header has the same order. Without the empty lines rustfmt would sort them.
+pub mod status;
+
+pub mod data;
+
+pub mod single;
+
+pub mod action_space;
+
+pub mod batch;
+
+mod memory;
+
+unsafe extern "C" {
+    /// Does not exist: a program links only if no branch that panics is left.
+    fn acrobot_has_a_panicking_branch() -> !;
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    // SAFETY: it is never called, because a program that contains this call does not link.
+    unsafe { acrobot_has_a_panicking_branch() }
+}

@@ -1,0 +1,228 @@
+//! One acrobot in arithmetic `Fast`, with Gymnasium's limit of 500 steps.
+
+use acrobot::physics::ResetBounds;
+use acrobot::{Acrobot, Action, Fast, TimeLimit};
+
+use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t};
+use crate::memory::{Holder, Out, fits, read};
+use crate::status::{acrobot_error_t, acrobot_status_t, explained, status};
+
+/// The bytes of an acrobot_t: the most that any target needs.
+pub const ACROBOT_SIZE: usize = 224;
+
+/// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
+pub const ACROBOT_ALIGN: usize = 16;
+
+/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
+/// call acrobot_init before any other function. It contains no pointer, so you may copy and move it. There is nothing
+/// to free.
+#[repr(C, align(16))]
+pub struct acrobot_t {
+    bytes: [u8; ACROBOT_SIZE],
+}
+
+impl Holder for acrobot_t {
+    type Value = TimeLimit<Acrobot<Fast>>;
+
+    const TAG: u32 = u32::from_le_bytes(*b"acro");
+}
+
+const _: () = {
+    fits::<acrobot_t>();
+    assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
+};
+
+/// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
+/// starts from scratch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
+    status(|| unsafe { Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))) })
+}
+
+/// Draws the next initial state and begins an episode. `observation` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_reset(
+    acrobot: *mut acrobot_t,
+    observation: *mut acrobot_observation_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let observation = Out::optional(observation)?;
+        observation.write(Holder::value_mut(acrobot)?.reset().into());
+        Ok(())
+    })
+}
+
+/// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode. `observation` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_reset_with_seed(
+    acrobot: *mut acrobot_t,
+    seed: u64,
+    observation: *mut acrobot_observation_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let observation = Out::optional(observation)?;
+        observation.write(Holder::value_mut(acrobot)?.reset_with_seed(seed).into());
+        Ok(())
+    })
+}
+
+/// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and rad/s. The default
+/// is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`. `observation` and `error` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_reset_within(
+    acrobot: *mut acrobot_t,
+    low: f64,
+    high: f64,
+    observation: *mut acrobot_observation_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    let reset = || unsafe {
+        let observation = Out::optional(observation)?;
+        let acrobot = Holder::value_mut(acrobot)?;
+        let bounds = ResetBounds::new(low, high)?;
+        observation.write(acrobot.reset_within(bounds).into());
+        Ok(())
+    };
+    unsafe { explained(error, reset) }
+}
+
+/// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
+/// When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_step(
+    acrobot: *mut acrobot_t,
+    action: u8,
+    step: *mut acrobot_step_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let step = Out::new(step)?;
+        let acrobot = Holder::value_mut(acrobot)?;
+        let action = Action::try_from(action)?;
+        step.write(acrobot.step(action).into());
+        Ok(())
+    })
+}
+
+/// Applies any finite torque, N m, for one dt: for controllers. `error` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_step_torque(
+    acrobot: *mut acrobot_t,
+    torque: f32,
+    step: *mut acrobot_step_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    let apply = || unsafe {
+        let step = Out::new(step)?;
+        step.write(Holder::value_mut(acrobot)?.step_torque(torque)?.into());
+        Ok(())
+    };
+    unsafe { explained(error, apply) }
+}
+
+/// The observation of the state.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_observe(
+    acrobot: *const acrobot_t,
+    observation: *mut acrobot_observation_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let observation = Out::new(observation)?;
+        observation.write(Holder::value(acrobot)?.inner().observation().into());
+        Ok(())
+    })
+}
+
+/// The number of steps since the last reset.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_elapsed(
+    acrobot: *const acrobot_t,
+    steps: *mut u32,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let steps = Out::new(steps)?;
+        steps.write(Holder::value(acrobot)?.elapsed());
+        Ok(())
+    })
+}
+
+/// The state.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_state(
+    acrobot: *const acrobot_t,
+    state: *mut acrobot_state_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let state = Out::new(state)?;
+        state.write(Holder::value(acrobot)?.inner().state().into());
+        Ok(())
+    })
+}
+
+/// Sets the state. The number of steps does not change. `error` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_set_state(
+    acrobot: *mut acrobot_t,
+    state: *const acrobot_state_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    let set = || unsafe {
+        let state = read(state)?;
+        let acrobot = Holder::value_mut(acrobot)?;
+        Ok(acrobot.inner_mut().set_state(state.into())?)
+    };
+    unsafe { explained(error, set) }
+}
+
+/// The parameters.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_params(
+    acrobot: *const acrobot_t,
+    params: *mut acrobot_params_t,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let params = Out::new(params)?;
+        params.write(Holder::value(acrobot)?.inner().params().into());
+        Ok(())
+    })
+}
+
+/// Sets the parameters for the next steps. The state does not change. `error` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_set_params(
+    acrobot: *mut acrobot_t,
+    params: *const acrobot_params_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    let set = || unsafe {
+        let params = read(params)?;
+        let acrobot = Holder::value_mut(acrobot)?;
+        Ok(acrobot.inner_mut().set_params(params.try_into()?)?)
+    };
+    unsafe { explained(error, set) }
+}
+
+/// The total energy of the state, J.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_energy(
+    acrobot: *const acrobot_t,
+    energy: *mut f32,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let energy = Out::new(energy)?;
+        energy.write(Holder::value(acrobot)?.inner().energy());
+        Ok(())
+    })
+}
+
+/// The height of the tip above the fixed joint, m.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_tip_height(
+    acrobot: *const acrobot_t,
+    height: *mut f32,
+) -> acrobot_status_t {
+    status(|| unsafe {
+        let height = Out::new(height)?;
+        height.write(Holder::value(acrobot)?.inner().tip_height());
+        Ok(())
+    })
+}

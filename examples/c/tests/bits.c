@@ -1,0 +1,134 @@
+// C gets the same bits as Rust: the digests of tests/bits, which `make` writes into digests.h.
+
+#include "check.h"
+#include "digests.h"
+
+#define COUNT 20
+// FNV-1a over 64-bit words.
+#define OFFSET UINT64_C(0xcbf29ce484222325)
+
+static void add(uint64_t *digest, uint64_t word)
+{
+    *digest = (*digest ^ word) * UINT64_C(0x100000001b3);
+}
+
+static uint32_t bits_of_float(float number)
+{
+    union {
+        float number;
+        uint32_t bits;
+    } same;
+    same.number = number;
+    return same.bits;
+}
+
+static void add_float(uint64_t *digest, float number)
+{
+    add(digest, bits_of_float(number));
+}
+
+// The states of Rust's digests are doubles. Only numbers that are neither infinite nor NaN come here.
+static void add_as_double(uint64_t *digest, float number)
+{
+    union {
+        double number;
+        uint64_t bits;
+    } same;
+    same.number = number;
+    add(digest, same.bits);
+}
+
+static void add_observation(uint64_t *digest, const acrobot_observation_t *observation)
+{
+    add_float(digest, observation->cos_theta1);
+    add_float(digest, observation->sin_theta1);
+    add_float(digest, observation->cos_theta2);
+    add_float(digest, observation->sin_theta2);
+    add_float(digest, observation->dtheta1);
+    add_float(digest, observation->dtheta2);
+}
+
+static void add_seen(uint64_t *digest, const acrobot_t *acrobot, const acrobot_observation_t *observation)
+{
+    acrobot_state_t state;
+    CHECK(acrobot_state(acrobot, &state) == ACROBOT_OK);
+    add_as_double(digest, state.theta1);
+    add_as_double(digest, state.theta2);
+    add_as_double(digest, state.dtheta1);
+    add_as_double(digest, state.dtheta2);
+    add_observation(digest, observation);
+}
+
+static uint8_t against(float dtheta1)
+{
+    return dtheta1 > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
+}
+
+// Even episodes have random actions, odd ones torque against link 1's velocity.
+static uint64_t episode(unsigned seed)
+{
+    uint64_t digest = OFFSET;
+    acrobot_t acrobot;
+    acrobot_action_space_t action_space;
+    acrobot_step_t step;
+    CHECK(acrobot_init(&acrobot, seed) == ACROBOT_OK);
+    CHECK(acrobot_action_space_init(&action_space, seed) == ACROBOT_OK);
+    CHECK(acrobot_observe(&acrobot, &step.observation) == ACROBOT_OK);
+    add_seen(&digest, &acrobot, &step.observation);
+    do {
+        uint8_t action = against(step.observation.dtheta1);
+        if (seed % 2 == 0) {
+            CHECK(acrobot_action_space_sample(&action_space, &action) == ACROBOT_OK);
+        }
+        CHECK(acrobot_step(&acrobot, action, &step) == ACROBOT_OK);
+        add_seen(&digest, &acrobot, &step.observation);
+        add_float(&digest, step.reward);
+        add(&digest, (uint64_t)step.terminated << 1 | step.truncated);
+    } while (!step.terminated && !step.truncated);
+    CHECK(acrobot_reset(&acrobot, &step.observation) == ACROBOT_OK);
+    add_seen(&digest, &acrobot, &step.observation);
+    return digest;
+}
+
+// A finished episode's last observation stays in `finals` until the next one.
+static uint64_t batch_of_twenty(void)
+{
+    ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_SIZE(COUNT)];
+    static acrobot_observation_t rows[COUNT], finals[COUNT];
+    static float rewards[COUNT];
+    static bool terminated[COUNT], truncated[COUNT];
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, rows, finals};
+    uint8_t actions[COUNT];
+    acrobot_batch_t *batch;
+    uint64_t digest = OFFSET;
+    CHECK(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch) == ACROBOT_OK);
+    CHECK(acrobot_batch_set_autoreset(batch, ACROBOT_AUTORESET_SAME_STEP, NULL) == ACROBOT_OK);
+    for (int step = 0; step < 200; step++) {
+        for (int i = 0; i < COUNT; i++) {
+            actions[i] = against(rows[i].dtheta1);
+        }
+        CHECK(acrobot_batch_step(batch, actions, &results, COUNT) == ACROBOT_OK);
+        for (int i = 0; i < COUNT; i++) {
+            add_observation(&digest, &rows[i]);
+        }
+        for (int i = 0; i < COUNT; i++) {
+            add_observation(&digest, &finals[i]);
+        }
+        for (int i = 0; i < COUNT; i++) {
+            add_float(&digest, rewards[i]);
+        }
+        for (int i = 0; i < COUNT; i++) {
+            add(&digest, terminated[i]);
+        }
+    }
+    return digest;
+}
+
+int main(void)
+{
+    for (unsigned seed = 0; seed < sizeof FAST / sizeof FAST[0]; seed++) {
+        CHECK(episode(seed) == FAST[seed]);
+    }
+    CHECK(batch_of_twenty() == SHARED_PARAMS);
+    return report("bits");
+}

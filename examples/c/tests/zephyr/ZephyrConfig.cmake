@@ -1,0 +1,14 @@
+# Stands in for Zephyr's CMake package: a library `app`, which is linked into firmware for QEMU's Cortex-M4F.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(CMAKE_C_COMPILER arm-none-eabi-gcc)
+set(CMAKE_C_FLAGS_INIT "-mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -ffreestanding")
+enable_language(C)
+
+set(FIRMWARE ${CMAKE_CURRENT_LIST_DIR}/../../firmware)
+add_library(app STATIC)
+target_include_directories(app PRIVATE ${CMAKE_CURRENT_LIST_DIR})
+add_executable(zephyr ${CMAKE_CURRENT_LIST_DIR}/kernel.c ${FIRMWARE}/start.c ${FIRMWARE}/semihosting.c)
+target_include_directories(zephyr PRIVATE ${CMAKE_CURRENT_LIST_DIR} ${FIRMWARE})
+target_link_options(zephyr PRIVATE -nostdlib -T${FIRMWARE}/memory.ld -Wl,--gc-sections,-z,noexecstack)
+target_link_libraries(zephyr PRIVATE app)
