@@ -47,5 +47,9 @@ fn excerpts_are_in_their_files() {
             "{path} has no such lines:\n{excerpt}"
         );
     }
-    assert_eq!(blocks.len(), 3, "the first program, Embassy and RTIC");
+    assert_eq!(
+        blocks.len(),
+        4,
+        "the first program, Embassy, RTIC, soft-floats"
+    );
 }
