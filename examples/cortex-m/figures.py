@@ -50,6 +50,7 @@ ROWS = {
     "milliseconds": "time of this training at 168 MHz, estimated, ms",
     "ram": "RAM of the whole firmware that trains and draws, bytes",
 }
+SOFT_FLOATS = {"fast_soft_floats": "`Fast`, soft-floats", "micro_soft_floats": "`Micro`, soft-floats"}
 CORES = {
     "thumbv6m-none-eabi": "Cortex-M0, `thumbv6m-none-eabi`",
     "thumbv7m-none-eabi": "Cortex-M3, `thumbv7m-none-eabi`",
@@ -59,6 +60,7 @@ CORES = {
     "riscv32imc-unknown-none-elf": "RV32IMC, `riscv32imc-unknown-none-elf`",
     "riscv32imafc-unknown-none-elf": "RV32IMAFC, `riscv32imafc-unknown-none-elf`",
 }
+WITHOUT_FPU = [core for core in CORES if not core.endswith(("eabihf", "imafc-unknown-none-elf"))]
 LEVELS = ["3", "2", '"s"', '"z"']
 CLOCKS = {
     "STM32F4 (Cortex-M4F)": 168,
@@ -135,9 +137,10 @@ def measure_m4f():
 
 def measure_cores(figure):
     return {
-        (arithmetic, target): value
-        for target in CORES
-        for (arithmetic, each), value in printed("steps", target=target).items()
+        (arithmetic + suffix, target): value
+        for suffix, features, targets in [("", "", CORES), ("_soft_floats", "soft-floats", WITHOUT_FPU)]
+        for target in targets
+        for (arithmetic, each), value in printed("steps", target=target, features=features).items()
         if each == figure
     }
 
@@ -164,7 +167,7 @@ def measure_levels():
 Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
-    "cores": Table("instructions per step", ARITHMETICS, CORES, lambda: measure_cores("step")),
+    "cores": Table("instructions per step", ARITHMETICS | SOFT_FLOATS, CORES, lambda: measure_cores("step")),
     "stacks": Table("bytes of stack of a step", ARITHMETICS, CORES, lambda: measure_cores("stack")),
     "sizes": Table("bytes of flash", ARITHMETICS, CORES, measure_sizes),
     "levels": Table(
