@@ -1,5 +1,6 @@
 // Prints the package's rows of docs/wasm.md: sizes, and steps per second in Node.js. Builds the package first.
 
+import { execFileSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 
@@ -33,12 +34,12 @@ const many = fastest(1024 * 2000, () => {
 });
 
 const code = readFileSync("dist/index.js");
-const packed = statSync("acrobot-rs-0.1.0.tgz").size;
+const [{ size, unpackedSize }] = JSON.parse(execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"], { encoding: "utf8" }));
 console.log(`
-| | |
+| on one core, in Node.js ${process.versions.node.split(".")[0]} | |
 |---|---|
 | WebAssembly module, with simd128 | ${kilobytes(statSync("target/acrobot.wasm").size)} |
 | \`index.js\`, with the module inside | ${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)} |
-| package, packed | ${kilobytes(packed)} |
-| \`Acrobot.step\` in Node.js | ${single} |
-| \`Batch.step\` of 1,024, with observations, in Node.js | ${many} |`);
+| package, with types and licences | ${kilobytes(unpackedSize)}, packed ${kilobytes(size)} |
+| \`Acrobot.step\` | ${single} |
+| \`Batch.step\` of 1,024, with observations | ${many} |`);

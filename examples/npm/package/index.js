@@ -93,7 +93,12 @@ function header(bytes) {
   return `"${text(0)}", version ${bytes[version]}, arithmetic "${text(version + 1)}"`;
 }
 
-const observation = () => numbers().slice(0, 6);
+/** A loop, because `slice` takes half as long again. */
+function observation() {
+  const [from, to] = [numbers(), new Float32Array(6)];
+  for (let i = 0; i < 6; i++) to[i] = from[i];
+  return to;
+}
 
 export class Acrobot extends Kept {
   /** The action of the last step, for its picture. */

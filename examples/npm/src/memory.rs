@@ -92,72 +92,48 @@ pub fn seed(words: usize) -> SeedSequence {
     SeedSequence::from_words(&seed)
 }
 
-/// Writes parameters in the order of their fields, then 0 or 1 for the dynamics.
-pub fn set_params(params: &Params<f32>) {
-    let [negative, zero, positive] = params.torques;
-    set_numbers([
-        params.length1,
-        params.length2,
-        params.mass1,
-        params.mass2,
-        params.center_of_mass1,
-        params.center_of_mass2,
-        params.inertia1,
-        params.inertia2,
-        params.gravity,
-        params.dt,
-        params.max_velocity1,
-        params.max_velocity2,
+/// The numbers of parameters, in the order in which JavaScript reads and writes them.
+fn fields(params: &mut Params<f32>) -> [&mut f32; 16] {
+    let [negative, zero, positive] = &mut params.torques;
+    [
+        &mut params.length1,
+        &mut params.length2,
+        &mut params.mass1,
+        &mut params.mass2,
+        &mut params.center_of_mass1,
+        &mut params.center_of_mass2,
+        &mut params.inertia1,
+        &mut params.inertia2,
+        &mut params.gravity,
+        &mut params.dt,
+        &mut params.max_velocity1,
+        &mut params.max_velocity2,
         negative,
         zero,
         positive,
-        params.torque_noise,
-        f32::from(params.dynamics == Dynamics::Nips),
-    ]);
+        &mut params.torque_noise,
+    ]
+}
+
+/// Writes parameters, the dynamics after the numbers: 0 for the book's.
+pub fn set_params(params: &Params<f32>) {
+    let nips = f32::from(params.dynamics == Dynamics::Nips);
+    let mut params = *params;
+    let numbers = fields(&mut params).map(|number| *number);
+    NUMBERS.with(|cells| set(cells, numbers.into_iter().chain([nips])));
 }
 
 /// Reads what [`set_params`] writes.
 pub fn get_params() -> Params<f32> {
-    let [
-        length1,
-        length2,
-        mass1,
-        mass2,
-        center_of_mass1,
-        center_of_mass2,
-        inertia1,
-        inertia2,
-        gravity,
-        dt,
-        max_velocity1,
-        max_velocity2,
-        negative,
-        zero,
-        positive,
-        torque_noise,
-        nips,
-    ] = NUMBERS.get();
-    Params {
-        length1,
-        length2,
-        mass1,
-        mass2,
-        center_of_mass1,
-        center_of_mass2,
-        inertia1,
-        inertia2,
-        gravity,
-        dt,
-        max_velocity1,
-        max_velocity2,
-        torques: [negative, zero, positive],
-        torque_noise,
-        dynamics: if nips != 0.0 {
-            Dynamics::Nips
-        } else {
-            Dynamics::Book
-        },
+    let mut params = Params::DEFAULT;
+    let [numbers @ .., nips] = NUMBERS.get();
+    for (field, number) in fields(&mut params).into_iter().zip(numbers) {
+        *field = number;
     }
+    if nips != 0.0 {
+        params.dynamics = Dynamics::Nips;
+    }
+    params
 }
 
 /// 0, or the length of the reason for which numbers are rejected: name, rule and unit, a line each. JavaScript has the
