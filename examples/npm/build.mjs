@@ -1,7 +1,7 @@
 // Builds the package into dist/, and packs it.
 
 import { execFileSync } from "node:child_process";
-import { cpSync, mkdirSync, readFileSync, rmSync } from "node:fs";
+import { cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { basename } from "node:path";
 import { fileURLToPath } from "node:url";
 import { deflateRawSync } from "node:zlib";
@@ -13,7 +13,9 @@ import { compile } from "../web/wasm.mjs";
 process.chdir(fileURLToPath(new URL(".", import.meta.url)));
 rmSync("dist", { recursive: true, force: true });
 mkdirSync("dist");
-for (const file of ["README.md", "package/package.json", "package/index.d.ts", "../../LICENSE-APACHE", "../../LICENSE-MIT"]) {
+// npm shows what users need to know.
+writeFileSync("dist/README.md", readFileSync("README.md", "utf8").split("\n## Build and test")[0]);
+for (const file of ["package/package.json", "package/index.d.ts", "../../LICENSE-APACHE", "../../LICENSE-MIT"]) {
   cpSync(file, `dist/${basename(file)}`, { dereference: true });
 }
 
