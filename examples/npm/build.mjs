@@ -23,7 +23,7 @@ const file = "target/acrobot.wasm";
 compile("acrobot_npm", file, { folder: "target", simd128: true, llvm: ["-inline-threshold=75"] });
 // A string, because all bundlers and servers pass strings on unchanged, and a constructor can decode it without waiting.
 const module = readFileSync(file);
-const define = { LENGTH: String(module.length), MODULE: JSON.stringify(deflateRawSync(module, { level: 9, memLevel: 9 }).toString("base64")) };
+const deflated = deflateRawSync(module, { level: 9, memLevel: 9 }).toString("base64");
 // One file, which a browser loads with one request. Names stay, for messages and debuggers.
 buildSync({
   entryPoints: ["package/index.js"],
@@ -33,6 +33,6 @@ buildSync({
   target: "es2022",
   minifyWhitespace: true,
   minifySyntax: true,
-  define,
+  define: { LENGTH: String(module.length), MODULE: JSON.stringify(deflated) },
 });
 execFileSync("npm", ["pack", "--silent", "./dist"], { stdio: "inherit" });

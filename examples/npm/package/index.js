@@ -106,16 +106,14 @@ export class Acrobot extends Kept {
 
   constructor(options = {}) {
     const { seed, params = {}, maxSteps = 500 } = checked("options", options, ["seed", "params", "maxSteps"]);
-    positive("maxSteps", maxSteps);
-    writeSeed(seed);
-    super("acrobot", wasm().acrobot_new(maxSteps), 1);
+    super("acrobot", wasm().acrobot_new(positive("maxSteps", maxSteps)), 1);
     try {
       this.setParams(params);
+      wasm().acrobot_reset(this[NUMBER], writeSeed(seed));
     } catch (error) {
       this.free();
       throw error;
     }
-    wasm().acrobot_reset(this[NUMBER], writeSeed(seed));
   }
 
   static restore(snapshot) {

@@ -13,7 +13,8 @@ export function wasm() {
   try {
     ({ exports } = new WebAssembly.Instance(new WebAssembly.Module(bytes)));
   } catch (cause) {
-    throw new Error(`acrobot-rs needs WebAssembly with simd128, and 'wasm-unsafe-eval' in a content security policy: ${cause.message}`, { cause });
+    const needs = "WebAssembly with simd128, and 'wasm-unsafe-eval' in a content security policy";
+    throw new Error(`acrobot-rs needs ${needs}: ${cause.message}`, { cause });
   }
   return exports;
 }

@@ -13,7 +13,7 @@ use crate::table::Table;
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
 
-/// A batch with its memory. A `VecBatch` would take 13 KB more code, because its blocks have 16 lanes.
+/// A batch with its memory. A `VecBatch` would take 12 KB more code, because its blocks have 16 lanes.
 struct Many {
     batch: Batch<Fast, Vec<Block<Fast, LANES>>, Vec<Pcg64>, LANES>,
     /// JavaScript writes here before a step.

@@ -94,7 +94,8 @@ test("types pass tsc --strict", () => {
   }
   // Without the types of a browser.
   writeFileSync(join(folder, "server.mts"), 'import { Acrobot } from "acrobot-rs";\nnew Acrobot().step(1);\n');
-  assert.equal(run(join(here, "node_modules/.bin/tsc"), ["--strict", "--noEmit", "--lib", "es2022", "--module", "nodenext", "--types", "", "server.mts"]), "");
+  const server = ["--strict", "--noEmit", "--lib", "es2022", "--module", "nodenext", "--types", "", "server.mts"];
+  assert.equal(run(join(here, "node_modules/.bin/tsc"), server), "");
 });
 
 test("bundles of every format run in Node.js and in Chromium", async () => {
@@ -171,7 +172,14 @@ test("a picture is that of the crate, with the torque of the last step", async (
         return context.getImageData(0, 0, 101, 101).data.join();
       };
       const corners = [corner(() => batch.draw(context, 1, options)), corner(() => single.draw(context, options))];
-      return { close: close / 250_000, arrows, afterReset, same: corners[0] === corners[1], dark: corners[0].includes("1,2,3,255"), outside: corners[0].endsWith("4,5,6,255") };
+      return {
+        close: close / 250_000,
+        arrows,
+        afterReset,
+        same: corners[0] === corners[1],
+        dark: corners[0].includes("1,2,3,255"),
+        outside: corners[0].endsWith("4,5,6,255"),
+      };
     });
     assert.ok(found.close > 0.99, `${found.close} of the pixels are close`);
     assert.deepEqual({ ...found, close: 1 }, { close: 1, arrows: [-1, 0, 1], afterReset: 0, same: true, dark: true, outside: true });
