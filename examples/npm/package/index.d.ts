@@ -126,7 +126,7 @@ export class Acrobot extends Kept {
   /** The state: a copy. Setting it continues the episode. All four numbers must be finite. */
   get state(): State;
   set state(state: State);
-  /** The total energy, J; 0 is that of both links level with the fixed joint, at rest. */
+  /** The total energy, J. The potential energy is 0 at the height of the fixed joint. */
   get energy(): number;
   /** The height of the tip above the fixed joint, m. */
   get tipHeight(): number;
