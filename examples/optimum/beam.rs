@@ -2,69 +2,68 @@
 
 use std::collections::HashSet;
 
-use acrobot::physics::Pendulum;
-use acrobot::arithmetic::Reference;
 use acrobot::{Action, State};
 
-use crate::values::{Stepper, Values, coordinates};
+use crate::values::{Stepper, coordinates};
 
-/// No search goes deeper.
-const DEPTH: usize = 150;
-
-/// Searches from one initial state after another.
-pub struct Beam {
-    width: usize,
-    /// Cells per rad and per rad/s. The beam keeps one state of each cell.
-    fineness: f32,
-    stepper: Stepper,
+/// A search with the exact model, from one state after another.
+pub struct Beam<'a, V> {
+    /// States that are followed at the same time.
+    pub width: usize,
+    /// Cells per rad and per rad/s. The beam follows only one state of each cell.
+    pub fineness: f32,
+    pub actions: &'a [Action],
+    /// The estimated steps from a state to the goal.
+    pub value: V,
+    pub stepper: Stepper,
 }
 
 /// A reached state.
 struct Node {
     state: State<f32>,
-    /// The place of its parent in the beam, times the number of actions, plus the action.
-    origin: u32,
+    /// The place of its parent in the beam, and the action.
+    origin: (u32, Action),
 }
 
-impl Beam {
-    pub fn new(width: usize, fineness: f32) -> Self {
-        Self { width, fineness, stepper: Stepper::new() }
-    }
-
-    /// The shortest path found that reaches the goal in `Reference`, with its last action.
-    pub fn search(&mut self, values: &Values, initial: State) -> Option<Vec<Action>> {
-        let mut beam = vec![initial.cast::<f32>()];
-        let mut origins: Vec<Vec<u32>> = Vec::new();
-        let mut children = Vec::new();
-        let mut order = Vec::new();
+impl<V: Fn(&State<f32>) -> f32> Beam<'_, V> {
+    /// The shortest accepted path to the goal, and true. If there is none of `depth` actions: the path to the state of
+    /// the best value, and false.
+    pub fn search(
+        &mut self,
+        initial: State<f32>,
+        depth: usize,
+        accept: impl Fn(&[Action]) -> bool,
+    ) -> (Vec<Action>, bool) {
+        let mut beam = vec![initial];
+        let mut origins: Vec<Vec<_>> = Vec::new();
+        let (mut children, mut order) = (Vec::new(), Vec::new());
         let mut cells = HashSet::new();
-        for _ in 0..DEPTH {
+        for _ in 0..depth {
             children.clear();
             order.clear();
             let mut goals = Vec::new();
-            for action in Action::ALL {
+            for &action in self.actions {
                 self.stepper.step(&beam, action, |parent, state, reached| {
-                    let origin = (parent * 3 + action as usize) as u32;
+                    let origin = (parent as u32, action);
                     if reached {
                         goals.push(origin);
+                    } else {
+                        order.push(((self.value)(&state), children.len() as u32));
+                        children.push(Node { state, origin });
                     }
-                    // The bits of positive numbers are in the order of the numbers.
-                    let value = u64::from(values.at(&state).to_bits());
-                    order.push(value << 32 | children.len() as u64);
-                    children.push(Node { state, origin });
                 });
             }
             let paths = goals.into_iter().map(|goal| path(&origins, goal));
-            if let Some(path) = paths.into_iter().find(|path| reaches(initial, path)) {
-                return Some(path);
+            if let Some(path) = paths.into_iter().find(|path| accept(path)) {
+                return (path, true);
             }
-            order.sort_unstable();
+            order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             cells.clear();
             beam.clear();
             let mut kept = Vec::new();
-            for &key in &order {
-                let Node { state, origin } = children[key as u32 as usize];
-                let cell = coordinates(&state).map(|x| (x * self.fineness).round() as i16);
+            for (_, child) in &order {
+                let Node { state, origin } = children[*child as usize];
+                let cell = coordinates(&state).map(|x| (x * self.fineness).round() as i32);
                 if cells.insert(cell) {
                     beam.push(state);
                     kept.push(origin);
@@ -75,28 +74,20 @@ impl Beam {
             }
             origins.push(kept);
         }
-        None
+        let best = origins.pop().and_then(|last| last.first().copied());
+        (best.map_or(Vec::new(), |best| path(&origins, best)), false)
     }
 }
 
 /// The actions to a node.
-fn path(origins: &[Vec<u32>], last: u32) -> Vec<Action> {
-    let mut origin = last;
-    let mut actions = vec![Action::ALL[origin as usize % 3]];
+fn path(origins: &[Vec<(u32, Action)>], last: (u32, Action)) -> Vec<Action> {
+    let (mut parent, action) = last;
+    let mut actions = vec![action];
     for origins in origins.iter().rev() {
-        origin = origins[origin as usize / 3];
-        actions.push(Action::ALL[origin as usize % 3]);
+        let action;
+        (parent, action) = origins[parent as usize];
+        actions.push(action);
     }
     actions.reverse();
     actions
-}
-
-/// Whether the last action reaches the goal, and none before, in `Reference`.
-fn reaches(initial: State, actions: &[Action]) -> bool {
-    let mut pendulum = Pendulum::<Reference>::at(initial).expect("a finite state");
-    let steps = actions.iter().position(|&action| {
-        let torque = pendulum.params().torque(action);
-        pendulum.step(torque).expect("a finite torque")
-    });
-    steps == Some(actions.len() - 1)
 }

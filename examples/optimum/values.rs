@@ -28,23 +28,27 @@ impl Values {
         for _ in (0..SWEEPS).progress() {
             // The mirror image of a state has its value, so half of the planes are enough.
             let half = (0..=planes / 2 + SHAPE[1]).into_par_iter();
-            let swept = half.map_init(Stepper::new, |stepper, plane| {
-                let states: Vec<_> = (0..PLANE).map(|i| state(plane * PLANE + i)).collect();
-                let mut found = vec![f32::MAX; PLANE];
-                for action in Action::ALL {
-                    stepper.step(&states, action, |i, next, reached| {
-                        let value = if reached { 0.0 } else { values.at(&next) };
-                        found[i] = found[i].min(1.0 + value);
-                    });
-                }
-                for (value, state) in found.iter_mut().zip(&states) {
-                    if is_goal(state) {
-                        *value = 0.0;
+            let swept = half.map_init(
+                || Stepper::new(512),
+                |stepper, plane| {
+                    let stepper = stepper.as_mut().map_err(|error| *error)?;
+                    let states: Vec<_> = (0..PLANE).map(|i| state(plane * PLANE + i)).collect();
+                    let mut found = vec![f32::MAX; PLANE];
+                    for action in Action::ALL {
+                        stepper.step(&states, action, |i, next, reached| {
+                            let value = if reached { 0.0 } else { values.at(&next) };
+                            found[i] = found[i].min(1.0 + value);
+                        });
                     }
-                }
-                found
-            });
-            let swept: Vec<Vec<f32>> = swept.collect();
+                    for (value, state) in found.iter_mut().zip(&states) {
+                        if is_goal(state) {
+                            *value = 0.0;
+                        }
+                    }
+                    Ok(found)
+                },
+            );
+            let swept = swept.collect::<Result<Vec<Vec<f32>>, Error>>()?;
             for (plane, found) in swept.into_iter().enumerate() {
                 let mirrored = mirror(plane) * PLANE;
                 for (i, value) in found.into_iter().enumerate() {
@@ -118,7 +122,10 @@ fn mirror(plane: usize) -> usize {
     (SHAPE[0] - first) % SHAPE[0] * SHAPE[1] + (SHAPE[1] - second) % SHAPE[1]
 }
 
-#[expect(clippy::disallowed_methods, reason = "these bits need not be the same everywhere")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "these bits need not be the same everywhere"
+)]
 fn is_goal(state: &State<f32>) -> bool {
     -state.theta1.cos() - (state.theta1 + state.theta2).cos() > 1.0
 }
@@ -127,17 +134,17 @@ fn is_goal(state: &State<f32>) -> bool {
 pub struct Stepper {
     batch: VecBatch<Fast>,
     states: Vec<State<f32>>,
+    actions: Vec<Action>,
 }
 
-/// States that the batch steps at once.
-const LANES: usize = 512;
-
 impl Stepper {
-    pub fn new() -> Self {
-        Self {
-            batch: VecBatch::new(0, LANES).expect("memory for the batch"),
-            states: vec![State::default(); LANES],
-        }
+    /// Steps `lanes` states at a time.
+    pub fn new(lanes: usize) -> Result<Self, Error> {
+        Ok(Self {
+            batch: VecBatch::new(0, lanes)?,
+            states: vec![State::default(); lanes],
+            actions: vec![Action::Zero; lanes],
+        })
     }
 
     /// Calls `to` with the index of each state, its next state, and whether that is a goal state.
@@ -147,15 +154,16 @@ impl Stepper {
         action: Action,
         mut to: impl FnMut(usize, State<f32>, bool),
     ) {
-        let mut reached = [false; LANES];
-        for (chunk, states) in states.chunks(LANES).enumerate() {
+        let lanes = self.states.len();
+        self.actions.fill(action);
+        for (chunk, states) in states.chunks(lanes).enumerate() {
             self.states[..states.len()].copy_from_slice(states);
             self.batch.reset_to(&self.states).expect("finite states");
-            let results = self.batch.step(&[action; LANES]).expect("an action a state");
-            reached.copy_from_slice(results.terminated);
-            for (i, &reached) in reached[..states.len()].iter().enumerate() {
+            let results = self.batch.step(&self.actions).expect("valid actions");
+            let reached = results.terminated[..states.len()].to_vec();
+            for (i, reached) in reached.into_iter().enumerate() {
                 let next = self.batch.state(i).expect("a lane");
-                to(chunk * LANES + i, next, reached);
+                to(chunk * lanes + i, next, reached);
             }
         }
     }

@@ -1,0 +1,97 @@
+//! The mean returns of policies from the same initial states.
+
+use std::error::Error;
+use std::io::{self, Write};
+
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
+use examples_common::bang_bang;
+use indicatif::ProgressIterator;
+use sarsa::task::{Learner, Preset, greedy, learn, training, view};
+
+use crate::beam::Beam;
+use crate::values::Stepper;
+use crate::{SEEDS, bound, initial};
+
+/// The seed of learning and of random actions.
+const SEED: u64 = 42;
+const EPISODES: u32 = 10_000;
+
+/// Prints a row for each policy.
+pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
+    let mut out = io::stdout();
+    writeln!(out, "| policy | mean return |\n|---|---|")?;
+    let mut row = |name: &str, mean: f64| writeln!(out, "| {name} | {mean:.2} |");
+    let mut actions = Pcg64::new(SEED);
+    row("random", mean(|_| Action::sample(&mut actions)))?;
+    row("torque against θ̇1", mean(|state| bang_bang(state.dtheta1)))?;
+
+    let mut weights = [[0.0; 2]; 2048];
+    let learner = learnt::<2048, 20>(&mut weights)?;
+    row("learnt, 16 KiB", mean(|state| greedy(&learner, state)))?;
+    let mut weights = [[0.0; 2]; 8192];
+    let learner = learnt::<8192, 28>(&mut weights)?;
+    row("learnt, 64 KiB", mean(|state| greedy(&learner, state)))?;
+
+    let mut beam = Beam {
+        width: 8,
+        // So fine that the search merges only equal states.
+        fineness: 1e6,
+        actions: &[Action::Negative, Action::Positive],
+        value: |state: &State<f32>| {
+            let [negative, positive] = learner.values(&view(state));
+            -negative.max(positive)
+        },
+        stepper: Stepper::new(16)?,
+    };
+    let mut plan: Vec<Action> = Vec::new();
+    let planned = mean(|&state| {
+        let (path, reaches) = beam.search(state, 60, |_| true);
+        if plan.is_empty() && !reaches {
+            return path[0];
+        }
+        if reaches && (plan.is_empty() || path.len() < plan.len()) {
+            plan = path;
+        }
+        plan.remove(0)
+    });
+    row("planned, 64 KiB", planned)?;
+
+    let means = |steps: f64| 1.0 - steps / f64::from(SEEDS);
+    let steps: usize = best.iter().map(Vec::len).sum();
+    row("best known", means(steps as f64))?;
+    let least: u32 = (0..SEEDS)
+        .map(|seed| bound::least_steps(initial(seed.into())))
+        .sum();
+    row("bound", means(f64::from(least)))?;
+    Ok(())
+}
+
+/// A learner after its episodes.
+fn learnt<const S: usize, const T: usize>(
+    weights: &mut [[f32; 2]; S],
+) -> Result<Learner<'_, S, T>, Box<dyn Error>> {
+    let mut learner = Preset::Quality.learner(EPISODES, weights)?;
+    let (mut env, mut choices) = training(SeedSequence::new(SEED));
+    for _ in (0..EPISODES).progress() {
+        learn(&mut learner, &mut env, &mut choices);
+    }
+    Ok(learner)
+}
+
+/// The mean return of a policy in `Fast`, with at most 500 steps per episode.
+fn mean(mut policy: impl FnMut(&State<f32>) -> Action) -> f64 {
+    let mut env = TimeLimit::v1(Acrobot::<Fast>::new(0));
+    let mut sum = 0.0;
+    for seed in (0..SEEDS).progress() {
+        env.reset_with_seed(seed.into());
+        loop {
+            let step = env.step(policy(&env.inner().state()));
+            sum += f64::from(step.reward);
+            if step.done() {
+                break;
+            }
+        }
+    }
+    sum / f64::from(SEEDS)
+}
