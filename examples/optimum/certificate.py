@@ -73,7 +73,8 @@ def main():
     # The variables are the coefficients and W of the nearest goal state. Constraints join as they are violated.
     active = rng.choice(len(gains), 4000, replace=False)
     while True:
-        rows = np.vstack([np.column_stack([gains[active], np.zeros(len(active))]), np.column_stack([-goals, np.ones(len(goals))])])
+        steps = np.column_stack([gains[active], np.zeros(len(active))])
+        rows = np.vstack([steps, np.column_stack([-goals, np.ones(len(goals))])])
         limits = np.concatenate([np.ones(len(active)), np.zeros(len(goals))])
         found = linprog(np.append(hanging[0], -1), rows, limits, bounds=[(-300, 300)] * len(scale) + [(None, None)])
         excess = gains @ found.x[:-1] - 1

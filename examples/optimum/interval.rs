@@ -129,6 +129,14 @@ impl<const N: usize> Jet<N> {
         }
     }
 
+    fn product(self, other: Self) -> Self {
+        let slopes = from_fn(|i| self.slopes[i] * other.value + self.value * other.slopes[i]);
+        Self {
+            value: self.value * other.value,
+            slopes,
+        }
+    }
+
     pub fn sin_cos(self) -> [Self; 2] {
         let [sin, cos] = self.value.sin_cos();
         [
@@ -174,11 +182,7 @@ impl<const N: usize> Sub for Jet<N> {
 impl<const N: usize> Mul for Jet<N> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let slopes = from_fn(|i| self.slopes[i] * other.value + self.value * other.slopes[i]);
-        Self {
-            value: self.value * other.value,
-            slopes,
-        }
+        self.product(other)
     }
 }
 

@@ -13,7 +13,7 @@
 
 use std::error::Error;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use acrobot::arithmetic::Reference;
@@ -40,12 +40,13 @@ enum Options {
     /// Searches for shorter sequences than the file has.
     Search {
         /// States that are followed at the same time.
-        #[arg(long, default_value_t = 10_000)]
-        width: usize,
+        #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
+        width: u32,
         /// Cells per rad and per rad/s. The search follows only one state of each cell.
         #[arg(long, default_value_t = 10.0)]
         fineness: f32,
         #[arg(long, value_name = "FILE", default_value = FILE)]
+        #[arg(value_parser = files::named("txt"))]
         file: PathBuf,
     },
     /// Prints the mean returns of policies, of the sequences and of the bound.
@@ -80,14 +81,17 @@ fn initial(seed: u64) -> State {
     Acrobot::<Reference>::new(seed).state()
 }
 
-fn search(width: usize, fineness: f32, file: &PathBuf) -> Result<(), Box<dyn Error>> {
-    let mut known = load(file)?;
-    known.resize(SEEDS as usize, Vec::new());
+fn search(width: u32, fineness: f32, file: &Path) -> Result<(), Box<dyn Error>> {
+    let mut known = if file.exists() {
+        load(file)?
+    } else {
+        vec![Vec::new(); SEEDS as usize]
+    };
     let values = Values::compute()?;
     let progress = ProgressBar::new(SEEDS.into());
     let found = (0..SEEDS).into_par_iter().map(|seed| {
         let mut beam = Beam {
-            width,
+            width: width as usize,
             fineness,
             actions: &Action::ALL,
             value: |state: &State<f32>| values.at(state),

@@ -1,5 +1,6 @@
 //! The file of the best known sequences: a line for each initial state, with a sign for each action.
 
+use std::fmt::Display;
 use std::fs;
 use std::path::Path;
 
@@ -7,19 +8,18 @@ use acrobot::arithmetic::Reference;
 use acrobot::physics::Pendulum;
 use acrobot::{Action, State};
 
+use crate::SEEDS;
+
 const SIGNS: [char; 3] = ['-', '0', '+'];
 const HEAD: &str = "\
 # The fewest known steps to the goal: line s has the actions after Gymnasium's reset(seed=s), counted from 0.
 # - 0 + are torques of -1, 0 and 1 N m. Made by: cargo run --release --example optimum -- search
 ";
 
-/// The sequences of a file, or none if there is no file.
+/// The sequences of a file, one for each initial state.
 pub fn load(path: &Path) -> Result<Vec<Vec<Action>>, String> {
-    let text = match fs::read_to_string(path) {
-        Ok(text) => text,
-        Err(_) if !path.exists() => return Ok(Vec::new()),
-        Err(error) => return Err(format!("{}: {error}", path.display())),
-    };
+    let rejected = |reason: &dyn Display| format!("{}: {reason}", path.display());
+    let text = fs::read_to_string(path).map_err(|error| rejected(&error))?;
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     let sequences = lines.map(|line| {
         let action = |sign| {
@@ -28,18 +28,17 @@ pub fn load(path: &Path) -> Result<Vec<Vec<Action>>, String> {
                 .position(|&s| s == sign)
                 .map(|i| Action::ALL[i])
         };
-        let unknown = || {
-            format!(
-                "{}: a line must have only - 0 +, got {line}",
-                path.display()
-            )
-        };
-        line.chars()
-            .map(action)
-            .collect::<Option<_>>()
-            .ok_or_else(unknown)
+        let actions = line.chars().map(action).collect::<Option<_>>();
+        actions.ok_or_else(|| rejected(&format_args!("a line must have only - 0 +, got {line}")))
     });
-    sequences.collect()
+    let sequences = sequences.collect::<Result<Vec<_>, _>>()?;
+    if sequences.len() == SEEDS as usize {
+        return Ok(sequences);
+    }
+    let found = sequences.len();
+    Err(rejected(&format_args!(
+        "must have {SEEDS} sequences, got {found}"
+    )))
 }
 
 /// The text of the file.

@@ -8,7 +8,7 @@ use acrobot::{Action, Error, Fast, State};
 use indicatif::ProgressIterator;
 use rayon::prelude::*;
 
-/// Points of the grid in θ1, θ2, θ̇1 and θ̇1 + θ̇2. The angles are cyclic. The velocities have odd numbers, so 0 is one.
+/// Points of the grid in θ1, θ2, θ̇1 and θ̇1 + θ̇2. The angles are cyclic.
 pub const SHAPE: [usize; 4] = [60, 60, 51, 51];
 /// The largest velocities of the grid, rad/s. Shortest paths stay within.
 const REACH: [f32; 2] = [5.0, 8.0];
