@@ -25,6 +25,7 @@ impl Interval {
 
     /// Rounded results, enlarged to contain the exact ones.
     fn around(low: f64, high: f64) -> Self {
+        assert!(high - low < f64::INFINITY, "finite numbers");
         Self::new(low.next_down(), high.next_up())
     }
 
