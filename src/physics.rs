@@ -120,6 +120,7 @@ macro_rules! constants_of_form {
 }
 
 mod bounds;
+pub mod control;
 mod gymnasium;
 mod lean;
 mod model;
