@@ -59,11 +59,8 @@ pub enum Error {
         /// The largest absolute value that remains after the elimination of all positive pivots.
         value: f64,
     },
-    /// A regulator does not exist, or the iteration did not find it.
-    NotStabilized {
-        /// The iterations of the Riccati equation.
-        iterations: u32,
-    },
+    /// There is no regulator that stabilizes the model, or the iteration does not converge to it.
+    NotStabilized,
     /// The lower reset bound is above the upper one.
     ReversedBounds {
         /// The lower bound given, rad and rad/s.
@@ -161,10 +158,9 @@ impl fmt::Display for Error {
                 f,
                 "{name} must be positive semidefinite, got {value} after the elimination of its positive pivots"
             ),
-            Self::NotStabilized { iterations } => write!(
+            Self::NotStabilized => write!(
                 f,
-                "the weights and the torque must stabilize the model, got no stable closed loop after {iterations} \
-                iterations of the Riccati equation"
+                "a regulator must stabilize the model with these weights, found none"
             ),
             Self::ReversedBounds { low, high } => write!(
                 f,

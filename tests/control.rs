@@ -411,10 +411,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
         ),
     ] {
         let error = lqr(&model, &q, 1.0).unwrap_err();
-        assert!(
-            matches!(error, Error::NotStabilized { .. }),
-            "{name}: {error}"
-        );
+        assert!(matches!(error, Error::NotStabilized), "{name}: {error}");
     }
     // Without the need for a torque there is none.
     let calm = Discrete {
@@ -433,7 +430,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
     let model = discretize(&pendulum, 0.0).unwrap();
     let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
-    assert!(matches!(error, Error::NotStabilized { .. }), "{error}");
+    assert!(matches!(error, Error::NotStabilized), "{error}");
 }
 
 #[test]

@@ -71,7 +71,7 @@ fn moderate_pendulums_have_models() {
             let [[_, m12], [_, m22]] = pendulum.mass_matrix().map(|row| row.map(Real::to_f64));
             let [x, y] = forces.elbow.map(Real::to_f64);
             let reach = params.center_of_mass2.to_f64();
-            let parts = m12 * ddtheta1.to_f64().abs()
+            let parts = m12.abs() * ddtheta1.to_f64().abs()
                 + m22 * (ddtheta1.to_f64().abs() + ddtheta2.to_f64().abs())
                 + reach * (x.abs() + y.abs())
                 + torque.to_f64().abs();
@@ -121,7 +121,7 @@ fn regulators_stabilize_or_are_errors() {
             let Ok(regulator) = lqr(&model, &q, r) else {
                 return;
             };
-            assert!(regulator.iterations < 40);
+            assert!(regulator.iterations <= 25);
             let [gain, cost] = [&regulator.gain[..], regulator.cost_to_go.as_flattened()];
             assert!(gain.iter().chain(cost).all(|x| x.is_finite()));
             for i in 0..4 {

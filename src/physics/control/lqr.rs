@@ -56,8 +56,11 @@ pub fn difference<A: Arithmetic>(
     ]
 }
 
-/// The doublings after which the iteration ends. The last one accounts for 2⁴⁰ steps.
-const MAX_ITERATIONS: u32 = 40;
+/// A closed loop whose deviations have not vanished after 2²⁰ steps counts as unstable: in `f32` the rounding of its
+/// elements decides what it is.
+const SQUARINGS: u32 = 20;
+/// The doublings after which the Riccati iteration ends: P must be exact up to rounding, which takes longer.
+const MAX_ITERATIONS: u32 = SQUARINGS + 5;
 
 /// The linear-quadratic regulator of a discrete model, which minimizes the sum of xᵀ Q x + R u² over all steps.
 ///
@@ -67,8 +70,8 @@ const MAX_ITERATIONS: u32 = 40;
 /// The structured doubling algorithm (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin and C.-S. Wang, *Structure-Preserving
 /// Algorithms for Periodic Discrete-Time Algebraic Riccati Equations*, 2004) solves the Riccati equation. Each iteration
 /// doubles the number of steps that P accounts for. It has converged when no element changes by more than the scalar's
-/// machine epsilon times the largest element; about ten iterations do. Then the closed loop A − B K must be stable: its
-/// powers must vanish within 1/16 of as many steps as the inverse of the machine epsilon, half a million in `f32`.
+/// machine epsilon times the largest element; about ten iterations do. Then the closed loop A − B K must be stable: one
+/// of its powers up to 2²⁰ must be less than 1 in norm.
 ///
 /// ```
 /// use acrobot::physics::control::{Discrete, lqr};
@@ -89,7 +92,7 @@ const MAX_ITERATIONS: u32 = 40;
 /// - [`Error::NotSymmetric`] and [`Error::NotSemidefinite`] for such a `q`. Elements smaller than 16 machine epsilons of
 ///   the largest one count as 0.
 /// - [`Error::NotStabilized`] if the iteration does not converge, or to no stable closed loop: the torque cannot reach
-///   an unstable motion, `q` does not weight it, or the scalar is too coarse.
+///   an unstable motion, `q` does not weight it, the closed loop takes a million steps, or the scalar is too coarse.
 pub fn lqr<S: Real>(model: &Discrete<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, Error> {
     let Discrete { a, b } = model;
     check_finite("a", a.as_flattened())?;
@@ -99,37 +102,37 @@ pub fn lqr<S: Real>(model: &Discrete<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>
     check_semidefinite(q)?;
     Range::AboveZero.check("r", r.to_f64(), "per (N m)²")?;
 
-    let (cost_to_go, iterations) = riccati(a, *b, q, r);
+    let Some((cost_to_go, iterations)) = riccati(a, *b, q, r) else {
+        return Err(Error::NotStabilized);
+    };
     let cost_b = apply(&cost_to_go, *b);
     let inverse = S::ONE / (r + dot(*b, cost_b));
     let gain = apply(&transpose(a), cost_b).map(|x| x * inverse);
     let closed = sum(*a, S::MINUS_ONE, &outer(*b, gain));
-    if iterations < MAX_ITERATIONS && is_stable(closed) && is_finite(&cost_to_go) {
-        return Ok(Lqr {
-            gain,
-            cost_to_go,
-            iterations,
-        });
+    if !is_finite(&cost_to_go) || !is_stable(closed) {
+        return Err(Error::NotStabilized);
     }
-    Err(Error::NotStabilized { iterations })
+    Ok(Lqr {
+        gain,
+        cost_to_go,
+        iterations,
+    })
 }
 
-/// P and the number of iterations, `MAX_ITERATIONS` without convergence.
+/// P and the number of iterations, if they converge.
 ///
 /// With A, G = B Bᵀ / R and P = Q for one step, the iteration computes the same for twice as many steps:
 /// P + Aᵀ P W⁻¹ A, G + A W⁻¹ G Aᵀ and A W⁻¹ A, where W = 1 + G P.
-fn riccati<S: Real>(a: &Matrix<S>, b: [S; 4], q: &Matrix<S>, r: S) -> (Matrix<S>, u32) {
+fn riccati<S: Real>(a: &Matrix<S>, b: [S; 4], q: &Matrix<S>, r: S) -> Option<(Matrix<S>, u32)> {
     let (mut a, mut g, mut p) = (*a, outer(b, b.map(|b| b / r)), *q);
-    for iteration in 1..MAX_ITERATIONS {
+    for iteration in 1..=MAX_ITERATIONS {
         let w = sum(identity(), S::ONE, &product(&g, &p));
-        let (Some(w_a), Some(w_g)) = (solve(&w, &a), solve(&w, &g)) else {
-            break;
-        };
+        let (w_a, w_g) = (solve(&w, &a)?, solve(&w, &g)?);
         let transposed = transpose(&a);
         let change = symmetric(&product(&transposed, &product(&p, &w_a)));
         p = sum(p, S::ONE, &change);
         if largest(&change) <= S::EPSILON * largest(&p) {
-            return (p, iteration);
+            return Some((p, iteration));
         }
         g = sum(
             g,
@@ -138,19 +141,20 @@ fn riccati<S: Real>(a: &Matrix<S>, b: [S; 4], q: &Matrix<S>, r: S) -> (Matrix<S>
         );
         a = product(&a, &w_a);
     }
-    (p, MAX_ITERATIONS)
+    None
 }
 
-/// Whether the powers of `m` vanish, found by squaring. They do once one of them is less than 1 in norm, and the norm is
-/// at most four times the largest element. Powers above 1/(16 ε) are not tried, because rounding decides what they are.
+/// Whether the powers of `m` vanish within 2²⁰ steps, by squaring. They do once one of them is less than 1 in norm, and
+/// the norm is at most four times the largest element.
 fn is_stable<S: Real>(mut m: Matrix<S>) -> bool {
-    let mut rounding = S::from_f64(16.0) * S::EPSILON;
-    while is_finite(&m) && rounding < S::ONE {
+    for _ in 0..=SQUARINGS {
+        if !is_finite(&m) {
+            return false;
+        }
         if largest(&m) < S::HALF * S::HALF {
             return true;
         }
         m = product(&m, &m);
-        rounding = rounding + rounding;
     }
     false
 }
