@@ -1,7 +1,7 @@
 //! What a controller needs of the model: linearization, inverse dynamics, velocities and a linear-quadratic regulator.
 //!
-//! No function needs a heap, panics or returns a number that is not finite: an [`Error`](crate::Error) names what
-//! overflows with extreme parameters. All work in `f32` and `f64`, and for both [`Dynamics`](super::Dynamics).
+//! No function needs a heap or panics. A result is finite, or an [`Error`](crate::Error) that names what overflows with
+//! extreme parameters. All functions work in `f32` and `f64`, and with both [`Dynamics`](super::Dynamics).
 //!
 //! | function | result |
 //! |---|---|
