@@ -4,17 +4,15 @@ use std::collections::HashSet;
 
 use acrobot::{Action, State};
 
-use crate::values::{Stepper, coordinates};
+use crate::values::{Stepper, Values, coordinates};
 
 /// A search with the exact model, from one state after another.
-pub struct Beam<'a, V> {
+pub struct Beam<'a> {
     /// States that are followed at the same time.
     pub width: usize,
     /// Cells per rad and per rad/s. The beam follows only one state of each cell.
     pub fineness: f32,
-    pub actions: &'a [Action],
-    /// The estimated steps from a state to the goal.
-    pub value: V,
+    pub values: &'a Values,
     pub stepper: Stepper,
 }
 
@@ -25,15 +23,14 @@ struct Node {
     origin: (u32, Action),
 }
 
-impl<V: Fn(&State<f32>) -> f32> Beam<'_, V> {
-    /// The shortest accepted path to the goal, and true. If there is none of `depth` actions: the path to the state of
-    /// the best value, and false.
+impl Beam<'_> {
+    /// The shortest accepted path to the goal, if the beam finds one of at most `depth` actions.
     pub fn search(
         &mut self,
         initial: State<f32>,
         depth: usize,
         accept: impl Fn(&[Action]) -> bool,
-    ) -> (Vec<Action>, bool) {
+    ) -> Option<Vec<Action>> {
         let mut beam = vec![initial];
         let mut origins: Vec<Vec<_>> = Vec::new();
         let (mut children, mut order) = (Vec::new(), Vec::new());
@@ -42,20 +39,20 @@ impl<V: Fn(&State<f32>) -> f32> Beam<'_, V> {
             children.clear();
             order.clear();
             let mut goals = Vec::new();
-            for &action in self.actions {
+            for action in Action::ALL {
                 self.stepper.step(&beam, action, |parent, state, reached| {
                     let origin = (parent as u32, action);
                     if reached {
                         goals.push(origin);
                     } else {
-                        order.push(((self.value)(&state), children.len() as u32));
+                        order.push((self.values.at(&state), children.len() as u32));
                         children.push(Node { state, origin });
                     }
                 });
             }
-            let paths = goals.into_iter().map(|goal| path(&origins, goal));
-            if let Some(path) = paths.into_iter().find(|path| accept(path)) {
-                return (path, true);
+            let mut paths = goals.into_iter().map(|goal| path(&origins, goal));
+            if let Some(path) = paths.find(|path| accept(path)) {
+                return Some(path);
             }
             order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             cells.clear();
@@ -74,8 +71,7 @@ impl<V: Fn(&State<f32>) -> f32> Beam<'_, V> {
             }
             origins.push(kept);
         }
-        let best = origins.pop().and_then(|last| last.first().copied());
-        (best.map_or(Vec::new(), |best| path(&origins, best)), false)
+        None
     }
 }
 

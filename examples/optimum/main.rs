@@ -17,15 +17,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use acrobot::arithmetic::Reference;
-use acrobot::{Acrobot, Action, State};
+use acrobot::{Acrobot, State};
 use clap::Parser;
 use examples_common::{exit, files};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
+mod affine;
 mod beam;
 mod bound;
-mod interval;
 mod sequences;
 mod table;
 mod values;
@@ -93,15 +93,14 @@ fn search(width: u32, fineness: f32, file: &Path) -> Result<(), Box<dyn Error>> 
         let mut beam = Beam {
             width: width as usize,
             fineness,
-            actions: &Action::ALL,
-            value: |state: &State<f32>| values.at(state),
+            values: &values,
             stepper: Stepper::new(512)?,
         };
         let depth = known[seed as usize].len().checked_sub(1).unwrap_or(DEPTH);
         let state = initial(seed.into());
-        let (path, is_goal) = beam.search(state.cast(), depth, |path| reaches(state, path));
+        let path = beam.search(state.cast(), depth, |path| reaches(state, path));
         progress.inc(1);
-        Ok(is_goal.then_some(path))
+        Ok(path)
     });
     let found = found.collect::<Result<Vec<_>, acrobot::Error>>()?;
     progress.finish_and_clear();

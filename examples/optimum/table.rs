@@ -6,11 +6,10 @@ use std::io::{self, Write};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 use examples_common::bang_bang;
+use examples_common::search::Search;
 use indicatif::ProgressIterator;
 use sarsa::task::{Learner, Preset, greedy, learn, training, view};
 
-use crate::beam::Beam;
-use crate::values::Stepper;
 use crate::{SEEDS, bound, initial};
 
 /// The seed of learning and of random actions.
@@ -33,27 +32,12 @@ pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
     let learner = learnt::<8192, 28>(&mut weights)?;
     row("learnt, 64 KiB", mean(|state| greedy(&learner, state)))?;
 
-    let mut beam = Beam {
-        width: 8,
-        // So fine that the search merges only equal states.
-        fineness: 1e6,
-        actions: &[Action::Negative, Action::Positive],
-        value: |state: &State<f32>| {
+    let mut search = Search::new();
+    let planned = mean(|state| {
+        search.choose(*state, 60, |state| {
             let [negative, positive] = learner.values(&view(state));
-            -negative.max(positive)
-        },
-        stepper: Stepper::new(16)?,
-    };
-    let mut plan: Vec<Action> = Vec::new();
-    let planned = mean(|&state| {
-        let (path, reaches) = beam.search(state, 60, |_| true);
-        if plan.is_empty() && !reaches {
-            return path[0];
-        }
-        if reaches && (plan.is_empty() || path.len() < plan.len()) {
-            plan = path;
-        }
-        plan.remove(0)
+            negative.max(positive)
+        })
     });
     row("planned, 64 KiB", planned)?;
 
