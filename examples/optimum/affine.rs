@@ -167,3 +167,32 @@ impl Mul<Affine> for f64 {
         product.rounded(0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use acrobot::numpy::{Pcg64, uniform};
+
+    use super::*;
+
+    /// Also where a part of the box is below the least number.
+    #[test]
+    fn roots_and_reciprocals_contain_those_of_each_number() {
+        const LEAST: f64 = 0.3;
+        let mut rng = Pcg64::new(3);
+        for _ in 0..100_000 {
+            let (centre, radius) = (uniform(&mut rng, -1.0, 2.0), uniform(&mut rng, 0.0, 2.0));
+            let t = uniform(&mut rng, -1.0, 1.0);
+            let number = centre + radius * t;
+            let [x, ..] = Affine::coordinates([centre; 4], [radius, 0.0, 0.0, 0.0]);
+            if number >= LEAST {
+                for (form, exact) in [
+                    (x.sqrt(LEAST), number.sqrt()),
+                    (x.inverse(LEAST), 1.0 / number),
+                ] {
+                    let [low, high] = form.range_at([t, 0.0, 0.0, 0.0]);
+                    assert!(low <= exact && exact <= high, "{exact}: {form:?}");
+                }
+            }
+        }
+    }
+}
