@@ -108,6 +108,9 @@ fn search(width: u32, fineness: f32, file: &Path) -> Result<(), Box<dyn Error>> 
     for (known, found) in known.iter_mut().zip(found) {
         *known = found.unwrap_or(std::mem::take(known));
     }
+    if let Some(seed) = known.iter().position(Vec::is_empty) {
+        return Err(format!("no sequence found for seed {seed}, try a wider beam").into());
+    }
     files::write(file, text(&known))?;
     let steps: usize = known.iter().map(Vec::len).sum();
     writeln!(

@@ -8,7 +8,7 @@ use acrobot::arithmetic::Reference;
 use acrobot::physics::Pendulum;
 use acrobot::{Action, State};
 
-use crate::SEEDS;
+use crate::{SEEDS, initial};
 
 const SIGNS: [char; 3] = ['-', '0', '+'];
 const HEAD: &str = "\
@@ -16,7 +16,7 @@ const HEAD: &str = "\
 # - 0 + are torques of -1, 0 and 1 N m. Made by: cargo run --release --example optimum -- search
 ";
 
-/// The sequences of a file, one for each initial state.
+/// The sequences of a file, one for each initial state, each checked.
 pub fn load(path: &Path) -> Result<Vec<Vec<Action>>, String> {
     let rejected = |reason: &dyn Display| format!("{}: {reason}", path.display());
     let text = fs::read_to_string(path).map_err(|error| rejected(&error))?;
@@ -31,14 +31,20 @@ pub fn load(path: &Path) -> Result<Vec<Vec<Action>>, String> {
         let actions = line.chars().map(action).collect::<Option<_>>();
         actions.ok_or_else(|| rejected(&format_args!("a line must have only - 0 +, got {line}")))
     });
-    let sequences = sequences.collect::<Result<Vec<_>, _>>()?;
-    if sequences.len() == SEEDS as usize {
-        return Ok(sequences);
+    let sequences = sequences.collect::<Result<Vec<Vec<_>>, _>>()?;
+    if sequences.len() != SEEDS as usize {
+        let found = sequences.len();
+        return Err(rejected(&format_args!(
+            "must have {SEEDS} sequences, got {found}"
+        )));
     }
-    let found = sequences.len();
-    Err(rejected(&format_args!(
-        "must have {SEEDS} sequences, got {found}"
-    )))
+    let mut numbered = (0..).zip(&sequences);
+    match numbered.find(|&(seed, sequence)| !reaches(initial(seed), sequence)) {
+        Some((seed, _)) => Err(rejected(&format_args!(
+            "the sequence for seed {seed} must reach the goal with its last action"
+        ))),
+        None => Ok(sequences),
+    }
 }
 
 /// The text of the file.
