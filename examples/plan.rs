@@ -71,7 +71,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
         }
     }
 
-    let mut search = Search::new();
+    let mut search = Search::default();
     let mut out = io::stdout();
     writeln!(
         out,

@@ -212,7 +212,9 @@ mod tests {
 
     /// Draws a box of any size, a position in it, and the coordinates of this position.
     fn draw(rng: &mut Pcg64) -> (Space, [f64; 4], [f64; 4]) {
-        let size = 10_f64.powf(uniform(rng, -6.0, 0.0));
+        let size = uniform(rng, 0.0, 1.0);
+        // The fourth power makes most boxes small.
+        let size = size * size * size * size;
         let centre = STATES.map(|[low, high]| uniform(rng, low, high));
         let radius = [size; 4].map(|size| uniform(rng, 0.0, size));
         // The edges are the extreme positions.

@@ -32,7 +32,7 @@ pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
     let learner = learnt::<8192, 28>(&mut weights)?;
     row("learnt, 64 KiB", mean(|state| greedy(&learner, state)))?;
 
-    let mut search = Search::new();
+    let mut search = Search::default();
     let planned = mean(|state| {
         search.choose(*state, 60, |state| {
             let [negative, positive] = learner.values(&view(state));

@@ -58,8 +58,8 @@ struct Node {
     value: f32,
 }
 
-impl Search {
-    pub fn new() -> Self {
+impl Default for Search {
+    fn default() -> Self {
         Self {
             model: Pendulum::hanging(),
             beam: [Node::default(); 2 * BEAM],
@@ -68,7 +68,9 @@ impl Search {
             steps: 0,
         }
     }
+}
 
+impl Search {
     /// The steps of the model for an action, on average.
     pub fn steps_per_choice(&self) -> u64 {
         self.steps / u64::from(self.choices.max(1))
