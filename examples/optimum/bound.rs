@@ -1,4 +1,4 @@
-//! A lower side: no policy reaches the goal in fewer steps than a function of the initial state says.
+//! A lower bound: no policy reaches the goal in fewer steps than a function of the initial state says.
 //!
 //! The function W estimates the progress towards the goal, in steps. Two statements about all states are proved by
 //! affine arithmetic, in boxes that are halved until the statement is certain:
@@ -19,8 +19,8 @@ use rayon::prelude::*;
 
 use crate::affine::Affine;
 
-/// (m1 lc1 + m2 l1) g and m2 lc2 g, N m, with Gymnasium's parameters, as in docs/equations.md. So are all numbers of
-/// `energy` and `derivative`.
+/// (m1 lc1 + m2 l1) g and m2 lc2 g, N m, of docs/equations.md with Gymnasium's parameters, as are the numbers in `energy`
+/// and `derivative`.
 const GRAVITY: [f64; 2] = [14.7, 4.9];
 /// More than rounding can change in a step of `f64`.
 const SLACK: f64 = 1e-6;
@@ -86,8 +86,8 @@ fn step(y: Space, torque: f64) -> Space {
     )
 }
 
-/// The energy, and W: a function of the energy, and a correction by the phase of the swing, because the motor gains most energy where
-/// link 2 is fast.
+/// The energy and W. W is a function of the energy, corrected by the phase of the swing, because the motor gains most
+/// energy where link 2 is fast.
 fn energy_and_progress(y: Space) -> [Affine; 2] {
     const AT_REST: f64 = 0.3;
     let [alpha, beta, v, w] = y;
@@ -121,8 +121,8 @@ fn no_goal_is_nearer(least: f64, y: Space) -> bool {
     energy.high() < GOAL || energy.low() > MOST || progress.low() > least
 }
 
-/// Proves a statement in a box, given its centre and its radius in each dimension. Halves the box until the statement
-/// holds, at most so often. Returns the number of boxes.
+/// Proves a statement in a box, given its centre and its radius in each dimension. Halves the box where the statement is
+/// not certain, at most `halvings` times. Returns the number of boxes.
 fn prove_in(
     centre: [f64; 4],
     mut radius: [f64; 4],
@@ -151,7 +151,7 @@ fn prove_in(
 fn prove_in_all(holds: &(impl Fn(Space) -> bool + Sync)) -> Result<u64, String> {
     /// Parts in each dimension.
     const PARTS: u32 = 16;
-    /// Boxes as small as one of these are never needed.
+    /// More than a true statement with these margins needs.
     const HALVINGS: u32 = 40;
     let radius = STATES.map(|[low, high]| (high - low) / f64::from(2 * PARTS));
     let progress = ProgressBar::new(PARTS.pow(4).into());
