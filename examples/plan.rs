@@ -27,6 +27,7 @@ use clap::Parser;
 use examples_common::{exit, weights};
 use indicatif::ProgressIterator;
 
+use sarsa::Budget;
 use sarsa::task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
 
 /// Compares the learner's greedy policy with a beam search over the learnt values.
@@ -60,7 +61,7 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut weights = [[0.0; 2]; SLOTS];
     let mut learner: Learner<SLOTS, TILINGS> =
-        Preset::Quality.learner(options.learn, &mut weights)?;
+        Preset::Quality.learner(Budget::Episodes(options.learn), &mut weights)?;
     match &options.load {
         Some(path) => weights::load(&mut learner, path)?,
         None => {

@@ -9,8 +9,9 @@
 //! The learner is `examples/sarsa`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
 //! `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for which the mean return of episodes
 //! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
-//! states that it was not trained on, and K of these missed the goal. Without `--quiet` it draws the learning curve,
-//! the values and the last greedy episode.
+//! states that it was not trained on, and K of these missed the goal. With `--evaluate N` a line `steps M greedy_mean R`
+//! for every N steps comes before. Without `--quiet` it draws the learning curve, the values and the last greedy
+//! episode.
 //!
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
 //! This is the baseline.
@@ -18,6 +19,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
+use std::ops::DerefMut;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -32,21 +34,31 @@ mod curve;
 mod pictures;
 
 use examples_common::svg::svg;
-use sarsa::task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
+use sarsa::task::{
+    Learner, Preset, Replayer, Values, evaluation, greedy, learn, play, replayer, torque, training,
+    view,
+};
+use sarsa::{Budget, Learn, Transition};
 
 /// Learns to swing up, and compares the learnt policy with two simple ones.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Aim of the tuning: few episodes, or the best policy after many.
+    /// Learner: Sarsa(λ) for few episodes or for many, or Q(λ) with replay, the best after 50,000 steps and more.
     #[arg(long, value_enum, default_value_t = Goal::Fast)]
     preset: Goal,
-    /// Memory for the weights, in KiB.
+    /// Memory for the weights, in KiB; with `replay` for all that the learner keeps.
     #[arg(long, value_enum, default_value_t = Memory::K64)]
     memory: Memory,
     /// Episodes of learning. Step size and exploration fall until the last one.
-    #[arg(long, default_value_t = 2000)]
+    #[arg(long, default_value_t = 2000, conflicts_with = "steps")]
     episodes: u32,
+    /// Steps of learning, instead of episodes. The last episode is finished.
+    #[arg(long)]
+    steps: Option<u32>,
+    /// Steps of learning from evaluation to evaluation. Without it there is one at the end.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    evaluate: Option<u32>,
     /// Seed of learning and evaluation: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
@@ -85,6 +97,7 @@ fn folder(path: PathBuf) -> Result<PathBuf, &'static str> {
 enum Goal {
     Fast,
     Quality,
+    Replay,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -99,28 +112,64 @@ enum Memory {
     K64,
 }
 
+impl Options {
+    fn budget(&self) -> Budget {
+        self.steps
+            .map_or(Budget::Episodes(self.episodes), Budget::Steps)
+    }
+}
+
 fn main() -> ExitCode {
-    exit::run(|options: &Options| match options.memory {
-        Memory::K64 => run::<8192, 28>(options),
-        Memory::K32 => run::<4096, 20>(options),
-        Memory::K16 => run::<2048, 20>(options),
-        Memory::K8 => run::<1024, 16>(options),
+    exit::run(|options: &Options| match (options.preset, options.memory) {
+        (Goal::Fast, memory) => sarsa(options, Preset::Fast, memory),
+        (Goal::Quality, memory) => sarsa(options, Preset::Quality, memory),
+        (Goal::Replay, Memory::K64) => q_lambda::<7168, 44, 224>(options),
+        (Goal::Replay, Memory::K32) => q_lambda::<3520, 44, 128>(options),
+        (Goal::Replay, Memory::K16) => q_lambda::<1664, 33, 64>(options),
+        (Goal::Replay, Memory::K8) => q_lambda::<768, 22, 48>(options),
     })
 }
 
-/// Learns with `T` tilings in `S` slots, and prints the results.
-fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn Error>> {
+fn sarsa(options: &Options, preset: Preset, memory: Memory) -> Result<(), Box<dyn Error>> {
+    fn with<const S: usize, const T: usize>(
+        options: &Options,
+        preset: Preset,
+    ) -> Result<(), Box<dyn Error>> {
+        let mut weights = [[0.0; 2]; S];
+        let learner: Learner<S, T> = preset.learner(options.budget(), &mut weights)?;
+        run(options, learner)
+    }
+    match memory {
+        Memory::K64 => with::<8192, 28>(options, preset),
+        Memory::K32 => with::<4096, 20>(options, preset),
+        Memory::K16 => with::<2048, 20>(options, preset),
+        Memory::K8 => with::<1024, 16>(options, preset),
+    }
+}
+
+/// Remembers `N` steps.
+fn q_lambda<const S: usize, const T: usize, const N: usize>(
+    options: &Options,
+) -> Result<(), Box<dyn Error>> {
     let mut weights = [[0.0; 2]; S];
-    let preset = match options.preset {
-        Goal::Fast => Preset::Fast,
-        Goal::Quality => Preset::Quality,
-    };
-    let mut learner: Learner<S, T> = preset.learner(options.episodes, &mut weights)?;
+    let mut memory = [Transition::EMPTY; N];
+    let learner: Replayer<S, T> = replayer(options.budget(), &mut weights, &mut memory)?;
+    run(options, learner)
+}
+
+/// Learns, and prints the results.
+fn run<'w, L, const S: usize, const T: usize>(
+    options: &Options,
+    mut learner: L,
+) -> Result<(), Box<dyn Error>>
+where
+    L: Learn<4> + DerefMut<Target = Values<'w, S, T>>,
+{
     if let Some(path) = &options.load {
-        weights::load(&mut learner, path)?;
+        weights::load(&mut *learner, path)?;
     }
 
-    let returns = train(&mut learner, options);
+    let returns = train(&mut learner, options)?;
     if let Some(path) = &options.save {
         let bytes: Vec<u8> = learner.save().collect();
         files::write(path, bytes)?;
@@ -140,7 +189,7 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
     let against = |state: &State<f32>| torque((state.dtheta1 < 0.0).into());
     let mut actions = Pcg64::from(options.seed.child(2));
     // Drawn before printing, because the reader may close the pipe. The results are printed even if drawing fails.
-    let drawn = draw(&learner, &returns, options);
+    let drawn = draw(&*learner, &returns, options);
     let mut out = io::stdout();
     writeln!(out, "solved at episode: {solved_at}\n")?;
     writeln!(
@@ -168,7 +217,7 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
 
 /// Draws the pictures. Returns a line for each.
 fn draw<const S: usize, const T: usize>(
-    learner: &Learner<S, T>,
+    learner: &Values<S, T>,
     returns: &[f32],
     options: &Options,
 ) -> Result<String, Box<dyn Error>> {
@@ -217,32 +266,52 @@ fn draw<const S: usize, const T: usize>(
 }
 
 /// Learns. Returns the return of each episode.
-fn train<const S: usize, const T: usize>(
-    learner: &mut Learner<S, T>,
+fn train<'w, L, const S: usize, const T: usize>(
+    learner: &mut L,
     options: &Options,
-) -> Vec<f32> {
+) -> Result<Vec<f32>, io::Error>
+where
+    L: Learn<4> + DerefMut<Target = Values<'w, S, T>>,
+{
     let (mut env, mut choices) = training(options.seed.clone());
+    let (length, unit) = match options.budget() {
+        Budget::Episodes(episodes) => (u64::from(episodes), "episodes"),
+        Budget::Steps(steps) => (u64::from(steps), "steps"),
+    };
     let bar = if options.quiet {
         ProgressBar::hidden()
     } else {
-        ProgressBar::new(options.episodes.into())
+        ProgressBar::new(length)
     };
-    let template = "{msg}{elapsed} {wide_bar} {pos}/{len} episodes";
-    let style = ProgressStyle::with_template(template).expect("a valid template");
+    let template = format!("{{msg}}{{elapsed}} {{wide_bar}} {{pos}}/{{len}} {unit}");
+    let style = ProgressStyle::with_template(&template).expect("a valid template");
     bar.set_style(style);
 
     // A hundred charts in all, because drawing one takes as long as several steps.
-    let period = (options.episodes as usize).div_ceil(100).max(1);
-    let mut returns = Vec::new();
-    for _ in 0..options.episodes {
+    let period = length.div_ceil(100).max(1);
+    let (mut returns, mut steps, mut done, mut charted) = (Vec::new(), 0, 0, 0);
+    while done < length {
         returns.push(learn(learner, &mut env, &mut choices));
-        if !bar.is_hidden() && returns.len().is_multiple_of(period) {
+        let before = steps;
+        steps += env.elapsed();
+        done = match options.budget() {
+            Budget::Episodes(_) => returns.len() as u64,
+            Budget::Steps(_) => u64::from(steps),
+        };
+        if let Some(every) = options.evaluate
+            && steps / every > before / every
+        {
+            let [mean, _] = evaluate(options, |state| greedy(learner, state)).moments();
+            writeln!(io::stdout(), "steps {steps} greedy_mean {mean:.2}")?;
+        }
+        if !bar.is_hidden() && done / period > charted {
+            charted = done / period;
             bar.set_message(curve::chart(&returns));
         }
-        bar.inc(1);
+        bar.set_position(done.min(length));
     }
     bar.finish();
-    returns
+    Ok(returns)
 }
 
 /// The episodes of an evaluation.

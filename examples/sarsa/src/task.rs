@@ -6,11 +6,19 @@ use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 
 use crate::{
-    Dimension, Error, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement,
+    Budget, Dimension, Error, Group, Learn, QLambda, Sarsa, Schedule, Settings, Symmetry, Table,
+    TileCoder, Transition, displacement,
 };
 
-/// A learner of Acrobot with `T` tilings and `S` slots, which take 8 bytes each.
+/// The values of Acrobot's actions, with `T` tilings and `S` slots, which take 8 bytes each.
+pub type Values<'w, const S: usize, const T: usize> =
+    crate::Values<'w, TileCoder<4, T>, S, 2, 4, T>;
+
+/// Sarsa(λ) of Acrobot.
 pub type Learner<'w, const S: usize, const T: usize> = Sarsa<'w, TileCoder<4, T>, S, 2, 4, T>;
+
+/// Q(λ) with replay of Acrobot.
+pub type Replayer<'w, const S: usize, const T: usize> = QLambda<'w, TileCoder<4, T>, S, 2, 4, T>;
 
 /// The aim for which the learner is tuned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,11 +33,11 @@ pub enum Preset {
 const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
 
 impl Preset {
-    /// A learner in this memory with `T` tilings, some of them over the pairs. Over `episodes` its step size and
+    /// A learner in this memory with `T` tilings, some of them over the pairs. Over the `budget` its step size and
     /// its exploration fall; after that it hardly changes.
     pub fn learner<const S: usize, const T: usize>(
         self,
-        episodes: u32,
+        budget: Budget,
         weights: &mut [[f32; 2]; S],
     ) -> Result<Learner<'_, S, T>, Error> {
         let (tilings, lambda, alpha, epsilon) = match self {
@@ -46,7 +54,7 @@ impl Preset {
         let falling = |start, end| Schedule {
             start,
             end,
-            episodes,
+            over: budget,
         };
         let settings = Settings {
             gamma: 1.0,
@@ -57,6 +65,51 @@ impl Preset {
         };
         Sarsa::new(coder, settings, weights)
     }
+}
+
+/// All triples, which the replaying learner adds to the pairs.
+const TRIPLES: [[usize; 3]; 4] = [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
+
+/// Q(λ) in this memory, for the best policy after few steps: replay takes more time, and each step teaches more.
+/// A third of the `T` tilings is over all dimensions, a third over triples and the rest over pairs. Over the `budget`
+/// its step size and its exploration fall; after that it hardly changes.
+pub fn replayer<'w, const S: usize, const T: usize>(
+    budget: Budget,
+    weights: &'w mut [[f32; 2]; S],
+    memory: &'w mut [Transition<4>],
+) -> Result<Replayer<'w, S, T>, Error> {
+    let dimensions = [
+        Dimension::cyclic(-PI, PI, 8),
+        Dimension::cyclic(-PI, PI, 10),
+        Dimension::bounded(-PI, PI, 4),
+        Dimension::bounded(-2.0 * PI, 2.0 * PI, 8),
+    ];
+    let (pair, triple) = (T / 14, T / 11);
+    let all = Group::new(
+        &[0, 1, 2, 3],
+        T.saturating_sub(PAIRS.len() * pair + TRIPLES.len() * triple),
+    );
+    let [a, b, c, d] = PAIRS
+        .each_ref()
+        .map(|dimensions| Group::new(dimensions, pair));
+    let [e, f, g, h] = TRIPLES
+        .each_ref()
+        .map(|dimensions| Group::new(dimensions, triple));
+    let groups = [all, a, b, c, d, e, f, g, h];
+    let coder = TileCoder::new(dimensions, &groups, Table::Hashed(S), displacement)?;
+    let falling = |start, end| Schedule {
+        start,
+        end,
+        over: budget,
+    };
+    let settings = Settings {
+        gamma: 1.0,
+        lambda: 0.98,
+        alpha: falling(0.5, 0.01),
+        epsilon: falling(0.002, 0.0),
+        symmetry: Symmetry::Mirror(2),
+    };
+    QLambda::new(coder, settings, weights, memory)
 }
 
 /// The torque of the learner's actions 0 and 1. It has no action without torque, which would gain nothing.
@@ -90,18 +143,14 @@ pub fn view(state: &State<f32>) -> [f32; 4] {
 
 /// The action that the learner values most.
 pub fn greedy<const S: usize, const T: usize>(
-    learner: &Learner<'_, S, T>,
+    values: &Values<'_, S, T>,
     state: &State<f32>,
 ) -> Action {
-    torque(learner.greedy(&view(state)))
+    torque(values.greedy(&view(state)))
 }
 
 /// Learns for one episode from a new initial state. Returns the sum of the rewards.
-pub fn learn<const S: usize, const T: usize>(
-    learner: &mut Learner<'_, S, T>,
-    env: &mut Env,
-    choices: &mut Pcg64,
-) -> f32 {
+pub fn learn(learner: &mut impl Learn<4>, env: &mut Env, choices: &mut Pcg64) -> f32 {
     env.reset();
     let mut action = learner.start(&view(&env.inner().state()), choices);
     let mut sum = 0.0;

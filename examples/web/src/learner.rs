@@ -5,7 +5,7 @@ use core::fmt::{self, Write};
 
 use acrobot::numpy::Pcg64;
 use acrobot::{Action, State};
-use sarsa::LoadError;
+use sarsa::{Budget, LoadError};
 use sarsa::task::{self, Env, Preset, greedy, learn, training};
 
 use crate::memory::{BUFFER, Shared};
@@ -22,7 +22,7 @@ const fn memory() -> Memory {
 
 /// An untrained learner, or `None` if its memory is already in use.
 fn learner(preset: Preset, episodes: u32, memory: &'static Memory) -> Option<Learner> {
-    preset.learner(episodes, memory.take()?).ok()
+    preset.learner(Budget::Episodes(episodes), memory.take()?).ok()
 }
 
 static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);

@@ -6,6 +6,7 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Fast, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 
+use sarsa::Budget;
 use sarsa::task::{Learner, Preset, greedy, learn};
 
 /// Few, so that libFuzzer finds bytes of the right length.
@@ -24,7 +25,7 @@ fuzz_target!(|bytes: &[u8]| {
         return;
     };
     let mut memory = [[0.0; 2]; SLOTS];
-    let mut learner: Small = Preset::Fast.learner(1, &mut memory).expect("a preset");
+    let mut learner: Small = Preset::Fast.learner(Budget::Episodes(1), &mut memory).expect("a preset");
     let before: Vec<u8> = learner.save().collect();
     // The bytes are unchanged, or get a valid header, or a valid header and checksum.
     let mut bytes = bytes.to_vec();

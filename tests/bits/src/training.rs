@@ -1,6 +1,7 @@
 //! A training from untrained weights (16 KiB), and a digest of all weights after 100 episodes.
 
 use acrobot::numpy::SeedSequence;
+use sarsa::Budget;
 use sarsa::task::{self, Preset};
 
 use crate::Digest;
@@ -29,7 +30,7 @@ pub fn digest(learner: &Learner) -> u64 {
 /// Trains and returns the digest; 0 if the learner is rejected.
 pub fn weights() -> u64 {
     let mut weights = UNTRAINED;
-    let Ok(mut learner) = Preset::Fast.learner(EPISODES, &mut weights) else {
+    let Ok(mut learner) = Preset::Fast.learner(Budget::Episodes(EPISODES), &mut weights) else {
         return 0;
     };
     let (mut env, mut choices) = task::training(SeedSequence::new(SEED));

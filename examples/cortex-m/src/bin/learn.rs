@@ -16,6 +16,7 @@ use bits::training::{EPISODES, Learner, Weights};
 use bits::{oled, training};
 use cortex_m_rt::{STACK_PAINT_VALUE, entry, heap_start};
 use heapless::HistoryBuf;
+use sarsa::Budget;
 use sarsa::task::{self, Env, Preset, evaluation, greedy, learn, play};
 use semihosting::{println, process};
 use ssd1306::mode::DisplayConfig;
@@ -26,7 +27,7 @@ use ssd1306::{I2CDisplayInterface, Ssd1306};
 fn main() -> ! {
     static mut WEIGHTS: Weights = training::UNTRAINED;
     let (Some(mut counter), Ok(mut learner)) =
-        (Counter::take(), Preset::Fast.learner(EPISODES, WEIGHTS))
+        (Counter::take(), Preset::Fast.learner(Budget::Episodes(EPISODES), WEIGHTS))
     else {
         process::exit(1)
     };

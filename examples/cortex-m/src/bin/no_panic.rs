@@ -24,6 +24,7 @@ use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
 use rand_core::{Rng as _, SeedableRng as _};
+use sarsa::Budget;
 use sarsa::task::{self, Preset, greedy, learn};
 
 unsafe extern "C" {
@@ -234,7 +235,7 @@ fn numbers() {
 /// The learner of `learn`.
 fn learner() {
     let mut weights = black_box(training::UNTRAINED);
-    let Ok(mut learner) = Preset::Fast.learner(training::EPISODES, &mut weights) else {
+    let Ok(mut learner) = Preset::Fast.learner(Budget::Episodes(training::EPISODES), &mut weights) else {
         return;
     };
     let (mut env, mut choices) = task::training(SeedSequence::new(black_box(42)));
