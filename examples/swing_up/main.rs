@@ -123,10 +123,10 @@ fn main() -> ExitCode {
     exit::run(|options: &Options| match (options.preset, options.memory) {
         (Goal::Fast, memory) => sarsa(options, Preset::Fast, memory),
         (Goal::Quality, memory) => sarsa(options, Preset::Quality, memory),
-        (Goal::Replay, Memory::K64) => q_lambda::<7168, 44, 224>(options),
-        (Goal::Replay, Memory::K32) => q_lambda::<3520, 44, 128>(options),
-        (Goal::Replay, Memory::K16) => q_lambda::<1664, 33, 64>(options),
-        (Goal::Replay, Memory::K8) => q_lambda::<768, 22, 48>(options),
+        (Goal::Replay, Memory::K64) => q_lambda::<64, 5632, 44, 800>(options),
+        (Goal::Replay, Memory::K32) => q_lambda::<32, 2688, 44, 400>(options),
+        (Goal::Replay, Memory::K16) => q_lambda::<16, 1408, 44, 160>(options),
+        (Goal::Replay, Memory::K8) => q_lambda::<8, 704, 22, 70>(options),
     })
 }
 
@@ -147,10 +147,15 @@ fn sarsa(options: &Options, preset: Preset, memory: Memory) -> Result<(), Box<dy
     }
 }
 
-/// Remembers `N` steps.
-fn q_lambda<const S: usize, const T: usize, const N: usize>(
+/// Replays the latest `N` steps. All that the learner keeps fits in `KIB`: features, weights and steps.
+fn q_lambda<const KIB: usize, const S: usize, const T: usize, const N: usize>(
     options: &Options,
 ) -> Result<(), Box<dyn Error>> {
+    const {
+        let weights = size_of::<[[f32; 2]; S]>();
+        let memory = size_of::<[Transition<4>; N]>();
+        assert!(size_of::<Replayer<S, T>>() + weights + memory <= KIB * 1024);
+    }
     let mut weights = [[0.0; 2]; S];
     let mut memory = [Transition::EMPTY; N];
     let learner: Replayer<S, T> = replayer(options.budget(), &mut weights, &mut memory)?;

@@ -93,14 +93,37 @@ fn swing_up_draws_its_results() {
 #[test]
 fn swing_up_takes_every_preset_and_memory() {
     let folder = Folder::new();
-    for (memory, bytes) in [("8k", 8192), ("16k", 16384), ("32k", 32768), ("64k", 65536)] {
-        for preset in ["fast", "quality"] {
+    for (memory, sarsa, replay) in [
+        ("8k", 8192, 5632),
+        ("16k", 16384, 11264),
+        ("32k", 32768, 21504),
+        ("64k", 65536, 45056),
+    ] {
+        for (preset, bytes) in [("fast", sarsa), ("quality", sarsa), ("replay", replay)] {
             let options = format!("--preset {preset} --memory {memory}");
             let line = folder.swing_up(&format!("--quiet --episodes 3 {options} --save weights"));
             assert_eq!(figures(&line).0, None);
             assert_eq!(folder.read("weights").len(), bytes + 20);
         }
     }
+}
+
+/// Each of the evaluations comes after the first episode that ends beyond another 2,000 steps.
+#[test]
+fn swing_up_evaluates_during_a_budget_of_steps() {
+    let folder = Folder::new();
+    let output = folder.swing_up("--quiet --preset replay --steps 7000 --evaluate 2000 --seed 1");
+    let lines: Vec<&str> = output.lines().collect();
+    assert_eq!(lines.len(), 4, "{output}");
+    for (line, least) in lines.iter().zip([2000, 4000, 6000]) {
+        let [_, steps, _, mean] = line.split(' ').collect::<Vec<_>>().try_into().unwrap();
+        let (steps, mean): (u32, f64) = (steps.parse().unwrap(), mean.parse().unwrap());
+        assert!((least..least + 500).contains(&steps), "{output}");
+        assert!((-500.0..-50.0).contains(&mean), "{output}");
+    }
+    // Evaluations change nothing.
+    let alone = folder.swing_up("--quiet --preset replay --steps 7000 --seed 1");
+    assert_eq!(lines[3], alone.trim_end());
 }
 
 /// The learner's own tests damage every byte.

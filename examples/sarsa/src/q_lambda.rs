@@ -38,8 +38,8 @@ impl<const D: usize> Transition<D> {
     };
 }
 
-/// Learns after each episode, backwards: the return of a step is known before the step that led to it. First from
-/// the episode, and then from everything in the `memory` of the latest steps, which includes it.
+/// Learns after each episode from the latest steps in its memory, from the last one to the first, so that a return is
+/// known before the step that led to it. The memory may hold several episodes, or a part of one.
 #[derive(Debug)]
 pub struct QLambda<'w, F, const S: usize, const A: usize, const D: usize, const T: usize> {
     values: Values<'w, F, S, A, D, T>,
@@ -102,11 +102,11 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
         self.next = (self.next + 1) % self.memory.len();
     }
 
-    /// Learns from the memory, from the latest step to the earliest: w ← w + α (G − q(S, A)) x(S, A). The return G
-    /// bootstraps from q where the policy would now act differently, and in part, 1 − λ, elsewhere.
+    /// w ← w + α (G − q(S, A)) ∇q(S, A), from the last step to the first, where G is the λ-return: R + γ max q where the
+    /// greedy policy would not take the next action, and R + γ ((1 − λ) max q + λ G′) elsewhere.
     fn replay(&mut self) {
         let Settings { gamma, lambda, .. } = self.settings;
-        // The return of the step that follows in time.
+        // The return from the state after a step, as the replay of that state left it.
         let mut following = 0.0;
         let (later, earlier) = self.memory.split_at(self.next.min(self.memory.len()));
         for transition in later.iter().rev().chain(earlier.iter().rev()) {
@@ -114,7 +114,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
             let values = self.values.at(&slots);
             let (greedy, value) = best(&values);
             let action = usize::from(transition.action);
-            let goal = match transition.next {
+            let target = match transition.next {
                 Next::Step => transition.reward + gamma * following,
                 Next::Goal => transition.reward,
                 Next::Unknown => {
@@ -122,11 +122,11 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
                     continue;
                 }
             };
-            let delta = goal - value_of(&values, action);
+            let delta = target - value_of(&values, action);
             self.values.add(&slots, action, delta);
             let (_, value) = best(&self.values.at(&slots));
             following = if action == greedy {
-                value + lambda * (goal - value)
+                value + lambda * (target - value)
             } else {
                 value
             };

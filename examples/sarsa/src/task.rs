@@ -104,9 +104,9 @@ pub fn replayer<'w, const S: usize, const T: usize>(
     };
     let settings = Settings {
         gamma: 1.0,
-        lambda: 0.98,
-        alpha: falling(0.5, 0.01),
-        epsilon: falling(0.002, 0.0),
+        lambda: 0.95,
+        alpha: falling(0.3, 0.005),
+        epsilon: Schedule::constant(0.0),
         symmetry: Symmetry::Mirror(2),
     };
     QLambda::new(coder, settings, weights, memory)
