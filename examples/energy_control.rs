@@ -13,13 +13,12 @@
 //! exact model, so the controller need not know which states these are: it regulates a clone for 40 steps, and starts
 //! to regulate when the clone ends upright.
 
-use std::array::from_fn;
-use std::f64::consts::PI;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{self, wrap};
+use acrobot::physics;
+use acrobot::physics::control::{Lqr, difference, discretize, lqr};
 use acrobot::{Acrobot, Action, Portable, State};
 use clap::Parser;
 use examples_common::exit;
@@ -131,8 +130,7 @@ fn play(initial: State, policy: &mut impl FnMut(&Pendulum) -> f64) -> (Option<u3
 
 /// The difference of the state from standing upright.
 fn from_upright(state: State) -> [f64; 4] {
-    let [theta1, theta2, dtheta1, dtheta2] = state.into();
-    [wrap::<Portable>(theta1 - PI), theta2, dtheta1, dtheta2]
+    difference::<Portable>(state, State::UPRIGHT)
 }
 
 fn is_upright(state: State) -> bool {
@@ -143,26 +141,27 @@ fn at(state: State) -> Pendulum {
     Pendulum::at(state).expect("a finite state")
 }
 
-type Matrix = [[f64; 4]; 4];
-
-/// A discrete linear-quadratic regulator about the upright position, for steps of 0.2 s.
+/// A linear-quadratic regulator about the upright position, for steps of 0.2 s, and a controller of the energy.
 struct Regulator {
-    /// N m per rad and per rad/s.
-    gain: [f64; 4],
+    lqr: Lqr,
     /// The energy of standing upright, J.
     upright: f64,
 }
 
 impl Regulator {
+    /// It minimizes the sum of x² + torque².
     fn new() -> Self {
-        let (a, b) = linearize();
-        let upright = State {
-            theta1: PI,
-            ..State::default()
-        };
+        const IDENTITY: [[f64; 4]; 4] = [
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ];
+        let upright = at(State::UPRIGHT);
+        let lqr = discretize(&upright, 0.0).and_then(|model| lqr(&model, &IDENTITY, 1.0));
         Self {
-            gain: gain(a, b),
-            upright: at(upright).energy(),
+            lqr: lqr.expect("the motor can hold the acrobot upright"),
+            upright: upright.energy(),
         }
     }
 
@@ -176,11 +175,7 @@ impl Regulator {
     }
 
     fn regulate(&self, pendulum: &Pendulum) -> f64 {
-        let x = from_upright(pendulum.state());
-        -x.iter()
-            .zip(self.gain)
-            .map(|(x, gain)| gain * x)
-            .sum::<f64>()
+        self.lqr.torque(from_upright(pendulum.state()))
     }
 
     /// Whether `model` ends upright if it is regulated from now on.
@@ -193,43 +188,4 @@ impl Regulator {
         }
         is_upright(model.state())
     }
-}
-
-/// The derivatives of the next state with respect to state and torque at the upright position, from central
-/// differences of a step.
-fn linearize() -> (Matrix, [f64; 4]) {
-    const H: f64 = 1e-5;
-    let next = |mut x: [f64; 4], torque| {
-        x[0] += PI;
-        let mut pendulum = at(x.into());
-        pendulum.step(torque).expect("a finite torque");
-        from_upright(pendulum.state())
-    };
-    let slope = |x: [f64; 4], torque: f64| {
-        let (ahead, behind) = (next(x, torque), next(x.map(|x| -x), -torque));
-        from_fn(|i| (ahead[i] - behind[i]) / (2.0 * H))
-    };
-    let columns: Matrix = from_fn(|j| slope(from_fn(|i| if i == j { H } else { 0.0 }), 0.0));
-    (from_fn(|i| from_fn(|j| columns[j][i])), slope([0.0; 4], H))
-}
-
-/// The gain that minimizes Σ x² + torque², from iterating the Riccati equation to its fixed point.
-fn gain(a: Matrix, b: [f64; 4]) -> [f64; 4] {
-    let dot = |x: [f64; 4], y: [f64; 4]| (0..4).map(|n| x[n] * y[n]).sum::<f64>();
-    let column = |m: &Matrix, j: usize| from_fn(|i| m[i][j]);
-    let mut value = Matrix::default();
-    let mut gain = [0.0; 4];
-    for _ in 0..1000 {
-        let value_a: Matrix = from_fn(|i| from_fn(|j| dot(value[i], column(&a, j))));
-        let value_b = from_fn(|i| dot(value[i], b));
-        gain = from_fn(|j| dot(b, column(&value_a, j)) / (1.0 + dot(b, value_b)));
-        value = from_fn(|i| {
-            from_fn(|j| {
-                let cost = if i == j { 1.0 } else { 0.0 };
-                cost + dot(column(&a, i), column(&value_a, j))
-                    - dot(column(&a, i), value_b) * gain[j]
-            })
-        });
-    }
-    gain
 }

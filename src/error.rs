@@ -36,6 +36,31 @@ pub enum Error {
         /// The moment of inertia given, kg m².
         value: f64,
     },
+    /// An element of a matrix or a vector is infinite or NaN: it was given, or extreme parameters made it overflow.
+    NotFinite {
+        /// The argument or the result.
+        name: &'static str,
+        /// The first element that is not finite, in SI units.
+        value: f64,
+    },
+    /// A matrix of weights is not symmetric.
+    NotSymmetric {
+        /// The argument.
+        name: &'static str,
+        /// An element above the diagonal.
+        upper: f64,
+        /// Its mirror image below the diagonal.
+        lower: f64,
+    },
+    /// A matrix of weights is not positive semidefinite.
+    NotSemidefinite {
+        /// The argument.
+        name: &'static str,
+        /// The largest absolute value that remains after the elimination of all positive pivots.
+        value: f64,
+    },
+    /// There is no regulator that stabilizes the model, or the iteration does not converge to it.
+    NotStabilized,
     /// The lower reset bound is above the upper one.
     ReversedBounds {
         /// The lower bound given, rad and rad/s.
@@ -121,6 +146,21 @@ impl fmt::Display for Error {
             Self::NoInertia { name, value } => write!(
                 f,
                 "{name} must be above 0 kg m² if the centre of mass is on the joint, got {value}"
+            ),
+            Self::NotFinite { name, value } => {
+                write!(f, "{name} must be finite in each element, got {value}")
+            }
+            Self::NotSymmetric { name, upper, lower } => write!(
+                f,
+                "{name} must be symmetric, got {upper} and {lower} on both sides of the diagonal"
+            ),
+            Self::NotSemidefinite { name, value } => write!(
+                f,
+                "{name} must be positive semidefinite, got {value} after the elimination of its positive pivots"
+            ),
+            Self::NotStabilized => write!(
+                f,
+                "a regulator must stabilize the model with these weights, found none"
             ),
             Self::ReversedBounds { low, high } => write!(
                 f,

@@ -18,8 +18,8 @@
 //! ```
 //!
 //! For your own integrators and controllers, the functions [`derivative`], [`energy`], [`mass_matrix`], [`positions`]
-//! and [`tip_height`] take any parameters and any state, and [`rk4`] integrates any derivative. The guide explains the
-//! [equations](crate::guide::equations).
+//! and [`tip_height`] take any parameters and any state, and [`rk4`] integrates any derivative. The module [`control`]
+//! linearizes and regulates. The guide explains the [equations](crate::guide::equations).
 
 /// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
 macro_rules! for_f32_and_f64 {
@@ -120,6 +120,7 @@ macro_rules! constants_of_form {
 }
 
 mod bounds;
+pub mod control;
 mod gymnasium;
 mod lean;
 mod model;

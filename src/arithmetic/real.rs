@@ -68,6 +68,7 @@ macro_rules! impl_real {
             const ONE: Self = 1.0;
             const MINUS_ONE: Self = -1.0;
             const HALF: Self = 0.5;
+            const EPSILON: Self = $scalar::EPSILON;
             const GYMNASIUM: [Self; 4] = {
                 use core::f64::consts::PI;
                 [9.8, 0.2, (4.0 * PI) as $scalar, (9.0 * PI) as $scalar]
@@ -142,6 +143,9 @@ pub(crate) mod sealed {
 
         /// 1/2.
         const HALF: Self;
+
+        /// The distance from 1 to the next number.
+        const EPSILON: Self;
 
         /// Gymnasium's gravity in m/s², time step in s, and both velocity bounds in rad/s.
         const GYMNASIUM: [Self; 4];

@@ -100,7 +100,7 @@ pub(super) fn positions<S: Real>(params: &Params<S>, sin_cos: [SinCos<S>; 2]) ->
 }
 
 /// Sines and cosines of θ1 and θ1 + θ2, the angles of both links from hanging down.
-fn directions<S: Real>([(sin1, cos1), (sin2, cos2)]: [SinCos<S>; 2]) -> [SinCos<S>; 2] {
+pub(super) fn directions<S: Real>([(sin1, cos1), (sin2, cos2)]: [SinCos<S>; 2]) -> [SinCos<S>; 2] {
     let sum = (sin1 * cos2 + cos1 * sin2, cos1 * cos2 - sin1 * sin2);
     [(sin1, cos1), sum]
 }

@@ -200,6 +200,12 @@ impl<A: Arithmetic> Pendulum<A> {
         height
     }
 
+    /// The parameters with their constants.
+    #[inline]
+    pub(super) fn model(&self) -> &Model<A> {
+        &self.model
+    }
+
     #[inline]
     fn angles(&self) -> [A::Scalar; 2] {
         let [theta1, theta2, ..] = self.y;

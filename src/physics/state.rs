@@ -62,6 +62,12 @@ impl<S: Real> State<S> {
         dtheta2: S::ZERO,
     };
 
+    /// Standing upright at rest: θ1 is π, the others are 0.
+    pub const UPRIGHT: Self = Self {
+        theta1: S::PI,
+        ..Self::HANGING
+    };
+
     /// The same state in another scalar. Each number is rounded to the nearest.
     #[must_use]
     #[inline]

@@ -4,6 +4,7 @@
 #[macro_use]
 mod given;
 
+mod control;
 mod draws;
 mod environments;
 mod pictures;

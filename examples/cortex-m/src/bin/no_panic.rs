@@ -14,6 +14,9 @@ use core::panic::PanicInfo;
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, Observations, OwnParams, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
+use acrobot::physics::control::{
+    difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+};
 use acrobot::physics::{self, ParamsRange, Pendulum, ResetBounds};
 use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
@@ -43,6 +46,10 @@ fn main() -> ! {
         pendulum::<Micro>();
         pendulum::<Portable>();
         pendulum::<Reference>();
+        control::<Fast>();
+        control::<Micro>();
+        control::<Portable>();
+        control::<Reference>();
         environment::<Fast>();
         environment::<Micro>();
         environment::<Portable>();
@@ -101,6 +108,24 @@ fn pendulum<A: Arithmetic>() {
         physics::tip_height::<A>(&params, &state),
         physics::wrap::<A>(number()),
     ));
+}
+
+/// What a controller needs.
+fn control<A: Arithmetic>() {
+    let Ok(pendulum) = Pendulum::<A>::new(params(), state()) else {
+        return;
+    };
+    let _ = black_box(linearize(&pendulum, number()));
+    let _ = black_box(inverse_dynamics(&pendulum, [number(), number()]));
+    let _ = black_box(velocities(&pendulum));
+    let Ok(model) = discretize(&pendulum, number()) else {
+        return;
+    };
+    let weights = [(); 4].map(|()| [(); 4].map(|()| number()));
+    if let Ok(regulator) = black_box(lqr(&model, &weights, number())) {
+        let x = difference::<A>(pendulum.state(), state());
+        black_box(regulator.torque(x));
+    }
 }
 
 /// An acrobot with a time limit, recorded and drawn.

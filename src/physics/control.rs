@@ -1,0 +1,47 @@
+//! What a controller needs of the model: linearization, inverse dynamics, velocities and a linear-quadratic regulator.
+//!
+//! No function needs a heap or panics. A result is finite, or an [`Error`](crate::Error) that names what overflows with
+//! extreme parameters. All functions work in `f32` and `f64`, and with both [`Dynamics`](super::Dynamics).
+//!
+//! | function | result |
+//! |---|---|
+//! | [`linearize`] | A and B of ẋ = A x + B u, at any state and torque |
+//! | [`discretize`] | A and B of one step of `dt`, as the pendulum takes it |
+//! | [`lqr`] | the gain of the linear-quadratic regulator for such a step |
+//! | [`inverse_dynamics`] | torques and joint forces that given accelerations need |
+//! | [`velocities`] | velocities of elbow and tip; [`Pendulum::positions`](super::Pendulum::positions) has the positions |
+//! | [`difference`] | the state's deviation from a target, across ±π |
+//!
+//! A regulator that holds the acrobot upright:
+//!
+//! ```
+//! use acrobot::physics::Pendulum;
+//! use acrobot::physics::control::{difference, discretize, lqr};
+//! use acrobot::{Fast, Params, State};
+//!
+//! let params = Params { dt: 0.01, ..Params::DEFAULT };
+//! let mut pendulum = Pendulum::<Fast>::new(params, State::UPRIGHT)?;
+//! let model = discretize(&pendulum, 0.0)?;
+//! let q = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+//! let regulator = lqr(&model, &q, 1.0)?;
+//!
+//! pendulum.set_state(State { theta1: 3.2, ..State::UPRIGHT })?; // 0.06 rad from upright
+//! for _ in 0..1000 {
+//!     let error = difference::<Fast>(pendulum.state(), State::UPRIGHT);
+//!     pendulum.step(regulator.torque(error))?;
+//! }
+//! let error = difference::<Fast>(pendulum.state(), State::UPRIGHT);
+//! assert!(error.iter().all(|x| x.abs() < 1e-3));
+//! # Ok::<(), acrobot::Error>(())
+//! ```
+
+mod discretize;
+mod inverse_dynamics;
+mod linearize;
+mod lqr;
+mod matrix;
+
+pub use discretize::{Discrete, discretize};
+pub use inverse_dynamics::{Forces, inverse_dynamics, velocities};
+pub use linearize::{Continuous, linearize};
+pub use lqr::{Lqr, difference, lqr};

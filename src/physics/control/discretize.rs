@@ -1,0 +1,139 @@
+//! The derivatives of a step.
+
+use super::linearize::partials;
+use super::matrix::{check_finite, dot, identity, transpose};
+use crate::arithmetic::{Arithmetic, Equations, Model, Real, SinCos};
+use crate::error::Error;
+use crate::physics::Pendulum;
+use crate::physics::pendulum::check_torque;
+use crate::physics::rk4::{Along, Derivative, compact};
+
+/// The model x′ = A x + B u of one step about a state and a torque: x and x′ are the deviations before and after the
+/// step, \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u is that of the torque, N m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Discrete<S = f64> {
+    /// A by rows: `a[i][j]` is the derivative of the i-th number after the step by the j-th before.
+    pub a: [[S; 4]; 4],
+    /// B: the derivatives of the state after the step by the torque.
+    pub b: [S; 4],
+}
+
+/// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant during the step.
+///
+/// The result is the derivative of the Runge-Kutta step that [`Pendulum::step`] takes, exact up to rounding, and not an
+/// approximation of the matrix exponential. The state need not be an equilibrium: then x′ is the deviation from the
+/// state after the step. Wrapped angles change nothing; bounds of the velocities do not count.
+///
+/// ```
+/// use acrobot::physics::Pendulum;
+/// use acrobot::physics::control::discretize;
+/// use acrobot::{Portable, State};
+///
+/// let upright = Pendulum::<Portable>::at(State::UPRIGHT)?;
+/// let model = discretize(&upright, 0.0)?;
+///
+/// let mut pushed = upright.clone();
+/// pushed.step(1e-6)?; // N m
+/// assert!((pushed.state().dtheta2 - model.b[3] * 1e-6).abs() < 1e-11);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::OutOfRange`] for a torque that is not finite, and [`Error::NotFinite`] if extreme parameters or velocities
+/// make an element overflow.
+pub fn discretize<A: Arithmetic>(
+    pendulum: &Pendulum<A>,
+    torque: A::Scalar,
+) -> Result<Discrete<A::Scalar>, Error> {
+    check_torque(torque)?;
+    let model = pendulum.model();
+    let common = A::Form::common(&model.constants);
+    let dts = [common.half_dt, model.params.dt, common.sixth_dt];
+    let variational = Variational { model, torque };
+    let before = Sensitive {
+        y: pendulum.state().into(),
+        by_state: identity(),
+        by_torque: [A::Scalar::ZERO; 4],
+    };
+    let k1 = variational.at_known(before, pendulum.sin_cos());
+    let after = compact(before, k1, dts, &variational);
+    let model = Discrete {
+        a: transpose(&after.by_state),
+        b: after.by_torque,
+    };
+    check_finite("a", model.a.as_flattened())?;
+    check_finite("b", &model.b)?;
+    Ok(model)
+}
+
+/// A state with its derivatives by the four numbers of an earlier state and by the torque.
+#[derive(Clone, Copy)]
+struct Sensitive<S> {
+    y: [S; 4],
+    by_state: [[S; 4]; 4],
+    by_torque: [S; 4],
+}
+
+impl<S: Real> Along<S> for Sensitive<S> {
+    fn along(mut self, h: S, k: Self) -> Self {
+        for (column, k) in self.by_state.iter_mut().zip(k.by_state) {
+            *column = column.along(h, k);
+        }
+        Self {
+            y: self.y.along(h, k.y),
+            by_torque: self.by_torque.along(h, k.by_torque),
+            ..self
+        }
+    }
+}
+
+/// The equations of motion with their variational equations. A Runge-Kutta step of both gives the state after a step of
+/// the first, and its exact derivatives.
+struct Variational<'a, A: Arithmetic> {
+    model: &'a Model<A>,
+    torque: A::Scalar,
+}
+
+impl<A: Arithmetic> Derivative<Sensitive<A::Scalar>> for Variational<'_, A> {
+    fn at(&self, x: Sensitive<A::Scalar>) -> Sensitive<A::Scalar> {
+        let [theta1, theta2, ..] = x.y;
+        self.at_known(x, [theta1, theta2].map(A::sin_cos_near))
+    }
+}
+
+impl<A: Arithmetic> Variational<'_, A> {
+    /// As `at`, given the sines and cosines of θ1 and θ2.
+    #[inline(never)] // saves flash: it is called in two places
+    fn at_known(
+        &self,
+        x: Sensitive<A::Scalar>,
+        sin_cos: [SinCos<A::Scalar>; 2],
+    ) -> Sensitive<A::Scalar> {
+        let rates = A::Form::derivative(self.model, x.y, Some(sin_cos), self.torque);
+        let [by_state @ .., by_torque] = partials(self.model, x.y, sin_cos, rates);
+        let ddtheta1 = by_state.map(|[ddtheta1, _]| ddtheta1);
+        let ddtheta2 = by_state.map(|[_, ddtheta2]| ddtheta2);
+        let rate = |column: [A::Scalar; 4]| {
+            let [_, _, dtheta1, dtheta2] = column;
+            [
+                dtheta1,
+                dtheta2,
+                dot(ddtheta1, column),
+                dot(ddtheta2, column),
+            ]
+        };
+        let [dtheta1, dtheta2, first, second] = rate(x.by_torque);
+        Sensitive {
+            y: rates,
+            by_state: x.by_state.map(rate),
+            by_torque: [
+                dtheta1,
+                dtheta2,
+                first + by_torque[0],
+                second + by_torque[1],
+            ],
+        }
+    }
+}

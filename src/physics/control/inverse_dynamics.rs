@@ -1,0 +1,131 @@
+//! Forces from accelerations, and velocities of points.
+
+use super::matrix::check_finite;
+use crate::arithmetic::{Arithmetic, Coefficients, Real};
+use crate::error::{Error, Range};
+use crate::physics::Pendulum;
+use crate::physics::model::directions;
+
+/// The torques and forces of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Forces<S = f64> {
+    /// The torques on θ1 and θ2 that the motion needs, N m. The second is that of the motor. The first joint has no
+    /// motor, so the acrobot can move in this way only if the first is 0.
+    pub torques: [S; 2],
+    /// The reaction: the force of the fixed joint on link 1, \[x, y\] in N, x to the right and y up.
+    pub reaction: [S; 2],
+    /// The force of link 1 on link 2 in the elbow, \[x, y\] in N.
+    pub elbow: [S; 2],
+}
+
+/// The torques and forces that the accelerations \[θ̈1, θ̈2\], rad/s², need in the pendulum's state.
+///
+/// This is the inverse of [`Pendulum::derivative`]. With accelerations of 0 at rest it gives the torques that hold
+/// the state. It is the recursive Newton-Euler method (J. Y. S. Luh, M. W. Walker and R. P. C. Paul, *On-Line
+/// Computational Scheme for Mechanical Manipulators*, 1980). For [`Dynamics::Nips`](crate::physics::Dynamics::Nips) the
+/// torques are those of its equations; the forces follow from the motion by Newton's law.
+///
+/// ```
+/// use acrobot::physics::Pendulum;
+/// use acrobot::physics::control::inverse_dynamics;
+/// use acrobot::{Portable, State};
+///
+/// let pendulum = Pendulum::<Portable>::at(State::from([0.5, -0.3, 1.0, 2.0]))?;
+/// let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(0.7);
+/// let forces = inverse_dynamics(&pendulum, [ddtheta1, ddtheta2])?;
+/// assert!(forces.torques[0].abs() < 1e-12 && (forces.torques[1] - 0.7).abs() < 1e-12);
+///
+/// let hanging = inverse_dynamics(&Pendulum::<Portable>::hanging(), [0.0, 0.0])?;
+/// assert_eq!(hanging.reaction, [0.0, 2.0 * 9.8]); // the weight of both links
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::OutOfRange`] for an acceleration that is not finite, and [`Error::NotFinite`] if extreme parameters or
+/// velocities make a torque or a force overflow.
+pub fn inverse_dynamics<A: Arithmetic>(
+    pendulum: &Pendulum<A>,
+    [ddtheta1, ddtheta2]: [A::Scalar; 2],
+) -> Result<Forces<A::Scalar>, Error> {
+    Range::Finite.check("ddtheta1", ddtheta1.to_f64(), "rad/s²")?;
+    Range::Finite.check("ddtheta2", ddtheta2.to_f64(), "rad/s²")?;
+    let params = pendulum.params();
+    let state = pendulum.state();
+    let [direction1, direction2] = directions(pendulum.sin_cos());
+    let (rate1, rate2) = (state.dtheta1, state.dtheta1 + state.dtheta2);
+    let (turn1, turn2) = (ddtheta1, ddtheta1 + ddtheta2);
+    let (l1, lc1, lc2) = (
+        params.length1,
+        params.center_of_mass1,
+        params.center_of_mass2,
+    );
+
+    // From the fixed joint to the tip: accelerations relative to free fall.
+    let along = |(sin, cos), rate: A::Scalar, turn, distance| {
+        let (outwards, across) = (-(rate * rate * distance), turn * distance);
+        [outwards * sin + across * cos, across * sin - outwards * cos]
+    };
+    let add = |[x1, y1]: [A::Scalar; 2], [x2, y2]: [A::Scalar; 2]| [x1 + x2, y1 + y2];
+    let up = [A::Scalar::ZERO, params.gravity];
+    let center1 = add(up, along(direction1, rate1, turn1, lc1));
+    let elbow = add(up, along(direction1, rate1, turn1, l1));
+    let center2 = add(elbow, along(direction2, rate2, turn2, lc2));
+
+    // And back: each joint bears what follows it. A force at a distance along a link turns it by its part across.
+    let across = |(sin, cos), [x, y]: [A::Scalar; 2]| cos * x + sin * y;
+    let force2 = center2.map(|x| params.mass2 * x);
+    let force1 = add(force2, center1.map(|x| params.mass1 * x));
+    let torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2);
+    let torque1 = torque2
+        + params.inertia1 * turn1
+        + lc1 * across(direction1, force1)
+        + (l1 - lc1) * across(direction1, force2);
+
+    let (sin2, _) = pendulum.sin_cos()[1];
+    let centrifugal = params.mass2 * l1 * lc2 * (rate1 * rate1) * sin2;
+    let forces = Forces {
+        torques: [
+            torque1,
+            pendulum.model().select(torque2, torque2 - centrifugal),
+        ],
+        reaction: force1,
+        elbow: force2,
+    };
+    check_finite("torques", &forces.torques)?;
+    check_finite("reaction", &forces.reaction)?;
+    check_finite("elbow", &forces.elbow)?;
+    Ok(forces)
+}
+
+/// The velocities of the elbow and of the tip, each \[x, y\] in m/s, x to the right and y up.
+///
+/// [`Pendulum::positions`] has their positions.
+///
+/// ```
+/// use acrobot::physics::Pendulum;
+/// use acrobot::physics::control::velocities;
+/// use acrobot::{Portable, State};
+///
+/// let swinging = State { dtheta1: 1.0, ..State::HANGING };
+/// let [elbow, tip] = velocities(&Pendulum::<Portable>::at(swinging)?)?;
+/// assert_eq!((elbow, tip), ([1.0, 0.0], [2.0, 0.0]));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::NotFinite`] if extreme lengths or velocities make a velocity overflow.
+pub fn velocities<A: Arithmetic>(pendulum: &Pendulum<A>) -> Result<[[A::Scalar; 2]; 2], Error> {
+    let params = pendulum.params();
+    let state = pendulum.state();
+    let [(sin1, cos1), (sin_sum, cos_sum)] = directions(pendulum.sin_cos());
+    let speed1 = params.length1 * state.dtheta1;
+    let speed2 = params.length2 * (state.dtheta1 + state.dtheta2);
+    let elbow = [speed1 * cos1, speed1 * sin1];
+    let tip = [elbow[0] + speed2 * cos_sum, elbow[1] + speed2 * sin_sum];
+    check_finite("elbow", &elbow)?;
+    check_finite("tip", &tip)?;
+    Ok([elbow, tip])
+}

@@ -1,0 +1,121 @@
+//! The derivatives of the equations of motion.
+
+use super::matrix::check_finite;
+use crate::arithmetic::{Arithmetic, Coefficients, Equations, Model, Real, SinCos};
+use crate::error::Error;
+use crate::physics::pendulum::check_torque;
+use crate::physics::{Common, Pendulum};
+
+/// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
+/// rad/s, and u that from the torque, N m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Continuous<S = f64> {
+    /// A by rows: `a[i][j]` is the derivative of the i-th rate by the j-th number of the state.
+    pub a: [[S; 4]; 4],
+    /// B: the derivatives of the rates by the torque.
+    pub b: [S; 4],
+}
+
+/// Linearizes the equations of motion about the pendulum's state and a torque, N m. The derivatives are exact up to
+/// rounding.
+///
+/// The state need not be an equilibrium. Where it is none, the rates at the state are
+/// [`Pendulum::derivative`], and the model describes the difference from them. Bounds of the velocities do not count.
+///
+/// ```
+/// use acrobot::physics::Pendulum;
+/// use acrobot::physics::control::linearize;
+/// use acrobot::{Portable, State};
+///
+/// let upright = Pendulum::<Portable>::at(State::UPRIGHT)?;
+/// let model = linearize(&upright, 0.0)?;
+/// assert_eq!(model.a[0], [0.0, 0.0, 1.0, 0.0]); // the derivative of θ1 is θ̇1
+/// assert!(model.a[2][0] > 0.0); // gravity drives link 1 away
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// [`Error::OutOfRange`] for a torque that is not finite, and [`Error::NotFinite`] if extreme parameters or velocities
+/// make an element overflow.
+pub fn linearize<A: Arithmetic>(
+    pendulum: &Pendulum<A>,
+    torque: A::Scalar,
+) -> Result<Continuous<A::Scalar>, Error> {
+    check_torque(torque)?;
+    let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
+    let y = pendulum.state().into();
+    let rates = pendulum.derivative(torque);
+    let [by_state @ .., by_torque] = partials(pendulum.model(), y, pendulum.sin_cos(), rates);
+    let model = Continuous {
+        a: [
+            [zero, zero, one, zero],
+            [zero, zero, zero, one],
+            by_state.map(|[ddtheta1, _]| ddtheta1),
+            by_state.map(|[_, ddtheta2]| ddtheta2),
+        ],
+        b: [zero, zero, by_torque[0], by_torque[1]],
+    };
+    check_finite("a", model.a.as_flattened())?;
+    check_finite("b", &model.b)?;
+    Ok(model)
+}
+
+/// The derivatives of \[θ̈1, θ̈2\] by θ1, θ2, θ̇1, θ̇2 and the torque, given the rates at `y`.
+///
+/// The equations M q̈ = f for the absolute angles α = θ1 and β = θ1 + θ2 are those of docs/equations.md: M has the rows
+/// \[upper, c\] and \[c, link2\], with c = coupling cos θ2. The derivative by p is M⁻¹ (∂f/∂p − ∂M/∂p q̈).
+#[inline(always)]
+pub(super) fn partials<A: Arithmetic>(
+    model: &Model<A>,
+    [_, _, dtheta1, dtheta2]: [A::Scalar; 4],
+    [(sin1, cos1), (sin2, cos2)]: [SinCos<A::Scalar>; 2],
+    [_, _, ddtheta1, ddtheta2]: [A::Scalar; 4],
+) -> [[A::Scalar; 2]; 5] {
+    let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
+    let Common {
+        coupling,
+        link2,
+        gravity1,
+        gravity2,
+        ..
+    } = *A::Form::common(&model.constants);
+    let params = &model.params;
+    let (l1, lc1) = (params.length1, params.center_of_mass1);
+    let link1 = params.mass1 * (lc1 * lc1) + params.inertia1;
+    let m2_l1_squared = params.mass2 * (l1 * l1);
+    let upper = link1 + m2_l1_squared;
+    let (coupling_sin, coupling_cos) = (coupling * sin2, coupling * cos2);
+    // U L − c² as a sum in which nothing cancels.
+    let determinant = link1 * link2 + m2_l1_squared * params.inertia2 + coupling_sin * coupling_sin;
+    let inverse = one / determinant;
+    let solve = |[force1, force2]: [A::Scalar; 2]| {
+        let alpha = (link2 * force1 - coupling_cos * force2) * inverse;
+        let beta = (upper * force2 - coupling_cos * force1) * inverse;
+        [alpha, beta - alpha]
+    };
+
+    // The term in α̇² acts on link 2 in the book's equations, and on link 1 in those of the paper.
+    let (book, nips) = (model.select(one, zero), model.select(zero, one));
+    let (dalpha, dbeta) = (dtheta1, dtheta1 + dtheta2);
+    let (ddalpha, ddbeta) = (ddtheta1, ddtheta1 + ddtheta2);
+    let cos_sum = cos1 * cos2 - sin1 * sin2;
+    let fall = -(gravity2 * cos_sum);
+    let dalpha_squared = dalpha * dalpha;
+    let twice_sin = coupling_sin + coupling_sin;
+    [
+        [-(gravity1 * cos1), fall],
+        [
+            coupling_cos * (dbeta * dbeta - nips * dalpha_squared) + coupling_sin * ddbeta,
+            fall - coupling_cos * (book * dalpha_squared) + coupling_sin * ddalpha,
+        ],
+        [
+            twice_sin * (dbeta - nips * dalpha),
+            -(twice_sin * (book * dalpha)),
+        ],
+        [twice_sin * dbeta, zero],
+        [-one, one],
+    ]
+    .map(solve)
+}

@@ -1,0 +1,451 @@
+//! `physics::control` is right: derivatives, forces and velocities equal those of automatic differentiation, and gains
+//! those of SciPy, both recorded by `tests/data/control.py`.
+
+use std::array::from_fn;
+
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::physics::control::{
+    Discrete, Forces, Lqr, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+};
+use acrobot::physics::{Dynamics, Pendulum};
+use acrobot::{Error, Fast, Params, Portable, State};
+use common::text_of;
+
+/// The rest of each line of the recording that starts with this word.
+fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
+    text.lines()
+        .filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
+}
+
+fn numbers(line: &str) -> Vec<f64> {
+    line.split(' ').map(|x| x.parse().unwrap()).collect()
+}
+
+fn cast<T: Real, const N: usize>(x: [f64; N]) -> [T; N] {
+    x.map(T::from_f64)
+}
+
+fn matrix(elements: &[f64]) -> [[f64; 4]; 4] {
+    elements.as_chunks().0.try_into().unwrap()
+}
+
+fn vector<const N: usize>(elements: &[f64]) -> [f64; N] {
+    elements.try_into().unwrap()
+}
+
+const IDENTITY: [[f64; 4]; 4] = [
+    [1.0, 0.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, 0.0],
+    [0.0, 0.0, 0.0, 1.0],
+];
+
+/// The largest |found − expected|, relative to the largest |expected|.
+fn relative<S: Real>(found: &[S], expected: &[f64]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    let largest = |x: &mut dyn Iterator<Item = f64>| {
+        x.fold(0.0_f64, |most, x| {
+            assert!(x.is_finite());
+            most.max(x.abs())
+        })
+    };
+    let differences = &mut found.iter().zip(expected).map(|(x, y)| x.to_f64() - y);
+    largest(differences) / largest(&mut expected.iter().copied())
+}
+
+/// A pendulum, a torque and accelerations of the recording, and what autograd computed for them.
+struct Case {
+    params: Params,
+    state: State,
+    torque: f64,
+    accelerations: [f64; 2],
+    continuous: Vec<f64>,
+    discrete: Vec<f64>,
+    motion: Vec<f64>,
+}
+
+fn cases() -> Vec<Case> {
+    let text = text_of("tests/data/control.txt");
+    let results = |word| lines(&text, word).map(numbers).collect::<Vec<_>>();
+    let [continuous, discrete, motion] = ["continuous", "discrete", "motion"].map(results);
+    let cases = lines(&text, "case")
+        .zip(continuous)
+        .zip(discrete.into_iter().zip(motion));
+    cases
+        .map(|((line, continuous), (discrete, motion))| {
+            let (dynamics, given) = line.split_once(' ').unwrap();
+            let x: [f64; 17] = vector(&numbers(given));
+            Case {
+                params: Params {
+                    length1: x[0],
+                    length2: x[1],
+                    mass1: x[2],
+                    mass2: x[3],
+                    center_of_mass1: x[4],
+                    center_of_mass2: x[5],
+                    inertia1: x[6],
+                    inertia2: x[7],
+                    gravity: x[8],
+                    dt: x[9],
+                    dynamics: match dynamics {
+                        "book" => Dynamics::Book,
+                        _ => Dynamics::Nips,
+                    },
+                    ..Params::DEFAULT
+                },
+                state: State::from(vector(&x[10..14])),
+                torque: x[14],
+                accelerations: vector(&x[15..]),
+                continuous,
+                discrete,
+                motion,
+            }
+        })
+        .collect()
+}
+
+/// The largest error of each function over all cases, with the arithmetic `A`.
+fn errors<A: Arithmetic>() -> [f64; 4] {
+    let mut worst = [0.0_f64; 4];
+    let cases = cases();
+    assert_eq!(cases.len(), 40);
+    for case in cases {
+        let pendulum = Pendulum::<A>::new(case.params.cast(), case.state.cast()).unwrap();
+        let torque = Real::from_f64(case.torque);
+        let continuous = linearize(&pendulum, torque).unwrap();
+        let discrete = discretize(&pendulum, torque).unwrap();
+        let Forces {
+            torques,
+            reaction,
+            elbow,
+        } = inverse_dynamics(&pendulum, cast(case.accelerations)).unwrap();
+        let pairs = [
+            (
+                [continuous.a.as_flattened(), &continuous.b].concat(),
+                &case.continuous[..],
+            ),
+            (
+                [discrete.a.as_flattened(), &discrete.b].concat(),
+                &case.discrete,
+            ),
+            ([torques, reaction, elbow].concat(), &case.motion[..6]),
+            (velocities(&pendulum).unwrap().concat(), &case.motion[6..]),
+        ];
+        for (worst, (found, expected)) in worst.iter_mut().zip(pairs) {
+            *worst = worst.max(relative(&found, expected));
+        }
+    }
+    println!("{}: {worst:?}", A::NAME);
+    worst
+}
+
+#[test]
+fn derivatives_forces_and_velocities_equal_automatic_differentiation() {
+    for worst in [
+        errors::<Reference>(),
+        errors::<Portable>(),
+        errors::<Host>(),
+    ] {
+        assert!(worst.into_iter().all(|error| error < 1e-14), "{worst:?}");
+    }
+    let single = errors::<Fast>();
+    assert!(single.into_iter().all(|error| error < 1e-6), "{single:?}");
+    let table = errors::<Micro>();
+    assert!(table.into_iter().all(|error| error < 5e-6), "{table:?}");
+}
+
+/// `tests/physics.rs` compares the derivative with Lagrange's equations.
+#[test]
+fn inverse_dynamics_inverts_the_derivative() {
+    for case in cases() {
+        let pendulum = Pendulum::<Portable>::new(case.params, case.state).unwrap();
+        let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(case.torque);
+        let forces = inverse_dynamics(&pendulum, [ddtheta1, ddtheta2]).unwrap();
+        let [residue, torque] = forces.torques;
+        let scale = forces.reaction[0].abs() + forces.reaction[1].abs() + 1.0;
+        assert!(residue.abs() < 1e-12 * scale, "{residue:e}");
+        assert!((torque - case.torque).abs() < 1e-12 * scale, "{torque}");
+    }
+}
+
+/// What SciPy computed for one regulator.
+struct Recorded {
+    theta1: f64,
+    dt: f64,
+    model: Discrete,
+    q: [[f64; 4]; 4],
+    r: f64,
+    gain: [f64; 4],
+    cost_to_go: [[f64; 4]; 4],
+}
+
+fn regulators() -> Vec<Recorded> {
+    let text = text_of("tests/data/control.txt");
+    let recorded = lines(&text, "lqr").map(|line| {
+        let x = numbers(line);
+        assert_eq!(x.len(), 59);
+        Recorded {
+            theta1: x[0],
+            dt: x[1],
+            model: Discrete {
+                a: matrix(&x[2..18]),
+                b: vector(&x[18..22]),
+            },
+            q: matrix(&x[22..38]),
+            r: x[38],
+            gain: vector(&x[39..43]),
+            cost_to_go: matrix(&x[43..]),
+        }
+    });
+    recorded.collect()
+}
+
+/// The model and the weights in another scalar.
+fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, Error> {
+    let model = Discrete {
+        a: model.a.map(cast),
+        b: cast(model.b),
+    };
+    lqr(&model, &q.map(cast), S::from_f64(*r))
+}
+
+/// The errors of the gain and of the cost to go, and the iterations.
+fn errors_of_lqr<S: Real>(recorded: &Recorded) -> ([f64; 2], u32) {
+    let found = regulate::<S>(recorded).unwrap();
+    let columns: [[S; 4]; 4] = from_fn(|j| found.cost_to_go.map(|row| row[j]));
+    assert_eq!(found.cost_to_go, columns, "not symmetric");
+    let errors = [
+        relative(&found.gain, &recorded.gain),
+        relative(
+            found.cost_to_go.as_flattened(),
+            recorded.cost_to_go.as_flattened(),
+        ),
+    ];
+    (errors, found.iterations)
+}
+
+#[test]
+fn gains_equal_scipys() {
+    let recorded = regulators();
+    assert_eq!(recorded.len(), 32);
+    for recorded in recorded {
+        let (double, iterations) = errors_of_lqr::<f64>(&recorded);
+        let (single, fewer) = errors_of_lqr::<f32>(&recorded);
+        let Recorded { theta1, dt, r, .. } = recorded;
+        println!(
+            "{theta1:.2} rad, {dt} s, R {r}: f64 {double:?} in {iterations}, f32 {single:?} in {fewer}"
+        );
+        assert!(double.into_iter().all(|error| error < 1e-11), "{double:?}");
+        // The elements of A are rounded to 6e-8, and those that matter are about dt.
+        let limit = if dt < 0.01 { 5e-3 } else { 1e-3 };
+        assert!(single.into_iter().all(|error| error < limit), "{single:?}");
+        assert!(iterations <= 20 && fewer <= 20);
+    }
+}
+
+/// The gain upright, all computed in `A`.
+fn gain<A: Arithmetic>(dt: f64) -> [f64; 4] {
+    let params = Params {
+        dt,
+        ..Params::DEFAULT
+    };
+    let pendulum = Pendulum::<A>::new(params.cast(), State::UPRIGHT).unwrap();
+    let model = discretize(&pendulum, A::Scalar::ZERO).unwrap();
+    let found = lqr(&model, &IDENTITY.map(cast), Real::from_f64(1.0)).unwrap();
+    found.gain.map(Real::to_f64)
+}
+
+#[test]
+fn single_precision_gives_the_same_gains() {
+    for dt in [0.01, 0.2] {
+        let expected = gain::<Portable>(dt);
+        for found in [gain::<Fast>(dt), gain::<Micro>(dt)] {
+            let error = relative(&found, &expected);
+            assert!(error < 1e-4, "{dt} s: {error:e}");
+        }
+    }
+}
+
+/// From 0.04 rad, with a motor of 20 N m.
+#[test]
+fn the_regulator_holds_the_acrobot_upright() {
+    fn check<A: Arithmetic>(dt: f64) {
+        let params = Params {
+            dt,
+            ..Params::DEFAULT
+        };
+        let mut pendulum = Pendulum::<A>::new(params.cast(), State::UPRIGHT).unwrap();
+        let model = discretize(&pendulum, A::Scalar::ZERO).unwrap();
+        let regulator = lqr(&model, &IDENTITY.map(cast), Real::from_f64(1.0)).unwrap();
+        let leaning = State {
+            theta1: -3.1,
+            ..State::HANGING
+        };
+        pendulum.set_state(leaning.cast()).unwrap();
+        for _ in 0..(20.0 / dt) as u32 {
+            let torque = regulator.torque(difference::<A>(pendulum.state(), State::UPRIGHT));
+            assert!(torque.to_f64().abs() < 20.0);
+            pendulum.step(torque).unwrap();
+        }
+        let left = difference::<A>(pendulum.state(), State::UPRIGHT);
+        // In `f32` small velocities no longer change an angle near π, and `Micro`'s sines move the equilibrium.
+        assert!(left.iter().all(|x| x.to_f64().abs() < 1e-3), "{left:?}");
+    }
+    for dt in [0.01, 0.2] {
+        check::<Reference>(dt);
+        check::<Portable>(dt);
+        check::<Fast>(dt);
+        check::<Micro>(dt);
+    }
+}
+
+/// Central differences of steps, from states that are no equilibrium.
+#[test]
+fn a_step_moves_as_its_derivatives_say() {
+    const H: f64 = 1e-6;
+    for case in cases() {
+        let wide = f64::from(f32::MAX);
+        let params = Params {
+            max_velocity1: wide,
+            max_velocity2: wide,
+            ..case.params
+        };
+        let after = |y: [f64; 4], torque: f64| {
+            let mut pendulum = Pendulum::<Portable>::new(params, y.into()).unwrap();
+            pendulum.step(torque).unwrap();
+            pendulum.state()
+        };
+        let pendulum = Pendulum::<Portable>::new(params, case.state).unwrap();
+        let model = discretize(&pendulum, case.torque).unwrap();
+        let y = <[f64; 4]>::from(case.state);
+        for j in 0..5 {
+            let moved = |h: f64| {
+                let moved = from_fn(|i| if i == j { y[i] + h } else { y[i] });
+                after(moved, if j == 4 { case.torque + h } else { case.torque })
+            };
+            let slope = difference::<Portable>(moved(H), moved(-H)).map(|x| x / (2.0 * H));
+            let expected = from_fn::<_, 4, _>(|i| if j == 4 { model.b[i] } else { model.a[i][j] });
+            let error = relative(&slope, &expected);
+            assert!(error < 1e-7, "{error:e}");
+        }
+    }
+}
+
+fn upright() -> Discrete {
+    discretize(&Pendulum::<Portable>::at(State::UPRIGHT).unwrap(), 0.0).unwrap()
+}
+
+fn diagonal(x: [f64; 4]) -> [[f64; 4]; 4] {
+    from_fn(|i| from_fn(|j| if i == j { x[i] } else { 0.0 }))
+}
+
+#[test]
+fn wrong_weights_are_rejected() {
+    let message = |q, r| lqr(&upright(), &q, r).unwrap_err().to_string();
+    for (r, got) in [
+        (0.0, "0"),
+        (-1.0, "-1"),
+        (f64::NAN, "NaN"),
+        (f64::INFINITY, "inf"),
+    ] {
+        let expected = format!("r must be finite and above 0 per (N m)², got {got}");
+        assert_eq!(message(IDENTITY, r), expected);
+    }
+    assert_eq!(
+        message(diagonal([1.0, f64::NAN, 1.0, 1.0]), 1.0),
+        "q must be finite in each element, got NaN"
+    );
+    let mut q = IDENTITY;
+    q[1][3] = 0.5;
+    assert_eq!(
+        message(q, 1.0),
+        "q must be symmetric, got 0.5 and 0 on both sides of the diagonal"
+    );
+    q[3][1] = 0.5;
+    assert!(lqr(&upright(), &q, 1.0).is_ok());
+    [q[1][3], q[3][1]] = [2.0, 2.0];
+    let rule = "q must be positive semidefinite, got ";
+    assert!(message(q, 1.0).starts_with(rule));
+    assert!(message(diagonal([1.0, 1.0, -1e-3, 1.0]), 1.0).starts_with(rule));
+    assert!(message(diagonal([-1.0; 4]), 1.0).starts_with(rule));
+
+    // Of rank 1, and so up to rounding.
+    let row = [0.1, 0.7, -0.3, 0.9];
+    assert!(lqr(&upright(), &row.map(|x| row.map(|y| x * y)), 1.0).is_ok());
+}
+
+/// Each of these has no stabilizing gain.
+#[test]
+fn a_regulator_that_cannot_exist_is_an_error() {
+    let growing = Discrete {
+        a: diagonal([1.1, 0.5, 0.5, 0.5]),
+        b: [0.0, 1.0, 1.0, 1.0],
+    };
+    let drifting = Discrete {
+        a: diagonal([1.0, 0.5, 0.5, 0.5]),
+        ..growing
+    };
+    let (none, reachable) = (diagonal([0.0; 4]), [1.0; 4]);
+    for (name, model, q) in [
+        (
+            "the torque does not reach the first number",
+            growing,
+            IDENTITY,
+        ),
+        ("nor one that stays where it is", drifting, IDENTITY),
+        (
+            "no weight on a number that grows",
+            Discrete {
+                b: reachable,
+                ..growing
+            },
+            none,
+        ),
+        (
+            "no weight on one that stays",
+            Discrete {
+                b: reachable,
+                ..drifting
+            },
+            none,
+        ),
+    ] {
+        let error = lqr(&model, &q, 1.0).unwrap_err();
+        assert!(matches!(error, Error::NotStabilized), "{name}: {error}");
+    }
+    // Without the need for a torque there is none.
+    let calm = Discrete {
+        a: diagonal([0.5; 4]),
+        b: reachable,
+    };
+    assert_eq!(lqr(&calm, &none, 1.0).unwrap().gain, [0.0; 4]);
+
+    // A link on its centre of mass: gravity and the motor do not move link 1.
+    let params = Params {
+        center_of_mass1: 0.0,
+        center_of_mass2: 0.0,
+        gravity: 0.0,
+        ..Params::DEFAULT
+    };
+    let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
+    let model = discretize(&pendulum, 0.0).unwrap();
+    let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
+    assert!(matches!(error, Error::NotStabilized), "{error}");
+}
+
+#[test]
+fn inputs_that_are_not_finite_are_rejected() {
+    let pendulum = Pendulum::<Fast>::hanging();
+    let torque = "torque must be a finite number of N m, got NaN";
+    assert_eq!(
+        linearize(&pendulum, f32::NAN).unwrap_err().to_string(),
+        torque
+    );
+    assert_eq!(
+        discretize(&pendulum, f32::NAN).unwrap_err().to_string(),
+        torque
+    );
+    let error = inverse_dynamics(&pendulum, [0.0, f32::INFINITY]).unwrap_err();
+    let rule = "ddtheta2 must be a finite number of rad/s², got inf";
+    assert_eq!(error.to_string(), rule);
+}

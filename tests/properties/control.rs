@@ -1,0 +1,185 @@
+//! `physics::control`, for any numbers: finite results or an error, and no hang.
+
+use std::array::from_fn;
+
+use acrobot::Error;
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::physics::Pendulum;
+use acrobot::physics::control::{
+    Discrete, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+};
+use proptest::prelude::*;
+
+use crate::given::{Number, Range, holds, number, params, state};
+
+/// Whether the result is finite, or an error that says what is not.
+fn is_finite<S: Real>(result: Result<Vec<S>, Error>) -> bool {
+    match result {
+        Ok(elements) => elements.iter().all(|x| x.is_finite()),
+        Err(error) => matches!(error, Error::NotFinite { .. }),
+    }
+}
+
+#[test]
+fn results_are_finite_or_errors() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let rates = [number::<A::Scalar>(Range::Any), number(Range::Any)];
+        let given = (
+            params(Range::Any),
+            state(Range::Any),
+            number(Range::Any),
+            rates,
+        );
+        holds(2000, given, |(params, state, torque, accelerations)| {
+            let pendulum = Pendulum::<A>::new(params, state).unwrap();
+            let continuous = linearize(&pendulum, torque);
+            let discrete = discretize(&pendulum, torque);
+            let forces = inverse_dynamics(&pendulum, accelerations);
+            assert!(is_finite(
+                continuous.map(|model| [model.a.as_flattened(), &model.b].concat())
+            ));
+            assert!(is_finite(
+                discrete.map(|model| [model.a.as_flattened(), &model.b].concat())
+            ));
+            assert!(is_finite(forces.map(|forces| {
+                [forces.torques, forces.reaction, forces.elbow].concat()
+            })));
+            assert!(is_finite(
+                velocities(&pendulum).map(|points| points.concat())
+            ));
+        });
+    }
+    in_every_arithmetic!(check);
+}
+
+/// With moderate numbers nothing overflows, and the inverse dynamics undo the derivative.
+#[test]
+fn moderate_pendulums_have_models() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let given = (
+            params::<A::Scalar>(Range::Moderate),
+            state(Range::Moderate),
+            number(Range::Moderate),
+        );
+        holds(1000, given, |(params, state, torque)| {
+            let pendulum = Pendulum::<A>::new(params, state).unwrap();
+            assert!(linearize(&pendulum, torque).is_ok());
+            assert!(velocities(&pendulum).is_ok());
+            let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(torque);
+            let forces = inverse_dynamics(&pendulum, [ddtheta1, ddtheta2]).unwrap();
+
+            let [[_, m12], [_, m22]] = pendulum.mass_matrix().map(|row| row.map(Real::to_f64));
+            let [x, y] = forces.elbow.map(Real::to_f64);
+            let reach = params.center_of_mass2.to_f64();
+            let parts = m12.abs() * ddtheta1.to_f64().abs()
+                + m22 * (ddtheta1.to_f64().abs() + ddtheta2.to_f64().abs())
+                + reach * (x.abs() + y.abs())
+                + torque.to_f64().abs();
+            let rounding = if A::Scalar::PI.to_f64() == std::f64::consts::PI {
+                1e-12
+            } else {
+                1e-3
+            };
+            let error = (forces.torques[1] - torque).to_f64().abs();
+            assert!(error <= rounding * parts, "{error:e} of {parts:e}");
+        });
+    }
+    in_every_arithmetic!(check);
+}
+
+/// Symmetric weights, of which half are positive semidefinite: those of sums of squares.
+fn weights<S: Number>(range: Range) -> BoxedStrategy<[[S; 4]; 4]> {
+    let rows = [(); 4].map(|()| [(); 4].map(|()| number::<f64>(range)));
+    (rows, any::<bool>())
+        .prop_map(|(rows, is_square)| {
+            let element = |i: usize, j: usize| {
+                let product = (0..4).map(|k| rows[k][i] * rows[k][j]).sum::<f64>();
+                if is_square {
+                    product
+                } else {
+                    rows[i.min(j)][i.max(j)]
+                }
+            };
+            from_fn(|i| from_fn(|j| S::from_f64(element(i, j))))
+        })
+        .boxed()
+}
+
+/// A regulator for any model and any weights is symmetric and makes the deviation vanish, or it is an error.
+#[test]
+fn regulators_stabilize_or_are_errors() {
+    fn check<S: Number>(range: Range) {
+        let vector = move || [(); 4].map(|()| number::<S>(range));
+        let given = (
+            [vector(), vector(), vector(), vector()],
+            vector(),
+            weights::<S>(range),
+            number::<S>(range),
+        );
+        holds(2000, given, |(a, b, q, r)| {
+            let model = Discrete { a, b };
+            let Ok(regulator) = lqr(&model, &q, r) else {
+                return;
+            };
+            assert!(regulator.iterations <= 25);
+            let [gain, cost] = [&regulator.gain[..], regulator.cost_to_go.as_flattened()];
+            assert!(gain.iter().chain(cost).all(|x| x.is_finite()));
+            for i in 0..4 {
+                for j in 0..4 {
+                    assert_eq!(regulator.cost_to_go[i][j], regulator.cost_to_go[j][i]);
+                }
+            }
+        });
+    }
+    for range in [Range::Moderate, Range::Any] {
+        check::<f32>(range);
+        check::<f64>(range);
+    }
+}
+
+/// Upright, with a motor that is weighted more or less.
+#[test]
+fn moderate_pendulums_can_be_held_upright() {
+    fn check<A: Arithmetic<Scalar: Number>>() {
+        let weight = (-4.0..4.0_f64).prop_map(f64::exp);
+        holds(
+            500,
+            (params::<A::Scalar>(Range::Moderate), weight),
+            |(params, r)| {
+                let target = acrobot::State::UPRIGHT;
+                let pendulum = Pendulum::<A>::new(params, target).unwrap();
+                let zero = A::Scalar::ZERO;
+                let Ok(model) = discretize(&pendulum, zero) else {
+                    return;
+                };
+                let one = A::Scalar::from_f64(1.0);
+                let q = [
+                    [one, zero, zero, zero],
+                    [zero, one, zero, zero],
+                    [zero, zero, one, zero],
+                    [zero, zero, zero, one],
+                ];
+                let Ok(regulator) = lqr(&model, &q, A::Scalar::from_f64(r)) else {
+                    return;
+                };
+                // In f64, where rounding hides less, the powers of the closed loop vanish too.
+                let [gain, b] = [regulator.gain, model.b].map(|row| row.map(Real::to_f64));
+                let mut closed: [[f64; 4]; 4] =
+                    from_fn(|i| from_fn(|j| model.a[i][j].to_f64() - b[i] * gain[j]));
+                for _ in 0..40 {
+                    let row =
+                        |i: usize| from_fn(|j| (0..4).map(|k| closed[i][k] * closed[k][j]).sum());
+                    closed = from_fn(row);
+                }
+                let largest = closed
+                    .as_flattened()
+                    .iter()
+                    .fold(0.0_f64, |most, x| most.max(x.abs()));
+                assert!(largest < 0.1, "{regulator:?} {largest}");
+                let error = difference::<A>(pendulum.state(), target);
+                assert_eq!(error, [zero; 4]);
+            },
+        );
+    }
+    in_every_arithmetic!(check);
+}
