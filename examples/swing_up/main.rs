@@ -1,9 +1,9 @@
-//! Sutton's Sarsa(λ) learns to swing up within seconds. Its greedy policy is then compared with two policies that
-//! do not learn.
+//! Q(λ) with replay, or Sutton's Sarsa(λ), learns to swing up within seconds. The greedy policy is then compared with two
+//! policies that do not learn.
 //!
 //! ```text
-//! cargo run --release --example swing_up -- --preset quality --episodes 10000 --save weights.bin
-//! cargo run --release --example swing_up -- --preset quality --episodes 0 --load weights.bin
+//! cargo run --release --example swing_up -- --steps 1000000 --save weights.bin
+//! cargo run --release --example swing_up -- --steps 0 --load weights.bin
 //! ```
 //!
 //! The learner is `examples/sarsa`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
@@ -34,20 +34,17 @@ mod curve;
 mod pictures;
 
 use examples_common::svg::svg;
-use sarsa::task::{
-    Learner, Preset, Replayer, Values, evaluation, greedy, learn, play, replayer, torque, training,
-    view,
-};
+use sarsa::task::{self, QLambda, Values, evaluation, greedy, learn, play, torque, training, view};
 use sarsa::{Budget, Learn, Transition};
 
 /// Learns to swing up, and compares the learnt policy with two simple ones.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Learner: Sarsa(λ) for few episodes or for many, or Q(λ) with replay, the best after 50,000 steps and more.
-    #[arg(long, value_enum, default_value_t = Goal::Fast)]
-    preset: Goal,
-    /// Memory for the weights, in KiB; with `replay` for all that the learner keeps.
+    /// Learner: Q(λ) with replay, or Sarsa(λ), which needs less time per step and less memory.
+    #[arg(long, value_enum, default_value_t = Algorithm::Replay)]
+    learner: Algorithm,
+    /// Memory in KiB: with `replay` for all that the learner keeps, with `sarsa` for the weights.
     #[arg(long, value_enum, default_value_t = Memory::K64)]
     memory: Memory,
     /// Episodes of learning. Step size and exploration fall until the last one.
@@ -94,10 +91,9 @@ fn folder(path: PathBuf) -> Result<PathBuf, &'static str> {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Goal {
-    Fast,
-    Quality,
+enum Algorithm {
     Replay,
+    Sarsa,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -120,45 +116,43 @@ impl Options {
 }
 
 fn main() -> ExitCode {
-    exit::run(|options: &Options| match (options.preset, options.memory) {
-        (Goal::Fast, memory) => sarsa(options, Preset::Fast, memory),
-        (Goal::Quality, memory) => sarsa(options, Preset::Quality, memory),
-        (Goal::Replay, Memory::K64) => q_lambda::<64, 5632, 44, 800>(options),
-        (Goal::Replay, Memory::K32) => q_lambda::<32, 2688, 44, 400>(options),
-        (Goal::Replay, Memory::K16) => q_lambda::<16, 1408, 44, 160>(options),
-        (Goal::Replay, Memory::K8) => q_lambda::<8, 704, 22, 70>(options),
-    })
+    exit::run(
+        |options: &Options| match (options.learner, options.memory) {
+            (Algorithm::Replay, Memory::K64) => replay::<64, 6144, 52, 600>(options),
+            (Algorithm::Replay, Memory::K32) => replay::<32, 2944, 52, 300>(options),
+            (Algorithm::Replay, Memory::K16) => replay::<16, 1408, 16, 160>(options),
+            (Algorithm::Sarsa, Memory::K64) => sarsa::<8192, 28>(options),
+            (Algorithm::Sarsa, Memory::K32) => sarsa::<4096, 20>(options),
+            (Algorithm::Sarsa, Memory::K16) => sarsa::<2048, 20>(options),
+            (Algorithm::Sarsa, Memory::K8) => sarsa::<1024, 16>(options),
+            (Algorithm::Replay, Memory::K8) => {
+                Err("--memory must be 16k, 32k or 64k for the learner replay, got 8k".into())
+            }
+        },
+    )
 }
 
-fn sarsa(options: &Options, preset: Preset, memory: Memory) -> Result<(), Box<dyn Error>> {
-    fn with<const S: usize, const T: usize>(
-        options: &Options,
-        preset: Preset,
-    ) -> Result<(), Box<dyn Error>> {
-        let mut weights = [[0.0; 2]; S];
-        let learner: Learner<S, T> = preset.learner(options.budget(), &mut weights)?;
-        run(options, learner)
-    }
-    match memory {
-        Memory::K64 => with::<8192, 28>(options, preset),
-        Memory::K32 => with::<4096, 20>(options, preset),
-        Memory::K16 => with::<2048, 20>(options, preset),
-        Memory::K8 => with::<1024, 16>(options, preset),
-    }
+/// Learns by Sarsa(λ) with `T` tilings in `S` slots.
+fn sarsa<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn Error>> {
+    let mut weights = [[0.0; 2]; S];
+    run(
+        options,
+        task::sarsa::<S, T>(options.budget(), &mut weights)?,
+    )
 }
 
-/// Replays the latest `N` steps. All that the learner keeps fits in `KIB`: features, weights and steps.
-fn q_lambda<const KIB: usize, const S: usize, const T: usize, const N: usize>(
+/// Learns by Q(λ), and replays the latest `N` steps. All that the learner keeps fits in `KIB`: features, weights and steps.
+fn replay<const KIB: usize, const S: usize, const T: usize, const N: usize>(
     options: &Options,
 ) -> Result<(), Box<dyn Error>> {
     const {
         let weights = size_of::<[[f32; 2]; S]>();
         let memory = size_of::<[Transition<4>; N]>();
-        assert!(size_of::<Replayer<S, T>>() + weights + memory <= KIB * 1024);
+        assert!(size_of::<QLambda<S, T>>() + weights + memory <= KIB * 1024);
     }
     let mut weights = [[0.0; 2]; S];
     let mut memory = [Transition::EMPTY; N];
-    let learner: Replayer<S, T> = replayer(options.budget(), &mut weights, &mut memory)?;
+    let learner = task::q_lambda::<S, T>(options.budget(), &mut weights, &mut memory)?;
     run(options, learner)
 }
 

@@ -33,7 +33,7 @@ fn swing_up_learns_the_same_from_the_same_seed() {
         (line, folder.read(name))
     });
     assert!(one == two, "{} {}", one.0, two.0);
-    assert_eq!(one.1.len(), 65_536 + 20);
+    assert_eq!(one.1.len(), 6144 * 8 + 20);
 
     let (solved_at, mean, sd, misses) = figures(&one.0);
     assert!(solved_at.is_some_and(|n| (100..=115).contains(&n)) && misses == 0);
@@ -91,20 +91,21 @@ fn swing_up_draws_its_results() {
 }
 
 #[test]
-fn swing_up_takes_every_preset_and_memory() {
+fn swing_up_takes_every_learner_and_memory() {
     let folder = Folder::new();
-    for (memory, sarsa, replay) in [
-        ("8k", 8192, 5632),
-        ("16k", 16384, 11264),
-        ("32k", 32768, 21504),
-        ("64k", 65536, 45056),
+    for (learner, memory, slots) in [
+        ("sarsa", "8k", 1024),
+        ("sarsa", "16k", 2048),
+        ("sarsa", "32k", 4096),
+        ("sarsa", "64k", 8192),
+        ("replay", "16k", 1408),
+        ("replay", "32k", 2944),
+        ("replay", "64k", 6144),
     ] {
-        for (preset, bytes) in [("fast", sarsa), ("quality", sarsa), ("replay", replay)] {
-            let options = format!("--preset {preset} --memory {memory}");
-            let line = folder.swing_up(&format!("--quiet --episodes 3 {options} --save weights"));
-            assert_eq!(figures(&line).0, None);
-            assert_eq!(folder.read("weights").len(), bytes + 20);
-        }
+        let options = format!("--learner {learner} --memory {memory}");
+        let line = folder.swing_up(&format!("--quiet --episodes 3 {options} --save weights"));
+        assert_eq!(figures(&line).0, None);
+        assert_eq!(folder.read("weights").len(), slots * 8 + 20);
     }
 }
 
@@ -112,7 +113,7 @@ fn swing_up_takes_every_preset_and_memory() {
 #[test]
 fn swing_up_evaluates_during_a_budget_of_steps() {
     let folder = Folder::new();
-    let output = folder.swing_up("--quiet --preset replay --steps 7000 --evaluate 2000 --seed 1");
+    let output = folder.swing_up("--quiet --steps 7000 --evaluate 2000 --seed 1");
     let lines: Vec<&str> = output.lines().collect();
     assert_eq!(lines.len(), 4, "{output}");
     for (line, least) in lines.iter().zip([2000, 4000, 6000]) {
@@ -122,7 +123,7 @@ fn swing_up_evaluates_during_a_budget_of_steps() {
         assert!((-500.0..-50.0).contains(&mean), "{output}");
     }
     // Evaluations change nothing.
-    let alone = folder.swing_up("--quiet --preset replay --steps 7000 --seed 1");
+    let alone = folder.swing_up("--quiet --steps 7000 --seed 1");
     assert_eq!(lines[3], alone.trim_end());
 }
 
@@ -137,8 +138,11 @@ fn swing_up_rejects_weights_of_another_learner() {
         assert!(errors.contains(&format!("weights: {reason}")), "{errors}");
         assert_eq!(folder.names(), ["weights"], "{errors}");
     };
-    rejects("--memory 16k", "weights must have 16404 bytes, got 65556");
-    rejects("--preset quality", "weights must be for features ");
+    rejects("--memory 16k", "weights must have 11284 bytes, got 49172");
+    rejects(
+        "--learner sarsa",
+        "weights must have 65556 bytes, got 49172",
+    );
     let mut bytes = folder.read("weights");
     bytes[30_000] ^= 2;
     fs::write(folder.path("weights"), bytes).unwrap();

@@ -45,7 +45,7 @@ pub struct QLambda<'w, F, const S: usize, const A: usize, const D: usize, const 
     values: Values<'w, F, S, A, D, T>,
     /// A ring of the latest transitions.
     memory: &'w mut [Transition<D>],
-    /// The place of the next transition.
+    /// The place after the latest transition.
     next: usize,
     state: [f32; D],
     action: usize,
@@ -91,6 +91,9 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
 
     /// Stores the latest step in place of the oldest.
     fn store(&mut self, reward: f32, next: Next) {
+        if self.next >= self.memory.len() {
+            self.next = 0;
+        }
         if let Some(transition) = self.memory.get_mut(self.next) {
             *transition = Transition {
                 state: self.state,
@@ -99,7 +102,7 @@ impl<'w, F: Features<D, T>, const S: usize, const A: usize, const D: usize, cons
                 next,
             };
         }
-        self.next = (self.next + 1) % self.memory.len();
+        self.next += 1;
     }
 
     /// w ← w + α (G − q(S, A)) ∇q(S, A), from the last step to the first, where G is the λ-return: R + γ max q where the

@@ -27,7 +27,8 @@ type Step = (f32, Option<(usize, f32, bool)>);
 /// The λ-returns of Watkins's Q(λ) (Sutton & Barto 12.10), from the last of these steps to the first. The weight of
 /// each return is written out: where the next action is greedy, 1 − λ for its value and λ for its return.
 fn learn(w: &mut [[f64; 2]], steps: &[Step], settings: &Settings) {
-    let [gamma, lambda, alpha] = [settings.gamma, settings.lambda, settings.alpha.start].map(f64::from);
+    let [gamma, lambda, alpha] =
+        [settings.gamma, settings.lambda, settings.alpha.start].map(f64::from);
     let coder = coder();
     let q = |w: &[[f64; 2]], state: f32, action: usize| -> f64 {
         let slots = coder.active(&[state]);
@@ -98,9 +99,17 @@ fn the_weights_equal_those_of_the_definition() {
             }
             let latest = steps.len().saturating_sub(MEMORY);
             learn(&mut expected, &steps[latest..], &settings);
-            for (w, expected) in agent.weights().iter().flatten().zip(expected.iter().flatten()) {
+            for (w, expected) in agent
+                .weights()
+                .iter()
+                .flatten()
+                .zip(expected.iter().flatten())
+            {
                 let error = (f64::from(*w) - expected).abs();
-                assert!(error < 1e-3, "λ = {lambda}, episode {episode}: {w} for {expected}");
+                assert!(
+                    error < 1e-3,
+                    "λ = {lambda}, episode {episode}: {w} for {expected}"
+                );
             }
         }
         assert!(ends[0] > 10 && ends[1] > 5, "{ends:?}");
