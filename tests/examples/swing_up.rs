@@ -36,7 +36,7 @@ fn swing_up_learns_the_same_from_the_same_seed() {
     assert_eq!(one.1.len(), 6144 * 8 + 20);
 
     let (solved_at, mean, sd, misses) = figures(&one.0);
-    assert!(solved_at.is_some_and(|n| (100..=115).contains(&n)) && misses == 0);
+    assert!(solved_at.is_some_and(|n| (100..=150).contains(&n)) && misses == 0);
     assert!(mean > -100.0 && sd > 0.0, "{}", one.0);
     folder.swing_up("--quiet --episodes 300 --seed 2 --save other");
     assert!(
