@@ -2,6 +2,7 @@
 
 #![no_std]
 
+pub mod balance;
 pub mod counter;
 pub mod episode;
 pub mod micromath;
