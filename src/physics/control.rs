@@ -31,7 +31,7 @@
 //!     pendulum.step(regulator.torque(error))?;
 //! }
 //! let error = difference::<Fast>(pendulum.state(), State::UPRIGHT);
-//! assert!(error.iter().all(|x| x.abs() < 1e-4));
+//! assert!(error.iter().all(|x| x.abs() < 1e-3));
 //! # Ok::<(), acrobot::Error>(())
 //! ```
 

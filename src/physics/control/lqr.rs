@@ -80,7 +80,7 @@ const MAX_ITERATIONS: u32 = SQUARINGS + 5;
 ///
 /// // A force moves a mass of 1 kg in steps of 0.1 s: position and velocity are the first and the third number. The
 /// // others decay.
-/// let a = [[1.0, 0.0, 0.1, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.5]];
+/// let a: [[f64; 4]; 4] = [[1.0, 0.0, 0.1, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.5]];
 /// let model = Discrete { a, b: [0.005, 0.0, 0.1, 0.0] };
 /// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
 /// let regulator = lqr(&model, &q, 1.0)?;
