@@ -11,6 +11,7 @@ use core::cell::RefCell;
 use acrobot::physics::control::difference;
 use acrobot::{Acrobot, Error, Fast, Params, State};
 use acrobot_cortex_m::balance::Controller;
+use acrobot_cortex_m::ram;
 use cortex_m::Peripherals;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};
@@ -110,6 +111,7 @@ fn main() -> ! {
             process::exit(1)
         }
     }
+    println!("limit_10 ram {}", ram::used());
     process::exit(if in_time == Ok(0) && caught == Ok(0) {
         0
     } else {
@@ -151,19 +153,14 @@ fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, Er
         longest = longest.max(time);
         error = error.max(episode.error);
     }
-    let milliseconds = |ticks: u32| ticks * (1000 / RATE);
     println!("{name} missed {missed}");
-    println!(
-        "{name} catch {}",
-        milliseconds(caught / (episodes - missed).max(1))
-    );
-    println!("{name} longest {}", milliseconds(longest));
-    println!("{name} error {}", (error * 1e6) as u32);
-    println!(
-        "{name} tick {}",
-        counts * u64::from(PER_COUNT) / u64::from(ticks)
-    );
+    println!("{name} tick {}", counts * u64::from(PER_COUNT) / u64::from(ticks));
     println!("{name} slowest {}", slowest * PER_COUNT);
+    if missed < episodes {
+        println!("{name} catch {}", caught / (episodes - missed) / RATE);
+        println!("{name} longest {}", longest / RATE);
+        println!("{name} error {}", (error * 1000.0) as u32);
+    }
     Ok(missed)
 }
 
