@@ -65,6 +65,11 @@ impl<E> TimeLimit<E> {
         self.limit
     }
 
+    /// Sets the number of steps after which episodes are truncated. The count of steps does not change.
+    pub const fn set_limit(&mut self, limit: NonZeroU32) {
+        self.limit = limit;
+    }
+
     /// The number of steps since the last reset.
     #[must_use]
     #[inline]

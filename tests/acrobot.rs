@@ -168,6 +168,9 @@ fn time_limits_truncate_whether_or_not_an_episode_terminates() {
         acrobot.reset();
         assert_eq!(acrobot.elapsed(), 0);
         assert!(!acrobot.step(Action::Zero).done());
+        acrobot.set_limit(3.try_into().unwrap());
+        assert!(!acrobot.step(Action::Zero).done());
+        assert!(acrobot.step(Action::Zero).truncated, "the count goes on");
     }
 }
 

@@ -23,6 +23,7 @@ DOCUMENT = pathlib.Path("../../docs/embedded.md")
 TOLERANCE = 1.05
 M4F = "thumbv7em-none-eabihf"
 TUNED = "-C target-cpu=cortex-m4"
+M7 = "-C target-cpu=cortex-m7"
 ARITHMETICS = {"fast": "`Fast`", "micro": "`Micro`", "reference": "`Reference`", "portable": "`Portable`"}
 COLUMNS = {
     "fast": "`Fast`",
@@ -50,15 +51,20 @@ ROWS = {
     "milliseconds": "time of this training at 168 MHz, estimated, ms",
     "ram": "RAM of the whole firmware that trains and draws, bytes",
 }
+SOFT_FLOATS = {"fast_soft_floats": "`Fast`, soft-floats", "micro_soft_floats": "`Micro`, soft-floats"}
+Core = collections.namedtuple("Core", "words target has_fpu rustflags machine", defaults=[False, "", ""])
 CORES = {
-    "thumbv6m-none-eabi": "Cortex-M0, `thumbv6m-none-eabi`",
-    "thumbv7m-none-eabi": "Cortex-M3, `thumbv7m-none-eabi`",
-    M4F: f"Cortex-M4F, `{M4F}`",
-    "thumbv8m.main-none-eabihf": "Cortex-M33 with FPU, `thumbv8m.main-none-eabihf`",
-    "riscv32i-unknown-none-elf": "RV32I, `riscv32i-unknown-none-elf`",
-    "riscv32imc-unknown-none-elf": "RV32IMC, `riscv32imc-unknown-none-elf`",
-    "riscv32imafc-unknown-none-elf": "RV32IMAFC, `riscv32imafc-unknown-none-elf`",
+    "m0": Core("Cortex-M0", "thumbv6m-none-eabi"),
+    "m3": Core("Cortex-M3", "thumbv7m-none-eabi"),
+    "m4f": Core("Cortex-M4F", M4F, True),
+    # This machine has its RAM at another address.
+    "m7": Core("Cortex-M7 with `f64`", M4F, True, f"{M7} -C link-arg=--defsym=RAM_ORIGIN=0x60000000", "mps2-an500"),
+    "m33": Core("Cortex-M33 with FPU", "thumbv8m.main-none-eabihf", True),
+    "rv32i": Core("RV32I", "riscv32i-unknown-none-elf"),
+    "rv32imc": Core("RV32IMC", "riscv32imc-unknown-none-elf"),
+    "rv32imafc": Core("RV32IMAFC", "riscv32imafc-unknown-none-elf", True),
 }
+CORE_ROWS = {name: f"{core.words}, `{core.target}`" for name, core in CORES.items()}
 LEVELS = ["3", "2", '"s"', '"z"']
 CLOCKS = {
     "STM32F4 (Cortex-M4F)": 168,
@@ -67,18 +73,20 @@ CLOCKS = {
 }
 
 
-def run(*command, rustflags=""):
+def run(*command, rustflags="", machine=""):
     environment = os.environ | {"RUSTFLAGS": rustflags}
+    if machine:
+        environment["CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUNNER"] = f"../../.cargo/qemu arm {machine}"
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
     if done.returncode != 0:
         sys.exit(f"{done.stdout}failed: {' '.join(command)}")
     return done.stdout
 
 
-def cargo(command, *binaries, target=M4F, features="", level="3", rustflags=""):
+def cargo(command, *binaries, target=M4F, features="", level="3", **settings):
     options = ["--quiet", "--locked", "--release", "--target", target, "--features", features]
     options += ["--config", f"profile.release.opt-level={level}"]
-    return run("cargo", command, *options, *(f"--bin={binary}" for binary in binaries), rustflags=rustflags)
+    return run("cargo", command, *options, *(f"--bin={binary}" for binary in binaries), **settings)
 
 
 @functools.cache
@@ -135,19 +143,24 @@ def measure_m4f():
 
 def measure_cores(figure):
     return {
-        (arithmetic, target): value
-        for target in CORES
-        for (arithmetic, each), value in printed("steps", target=target).items()
+        (arithmetic + suffix, name): value
+        for name, core in CORES.items()
+        for suffix, features in [("", "")] + [("_soft_floats", "soft-floats")] * (not core.has_fpu)
+        for (arithmetic, each), value in printed("steps", features=features, **options(core)).items()
         if each == figure
     }
 
 
 def measure_sizes():
     return {
-        (arithmetic, target): size
-        for target in CORES
-        for arithmetic, size in minimal(ARITHMETICS, target=target)[1].items()
+        (arithmetic, name): size
+        for name, core in CORES.items()
+        for arithmetic, size in minimal(ARITHMETICS, **options(core))[1].items()
     }
+
+
+def options(core):
+    return {"target": core.target, "rustflags": core.rustflags, "machine": core.machine}
 
 
 def measure_levels():
@@ -164,9 +177,9 @@ def measure_levels():
 Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
-    "cores": Table("instructions per step", ARITHMETICS, CORES, lambda: measure_cores("step")),
-    "stacks": Table("bytes of stack of a step", ARITHMETICS, CORES, lambda: measure_cores("stack")),
-    "sizes": Table("bytes of flash", ARITHMETICS, CORES, measure_sizes),
+    "cores": Table("instructions per step", ARITHMETICS | SOFT_FLOATS, CORE_ROWS, lambda: measure_cores("step")),
+    "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: measure_cores("stack")),
+    "sizes": Table("bytes of flash", ARITHMETICS, CORE_ROWS, measure_sizes),
     "levels": Table(
         "`opt-level` on a Cortex-M4F",
         ARITHMETICS,

@@ -1,8 +1,6 @@
-// Launches Debian's Chromium without a window.
+// Launches Debian's Chromium without a window, by the `chromium` of playwright-core: examples/npm has another copy of it.
 
-import { chromium } from "playwright-core";
-
-export const launch = () =>
+export const launch = (chromium) =>
   chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     // Chromium's sandbox does not work as root, as in CI.

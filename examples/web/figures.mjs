@@ -5,6 +5,8 @@ import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { gzipSync } from "node:zlib";
 
+import { chromium } from "playwright-core";
+
 import { launch } from "./browser.mjs";
 import { serve } from "./serve.mjs";
 
@@ -53,7 +55,7 @@ async function inBrowser(browser, address) {
 }
 
 const server = await serve(0);
-const browser = await launch();
+const browser = await launch(chromium);
 const version = browser.version();
 const rounds = [];
 for (let round = 0; round < ROUNDS; round++) {

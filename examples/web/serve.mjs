@@ -15,23 +15,23 @@ const TYPES = {
   ".wasm": "application/wasm",
 };
 
-/** The file for an address, or undefined if the address is invalid. It is always in dist/, because URL resolves every "..". */
-function fileOf(address) {
+/** The file for an address, or undefined if the address is invalid. It is always in `folder`, because URL resolves every "..". */
+function fileOf(address, folder) {
   try {
     // URL would read what follows two slashes as a host name.
     const { pathname } = new URL(address.replace(/^[/\\]+/, "/"), "http://localhost");
-    return join(DIST, pathname.endsWith("/") ? `${pathname}index.html` : pathname);
+    return join(folder, pathname.endsWith("/") ? `${pathname}index.html` : pathname);
   } catch {
     return undefined;
   }
 }
 
-/** A server that only this machine can reach. Port 0 takes any free port. */
-export function serve(port) {
+/** A server for a folder that only this machine can reach. Port 0 takes any free port. */
+export function serve(port, folder = DIST) {
   const server = createServer(async ({ method, url }, response) => {
     const fail = (status, reason, headers) => response.writeHead(status, headers).end(reason);
     if (method !== "GET" && method !== "HEAD") return fail(405, "the method must be GET or HEAD", { allow: "GET, HEAD" });
-    const file = fileOf(url);
+    const file = fileOf(url, folder);
     if (!file) return fail(400, "the address must be a path");
     try {
       // Before the response begins, because this fails if the file is missing, is a folder or is being replaced by a build.

@@ -82,19 +82,47 @@ trait QuarterTurns: Numbers<f32> {
     fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self);
 }
 
+/// Whether the target may have instructions for `f32`. Results do not depend on it.
+const HAS_F32: bool = !cfg!(any(
+    all(target_arch = "arm", target_abi = "eabi"),
+    // Stable Rust does not tell whether RISC-V has the extension F. All its targets with F also have A.
+    all(target_arch = "riscv32", not(target_feature = "a")),
+));
+
 impl QuarterTurns for f32 {
-    /// Uses the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and cheaper on a
-    /// Cortex-M than selecting and negating. No −0 is lost: `sin` is never −0, `cos` never 0.
     #[inline(always)]
-    #[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
     fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self) {
-        const SINES: [f32; 5] = [0.0, 1.0, 0.0, -1.0, 0.0];
-        let i = (turns.to_bits() & 3) as usize;
-        let (turned_sin, turned_cos) = (SINES[i], SINES[i + 1]);
-        (
-            sin * turned_cos + cos * turned_sin,
-            cos * turned_cos - sin * turned_sin,
-        )
+        if HAS_F32 {
+            rotate_by_products(turns.to_bits(), sin, cos)
+        } else {
+            rotate_by_selection(turns.to_bits(), sin, cos)
+        }
+    }
+}
+
+/// Uses the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and cheaper on an FPU
+/// than selecting and negating. No −0 is lost: `sin` is never −0, `cos` never 0.
+#[inline(always)]
+#[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
+fn rotate_by_products(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
+    const SINES: [f32; 5] = [0.0, 1.0, 0.0, -1.0, 0.0];
+    let i = (turns & 3) as usize;
+    let (turned_sin, turned_cos) = (SINES[i], SINES[i + 1]);
+    (
+        sin * turned_cos + cos * turned_sin,
+        cos * turned_cos - sin * turned_sin,
+    )
+}
+
+/// Selects and negates: without an FPU that saves four products and two sums. No −0 results, as from the products.
+#[inline(always)]
+fn rotate_by_selection(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
+    let minus_sin = if sin.to_bits() == 0 { sin } else { -sin };
+    match turns & 3 {
+        0 => (sin, cos),
+        1 => (cos, minus_sin),
+        2 => (minus_sin, -cos),
+        _ => (-cos, sin),
     }
 }
 
@@ -114,5 +142,26 @@ impl<const N: usize> QuarterTurns for Lanes<f32, N> {
             *cos = f32::from_bits(turned_cos) + 0.0;
         }
         (sin, cos)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A target uses only one of the two. This test runs both.
+    #[test]
+    fn both_rotations_agree() {
+        for i in -100..=100 {
+            let angle = i as f32 / 128.0;
+            // Within a quarter turn about 0 nothing is rotated.
+            let (sin, cos) = Fast::sin_cos(angle);
+            for turns in 0..8 {
+                let [products, selection] = [rotate_by_products, rotate_by_selection]
+                    .map(|rotate| rotate(turns, sin, cos))
+                    .map(|(sin, cos)| [sin, cos].map(f32::to_bits));
+                assert_eq!(products, selection, "{angle} {turns}");
+            }
+        }
     }
 }

@@ -21,23 +21,26 @@ class Platform(NamedTuple):
     target: str
     flags: str = ""
     machine: str = ""  # of QEMU, if not the one in .cargo/config.toml
+    features: str = ""
     equal: bool = True
 
 
 M4F, M33 = "thumbv7em-none-eabihf", "thumbv8m.main-none-eabihf"
+RAM_OF_AN500 = "-C link-arg=--defsym=RAM_ORIGIN=0x60000000"
 PLATFORMS = [
     Platform("x86-64", "x86_64-unknown-linux-gnu"),
     Platform("x86 with SSE2", "i686-unknown-linux-musl"),
     Platform("AArch64 with NEON", "aarch64-unknown-linux-musl"),
     Platform("s390x, big-endian", "s390x-unknown-linux-gnu"),
     Platform("Cortex-M0", "thumbv6m-none-eabi"),
+    Platform("Cortex-M0, soft-floats", "thumbv6m-none-eabi", features="soft-floats"),
     Platform("Cortex-M3", "thumbv7m-none-eabi"),
     Platform("Cortex-M4 without FPU", "thumbv7em-none-eabi"),
     Platform("Cortex-M4F", M4F),
-    # This machine has its RAM at another address.
-    Platform("Cortex-M7 with `f64`", M4F, "-C target-cpu=cortex-m7 -C link-arg=--defsym=RAM_ORIGIN=0x60000000", "mps2-an500"),
+    Platform("Cortex-M7 with `f64`", M4F, f"-C target-cpu=cortex-m7 {RAM_OF_AN500}", "mps2-an500"),
     Platform("Cortex-M33", M33),
     Platform("RV32IMC", "riscv32imc-unknown-none-elf"),
+    Platform("RV32IMC, soft-floats", "riscv32imc-unknown-none-elf", features="soft-floats"),
     Platform("RV32IMAFC", "riscv32imafc-unknown-none-elf"),
     Platform("RV64GC", "riscv64gc-unknown-none-elf"),
     Platform("WebAssembly", "wasm32-wasip1"),
@@ -46,12 +49,12 @@ PLATFORMS = [
     Platform("Cortex-M4F, fused by LLVM", M4F, "-C llvm-args=-fp-contract=fast", equal=False),
     Platform("Cortex-M55 with Helium", M33, "-C target-cpu=cortex-m55", "mps3-an547", equal=False),
 ]
-HEAD = ["| platform | Rust target | flags | bits |", "|---|---|---|---|"]
+HEAD = ["| platform | Rust target | options | bits |", "|---|---|---|---|"]
 
 
 def row(platform):
-    flags = f"`{platform.flags}`" if platform.flags else ""
-    cells = platform.name, f"`{platform.target}`", flags, "equal" if platform.equal else "differ"
+    options = platform.flags or platform.features and f"--features {platform.features}"
+    cells = platform.name, f"`{platform.target}`", options and f"`{options}`", "equal" if platform.equal else "differ"
     return f"| {' | '.join(cells)} |"
 
 
@@ -62,8 +65,8 @@ def wrong(platform):
     if platform.machine:
         name = platform.target.upper().replace("-", "_").replace(".", "_")
         environment[f"CARGO_TARGET_{name}_RUNNER"] = f"{ROOT}/.cargo/qemu arm {platform.machine}"
-    cargo = ["cargo", "--quiet", "--locked", "--release", "--package=bits", f"--target={platform.target}"]
-    build, run = ([cargo[0], command, *cargo[1:]] for command in ("build", "run"))
+    options = ["--quiet", "--locked", "--release", "--package=bits", f"--target={platform.target}"]
+    build, run = (["cargo", each, *options, f"--features={platform.features}"] for each in ("build", "run"))
     if subprocess.run(build, cwd=ROOT, env=environment).returncode != 0:
         return "does not compile"
     try:

@@ -16,3 +16,7 @@ pub mod stack;
 pub use {cortex_m::asm::nop, cortex_m_rt::entry};
 #[cfg(target_arch = "riscv32")]
 pub use {riscv::asm::nop, riscv_rt::entry};
+
+// Linked because it is named.
+#[cfg(feature = "soft-floats")]
+use soft_floats as _;

@@ -7,6 +7,8 @@ import { join } from "node:path";
 import { after, before } from "node:test";
 import { fileURLToPath } from "node:url";
 
+import { chromium } from "playwright-core";
+
 import { launch } from "../browser.mjs";
 import { decodeActions } from "../page/link.js";
 import { serve } from "../serve.mjs";
@@ -19,7 +21,7 @@ let server, browser, origin;
 before(async () => {
   server = await serve(0);
   origin = `http://localhost:${server.address().port}/`;
-  browser = await launch();
+  browser = await launch(chromium);
 });
 
 after(async () => {

@@ -16,6 +16,9 @@ use acrobot::{Fast, Portable};
 use bits::{episodes, training};
 #[cfg(target_os = "none")]
 use semihosting::{println, process};
+// Linked because it is named.
+#[cfg(feature = "soft-floats")]
+use soft_floats as _;
 
 #[cfg_attr(all(target_os = "none", target_arch = "arm"), cortex_m_rt::entry)]
 #[cfg_attr(all(target_os = "none", not(target_arch = "arm")), riscv_rt::entry)]

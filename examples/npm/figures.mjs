@@ -1,0 +1,45 @@
+// Prints the package's rows of docs/wasm.md: sizes, and steps per second in Node.js. Builds the package first.
+
+import { execFileSync } from "node:child_process";
+import { readFileSync, statSync } from "node:fs";
+import { gzipSync } from "node:zlib";
+
+import "./build.mjs";
+
+const { Acrobot, Batch } = await import("./dist/index.js");
+const kilobytes = (bytes) => `${(bytes / 1000).toFixed(1)} KB`;
+
+/** Steps per second in the best of ten rounds, because other programs may use the machine too. */
+function fastest(steps, run) {
+  let best = Infinity;
+  for (let round = 0; round < 10; round++) {
+    const start = performance.now();
+    run();
+    best = Math.min(best, performance.now() - start);
+  }
+  return `${(steps / best / 1000).toPrecision(3)} million steps/s`;
+}
+
+const acrobot = new Acrobot({ seed: 42 });
+const single = fastest(500_000, () => {
+  for (let i = 0; i < 500_000; i++) {
+    const { terminated, truncated } = acrobot.step(i % 3);
+    if (terminated || truncated) acrobot.reset();
+  }
+});
+const batch = new Batch({ seed: 42, count: 1024 });
+const actions = Uint8Array.from({ length: 1024 }, (_, i) => i % 3);
+const many = fastest(1024 * 2000, () => {
+  for (let i = 0; i < 2000; i++) batch.step(actions);
+});
+
+const code = readFileSync("dist/index.js");
+const [{ size, unpackedSize }] = JSON.parse(execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"], { encoding: "utf8" }));
+console.log(`
+| on one core, in Node.js ${process.versions.node.split(".")[0]} | |
+|---|---|
+| WebAssembly module, with simd128 | ${kilobytes(statSync("target/acrobot.wasm").size)} |
+| \`index.js\`, with the module inside | ${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)} |
+| package, with types and licences | ${kilobytes(unpackedSize)}, packed ${kilobytes(size)} |
+| \`Acrobot.step\` | ${single} |
+| \`Batch.step\` of 1,024, with observations | ${many} |`);

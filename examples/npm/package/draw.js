@@ -1,0 +1,51 @@
+// Draws an acrobot on a canvas, with the geometry of the crate's pictures and of Gymnasium's.
+
+/** Gymnasium's colours. Its pictures have no torque. */
+const COLORS = { background: "white", target: "black", link: "rgb(0, 204, 204)", joint: "rgb(204, 204, 0)", torque: "rgb(204, 0, 0)" };
+
+/** Draws into the square from (0, 0) to (size, size) of the context's coordinates. */
+export function draw(context, { theta1, theta2 }, { length1, length2 }, torque, options) {
+  const { size = Math.min(context.canvas.width, context.canvas.height) } = options;
+  const colors = { ...COLORS, ...options.colors };
+  const reach = length1 + length2 + 0.2;
+  const metre = size / 2 / reach;
+  const elbow = [length1 * Math.sin(theta1), -length1 * Math.cos(theta1)];
+  const tip = [elbow[0] + length2 * Math.sin(theta1 + theta2), elbow[1] - length2 * Math.cos(theta1 + theta2)];
+
+  const stroke = (color, width, points) => {
+    context.strokeStyle = color;
+    context.lineWidth = width;
+    context.beginPath();
+    for (const [x, y] of points) context.lineTo(x, y);
+    context.stroke();
+  };
+  const joint = ([x, y]) => {
+    context.fillStyle = colors.joint;
+    context.beginPath();
+    context.arc(x, y, 0.1, 0, 2 * Math.PI);
+    context.fill();
+  };
+
+  context.save();
+  context.clearRect(0, 0, size, size);
+  context.fillStyle = colors.background;
+  context.fillRect(0, 0, size, size);
+  // From here in metres, y up.
+  context.translate(size / 2, size / 2);
+  context.scale(metre, -metre);
+  stroke(colors.target, 1 / metre, [[-reach, 1], [reach, 1]]);
+  stroke(colors.link, 0.2, [[0, 0], elbow]);
+  joint([0, 0]);
+  stroke(colors.link, 0.2, [elbow, tip]);
+  joint(elbow);
+  if (torque !== 0) {
+    // Three quarters of a turn around the elbow, open below, with a head at the end.
+    context.translate(...elbow);
+    context.scale(torque > 0 ? 0.3 : -0.3, 0.3);
+    const arc = Array.from({ length: 7 }, (_, i) => ((i - 1) * Math.PI) / 4).map((angle) => [Math.cos(angle), Math.sin(angle)]);
+    const [x, y] = arc.at(-1);
+    stroke(colors.torque, 1 / 6, arc);
+    stroke(colors.torque, 1 / 6, [[x - 0.49, y + 0.25], [x, y], [x + 0.17, y + 0.52]]);
+  }
+  context.restore();
+}

@@ -1,0 +1,181 @@
+/// <reference lib="esnext.disposable" />
+
+// Without this line, everything here would be exported.
+export {};
+
+/** Torques of −1, 0 and 1 N m between the links, unless `Params.torques` says otherwise. Positive is counter-clockwise. */
+export type Action = 0 | 1 | 2;
+
+/** A number from 0 to 2^53 − 1, or a BigInt from 0 to 2^2048 − 1. */
+export type Seed = number | bigint;
+
+/** Angles and velocities, in single precision. */
+export interface State {
+  /** Angle of link 1, rad; 0 is hanging straight down, counter-clockwise is positive. */
+  theta1: number;
+  /** Angle of link 2 relative to link 1, rad; 0 is in line with it. */
+  theta2: number;
+  /** Angular velocity of link 1, rad/s. */
+  dtheta1: number;
+  /** Angular velocity of link 2 relative to link 1, rad/s. */
+  dtheta2: number;
+}
+
+/** The parameters, rounded to single precision. */
+export interface Params {
+  /** Length of link 1, m; above 0. The default is 1. */
+  length1: number;
+  /** Length of link 2, m; above 0. The default is 1. It changes only the tip's height and pictures. */
+  length2: number;
+  /** Mass of link 1, kg; above 0. The default is 1. */
+  mass1: number;
+  /** Mass of link 2, kg; above 0. The default is 1. */
+  mass2: number;
+  /** Distance of link 1's centre of mass from its joint, m; 0 or more. The default is 0.5. */
+  centerOfMass1: number;
+  /** Distance of link 2's centre of mass from its joint, m; 0 or more. The default is 0.5. */
+  centerOfMass2: number;
+  /** Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, above 0 if that is on the joint. The default is 1. */
+  inertia1: number;
+  /** Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`. */
+  inertia2: number;
+  /** Acceleration of gravity, m/s², downwards; finite. The default is 9.8. */
+  gravity: number;
+  /** Duration of a step, s; above 0. The default is 0.2. */
+  dt: number;
+  /** Bound of |dtheta1| after a step, rad/s; from 1.2e-38 to 3.4e38. The default is 4π. */
+  maxVelocity1: number;
+  /** Bound of |dtheta2| after a step, rad/s; from 1.2e-38 to 3.4e38. The default is 9π. */
+  maxVelocity2: number;
+  /** Torques of the three actions, N m; finite. The default is [-1, 0, 1]. */
+  torques: [number, number, number];
+  /** Each step adds a uniform draw from [−torqueNoise, torqueNoise) to the torque, N m; 0 or more. The default is 0. */
+  torqueNoise: number;
+  /** The equations of the book (the default) or of the NIPS paper: Gymnasium's `book_or_nips`. */
+  dynamics: "book" | "nips";
+}
+
+export interface Options {
+  /** The seed of the first initial state and of all later random numbers. The default is random. */
+  seed?: Seed;
+  /** Parameters that differ from the default. */
+  params?: Partial<Params>;
+  /** The number of steps after which episodes are truncated, from 1 to 2^32 − 1. The default is 500, as in Acrobot-v1. */
+  maxSteps?: number;
+}
+
+export interface Step {
+  /** [cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2], velocities in rad/s. A new array, as those of `reset` and `observation`. */
+  observation: Float32Array;
+  /** −1, or 0 if `terminated`. */
+  reward: number;
+  /** Whether the goal is reached: −cos θ1 − cos(θ1 + θ2) > 1. */
+  terminated: boolean;
+  /** Whether the episode has reached `maxSteps`. */
+  truncated: boolean;
+}
+
+/** A canvas's context: `CanvasRenderingContext2D`, `OffscreenCanvasRenderingContext2D`, or that of a package for Node.js. */
+export interface Context {
+  readonly canvas: { readonly width: number; readonly height: number };
+  fillStyle: unknown;
+  strokeStyle: unknown;
+  lineWidth: number;
+  save(): void;
+  restore(): void;
+  translate(x: number, y: number): void;
+  scale(x: number, y: number): void;
+  clearRect(x: number, y: number, width: number, height: number): void;
+  fillRect(x: number, y: number, width: number, height: number): void;
+  beginPath(): void;
+  lineTo(x: number, y: number): void;
+  arc(x: number, y: number, radius: number, startAngle: number, endAngle: number): void;
+  stroke(): void;
+  fill(): void;
+}
+
+export interface DrawOptions {
+  /** The side of the square from (0, 0) to draw into. The default is the canvas's shorter side. */
+  size?: number;
+  /** CSS colours. The defaults are Gymnasium's, with red for the torque. */
+  colors?: { background?: string; target?: string; link?: string; joint?: string; torque?: string };
+}
+
+/** What acrobots and batches share. Each method throws after `free()`. */
+declare abstract class Kept {
+  /** The parameters: a copy. */
+  get params(): Params;
+  /** Changes some parameters for the next steps. Throws if one is outside its range, and changes nothing then. */
+  setParams(changes: Partial<Params>): void;
+  /** Frees the memory in WebAssembly. Without a call, the garbage collector frees it at some time. */
+  free(): void;
+  /** Calls `free()`: for `using`. */
+  [Symbol.dispose](): void;
+}
+
+/** One Acrobot-v1, in its initial state. Invalid arguments throw a `RangeError` or `TypeError`, and change nothing. */
+export class Acrobot extends Kept {
+  constructor(options?: Options);
+  /** A new acrobot that continues from a snapshot with the same bits. */
+  static restore(snapshot: Uint8Array): Acrobot;
+  /** Begins an episode. Without a seed its initial state is the next draw of the acrobot's random numbers. Returns the observation. */
+  reset(seed?: Seed): Float32Array;
+  /** Applies an action for one dt. Steps after the end of an episode continue it. */
+  step(action: Action): Step;
+  get observation(): Float32Array;
+  /** The state: a copy. Setting it continues the episode. All four numbers must be finite. */
+  get state(): State;
+  set state(state: State);
+  /** The total energy, J. The potential energy is 0 at the height of the fixed joint. */
+  get energy(): number;
+  /** The height of the tip above the fixed joint, m. */
+  get tipHeight(): number;
+  /** The number of steps since the last reset. */
+  get elapsed(): number;
+  get maxSteps(): number;
+  /** Parameters, state, random numbers and steps, in about 150 bytes: Rust's `TimeLimit<Acrobot<Fast>>` in postcard with CRC-32. */
+  snapshot(): Uint8Array;
+  /** Continues from a snapshot. Throws if it is damaged or of another version, and changes nothing then. */
+  restore(snapshot: Uint8Array): void;
+  /** Draws the acrobot, with an arrow for the torque of the last step. */
+  draw(context: Context, options?: DrawOptions): void;
+}
+
+export interface BatchOptions extends Options {
+  /** The number of acrobots, from 1 to as many as fit into 4 GiB. */
+  count: number;
+  /** When an acrobot is reset whose episode has ended: Gymnasium's `AutoresetMode`. The default is "NextStep". */
+  autoreset?: "NextStep" | "SameStep" | "Disabled";
+}
+
+/** What a batch's step returns: arrays with an element, or a row of six numbers, for each acrobot. The next step overwrites them. */
+export interface BatchStep {
+  observations: Float32Array;
+  /** −1, or 0 if the acrobot terminated or was only reset. */
+  rewards: Float32Array;
+  /** 1 if the goal is reached, otherwise 0. */
+  terminated: Uint8Array;
+  /** 1 if the episode has reached `maxSteps`, otherwise 0. */
+  truncated: Uint8Array;
+  /** Only with "SameStep": the last observations of the episodes that this step ended. Other rows are older, or 0. */
+  finalObservations?: Float32Array;
+}
+
+/**
+ * Many acrobots, stepped with SIMD. Acrobot `i` has the random numbers of the seed's `i`-th child: above 0 it is bit-identical to
+ * `new Acrobot({ seed: seed + (BigInt(i) << 128n) })`, for a BigInt `seed` below 2^128.
+ */
+export class Batch extends Kept {
+  constructor(options: BatchOptions);
+  get count(): number;
+  /** The array of observations, which steps and resets overwrite. */
+  get observations(): Float32Array;
+  /** Begins an episode of each acrobot. Returns `observations`. */
+  reset(seed?: Seed): Float32Array;
+  /** Applies an action to each acrobot. A `Uint8Array` is the fastest. */
+  step(actions: ArrayLike<number>): BatchStep;
+  /** The state of an acrobot: a copy. */
+  state(index: number): State;
+  /** Draws an acrobot, without an arrow. */
+  draw(context: Context, index: number, options?: DrawOptions): void;
+}

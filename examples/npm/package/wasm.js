@@ -1,0 +1,81 @@
+// The module and its memory: what the classes of index.js share.
+
+import { inflate } from "./inflate.js";
+
+/* global LENGTH, MODULE: build.mjs defines the module's length in bytes, and the module in DEFLATE and base64. */
+
+let exports;
+
+/** The module's functions. The first call compiles the module, so that an import alone costs nothing and cannot fail. */
+export function wasm() {
+  if (exports) return exports;
+  const bytes = inflate(Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0)), LENGTH);
+  try {
+    ({ exports } = new WebAssembly.Instance(new WebAssembly.Module(bytes)));
+  } catch (cause) {
+    const needs = "WebAssembly with simd128, and 'wasm-unsafe-eval' in a content security policy";
+    throw new Error(`acrobot-rs needs ${needs}: ${cause.message}`, { cause });
+  }
+  return exports;
+}
+
+let numbersView = new Float32Array();
+let bytesView = new Uint8Array();
+
+/** The memory for 17 numbers. Like every view of the module's memory, it has length 0 once that memory has grown. */
+export function numbers() {
+  if (numbersView.length === 0) numbersView = new Float32Array(wasm().memory.buffer, wasm().numbers(), 17);
+  return numbersView;
+}
+
+/** The memory for 256 bytes. */
+export function bytes() {
+  if (bytesView.length === 0) bytesView = new Uint8Array(wasm().memory.buffer, wasm().bytes(), 256);
+  return bytesView;
+}
+
+/** The error for a value of the wrong type, or outside its range. */
+export function invalid(rule, value) {
+  const name = { string: () => JSON.stringify(value), bigint: () => `${value}n`, function: () => "a function" }[typeof value];
+  const got = name?.() ?? (Object(value) === value ? Object.prototype.toString.call(value) : String(value));
+  return new (["number", "bigint"].includes(typeof value) ? RangeError : TypeError)(`${rule}, got ${got}`);
+}
+
+/** The properties of `given`, which must be an object without others than `names`. */
+export function checked(what, given, names) {
+  if (typeof given !== "object" || given === null) throw invalid(`${what} must be an object`, given);
+  const unknown = Object.keys(given).find((name) => !names.includes(name));
+  if (unknown !== undefined) throw new TypeError(`${what} must be among ${names.join(", ")}, got ${unknown}`);
+  return given;
+}
+
+/** An integer from 1 to 2³² − 1. */
+export function positive(name, value) {
+  if (!Number.isInteger(value) || value < 1 || value >= 2 ** 32) throw invalid(`${name} must be an integer from 1 to 2^32 - 1`, value);
+  return value;
+}
+
+/** Writes a seed into the module's memory, lowest word first. Returns the number of words. Without a seed takes a random one. */
+export function writeSeed(seed = Math.floor(Math.random() * 2 ** 53)) {
+  const valid = typeof seed === "bigint" ? seed >= 0n && seed < 1n << 2048n : Number.isSafeInteger(seed) && seed >= 0;
+  if (!valid) throw invalid("seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1", seed);
+  const words = new DataView(bytes().buffer, bytes().byteOffset);
+  let count = 0;
+  let rest = BigInt(seed);
+  do {
+    words.setUint32(4 * count++, Number(rest & 0xffff_ffffn), true);
+    rest >>= 32n;
+  } while (rest > 0n);
+  return count;
+}
+
+/** Throws if the module has rejected numbers: then `length` is that of the reason. `valueOf` returns the number with a name. */
+export function accept(length, valueOf) {
+  if (length === 0) return;
+  const [name, rule, unit] = new TextDecoder().decode(bytes().slice(0, length)).split("\n");
+  const camel = name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
+  const value = valueOf(camel);
+  const rounded = Math.fround(value);
+  const lost = Number.isFinite(value) && value !== 0 && (rounded === 0 || !Number.isFinite(rounded));
+  throw new RangeError(`${camel} must be ${rule} ${unit}, got ${value}${lost ? `, which is ${rounded} in single precision` : ""}`);
+}

@@ -1,0 +1,20 @@
+//! The WebAssembly module of the npm package `acrobot-rs`: exported functions that its JavaScript calls.
+//!
+//! An acrobot or a batch has a number. Longer data passes through the memory in `memory`. The JavaScript checks numbers,
+//! lengths and actions, and the crate checks parameters, states and snapshots.
+
+mod many;
+mod memory;
+mod single;
+mod table;
+
+use lol_alloc::{AssumeSingleThreaded, FreeListAllocator};
+
+#[cfg(target_feature = "atomics")]
+compile_error!("the allocator needs a module with one thread");
+
+/// std's allocator would add 5 KB.
+// SAFETY: a module without atomics has one thread.
+#[global_allocator]
+static ALLOCATOR: AssumeSingleThreaded<FreeListAllocator> =
+    unsafe { AssumeSingleThreaded::new(FreeListAllocator::new()) };

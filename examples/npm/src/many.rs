@@ -1,0 +1,147 @@
+//! Many acrobots at once: the class `Batch` of the package.
+
+use std::cell::Cell;
+use std::num::NonZeroU32;
+
+use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::numpy::Pcg64;
+use acrobot::{Fast, ResetOptions};
+
+use crate::memory::{self, set_bytes, set_numbers};
+use crate::table::Table;
+
+/// As many as one vector of simd128 has. More take more code and more time.
+const LANES: usize = 4;
+
+/// A batch with its memory. A `VecBatch` would take 12 KB more code, because its blocks have 16 lanes.
+struct Many {
+    batch: Batch<Fast, Vec<Block<Fast, LANES>>, Vec<Pcg64>, LANES>,
+    /// JavaScript writes here before a step.
+    actions: Vec<u8>,
+    observations: Vec<[f32; 6]>,
+    rewards: Vec<f32>,
+    terminated: Vec<bool>,
+    truncated: Vec<bool>,
+    final_observations: Vec<[f32; 6]>,
+}
+
+thread_local! {
+    static BATCHES: Cell<Table<Many>> = const { Cell::new(Table::EMPTY) };
+}
+
+/// `count` copies of a value, or `None` if there is no memory for them.
+fn fill<T: Clone>(value: T, count: usize) -> Option<Vec<T>> {
+    let mut vec = Vec::new();
+    vec.try_reserve_exact(count).ok()?;
+    // Always true. With this check the compiler omits the growth in `resize`, and its panic.
+    if count <= vec.capacity() {
+        vec.resize(count, value);
+    }
+    Some(vec)
+}
+
+impl Many {
+    fn new(words: usize, count: usize) -> Option<Self> {
+        let blocks = fill(Block::EMPTY, count.div_ceil(LANES))?;
+        let generators = fill(Pcg64::UNSEEDED, count)?;
+        Some(Self {
+            batch: Batch::with_seed(memory::seed(words), blocks, generators).ok()?,
+            actions: fill(0, count)?,
+            observations: fill([0.0; 6], count)?,
+            rewards: fill(0.0, count)?,
+            terminated: fill(false, count)?,
+            truncated: fill(false, count)?,
+            final_observations: fill([0.0; 6], count)?,
+        })
+    }
+}
+
+/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of its actions and results.
+/// Returns its number, or −1 if there is no memory for it.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_new(count: usize, words: usize, max_steps: u32, autoreset: u32) -> i32 {
+    let Some(mut many) = Many::new(words, count) else {
+        return -1;
+    };
+    many.batch
+        .set_limit(NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN));
+    many.batch.set_autoreset(match autoreset {
+        0 => Autoreset::NextStep,
+        1 => Autoreset::SameStep,
+        _ => Autoreset::Disabled,
+    });
+    let addresses = [
+        many.actions.as_ptr().addr(),
+        many.observations.as_ptr().addr(),
+        many.rewards.as_ptr().addr(),
+        many.terminated.as_ptr().addr(),
+        many.truncated.as_ptr().addr(),
+        many.final_observations.as_ptr().addr(),
+    ];
+    set_bytes(addresses.into_iter().flat_map(usize::to_le_bytes));
+    memory::insert(&BATCHES, many)
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_free(number: usize) {
+    memory::with(&BATCHES, |table| table.remove(number));
+}
+
+/// Resets, with a seed of this many 32-bit words, or with the next draws if there are none.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_reset(number: usize, words: usize) {
+    let seed = (words > 0).then(|| memory::seed(words));
+    memory::with_value(&BATCHES, number, |many| {
+        many.batch.reset_with(ResetOptions { seed, bounds: None });
+    });
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_observe(number: usize) {
+    memory::with_value(&BATCHES, number, |many| {
+        // The lengths are equal, so this cannot fail.
+        let _ = many
+            .batch
+            .observe(Observations::Rows(&mut many.observations));
+    });
+}
+
+/// Steps. Returns false if an action is above 2. Then nothing changes.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_step(number: usize) -> bool {
+    memory::with_value(&BATCHES, number, |many| {
+        let buffers = StepBuffers {
+            rewards: &mut many.rewards,
+            terminated: &mut many.terminated,
+            truncated: &mut many.truncated,
+            observations: Observations::Rows(&mut many.observations),
+            final_observations: Observations::Rows(&mut many.final_observations),
+        };
+        many.batch.step(&many.actions, buffers).is_ok()
+    })
+}
+
+/// Writes the state of acrobot `index`.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_state(number: usize, index: usize) {
+    memory::with_value(&BATCHES, number, |many| {
+        if let Some(state) = many.batch.state(index) {
+            set_numbers(state.into());
+        }
+    });
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_params(number: usize) {
+    memory::with_value(&BATCHES, number, |many| {
+        memory::set_params(many.batch.params());
+    });
+}
+
+/// Sets the parameters. Returns 0, or the length of the reason for which they are rejected.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_set_params(number: usize) -> usize {
+    memory::with_value(&BATCHES, number, |many| {
+        memory::reason(many.batch.set_params(memory::get_params()))
+    })
+}

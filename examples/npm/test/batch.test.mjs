@@ -1,0 +1,163 @@
+// Acrobots of a batch have the bits of acrobots alone. Memory is used again.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { setFlagsFromString } from "node:v8";
+import { runInNewContext } from "node:vm";
+import { inflateRawSync } from "node:zlib";
+
+import { Acrobot, Batch } from "../dist/index.js";
+
+const COUNT = 21; // the last block is partly filled
+const OPTIONS = { seed: 42n, count: COUNT, maxSteps: 25, params: { torqueNoise: 0.5, mass1: 1.5 } };
+
+/** The acrobots of a batch alone, each with a child of the seed as NumPy's `SeedSequence` spawns it. Index 0 has no such seed. */
+const alone = ({ seed, maxSteps, params }) =>
+  Array.from({ length: COUNT }, (_, i) => new Acrobot({ seed: seed + (BigInt(i) << 128n), maxSteps, params }));
+
+// A linear congruential generator, so that each run has the same actions.
+let random = 1;
+const action = () => ((random = (Math.imul(random, 1664525) + 1013904223) >>> 0), Math.floor((random / 2 ** 32) * 3));
+
+/** The row of an array with six numbers for each acrobot. */
+const row = (array, i) => array.slice(6 * i, 6 * i + 6);
+
+for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
+  test(`with ${autoreset}, acrobots of a batch have the bits of acrobots alone`, () => {
+    const batch = new Batch({ ...OPTIONS, autoreset });
+    const others = alone(OPTIONS);
+    const ended = new Array(COUNT).fill(false);
+    let resets = 0;
+    for (let steps = 0; steps < 80; steps++) {
+      const actions = Uint8Array.from({ length: COUNT }, action);
+      const given = steps % 2 ? actions : [...actions];
+      const results = batch.step(given);
+      for (let i = 1; i < COUNT; i++) {
+        if (autoreset === "NextStep" && ended[i]) {
+          const found = [row(results.observations, i), results.rewards[i], results.terminated[i], results.truncated[i]];
+          assert.deepEqual(found, [others[i].reset(), 0, 0, 0]);
+          ended[i] = false;
+          continue;
+        }
+        const step = others[i].step(actions[i]);
+        ended[i] = step.terminated || step.truncated;
+        assert.equal(results.rewards[i], step.reward);
+        assert.deepEqual([results.terminated[i], results.truncated[i]], [step.terminated, step.truncated].map(Number));
+        if (autoreset === "SameStep" && ended[i]) {
+          resets++;
+          assert.deepEqual(row(results.finalObservations, i), step.observation);
+          assert.deepEqual(row(results.observations, i), others[i].reset());
+        } else {
+          assert.deepEqual(row(results.observations, i), step.observation);
+        }
+        assert.deepEqual(batch.state(i), others[i].state);
+      }
+      assert.equal("finalObservations" in results, autoreset === "SameStep");
+    }
+    assert.equal(resets > 0, autoreset === "SameStep");
+  });
+}
+
+test("a reset draws the next initial states, or those of a seed", () => {
+  const [batch, others] = [new Batch(OPTIONS), alone(OPTIONS)];
+  const observations = batch.reset();
+  assert.equal(observations, batch.observations);
+  for (let i = 1; i < COUNT; i++) assert.deepEqual(row(observations, i), others[i].reset());
+  batch.reset(7);
+  for (let i = 1; i < COUNT; i++) assert.deepEqual(row(observations, i), alone({ ...OPTIONS, seed: 7n })[i].observation);
+  assert.deepEqual(batch.reset(42), new Batch(OPTIONS).observations);
+  assert.deepEqual(batch.params, others[0].params);
+});
+
+const ELEMENT = "must be 0 (negative torque), 1 (none) or 2 (positive), got ";
+
+test("invalid arguments are rejected, and nothing changes", () => {
+  const batch = new Batch({ seed: 1, count: 3 });
+  const before = batch.observations.slice();
+  const FIT = "acrobots must fit into WebAssembly's memory of at most 4 GiB, got ";
+  for (const [call, name, message] of [
+    [() => batch.step(new Uint8Array(2)), "RangeError", "actions must have 3 elements, got 2"],
+    [() => batch.step(), "TypeError", "actions must have 3 elements, got undefined"],
+    [() => batch.step("012"), "TypeError", `actions[0] ${ELEMENT}"0"`],
+    [() => batch.step(Uint8Array.of(0, 3, 1)), "RangeError", `actions[1] ${ELEMENT}3`],
+    [() => batch.step([0, 1, 258]), "RangeError", `actions[2] ${ELEMENT}258`],
+    [() => batch.step([0, 1, "2"]), "TypeError", `actions[2] ${ELEMENT}"2"`],
+    [() => batch.step([0, 1, NaN]), "RangeError", `actions[2] ${ELEMENT}NaN`],
+    [() => batch.step([0, , 1]), "TypeError", `actions[1] ${ELEMENT}undefined`],
+    [() => batch.step(Int32Array.of(0, -1, 1)), "RangeError", `actions[1] ${ELEMENT}-1`],
+    [() => batch.state(3), "RangeError", "index must be an integer from 0 to 2, got 3"],
+    [() => batch.state("0"), "TypeError", 'index must be an integer from 0 to 2, got "0"'],
+    [() => batch.setParams({ dt: NaN }), "RangeError", "dt must be finite and above 0 s, got NaN"],
+    [() => new Batch(), "TypeError", "options must be an object, got undefined"],
+    [() => new Batch({}), "TypeError", "count must be an integer from 1 to 2^32 - 1, got undefined"],
+    [() => new Batch({ count: 0 }), "RangeError", "count must be an integer from 1 to 2^32 - 1, got 0"],
+    [() => new Batch({ count: 2e8 }), "RangeError", `${FIT}200000000 more`],
+    [() => new Batch({ count: 2 ** 32 - 1 }), "RangeError", `${FIT}4294967295 more`],
+    [() => new Batch({ count: 1, autoreset: "nextStep" }), "TypeError", 'autoreset must be NextStep, SameStep, Disabled, got "nextStep"'],
+    [() => new Batch({ count: 1, params: { dt: NaN } }), "RangeError", "dt must be finite and above 0 s, got NaN"],
+  ]) {
+    assert.throws(call, { name, message });
+    assert.deepEqual(batch.observations, before);
+    assert.deepEqual(batch.reset(1), before);
+  }
+  batch.free();
+  for (const use of [() => batch.step([0, 0, 0]), () => batch.reset(), () => batch.state(0), () => batch.observations, () => batch.params]) {
+    assert.throws(use, { name: "Error", message: "the batch has been freed" });
+  }
+});
+
+/** The source with its own instance of the module, whose memory a test can see. */
+async function instance() {
+  const bundle = readFileSync(new URL("../dist/index.js", import.meta.url), "utf8");
+  globalThis.MODULE = /"([\w+/=]{10000,})"/.exec(bundle)[1];
+  globalThis.LENGTH = inflateRawSync(Buffer.from(globalThis.MODULE, "base64")).length;
+  const classes = await import("../package/index.js");
+  const { wasm } = await import("../package/wasm.js");
+  return { ...classes, size: () => wasm().memory.buffer.byteLength };
+}
+
+test("memory grows while batches are in use, and is used again after free and after garbage collection", async () => {
+  const { Acrobot, Batch, size } = await instance();
+  const [batch, same] = [new Batch({ seed: 5, count: 100 }), new Batch({ seed: 5, count: 100 })];
+  const acrobot = new Acrobot({ seed: 5 });
+  const expected = new Acrobot({ seed: 5 }).step(2);
+  const actions = new Uint8Array(100).fill(2);
+  const results = batch.step(actions);
+  const before = size();
+  const large = new Batch({ seed: 1, count: 50_000 });
+  assert.ok(size() > before, "the memory must have grown");
+  assert.deepEqual(same.step(actions), results);
+  assert.deepEqual(batch.step(actions), same.step(actions));
+  assert.deepEqual(acrobot.step(2), expected);
+  large.free();
+
+  const grown = size();
+  for (let i = 0; i < 200; i++) {
+    new Batch({ count: 1 + ((i * 7919) % 50_000), seed: i }).free();
+    assert.throws(() => new Batch({ count: 1000, params: { dt: -1 } }));
+  }
+  for (let i = 0; i < 2000; i++) {
+    const acrobots = Array.from({ length: 10 }, () => new Acrobot());
+    for (const acrobot of acrobots) acrobot.free();
+  }
+  assert.equal(size(), grown);
+
+  setFlagsFromString("--expose-gc");
+  const collect = runInNewContext("gc");
+  for (let i = 0; i < 100; i++) {
+    for (let j = 0; j < 20; j++) new Batch({ count: 1000, seed: j });
+    collect();
+    await new Promise((resolve) => setTimeout(resolve));
+  }
+  assert.ok(size() < grown + 20e6, `${size()} bytes after ${grown}`);
+});
+
+test("many acrobots at a time keep their numbers apart", () => {
+  const acrobots = Array.from({ length: 3000 }, (_, seed) => new Acrobot({ seed }));
+  acrobots.forEach((acrobot, seed) => seed % 3 === 0 && acrobot.free());
+  const more = Array.from({ length: 1500 }, (_, seed) => new Acrobot({ seed: seed + 10_000 }));
+  const check = (acrobot, seed) => assert.deepEqual(acrobot.observation, new Acrobot({ seed }).observation);
+  acrobots.forEach((acrobot, seed) => seed % 3 && check(acrobot, seed));
+  more.forEach((acrobot, seed) => check(acrobot, seed + 10_000));
+});

@@ -1,0 +1,206 @@
+// The packed package, installed in a fresh project, runs in Node.js, in bundles and in Chromium. So does the code of its documentation.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
+
+import { buildSync } from "esbuild";
+import { chromium } from "playwright-core";
+
+import { launch } from "../../web/browser.mjs";
+import { serve } from "../../web/serve.mjs";
+
+const here = fileURLToPath(new URL("..", import.meta.url));
+const root = join(here, "../..");
+const [, version] = /^version = "(.*)"/m.exec(readFileSync(join(root, "Cargo.toml"), "utf8"));
+const folder = mkdtempSync(join(tmpdir(), "acrobot-npm-"));
+const run = (command, args, options) => execFileSync(command, args, { cwd: folder, encoding: "utf8", ...options });
+let server, browser, origin;
+
+before(async () => {
+  run("npm", ["init", "-y"]);
+  run("npm", ["install", "--silent", join(here, `acrobot-rs-${version}.tgz`)]);
+  server = await serve(0, folder);
+  origin = `http://localhost:${server.address().port}/`;
+  browser = await launch(chromium);
+});
+
+after(async () => {
+  await browser?.close();
+  server?.close();
+  rmSync(folder, { recursive: true });
+});
+
+/** The blocks of a page in one language. */
+function blocks(page, language) {
+  const text = readFileSync(join(root, page), "utf8");
+  return [...text.matchAll(new RegExp(`^\`\`\`${language}\n(.*?)^\`\`\``, "gms"))].map(([, code]) => code);
+}
+
+const PROGRAMS = ["docs/wasm.md", "README.md", "examples/npm/README.md"].flatMap((page) => blocks(page, "js"));
+const printed = (program) => program.match(/^\/\/ prints: (.*)/m)?.[1] ?? "";
+
+/** Opens a page in Chromium and calls `play` with it. Asserts that there are no errors. Returns what the console has. */
+async function open(html, play = () => {}) {
+  writeFileSync(join(folder, "index.html"), `<link rel="icon" href="data:,">${html}`);
+  const page = await browser.newPage();
+  const [errors, lines] = [[], []];
+  page.on("pageerror", (error) => errors.push(error.message));
+  page.on("console", (message) => (message.type() === "error" ? errors : lines).push(message.text()));
+  try {
+    await page.goto(origin);
+    await play(page);
+    assert.deepEqual(errors, []);
+    return lines;
+  } finally {
+    await page.close();
+  }
+}
+
+test("the package has 60 KB and these files", () => {
+  const [{ name, files, unpackedSize }] = JSON.parse(run("npm", ["pack", "--json", "--dry-run", join(here, "dist")]));
+  const paths = files.map(({ path }) => path).sort();
+  assert.deepEqual(paths, ["LICENSE-APACHE", "LICENSE-MIT", "README.md", "index.d.ts", "index.js", "package.json"]);
+  assert.ok(unpackedSize <= 60_000, `the package must have at most 60,000 bytes, got ${unpackedSize}`);
+  assert.equal(name, "acrobot-rs");
+});
+
+test("the module imports nothing and cannot panic", () => {
+  const text = readFileSync(join(here, "target/acrobot.wat"), "utf8");
+  assert.match(text, /\(export "batch_step"/);
+  assert.doesNotMatch(text, /\(import/);
+  assert.doesNotMatch(text, /unreachable/);
+});
+
+test("the programs of the documentation run in Node.js and print what they say", () => {
+  assert.equal(PROGRAMS.length, 5);
+  PROGRAMS.forEach((program, i) => {
+    writeFileSync(join(folder, `program${i}.mjs`), program);
+    assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));
+  });
+});
+
+test("types pass tsc --strict", () => {
+  PROGRAMS.forEach((program, i) => writeFileSync(join(folder, `program${i}.mts`), program));
+  cpSync(join(here, "test/typed.ts"), join(folder, "typed.mts"));
+  const programs = PROGRAMS.map((_, i) => `program${i}.mts`);
+  for (const module of [["--module", "nodenext"], ["--module", "esnext", "--moduleResolution", "bundler"]]) {
+    const args = ["--strict", "--noEmit", "--target", "es2022", ...module, "--types", "", "typed.mts", ...programs];
+    assert.equal(run(join(here, "node_modules/.bin/tsc"), args), "");
+  }
+  // Without the types of a browser.
+  writeFileSync(join(folder, "server.mts"), 'import { Acrobot } from "acrobot-rs";\nnew Acrobot().step(1);\n');
+  const server = ["--strict", "--noEmit", "--lib", "es2022", "--module", "nodenext", "--types", "", "server.mts"];
+  assert.equal(run(join(here, "node_modules/.bin/tsc"), server), "");
+});
+
+test("bundles of every format run in Node.js and in Chromium", async () => {
+  for (const format of ["esm", "cjs", "iife"]) {
+    const outfile = join(folder, `bundle-${format}.${format === "esm" ? "mjs" : "cjs"}`);
+    // es2020 has no top-level await; Vite 6 and others compile for it.
+    buildSync({ entryPoints: [join(folder, "program0.mjs")], bundle: true, format, target: "es2020", minify: true, outfile });
+    assert.equal(run("node", [outfile]).trim(), printed(PROGRAMS[0]));
+  }
+  cpSync(join(folder, "bundle-iife.cjs"), join(folder, "bundle.js"));
+  const page = (sources) => `<meta http-equiv="content-security-policy" content="script-src ${sources}"><script src="bundle.js"></script>`;
+  assert.deepEqual(await open(page("'self' 'wasm-unsafe-eval'")), [printed(PROGRAMS[0])]);
+  await assert.rejects(open(page("'self'")), /acrobot-rs needs WebAssembly with simd128, and 'wasm-unsafe-eval'/);
+});
+
+/** Waits until a canvas shows another picture. */
+async function moves(page) {
+  const first = await page.evaluate(() => document.querySelector("canvas").toDataURL());
+  await page.waitForFunction((first) => document.querySelector("canvas").toDataURL() !== first, first, { timeout: 5000 });
+}
+
+test("the page of the documentation draws episodes without a bundler", async () => {
+  const [html] = blocks("docs/wasm.md", "html");
+  await open(html, moves);
+});
+
+test("a picture is that of the crate, with the torque of the last step", async () => {
+  const png = join(folder, "native.png");
+  run("cargo", ["run", "--quiet", "--locked", "--example", "render_episode", "--", "--state", "0.6,-1.5", "--out", png], { cwd: root });
+  const canvas = `<canvas id="canvas" width="500" height="500"></canvas><img id="native" src="native.png">`;
+  await open(canvas, async (page) => {
+    const found = await page.evaluate(async () => {
+      const { Acrobot, Batch } = await import("/node_modules/acrobot-rs/index.js");
+      const context = document.querySelector("#canvas").getContext("2d", { willReadFrequently: true });
+      const pixels = () => context.getImageData(0, 0, 500, 500).data;
+      const acrobot = new Acrobot();
+      acrobot.state = { theta1: 0.6, theta2: -1.5, dtheta1: 0, dtheta2: 0 };
+      acrobot.draw(context);
+      const drawn = pixels();
+      await document.querySelector("#native").decode();
+      context.drawImage(document.querySelector("#native"), 0, 0);
+      const native = pixels();
+      let close = 0;
+      for (let i = 0; i < native.length; i += 4) close += [0, 1, 2].every((j) => Math.abs(native[i + j] - drawn[i + j]) <= 32);
+
+      /** The side of the elbow on which most pixels in the torque's colour are: the arrow's head is there. 0 without an arrow. */
+      const head = () => {
+        const [data, elbow] = [pixels(), 250 + (250 / 2.2) * Math.sin(acrobot.state.theta1)];
+        let side = 0;
+        for (let i = 0; i < data.length; i += 4) {
+          if (data[i] === 204 && data[i + 1] === 0 && data[i + 2] === 0) side += (i / 4) % 500 < elbow ? -1 : 1;
+        }
+        return Math.sign(side);
+      };
+      const arrows = [2, 1, 0].map((action) => {
+        acrobot.state = { theta1: 0.6, theta2: -1.5, dtheta1: 0, dtheta2: 0 };
+        acrobot.step(action);
+        acrobot.draw(context);
+        return head();
+      });
+      acrobot.step(2);
+      acrobot.reset();
+      acrobot.draw(context);
+      const afterReset = head();
+
+      // A batch's picture in a corner, in other colours.
+      const batch = new Batch({ count: 2, seed: 1 });
+      const single = new Acrobot({ seed: 1n + (1n << 128n) });
+      const options = { size: 100, colors: { link: "#010203", background: "transparent" } };
+      context.fillStyle = "#040506";
+      const corner = (draw) => {
+        context.fillRect(0, 0, 500, 500);
+        draw();
+        return context.getImageData(0, 0, 101, 101).data.join();
+      };
+      const corners = [corner(() => batch.draw(context, 1, options)), corner(() => single.draw(context, options))];
+      return {
+        close: close / 250_000,
+        arrows,
+        afterReset,
+        same: corners[0] === corners[1],
+        dark: corners[0].includes("1,2,3,255"),
+        outside: corners[0].endsWith("4,5,6,255"),
+      };
+    });
+    assert.ok(found.close > 0.99, `${found.close} of the pixels are close`);
+    assert.deepEqual({ ...found, close: 1 }, { close: 1, arrows: [-1, 0, 1], afterReset: 0, same: true, dark: true, outside: true });
+  });
+});
+
+test("one's own module, as docs/wasm.md describes it, has 10 KB and draws episodes", async () => {
+  const [manifest] = blocks("docs/wasm.md", "toml");
+  const [library] = blocks("docs/wasm.md", "rust");
+  const [, html] = blocks("docs/wasm.md", "html");
+  run("cargo", ["new", "--quiet", "--vcs", "none", "--lib", "my_module"]);
+  const path = join(folder, "my_module");
+  const until = /"0\.1" # until it is published: \{ path = "[^"]*" \}/;
+  assert.match(manifest, until);
+  const [head] = readFileSync(join(path, "Cargo.toml"), "utf8").split("[dependencies]");
+  writeFileSync(join(path, "Cargo.toml"), head + manifest.replace(until, `{ path = ${JSON.stringify(root)} }`));
+  writeFileSync(join(path, "src/lib.rs"), library);
+  const target = join(here, "target/own");
+  run("cargo", ["build", "--quiet", "--release", "--target", "wasm32-unknown-unknown", "--target-dir", target], { cwd: path });
+  const module = readFileSync(join(target, "wasm32-unknown-unknown/release/my_module.wasm"));
+  assert.equal(Math.round(module.length / 1000), 10);
+  writeFileSync(join(folder, "my_module.wasm"), module);
+  await open(html, moves);
+});

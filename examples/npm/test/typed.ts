@@ -1,0 +1,50 @@
+// Compiles with `tsc --strict`: valid uses have types, and others are errors.
+
+import { Acrobot, Batch, type Action, type BatchStep, type Context, type Options, type Params, type State, type Step } from "acrobot-rs";
+
+const options: Options = { seed: 42n, maxSteps: 200, params: { dt: 0.05, torques: [-2, 0, 2], dynamics: "nips" } };
+using acrobot = new Acrobot(options);
+const action: Action = acrobot.reset(7)[4]! > 0 ? 0 : 2;
+const step: Step = acrobot.step(action);
+const done: boolean = step.terminated || step.truncated;
+const state: State = acrobot.state;
+acrobot.state = { ...state, theta1: Math.PI };
+const params: Readonly<Params> = acrobot.params;
+acrobot.setParams({ gravity: params.gravity / 2 });
+const bytes: Uint8Array = acrobot.snapshot();
+const resumed: Acrobot = Acrobot.restore(bytes);
+resumed.restore(bytes);
+const numbers: number[] = [acrobot.energy, acrobot.tipHeight, acrobot.elapsed, acrobot.maxSteps, step.reward];
+
+const batch = new Batch({ ...options, count: 3, autoreset: "SameStep" });
+const results: BatchStep = batch.step(Uint8Array.of(0, 1, 2));
+batch.step([0, 1, 2]);
+const finals: Float32Array | undefined = results.finalObservations;
+const second: State = batch.state(1);
+
+export function draw(onPage: CanvasRenderingContext2D, offscreen: OffscreenCanvasRenderingContext2D, other: Context) {
+  acrobot.draw(onPage);
+  acrobot.draw(offscreen, { size: 100, colors: { link: "#08c" } });
+  batch.draw(other, 2, { size: 50 });
+}
+
+// @ts-expect-error
+acrobot.step(3);
+// @ts-expect-error
+acrobot.step("1");
+// @ts-expect-error
+new Acrobot({ sed: 1 });
+// @ts-expect-error
+acrobot.setParams({ mass: 1 });
+// @ts-expect-error
+acrobot.energy = 1;
+// @ts-expect-error
+acrobot.restore([1, 2]);
+// @ts-expect-error
+new Batch({ seed: 1 });
+// @ts-expect-error
+new Batch({ count: 1, autoreset: "nextStep" });
+// @ts-expect-error
+batch.draw(document.createElement("canvas"), 0);
+
+export { done, finals, numbers, second };
