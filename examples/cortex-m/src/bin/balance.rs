@@ -154,7 +154,10 @@ fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, Er
         error = error.max(episode.error);
     }
     println!("{name} missed {missed}");
-    println!("{name} tick {}", counts * u64::from(PER_COUNT) / u64::from(ticks));
+    println!(
+        "{name} tick {}",
+        counts * u64::from(PER_COUNT) / u64::from(ticks)
+    );
     println!("{name} slowest {}", slowest * PER_COUNT);
     if missed < episodes {
         println!("{name} catch {}", caught / (episodes - missed) / RATE);
