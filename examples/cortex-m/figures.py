@@ -67,12 +67,13 @@ CORES = {
 CORE_ROWS = {name: f"{core.words}, `{core.target}`" for name, core in CORES.items()}
 LIMITS = {
     "limit_10": "10 N m, 1,000 initial states",
+    "limit_7": "7 N m, 100",
     "limit_5": "5 N m, 100",
     "limit_2": "2 N m, 100",
     "limit_1": "1 N m, 100",
 }
 BALANCE = {
-    "missed": "not caught within 60 s",
+    "missed": "not caught within 200 s",
     "catch": "mean time to catch, s",
     "longest": "longest time to catch, s",
     "error": "largest error of an angle while held, mrad",

@@ -31,7 +31,7 @@ const PER_COUNT: u32 = 1_000_000_000 / CLOCK;
 /// Each tick adds a random torque of at most this to the motor's, N m.
 const DISTURBANCE: f32 = 0.5;
 /// An episode ends after this many ticks, or when the acrobot has been upright for `HELD` ticks.
-const MOST: u32 = 60 * RATE;
+const MOST: u32 = 200 * RATE;
 const HELD: u32 = 10 * RATE;
 
 static EPISODE: Mutex<RefCell<Option<Episode>>> = Mutex::new(RefCell::new(None));
@@ -106,7 +106,12 @@ fn main() -> ! {
     // A tick follows the last one at once.
     syst.disable_interrupt();
     let caught = run(SCB::set_pendst, 10.0, "limit_10", 1000);
-    for (limit, name) in [(5.0, "limit_5"), (2.0, "limit_2"), (1.0, "limit_1")] {
+    for (limit, name) in [
+        (7.0, "limit_7"),
+        (5.0, "limit_5"),
+        (2.0, "limit_2"),
+        (1.0, "limit_1"),
+    ] {
         if run(SCB::set_pendst, limit, name, 100).is_err() {
             process::exit(1)
         }
