@@ -2,7 +2,7 @@
 
     python3 figures.py             fails if a figure has grown by more than 5 %, and prints every figure
     python3 figures.py --update    writes the tables
-    python3 figures.py cores       only the tables that are named: m4f, balance, cores, stacks, sizes, levels
+    python3 figures.py cores       only the tables that are named: m4f, balance, control, cores, stacks, sizes, levels
 
 `steps` counts instructions, stack and RAM, `bench`, `learn` and `balance` count instructions. Flash is that of `minimal_fast` and the others minus that of
 `minimal_without`. `cycles.py` estimates the cycles per instruction.
@@ -81,6 +81,14 @@ BALANCE = {
     "slowest": "instructions per decision, most",
     "flash": "flash of the whole firmware, bytes",
     "ram": "RAM of the whole firmware, bytes",
+}
+CONTROL = {
+    "linearize": "`linearize`",
+    "discretize": "`discretize`",
+    "lqr": "`lqr`",
+    "torque": "`difference` and `Lqr::torque`",
+    "inverse_dynamics": "`inverse_dynamics`",
+    "velocities": "`velocities`",
 }
 LEVELS = ["3", "2", '"s"', '"z"']
 CLOCKS = {
@@ -199,6 +207,7 @@ Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
     "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
+    "control": Table("instructions at 100 Hz, upright", ARITHMETICS, CONTROL, lambda: printed("bench")),
     "cores": Table("instructions per step", ARITHMETICS | SOFT_FLOATS, CORE_ROWS, lambda: measure_cores("step")),
     "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: measure_cores("stack")),
     "sizes": Table("bytes of flash", ARITHMETICS, CORE_ROWS, measure_sizes),

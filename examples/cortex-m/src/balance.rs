@@ -1,38 +1,39 @@
 //! A controller that swings the acrobot up and holds it upright.
 //!
-//! A linear-quadratic regulator holds it. A simulation of the regulator decides when it takes over: it starts near the
-//! upright position, and only from states that it brings to rest with the torque of the motor.
+//! A linear-quadratic regulator holds it. Near the upright position the controller simulates the regulator, and lets it
+//! take over in a state from which it succeeds.
 //!
-//! Swinging up with a torque of 7 N m or more follows X. Xin and M. Kaneda, *Analysis of the Energy-Based Swing-Up
-//! Control of the Acrobot* (2007): the torque lets (E − E↑)² + D θ̇2² + P θ2² fall. So the energy E tends to that of
-//! standing upright, E↑, while link 2 comes into line with link 1. Then the acrobot passes the upright position slowly.
+//! With a torque of 7 N m or more, the swing-up is that of X. Xin and M. Kaneda, *Analysis of the Energy-Based Swing-Up
+//! Control of the Acrobot* (2007). Their torque reduces (E − E↑)² + D θ̇2² + P θ2². So the energy E tends to E↑, that of
+//! standing upright, while link 2 comes into line with link 1, and the acrobot passes the upright position slowly.
 //!
-//! A weaker motor cannot keep link 2 in line. With it the torque only brings the energy to E↑: it opposes θ̇1, because
-//! in the slower mode of swinging θ̇2 has the opposite sign, and a torque along θ̇2 adds energy. The acrobot then swings
-//! chaotically, until it passes a state from which the regulator can hold it.
+//! A weaker motor cannot bring link 2 into line. Then the torque only brings the energy to E↑. It adds energy while it has
+//! the sign of θ̇2, and in the faster mode of swinging this is opposite to that of θ̇1. The acrobot swings chaotically
+//! until it is in a state from which the regulator succeeds.
 
 use acrobot::physics::control::{Lqr, difference, discretize, lqr};
-use acrobot::physics::{Pendulum, State};
+use acrobot::physics::{Pendulum, State, bound};
 use acrobot::{Error, Fast, Params};
 
-/// D, in J s²/rad² times J, and P, in J²/rad², of the sum above; and the rate V at which it falls, J² s/rad².
-/// Found by a random search with a limit of 10 N m.
+/// D, J² s²/rad², and P, J²/rad², of the sum above, and V, J² s/rad²: the sum falls at the rate 2 V θ̇2². A random search
+/// found them for a largest torque of 10 N m.
 const D: f32 = 10.5;
 const P: f32 = 3.0;
 const V: f32 = 17.0;
 
-/// With a largest torque below this, N m, only the energy is controlled, with this gain, N m per J and rad/s.
-const WEAK: f32 = 7.0;
-const PUMPING: f32 = 0.2;
+/// With a largest torque below this, N m, only the energy is controlled, with this gain, s/rad.
+const STRONG: f32 = 7.0;
+const ENERGY_GAIN: f32 = 0.2;
 
-/// The regulator works while |θ1| and |θ2| deviate by less than this from upright, rad.
+/// The regulator works while θ1 and θ2 deviate by less than this from upright, rad.
 const NEAR: [f32; 2] = [0.7, 1.4];
-/// The simulation of the regulator ends after this many steps, each as long as two ticks; or before, with success, where
-/// the cost that remains is less than this times the square of the largest torque.
+/// The simulation takes at most this many steps, each as long as two decisions. The regulator succeeds if the remaining cost
+/// falls below this times the square of the largest torque.
 const STEPS_AHEAD: u32 = 100;
 const LITTLE: f32 = 25.0;
 
 pub struct Controller {
+    /// It has the state of the machine. Its steps are those of the simulation.
     model: Pendulum<Fast>,
     regulator: Lqr<f32>,
     /// E↑, J.
@@ -52,14 +53,14 @@ impl Controller {
             [0.0, 0.0, 1.0, 0.0],
             [0.0, 0.0, 0.0, 1.0],
         ];
-        let coarse = Params {
+        let ahead = Params {
             dt: 2.0 * params.dt,
             ..params
         };
         Ok(Self {
             regulator: lqr(&discretize(&machine, 0.0)?, &weights, 1.0)?,
             upright: machine.energy(),
-            model: Pendulum::new(coarse, State::UPRIGHT)?,
+            model: Pendulum::new(ahead, State::UPRIGHT)?,
             limit,
             holding: false,
         })
@@ -73,19 +74,14 @@ impl Controller {
         if self.holding {
             return Ok(self.regulate(x));
         }
-        let torque = if self.limit < WEAK {
-            PUMPING * (self.model.energy() - self.upright) * state.dtheta1
-        } else {
-            self.align(x)
-        };
-        Ok(torque.clamp(-self.limit, self.limit))
+        Ok(bound(self.swing_up(x), self.limit))
     }
 
     fn regulate(&self, x: [f32; 4]) -> f32 {
-        self.regulator.torque(x).clamp(-self.limit, self.limit)
+        bound(self.regulator.torque(x), self.limit)
     }
 
-    /// Whether the regulator brings the acrobot from the model's state to one where little cost remains.
+    /// Whether the regulator succeeds from the model's state.
     fn catches(&self) -> Result<bool, Error> {
         let mut model = self.model.clone();
         for _ in 0..STEPS_AHEAD {
@@ -102,15 +98,17 @@ impl Controller {
         Ok(false)
     }
 
-    /// Xin and Kaneda's torque, N m, where it is not bounded.
-    fn align(&self, [_, theta2, _, dtheta2]: [f32; 4]) -> f32 {
+    fn swing_up(&self, [_, theta2, dtheta1, dtheta2]: [f32; 4]) -> f32 {
+        let missing = self.upright - self.model.energy();
+        if self.limit < STRONG {
+            return -ENERGY_GAIN * missing * dtheta1;
+        }
         let [_, _, _, free] = self.model.derivative(0.0); // θ̈2 without torque
         let [[m11, m12], [_, m22]] = self.model.mass_matrix();
         let by_torque = m11 / (m11 * m22 - m12 * m12); // of θ̈2
-        let missing = self.upright - self.model.energy();
-        let force = V * dtheta2 + P * theta2 + D * free;
-        // Above 0 for D above 40, and then the sum falls for sure. A smaller D swings up faster.
-        -force / (D * by_torque - missing).max(1.0)
+        // Positive with D above 40, and then the sum falls for sure. A smaller D swings up faster.
+        let divisor = (D * by_torque - missing).max(1.0);
+        -(V * dtheta2 + P * theta2 + D * free) / divisor
     }
 }
 

@@ -21,6 +21,7 @@ use acrobot::physics::{self, ParamsRange, Pendulum, ResetBounds};
 use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
+use acrobot_cortex_m::balance::Controller;
 use bits::training;
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
@@ -60,6 +61,7 @@ fn main() -> ! {
         batch::<Reference>();
         numbers();
         learner();
+        controller();
     }
 }
 
@@ -266,6 +268,13 @@ fn learner() {
     black_box(learn(&mut learner, &mut env, &mut choices));
     black_box(greedy(&learner, &black_box(State::default())));
     black_box(training::digest(&learner));
+}
+
+/// The controller of `balance`.
+fn controller() {
+    if let Ok(mut controller) = Controller::new(params(), number()) {
+        let _ = black_box(controller.decide(state()));
+    }
 }
 
 type Display =
