@@ -11,10 +11,8 @@ use std::process::ExitCode;
 
 use acrobot::{Acrobot, Fast, Params, State};
 use clap::Parser;
+use controller::Controller;
 use examples_common::{animation, exit, files};
-
-#[path = "cortex-m/src/balance.rs"]
-mod balance;
 
 /// Draws how the firmware's controller swings up an acrobot and holds it upright.
 #[derive(Parser)]
@@ -67,7 +65,7 @@ fn play(seed: u64) -> Result<Vec<State>, acrobot::Error> {
     };
     let mut machine = Acrobot::<Fast>::new(seed);
     machine.set_params(params)?;
-    let mut controller = balance::Controller::new(params, 10.0)?;
+    let mut controller = Controller::new(params, 10.0)?;
     let mut states = Vec::new();
     for step in 0..STEPS {
         let state = machine.state();

@@ -2,7 +2,6 @@
 
 #![no_std]
 
-pub mod balance;
 pub mod counter;
 pub mod episode;
 pub mod micromath;

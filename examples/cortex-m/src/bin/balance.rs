@@ -10,8 +10,8 @@ use core::cell::RefCell;
 
 use acrobot::physics::control::difference;
 use acrobot::{Acrobot, Error, Fast, Params, State};
-use acrobot_cortex_m::balance::Controller;
 use acrobot_cortex_m::ram;
+use controller::Controller;
 use cortex_m::Peripherals;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m::peripheral::{SCB, SYST};

@@ -11,6 +11,8 @@
 //! the sign of θ̇2, and in the faster mode of swinging this is opposite to that of θ̇1. The acrobot swings chaotically
 //! until it is in a state from which the regulator succeeds.
 
+#![no_std]
+
 use acrobot::physics::control::{Lqr, difference, discretize, lqr};
 use acrobot::physics::{Pendulum, State, bound};
 use acrobot::{Error, Fast, Params};
@@ -32,6 +34,8 @@ const NEAR: [f32; 2] = [0.7, 1.4];
 const STEPS_AHEAD: u32 = 100;
 const LITTLE: f32 = 25.0;
 
+/// Decides on the torque of the motor.
+#[derive(Debug)]
 pub struct Controller {
     /// It has the state of the machine. Its steps are those of the simulation.
     model: Pendulum<Fast>,
@@ -44,7 +48,12 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// Computes the gains for a machine with these parameters, whose `dt` is the time between two decisions.
+    /// Computes the gains for a machine with these parameters, whose `dt` is the time between two decisions, and for
+    /// a largest torque, N m.
+    ///
+    /// # Errors
+    ///
+    /// A parameter is out of range, or the gains overflow.
     pub fn new(params: Params<f32>, limit: f32) -> Result<Self, Error> {
         let machine = Pendulum::<Fast>::new(params, State::UPRIGHT)?;
         let weights = [
@@ -67,6 +76,10 @@ impl Controller {
     }
 
     /// The torque until the next decision, N m.
+    ///
+    /// # Errors
+    ///
+    /// A number of the state is not finite.
     pub fn decide(&mut self, state: State<f32>) -> Result<f32, Error> {
         let x = difference::<Fast>(state, State::UPRIGHT);
         self.model.set_state(state)?;
