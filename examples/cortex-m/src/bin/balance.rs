@@ -124,7 +124,7 @@ fn main() -> ! {
     })
 }
 
-/// Plays episodes with a largest torque, N m. Prints the figures, and returns how many acrobots were not caught.
+/// Plays episodes with a largest torque, N m. Prints the figures, times and errors rounded up, and returns how many acrobots were not caught.
 fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, Error> {
     let params = Params {
         dt: 1.0 / RATE as f32,
@@ -165,9 +165,10 @@ fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, Er
     );
     println!("{name} slowest {}", slowest * PER_COUNT);
     if missed < episodes {
-        println!("{name} catch {}", caught / (episodes - missed) / RATE);
-        println!("{name} longest {}", longest / RATE);
-        println!("{name} error {}", (error * 1000.0) as u32);
+        let mean = caught / (episodes - missed);
+        println!("{name} catch {}", mean.div_ceil(RATE));
+        println!("{name} longest {}", longest.div_ceil(RATE));
+        println!("{name} error {}", (error * 1000.0) as u32 + 1);
     }
     Ok(missed)
 }
