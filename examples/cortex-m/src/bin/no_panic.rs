@@ -22,6 +22,7 @@ use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::training;
+use controller::Controller;
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
@@ -61,6 +62,7 @@ fn main() -> ! {
         batch::<Reference>();
         numbers();
         learners();
+        controller();
     }
 }
 
@@ -276,6 +278,13 @@ fn learners() {
     black_box(learn(&mut learner, &mut env, &mut choices));
     black_box(greedy(&learner, &black_box(State::default())));
     black_box(training::digest(&learner));
+}
+
+/// The controller of `balance`.
+fn controller() {
+    if let Ok(mut controller) = Controller::new(params(), number()) {
+        let _ = black_box(controller.decide(state()));
+    }
 }
 
 type Display =
