@@ -20,12 +20,13 @@ pub struct Transition<const D: usize> {
 /// What follows a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Next {
+    /// Nothing that is known: the episode was truncated before this step. It is first, so that empty memory is zeros, which
+    /// a program need not contain.
+    Unknown,
     /// The next transition.
     Step,
     /// The goal, whose value is 0.
     Goal,
-    /// Nothing that is known: the episode was truncated before this step.
-    Unknown,
 }
 
 impl<const D: usize> Transition<D> {
