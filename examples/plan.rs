@@ -2,7 +2,7 @@
 //! exact model ahead, and the learnt values rate the states that it reaches.
 //!
 //! ```text
-//! cargo run --release --example swing_up -- --preset quality --episodes 10000 --save weights.bin
+//! cargo run --release --example swing_up -- --steps 1000000 --save weights.bin
 //! cargo run --release --example plan -- --load weights.bin
 //! ```
 //!
@@ -27,7 +27,8 @@ use clap::Parser;
 use examples_common::{exit, weights};
 use indicatif::ProgressIterator;
 
-use sarsa::task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
+use sarsa::task::{Values, evaluation, greedy, learn, play, q_lambda, torque, training, view};
+use sarsa::{Budget, Transition};
 
 /// Compares the learner's greedy policy with a beam search over the learnt values.
 #[derive(Parser)]
@@ -41,7 +42,7 @@ struct Options {
     /// Seed of learning and evaluation: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// File of weights from `swing_up --preset quality --save`, which replaces learning.
+    /// File of weights from `swing_up --save`, which replaces learning.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
     /// Episodes of learning without `--load`.
@@ -49,9 +50,10 @@ struct Options {
     learn: u32,
 }
 
-/// 64 KiB of weights.
-const SLOTS: usize = 8192;
-const TILINGS: usize = 28;
+/// Those of `swing_up` with 64 KiB.
+const SLOTS: usize = 6144;
+const TILINGS: usize = 52;
+const STEPS: usize = 600;
 
 fn main() -> ExitCode {
     exit::run(run)
@@ -59,8 +61,9 @@ fn main() -> ExitCode {
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut weights = [[0.0; 2]; SLOTS];
-    let mut learner: Learner<SLOTS, TILINGS> =
-        Preset::Quality.learner(options.learn, &mut weights)?;
+    let mut memory = [Transition::EMPTY; STEPS];
+    let budget = Budget::Episodes(options.learn);
+    let mut learner = q_lambda::<SLOTS, TILINGS>(budget, &mut weights, &mut memory)?;
     match &options.load {
         Some(path) => weights::load(&mut learner, path)?,
         None => {
@@ -172,14 +175,9 @@ impl Search {
     }
 
     /// The first action of the best path found now or before.
-    fn choose(
-        &mut self,
-        learner: &Learner<SLOTS, TILINGS>,
-        state: State<f32>,
-        depth: u32,
-    ) -> Action {
+    fn choose(&mut self, values: &Values<SLOTS, TILINGS>, state: State<f32>, depth: u32) -> Action {
         self.choices += 1;
-        let path = match (self.plan, self.best(learner, state, depth)) {
+        let path = match (self.plan, self.best(values, state, depth)) {
             (Some(plan), (found, true)) if found.len < plan.len => found,
             (Some(plan), _) => plan,
             (None, (found, is_goal)) => {
@@ -196,7 +194,7 @@ impl Search {
     /// The best path of up to `depth` actions, and whether it ends in the goal.
     fn best(
         &mut self,
-        learner: &Learner<SLOTS, TILINGS>,
+        values: &Values<SLOTS, TILINGS>,
         state: State<f32>,
         depth: u32,
     ) -> (Path, bool) {
@@ -221,7 +219,7 @@ impl Search {
                     return (node.path, true);
                 }
                 node.state = model.state();
-                let [negative, positive] = learner.values(&view(&node.state));
+                let [negative, positive] = values.values(&view(&node.state));
                 node.value = negative.max(positive);
             }
             self.beam[..children].sort_unstable_by(|a, b| b.value.total_cmp(&a.value));

@@ -17,7 +17,8 @@ use bits::training::{EPISODES, Learner, Weights};
 use bits::{oled, training};
 use cortex_m_rt::entry;
 use heapless::HistoryBuf;
-use sarsa::task::{self, Env, Preset, evaluation, greedy, learn, play};
+use sarsa::Budget;
+use sarsa::task::{self, Env, evaluation, greedy, learn, play};
 use semihosting::{println, process};
 use ssd1306::mode::DisplayConfig;
 use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
@@ -26,9 +27,10 @@ use ssd1306::{I2CDisplayInterface, Ssd1306};
 #[entry]
 fn main() -> ! {
     static mut WEIGHTS: Weights = training::UNTRAINED;
-    let (Some(mut counter), Ok(mut learner)) =
-        (Counter::take(), Preset::Fast.learner(EPISODES, WEIGHTS))
-    else {
+    let (Some(mut counter), Ok(mut learner)) = (
+        Counter::take(),
+        task::sarsa(Budget::Episodes(EPISODES), WEIGHTS),
+    ) else {
         process::exit(1)
     };
     let solved = train(&mut learner, &mut counter);
