@@ -5,7 +5,7 @@
 //! cargo run --release --example energy_control -- --limit 10
 //! ```
 //!
-//! Pumping: the motor adds energy while torque and θ̇2 have the same sign, and in the slower mode of swinging θ̇2
+//! Pumping: the motor adds energy while torque and θ̇2 have the same sign, and in the faster mode of swinging θ̇2
 //! is opposite to θ̇1. A torque against θ̇1, in proportion to the missing energy, brings the acrobot to the energy of
 //! standing upright.
 //!

@@ -70,7 +70,7 @@ fn draw_episode(seed: &SeedSequence, out: &Path) -> Result<(), Box<dyn Error>> {
     let svg = out.with_extension("svg");
     let (figures, states) = episode(seed);
     files::write(out, animation::gif(&figures)?)?;
-    files::write(&svg, animation::svg(&states))?;
+    files::write(&svg, animation::svg(&states, animation::DELAY))?;
     for path in [out, &svg] {
         writeln!(io::stdout(), "{}: {} frames", path.display(), figures.len())?;
     }

@@ -41,6 +41,7 @@
 pub mod rust {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/balance.txt")]
 #[cfg_attr(
     any(not(doctest), all(feature = "graphics", feature = "serde")),
     doc = include_str!("../docs/embedded.md")

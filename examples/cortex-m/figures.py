@@ -2,9 +2,9 @@
 
     python3 figures.py             fails if a figure has grown by more than 5 %, and prints every figure
     python3 figures.py --update    writes the tables
-    python3 figures.py cores       only the tables that are named: m4f, cores, stacks, sizes, levels
+    python3 figures.py cores       only the tables that are named: m4f, balance, control, cores, stacks, sizes, levels
 
-`steps` counts instructions, stack and RAM, `bench` and `learn` count instructions. Flash is that of `minimal_fast` and the others minus that of
+`steps` counts instructions, stack and RAM, `bench`, `learn` and `balance` count instructions. Flash is that of `minimal_fast` and the others minus that of
 `minimal_without`. `cycles.py` estimates the cycles per instruction.
 """
 
@@ -65,6 +65,31 @@ CORES = {
     "rv32imafc": Core("RV32IMAFC", "riscv32imafc-unknown-none-elf", True),
 }
 CORE_ROWS = {name: f"{core.words}, `{core.target}`" for name, core in CORES.items()}
+LIMITS = {
+    "limit_10": "10 N m, 1,000 initial states",
+    "limit_7": "7 N m, 100",
+    "limit_5": "5 N m, 100",
+    "limit_2": "2 N m, 100",
+    "limit_1": "1 N m, 100",
+}
+BALANCE = {
+    "missed": "not caught within 200 s",
+    "catch": "mean time to catch, s",
+    "longest": "longest time to catch, s",
+    "error": "largest error of an angle while held, mrad",
+    "tick": "instructions per decision, mean",
+    "slowest": "instructions per decision, most",
+    "flash": "flash of the whole firmware, bytes",
+    "ram": "RAM of the whole firmware, bytes",
+}
+CONTROL = {
+    "linearize": "`linearize`",
+    "discretize": "`discretize`",
+    "lqr": "`lqr`",
+    "torque": "`difference` and `Lqr::torque`",
+    "inverse_dynamics": "`inverse_dynamics`",
+    "velocities": "`velocities`",
+}
 LEVELS = ["3", "2", '"s"', '"z"']
 CLOCKS = {
     "STM32F4 (Cortex-M4F)": 168,
@@ -174,9 +199,15 @@ def measure_levels():
     return figures
 
 
+def measure_balance():
+    return printed("balance") | {("limit_10", "flash"): flash(images("balance")["balance"])}
+
+
 Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
+    "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
+    "control": Table("instructions at 100 Hz, upright", ARITHMETICS, CONTROL, lambda: printed("bench")),
     "cores": Table("instructions per step", ARITHMETICS | SOFT_FLOATS, CORE_ROWS, lambda: measure_cores("step")),
     "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: measure_cores("stack")),
     "sizes": Table("bytes of flash", ARITHMETICS, CORE_ROWS, measure_sizes),

@@ -8,13 +8,14 @@ use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 use examples_common::bang_bang;
 use examples_common::search::Search;
 use indicatif::ProgressIterator;
-use sarsa::task::{Learner, Preset, greedy, learn, training, view};
+use sarsa::task::{QLambda, greedy, learn, q_lambda, training, view};
+use sarsa::{Budget, Transition};
 
 use crate::{SEEDS, bound, initial};
 
 /// The seed of learning and of random actions.
 const SEED: u64 = 42;
-const EPISODES: u32 = 10_000;
+const STEPS: u32 = 1_000_000;
 
 /// Prints a row for each policy.
 pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
@@ -25,11 +26,12 @@ pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
     row("random", mean(|_| Action::sample(&mut actions)))?;
     row("torque against θ̇1", mean(|state| bang_bang(state.dtheta1)))?;
 
-    let mut weights = [[0.0; 2]; 2048];
-    let learner = learnt::<2048, 20>(&mut weights)?;
+    // The sizes are those of `swing_up`.
+    let (mut weights, mut memory) = ([[0.0; 2]; 1408], [Transition::EMPTY; 160]);
+    let learner = learnt::<1408, 16>(&mut weights, &mut memory)?;
     row("learnt, 16 KiB", mean(|state| greedy(&learner, state)))?;
-    let mut weights = [[0.0; 2]; 8192];
-    let learner = learnt::<8192, 28>(&mut weights)?;
+    let (mut weights, mut memory) = ([[0.0; 2]; 6144], [Transition::EMPTY; 600]);
+    let learner = learnt::<6144, 52>(&mut weights, &mut memory)?;
     row("learnt, 64 KiB", mean(|state| greedy(&learner, state)))?;
 
     let mut search = Search::default();
@@ -51,14 +53,17 @@ pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A learner after its episodes.
-fn learnt<const S: usize, const T: usize>(
-    weights: &mut [[f32; 2]; S],
-) -> Result<Learner<'_, S, T>, Box<dyn Error>> {
-    let mut learner = Preset::Quality.learner(EPISODES, weights)?;
+/// A learner after its training.
+fn learnt<'w, const S: usize, const T: usize>(
+    weights: &'w mut [[f32; 2]; S],
+    memory: &'w mut [Transition<4>],
+) -> Result<QLambda<'w, S, T>, Box<dyn Error>> {
+    let mut learner = q_lambda(Budget::Steps(STEPS), weights, memory)?;
     let (mut env, mut choices) = training(SeedSequence::new(SEED));
-    for _ in (0..EPISODES).progress() {
+    let mut steps = 0;
+    while steps < STEPS {
         learn(&mut learner, &mut env, &mut choices);
+        steps += env.elapsed();
     }
     Ok(learner)
 }

@@ -5,8 +5,8 @@ use std::f32::consts::PI;
 use acrobot::State;
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use sarsa::{
-    Dimension, Error, Features, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder,
-    displacement,
+    Budget, Dimension, Error, Features, Group, Learn as _, Sarsa, Schedule, Settings, Symmetry,
+    Table, TileCoder, displacement,
 };
 
 use super::simulator::{decide, is_goal};
@@ -87,7 +87,7 @@ pub fn ours(seed: SeedSequence, episodes: usize) -> Result<Vec<u32>, Error> {
         epsilon: Schedule {
             start: 0.01,
             end: 0.0,
-            episodes: 100,
+            over: Budget::Episodes(100),
         },
         symmetry: Symmetry::Mirror(2),
     };

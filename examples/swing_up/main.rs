@@ -1,16 +1,17 @@
-//! Sutton's Sarsa(λ) learns to swing up within seconds. Its greedy policy is then compared with two policies that
-//! do not learn.
+//! Q(λ) with replay, or Sutton's Sarsa(λ), learns to swing up within seconds. The greedy policy is then compared with two
+//! policies that do not learn.
 //!
 //! ```text
-//! cargo run --release --example swing_up -- --preset quality --episodes 10000 --save weights.bin
-//! cargo run --release --example swing_up -- --preset quality --episodes 0 --load weights.bin
+//! cargo run --release --example swing_up -- --steps 1000000 --save weights.bin
+//! cargo run --release --example swing_up -- --steps 0 --load weights.bin
 //! ```
 //!
 //! The learner is `examples/sarsa`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
 //! `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for which the mean return of episodes
 //! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
-//! states that it was not trained on, and K of these missed the goal. Without `--quiet` it draws the learning curve,
-//! the values and the last greedy episode.
+//! states that it was not trained on, and K of these missed the goal. With `--evaluate N` a line `steps M greedy_mean R`
+//! for every N steps comes before. Without `--quiet` it draws the learning curve, the values and the last greedy
+//! episode.
 //!
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
 //! This is the baseline.
@@ -18,6 +19,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
+use std::ops::DerefMut;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -32,21 +34,28 @@ mod curve;
 mod pictures;
 
 use examples_common::svg::svg;
-use sarsa::task::{Learner, Preset, evaluation, greedy, learn, play, torque, training, view};
+use sarsa::task::{self, QLambda, Values, evaluation, greedy, learn, play, torque, training, view};
+use sarsa::{Budget, Learn, Transition};
 
 /// Learns to swing up, and compares the learnt policy with two simple ones.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Aim of the tuning: few episodes, or the best policy after many.
-    #[arg(long, value_enum, default_value_t = Goal::Fast)]
-    preset: Goal,
-    /// Memory for the weights, in KiB.
+    /// Learner: Q(λ) with replay, or Sarsa(λ), which needs less time per step and less memory.
+    #[arg(long, value_enum, default_value_t = Algorithm::Replay)]
+    learner: Algorithm,
+    /// Memory in KiB: with `replay` for all that the learner keeps, with `sarsa` for the weights.
     #[arg(long, value_enum, default_value_t = Memory::K64)]
     memory: Memory,
     /// Episodes of learning. Step size and exploration fall until the last one.
-    #[arg(long, default_value_t = 2000)]
+    #[arg(long, default_value_t = 2000, conflicts_with = "steps")]
     episodes: u32,
+    /// Steps of learning, instead of episodes. The last episode is finished.
+    #[arg(long)]
+    steps: Option<u32>,
+    /// Steps of learning from evaluation to evaluation. Without it there is one at the end.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    evaluate: Option<u32>,
     /// Seed of learning and evaluation: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
@@ -82,9 +91,9 @@ fn folder(path: PathBuf) -> Result<PathBuf, &'static str> {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Goal {
-    Fast,
-    Quality,
+enum Algorithm {
+    Replay,
+    Sarsa,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -99,28 +108,67 @@ enum Memory {
     K64,
 }
 
-fn main() -> ExitCode {
-    exit::run(|options: &Options| match options.memory {
-        Memory::K64 => run::<8192, 28>(options),
-        Memory::K32 => run::<4096, 20>(options),
-        Memory::K16 => run::<2048, 20>(options),
-        Memory::K8 => run::<1024, 16>(options),
-    })
+impl Options {
+    fn budget(&self) -> Budget {
+        self.steps
+            .map_or(Budget::Episodes(self.episodes), Budget::Steps)
+    }
 }
 
-/// Learns with `T` tilings in `S` slots, and prints the results.
-fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
+    exit::run(
+        |options: &Options| match (options.learner, options.memory) {
+            (Algorithm::Replay, Memory::K64) => replay::<64, 6144, 52, 600>(options),
+            (Algorithm::Replay, Memory::K32) => replay::<32, 2944, 52, 300>(options),
+            (Algorithm::Replay, Memory::K16) => replay::<16, 1408, 16, 160>(options),
+            (Algorithm::Sarsa, Memory::K64) => sarsa::<8192, 28>(options),
+            (Algorithm::Sarsa, Memory::K32) => sarsa::<4096, 20>(options),
+            (Algorithm::Sarsa, Memory::K16) => sarsa::<2048, 20>(options),
+            (Algorithm::Sarsa, Memory::K8) => sarsa::<1024, 16>(options),
+            (Algorithm::Replay, Memory::K8) => {
+                Err("--memory must be 16k, 32k or 64k for the learner replay, got 8k".into())
+            }
+        },
+    )
+}
+
+/// Learns by Sarsa(λ) with `T` tilings in `S` slots.
+fn sarsa<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn Error>> {
     let mut weights = [[0.0; 2]; S];
-    let preset = match options.preset {
-        Goal::Fast => Preset::Fast,
-        Goal::Quality => Preset::Quality,
-    };
-    let mut learner: Learner<S, T> = preset.learner(options.episodes, &mut weights)?;
+    run(
+        options,
+        task::sarsa::<S, T>(options.budget(), &mut weights)?,
+    )
+}
+
+/// Learns by Q(λ), and replays the latest `N` steps. All that the learner keeps fits in `KIB`: features, weights and steps.
+fn replay<const KIB: usize, const S: usize, const T: usize, const N: usize>(
+    options: &Options,
+) -> Result<(), Box<dyn Error>> {
+    const {
+        let weights = size_of::<[[f32; 2]; S]>();
+        let memory = size_of::<[Transition<4>; N]>();
+        assert!(size_of::<QLambda<S, T>>() + weights + memory <= KIB * 1024);
+    }
+    let mut weights = [[0.0; 2]; S];
+    let mut memory = [Transition::EMPTY; N];
+    let learner = task::q_lambda::<S, T>(options.budget(), &mut weights, &mut memory)?;
+    run(options, learner)
+}
+
+/// Learns, and prints the results.
+fn run<'w, L, const S: usize, const T: usize>(
+    options: &Options,
+    mut learner: L,
+) -> Result<(), Box<dyn Error>>
+where
+    L: Learn<4> + DerefMut<Target = Values<'w, S, T>>,
+{
     if let Some(path) = &options.load {
-        weights::load(&mut learner, path)?;
+        weights::load(&mut *learner, path)?;
     }
 
-    let returns = train(&mut learner, options);
+    let returns = train(&mut learner, options)?;
     if let Some(path) = &options.save {
         let bytes: Vec<u8> = learner.save().collect();
         files::write(path, bytes)?;
@@ -140,7 +188,7 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
     let against = |state: &State<f32>| torque((state.dtheta1 < 0.0).into());
     let mut actions = Pcg64::from(options.seed.child(2));
     // Drawn before printing, because the reader may close the pipe. The results are printed even if drawing fails.
-    let drawn = draw(&learner, &returns, options);
+    let drawn = draw(&*learner, &returns, options);
     let mut out = io::stdout();
     writeln!(out, "solved at episode: {solved_at}\n")?;
     writeln!(
@@ -168,7 +216,7 @@ fn run<const S: usize, const T: usize>(options: &Options) -> Result<(), Box<dyn 
 
 /// Draws the pictures. Returns a line for each.
 fn draw<const S: usize, const T: usize>(
-    learner: &Learner<S, T>,
+    learner: &Values<S, T>,
     returns: &[f32],
     options: &Options,
 ) -> Result<String, Box<dyn Error>> {
@@ -217,32 +265,52 @@ fn draw<const S: usize, const T: usize>(
 }
 
 /// Learns. Returns the return of each episode.
-fn train<const S: usize, const T: usize>(
-    learner: &mut Learner<S, T>,
+fn train<'w, L, const S: usize, const T: usize>(
+    learner: &mut L,
     options: &Options,
-) -> Vec<f32> {
+) -> Result<Vec<f32>, io::Error>
+where
+    L: Learn<4> + DerefMut<Target = Values<'w, S, T>>,
+{
     let (mut env, mut choices) = training(options.seed.clone());
+    let (length, unit) = match options.budget() {
+        Budget::Episodes(episodes) => (u64::from(episodes), "episodes"),
+        Budget::Steps(steps) => (u64::from(steps), "steps"),
+    };
     let bar = if options.quiet {
         ProgressBar::hidden()
     } else {
-        ProgressBar::new(options.episodes.into())
+        ProgressBar::new(length)
     };
-    let template = "{msg}{elapsed} {wide_bar} {pos}/{len} episodes";
-    let style = ProgressStyle::with_template(template).expect("a valid template");
+    let template = format!("{{msg}}{{elapsed}} {{wide_bar}} {{pos}}/{{len}} {unit}");
+    let style = ProgressStyle::with_template(&template).expect("a valid template");
     bar.set_style(style);
 
     // A hundred charts in all, because drawing one takes as long as several steps.
-    let period = (options.episodes as usize).div_ceil(100).max(1);
-    let mut returns = Vec::new();
-    for _ in 0..options.episodes {
+    let period = length.div_ceil(100).max(1);
+    let (mut returns, mut steps, mut done, mut charted) = (Vec::new(), 0, 0, 0);
+    while done < length {
         returns.push(learn(learner, &mut env, &mut choices));
-        if !bar.is_hidden() && returns.len().is_multiple_of(period) {
+        let before = steps;
+        steps += env.elapsed();
+        done = match options.budget() {
+            Budget::Episodes(_) => returns.len() as u64,
+            Budget::Steps(_) => u64::from(steps),
+        };
+        if let Some(every) = options.evaluate
+            && steps / every > before / every
+        {
+            let [mean, _] = evaluate(options, |state| greedy(learner, state)).moments();
+            writeln!(io::stdout(), "steps {steps} greedy_mean {mean:.2}")?;
+        }
+        if !bar.is_hidden() && done / period > charted {
+            charted = done / period;
             bar.set_message(curve::chart(&returns));
         }
-        bar.inc(1);
+        bar.set_position(done.min(length));
     }
     bar.finish();
-    returns
+    Ok(returns)
 }
 
 /// The episodes of an evaluation.

@@ -81,7 +81,7 @@ const rows = [
   ["drawing per frame", `${median("drawing").toFixed(1)} ms`],
   ["one acrobot, `Fast`", steps("scalar"), steps("nativeScalar")],
   ["batch of 1,024, `Fast`, without observations, with simd128 or native SIMD", steps("batch"), steps("nativeBatch")],
-  ["training, preset `fast`", `${Number(median("training").toPrecision(2)).toLocaleString("en")} episodes per minute`],
+  ["training", `${Number(median("training").toPrecision(2)).toLocaleString("en")} episodes per minute`],
 ];
 const table = [HEAD, "|---|---|---|", ...rows.map(([name, here, there = ""]) => `| ${name} | ${here} | ${there} |`)];
 console.log(`Measured in Chromium ${version}.\n`);

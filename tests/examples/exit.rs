@@ -28,6 +28,7 @@ fn full() -> Stdio {
 #[cfg(target_os = "linux")]
 fn a_failed_print_is_an_error() {
     for (line, files) in [
+        ("balance", "balance.svg"),
         ("energy_control --episodes 1", ""),
         ("phase_portrait", "portrait.svg"),
         ("plan --learn 10 --episodes 1 --depth 2", ""),

@@ -59,6 +59,7 @@ fn a_failed_write_changes_nothing() {
 #[test]
 fn a_full_disk_is_an_error() {
     for (line, file) in [
+        ("balance", "balance.svg"),
         ("render_episode --state 1,2", "frame.png"),
         ("render_episode", "episode.gif"),
         ("render_episode", "episode.svg"),

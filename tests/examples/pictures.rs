@@ -1,4 +1,4 @@
-//! Pictures equal those of the README, show the given state, and depend on the seed.
+//! Pictures equal those of the README and of docs/embedded.md, show the given state, and depend on the seed.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -37,6 +37,23 @@ fn the_episode_equals_the_readmes_picture() {
     assert!(drawn == recorded, "docs/episode.svg differs");
     // The initial state and 94 steps.
     assert_eq!(folder.gif_frames("episode.gif"), 95);
+}
+
+/// rustdoc shows the picture from its definition.
+#[test]
+fn balancing_equals_the_picture_of_the_page() {
+    let folder = Folder::new();
+    printed(&mut folder.command("balance --definition balance.txt"));
+    let recorded = include_str!("../../docs/balance.svg");
+    assert!(
+        folder.svg("balance.svg") == recorded,
+        "docs/balance.svg differs"
+    );
+    let recorded = include_bytes!("../../docs/balance.txt");
+    assert!(
+        folder.read("balance.txt") == recorded,
+        "docs/balance.txt differs"
+    );
 }
 
 #[test]

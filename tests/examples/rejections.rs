@@ -35,6 +35,7 @@ sweep --masses 1e-60 => must be finite and above 0 kg in f32
 sweep --torques inf,1 => must be finite and above 0 N m in f32
 sweep --csv a.svg => must be a name that ends in .csv
 sweep --picture a.csv => must be a name that ends in .svg
+swing_up --memory 8k => must be 16k, 32k or 64k for the learner replay, got 8k
 swing_up --seed -1 => got '-' as character 1
 swing_up --load no/weights => error: no/weights:
 swing_up --save no/weights => must be a file in an existing folder

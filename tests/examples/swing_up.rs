@@ -33,10 +33,10 @@ fn swing_up_learns_the_same_from_the_same_seed() {
         (line, folder.read(name))
     });
     assert!(one == two, "{} {}", one.0, two.0);
-    assert_eq!(one.1.len(), 65_536 + 20);
+    assert_eq!(one.1.len(), 6144 * 8 + 20);
 
     let (solved_at, mean, sd, misses) = figures(&one.0);
-    assert!(solved_at.is_some_and(|n| (100..=115).contains(&n)) && misses == 0);
+    assert!(solved_at.is_some_and(|n| (100..=150).contains(&n)) && misses == 0);
     assert!(mean > -100.0 && sd > 0.0, "{}", one.0);
     folder.swing_up("--quiet --episodes 300 --seed 2 --save other");
     assert!(
@@ -91,16 +91,40 @@ fn swing_up_draws_its_results() {
 }
 
 #[test]
-fn swing_up_takes_every_preset_and_memory() {
+fn swing_up_takes_every_learner_and_memory() {
     let folder = Folder::new();
-    for (memory, bytes) in [("8k", 8192), ("16k", 16384), ("32k", 32768), ("64k", 65536)] {
-        for preset in ["fast", "quality"] {
-            let options = format!("--preset {preset} --memory {memory}");
-            let line = folder.swing_up(&format!("--quiet --episodes 3 {options} --save weights"));
-            assert_eq!(figures(&line).0, None);
-            assert_eq!(folder.read("weights").len(), bytes + 20);
-        }
+    for (learner, memory, slots) in [
+        ("sarsa", "8k", 1024),
+        ("sarsa", "16k", 2048),
+        ("sarsa", "32k", 4096),
+        ("sarsa", "64k", 8192),
+        ("replay", "16k", 1408),
+        ("replay", "32k", 2944),
+        ("replay", "64k", 6144),
+    ] {
+        let options = format!("--learner {learner} --memory {memory}");
+        let line = folder.swing_up(&format!("--quiet --episodes 3 {options} --save weights"));
+        assert_eq!(figures(&line).0, None);
+        assert_eq!(folder.read("weights").len(), slots * 8 + 20);
     }
+}
+
+/// Each of the evaluations comes after the first episode that ends beyond another 2,000 steps.
+#[test]
+fn swing_up_evaluates_during_a_budget_of_steps() {
+    let folder = Folder::new();
+    let output = folder.swing_up("--quiet --steps 7000 --evaluate 2000 --seed 1");
+    let lines: Vec<&str> = output.lines().collect();
+    assert_eq!(lines.len(), 4, "{output}");
+    for (line, least) in lines.iter().zip([2000, 4000, 6000]) {
+        let [_, steps, _, mean] = line.split(' ').collect::<Vec<_>>().try_into().unwrap();
+        let (steps, mean): (u32, f64) = (steps.parse().unwrap(), mean.parse().unwrap());
+        assert!((least..least + 500).contains(&steps), "{output}");
+        assert!((-500.0..-50.0).contains(&mean), "{output}");
+    }
+    // Evaluations change nothing.
+    let alone = folder.swing_up("--quiet --steps 7000 --seed 1");
+    assert_eq!(lines[3], alone.trim_end());
 }
 
 /// The learner's own tests damage every byte.
@@ -114,8 +138,11 @@ fn swing_up_rejects_weights_of_another_learner() {
         assert!(errors.contains(&format!("weights: {reason}")), "{errors}");
         assert_eq!(folder.names(), ["weights"], "{errors}");
     };
-    rejects("--memory 16k", "weights must have 16404 bytes, got 65556");
-    rejects("--preset quality", "weights must be for features ");
+    rejects("--memory 16k", "weights must have 11284 bytes, got 49172");
+    rejects(
+        "--learner sarsa",
+        "weights must have 65556 bytes, got 49172",
+    );
     let mut bytes = folder.read("weights");
     bytes[30_000] ^= 2;
     fs::write(folder.path("weights"), bytes).unwrap();

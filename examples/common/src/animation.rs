@@ -1,6 +1,7 @@
 //! Episodes as an animated GIF or SVG.
 
 use std::f64::consts::TAU;
+use std::iter;
 
 use acrobot::State;
 use acrobot::render::{Figure, Frame, Theme};
@@ -9,7 +10,7 @@ use indicatif::ProgressBar;
 /// The side of the frames, pixels.
 const SIDE: u16 = 300;
 /// How long a step of 0.2 s is shown, in 1/100 s: about three times as fast as real time.
-const DELAY: u16 = 7;
+pub const DELAY: u16 = 7;
 /// How long the last frame is shown, in 1/100 s.
 const LAST: u16 = 200;
 
@@ -29,14 +30,15 @@ pub fn gif(figures: &[Figure]) -> Result<Vec<u8>, gif::EncodingError> {
     encoder.into_inner()
 }
 
-/// Links of 1 m, drawn as Gymnasium draws them, whose angles are interpolated between steps. The text has no blank line, so
-/// that Markdown takes it as one picture.
-pub fn svg(states: &[State]) -> String {
+/// Links of 1 m, drawn as Gymnasium draws them. Each state is shown for `delay`, in 1/100 s, and the angles are interpolated
+/// between states. The text has no blank line, so that Markdown takes it as one picture.
+pub fn svg(states: &[State], delay: u16) -> String {
+    let last = usize::from(LAST / delay);
     let [angles1, angles2] = [
-        rotations(states.iter().map(|state| state.theta1)),
-        rotations(states.iter().map(|state| state.theta2)),
+        rotations(states.iter().map(|state| state.theta1), last),
+        rotations(states.iter().map(|state| state.theta2), last),
     ];
-    let seconds = f64::from(DELAY) / 100.0 * angles1.split(';').count() as f64;
+    let seconds = f64::from(delay) / 100.0 * angles1.split(';').count() as f64;
     let rotate = |angles: &str| {
         format!(
             r#"<animateTransform attributeName="transform" type="rotate" dur="{seconds:.2}s" repeatCount="indefinite" values="{angles}"/>"#
@@ -62,15 +64,15 @@ pub fn svg(states: &[State]) -> String {
     )
 }
 
-/// Angles in degrees, clockwise and without jumps at half a turn. The last one is held.
-fn rotations(angles: impl Iterator<Item = f64>) -> String {
+/// Angles in degrees, clockwise and without jumps at half a turn. The last one is repeated.
+fn rotations(angles: impl Iterator<Item = f64>, repeats: usize) -> String {
     let mut unwrapped: Vec<f64> = Vec::new();
     for angle in angles {
         let last = unwrapped.last().copied().unwrap_or(angle);
         unwrapped.push(angle + ((last - angle) / TAU).round() * TAU);
     }
     if let Some(&last) = unwrapped.last() {
-        unwrapped.extend((0..LAST / DELAY).map(|_| last));
+        unwrapped.extend(iter::repeat_n(last, repeats));
     }
     let degrees = unwrapped.iter().map(|x| format!("{:.1}", -x.to_degrees()));
     degrees.collect::<Vec<_>>().join(";")

@@ -5,14 +5,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use sarsa::task::Learner;
+use sarsa::task::Values;
 
 /// The most bytes that are read, because a file can be endless. The largest weights have 65,556 bytes. An error names
 /// the size of a file up to this limit.
 const MOST: usize = 1 << 17;
 
 pub fn load<const S: usize, const T: usize>(
-    learner: &mut Learner<S, T>,
+    values: &mut Values<S, T>,
     path: &Path,
 ) -> Result<(), String> {
     let named = |reason: &dyn Display| format!("{}: {reason}", path.display());
@@ -25,5 +25,5 @@ pub fn load<const S: usize, const T: usize>(
             "weights must have at most {MOST} bytes, got more"
         )));
     }
-    learner.load(&bytes).map_err(|error| named(&error))
+    values.load(&bytes).map_err(|error| named(&error))
 }

@@ -7,6 +7,8 @@ pub mod episode;
 pub mod micromath;
 pub mod minimal;
 pub mod panel;
+#[cfg(target_arch = "arm")]
+pub mod ram;
 pub mod stack;
 
 #[cfg(target_arch = "arm")]

@@ -1,4 +1,4 @@
-//! Sarsa(λ) with tile coding: no heap, `f32`, bit-identical on every machine.
+//! Sarsa(λ), and Q(λ) with replay, with tile coding: no heap, `f32`, bit-identical on every machine.
 //!
 //! It uses only sums, differences, products, quotients and comparisons, each rounded once, so a laptop, a Cortex-M4F
 //! and a browser learn the same weights from the same seed. Section numbers refer to R. S. Sutton and A. G. Barto,
@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use rand_pcg::Pcg32;
-//! use sarsa::{Dimension, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement};
+//! use sarsa::{Dimension, Group, Learn as _, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement};
 //!
 //! // One number in [0, 1], 4 tilings of 8 intervals; two actions: towards 0 and towards 1, which is the goal.
 //! let line = [Dimension::bounded(0.0, 1.0, 8)];
@@ -43,14 +43,20 @@
 #![forbid(unsafe_code)]
 
 mod error;
-mod learner;
+mod learn;
+mod q_lambda;
+mod sarsa;
 mod schedule;
 mod store;
 pub mod task;
 mod tiles;
 mod traces;
+mod values;
 
 pub use error::{Error, LoadError};
-pub use learner::{Features, Sarsa, Settings, Symmetry};
-pub use schedule::Schedule;
+pub use learn::Learn;
+pub use q_lambda::{QLambda, Transition};
+pub use sarsa::Sarsa;
+pub use schedule::{Budget, Schedule};
 pub use tiles::{Dimension, Group, Place, Table, TileCoder, displacement};
+pub use values::{Features, Settings, Symmetry, Values};

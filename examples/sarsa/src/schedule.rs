@@ -2,15 +2,24 @@
 
 use crate::error::Error;
 
+/// How long learning takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Budget {
+    /// This many episodes.
+    Episodes(u32),
+    /// This many steps, and the rest of the episode in which they end.
+    Steps(u32),
+}
+
 /// A number that changes linearly from `start` to `end`, and stays there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
     /// The number in the first episode, in \[0, 1\].
     pub start: f32,
-    /// The number after `episodes`, in \[0, 1\].
+    /// The number after `over`, in \[0, 1\].
     pub end: f32,
-    /// Episodes from `start` to `end`; 0 for `end` immediately.
-    pub episodes: u32,
+    /// The time from `start` to `end`; 0 for `end` immediately.
+    pub over: Budget,
 }
 
 impl Schedule {
@@ -20,16 +29,20 @@ impl Schedule {
         Self {
             start: value,
             end: value,
-            episodes: 0,
+            over: Budget::Episodes(0),
         }
     }
 
-    /// The number in an episode, counted from 0.
-    pub(crate) fn at(&self, episode: u32) -> f32 {
-        if episode >= self.episodes {
+    /// The number after this many episodes with this many steps in all.
+    pub(crate) fn at(&self, episodes: u32, steps: u32) -> f32 {
+        let (passed, all) = match self.over {
+            Budget::Episodes(all) => (episodes, all),
+            Budget::Steps(all) => (steps, all),
+        };
+        if passed >= all {
             return self.end;
         }
-        let passed = episode as f32 / self.episodes as f32;
+        let passed = passed as f32 / all as f32;
         self.start + (self.end - self.start) * passed
     }
 

@@ -1,7 +1,7 @@
 //! Weights as little-endian bytes: magic, version, size, the features' fingerprint, the weights and a checksum.
 
 use crate::error::LoadError;
-use crate::learner::{Features, Sarsa};
+use crate::values::{Features, Values};
 
 const MAGIC: [u8; 4] = *b"TILE";
 const VERSION: u32 = 1;
@@ -9,12 +9,12 @@ const HEADER: usize = 16;
 const CHECKSUM: usize = 4;
 
 impl<F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T: usize>
-    Sarsa<'_, F, S, A, D, T>
+    Values<'_, F, S, A, D, T>
 {
-    /// The number of bytes that [`Sarsa::save`] returns.
+    /// The number of bytes that [`Values::save`] returns.
     pub const BYTES: usize = HEADER + 4 * S * A + CHECKSUM;
 
-    /// The weights as [`Sarsa::BYTES`] bytes, from the first to the last.
+    /// The weights as [`Values::BYTES`] bytes, from the first to the last.
     pub fn save(&self) -> impl Iterator<Item = u8> + '_ {
         let header = self.header();
         let weights = || self.weights.iter().flatten().map(|w| w.to_le_bytes());
@@ -29,7 +29,7 @@ impl<F: Features<D, T>, const S: usize, const A: usize, const D: usize, const T:
             .chain(checksum.to_le_bytes())
     }
 
-    /// Loads weights that [`Sarsa::save`] returned. Traces and schedules stay as they are.
+    /// Loads weights that [`Values::save`] returned. Schedules stay as they are.
     ///
     /// # Errors
     ///

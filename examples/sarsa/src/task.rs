@@ -1,4 +1,4 @@
-//! Acrobot as a task: its tuned learner, and the loop over an episode. The other modules do not depend on it.
+//! Acrobot as a task: its tuned learners, and the loop over an episode. The other modules do not depend on it.
 
 use core::f32::consts::PI;
 
@@ -6,57 +6,98 @@ use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 
 use crate::{
-    Dimension, Error, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement,
+    Budget, Dimension, Error, Group, Learn, Schedule, Settings, Symmetry, Table, TileCoder,
+    Transition, displacement,
 };
 
-/// A learner of Acrobot with `T` tilings and `S` slots, which take 8 bytes each.
-pub type Learner<'w, const S: usize, const T: usize> = Sarsa<'w, TileCoder<4, T>, S, 2, 4, T>;
+/// The values of Acrobot's actions, with `T` tilings and `S` slots, which take 8 bytes each.
+pub type Values<'w, const S: usize, const T: usize> =
+    crate::Values<'w, TileCoder<4, T>, S, 2, 4, T>;
 
-/// The aim for which the learner is tuned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Preset {
-    /// Swinging up after few episodes.
-    Fast,
-    /// The best policy after 10,000 episodes and more.
-    Quality,
+/// Sarsa(λ) of Acrobot.
+pub type Sarsa<'w, const S: usize, const T: usize> = crate::Sarsa<'w, TileCoder<4, T>, S, 2, 4, T>;
+
+/// Q(λ) with replay of Acrobot.
+pub type QLambda<'w, const S: usize, const T: usize> =
+    crate::QLambda<'w, TileCoder<4, T>, S, 2, 4, T>;
+
+/// Groups of `tilings` in all: some over pairs, which learn within few episodes, some over triples,
+/// and the others over all dimensions.
+const fn groups(tilings: usize, pair: usize, triple: usize) -> [Group<'static>; 9] {
+    [
+        Group::new(&[0, 1, 2, 3], tilings.saturating_sub(4 * (pair + triple))),
+        Group::new(&[0, 1], pair),
+        Group::new(&[2, 3], pair),
+        Group::new(&[0, 2], pair),
+        Group::new(&[1, 3], pair),
+        Group::new(&[0, 1, 2], triple),
+        Group::new(&[0, 1, 3], triple),
+        Group::new(&[0, 2, 3], triple),
+        Group::new(&[1, 2, 3], triple),
+    ]
 }
 
-/// The tilings over pairs learn within few episodes: both angles, both velocities, and each angle with a velocity.
-const PAIRS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 2], [1, 3]];
+/// Tilings with `intervals` of the angles and of the velocities, which they tell apart up to `reach` times π and 2π rad/s.
+fn features<const S: usize, const T: usize>(
+    intervals: [u16; 4],
+    reach: f32,
+    groups: &[Group],
+) -> Result<TileCoder<4, T>, Error> {
+    let velocity = |bound: f32, intervals| Dimension::bounded(-bound, bound, intervals);
+    let dimensions = [
+        Dimension::cyclic(-PI, PI, intervals[0]),
+        Dimension::cyclic(-PI, PI, intervals[1]),
+        velocity(reach * PI, intervals[2]),
+        velocity(reach * 2.0 * PI, intervals[3]),
+    ];
+    TileCoder::new(dimensions, groups, Table::Hashed(S), displacement)
+}
 
-impl Preset {
-    /// A learner in this memory with `T` tilings, some of them over the pairs. Over `episodes` its step size and
-    /// its exploration fall; after that it hardly changes.
-    pub fn learner<const S: usize, const T: usize>(
-        self,
-        episodes: u32,
-        weights: &mut [[f32; 2]; S],
-    ) -> Result<Learner<'_, S, T>, Error> {
-        let (tilings, lambda, alpha, epsilon) = match self {
-            Self::Fast => (2, 0.93, 0.5, 0.005),
-            Self::Quality => (1, 0.95, 0.7, 0.01),
-        };
-        let angle = Dimension::cyclic(-PI, PI, if S < 4096 { 6 } else { 7 });
-        let velocities = [1.25 * PI, 2.5 * PI].map(|bound| Dimension::bounded(-bound, bound, 6));
-        let dimensions = [angle, angle, velocities[0], velocities[1]];
-        let all = Group::new(&[0, 1, 2, 3], T.saturating_sub(4 * tilings));
-        let [a, b, c, d] = PAIRS.each_ref().map(|pair| Group::new(pair, tilings));
-        let groups = [all, a, b, c, d];
-        let coder = TileCoder::new(dimensions, &groups, Table::Hashed(S), displacement)?;
-        let falling = |start, end| Schedule {
-            start,
-            end,
-            episodes,
-        };
-        let settings = Settings {
-            gamma: 1.0,
-            lambda,
-            alpha: falling(alpha, 0.01),
-            epsilon: falling(epsilon, 0.0),
-            symmetry: Symmetry::Mirror(2),
-        };
-        Sarsa::new(coder, settings, weights)
-    }
+/// A number that falls to `end` over the `budget`.
+const fn falling(start: f32, end: f32, over: Budget) -> Schedule {
+    Schedule { start, end, over }
+}
+
+/// Sarsa(λ) with `T` tilings, tuned for few episodes. Over the `budget` its step size and its exploration fall; after that
+/// it hardly changes.
+pub fn sarsa<const S: usize, const T: usize>(
+    budget: Budget,
+    weights: &mut [[f32; 2]; S],
+) -> Result<Sarsa<'_, S, T>, Error> {
+    let angles = if S < 4096 { 6 } else { 7 };
+    let settings = Settings {
+        gamma: 1.0,
+        lambda: 0.93,
+        alpha: falling(0.5, 0.01, budget),
+        epsilon: falling(0.005, 0.0, budget),
+        symmetry: Symmetry::Mirror(2),
+    };
+    let features = features::<S, T>([angles, angles, 6, 6], 1.25, &groups(T, 2, 0))?;
+    Sarsa::new(features, settings, weights)
+}
+
+/// Q(λ) with `T` tilings that replays the steps in its `memory`, tuned for the best policy after 100,000 steps. Over the
+/// `budget` its step size falls; after that it hardly changes. The memory should hold more than the steps of an episode.
+pub fn q_lambda<'w, const S: usize, const T: usize>(
+    budget: Budget,
+    weights: &'w mut [[f32; 2]; S],
+    memory: &'w mut [Transition<4>],
+) -> Result<QLambda<'w, S, T>, Error> {
+    // Triples need more slots.
+    let (intervals, groups) = if S < 2048 {
+        ([6, 6, 5, 6], groups(T, 2, 0))
+    } else {
+        ([8, 10, 4, 8], groups(T, 3, 6))
+    };
+    let settings = Settings {
+        gamma: 1.0,
+        lambda: 0.95,
+        alpha: falling(0.3, 0.005, budget),
+        epsilon: Schedule::constant(0.0),
+        symmetry: Symmetry::Mirror(2),
+    };
+    let features = features::<S, T>(intervals, 1.125, &groups)?;
+    QLambda::new(features, settings, weights, memory)
 }
 
 /// The torque of the learner's actions 0 and 1. It has no action without torque, which would gain nothing.
@@ -90,18 +131,14 @@ pub fn view(state: &State<f32>) -> [f32; 4] {
 
 /// The action that the learner values most.
 pub fn greedy<const S: usize, const T: usize>(
-    learner: &Learner<'_, S, T>,
+    values: &Values<'_, S, T>,
     state: &State<f32>,
 ) -> Action {
-    torque(learner.greedy(&view(state)))
+    torque(values.greedy(&view(state)))
 }
 
 /// Learns for one episode from a new initial state. Returns the sum of the rewards.
-pub fn learn<const S: usize, const T: usize>(
-    learner: &mut Learner<'_, S, T>,
-    env: &mut Env,
-    choices: &mut Pcg64,
-) -> f32 {
+pub fn learn(learner: &mut impl Learn<4>, env: &mut Env, choices: &mut Pcg64) -> f32 {
     env.reset();
     let mut action = learner.start(&view(&env.inner().state()), choices);
     let mut sum = 0.0;

@@ -3,7 +3,7 @@
 use core::iter::repeat_n;
 
 use crate::error::Error;
-use crate::learner::Features;
+use crate::values::Features;
 
 /// How one number of the state is divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +110,7 @@ impl<'a> Group<'a> {
 pub enum Table {
     /// Each tile has its own slot. [`Features::slots`] returns how many there are.
     Direct,
-    /// All tiles share this many slots, a power of two from 2 to 65,536.
+    /// All tiles share this many slots, from 2 to 65,536.
     Hashed(usize),
 }
 
@@ -127,7 +127,7 @@ const GOLDEN: u16 = 0x9e37;
 /// `T` tilings over a state of `D` numbers.
 ///
 /// A tile's slot is linear in its coordinates: one product and one comparison for each dimension, in 16 bits, so
-/// that eight tilings fit in the smallest vector register. Hashing only changes the factors and shifts at the end.
+/// that eight tilings fit in the smallest vector register. Hashing only changes the factors and scales the sum at the end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileCoder<const D: usize, const T: usize> {
     dimensions: [Dimension; D],
@@ -139,8 +139,8 @@ pub struct TileCoder<const D: usize, const T: usize> {
     strides: [[u16; T]; D],
     /// The slot of each tiling's first tile.
     bases: [u16; T],
-    /// The low bits of the sum that are not part of the slot.
-    shift: u32,
+    /// The slots that the sum's 2¹⁶ values are scaled to.
+    range: u32,
     slots: usize,
 }
 
@@ -151,8 +151,8 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
     /// # Errors
     ///
     /// [`Error`] for dimensions without extent or with other than 1 to 256 intervals, for no tilings or other than
-    /// `T` in all, for an offset outside \[0, 1), for a hashed table whose slots are not a power of two from 2 to
-    /// 65,536, and for more than 65,536 slots without hashing.
+    /// `T` in all, for an offset outside \[0, 1), for a hashed table with other than 2 to 65,536 slots, and for more
+    /// than 65,536 slots without hashing.
     pub fn new(
         dimensions: [Dimension; D],
         groups: &[Group],
@@ -187,10 +187,10 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
     }
 
     fn hash(&mut self, slots: usize) -> Result<(), Error> {
-        let fits = slots.is_power_of_two() && (2..=MAX_SLOTS).contains(&slots);
-        Error::unless(fits, "slots", slots, "a power of two from 2 to", MAX_SLOTS)?;
+        let fits = (2..=MAX_SLOTS).contains(&slots);
+        Error::unless(fits, "slots", slots, "from 2 to", MAX_SLOTS)?;
         self.slots = slots;
-        self.shift = 16 - slots.trailing_zeros();
+        self.range = slots as u32;
         for (t, base) in self.bases.iter_mut().enumerate() {
             *base = (t as u16).wrapping_mul(GOLDEN);
         }
@@ -220,7 +220,7 @@ impl<const D: usize, const T: usize> TileCoder<D, T> {
             offsets: [[0; T]; D],
             strides: [[0; T]; D],
             bases: [0; T],
-            shift: 0,
+            range: MAX_SLOTS as u32,
             slots: 0,
         };
         let mut first = 0;
@@ -312,7 +312,7 @@ impl<const D: usize, const T: usize> Features<D, T> for TileCoder<D, T> {
                 *slot = slot.wrapping_add(coordinate.wrapping_mul(stride));
             }
         }
-        slots.map(|slot| slot >> self.shift)
+        slots.map(|slot| ((u32::from(slot) * self.range) >> 16) as u16)
     }
 
     fn fingerprint(&self, mut mix: impl FnMut(u32)) {
@@ -326,6 +326,6 @@ impl<const D: usize, const T: usize> Features<D, T> for TileCoder<D, T> {
             }
         }
         self.bases.iter().for_each(|&base| mix(u32::from(base)));
-        mix(self.shift);
+        mix(self.range);
     }
 }

@@ -3,7 +3,8 @@
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 use sarsa::{
-    Dimension, Features, Group, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement,
+    Budget, Dimension, Features, Group, Learn as _, Sarsa, Schedule, Settings, Symmetry, Table,
+    TileCoder, displacement,
 };
 
 const SETTINGS: Settings = Settings {
@@ -233,7 +234,7 @@ fn schedules_change_linearly_and_stay_at_their_end() {
         alpha: Schedule {
             start: 0.5,
             end: 0.1,
-            episodes: 4,
+            over: Budget::Episodes(4),
         },
         ..SETTINGS
     };

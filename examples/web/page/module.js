@@ -140,8 +140,8 @@ export class Acrobot {
     if (length !== 0) throw new Error(this.#text(length));
   }
 
-  beginTraining(preset, episodes, seed) {
-    this.#exports.begin_training(preset === "quality", episodes, this.#seed(seed));
+  beginTraining(episodes, seed) {
+    this.#exports.begin_training(episodes, this.#seed(seed));
   }
 
   /** Trains for one episode. Returns its return. */

@@ -77,7 +77,7 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
       $("training-status").textContent = text;
       if (returns.length === episodes) stop();
     };
-    worker.postMessage({ module, task: "train", preset: $("preset").value, seed, episodes });
+    worker.postMessage({ module, task: "train", seed, episodes });
     $("train").textContent = "Stop";
     $("training-status").textContent = "Training…";
   };

@@ -7,8 +7,8 @@ import { Acrobot } from "./module.js";
 const PERIOD = 150;
 
 const tasks = {
-  train(acrobot, { preset, seed, episodes }) {
-    acrobot.beginTraining(preset, episodes, seed);
+  train(acrobot, { seed, episodes }) {
+    acrobot.beginTraining(episodes, seed);
     let returns = [];
     let reported = performance.now();
     for (let episode = 1; episode <= episodes; episode++) {

@@ -1,43 +1,40 @@
-//! The learner of `swing_up` with its 64 KiB of weights. A worker's instance of the module trains, and the page's
-//! instance plays the learnt policy.
+//! The learner of `swing_up` in 64 KiB. A worker's instance of the module trains, and the page's instance plays the learnt
+//! policy.
 
 use core::fmt::{self, Write};
 
+use acrobot::Action;
 use acrobot::numpy::Pcg64;
-use acrobot::{Action, State};
-use sarsa::LoadError;
-use sarsa::task::{self, Env, Preset, greedy, learn, training};
+use sarsa::task::{Env, QLambda, greedy, learn, q_lambda, training};
+use sarsa::{Budget, Transition};
 
 use crate::memory::{BUFFER, Shared};
 use crate::once::Once;
 use crate::simulation;
 
-const SLOTS: usize = 8192;
-type Memory = Once<[[f32; 2]; SLOTS]>;
-type Learner = task::Learner<'static, SLOTS, 28>;
+const SLOTS: usize = 6144;
+const STEPS: usize = 600;
+type Memory = Once<([[f32; 2]; SLOTS], [Transition<4>; STEPS])>;
+type Learner = QLambda<'static, SLOTS, 52>;
 
 const fn memory() -> Memory {
-    Once::new([[0.0; 2]; SLOTS])
+    Once::new(([[0.0; 2]; SLOTS], [Transition::EMPTY; STEPS]))
 }
 
 /// An untrained learner, or `None` if its memory is already in use.
-fn learner(preset: Preset, episodes: u32, memory: &'static Memory) -> Option<Learner> {
-    preset.learner(episodes, memory.take()?).ok()
+fn untrained(episodes: u32, memory: &'static Memory) -> Option<Learner> {
+    let (weights, steps) = memory.take()?;
+    q_lambda(Budget::Episodes(episodes), weights, steps).ok()
 }
 
 static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);
 
-/// Begins a training like that of `swing_up`, with the seed in the buffer and the preset `fast`, or `quality` if that is not
-/// 0. Returns false if this instance has begun a training before, because it has memory for only one.
+/// Begins a training like that of `swing_up`, with the seed in the buffer. Returns false if this instance has begun one
+/// before, because it has memory for only one.
 #[unsafe(no_mangle)]
-pub extern "C" fn begin_training(quality: u32, episodes: u32, words: usize) -> bool {
-    static WEIGHTS: Memory = memory();
-    let preset = if quality != 0 {
-        Preset::Quality
-    } else {
-        Preset::Fast
-    };
-    let Some(learner) = learner(preset, episodes, &WEIGHTS) else {
+pub extern "C" fn begin_training(episodes: u32, words: usize) -> bool {
+    static MEMORY: Memory = memory();
+    let Some(learner) = untrained(episodes, &MEMORY) else {
         return false;
     };
     let (env, choices) = training(simulation::seed_in_buffer(words));
@@ -67,60 +64,20 @@ pub extern "C" fn save() -> usize {
     Learner::BYTES
 }
 
-/// A learner for each preset, because presets have different weights. One of them plays.
-struct Policy {
-    presets: [Learner; 2],
-    /// The learner that loaded weights last. It plays.
-    last: usize,
-}
+static POLICY: Shared<Option<Learner>> = Shared::new(None);
 
-static POLICY: Shared<Option<Policy>> = Shared::new(None);
-
-impl Policy {
-    /// Untrained learners, or `None` if their memory is already in use.
-    fn new() -> Option<Self> {
-        static FAST: Memory = memory();
-        static QUALITY: Memory = memory();
-        Some(Self {
-            presets: [
-                learner(Preset::Fast, 0, &FAST)?,
-                learner(Preset::Quality, 0, &QUALITY)?,
-            ],
-            last: 0,
-        })
-    }
-
-    fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
-        let mut rejected = LoadError::Magic;
-        for (number, learner) in self.presets.iter_mut().enumerate() {
-            match learner.load(bytes) {
-                Ok(()) => {
-                    self.last = number;
-                    return Ok(());
-                }
-                Err(error) => rejected = error,
-            }
-        }
-        Err(rejected)
-    }
-
-    fn action(&self, state: &State<f32>) -> Action {
-        let learner = self.presets.get(self.last);
-        learner.map_or(Action::Zero, |learner| greedy(learner, state))
-    }
-}
-
-/// Loads weights of either preset from the first `len` bytes of the buffer. Returns 0, or, if they are rejected, the length of
-/// the reason in the buffer. Then the policy does not change.
+/// Loads weights from the first `len` bytes of the buffer. Returns 0, or, if they are rejected, the length of the reason in
+/// the buffer. Then the policy does not change.
 #[unsafe(no_mangle)]
 pub extern "C" fn load(len: usize) -> usize {
+    static MEMORY: Memory = memory();
     let mut policy = POLICY.borrow();
     if policy.is_none() {
-        *policy = Policy::new();
+        *policy = untrained(0, &MEMORY);
     }
     let mut buffer = BUFFER.borrow();
     let bytes = buffer.get(..len).unwrap_or_default();
-    let loaded = policy.as_mut().map(|policy| policy.load(bytes));
+    let loaded = policy.as_mut().map(|learner| learner.load(bytes));
     let Some(Err(error)) = loaded else {
         return 0;
     };
@@ -137,8 +94,8 @@ pub extern "C" fn load(len: usize) -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn learnt() -> u8 {
     let policy = POLICY.borrow();
-    let action = policy.as_ref().map_or(Action::Zero, |policy| {
-        simulation::with(|simulation| policy.action(&simulation.env.inner().state()))
+    let action = policy.as_ref().map_or(Action::Zero, |learner| {
+        simulation::with(|simulation| greedy(learner, &simulation.env.inner().state()))
     });
     action.into()
 }

@@ -266,28 +266,27 @@ test("the random policy draws Gymnasium's samples, and two other policies reach 
 
 test("trained weights are bit-identical to native ones, and `swing_up` loads them", () =>
   open(async (page) => {
-    for (const [preset, seed] of [["fast", "42"], ["quality", "123456789012345678901"]]) {
-      await page.selectOption("#preset", preset);
+    for (const seed of ["42", "123456789012345678901"]) {
       await page.fill("#episodes", "100");
       await page.fill("#training-seed", seed);
       await page.click("#train");
       await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
       assert.match(await text(page, "#training-status"), /^100 of 100 episodes/);
-      const native = join(folder, `${preset}.bin`);
-      assert.equal(swingUp("--preset", preset, "--episodes", "100", "--seed", seed, "--save", native), null);
+      const native = join(folder, `${seed}.bin`);
+      assert.equal(swingUp("--episodes", "100", "--seed", seed, "--save", native), null);
       const weights = await downloaded(page, "#save");
-      assert.ok(weights.equals(readFileSync(native)), `${preset}: the weights differ from native ones`);
+      assert.ok(weights.equals(readFileSync(native)), `seed ${seed}: the weights differ from native ones`);
 
       const own = join(folder, "page.bin");
       writeFileSync(own, weights);
-      assert.equal(swingUp("--preset", preset, "--episodes", "0", "--load", own), null);
+      assert.equal(swingUp("--episodes", "0", "--load", own), null);
     }
   }));
 
 test("native weights reach the goal, and invalid ones are rejected with the learner's message", () =>
   open(async (page) => {
     const native = join(folder, "native.bin");
-    assert.equal(swingUp("--preset", "quality", "--episodes", "300", "--save", native), null);
+    assert.equal(swingUp("--episodes", "300", "--save", native), null);
     await paused(page, 42);
     await page.setInputFiles("#load", native);
     await page.waitForFunction(() => document.querySelector("#training-status").textContent.endsWith("is loaded."));
@@ -309,7 +308,7 @@ test("native weights reach the goal, and invalid ones are rejected with the lear
       await page.setInputFiles("#load", path);
       await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
       const reason = await text(page, "#weights-reason");
-      const error = swingUp("--preset", "quality", "--episodes", "0", "--load", path);
+      const error = swingUp("--episodes", "0", "--load", path);
       assert.equal(error, `error: ${folder}/${reason}`);
     }
     const huge = join(folder, "huge.bin");

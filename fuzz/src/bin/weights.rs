@@ -6,11 +6,12 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Fast, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 
-use sarsa::task::{Learner, Preset, greedy, learn};
+use sarsa::Budget;
+use sarsa::task::{Sarsa, greedy, learn, sarsa};
 
 /// Few, so that libFuzzer finds bytes of the right length.
 const SLOTS: usize = 16;
-type Small<'w> = Learner<'w, SLOTS, 28>;
+type Small<'w> = Sarsa<'w, SLOTS, 28>;
 
 /// The checksum, FNV-1a. libFuzzer would not find it.
 fn checksum(bytes: &[u8]) -> u32 {
@@ -24,7 +25,7 @@ fuzz_target!(|bytes: &[u8]| {
         return;
     };
     let mut memory = [[0.0; 2]; SLOTS];
-    let mut learner: Small = Preset::Fast.learner(1, &mut memory).expect("a preset");
+    let mut learner: Small = sarsa(Budget::Episodes(1), &mut memory).expect("valid settings");
     let before: Vec<u8> = learner.save().collect();
     // The bytes are unchanged, or get a valid header, or a valid header and checksum.
     let mut bytes = bytes.to_vec();

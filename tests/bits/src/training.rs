@@ -1,14 +1,15 @@
 //! A training from untrained weights (16 KiB), and a digest of all weights after 100 episodes.
 
 use acrobot::numpy::SeedSequence;
-use sarsa::task::{self, Preset};
+use sarsa::Budget;
+use sarsa::task;
 
 use crate::Digest;
 
 /// 16 KiB.
 pub type Weights = [[f32; 2]; 2048];
 pub const UNTRAINED: Weights = [[0.0; 2]; 2048];
-pub type Learner<'w> = task::Learner<'w, 2048, 20>;
+pub type Learner<'w> = task::Sarsa<'w, 2048, 20>;
 
 /// The seed of the acrobot and of the learner's choices.
 pub const SEED: u64 = 42;
@@ -29,7 +30,7 @@ pub fn digest(learner: &Learner) -> u64 {
 /// Trains and returns the digest; 0 if the learner is rejected.
 pub fn weights() -> u64 {
     let mut weights = UNTRAINED;
-    let Ok(mut learner) = Preset::Fast.learner(EPISODES, &mut weights) else {
+    let Ok(mut learner) = task::sarsa(Budget::Episodes(EPISODES), &mut weights) else {
         return 0;
     };
     let (mut env, mut choices) = task::training(SeedSequence::new(SEED));

@@ -8,8 +8,12 @@ use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
+use acrobot::physics::Pendulum;
+use acrobot::physics::control::{
+    difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+};
 use acrobot::render::{Figure, Theme};
-use acrobot::{Acrobot, Action, Fast, Portable, Step, TimeLimit};
+use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::micromath::Micromath;
 use bits::episodes;
@@ -75,6 +79,46 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
         shown = figure;
     });
     println!("{name} redraw {count}");
+    if control::<A>(name, counter).is_err() {
+        process::exit(1)
+    }
+}
+
+/// A controller at 100 Hz, about the upright position.
+fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Error> {
+    let params = Params {
+        dt: A::Scalar::from_f64(0.01),
+        ..Params::DEFAULT
+    };
+    let pendulum = Pendulum::<A>::new(params, State::UPRIGHT)?;
+    let [zero, one] = [0.0, 1.0].map(A::Scalar::from_f64);
+    let weights =
+        core::array::from_fn(|i| core::array::from_fn(|j| if i == j { one } else { zero }));
+    let model = discretize(&pendulum, zero)?;
+    let regulator = lqr(&model, &weights, one)?;
+    let mut print = |figure, run: &mut dyn FnMut()| {
+        println!("{name} {figure} {}", counter.count(100, run));
+    };
+    print("linearize", &mut || {
+        let _ = black_box(linearize(black_box(&pendulum), zero));
+    });
+    print("discretize", &mut || {
+        let _ = black_box(discretize(black_box(&pendulum), zero));
+    });
+    print("lqr", &mut || {
+        let _ = black_box(lqr(black_box(&model), &weights, one));
+    });
+    print("torque", &mut || {
+        let x = difference::<A>(black_box(pendulum.state()), State::UPRIGHT);
+        black_box(regulator.torque(x));
+    });
+    print("inverse_dynamics", &mut || {
+        let _ = black_box(inverse_dynamics(black_box(&pendulum), [one, one]));
+    });
+    print("velocities", &mut || {
+        let _ = black_box(velocities(black_box(&pendulum)));
+    });
+    Ok(())
 }
 
 #[inline(never)]

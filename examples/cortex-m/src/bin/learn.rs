@@ -12,11 +12,13 @@ use acrobot::numpy::SeedSequence;
 use acrobot::{Action, REWARD_THRESHOLD, State};
 use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::panel::{Bus, Panel};
+use acrobot_cortex_m::ram;
 use bits::training::{EPISODES, Learner, Weights};
 use bits::{oled, training};
-use cortex_m_rt::{STACK_PAINT_VALUE, entry, heap_start};
+use cortex_m_rt::entry;
 use heapless::HistoryBuf;
-use sarsa::task::{self, Env, Preset, evaluation, greedy, learn, play};
+use sarsa::Budget;
+use sarsa::task::{self, Env, evaluation, greedy, learn, play};
 use semihosting::{println, process};
 use ssd1306::mode::DisplayConfig;
 use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
@@ -25,9 +27,10 @@ use ssd1306::{I2CDisplayInterface, Ssd1306};
 #[entry]
 fn main() -> ! {
     static mut WEIGHTS: Weights = training::UNTRAINED;
-    let (Some(mut counter), Ok(mut learner)) =
-        (Counter::take(), Preset::Fast.learner(EPISODES, WEIGHTS))
-    else {
+    let (Some(mut counter), Ok(mut learner)) = (
+        Counter::take(),
+        task::sarsa(Budget::Episodes(EPISODES), WEIGHTS),
+    ) else {
         process::exit(1)
     };
     let solved = train(&mut learner, &mut counter);
@@ -37,7 +40,7 @@ fn main() -> ! {
     println!("mean return of 100 greedy episodes: {}", sum as i32 / 100);
     env.reset();
     let swung_up = draw(env, policy);
-    println!("fast ram {}", ram());
+    println!("fast ram {}", ram::used());
     process::exit(if solved && swung_up { 0 } else { 1 })
 }
 
@@ -99,19 +102,4 @@ fn draw(env: Env, policy: impl Fn(&State<f32>) -> Action) -> bool {
     let steps = frames - 1;
     println!("swings up in {steps} steps");
     !failed && !panel.borrow().unknown && drawn.is_ok() && steps < 500
-}
-
-/// Bytes of RAM in use. The start-up code paints the RAM, so a word that is still painted was never written.
-fn ram() -> usize {
-    unsafe extern "C" {
-        static _ram_start: u32;
-        static _ram_end: u32;
-    }
-    let mut deepest = heap_start();
-    // SAFETY: the search begins in RAM, and ends at this function's own frame, which is not painted.
-    while unsafe { deepest.read_volatile() } == STACK_PAINT_VALUE {
-        deepest = deepest.wrapping_add(1);
-    }
-    let statics = heap_start() as usize - (&raw const _ram_start) as usize;
-    statics + (&raw const _ram_end) as usize - deepest as usize
 }

@@ -22,12 +22,14 @@ use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::training;
+use controller::Controller;
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
 use rand_core::{Rng as _, SeedableRng as _};
-use sarsa::task::{self, Preset, greedy, learn};
+use sarsa::task::{self, greedy, learn};
+use sarsa::{Budget, Transition};
 
 unsafe extern "C" {
     fn a_panicking_branch_is_left() -> !;
@@ -59,7 +61,8 @@ fn main() -> ! {
         batch::<Portable>();
         batch::<Reference>();
         numbers();
-        learner();
+        learners();
+        controller();
     }
 }
 
@@ -256,16 +259,32 @@ fn numbers() {
     black_box(SeedSequence::from_words(&black_box([7; 9])));
 }
 
-/// The learner of `learn`.
-fn learner() {
-    let mut weights = black_box(training::UNTRAINED);
-    let Ok(mut learner) = Preset::Fast.learner(training::EPISODES, &mut weights) else {
+/// The learner of `learn`, and Q(λ) with replay.
+fn learners() {
+    let budget = Budget::Episodes(training::EPISODES);
+    let (mut env, mut choices) = task::training(SeedSequence::new(black_box(42)));
+
+    let mut weights = black_box([[0.0; 2]; 64]);
+    let mut memory = black_box([Transition::EMPTY; 64]);
+    let Ok(mut learner) = task::q_lambda::<64, 16>(budget, &mut weights, &mut memory) else {
         return;
     };
-    let (mut env, mut choices) = task::training(SeedSequence::new(black_box(42)));
+    black_box(learn(&mut learner, &mut env, &mut choices));
+
+    let mut weights = black_box(training::UNTRAINED);
+    let Ok(mut learner) = task::sarsa(budget, &mut weights) else {
+        return;
+    };
     black_box(learn(&mut learner, &mut env, &mut choices));
     black_box(greedy(&learner, &black_box(State::default())));
     black_box(training::digest(&learner));
+}
+
+/// The controller of `balance`.
+fn controller() {
+    if let Ok(mut controller) = Controller::new(params(), number()) {
+        let _ = black_box(controller.decide(state()));
+    }
 }
 
 type Display =
