@@ -17,6 +17,7 @@
 //! | the equations, and their sources | [`equations`] |
 //! | how fast it is | [`benchmarks`] |
 //! | how well it learns | [`learning`] |
+//! | how well any policy can do | [`optimum`] |
 //!
 //! ```
 //! use acrobot::{Acrobot, Action, Fast};
@@ -86,6 +87,10 @@ pub mod benchmarks {}
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/learning.md")]
 pub mod learning {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/optimum.md")]
+pub mod optimum {}
 
 // For its tests only: its links and pictures lead into the repository.
 #[cfg(doctest)]

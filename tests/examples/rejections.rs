@@ -6,6 +6,9 @@ use super::{Folder, rejected};
 const REJECTED: &str = "\
 energy_control --limit 0 => must be finite and above 0 N m
 energy_control --episodes 0 => 0 is not in 1..
+optimum search --width 0 => 0 is not in 1..
+optimum search --file no/a.txt => a name that ends in .txt, in an existing folder
+optimum table --file none.txt => error: none.txt:
 phase_portrait --out a.png => a name that ends in .svg, in an existing folder
 phase_portrait --out no/a.svg => a name that ends in .svg, in an existing folder
 plan --depth 129 => 129 is not in 1..=128

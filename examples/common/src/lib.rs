@@ -4,6 +4,7 @@ pub mod animation;
 pub mod exit;
 pub mod files;
 pub mod heat_map;
+pub mod search;
 pub mod svg;
 pub mod weights;
 

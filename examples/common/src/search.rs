@@ -1,0 +1,137 @@
+//! A beam search on the exact model, small enough for a microcontroller.
+
+use acrobot::physics::Pendulum;
+use acrobot::{Action, Fast, State};
+
+/// The width of the beam: states that are followed at the same time.
+const BEAM: usize = 8;
+
+/// A beam search on the model, in fixed memory.
+#[derive(Debug)]
+pub struct Search {
+    model: Pendulum<Fast>,
+    /// The followed states, and the new states that each action leads to.
+    beam: [Node; 2 * BEAM],
+    /// The shortest known path to the goal from the state of the next choice.
+    plan: Option<Path>,
+    choices: u32,
+    steps: u64,
+}
+
+/// The actions that the search tries, as bits.
+const ACTIONS: [Action; 2] = [Action::Negative, Action::Positive];
+
+/// Actions, the first in the lowest bit.
+#[derive(Clone, Copy, Debug, Default)]
+struct Path {
+    actions: u128,
+    len: u32,
+}
+
+impl Path {
+    fn then(self, action: usize) -> Self {
+        Self {
+            actions: self.actions | (action as u128) << self.len,
+            len: self.len + 1,
+        }
+    }
+
+    fn first(self) -> Action {
+        ACTIONS[(self.actions & 1) as usize]
+    }
+
+    /// The actions after the first.
+    fn rest(self) -> Option<Self> {
+        let len = self.len.checked_sub(1)?;
+        (len > 0).then_some(Self {
+            actions: self.actions >> 1,
+            len,
+        })
+    }
+}
+
+/// A reachable state, the path there, and the estimated value of the remaining steps.
+#[derive(Clone, Copy, Debug, Default)]
+struct Node {
+    state: State<f32>,
+    path: Path,
+    value: f32,
+}
+
+impl Default for Search {
+    fn default() -> Self {
+        Self {
+            model: Pendulum::hanging(),
+            beam: [Node::default(); 2 * BEAM],
+            plan: None,
+            choices: 0,
+            steps: 0,
+        }
+    }
+}
+
+impl Search {
+    /// The steps of the model for an action, on average.
+    pub fn steps_per_choice(&self) -> u64 {
+        self.steps / u64::from(self.choices.max(1))
+    }
+
+    /// The first action of the best path found now or before, of up to `depth` actions. `value` estimates the negative
+    /// number of steps from a state to the goal.
+    pub fn choose(
+        &mut self,
+        state: State<f32>,
+        depth: u32,
+        value: impl Fn(&State<f32>) -> f32,
+    ) -> Action {
+        self.choices += 1;
+        let path = match (self.plan, self.best(state, depth, value)) {
+            (Some(plan), (found, true)) if found.len < plan.len => found,
+            (Some(plan), _) => plan,
+            (None, (found, is_goal)) => {
+                if !is_goal {
+                    return found.first();
+                }
+                found
+            }
+        };
+        self.plan = path.rest();
+        path.first()
+    }
+
+    /// The best path of up to `depth` actions, and whether it ends in the goal.
+    fn best(
+        &mut self,
+        state: State<f32>,
+        depth: u32,
+        value: impl Fn(&State<f32>) -> f32,
+    ) -> (Path, bool) {
+        self.beam[0] = Node {
+            state,
+            ..Node::default()
+        };
+        let mut followed = 1;
+        for _ in 0..depth {
+            let from = self.beam;
+            let children = 2 * followed;
+            for (child, node) in self.beam.iter_mut().enumerate().take(children) {
+                let (parent, action) = (from[child / 2], child % 2);
+                let model = &mut self.model;
+                let reached = model
+                    .set_state(parent.state)
+                    .and_then(|()| model.step(model.params().torque(ACTIONS[action])))
+                    .expect("finite states and torques");
+                self.steps += 1;
+                node.path = parent.path.then(action);
+                if reached {
+                    return (node.path, true);
+                }
+                node.state = model.state();
+                node.value = value(&node.state);
+            }
+            self.beam[..children].sort_unstable_by(|a, b| b.value.total_cmp(&a.value));
+            followed = children.min(BEAM);
+        }
+        (self.beam[0].path, false)
+    }
+}

@@ -1,0 +1,122 @@
+//! How good can any policy be? The fewest known steps to the goal from 1,000 initial states, and a bound.
+//!
+//! ```text
+//! cargo run --release --example optimum -- search
+//! cargo run --release --example optimum -- table
+//! cargo run --release --example optimum -- bound
+//! ```
+//!
+//! `search` computes the steps to the goal on a grid of states, and follows the best states of each step from every
+//! initial state. Where it finds a shorter sequence than the file has, it replaces that. `table` plays other policies
+//! from the same states. `bound` proves that no policy takes fewer steps than a function of the initial state says.
+//! docs/optimum.md explains all three.
+
+use std::error::Error;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use acrobot::arithmetic::Reference;
+use acrobot::{Acrobot, State};
+use clap::Parser;
+use examples_common::{exit, files};
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+
+mod affine;
+mod beam;
+mod bound;
+mod sequences;
+mod table;
+mod values;
+
+use beam::Beam;
+use sequences::{load, reaches, text};
+use values::{Stepper, Values};
+
+/// Finds short sequences of actions to the goal, compares policies with them, and proves a bound.
+#[derive(Parser)]
+enum Options {
+    /// Searches for shorter sequences than the file has.
+    Search {
+        /// States that are followed at the same time.
+        #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
+        width: u32,
+        /// Cells per rad and per rad/s. The search follows only one state of each cell.
+        #[arg(long, default_value_t = 10.0)]
+        fineness: f32,
+        #[arg(long, value_name = "FILE", default_value = FILE)]
+        #[arg(value_parser = files::named("txt"))]
+        file: PathBuf,
+    },
+    /// Prints the mean returns of policies, of the sequences and of the bound.
+    Table {
+        #[arg(long, value_name = "FILE", default_value = FILE)]
+        file: PathBuf,
+    },
+    /// Proves the bound.
+    Bound,
+}
+
+const FILE: &str = "tests/data/optimum.txt";
+/// The initial states are those of the seeds from 0 on.
+const SEEDS: u32 = 1000;
+/// No sequence is longer.
+const DEPTH: usize = 100;
+
+fn main() -> ExitCode {
+    exit::run(|options| match options {
+        Options::Search {
+            width,
+            fineness,
+            file,
+        } => search(*width, *fineness, file),
+        Options::Table { file } => table::print(&load(file)?),
+        Options::Bound => Ok(bound::prove()?),
+    })
+}
+
+/// The state after Gymnasium's `reset(seed=seed)`.
+fn initial(seed: u64) -> State {
+    Acrobot::<Reference>::new(seed).state()
+}
+
+fn search(width: u32, fineness: f32, file: &Path) -> Result<(), Box<dyn Error>> {
+    let mut known = if file.exists() {
+        load(file)?
+    } else {
+        vec![Vec::new(); SEEDS as usize]
+    };
+    let values = Values::compute()?;
+    let progress = ProgressBar::new(SEEDS.into());
+    let found = (0..SEEDS).into_par_iter().map(|seed| {
+        let mut beam = Beam {
+            width: width as usize,
+            fineness,
+            values: &values,
+            stepper: Stepper::new(512)?,
+        };
+        let depth = known[seed as usize].len().checked_sub(1).unwrap_or(DEPTH);
+        let state = initial(seed.into());
+        let path = beam.search(state.cast(), depth, |path| reaches(state, path));
+        progress.inc(1);
+        Ok(path)
+    });
+    let found = found.collect::<Result<Vec<_>, acrobot::Error>>()?;
+    progress.finish_and_clear();
+    let shorter = found.iter().flatten().count();
+    for (known, found) in known.iter_mut().zip(found) {
+        *known = found.unwrap_or(std::mem::take(known));
+    }
+    if let Some(seed) = known.iter().position(Vec::is_empty) {
+        return Err(format!("no sequence found for seed {seed}, try a wider beam").into());
+    }
+    files::write(file, text(&known))?;
+    let steps: usize = known.iter().map(Vec::len).sum();
+    writeln!(
+        io::stdout(),
+        "{shorter} shorter sequences; the mean return is {:.3}",
+        1.0 - steps as f64 / f64::from(SEEDS)
+    )?;
+    Ok(())
+}

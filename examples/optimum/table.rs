@@ -1,0 +1,86 @@
+//! The mean returns of policies from the same initial states.
+
+use std::error::Error;
+use std::io::{self, Write};
+
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
+use examples_common::bang_bang;
+use examples_common::search::Search;
+use indicatif::ProgressIterator;
+use sarsa::task::{QLambda, greedy, learn, q_lambda, training, view};
+use sarsa::{Budget, Transition};
+
+use crate::{SEEDS, bound, initial};
+
+/// The seed of learning and of random actions.
+const SEED: u64 = 42;
+const STEPS: u32 = 1_000_000;
+
+/// Prints a row for each policy.
+pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
+    let mut out = io::stdout();
+    writeln!(out, "| policy | mean return |\n|---|---|")?;
+    let mut row = |name: &str, mean: f64| writeln!(out, "| {name} | {mean:.2} |");
+    let mut actions = Pcg64::new(SEED);
+    row("random", mean(|_| Action::sample(&mut actions)))?;
+    row("torque against θ̇1", mean(|state| bang_bang(state.dtheta1)))?;
+
+    // The sizes are those of `swing_up`.
+    let (mut weights, mut memory) = ([[0.0; 2]; 1408], [Transition::EMPTY; 160]);
+    let learner = learnt::<1408, 16>(&mut weights, &mut memory)?;
+    row("learnt, 16 KiB", mean(|state| greedy(&learner, state)))?;
+    let (mut weights, mut memory) = ([[0.0; 2]; 6144], [Transition::EMPTY; 600]);
+    let learner = learnt::<6144, 52>(&mut weights, &mut memory)?;
+    row("learnt, 64 KiB", mean(|state| greedy(&learner, state)))?;
+
+    let mut search = Search::default();
+    let planned = mean(|state| {
+        search.choose(*state, 60, |state| {
+            let [negative, positive] = learner.values(&view(state));
+            negative.max(positive)
+        })
+    });
+    row("planned, 64 KiB", planned)?;
+
+    let means = |steps: f64| 1.0 - steps / f64::from(SEEDS);
+    let steps: usize = best.iter().map(Vec::len).sum();
+    row("best known", means(steps as f64))?;
+    let least: u32 = (0..SEEDS)
+        .map(|seed| bound::least_steps(initial(seed.into())))
+        .sum();
+    row("bound", means(f64::from(least)))?;
+    Ok(())
+}
+
+/// A learner after its training.
+fn learnt<'w, const S: usize, const T: usize>(
+    weights: &'w mut [[f32; 2]; S],
+    memory: &'w mut [Transition<4>],
+) -> Result<QLambda<'w, S, T>, Box<dyn Error>> {
+    let mut learner = q_lambda(Budget::Steps(STEPS), weights, memory)?;
+    let (mut env, mut choices) = training(SeedSequence::new(SEED));
+    let mut steps = 0;
+    while steps < STEPS {
+        learn(&mut learner, &mut env, &mut choices);
+        steps += env.elapsed();
+    }
+    Ok(learner)
+}
+
+/// The mean return of a policy in `Fast`, with at most 500 steps per episode.
+fn mean(mut policy: impl FnMut(&State<f32>) -> Action) -> f64 {
+    let mut env = TimeLimit::v1(Acrobot::<Fast>::new(0));
+    let mut sum = 0.0;
+    for seed in (0..SEEDS).progress() {
+        env.reset_with_seed(seed.into());
+        loop {
+            let step = env.step(policy(&env.inner().state()));
+            sum += f64::from(step.reward);
+            if step.done() {
+                break;
+            }
+        }
+    }
+    sum / f64::from(SEEDS)
+}
