@@ -1,9 +1,9 @@
-"""Learns with `swing_up` over several seeds, and compares the figures with the table in docs/learning.md.
+"""Learns with `swing_up` over several seeds, and compares the figures with the tables in docs/learning.md.
 
     python3 figures.py             fails if they differ: learning is bit-identical everywhere
-    python3 figures.py --update    writes the table again
+    python3 figures.py --update    writes the tables again
 
-It prints how long it took: minutes on two cores.
+It takes seven minutes on two cores.
 """
 
 import concurrent.futures
@@ -39,8 +39,8 @@ RUNS = [
     ("replay", "64k", 1_000_000, 20),
     ("replay", "64k", 2_000_000, 20),
 ]
-HEAD = "| learner | memory | steps | seeds | greedy return: mean ± sd of the seeds | 95 % interval of the mean | worst seed | misses |"
-HEAD += " steps to −80, −75, −70 |"
+RETURNS = "| learner | memory | steps | seeds | greedy return: mean ± sd of the seeds | 95 % interval of the mean | worst seed | misses |"
+TIMES = "| learner | memory | steps | steps to −80: median, worst seed | to −75 | to −70 |"
 
 
 def learn(run, seed):
@@ -56,47 +56,52 @@ def learn(run, seed):
     return reached, float(line["greedy_mean"]), int(line["misses"])
 
 
+def measure():
+    """The results of all seeds of each run."""
+    subprocess.run(["cargo", "build", "--quiet", "--release", "--locked", "--example", "swing_up"], check=True, cwd=ROOT)
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        futures = [[pool.submit(learn, run, seed) for seed in range(FIRST_SEED, FIRST_SEED + run[-1])] for run in RUNS]
+        return [(run, [future.result() for future in of_seeds]) for run, of_seeds in zip(RUNS, futures)]
+
+
+def returns(run, results):
+    learner, memory, steps, seeds = run
+    _, means, misses = zip(*results)
+    mean, sd = statistics.mean(means), statistics.stdev(means)
+    error = STUDENT[seeds] * sd / seeds**0.5
+    cells = [f"`{learner}`", f"{memory[:-1]} KiB", f"{steps:,}", f"{seeds}", f"{mean:.1f} ± {sd:.1f}"]
+    return cells + [f"{mean - error:.1f} to {mean + error:.1f}", f"{min(means):.1f}", f"{sum(misses)} of {1000 * seeds:,}"]
+
+
+def times(run, results):
+    learner, memory, steps, _ = run
+    reached, _, _ = zip(*results)
+    cells = [f"`{learner}`", f"{memory[:-1]} KiB", f"{steps:,}"]
+    return cells + [f"{thousands(statistics.median_low(at))}, {thousands(max(at))}" for at in zip(*reached)]
+
+
 def thousands(steps):
     """The evaluation's steps, without those of the episode that it waited for."""
     return "never" if steps == float("inf") else f"{int(steps) // EVALUATE * EVALUATE:,}"
 
 
-def row(run, results):
-    learner, memory, steps, seeds = run
-    reached, means, misses = zip(*results)
-    mean, sd = statistics.mean(means), statistics.stdev(means)
-    error = STUDENT[seeds] * sd / seeds**0.5
-    medians = ", ".join(thousands(statistics.median_low(at)) for at in zip(*reached))
-    cells = [f"`{learner}`", f"{memory[:-1]} KiB", f"{steps:,}", f"{seeds}", f"{mean:.1f} ± {sd:.1f}"]
-    cells += [f"{mean - error:.1f} to {mean + error:.1f}", f"{min(means):.1f}", f"{sum(misses)} of {1000 * seeds:,}"]
-    return "| " + " | ".join(cells + [medians]) + " |"
-
-
-def measure():
-    subprocess.run(["cargo", "build", "--quiet", "--release", "--locked", "--example", "swing_up"], check=True, cwd=ROOT)
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        futures = [[pool.submit(learn, run, seed) for seed in range(FIRST_SEED, FIRST_SEED + run[-1])] for run in RUNS]
-        yield HEAD
-        yield "|---|---|---|---|---|---|---|---|---|"
-        for run, of_seeds in zip(RUNS, futures):
-            yield row(run, [future.result() for future in of_seeds])
-
-
 def main():
-    table = []
     begin = time.monotonic()
-    for line in measure():
-        print(line, flush=True)
-        table.append(line)
+    results = measure()
     print(f"{time.monotonic() - begin:.0f} s", file=sys.stderr)
-    lines = PAGE.read_text().splitlines()
-    start = lines.index(HEAD)
-    end = next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
+    largest = [(run, of_seeds) for run, of_seeds in results if run[1] == "64k" and run[2] > 0]
+    before = lines = PAGE.read_text().splitlines()
+    for head, row, results in [(RETURNS, returns, results), (TIMES, times, largest)]:
+        rows = [f"| {' | '.join(row(*result))} |" for result in results]
+        table = [head, "|---" * (head.count("|") - 1) + "|", *rows]
+        print("\n".join(table))
+        start = lines.index(head)
+        end = next(i for i in range(start, len(lines)) if not lines[i].startswith("|"))
+        lines = lines[:start] + table + lines[end:]
     if sys.argv[1:] == ["--update"]:
-        lines[start:end] = table
         PAGE.write_text("\n".join(lines) + "\n")
-    elif lines[start:end] != table:
-        sys.exit("The table in docs/learning.md differs. If that is intended: python3 figures.py --update")
+    elif lines != before:
+        sys.exit("The tables in docs/learning.md differ. If that is intended: python3 figures.py --update")
 
 
 main()

@@ -98,7 +98,7 @@ fn load(u: &mut Unstructured<'_>) -> Result<()> {
 
 /// The first call in a process begins a training. All others continue it.
 fn train(u: &mut Unstructured<'_>) -> Result<()> {
-    learner::begin_training(u.arbitrary()?, u.arbitrary()?, u.arbitrary()?);
+    learner::begin_training(u.arbitrary()?, u.arbitrary()?);
     assert!((-500.0..=0.0).contains(&learner::train()));
     assert_eq!(
         learner::load(learner::save()),
