@@ -3,7 +3,7 @@
     python3 figures.py             fails if they differ: learning is bit-identical everywhere
     python3 figures.py --update    writes the tables again
 
-It takes seven minutes on two cores.
+It takes four minutes on two cores.
 """
 
 import concurrent.futures
