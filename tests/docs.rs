@@ -22,9 +22,12 @@ fn the_figures_of_the_readme_are_those_of_the_pages() {
     }
 }
 
+/// The words without signs and punctuation.
 fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split([' ', '\n', '|'])
-        .map(|word| word.trim_end_matches(['.', ',', ';', ':', ')', '`']))
+    text.split([' ', '\n', '|']).map(|word| {
+        word.trim_start_matches(['-', '−'])
+            .trim_end_matches(['.', ',', ';', ':', ')', '`'])
+    })
 }
 
 /// A block that is not compiled with the crate names the file that it is from: "```rust,ignore (path)" or "```c (path)".
