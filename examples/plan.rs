@@ -27,8 +27,8 @@ use examples_common::search::Search;
 use examples_common::{exit, weights};
 use indicatif::ProgressIterator;
 
-use sarsa::task::{evaluation, greedy, learn, play, q_lambda, training, view};
-use sarsa::{Budget, Transition};
+use learners::task::{evaluation, greedy, learn, play, q_lambda, training, view};
+use learners::{Budget, Transition};
 
 /// Compares the learner's greedy policy with a beam search over the learnt values.
 #[derive(Parser)]

@@ -8,8 +8,8 @@ use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 use examples_common::bang_bang;
 use examples_common::search::Search;
 use indicatif::ProgressIterator;
-use sarsa::task::{QLambda, greedy, learn, q_lambda, training, view};
-use sarsa::{Budget, Transition};
+use learners::task::{QLambda, greedy, learn, q_lambda, training, view};
+use learners::{Budget, Transition};
 
 use crate::{SEEDS, bound, initial};
 

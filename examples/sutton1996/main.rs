@@ -16,7 +16,7 @@
 //! child, for offsets in Sutton's learner and for exploration in this crate's. The CSV is the same for every number of
 //! threads.
 
-mod learners;
+mod agents;
 mod simulator;
 
 use std::error::Error;
@@ -34,8 +34,8 @@ use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use rayon::prelude::*;
 
+use agents::{ours, sutton};
 use examples_common::svg::{Area, svg};
-use learners::{ours, sutton};
 
 /// Repeats Sutton's experiment of 1996, also with this crate's learner.
 #[derive(Parser)]
@@ -73,7 +73,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
             steps
         };
         let runs = (0..options.runs).into_par_iter().map(run);
-        runs.collect::<Result<_, sarsa::Error>>().map(Experiment)
+        runs.collect::<Result<_, learners::Error>>().map(Experiment)
     };
     let experiments = [learnt(sutton)?, learnt(ours)?];
     progress.finish_and_clear();

@@ -6,7 +6,7 @@
 //! cargo run --release --example swing_up -- --steps 0 --load weights.bin
 //! ```
 //!
-//! The learner is `examples/sarsa`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
+//! The learner is `examples/learners`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
 //! `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for which the mean return of episodes
 //! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
 //! states that it was not trained on, and K of these missed the goal. With `--evaluate N` a line `steps M greedy_mean R`
@@ -34,8 +34,10 @@ mod curve;
 mod pictures;
 
 use examples_common::svg::svg;
-use sarsa::task::{self, QLambda, Values, evaluation, greedy, learn, play, torque, training, view};
-use sarsa::{Budget, Learn, Transition};
+use learners::task::{
+    self, QLambda, Values, evaluation, greedy, learn, play, torque, training, view,
+};
+use learners::{Budget, Learn, Transition};
 
 /// Learns to swing up, and compares the learnt policy with two simple ones.
 #[derive(Parser)]

@@ -11,7 +11,7 @@ use plotters::prelude::*;
 use crate::curve::running_mean;
 use examples_common::heat_map::{LABEL, NAME, color, draw_bar};
 use examples_common::svg::Area;
-use sarsa::task::Env;
+use learners::task::Env;
 
 const TITLE: (&str, i32) = ("sans-serif", 24);
 

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use sarsa::task::Values;
+use learners::task::Values;
 
 /// The most bytes that are read, because a file can be endless. The largest weights have 65,556 bytes. An error names
 /// the size of a file up to this limit.

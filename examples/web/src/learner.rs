@@ -5,8 +5,8 @@ use core::fmt::{self, Write};
 
 use acrobot::Action;
 use acrobot::numpy::Pcg64;
-use sarsa::task::{Env, QLambda, greedy, learn, q_lambda, training};
-use sarsa::{Budget, Transition};
+use learners::task::{Env, QLambda, greedy, learn, q_lambda, training};
+use learners::{Budget, Transition};
 
 use crate::memory::{BUFFER, Shared};
 use crate::once::Once;

@@ -6,8 +6,8 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Fast, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 
-use sarsa::Budget;
-use sarsa::task::{Sarsa, greedy, learn, sarsa};
+use learners::Budget;
+use learners::task::{Sarsa, greedy, learn, sarsa};
 
 /// Few, so that libFuzzer finds bytes of the right length.
 const SLOTS: usize = 16;

@@ -1,8 +1,8 @@
 //! A training from untrained weights (16 KiB), and a digest of all weights after 100 episodes.
 
 use acrobot::numpy::SeedSequence;
-use sarsa::Budget;
-use sarsa::task;
+use learners::Budget;
+use learners::task;
 
 use crate::Digest;
 

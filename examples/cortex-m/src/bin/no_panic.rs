@@ -27,9 +27,9 @@ use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
+use learners::task::{self, greedy, learn};
+use learners::{Budget, Transition};
 use rand_core::{Rng as _, SeedableRng as _};
-use sarsa::task::{self, greedy, learn};
-use sarsa::{Budget, Transition};
 
 unsafe extern "C" {
     fn a_panicking_branch_is_left() -> !;

@@ -1,10 +1,10 @@
-//! The two learners. Each learns in Sutton's simulator and returns the steps of every episode.
+//! The two agents. Each learns in Sutton's simulator and returns the steps of every episode.
 
 use std::f32::consts::PI;
 
 use acrobot::State;
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use sarsa::{
+use learners::{
     Budget, Dimension, Error, Features, Group, Learn as _, Sarsa, Schedule, Settings, Symmetry,
     Table, TileCoder, displacement,
 };

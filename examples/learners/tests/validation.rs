@@ -1,10 +1,10 @@
 //! Bad input is rejected with its reason, and changes nothing.
 
-use rand_pcg::Pcg32;
-use sarsa::{
+use learners::{
     Budget, Dimension, Group, Learn as _, LoadError, Sarsa, Schedule, Settings, Symmetry, Table,
     TileCoder, displacement,
 };
+use rand_pcg::Pcg32;
 
 const LINE: [Dimension; 1] = [Dimension::bounded(0.0, 1.0, 4)];
 
@@ -12,7 +12,7 @@ fn coder(
     line: [Dimension; 1],
     tilings: usize,
     table: Table,
-) -> Result<TileCoder<1, 4>, sarsa::Error> {
+) -> Result<TileCoder<1, 4>, learners::Error> {
     TileCoder::new(line, &[Group::new(&[0], tilings)], table, displacement)
 }
 

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use learners::{Dimension, Features, Group, Place, Table, TileCoder, displacement};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
-use sarsa::{Dimension, Features, Group, Place, Table, TileCoder, displacement};
 
 const UNIT: Dimension = Dimension::bounded(0.0, 1.0, 4);
 const CIRCLE: Dimension = Dimension::cyclic(-1.0, 1.0, 5);

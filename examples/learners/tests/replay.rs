@@ -1,11 +1,11 @@
 //! Q(λ) with replay equals its definition, and learns the right values.
 
-use rand_core::Rng;
-use rand_pcg::Pcg32;
-use sarsa::{
+use learners::{
     Dimension, Features, Group, Learn as _, QLambda, Schedule, Settings, Symmetry, Table,
     TileCoder, Transition, displacement,
 };
+use rand_core::Rng;
+use rand_pcg::Pcg32;
 
 const SETTINGS: Settings = Settings {
     gamma: 0.95,

@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use rand_pcg::Pcg32;
-//! use sarsa::{Dimension, Group, Learn as _, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement};
+//! use learners::{Dimension, Group, Learn as _, Sarsa, Schedule, Settings, Symmetry, Table, TileCoder, displacement};
 //!
 //! // One number in [0, 1], 4 tilings of 8 intervals; two actions: towards 0 and towards 1, which is the goal.
 //! let line = [Dimension::bounded(0.0, 1.0, 8)];
@@ -37,7 +37,7 @@
 //!     }
 //! }
 //! assert_eq!(steps, 5);
-//! # Ok::<(), sarsa::Error>(())
+//! # Ok::<(), learners::Error>(())
 //! ```
 #![no_std]
 #![forbid(unsafe_code)]

@@ -1,11 +1,11 @@
 //! The update equals the textbook's, and learns the right values.
 
-use rand_core::Rng;
-use rand_pcg::Pcg32;
-use sarsa::{
+use learners::{
     Budget, Dimension, Features, Group, Learn as _, Sarsa, Schedule, Settings, Symmetry, Table,
     TileCoder, displacement,
 };
+use rand_core::Rng;
+use rand_pcg::Pcg32;
 
 const SETTINGS: Settings = Settings {
     gamma: 1.0,
