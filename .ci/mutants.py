@@ -27,6 +27,7 @@ SHARDS = os.cpu_count() if len(sys.argv) == 1 else 1
 # minute without optimization.
 OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines", "batch"} | {"properties"})
 ROUNDS = [
+    (["src/physics/control*"], ["control"]),
     (["src/arithmetic*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
     (["src/arithmetic/reference*"], ["sines"]),
     (["src/trajectory.rs"], ["trajectory"]),
