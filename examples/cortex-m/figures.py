@@ -66,21 +66,21 @@ CORES = {
 }
 CORE_ROWS = {name: f"{core.words}, `{core.target}`" for name, core in CORES.items()}
 LIMITS = {
-    "limit_10": "10 N m, 1,000 initial states",
-    "limit_7": "7 N m, 100",
-    "limit_5": "5 N m, 100",
-    "limit_2": "2 N m, 100",
-    "limit_1": "1 N m, 100",
+    "10_Nm": "10 N m, 1,000 initial states",
+    "7_Nm": "7 N m, 100",
+    "5_Nm": "5 N m, 100",
+    "2_Nm": "2 N m, 100",
+    "1_Nm": "1 N m, 100",
 }
 BALANCE = {
     "missed": "not caught within 200 s",
-    "catch": "mean time to catch, s",
-    "longest": "longest time to catch, s",
-    "error": "largest error of an angle while held, mrad",
-    "tick": "instructions per decision, mean",
-    "slowest": "instructions per decision, most",
-    "flash": "flash of the whole firmware, bytes",
-    "ram": "RAM of the whole firmware, bytes",
+    "catch_mean_s": "mean time to catch, s",
+    "catch_longest_s": "longest time to catch, s",
+    "error_mrad": "largest error of an angle while held, mrad",
+    "instructions_mean": "instructions per decision, mean",
+    "instructions_most": "instructions per decision, most",
+    "flash_bytes": "flash of the whole firmware, bytes",
+    "ram_bytes": "RAM of the whole firmware, bytes",
 }
 CONTROL = {
     "linearize": "`linearize`",
@@ -200,7 +200,7 @@ def measure_levels():
 
 
 def measure_balance():
-    return printed("balance") | {("limit_10", "flash"): flash(images("balance")["balance"])}
+    return printed("balance") | {("10_Nm", "flash_bytes"): flash(images("balance")["balance"])}
 
 
 Table = collections.namedtuple("Table", "title columns rows measure")

@@ -1,7 +1,8 @@
 //! Swings the acrobot up and holds it upright, at 100 Hz: SysTick's interrupt decides on the torque, and steps the acrobot,
 //! which stands for the machine. It does so from 1,000 initial states, against a random torque in each tick.
 //!
-//! The controller computes its gains when the program starts. Prints one figure a line: `limit figure value`.
+//! The controller computes its gains when the program starts. Prints one figure a line: the largest torque, the figure's
+//! name and unit, and its value.
 
 #![no_std]
 #![no_main]
@@ -105,18 +106,13 @@ fn main() -> ! {
     let in_time = run(cortex_m::asm::wfi, 10.0, "in_time", 5);
     // A tick follows the last one at once.
     syst.disable_interrupt();
-    let caught = run(SCB::set_pendst, 10.0, "limit_10", 1000);
-    for (limit, name) in [
-        (7.0, "limit_7"),
-        (5.0, "limit_5"),
-        (2.0, "limit_2"),
-        (1.0, "limit_1"),
-    ] {
+    let caught = run(SCB::set_pendst, 10.0, "10_Nm", 1000);
+    for (limit, name) in [(7.0, "7_Nm"), (5.0, "5_Nm"), (2.0, "2_Nm"), (1.0, "1_Nm")] {
         if run(SCB::set_pendst, limit, name, 100).is_err() {
             process::exit(1)
         }
     }
-    println!("limit_10 ram {}", ram::used());
+    println!("10_Nm ram_bytes {}", ram::used());
     process::exit(if in_time == Ok(0) && caught == Ok(0) {
         0
     } else {
@@ -124,7 +120,8 @@ fn main() -> ! {
     })
 }
 
-/// Plays episodes with a largest torque, N m. Prints the figures, times and errors rounded up, and returns how many acrobots were not caught.
+/// Plays episodes with a largest torque, N m. Prints the figures, times and errors rounded up, and returns how many acrobots
+/// were not caught.
 fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, Error> {
     let params = Params {
         dt: 1.0 / RATE as f32,
@@ -160,15 +157,15 @@ fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, Er
     }
     println!("{name} missed {missed}");
     println!(
-        "{name} tick {}",
+        "{name} instructions_mean {}",
         counts * u64::from(PER_COUNT) / u64::from(ticks)
     );
-    println!("{name} slowest {}", slowest * PER_COUNT);
+    println!("{name} instructions_most {}", slowest * PER_COUNT);
     if missed < episodes {
         let mean = caught / (episodes - missed);
-        println!("{name} catch {}", mean.div_ceil(RATE));
-        println!("{name} longest {}", longest.div_ceil(RATE));
-        println!("{name} error {}", (error * 1000.0) as u32 + 1);
+        println!("{name} catch_mean_s {}", mean.div_ceil(RATE));
+        println!("{name} catch_longest_s {}", longest.div_ceil(RATE));
+        println!("{name} error_mrad {}", (error * 1000.0) as u32 + 1);
     }
     Ok(missed)
 }
