@@ -409,6 +409,14 @@ fn a_regulator_that_cannot_exist_is_an_error() {
             },
             none,
         ),
+        (
+            "elements below 1, whose powers grow",
+            Discrete {
+                a: [[0.3; 4]; 4],
+                b: reachable,
+            },
+            none,
+        ),
     ] {
         let error = lqr(&model, &q, 1.0).unwrap_err();
         assert!(matches!(error, Error::NotStabilized), "{name}: {error}");
