@@ -59,8 +59,15 @@ pub enum Error {
         /// The largest absolute value that remains after the elimination of all positive pivots.
         value: f64,
     },
-    /// There is no regulator that stabilizes the model, or the iteration does not converge to it.
-    NotStabilized,
+    /// The torque does not reach a motion of the model that grows or persists, so no regulator makes it vanish.
+    NotStabilizable,
+    /// The weights do not see a motion of the model that persists, so the best regulator lets it persist.
+    NotDetectable,
+    /// The gain of a regulator cannot be computed precisely enough.
+    IllConditioned {
+        /// The estimated error of the gain, relative to its largest element.
+        error: f64,
+    },
     /// The lower reset bound is above the upper one.
     ReversedBounds {
         /// The lower bound given, rad and rad/s.
@@ -158,9 +165,17 @@ impl fmt::Display for Error {
                 f,
                 "{name} must be positive semidefinite, got {value} after the elimination of its positive pivots"
             ),
-            Self::NotStabilized => write!(
+            Self::NotStabilizable => write!(
                 f,
-                "a regulator must stabilize the model with these weights, found none"
+                "the torque must reach each motion that grows or persists, but does not reach one"
+            ),
+            Self::NotDetectable => write!(
+                f,
+                "q must weight each motion that persists, but does not weight one"
+            ),
+            Self::IllConditioned { error } => write!(
+                f,
+                "the relative error of the gain must be at most 1e-9, got {error:e}"
             ),
             Self::ReversedBounds { low, high } => write!(
                 f,

@@ -1,5 +1,5 @@
-//! `physics::control` is right: derivatives, forces and velocities equal those of automatic differentiation, and gains
-//! those of SciPy, both recorded by `tests/data/control.py`.
+//! `physics::control` is right: derivatives, forces, velocities and gains equal those of automatic differentiation and of
+//! 200 digits, recorded by `tests/data/control.py`.
 
 use std::array::from_fn;
 
@@ -53,6 +53,13 @@ fn relative<S: Real>(found: &[S], expected: &[f64]) -> f64 {
     largest(differences) / largest(&mut expected.iter().copied())
 }
 
+/// Moderate parameters, or those over six decades.
+#[derive(Clone, Copy, Debug)]
+enum Spread {
+    Moderate,
+    Decades,
+}
+
 /// A pendulum, a torque and accelerations of the recording, and what autograd computed for them.
 struct Case {
     params: Params,
@@ -64,13 +71,20 @@ struct Case {
     motion: Vec<f64>,
 }
 
-fn cases() -> Vec<Case> {
+fn cases(spread: Spread) -> Vec<Case> {
     let text = text_of("tests/data/control.txt");
     let results = |word| lines(&text, word).map(numbers).collect::<Vec<_>>();
     let [continuous, discrete, motion] = ["continuous", "discrete", "motion"].map(results);
+    assert_eq!(continuous.len(), 80);
+    let first = match spread {
+        Spread::Moderate => 0,
+        Spread::Decades => 40,
+    };
     let cases = lines(&text, "case")
         .zip(continuous)
-        .zip(discrete.into_iter().zip(motion));
+        .zip(discrete.into_iter().zip(motion))
+        .skip(first)
+        .take(40);
     cases
         .map(|((line, continuous), (discrete, motion))| {
             let (dynamics, given) = line.split_once(' ').unwrap();
@@ -105,11 +119,9 @@ fn cases() -> Vec<Case> {
 }
 
 /// The largest error of each function over all cases, with the arithmetic `A`.
-fn errors<A: Arithmetic>() -> [f64; 4] {
+fn errors<A: Arithmetic>(spread: Spread) -> [f64; 4] {
     let mut worst = [0.0_f64; 4];
-    let cases = cases();
-    assert_eq!(cases.len(), 40);
-    for case in cases {
+    for case in cases(spread) {
         let pendulum = Pendulum::<A>::new(case.params.cast(), case.state.cast()).unwrap();
         let torque = Real::from_f64(case.torque);
         let continuous = linearize(&pendulum, torque).unwrap();
@@ -135,29 +147,34 @@ fn errors<A: Arithmetic>() -> [f64; 4] {
             *worst = worst.max(relative(&found, expected));
         }
     }
-    println!("{}: {worst:?}", A::NAME);
+    println!("{}, {spread:?}: {worst:?}", A::NAME);
     worst
 }
 
 #[test]
 fn derivatives_forces_and_velocities_equal_automatic_differentiation() {
-    for worst in [
-        errors::<Reference>(),
-        errors::<Portable>(),
-        errors::<Host>(),
+    use Spread::{Decades, Moderate};
+    for (worst, limit) in [
+        (errors::<Reference>(Moderate), 1e-14),
+        (errors::<Portable>(Moderate), 1e-14),
+        (errors::<Host>(Moderate), 1e-14),
+        (errors::<Fast>(Moderate), 1e-6),
+        (errors::<Micro>(Moderate), 5e-6),
+        // The derivatives of a step amplify the rounding of these parameters by up to 8000.
+        (errors::<Reference>(Decades), 1e-12),
+        (errors::<Portable>(Decades), 1e-12),
+        (errors::<Host>(Decades), 1e-12),
+        (errors::<Fast>(Decades), 1e-3),
+        (errors::<Micro>(Decades), 1e-3),
     ] {
-        assert!(worst.into_iter().all(|error| error < 1e-14), "{worst:?}");
+        assert!(worst.into_iter().all(|error| error < limit), "{worst:?}");
     }
-    let single = errors::<Fast>();
-    assert!(single.into_iter().all(|error| error < 1e-6), "{single:?}");
-    let table = errors::<Micro>();
-    assert!(table.into_iter().all(|error| error < 5e-6), "{table:?}");
 }
 
 /// `tests/physics.rs` compares the derivative with Lagrange's equations.
 #[test]
 fn inverse_dynamics_inverts_the_derivative() {
-    for case in cases() {
+    for case in cases(Spread::Moderate) {
         let pendulum = Pendulum::<Portable>::new(case.params, case.state).unwrap();
         let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(case.torque);
         let forces = inverse_dynamics(&pendulum, [ddtheta1, ddtheta2]).unwrap();
@@ -209,19 +226,18 @@ fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, 
     lqr(&model, &q.map(cast), S::from_f64(*r))
 }
 
-/// The errors of the gain and of the cost to go, and the iterations.
-fn errors_of_lqr<S: Real>(recorded: &Recorded) -> ([f64; 2], u32) {
+/// The errors of the gain and of the cost to go.
+fn errors_of_lqr<S: Real>(recorded: &Recorded) -> [f64; 2] {
     let found = regulate::<S>(recorded).unwrap();
     let columns: [[S; 4]; 4] = from_fn(|j| found.cost_to_go.map(|row| row[j]));
     assert_eq!(found.cost_to_go, columns, "not symmetric");
-    let errors = [
+    [
         relative(&found.gain, &recorded.gain),
         relative(
             found.cost_to_go.as_flattened(),
             recorded.cost_to_go.as_flattened(),
         ),
-    ];
-    (errors, found.iterations)
+    ]
 }
 
 #[test]
@@ -229,18 +245,51 @@ fn gains_equal_scipys() {
     let recorded = regulators();
     assert_eq!(recorded.len(), 32);
     for recorded in recorded {
-        let (double, iterations) = errors_of_lqr::<f64>(&recorded);
-        let (single, fewer) = errors_of_lqr::<f32>(&recorded);
+        let double = errors_of_lqr::<f64>(&recorded);
+        let single = errors_of_lqr::<f32>(&recorded);
         let Recorded { theta1, dt, r, .. } = recorded;
-        println!(
-            "{theta1:.2} rad, {dt} s, R {r}: f64 {double:?} in {iterations}, f32 {single:?} in {fewer}"
-        );
+        println!("{theta1:.2} rad, {dt} s, R {r}: f64 {double:?}, f32 {single:?}");
         assert!(double.into_iter().all(|error| error < 1e-11), "{double:?}");
         // The elements of A are rounded to 6e-8, and those that matter are about dt.
         let limit = if dt < 0.01 { 5e-3 } else { 1e-3 };
         assert!(single.into_iter().all(|error| error < limit), "{single:?}");
-        assert!(iterations <= 20 && fewer <= 20);
     }
+}
+
+/// All numbers are exact in both scalars, so only the gain is rounded.
+#[test]
+fn gains_are_exact_over_many_decades_or_errors() {
+    fn check<S: Real>(limit: f64) {
+        let text = text_of("tests/data/control.txt");
+        let (mut found, mut rejected) = (0, 0);
+        for line in lines(&text, "model") {
+            let (kind, given) = line.split_once(' ').unwrap();
+            let mut x = numbers(given);
+            // Short texts of `f32`.
+            x[..37].iter_mut().for_each(|x| *x = f64::from(*x as f32));
+            let [a, q] = [&x[..16], &x[20..36]].map(|m| matrix(m).map(cast));
+            let b = cast(vector(&x[16..20]));
+            match lqr::<S>(&Discrete { a, b }, &q, S::from_f64(x[36])) {
+                Ok(regulator) => {
+                    let error = relative(&regulator.gain, &x[37..]);
+                    assert!(error < limit, "{error:e} {line}");
+                    found += 1;
+                }
+                Err(error) => {
+                    assert!(
+                        matches!(error, Error::IllConditioned { .. }),
+                        "{error} {line}"
+                    );
+                    assert_eq!(kind, "any", "{error} {line}");
+                    rejected += 1;
+                }
+            }
+        }
+        println!("{found} gains, {rejected} rejected");
+        assert!(found + rejected == 240 && rejected <= 2);
+    }
+    check::<f64>(1e-8);
+    check::<f32>(1e-7);
 }
 
 /// The gain upright, all computed in `A`.
@@ -303,7 +352,7 @@ fn the_regulator_holds_the_acrobot_upright() {
 #[test]
 fn a_step_moves_as_its_derivatives_say() {
     const H: f64 = 1e-6;
-    for case in cases() {
+    for case in cases(Spread::Moderate) {
         let wide = f64::from(f32::MAX);
         let params = Params {
             max_velocity1: wide,
@@ -374,59 +423,29 @@ fn wrong_weights_are_rejected() {
     assert!(lqr(&upright(), &row.map(|x| row.map(|y| x * y)), 1.0).is_ok());
 }
 
-/// Each of these has no stabilizing gain.
 #[test]
 fn a_regulator_that_cannot_exist_is_an_error() {
-    let growing = Discrete {
-        a: diagonal([1.1, 0.5, 0.5, 0.5]),
-        b: [0.0, 1.0, 1.0, 1.0],
-    };
-    let drifting = Discrete {
-        a: diagonal([1.0, 0.5, 0.5, 0.5]),
-        ..growing
-    };
-    let (none, reachable) = (diagonal([0.0; 4]), [1.0; 4]);
-    for (name, model, q) in [
+    let growing = diagonal([1.1, 0.5, 0.4, 0.3]);
+    let persistent = diagonal([1.0, 0.5, 0.4, 0.3]);
+    let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
+    let not_first = [0.0, 1.0, 1.0, 1.0];
+    let (stabilizable, detectable) = (Error::NotStabilizable, Error::NotDetectable);
+    for (a, b, q, expected) in [
+        (growing, not_first, IDENTITY, stabilizable),
+        (persistent, not_first, IDENTITY, stabilizable),
+        (growing, [0.0; 4], IDENTITY, stabilizable),
+        (diagonal([1.1, 1.1, 0.5, 0.3]), all, IDENTITY, stabilizable),
+        (persistent, all, none, detectable),
         (
-            "the torque does not reach the first number",
-            growing,
-            IDENTITY,
-        ),
-        ("nor one that stays where it is", drifting, IDENTITY),
-        (
-            "no weight on a number that grows",
-            Discrete {
-                b: reachable,
-                ..growing
-            },
-            none,
-        ),
-        (
-            "no weight on one that stays",
-            Discrete {
-                b: reachable,
-                ..drifting
-            },
-            none,
-        ),
-        (
-            "elements below 1, whose powers grow",
-            Discrete {
-                a: [[0.3; 4]; 4],
-                b: reachable,
-            },
-            none,
+            diagonal([1.0, 1.5, 0.5, 0.5]),
+            all,
+            diagonal([0.0, 1.0, 1.0, 1.0]),
+            detectable,
         ),
     ] {
-        let error = lqr(&model, &q, 1.0).unwrap_err();
-        assert!(matches!(error, Error::NotStabilized), "{name}: {error}");
+        let error = lqr(&Discrete { a, b }, &q, 1.0).unwrap_err();
+        assert_eq!(error, expected, "{a:?} {b:?} {q:?}");
     }
-    // Without the need for a torque there is none.
-    let calm = Discrete {
-        a: diagonal([0.5; 4]),
-        b: reachable,
-    };
-    assert_eq!(lqr(&calm, &none, 1.0).unwrap().gain, [0.0; 4]);
 
     // A link on its centre of mass: gravity and the motor do not move link 1.
     let params = Params {
@@ -438,7 +457,40 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
     let model = discretize(&pendulum, 0.0).unwrap();
     let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
-    assert!(matches!(error, Error::NotStabilized), "{error}");
+    assert_eq!(error, Error::NotStabilizable);
+
+    // What `f32` cannot hold has a name.
+    let model = Discrete {
+        a: growing.map(cast::<f32, 4>),
+        b: [1e-30; 4],
+    };
+    let error = lqr(&model, &IDENTITY.map(cast), 1.0).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "cost_to_go must be finite in each element, got inf"
+    );
+}
+
+/// Of all gains that stabilize, the regulator has the cheapest, even where the weights do not ask for one.
+#[test]
+fn a_motion_that_grows_is_stopped_without_weights() {
+    let gain = |a, b, q| lqr(&Discrete { a, b }, &q, 1.0).unwrap().gain;
+    let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
+    // The cheapest way mirrors 1.1 in the unit circle: 1.1 − k = 1 / 1.1.
+    let found = gain(diagonal([1.1, 0.5, 0.4, 0.3]), all, none);
+    assert!(
+        relative(&found, &[1.1 - 1.0 / 1.1, 0.0, 0.0, 0.0]) < 1e-9,
+        "{found:?}"
+    );
+    // Elements below 1, whose powers grow as 1.2.
+    let found = gain([[0.3; 4]; 4], all, none);
+    assert!(
+        relative(&found, &[(1.2 - 1.0 / 1.2) / 4.0; 4]) < 1e-9,
+        "{found:?}"
+    );
+    assert_eq!(gain(diagonal([0.5; 4]), all, none), [0.0; 4]);
+    assert_eq!(gain(diagonal([0.5; 4]), [0.0; 4], IDENTITY), [0.0; 4]);
+    assert_eq!(gain(none, all, IDENTITY), [0.0; 4]);
 }
 
 #[test]

@@ -7,8 +7,7 @@ The equations are those that truth.py integrates, for any parameters, and autogr
 step of them. The torques are Lagrange's equations from positions and energies alone, and the forces Newton's law from the
 second derivatives of positions in time.
 
-The gains are those of SciPy's solve_discrete_are after Newton's method in 50 digits (G. A. Hewer, 1971), because SciPy's own
-error is up to 3e-6.
+The gains solve the Riccati equation in 200 digits. SciPy's solve_discrete_are finds the same, with an error of up to 3e-6.
 """
 
 import os
@@ -32,26 +31,47 @@ DEFAULT = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 1.0, 9.8, 0.2]
 STATES = np.array([3.2, 3.2, 6.0, 8.0])
 
 
-def derivative(p, y, torque, dynamics):
+class Digits:
+    """What the equations need of mathematics, in 200 digits."""
+
+    sin, cos = mpmath.sin, mpmath.cos
+
+    @staticmethod
+    def solve(matrix, vector):
+        ((a, b), (c, d)), (x, y) = matrix, vector
+        return np.array([d * x - b * y, a * y - c * x]) / (a * d - b * c)
+
+
+class Floats:
+    sin, cos, solve = np.sin, np.cos, np.linalg.solve
+
+
+def terms(p, y, dynamics, math):
+    """The mass matrix, and the torques that accelerations of 0 need."""
     theta1, theta2, dtheta1, dtheta2 = y
     l1, _, m1, m2, lc1, lc2, i1, i2, g, _ = p
-    sin2, arm = np.sin(theta2), m2 * l1 * lc2
-    d1 = m1 * lc1**2 + m2 * (l1**2 + lc2**2) + 2 * arm * np.cos(theta2) + i1 + i2
-    d2 = m2 * lc2**2 + arm * np.cos(theta2) + i2
-    phi2 = m2 * lc2 * g * np.sin(theta1 + theta2)
-    phi1 = -arm * dtheta2**2 * sin2 - 2 * arm * dtheta2 * dtheta1 * sin2 + (m1 * lc1 + m2 * l1) * g * np.sin(theta1) + phi2
+    sin2, arm = math.sin(theta2), m2 * l1 * lc2
+    d1 = m1 * lc1**2 + m2 * (l1**2 + lc2**2) + 2 * arm * math.cos(theta2) + i1 + i2
+    d2 = m2 * lc2**2 + arm * math.cos(theta2) + i2
+    phi2 = m2 * lc2 * g * math.sin(theta1 + theta2)
+    phi1 = -arm * dtheta2**2 * sin2 - 2 * arm * dtheta2 * dtheta1 * sin2 + (m1 * lc1 + m2 * l1) * g * math.sin(theta1) + phi2
     centrifugal = arm * dtheta1**2 * sin2 if dynamics == "book" else 0.0
-    mass = np.array([[d1, d2], [d2, m2 * lc2**2 + i2]])
-    rates = np.linalg.solve(mass, np.array([-phi1, torque - centrifugal - phi2]))
+    return np.array([[d1, d2], [d2, m2 * lc2**2 + i2]]), phi1, centrifugal, phi2
+
+
+def derivative(p, y, torque, dynamics, math=Floats):
+    theta1, theta2, dtheta1, dtheta2 = y
+    mass, phi1, centrifugal, phi2 = terms(p, (theta1, theta2, dtheta1, dtheta2), dynamics, math)
+    rates = math.solve(mass, np.array([-phi1, torque - centrifugal - phi2]))
     return np.array([dtheta1, dtheta2, rates[0], rates[1]])
 
 
-def step(p, y, torque, dynamics):
+def step(p, y, torque, dynamics, math=Floats):
     dt = p[-1]
-    k1 = derivative(p, y, torque, dynamics)
-    k2 = derivative(p, y + dt / 2 * k1, torque, dynamics)
-    k3 = derivative(p, y + dt / 2 * k2, torque, dynamics)
-    k4 = derivative(p, y + dt * k3, torque, dynamics)
+    k1 = derivative(p, y, torque, dynamics, math)
+    k2 = derivative(p, y + dt / 2 * k1, torque, dynamics, math)
+    k3 = derivative(p, y + dt / 2 * k2, torque, dynamics, math)
+    k4 = derivative(p, y + dt * k3, torque, dynamics, math)
     return y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
 
 
@@ -61,9 +81,9 @@ def linear(f, p, y, torque, dynamics):
     return by[0], by[1].reshape(4)
 
 
-def point(theta, distance1, distance2):
+def point(theta, distance1, distance2, math=Floats):
     """The point at these distances along link 1 and along link 2."""
-    along = lambda angle, distance: np.array([distance * np.sin(angle), -distance * np.cos(angle)])
+    along = lambda angle, distance: np.array([distance * math.sin(angle), -distance * math.cos(angle)])
     return along(theta[0], distance1) + along(theta[0] + theta[1], distance2)
 
 
@@ -94,21 +114,47 @@ def motion(p, y, accelerations, dynamics):
     return torques, reaction, elbow, velocity(l1, 0.0)(0.0), velocity(l1, l2)(0.0)
 
 
-def newton(a, b, q, r, cost):
-    """The gain and the cost to go that solve the Riccati equation, from an approximate cost."""
-    a, b, q, cost = (mpmath.matrix(m.tolist()) for m in (a, b[:, None], q, cost))
+def exactly(f, p, y, torque, dynamics):
+    """As linear, by differences in 200 digits."""
+    h = mpmath.mpf(10) ** -60
+    columns = []
+    for unit in np.eye(5, dtype=int) * h:
+        above, below = (f(p, y + sign * unit[:4], torque + sign * unit[4], dynamics, Digits) for sign in (1, -1))
+        columns.append((above - below) / (2 * h))
+    return np.array(columns[:4]).T, columns[4]
+
+
+def exact_motion(p, y, accelerations, dynamics):
+    """As motion, by differences in 200 digits. The torques are those of the equations in `terms`."""
+    l1, l2, m1, m2, lc1, lc2, _, _, g, _ = p
+    theta, dtheta = y[:2], y[2:]
+    h = mpmath.mpf(10) ** -60
+    times = -h, mpmath.mpf(0), h
+    places = lambda *distances: [point(theta + dtheta * t + accelerations * t**2 / 2, *distances, Digits) for t in times]
+    velocity = lambda before, _, after: (after - before) / (2 * h)
+    acceleration = lambda before, now, after: (after - 2 * now + before) / h**2
+    weight = np.array([0, g])
+    elbow = m2 * (acceleration(*places(l1, lc2)) + weight)
+    reaction = elbow + m1 * (acceleration(*places(lc1, 0)) + weight)
+    mass, phi1, centrifugal, phi2 = terms(p, y, dynamics, Digits)
+    torques = mass @ accelerations + np.array([phi1, centrifugal + phi2])
+    return torques, reaction, elbow, velocity(*places(l1, 0)), velocity(*places(l1, l2))
+
+
+def regulator(a, b, q, r):
+    """The gain and the cost to go that solve the Riccati equation: structured doubling in 200 digits, checked."""
+    a, b, q = (mpmath.matrix(m.tolist()) for m in (a, b[:, None], q))
     r = mpmath.mpf(float(r))
-    for _ in range(5):
-        gain = (b.T * cost * a) / (r + (b.T * cost * b)[0])
-        closed, stage = a - b * gain, q + r * gain.T * gain
-        # The cost of this gain: cost = closedᵀ cost closed + stage, element by element.
-        pairs = [(i, j) for i in range(4) for j in range(4)]
-        system = mpmath.matrix([[(k == n) - closed[i, m] * closed[j, o] for n, (i, j) in enumerate(pairs)]
-                                for k, (m, o) in enumerate(pairs)])
-        flat = mpmath.lu_solve(system, mpmath.matrix([stage[m, o] for m, o in pairs]))
-        cost = mpmath.matrix(4, 4)
-        for value, pair in zip(flat, pairs):
-            cost[pair] = value
+    power, reach, cost = a, b * b.T / r, q
+    while mpmath.mnorm(power) > 1e-50:
+        w = (mpmath.eye(4) + reach * cost) ** -1
+        cost, reach, power = (cost + power.T * cost * w * power, reach + power * w * reach * power.T, power * w * power)
+    gain = b.T * cost * a / (r + (b.T * cost * b)[0])
+    closed = a - b * gain
+    assert mpmath.mnorm(closed.T * cost * closed + q + r * gain.T * gain - cost) < 1e-90 * mpmath.mnorm(cost)
+    for _ in range(40):
+        closed = closed * closed
+    assert mpmath.mnorm(closed) < 1e-9
     return np.array(gain.tolist(), float)[0], np.array(cost.tolist(), float)
 
 
@@ -123,8 +169,33 @@ def weights(rng):
         yield (q + q.T) / 2, 10.0 ** rng.integers(-2, 3)
 
 
+def decades(rng, low, high, size=None):
+    return 10.0 ** rng.uniform(low, high, size)
+
+
+def models(rng):
+    """Models with weights: the acrobot with sensible and extreme weights, then anything over many decades."""
+    for dt in 0.002, 0.01, 0.05:
+        for angle in 0.0, np.pi:
+            a, b = linear(step, np.array([*DEFAULT[:-1], dt]), np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
+            for diagonal in (1.0, 1.0, 1.0, 1.0), (1000.0, 1000.0, 10.0, 10.0), (1.0, 1.0, 0.0, 0.0):
+                for r in 1e-8, 1e-4, 1.0, 1e6, 1e8:
+                    yield "acrobot", a, b, np.diag(diagonal), r
+    for number in range(150):
+        spread = number % 4
+        units = decades(rng, -spread, spread, 4)
+        a = rng.normal(size=(4, 4)) * decades(rng, -1, 1)
+        if rng.random() < 0.5:
+            a = np.eye(4) + a * decades(rng, -3, 0)
+        a = a * units[:, None] / units
+        b = rng.normal(size=4) * decades(rng, -spread, spread, 4)
+        root = np.float32(rng.normal(size=(4, 4)) * decades(rng, -spread, spread, 4))
+        q = root.T @ root if rng.random() < 0.5 else np.diag(decades(rng, -6, 6, 4))
+        yield "any", a, b, (q + q.T) / 2, decades(rng, -12, 8)
+
+
 def main():
-    mpmath.mp.dps = 50
+    mpmath.mp.dps = 200
     rng = np.random.default_rng(5)
     lines = []
     for number in range(40):
@@ -141,15 +212,33 @@ def main():
             a, b = linear(step, p, np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
             for q, r in weights(rng):
                 approximate = solve_discrete_are(a, b[:, None], q, np.array([[r]]))
-                gain, cost = newton(a, b, q, r, approximate)
+                gain, cost = regulator(a, b, q, r)
                 assert np.abs(approximate - cost).max() <= 3e-6 * np.abs(cost).max()
                 lines.append(f"lqr {texts(angle, dt, a, b, q, r, gain, cost)}")
+    for number in range(40):
+        dynamics = ["book", "nips"][number % 2]
+        p = np.array([*decades(rng, -3, 3, 8), rng.normal() * decades(rng, -3, 3), decades(rng, -5, -2)])
+        y = rng.uniform(-STATES, STATES)
+        torque, accelerations = rng.normal() * decades(rng, -3, 3), rng.normal(size=2) * decades(rng, -3, 3, 2)
+        p, y, torque, accelerations = (np.float32(x).astype(float) for x in (p, y, torque, accelerations))
+        lines.append(f"case {dynamics} {texts(p, y, torque, accelerations)}")
+        digits = [row * mpmath.mpf(1) for row in (p, y, accelerations)]
+        lines.append(f"continuous {texts(*exactly(derivative, *digits[:2], mpmath.mpf(float(torque)), dynamics))}")
+        lines.append(f"discrete {texts(*exactly(step, *digits[:2], mpmath.mpf(float(torque)), dynamics))}")
+        lines.append(f"motion {texts(*exact_motion(*digits, dynamics))}")
+    for kind, *model in models(rng):
+        given = [np.float32(x) for x in model]
+        gain, _ = regulator(*(x.astype(float) for x in given))
+        numbers = " ".join(str(x) for array in given for x in np.ravel(array))
+        lines.append(f"model {kind} {numbers} {texts(gain)}")
     head = [
         f"# {', '.join(f'{name} {version(name)}' for name in ('autograd', 'mpmath', 'numpy', 'scipy'))}",
         f"# case DYNAMICS {' '.join(NAMES)}, the state, the torque, two accelerations",
         "# continuous, discrete: A by rows, B",
         "# motion: torques, reaction, force in the elbow, velocities of elbow and tip",
         "# lqr THETA1 DT: A, B, Q by rows, R, the gain, the cost by rows",
+        "# the second half of the cases: parameters over six decades",
+        "# model KIND: A, B, Q by rows and R, all f32, and the gain",
     ]
     (Path(__file__).parent / "control.txt").write_text("\n".join(head + lines) + "\n")
 

@@ -121,7 +121,6 @@ fn regulators_stabilize_or_are_errors() {
             let Ok(regulator) = lqr(&model, &q, r) else {
                 return;
             };
-            assert!(regulator.iterations <= 25);
             let [gain, cost] = [&regulator.gain[..], regulator.cost_to_go.as_flattened()];
             assert!(gain.iter().chain(cost).all(|x| x.is_finite()));
             for i in 0..4 {

@@ -111,8 +111,10 @@ impl<A: Arithmetic> Variational<'_, A> {
         x: Sensitive<A::Scalar>,
         sin_cos: [SinCos<A::Scalar>; 2],
     ) -> Sensitive<A::Scalar> {
-        let rates = A::Form::derivative(self.model, x.y, Some(sin_cos), self.torque);
-        let [by_state @ .., by_torque] = partials(self.model, x.y, sin_cos, rates);
+        let ([ddtheta1, ddtheta2], [by_state @ .., by_torque]) =
+            partials(self.model, x.y, sin_cos, self.torque);
+        let [_, _, dtheta1, dtheta2] = x.y;
+        let y = [dtheta1, dtheta2, ddtheta1, ddtheta2];
         let ddtheta1 = by_state.map(|[ddtheta1, _]| ddtheta1);
         let ddtheta2 = by_state.map(|[_, ddtheta2]| ddtheta2);
         let rate = |column: [A::Scalar; 4]| {
@@ -126,7 +128,7 @@ impl<A: Arithmetic> Variational<'_, A> {
         };
         let [dtheta1, dtheta2, first, second] = rate(x.by_torque);
         Sensitive {
-            y: rates,
+            y,
             by_state: x.by_state.map(rate),
             by_torque: [
                 dtheta1,

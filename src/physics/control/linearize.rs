@@ -46,8 +46,7 @@ pub fn linearize<A: Arithmetic>(
     check_torque(torque)?;
     let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
     let y = pendulum.state().into();
-    let rates = pendulum.derivative(torque);
-    let [by_state @ .., by_torque] = partials(pendulum.model(), y, pendulum.sin_cos(), rates);
+    let (_, [by_state @ .., by_torque]) = partials(pendulum.model(), y, pendulum.sin_cos(), torque);
     let model = Continuous {
         a: [
             [zero, zero, one, zero],
@@ -62,17 +61,19 @@ pub fn linearize<A: Arithmetic>(
     Ok(model)
 }
 
-/// The derivatives of \[θ̈1, θ̈2\] by θ1, θ2, θ̇1, θ̇2 and the torque, given the rates at `y`.
+/// \[θ̈1, θ̈2\], and their derivatives by θ1, θ2, θ̇1, θ̇2 and the torque.
 ///
 /// The equations M q̈ = f for the absolute angles α = θ1 and β = θ1 + θ2 are those of docs/equations.md: M has the rows
 /// \[upper, c\] and \[c, link2\], with c = coupling cos θ2. The derivative by p is M⁻¹ (∂f/∂p − ∂M/∂p q̈).
+/// Here nothing cancels in the determinant. In Gymnasium's form of the equations digits are lost if one link is much
+/// heavier than the other, so this does not call it.
 #[inline(always)]
 pub(super) fn partials<A: Arithmetic>(
     model: &Model<A>,
     [_, _, dtheta1, dtheta2]: [A::Scalar; 4],
     [(sin1, cos1), (sin2, cos2)]: [SinCos<A::Scalar>; 2],
-    [_, _, ddtheta1, ddtheta2]: [A::Scalar; 4],
-) -> [[A::Scalar; 2]; 5] {
+    torque: A::Scalar,
+) -> ([A::Scalar; 2], [[A::Scalar; 2]; 5]) {
     let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
     let Common {
         coupling,
@@ -99,12 +100,17 @@ pub(super) fn partials<A: Arithmetic>(
     // The term in α̇² acts on link 2 in the book's equations, and on link 1 in those of the paper.
     let (book, nips) = (model.select(one, zero), model.select(zero, one));
     let (dalpha, dbeta) = (dtheta1, dtheta1 + dtheta2);
-    let (ddalpha, ddbeta) = (ddtheta1, ddtheta1 + ddtheta2);
+    let sin_sum = sin1 * cos2 + cos1 * sin2;
     let cos_sum = cos1 * cos2 - sin1 * sin2;
     let fall = -(gravity2 * cos_sum);
     let dalpha_squared = dalpha * dalpha;
+    let [ddalpha, ddtheta2] = solve([
+        coupling_sin * (dbeta * dbeta - nips * dalpha_squared) - gravity1 * sin1 - torque,
+        torque - gravity2 * sin_sum - coupling_sin * (book * dalpha_squared),
+    ]);
+    let ddbeta = ddalpha + ddtheta2;
     let twice_sin = coupling_sin + coupling_sin;
-    [
+    let derivatives = [
         [-(gravity1 * cos1), fall],
         [
             coupling_cos * (dbeta * dbeta - nips * dalpha_squared) + coupling_sin * ddbeta,
@@ -117,5 +123,6 @@ pub(super) fn partials<A: Arithmetic>(
         [twice_sin * dbeta, zero],
         [-one, one],
     ]
-    .map(solve)
+    .map(solve);
+    ([ddalpha, ddtheta2], derivatives)
 }

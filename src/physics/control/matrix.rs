@@ -7,7 +7,7 @@ use crate::arithmetic::Real;
 use crate::error::Error;
 
 /// Rows.
-pub type Matrix<S> = [[S; 4]; 4];
+pub type Matrix<S = f64> = [[S; 4]; 4];
 
 pub fn identity<S: Real>() -> Matrix<S> {
     let (one, zero) = (S::ONE, S::ZERO);
@@ -23,11 +23,6 @@ pub fn dot<S: Real>([x1, x2, x3, x4]: [S; 4], [y1, y2, y3, y4]: [S; 4]) -> S {
     x1 * y1 + x2 * y2 + x3 * y3 + x4 * y4
 }
 
-/// x yᵀ.
-pub fn outer<S: Real>(x: [S; 4], y: [S; 4]) -> Matrix<S> {
-    x.map(|x| y.map(|y| x * y))
-}
-
 pub fn transpose<S: Copy>([p, q, r, s]: &Matrix<S>) -> Matrix<S> {
     [
         [p[0], q[0], r[0], s[0]],
@@ -35,37 +30,6 @@ pub fn transpose<S: Copy>([p, q, r, s]: &Matrix<S>) -> Matrix<S> {
         [p[2], q[2], r[2], s[2]],
         [p[3], q[3], r[3], s[3]],
     ]
-}
-
-/// m x.
-pub fn apply<S: Real>(m: &Matrix<S>, x: [S; 4]) -> [S; 4] {
-    m.map(|row| dot(row, x))
-}
-
-/// x y.
-#[inline(never)] // saves flash: an iteration of `lqr` calls it six times
-pub fn product<S: Real>(x: &Matrix<S>, y: &Matrix<S>) -> Matrix<S> {
-    let columns = transpose(y);
-    x.map(|row| columns.map(|column| dot(row, column)))
-}
-
-/// x + h y.
-pub fn sum<S: Real>(mut x: Matrix<S>, h: S, y: &Matrix<S>) -> Matrix<S> {
-    for (x, y) in x.iter_mut().zip(y) {
-        *x = x.along(h, *y);
-    }
-    x
-}
-
-/// (m + mᵀ) / 2.
-pub fn symmetric<S: Real>(m: &Matrix<S>) -> Matrix<S> {
-    sum(*m, S::ONE, &transpose(m)).map(|row| row.map(|x| S::HALF * x))
-}
-
-/// The largest absolute value of an element; NaN does not count.
-pub fn largest<S: Real>(m: &Matrix<S>) -> S {
-    let elements = m.as_flattened().iter().map(|x| x.abs());
-    elements.fold(S::ZERO, |largest, x| if x > largest { x } else { largest })
 }
 
 /// Rejects elements that are not finite.
@@ -79,9 +43,54 @@ pub fn check_finite<S: Real>(name: &'static str, elements: &[S]) -> Result<(), E
     }
 }
 
+/// x yᵀ.
+pub fn outer(x: [f64; 4], y: [f64; 4]) -> Matrix {
+    x.map(|x| y.map(|y| x * y))
+}
+
+/// m x.
+pub fn apply(m: &Matrix, x: [f64; 4]) -> [f64; 4] {
+    m.map(|row| dot(row, x))
+}
+
+/// x y.
+#[inline(never)] // saves flash: `lqr` calls it in many places
+pub fn product(x: &Matrix, y: &Matrix) -> Matrix {
+    let columns = transpose(y);
+    x.map(|row| columns.map(|column| dot(row, column)))
+}
+
+/// xᵀ m x for a symmetric m.
+pub fn congruence(m: &Matrix, x: &Matrix) -> Matrix {
+    symmetric(&product(&transpose(x), &product(m, x)))
+}
+
+/// x + h y.
+#[inline(never)] // saves flash
+pub fn sum(mut x: Matrix, h: f64, y: &Matrix) -> Matrix {
+    for (x, y) in x.iter_mut().zip(y) {
+        *x = x.along(h, *y);
+    }
+    x
+}
+
+/// (m + mᵀ) / 2.
+pub fn symmetric(m: &Matrix) -> Matrix {
+    sum(*m, 1.0, &transpose(m)).map(|row| row.map(|x| 0.5 * x))
+}
+
+/// The largest absolute value of an element; NaN does not count.
+pub fn largest(elements: &[f64]) -> f64 {
+    elements.iter().fold(0.0, |most, x| x.abs().max(most))
+}
+
+pub fn is_finite(m: &Matrix) -> bool {
+    m.as_flattened().iter().all(|x| x.is_finite())
+}
+
 /// X with `w` X = `y`, by Gauss-Jordan elimination with partial pivoting. It is not finite if `w` is singular.
-#[inline(never)] // saves flash: an iteration of `lqr` calls it twice
-pub fn solve<S: Real>(w: &Matrix<S>, y: &Matrix<S>) -> Option<Matrix<S>> {
+#[inline(never)] // saves flash
+pub fn solve(w: &Matrix, y: &Matrix) -> Option<Matrix> {
     let [w1, w2, w3, w4] = *w;
     let [y1, y2, y3, y4] = *y;
     let mut rows = [(w1, y1), (w2, y2), (w3, y3), (w4, y4)];
@@ -93,7 +102,7 @@ pub fn solve<S: Real>(w: &Matrix<S>, y: &Matrix<S>) -> Option<Matrix<S>> {
                 swap(row, pivot);
             }
         }
-        let inverse = S::ONE / *pivot.0.get(column)?;
+        let inverse = 1.0 / *pivot.0.get(column)?;
         *pivot = (pivot.0.map(|x| x * inverse), pivot.1.map(|x| x * inverse));
         for row in above.iter_mut().chain(below) {
             let factor = -*row.0.get(column)?;
