@@ -186,7 +186,7 @@ pub fn prove() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// No policy reaches the goal in fewer steps.
+/// No policy reaches the goal in fewer steps. The energy must be below `GOAL`, where each episode of the proof begins.
 pub fn least_steps(state: State) -> u32 {
     let State {
         theta1,
@@ -195,7 +195,11 @@ pub fn least_steps(state: State) -> u32 {
         dtheta2,
     } = state;
     let y = [theta1, theta1 + theta2, dtheta1, dtheta1 + dtheta2].map(Affine::from);
-    let [_, progress] = energy_and_progress(y);
+    let [energy, progress] = energy_and_progress(y);
+    assert!(
+        energy.high() < GOAL,
+        "the state must have less energy than every goal state"
+    );
     ((LEAST - SLACK - progress.high()) / UNIT).ceil() as u32
 }
 
@@ -267,6 +271,12 @@ mod tests {
             let [_, point] = energy_and_progress(y.map(Affine::from));
             assert_contains(form, position, (point.low() + point.high()) / 2.0);
         }
+    }
+
+    #[test]
+    #[should_panic(expected = "less energy than every goal state")]
+    fn states_with_the_energy_of_goal_states_have_no_bound() {
+        least_steps(State::from([3.0, 0.0, 0.0, 0.0]));
     }
 
     /// Near the state whose step is the longest of a sample, and near the goal state of the least progress.
