@@ -3,10 +3,11 @@
 //! The function W estimates the progress towards the goal, in steps. Two statements about all states are proved by
 //! affine arithmetic, in boxes that are halved until the statement is certain:
 //!
-//! 1. From a state whose energy is below that of every goal state, no step increases W by more than `UNIT`.
-//! 2. States with the energy of goal states have at least the progress `LEAST`.
+//! 1. From a state whose energy is below `GOAL`, no step increases W by more than `UNIT` or ends above `MOST`.
+//! 2. States with an energy from `GOAL` to `MOST` have at least the progress `LEAST`.
 //!
-//! So from a state s the goal is at least (`LEAST` − W(s)) / `UNIT` steps away.
+//! So from a state s below `GOAL` the goal is at least (`LEAST` − W(s)) / `UNIT` steps away. This holds for Gymnasium's
+//! parameters, the book's dynamics and `f64`.
 
 use std::array::from_fn;
 use std::error::Error;
@@ -24,7 +25,7 @@ use crate::affine::Affine;
 const GRAVITY: [f64; 2] = [14.7, 4.9];
 /// More than rounding can change in a step of `f64`.
 const SLACK: f64 = 1e-6;
-/// Every goal state has at least this energy, J above hanging at rest. docs/optimum.md says why.
+/// The threshold of the energy, J above hanging at rest. Every goal state has more than 24.5 J; docs/optimum.md says why.
 const GOAL: f64 = 24.5 - SLACK;
 /// No step from below `GOAL` leads above this energy, J.
 const MOST: f64 = 27.5;
@@ -106,7 +107,7 @@ fn energy_and_progress(y: Space) -> [Affine; 2] {
     [energy, progress]
 }
 
-/// From a state below `GOAL`, a step with this torque never increases W by more than `unit`, or the energy above `MOST`.
+/// From a state below `GOAL`, no step with this torque increases W by more than `unit` or ends above `MOST`.
 fn no_step_is_longer(unit: f64, y: Space, torque: f64) -> bool {
     let [energy, before] = energy_and_progress(y);
     energy.low() > GOAL || {
@@ -173,6 +174,7 @@ fn prove_in_all(holds: &(impl Fn(Space) -> bool + Sync)) -> Result<u64, String> 
 pub fn prove() -> Result<(), Box<dyn Error>> {
     let began = Instant::now();
     let mut boxes = prove_in_all(&|y| no_goal_is_nearer(LEAST, y))?;
+    // The set is symmetric, so `STATES` needs no mirror images.
     for torque in [-1.0, 0.0, 1.0] {
         boxes += prove_in_all(&|y| no_step_is_longer(UNIT, y, torque))?;
     }
@@ -186,7 +188,7 @@ pub fn prove() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// No policy reaches the goal in fewer steps. The energy must be below `GOAL`, where each episode of the proof begins.
+/// No policy reaches the goal in fewer steps. The energy must be below `GOAL`, as the argument needs.
 pub fn least_steps(state: State) -> u32 {
     let State {
         theta1,

@@ -11,7 +11,7 @@ use indicatif::ProgressIterator;
 use learners::task::{QLambda, greedy, learn, q_lambda, training, view};
 use learners::{Budget, Transition};
 
-use crate::{SEEDS, bound, initial};
+use crate::{SEEDS, bound, initial, mean_return};
 
 /// The seed of learning and of random actions.
 const SEED: u64 = 42;
@@ -44,7 +44,7 @@ pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
     row("planned, 64 KiB", planned)?;
 
     let steps: usize = best.iter().map(Vec::len).sum();
-    row("best known", mean_return(steps as u32))?;
+    row("best known", mean_return(steps as f64))?;
     let least = (0..SEEDS)
         .map(|seed| bound::least_steps(initial(seed.into())))
         .sum();
@@ -52,15 +52,10 @@ pub fn print(best: &[Vec<Action>]) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The mean return, given the steps of all episodes.
-fn mean_return(steps: u32) -> f64 {
-    1.0 - f64::from(steps) / f64::from(SEEDS)
-}
-
 /// As `mean_return`, rounded up to two decimals, so that an upper bound stays one.
 fn highest_mean(steps: u32) -> f64 {
     const HUNDREDTH: u32 = SEEDS / 100;
-    mean_return(steps / HUNDREDTH * HUNDREDTH)
+    mean_return(f64::from(steps / HUNDREDTH * HUNDREDTH))
 }
 
 /// A learner after its training.
