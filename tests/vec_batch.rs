@@ -4,7 +4,7 @@ use acrobot::batch::{
     Autoreset, Batch, Block, Observations, SharedParams, StepBuffers, StepResults, VecBatch,
 };
 use acrobot::numpy::Pcg64;
-use acrobot::{Acrobot, Fast, State};
+use acrobot::{Acrobot, Fast, ResetOptions, State};
 
 /// The owning batch steps as the one that borrows its memory.
 #[test]
@@ -74,6 +74,47 @@ fn some_begin_in_given_states() {
     for i in 0..35 {
         assert_eq!(batch.member(i), before.member(i));
     }
+}
+
+/// `DerefMut` gives access to the batch inside, so a batch of another length can replace it.
+#[test]
+fn replaced_batches_of_other_lengths_have_their_own_results() {
+    const LENGTHS: [usize; 2] = [5, 40];
+    let mut batches = LENGTHS.map(|len| VecBatch::<Fast>::new(len as u64, len).unwrap());
+    for batch in &mut batches {
+        batch.set_limit(3.try_into().unwrap());
+        batch.set_autoreset(Autoreset::SameStep);
+    }
+    let mut expected = batches.clone();
+    expected.reverse();
+    let [first, second] = &mut batches;
+    std::mem::swap::<Batch<_, _, _>>(first, second);
+    for (swapped, expected) in batches.iter_mut().zip(&mut expected) {
+        let len = expected.len();
+        assert_eq!(swapped.observations(), expected.observations());
+        let mask: Vec<bool> = (0..len).map(|i| i % 2 == 0).collect();
+        for batch in [&mut *swapped, &mut *expected] {
+            batch.reset();
+            batch.reset_masked(&mask, ResetOptions::default()).unwrap();
+        }
+        assert_eq!(swapped.observations(), expected.observations());
+        for _ in 0..5 {
+            let actions = vec![2_u8; len];
+            assert_eq!(swapped.step(&actions), expected.step(&actions));
+            let torques = vec![0.5; len];
+            assert_eq!(
+                swapped.step_torques(&torques),
+                expected.step_torques(&torques)
+            );
+        }
+    }
+
+    let [mut first, second] = batches;
+    let shorter = Batch::new(3, vec![Block::EMPTY], vec![Pcg64::UNSEEDED; 2]).unwrap();
+    assert_eq!(std::mem::replace(&mut *first, shorter).len(), 40);
+    assert_eq!(first.step(&[1_u8; 2]).unwrap().rewards, [-1.0; 2]);
+    *first = (*second).clone();
+    assert_eq!(first.observations().len(), 5);
 }
 
 #[test]

@@ -3,10 +3,11 @@
 //! The function W estimates the progress towards the goal, in steps. Two statements about all states are proved by
 //! affine arithmetic, in boxes that are halved until the statement is certain:
 //!
-//! 1. From a state whose energy is below that of every goal state, no step increases W by more than `UNIT`.
-//! 2. States with the energy of goal states have at least the progress `LEAST`.
+//! 1. From a state whose energy is below `GOAL`, no step increases W by more than `UNIT` or ends above `MOST`.
+//! 2. States with an energy from `GOAL` to `MOST` have at least the progress `LEAST`.
 //!
-//! So from a state s the goal is at least (`LEAST` − W(s)) / `UNIT` steps away.
+//! So from a state s below `GOAL` the goal is at least (`LEAST` − W(s)) / `UNIT` steps away. This holds for Gymnasium's
+//! parameters, the book's dynamics and `f64`.
 
 use std::array::from_fn;
 use std::error::Error;
@@ -24,7 +25,7 @@ use crate::affine::Affine;
 const GRAVITY: [f64; 2] = [14.7, 4.9];
 /// More than rounding can change in a step of `f64`.
 const SLACK: f64 = 1e-6;
-/// Every goal state has at least this energy, J above hanging at rest. docs/optimum.md says why.
+/// The threshold of the energy, J above hanging at rest. Every goal state has more than 24.5 J; docs/optimum.md says why.
 const GOAL: f64 = 24.5 - SLACK;
 /// No step from below `GOAL` leads above this energy, J.
 const MOST: f64 = 27.5;
@@ -106,7 +107,7 @@ fn energy_and_progress(y: Space) -> [Affine; 2] {
     [energy, progress]
 }
 
-/// From a state below `GOAL`, a step with this torque never increases W by more than `unit`, or the energy above `MOST`.
+/// From a state below `GOAL`, no step with this torque increases W by more than `unit` or ends above `MOST`.
 fn no_step_is_longer(unit: f64, y: Space, torque: f64) -> bool {
     let [energy, before] = energy_and_progress(y);
     energy.low() > GOAL || {
@@ -173,6 +174,7 @@ fn prove_in_all(holds: &(impl Fn(Space) -> bool + Sync)) -> Result<u64, String> 
 pub fn prove() -> Result<(), Box<dyn Error>> {
     let began = Instant::now();
     let mut boxes = prove_in_all(&|y| no_goal_is_nearer(LEAST, y))?;
+    // The set is symmetric, so `STATES` needs no mirror images.
     for torque in [-1.0, 0.0, 1.0] {
         boxes += prove_in_all(&|y| no_step_is_longer(UNIT, y, torque))?;
     }
@@ -186,7 +188,7 @@ pub fn prove() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// No policy reaches the goal in fewer steps.
+/// No policy reaches the goal in fewer steps. The energy must be below `GOAL`, as the argument needs.
 pub fn least_steps(state: State) -> u32 {
     let State {
         theta1,
@@ -195,7 +197,11 @@ pub fn least_steps(state: State) -> u32 {
         dtheta2,
     } = state;
     let y = [theta1, theta1 + theta2, dtheta1, dtheta1 + dtheta2].map(Affine::from);
-    let [_, progress] = energy_and_progress(y);
+    let [energy, progress] = energy_and_progress(y);
+    assert!(
+        energy.high() < GOAL,
+        "the state must have less energy than every goal state"
+    );
     ((LEAST - SLACK - progress.high()) / UNIT).ceil() as u32
 }
 
@@ -226,7 +232,7 @@ mod tests {
     #[track_caller]
     fn assert_contains(form: Affine, position: [f64; 4], number: f64) {
         let [low, high] = form.range_at(position);
-        let is_inside = (low - 1e-9..=high + 1e-9).contains(&number);
+        let is_inside = (low..=high).contains(&number);
         assert!(is_inside, "{number} is not from {low} to {high}");
     }
 
@@ -264,9 +270,15 @@ mod tests {
         for _ in 0..20_000 {
             let (region, position, y) = draw(&mut rng);
             let [_, form] = energy_and_progress(region);
-            let [_, exact] = energy_and_progress(y.map(Affine::from));
-            assert_contains(form, position, exact.range_at([0.0; 4])[0]);
+            let [_, point] = energy_and_progress(y.map(Affine::from));
+            assert_contains(form, position, (point.low() + point.high()) / 2.0);
         }
+    }
+
+    #[test]
+    #[should_panic(expected = "less energy than every goal state")]
+    fn states_with_the_energy_of_goal_states_have_no_bound() {
+        least_steps(State::from([3.0, 0.0, 0.0, 0.0]));
     }
 
     /// Near the state whose step is the longest of a sample, and near the goal state of the least progress.

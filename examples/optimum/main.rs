@@ -81,6 +81,11 @@ fn initial(seed: u64) -> State {
     Acrobot::<Reference>::new(seed).state()
 }
 
+/// The mean return, given the steps of all episodes.
+fn mean_return(steps: f64) -> f64 {
+    1.0 - steps / f64::from(SEEDS)
+}
+
 fn search(width: u32, fineness: f32, file: &Path) -> Result<(), Box<dyn Error>> {
     let mut known = if file.exists() {
         load(file)?
@@ -113,10 +118,13 @@ fn search(width: u32, fineness: f32, file: &Path) -> Result<(), Box<dyn Error>> 
     }
     files::write(file, text(&known))?;
     let steps: usize = known.iter().map(Vec::len).sum();
+    let states = (0..SEEDS).map(|seed| initial(seed.into()).cast());
+    let values: f64 = states.map(|state| f64::from(values.at(&state))).sum();
     writeln!(
         io::stdout(),
-        "{shorter} shorter sequences; the mean return is {:.3}",
-        1.0 - steps as f64 / f64::from(SEEDS)
+        "{shorter} shorter sequences; the mean return is {:.3}, and {:.3} by the values of the grid",
+        mean_return(steps as f64),
+        mean_return(values)
     )?;
     Ok(())
 }

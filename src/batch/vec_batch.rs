@@ -15,6 +15,10 @@ type InVecs<A, P, const N: usize> = Batch<A, Vec<Block<A, N, P>>, Vec<Pcg64>, N,
 /// It has all methods of [`Batch`], except that its steps return their results instead of writing them into buffers.
 /// Only the feature `alloc` has it. `N` is as in [`Batch`]; on a core without SIMD, 1 takes less memory than 16.
 ///
+/// A [`Batch`] of another length may replace the one inside, for example by [`core::mem::swap`]. The next step or
+/// [`observations`](Self::observations) then allocates memory for its results. If that fails, the step returns
+/// [`Error::OutOfMemory`], and the observations are empty.
+///
 /// ```
 /// use acrobot::Fast;
 /// use acrobot::batch::VecBatch;
@@ -94,21 +98,35 @@ impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
     pub fn with_seed(seed: SeedSequence, len: usize) -> Result<Self, Error> {
         let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
         let batch = Batch::with_seed(seed, blocks, fill(Pcg64::UNSEEDED, len, len)?)?;
-        let results = Memory {
-            rewards: fill(0.0, len, len)?,
-            terminated: fill(false, len, len)?,
-            truncated: fill(false, len, len)?,
-            observations: fill([0.0; 6], len, len)?,
-            final_observations: fill([0.0; 6], len, len)?,
-        };
-        Ok(Self { batch, results })
+        let results = Memory::default();
+        let mut batch = Self { batch, results };
+        batch.fit_results()?;
+        Ok(batch)
+    }
+
+    /// Allocates new results if a batch of another length is in place. If that fails, the results are empty.
+    fn fit_results(&mut self) -> Result<(), Error> {
+        let len = self.batch.len();
+        if self.results.rewards.len() != len {
+            self.results = Memory::default();
+            self.results = Memory {
+                rewards: fill(0.0, len, len)?,
+                terminated: fill(false, len, len)?,
+                truncated: fill(false, len, len)?,
+                observations: fill([0.0; 6], len, len)?,
+                final_observations: fill([0.0; 6], len, len)?,
+            };
+        }
+        Ok(())
     }
 
     /// The observations of the states, for example after a reset.
     pub fn observations(&mut self) -> &[[f32; 6]] {
-        let to = Observations::Rows(&mut self.results.observations);
-        // It fails only for another length, which only another batch in place of this one has.
-        let _ = self.batch.observe(to);
+        if self.fit_results().is_ok() {
+            let to = Observations::Rows(&mut self.results.observations);
+            // It fails only for another length.
+            let _ = self.batch.observe(to);
+        }
         &self.results.observations
     }
 
@@ -161,6 +179,7 @@ impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
         &mut self,
         step: impl FnOnce(&mut InVecs<A, P, N>, StepBuffers<'_>) -> Result<(), Error>,
     ) -> Result<StepResults<'_>, Error> {
+        self.fit_results()?;
         let Self { batch, results } = self;
         step(
             batch,
