@@ -18,7 +18,7 @@ pub struct Continuous<S = f64> {
 }
 
 /// Linearizes the equations of motion about the pendulum's state and a torque, N m. The derivatives are exact up to
-/// rounding.
+/// rounding. Parameters that differ by more than four decades can cost digits; `f64` has enough of them.
 ///
 /// The state need not be an equilibrium. Where it is none, the rates at the state are
 /// [`Pendulum::derivative`], and the model describes the difference from them. Bounds of the velocities do not count.

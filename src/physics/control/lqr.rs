@@ -2,12 +2,11 @@
 
 use super::Discrete;
 use super::matrix::{
-    Matrix, apply, check_finite, congruence, dot, identity, is_finite, largest, outer, product,
-    solve, sum, symmetric, transpose,
+    Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, dot, eliminate, identity,
+    inner, largest, product, scale, symmetrize, transpose,
 };
 use crate::arithmetic::{Arithmetic, Real};
 use crate::error::{Error, Range};
-use crate::physics::rk4::Along;
 use crate::physics::{State, wrap};
 
 /// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one with the least sum of
@@ -63,9 +62,9 @@ pub fn difference<A: Arithmetic>(
 /// `q` weights the deviation of the state: it is symmetric and positive semidefinite, by rows, in 1/rad², s/rad² and
 /// s²/rad². `r` weights the torque, in 1/(N m)²; above 0. Only their ratio matters for the gain.
 ///
-/// Both scalars are computed in `f64`, and the error of the gain is estimated from the residual of the Riccati equation.
-/// A gain whose estimated error is above 1e-9 of its largest element is rejected. Upright and hanging, all weights have a
-/// gain whose ratios of `q` to `r` are from 1e-6 to 1e8, with a `dt` from 0.002 to 0.05 s.
+/// Both scalars are computed in `f64`. The residual of the Riccati equation says how large the error of the gain is; above
+/// 1e-9 of the largest element it is an error. The acrobot has a gain, upright and hanging, for each `dt` from 0.002 to
+/// 0.05 s and each ratio of `q` to `r` from 1e-8 to 1e8.
 ///
 /// The structured doubling algorithm (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin and C.-S. Wang, *Structure-Preserving
 /// Algorithms for Periodic Discrete-Time Algebraic Riccati Equations*, 2004) finds a gain, and Newton's method (G. A.
@@ -92,8 +91,8 @@ pub fn difference<A: Arithmetic>(
 ///   scalar cannot hold.
 /// - [`Error::NotSymmetric`] and [`Error::NotSemidefinite`] for such a `q`. Elements smaller than 16 machine epsilons of
 ///   the largest one count as 0.
-/// - [`Error::NotStabilizable`] if the torque does not reach a motion that grows or persists.
-/// - [`Error::NotDetectable`] if `q` does not weight a motion that persists: it would take more than 2⁴⁰ steps to vanish.
+/// - [`Error::NotStabilizable`] if the torque does not reach a motion that grows or persists, as far as `f64` shows.
+/// - [`Error::NotDetectable`] if `q` does not weight a motion that persists: it would need more than 2⁴⁰ steps to vanish.
 /// - [`Error::IllConditioned`] if the estimated error of the gain is above 1e-9 of its largest element.
 pub fn lqr<S: Real>(model: &Discrete<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, Error> {
     check_finite("a", model.a.as_flattened())?;
@@ -105,7 +104,7 @@ pub fn lqr<S: Real>(model: &Discrete<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>
     check_semidefinite(&q, 16.0 * S::EPSILON.to_f64())?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
 
-    let (gain, cost_to_go) = regulator(&a, b, &q, r)?;
+    let (gain, cost_to_go) = regulator(&a, &b, &q, r)?;
     let regulator = Lqr {
         gain: gain.map(S::from_f64),
         cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)),
@@ -122,48 +121,38 @@ const NEWTON_ITERATIONS: u32 = 60;
 /// The largest error of a gain, relative to its largest element. The estimate can be too small by a factor of ten.
 const TOLERANCE: f64 = 1e-9;
 
-/// A model and its weights.
+/// A model and its weights, in coordinates y in which the torque changes one number only: where R is small, P b would
+/// otherwise be a difference of large numbers.
 struct Problem {
     a: Matrix,
     b: [f64; 4],
     q: Matrix,
     r: f64,
+    /// y = t x for the state x.
+    t: Matrix,
 }
 
 /// K and P.
 type Solution = ([f64; 4], Matrix);
 
-/// Solves the problem in coordinates in which the torque changes one number only: where R is small, P b would otherwise
-/// be a difference of large numbers.
-fn regulator(a: &Matrix, b: [f64; 4], q: &Matrix, r: f64) -> Result<Solution, Error> {
-    let scale = r.max(largest(q.as_flattened())); // so that no cost overflows
-    let q = q.map(|row| row.map(|x| x / scale));
-    let (unit, pivot) = pivot(a, b);
-    // x = basis y, where the column of the pivot is b / pivot.
-    let column = b.along(-pivot, unit).map(|x| x / pivot);
-    let basis = sum(identity(), 1.0, &outer(column, unit));
-    let inverse = sum(identity(), -1.0, &outer(column, unit));
-    let problem = Problem {
-        a: product(&inverse, &product(a, &basis)),
-        b: unit.map(|x| x * pivot),
-        q: congruence(&q, &basis),
-        r: r / scale,
-    };
-    let (gain, cost) = problem.solve()?;
-    let cost = congruence(&cost, &inverse).map(|row| row.map(|x| x * scale));
-    Ok((apply(&transpose(&inverse), gain), cost))
+fn regulator(a: &Matrix, b: &[f64; 4], q: &Matrix, r: f64) -> Result<Solution, Error> {
+    let cost_unit = r.max(largest(q.as_flattened())); // so that no cost overflows
+    let problem = Problem::new(a, b, q, r, 1.0 / cost_unit);
+    let (gain, mut cost) = problem.solve()?;
+    cost = congruence(&cost, &problem.t);
+    scale(&mut cost, cost_unit);
+    Ok((apply(&transpose(&problem.t), &gain), cost))
 }
 
 /// The number of the state that the torque changes most, as a unit vector, and its element of `b`. The rows and columns
 /// of `a` say how the units of the numbers compare.
-fn pivot(a: &Matrix, b: [f64; 4]) -> ([f64; 4], f64) {
-    let size = |row: [f64; 4]| row.iter().fold(f64::MIN_POSITIVE, |sum, x| sum + x.abs());
-    let sizes = a.map(size).into_iter().zip(transpose(a).map(size));
+fn pivot(a: &Matrix, b: &[f64; 4]) -> ([f64; 4], f64) {
+    let size = |row: &[f64; 4]| row.iter().fold(f64::MIN_POSITIVE, |sum, x| sum + x.abs());
     let mut chosen = ([0.0; 4], 1.0);
     let mut most = 0.0;
-    for ((unit, b_i), (row, column)) in identity().into_iter().zip(b).zip(sizes) {
-        let share = b_i / largest(&b);
-        let effect = share * share * (column / row);
+    for (((unit, &b_i), row), column) in identity().into_iter().zip(b).zip(a).zip(&transpose(a)) {
+        let share = b_i / largest(b);
+        let effect = share * share * (size(column) / size(row));
         if effect > most {
             (chosen, most) = ((unit, b_i), effect);
         }
@@ -172,67 +161,98 @@ fn pivot(a: &Matrix, b: [f64; 4]) -> ([f64; 4], f64) {
 }
 
 impl Problem {
+    #[inline(never)]
+    fn new(a: &Matrix, b: &[f64; 4], q: &Matrix, r: f64, weight: f64) -> Self {
+        let (unit, pivot) = pivot(a, b);
+        // x = basis y, where the column of the pivot is b / pivot.
+        let mut column = *b;
+        add_scaled(&mut column, -pivot, &unit);
+        let mut basis = identity();
+        add_outer(&mut basis, 1.0 / pivot, &column, &unit);
+        let mut problem = Self {
+            a: product(a, &basis),
+            b: unit.map(|x| x * pivot),
+            q: congruence(q, &basis),
+            r: r * weight,
+            t: identity(),
+        };
+        add_outer(&mut problem.t, -1.0 / pivot, &column, &unit);
+        problem.a = product(&problem.t, &problem.a);
+        scale(&mut problem.q, weight);
+        problem
+    }
+
     fn solve(&self) -> Result<Solution, Error> {
-        // Newton's method needs a gain that stabilizes. Where these weights give none, because Q does not weight a motion
-        // that grows or R is extreme, others do.
+        let solution = self.solve_from(&self.q, self.r);
+        if solution.is_ok() {
+            return solution;
+        }
+        // Where these weights give no gain that stabilizes, because Q does not weight a motion that grows or R is extreme,
+        // others do.
         let weight = match largest(self.q.as_flattened()) {
             0.0 => 1.0,
             weight => weight,
         };
-        let moderate = Self {
-            q: identity().map(|row: [f64; 4]| row.map(|x| x * weight)),
-            r: self.r.max(weight * dot(self.b, self.b)),
-            ..*self
-        };
-        let mut solution = Err(Error::NotStabilizable);
-        for start in [self, &moderate] {
-            if let Some(gain) = start.double() {
-                solution = self.refine(gain);
-                if solution.is_ok() {
-                    break;
-                }
-            }
-        }
-        solution
+        let mut q = identity();
+        scale(&mut q, weight);
+        self.solve_from(&q, self.r.max(weight * inner(&self.b, &self.b)))
     }
 
-    /// K by the doubling algorithm. Rounding can make it wrong.
+    /// The solution, beginning with the gain for other weights.
+    fn solve_from(&self, q: &Matrix, r: f64) -> Result<Solution, Error> {
+        let gain = self.double(q, r).ok_or(Error::NotStabilizable)?;
+        self.refine(gain)
+    }
+
+    /// K for the weights `q` and `r`, by the doubling algorithm. Rounding can make it wrong.
     ///
     /// With A, G = B Bᵀ / R and P = Q for one step, the iteration computes the same for twice as many steps:
     /// P + Aᵀ P W⁻¹ A, G + A W⁻¹ G Aᵀ and A W⁻¹ A, where W = 1 + G P. A vanishes as the closed loop does.
-    fn double(&self) -> Option<[f64; 4]> {
-        let (mut a, mut p) = (self.a, self.q);
-        let mut g = outer(self.b, self.b.map(|b| b / self.r));
+    #[inline(never)]
+    fn double(&self, q: &Matrix, r: f64) -> Option<[f64; 4]> {
+        let (mut a, mut p, mut g) = (self.a, *q, [[0.0; 4]; 4]);
+        add_outer(&mut g, 1.0 / r, &self.b, &self.b);
         for _ in 0..DOUBLINGS {
-            let w = sum(identity(), 1.0, &product(&g, &p));
-            let (w_a, w_g) = (solve(&w, &a)?, solve(&w, &g)?);
-            let transposed = transpose(&a);
-            let change = product(&transposed, &product(&p, &w_a));
-            p = sum(p, 1.0, &symmetric(&change));
-            let change = product(&a, &product(&w_g, &transposed));
-            g = sum(g, 1.0, &symmetric(&change));
+            let mut w = identity();
+            add(&mut w, 1.0, &product(&g, &p));
+            let mut rows = [
+                [w[0], a[0], g[0]],
+                [w[1], a[1], g[1]],
+                [w[2], a[2], g[2]],
+                [w[3], a[3], g[3]],
+            ];
+            eliminate(&mut rows)?;
+            let mut change = product(&a, &product(&rows.map(|[.., w_g]| w_g), &transpose(&a)));
+            symmetrize(&mut change);
+            add(&mut g, 1.0, &change);
+            let w_a = rows.map(|[_, w_a, _]| w_a);
+            change = product(&transpose(&a), &product(&p, &w_a));
+            symmetrize(&mut change);
+            add(&mut p, 1.0, &change);
             a = product(&a, &w_a);
             if has_vanished(&a) {
-                return Some(self.gain(&p).0);
+                return Some(self.gain(&p, r).0);
             }
         }
         None
     }
 
-    /// The best gain for the next step, if P is the cost after it, and the weight of its torque.
-    fn gain(&self, p: &Matrix) -> ([f64; 4], f64) {
-        let p_b = apply(p, self.b);
-        let weight = self.r + dot(self.b, p_b);
-        (apply(&transpose(&self.a), p_b).map(|x| x / weight), weight)
+    /// The best gain for the next step, if P is the cost after it, and how much it weights the torque.
+    fn gain(&self, p: &Matrix, r: f64) -> ([f64; 4], f64) {
+        let p_b = apply(p, &self.b);
+        let weight = r + inner(&self.b, &p_b);
+        (apply(&transpose(&self.a), &p_b).map(|x| x / weight), weight)
     }
 
     /// The solution near a gain that stabilizes, by Newton's method. It alternates between the cost of a gain and the
     /// gain that is best for this cost.
+    #[inline(never)]
     fn refine(&self, mut gain: [f64; 4]) -> Result<Solution, Error> {
         let (mut change, mut noise) = (f64::INFINITY, 0.0);
         for iteration in 0..NEWTON_ITERATIONS {
-            let closed = sum(self.a, -1.0, &outer(self.b, gain));
-            let stage = sum(self.q, self.r, &outer(gain, gain));
+            let (mut closed, mut stage) = (self.a, self.q);
+            add_outer(&mut closed, -1.0, &self.b, &gain);
+            add_outer(&mut stage, self.r, &gain, &gain);
             let Some(cost) = lyapunov(&closed, &stage) else {
                 match iteration {
                     0 => return Err(Error::NotStabilizable),
@@ -241,14 +261,17 @@ impl Problem {
                     _ => break,
                 }
             };
-            let (better, weight) = self.gain(&cost);
-            change = largest(&better.along(-1.0, gain));
             // What the residual of the equation adds to the cost, and thereby to the gain.
-            let next = sum(stage, 1.0, &congruence(&cost, &closed));
-            let Some(missing) = lyapunov(&closed, &sum(next, -1.0, &cost)) else {
+            add(&mut stage, 1.0, &congruence(&cost, &closed));
+            add(&mut stage, -1.0, &cost);
+            let Some(missing) = lyapunov(&closed, &stage) else {
                 break;
             };
-            noise = largest(&apply(&transpose(&closed), apply(&missing, self.b))) / weight;
+            let (better, weight) = self.gain(&cost, self.r);
+            let missing = apply(&transpose(&closed), &apply(&missing, &self.b));
+            noise = largest(&missing) / weight;
+            add_scaled(&mut gain, -1.0, &better);
+            change = largest(&gain);
             gain = better;
             if change.max(noise) <= TOLERANCE * largest(&gain) {
                 return Ok((gain, cost));
@@ -262,12 +285,14 @@ impl Problem {
 
 /// The solution P of P = mᵀ P m + stage, the discrete Lyapunov equation, by doubling. None if the powers of m do not
 /// vanish.
+#[inline(never)]
 fn lyapunov(m: &Matrix, stage: &Matrix) -> Option<Matrix> {
     let (mut m, mut p) = (*m, *stage);
     for _ in 0..=DOUBLINGS {
-        p = sum(p, 1.0, &congruence(&p, &m));
+        let change = congruence(&p, &m);
+        add(&mut p, 1.0, &change);
         if has_vanished(&m) {
-            return is_finite(&p).then_some(p);
+            return p.as_flattened().iter().all(|x| x.is_finite()).then_some(p);
         }
         m = product(&m, &m);
     }
@@ -275,7 +300,7 @@ fn lyapunov(m: &Matrix, stage: &Matrix) -> Option<Matrix> {
 }
 
 fn has_vanished(m: &Matrix) -> bool {
-    m.as_flattened().iter().all(|x| x.abs() < 1e-12)
+    m.iter().fold(0.0, |sum, row| sum + inner(row, row)) < 1e-24
 }
 
 fn check_symmetric(q: &Matrix) -> Result<(), Error> {
@@ -307,7 +332,7 @@ fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), Error> {
         }
         let (pivot, row) = greatest;
         for (x, factor) in rest.iter_mut().zip(row) {
-            *x = x.along(-(factor / pivot), row);
+            add_scaled(x, -(factor / pivot), &row);
         }
     }
     let most = largest(rest.as_flattened());

@@ -2,7 +2,6 @@
 
 use core::mem::swap;
 
-use super::super::rk4::Along;
 use crate::arithmetic::Real;
 use crate::error::Error;
 
@@ -43,71 +42,112 @@ pub fn check_finite<S: Real>(name: &'static str, elements: &[S]) -> Result<(), E
     }
 }
 
-/// x yᵀ.
-pub fn outer(x: [f64; 4], y: [f64; 4]) -> Matrix {
-    x.map(|x| y.map(|y| x * y))
+// From here on all is `f64`. What is not inlined saves flash where each operation is a call.
+
+/// x · y.
+#[inline(never)]
+pub fn inner(x: &[f64; 4], y: &[f64; 4]) -> f64 {
+    dot(*x, *y)
+}
+
+/// x += h y.
+#[inline(never)]
+pub fn add_scaled(x: &mut [f64; 4], h: f64, y: &[f64; 4]) {
+    for (x, y) in x.iter_mut().zip(y) {
+        *x += h * y;
+    }
+}
+
+/// m += h x yᵀ.
+#[inline(never)]
+pub fn add_outer(m: &mut Matrix, h: f64, x: &[f64; 4], y: &[f64; 4]) {
+    for (row, x) in m.iter_mut().zip(x) {
+        add_scaled(row, h * x, y);
+    }
+}
+
+/// m += h x.
+#[inline(never)]
+pub fn add(m: &mut Matrix, h: f64, x: &Matrix) {
+    for (row, x) in m.iter_mut().zip(x) {
+        add_scaled(row, h, x);
+    }
+}
+
+/// m *= h.
+#[inline(never)]
+pub fn scale(m: &mut Matrix, h: f64) {
+    for x in m.as_flattened_mut() {
+        *x *= h;
+    }
 }
 
 /// m x.
-pub fn apply(m: &Matrix, x: [f64; 4]) -> [f64; 4] {
-    m.map(|row| dot(row, x))
+#[inline(never)]
+pub fn apply(m: &Matrix, x: &[f64; 4]) -> [f64; 4] {
+    let mut result = [0.0; 4];
+    for (result, row) in result.iter_mut().zip(m) {
+        *result = inner(row, x);
+    }
+    result
 }
 
 /// x y.
-#[inline(never)] // saves flash: `lqr` calls it in many places
+#[inline(never)]
 pub fn product(x: &Matrix, y: &Matrix) -> Matrix {
     let columns = transpose(y);
-    x.map(|row| columns.map(|column| dot(row, column)))
+    let mut result = [[0.0; 4]; 4];
+    for (result, row) in result.iter_mut().zip(x) {
+        *result = apply(&columns, row);
+    }
+    result
+}
+
+/// m becomes (m + mᵀ) / 2.
+#[inline(never)]
+pub fn symmetrize(m: &mut Matrix) {
+    let transposed = transpose(m);
+    add(m, 1.0, &transposed);
+    scale(m, 0.5);
 }
 
 /// xᵀ m x for a symmetric m.
+#[inline(never)]
 pub fn congruence(m: &Matrix, x: &Matrix) -> Matrix {
-    symmetric(&product(&transpose(x), &product(m, x)))
-}
-
-/// x + h y.
-#[inline(never)] // saves flash
-pub fn sum(mut x: Matrix, h: f64, y: &Matrix) -> Matrix {
-    for (x, y) in x.iter_mut().zip(y) {
-        *x = x.along(h, *y);
-    }
-    x
-}
-
-/// (m + mᵀ) / 2.
-pub fn symmetric(m: &Matrix) -> Matrix {
-    sum(*m, 1.0, &transpose(m)).map(|row| row.map(|x| 0.5 * x))
+    // (m x)ᵀ x, whose transpose is the same.
+    let mut result = product(&transpose(&product(m, x)), x);
+    symmetrize(&mut result);
+    result
 }
 
 /// The largest absolute value of an element; NaN does not count.
+#[inline(never)]
 pub fn largest(elements: &[f64]) -> f64 {
     elements.iter().fold(0.0, |most, x| x.abs().max(most))
 }
 
-pub fn is_finite(m: &Matrix) -> bool {
-    m.as_flattened().iter().all(|x| x.is_finite())
-}
-
-/// X with `w` X = `y`, by Gauss-Jordan elimination with partial pivoting. It is not finite if `w` is singular.
-#[inline(never)] // saves flash
-pub fn solve(w: &Matrix, y: &Matrix) -> Option<Matrix> {
-    let [w1, w2, w3, w4] = *w;
-    let [y1, y2, y3, y4] = *y;
-    let mut rows = [(w1, y1), (w2, y2), (w3, y3), (w4, y4)];
+/// Gauss-Jordan elimination with partial pivoting: each row has a row of w, x and y, and the last two become those of
+/// w⁻¹ x and w⁻¹ y. They are not finite if w is singular.
+#[inline(never)]
+pub fn eliminate(rows: &mut [[[f64; 4]; 3]; 4]) -> Option<()> {
     for column in 0..4 {
         let (above, rest) = rows.split_at_mut_checked(column)?;
         let (pivot, below) = rest.split_first_mut()?;
         for row in &mut *below {
-            if row.0.get(column)?.abs() > pivot.0.get(column)?.abs() {
+            if row[0].get(column)?.abs() > pivot[0].get(column)?.abs() {
                 swap(row, pivot);
             }
         }
-        let inverse = 1.0 / *pivot.0.get(column)?;
-        *pivot = (pivot.0.map(|x| x * inverse), pivot.1.map(|x| x * inverse));
+        let inverse = 1.0 / *pivot[0].get(column)?;
+        for x in pivot.as_flattened_mut() {
+            *x *= inverse;
+        }
         for row in above.iter_mut().chain(below) {
-            let factor = -*row.0.get(column)?;
-            *row = (row.0.along(factor, pivot.0), row.1.along(factor, pivot.1));
+            let factor = -*row[0].get(column)?;
+            for (x, pivot) in row.iter_mut().zip(&*pivot) {
+                add_scaled(x, factor, pivot);
+            }
         }
     }
-    Some(rows.map(|(_, x)| x))
+    Some(())
 }
