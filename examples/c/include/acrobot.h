@@ -33,10 +33,10 @@
 #define ACROBOT_32_BIT
 #endif
 
-// The bytes of memory that a batch of `count` acrobots takes, as a constant.
+// The bytes of memory that a batch of `count` acrobots takes, as a constant of type size_t.
 #define ACROBOT_BATCH_SIZE(count) \
-  (ACROBOT_BATCH_HEADER + (count) * ACROBOT_BATCH_GENERATOR + \
-   ((count) + ACROBOT_BATCH_LANES - 1) / ACROBOT_BATCH_LANES * ACROBOT_BATCH_BLOCK)
+  (ACROBOT_BATCH_HEADER + (size_t)(count) * ACROBOT_BATCH_GENERATOR + \
+   ((size_t)(count) + ACROBOT_BATCH_LANES - 1) / ACROBOT_BATCH_LANES * ACROBOT_BATCH_BLOCK)
 
 
 // Action 0: −1 N m by default.

@@ -202,6 +202,9 @@ static void a_batch(void)
     for (size_t count = 1; count < 100; count++) {
         CHECK(acrobot_batch_size(count) == ACROBOT_BATCH_SIZE(count));
     }
+    // Too many for the products to be ints.
+    CHECK(acrobot_batch_size(30000000) == ACROBOT_BATCH_SIZE(30000000));
+    CHECK(sizeof ACROBOT_BATCH_SIZE(COUNT) == sizeof size);
     CHECK(acrobot_batch_size(SIZE_MAX) == SIZE_MAX);
     expect_of_batch(batch, ACROBOT_ERROR_NOT_INITIALIZED);
     expect_of_batch(NULL, ACROBOT_ERROR_NULL);
