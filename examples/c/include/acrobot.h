@@ -237,7 +237,7 @@ typedef struct acrobot_params_t {
   // draws nothing.
   float torque_noise;
   // The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
-  uint8_t dynamics;
+  int dynamics;
 } acrobot_params_t;
 
 // Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
@@ -266,7 +266,7 @@ extern "C" {
 #endif // __cplusplus
 
 // The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
-const char *acrobot_status_text(uint8_t status);
+const char *acrobot_status_text(int status);
 
 // Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
 // starts from scratch.
@@ -293,7 +293,7 @@ acrobot_status_t acrobot_reset_within(struct acrobot_t *acrobot,
 // Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
 // When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 acrobot_status_t acrobot_step(struct acrobot_t *acrobot,
-                              uint8_t action,
+                              int action,
                               struct acrobot_step_t *step);
 
 // Applies any finite torque, N m, for one dt: for controllers. `error` may be null.
@@ -381,7 +381,7 @@ acrobot_status_t acrobot_batch_reset_masked(struct acrobot_batch_t *batch,
 // Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP, ACROBOT_AUTORESET_SAME_STEP or
 // ACROBOT_AUTORESET_DISABLED. `error` may be null.
 acrobot_status_t acrobot_batch_set_autoreset(struct acrobot_batch_t *batch,
-                                             uint8_t autoreset,
+                                             int autoreset,
                                              struct acrobot_error_t *error);
 
 // The state of acrobot `index`, counted from 0.

@@ -1,6 +1,6 @@
 //! A batch in the caller's memory: its header, then its blocks, then its generators.
 
-use core::ffi::c_void;
+use core::ffi::{c_int, c_void};
 use core::slice;
 
 use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
@@ -40,14 +40,14 @@ pub const ACROBOT_BATCH_GENERATOR: usize = 48;
 
 /// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
 /// observation and a reward of 0. The default, as in Gymnasium.
-pub const ACROBOT_AUTORESET_NEXT_STEP: u8 = 0;
+pub const ACROBOT_AUTORESET_NEXT_STEP: c_int = 0;
 
 /// They are reset in the step that ends the episode. It returns the initial observation of the next episode, and the
 /// last one of the ended episode in `final_observations`.
-pub const ACROBOT_AUTORESET_SAME_STEP: u8 = 1;
+pub const ACROBOT_AUTORESET_SAME_STEP: c_int = 1;
 
 /// They step on until acrobot_batch_reset_masked or another reset.
-pub const ACROBOT_AUTORESET_DISABLED: u8 = 2;
+pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 
 /// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
 /// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
@@ -314,7 +314,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     batch: *mut acrobot_batch_t,
-    autoreset: u8,
+    autoreset: c_int,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     let set = || unsafe {

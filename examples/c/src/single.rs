@@ -1,11 +1,15 @@
 //! One acrobot in arithmetic `Fast`, with Gymnasium's limit of 500 steps.
 
+use core::ffi::c_int;
+
 use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t};
 use crate::memory::{Holder, Out, fits, read};
-use crate::status::{acrobot_error_t, acrobot_status_t, explained, status};
+use crate::status::{
+    acrobot_error_t, acrobot_status_t, acrobot_status_t::*, explained, status,
+};
 
 /// The bytes of an acrobot_t: the most that any target needs.
 pub const ACROBOT_SIZE: usize = 224;
@@ -91,12 +95,13 @@ pub unsafe extern "C" fn acrobot_reset_within(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step(
     acrobot: *mut acrobot_t,
-    action: u8,
+    action: c_int,
     step: *mut acrobot_step_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
         let step = Out::new(step)?;
         let acrobot = Holder::value_mut(acrobot)?;
+        let action = u8::try_from(action).map_err(|_| ACROBOT_ERROR_UNKNOWN_ACTION)?;
         let action = Action::try_from(action)?;
         step.write(acrobot.step(action).into());
         Ok(())

@@ -1,6 +1,6 @@
 //! What functions return, and why a number was rejected.
 
-use core::ffi::{CStr, c_char};
+use core::ffi::{CStr, c_char, c_int};
 
 use acrobot::Error;
 
@@ -149,7 +149,7 @@ fn text<const N: usize>(text: &str) -> [c_char; N] {
 
 /// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_status_text(status: u8) -> *const c_char {
+pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
     const TEXTS: [&CStr; 11] = [
         c"no error",
         c"a pointer is null",
@@ -163,6 +163,7 @@ pub extern "C" fn acrobot_status_text(status: u8) -> *const c_char {
         c"there is no acrobot with this index",
         c"two arrays overlap",
     ];
-    let text = TEXTS.get(usize::from(status)).copied();
+    let index = usize::try_from(status).unwrap_or(usize::MAX);
+    let text = TEXTS.get(index).copied();
     text.unwrap_or(c"unknown status").as_ptr()
 }

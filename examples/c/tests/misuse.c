@@ -150,8 +150,10 @@ static void arguments_of_an_acrobot(void)
     CHECK(acrobot_state(&acrobot, &state) == ACROBOT_OK);
     copy(&before, &acrobot, sizeof acrobot);
 
-    for (unsigned action = 3; action < 256; action++) {
-        CHECK(acrobot_step(&acrobot, (uint8_t)action, &step) == ACROBOT_ERROR_UNKNOWN_ACTION);
+    for (int action = -1000; action <= 1000; action++) {
+        if (action < 0 || action > 2) {
+            CHECK(acrobot_step(&acrobot, action, &step) == ACROBOT_ERROR_UNKNOWN_ACTION);
+        }
     }
     CHECK(acrobot_step(&acrobot, 0, NULL) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_step(&acrobot, 0, (acrobot_step_t *)misaligned(&step)) == ACROBOT_ERROR_MISALIGNED);
@@ -180,6 +182,11 @@ static void arguments_of_an_acrobot(void)
     changed.dynamics = 2;
     CHECK(acrobot_set_params(&acrobot, &changed, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(names(&error, "dynamics", 2, "", "0 (book) or 1 (NIPS)"));
+    for (int i = 0; i < 2; i++) {
+        changed.dynamics = i == 0 ? 256 : -255;
+        CHECK(acrobot_set_params(&acrobot, &changed, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+        CHECK(names(&error, "dynamics", i == 0 ? 256 : -255, "", "0 (book) or 1 (NIPS)"));
+    }
     changed = params;
     changed.inertia2 = changed.center_of_mass2 = 0;
     CHECK(acrobot_set_params(&acrobot, &changed, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
@@ -275,6 +282,8 @@ static void arguments_of_a_batch(void)
     CHECK(acrobot_batch_reset_masked(batch, mask, COUNT) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(acrobot_batch_set_autoreset(batch, 3, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(names(&error, "autoreset", 3, "", "0, 1 or 2"));
+    CHECK(acrobot_batch_set_autoreset(batch, 256, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+    CHECK(names(&error, "autoreset", 256, "", "0, 1 or 2"));
     CHECK(acrobot_batch_state(batch, COUNT, &state) == ACROBOT_ERROR_NO_SUCH_INDEX);
     CHECK(acrobot_batch_state(batch, SIZE_MAX, &state) == ACROBOT_ERROR_NO_SUCH_INDEX);
     CHECK(acrobot_batch_state(batch, 0, NULL) == ACROBOT_ERROR_NULL);
@@ -299,7 +308,8 @@ static void texts(void)
     CHECK(same_text(acrobot_status_text(ACROBOT_OK), "no error"));
     CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_OVERLAP), "two arrays overlap"));
     CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_OVERLAP + 1), "unknown status"));
-    CHECK(same_text(acrobot_status_text(255), "unknown status"));
+    CHECK(same_text(acrobot_status_text(256), "unknown status"));
+    CHECK(same_text(acrobot_status_text(-1), "unknown status"));
 }
 
 int main(void)
