@@ -5,7 +5,8 @@
 //   ACROBOT_OK, no acrobot has changed, and results are as before the call if the function's comment says nothing else.
 // - A pointer must be null or point to what its type says. The functions report pointers that are null or misaligned,
 //   and zeroed memory that no acrobot_init has seen. They cannot detect a pointer to freed memory.
-// - The arguments of a call must not overlap. Functions for batches check their arrays.
+// - The arguments of a call must not overlap. The functions report a result or error that would overwrite the acrobot or
+//   the batch, and arrays that overlap.
 // - Threads and interrupts may use different acrobots at the same time. Sharing one takes a lock.
 
 
@@ -129,7 +130,7 @@ enum acrobot_status_t
   ACROBOT_ERROR_WRONG_COUNT = 8,
   // The index is not below the count.
   ACROBOT_ERROR_NO_SUCH_INDEX = 9,
-  // Two arrays overlap each other, or one overlaps the batch.
+  // Two arguments overlap: arrays, or a result and the acrobot or batch.
   ACROBOT_ERROR_OVERLAP = 10,
 };
 #ifndef __cplusplus
@@ -169,6 +170,7 @@ typedef struct acrobot_observation_t {
 
 // Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
 // with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
+// A misaligned pointer to it is rejected even if all numbers are valid.
 typedef struct acrobot_error_t {
   // The value that was rejected, in `unit`.
   double value;
@@ -344,6 +346,7 @@ size_t acrobot_batch_size(size_t count);
 
 // Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
 // initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
+// `batch` receives the address of the batch, and must not point into the batch's own bytes.
 acrobot_status_t acrobot_batch_init(void *memory,
                                     size_t size,
                                     size_t count,
@@ -351,8 +354,8 @@ acrobot_status_t acrobot_batch_init(void *memory,
                                     struct acrobot_batch_t **batch);
 
 // Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
-// elements, one for each acrobot. No two arrays may overlap. If one action is rejected, no acrobot steps, but
-// `terminated` and `truncated` become false.
+// elements, one for each acrobot. No array may overlap another one, the batch or `results`. If one action is rejected,
+// no acrobot steps, but `terminated` and `truncated` become false.
 acrobot_status_t acrobot_batch_step(struct acrobot_batch_t *batch,
                                     const uint8_t *actions,
                                     const struct acrobot_batch_results_t *results,
