@@ -5,7 +5,8 @@
 //   ACROBOT_OK, no acrobot has changed, and results are as before the call if the function's comment says nothing else.
 // - A pointer must be null or point to what its type says. The functions report pointers that are null or misaligned,
 //   and zeroed memory that no acrobot_init has seen. They cannot detect a pointer to freed memory.
-// - The arguments of a call must not overlap. Functions for batches check their arrays.
+// - The arguments of a call must not overlap. The functions report a result or error that would overwrite the acrobot or
+//   the batch, and arrays that overlap.
 // - Threads and interrupts may use different acrobots at the same time. Sharing one takes a lock.
 
 
@@ -33,10 +34,10 @@
 #define ACROBOT_32_BIT
 #endif
 
-// The bytes of memory that a batch of `count` acrobots takes, as a constant.
+// The bytes of memory that a batch of `count` acrobots takes, as a constant of type size_t.
 #define ACROBOT_BATCH_SIZE(count) \
-  (ACROBOT_BATCH_HEADER + (count) * ACROBOT_BATCH_GENERATOR + \
-   ((count) + ACROBOT_BATCH_LANES - 1) / ACROBOT_BATCH_LANES * ACROBOT_BATCH_BLOCK)
+  (ACROBOT_BATCH_HEADER + (size_t)(count) * ACROBOT_BATCH_GENERATOR + \
+   ((size_t)(count) + ACROBOT_BATCH_LANES - 1) / ACROBOT_BATCH_LANES * ACROBOT_BATCH_BLOCK)
 
 
 // Action 0: −1 N m by default.
@@ -129,7 +130,7 @@ enum acrobot_status_t
   ACROBOT_ERROR_WRONG_COUNT = 8,
   // The index is not below the count.
   ACROBOT_ERROR_NO_SUCH_INDEX = 9,
-  // Two arrays overlap each other, or one overlaps the batch.
+  // Two arguments overlap: arrays, or a result and the acrobot or batch.
   ACROBOT_ERROR_OVERLAP = 10,
 };
 #ifndef __cplusplus
@@ -169,6 +170,7 @@ typedef struct acrobot_observation_t {
 
 // Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
 // with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
+// A misaligned pointer to it is rejected even if all numbers are valid.
 typedef struct acrobot_error_t {
   // The value that was rejected, in `unit`.
   double value;
@@ -237,7 +239,7 @@ typedef struct acrobot_params_t {
   // draws nothing.
   float torque_noise;
   // The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
-  uint8_t dynamics;
+  int dynamics;
 } acrobot_params_t;
 
 // Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
@@ -266,7 +268,7 @@ extern "C" {
 #endif // __cplusplus
 
 // The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
-const char *acrobot_status_text(uint8_t status);
+const char *acrobot_status_text(int status);
 
 // Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
 // starts from scratch.
@@ -293,7 +295,7 @@ acrobot_status_t acrobot_reset_within(struct acrobot_t *acrobot,
 // Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
 // When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 acrobot_status_t acrobot_step(struct acrobot_t *acrobot,
-                              uint8_t action,
+                              int action,
                               struct acrobot_step_t *step);
 
 // Applies any finite torque, N m, for one dt: for controllers. `error` may be null.
@@ -344,6 +346,7 @@ size_t acrobot_batch_size(size_t count);
 
 // Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
 // initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
+// `batch` receives the address of the batch, and must not point into the batch's own bytes.
 acrobot_status_t acrobot_batch_init(void *memory,
                                     size_t size,
                                     size_t count,
@@ -351,8 +354,8 @@ acrobot_status_t acrobot_batch_init(void *memory,
                                     struct acrobot_batch_t **batch);
 
 // Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
-// elements, one for each acrobot. No two arrays may overlap. If one action is rejected, no acrobot steps, but
-// `terminated` and `truncated` become false.
+// elements, one for each acrobot. No array may overlap another one, the batch or `results`. If one action is rejected,
+// no acrobot steps, but `terminated` and `truncated` become false.
 acrobot_status_t acrobot_batch_step(struct acrobot_batch_t *batch,
                                     const uint8_t *actions,
                                     const struct acrobot_batch_results_t *results,
@@ -381,7 +384,7 @@ acrobot_status_t acrobot_batch_reset_masked(struct acrobot_batch_t *batch,
 // Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP, ACROBOT_AUTORESET_SAME_STEP or
 // ACROBOT_AUTORESET_DISABLED. `error` may be null.
 acrobot_status_t acrobot_batch_set_autoreset(struct acrobot_batch_t *batch,
-                                             uint8_t autoreset,
+                                             int autoreset,
                                              struct acrobot_error_t *error);
 
 // The state of acrobot `index`, counted from 0.

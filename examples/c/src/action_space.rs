@@ -40,7 +40,7 @@ pub unsafe extern "C" fn acrobot_action_space_sample(
     action: *mut u8,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let action = Out::new(action)?;
+        let action = Out::new(action, action_space)?;
         action.write(Action::sample(Holder::value_mut(action_space)?).into());
         Ok(())
     })

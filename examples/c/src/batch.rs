@@ -1,6 +1,6 @@
 //! A batch in the caller's memory: its header, then its blocks, then its generators.
 
-use core::ffi::c_void;
+use core::ffi::{c_int, c_void};
 use core::slice;
 
 use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
@@ -40,14 +40,14 @@ pub const ACROBOT_BATCH_GENERATOR: usize = 48;
 
 /// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
 /// observation and a reward of 0. The default, as in Gymnasium.
-pub const ACROBOT_AUTORESET_NEXT_STEP: u8 = 0;
+pub const ACROBOT_AUTORESET_NEXT_STEP: c_int = 0;
 
 /// They are reset in the step that ends the episode. It returns the initial observation of the next episode, and the
 /// last one of the ended episode in `final_observations`.
-pub const ACROBOT_AUTORESET_SAME_STEP: u8 = 1;
+pub const ACROBOT_AUTORESET_SAME_STEP: c_int = 1;
 
 /// They step on until acrobot_batch_reset_masked or another reset.
-pub const ACROBOT_AUTORESET_DISABLED: u8 = 2;
+pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 
 /// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
 /// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
@@ -85,6 +85,12 @@ impl Holder for acrobot_batch_t {
     type Value = Placed;
 
     const TAG: u32 = u32::from_le_bytes(*b"bats");
+
+    unsafe fn span(this: *const Self) -> Result<Span, Rejected> {
+        // SAFETY: as in the caller.
+        let placed = unsafe { placed(this)? };
+        Ok(memory_of(this, placed.batch.len()))
+    }
 }
 
 const _: () = {
@@ -142,6 +148,7 @@ pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
 
 /// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
 /// initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
+/// `batch` receives the address of the batch, and must not point into the batch's own bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,
@@ -153,13 +160,14 @@ pub unsafe extern "C" fn acrobot_batch_init(
     status(|| unsafe {
         let to: *mut acrobot_batch_t = memory.cast();
         check(to)?;
-        let batch = Out::new(batch)?;
+        check(batch)?;
         if count == 0 {
             return Err(ACROBOT_ERROR_WRONG_COUNT.into());
         }
         if size < acrobot_batch_size(count) {
             return Err(ACROBOT_ERROR_BUFFER_TOO_SMALL.into());
         }
+        check_apart(&[memory_of(to, count), Span::new(batch, 1)])?;
         let blocks: *mut LanesBlock = to.add(1).cast();
         let block_count = count.div_ceil(ACROBOT_BATCH_LANES);
         let generators: *mut Pcg64 = blocks.add(block_count).cast();
@@ -182,8 +190,8 @@ pub unsafe extern "C" fn acrobot_batch_init(
 }
 
 /// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
-/// elements, one for each acrobot. No two arrays may overlap. If one action is rejected, no acrobot steps, but
-/// `terminated` and `truncated` become false.
+/// elements, one for each acrobot. No array may overlap another one, the batch or `results`. If one action is rejected,
+/// no acrobot steps, but `terminated` and `truncated` become false.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_step(
     batch: *mut acrobot_batch_t,
@@ -194,6 +202,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
     status(|| unsafe {
         let placed = placed_mut(batch)?;
         check_count(placed, count)?;
+        let pointers = Span::new(results, 1);
         let results = read(results)?;
         let actions = Array::new(actions.cast_mut(), count)?;
         let rewards = Array::new(results.rewards, count)?;
@@ -203,6 +212,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
         let finals = Array::optional(rows(results.final_observations), count)?;
         check_apart(&[
             memory_of(batch, count),
+            pointers,
             actions.span(),
             rewards.span(),
             terminated.span(),
@@ -259,7 +269,7 @@ pub unsafe extern "C" fn acrobot_batch_count(
     count: *mut usize,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let count = Out::new(count)?;
+        let count = Out::new(count, batch)?;
         count.write(placed(batch)?.batch.len());
         Ok(())
     })
@@ -314,7 +324,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     batch: *mut acrobot_batch_t,
-    autoreset: u8,
+    autoreset: c_int,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     let set = || unsafe {
@@ -327,7 +337,7 @@ pub unsafe extern "C" fn acrobot_batch_set_autoreset(
         placed_mut(batch)?.batch.set_autoreset(autoreset);
         Ok(())
     };
-    unsafe { explained(error, set) }
+    unsafe { explained(error, batch, set) }
 }
 
 /// The state of acrobot `index`, counted from 0.
@@ -338,7 +348,7 @@ pub unsafe extern "C" fn acrobot_batch_state(
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let state = Out::new(state)?;
+        let state = Out::new(state, batch)?;
         let found = placed(batch)?.batch.state(index);
         state.write(found.ok_or(ACROBOT_ERROR_NO_SUCH_INDEX)?.into());
         Ok(())
@@ -358,7 +368,7 @@ pub unsafe extern "C" fn acrobot_batch_set_state(
         let placed = placed_mut(batch)?;
         Ok(placed.batch.set_state(index, state.into())?)
     };
-    unsafe { explained(error, set) }
+    unsafe { explained(error, batch, set) }
 }
 
 /// The parameters of all acrobots.
@@ -368,7 +378,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let params = Out::new(params)?;
+        let params = Out::new(params, batch)?;
         params.write(placed(batch)?.batch.params().into());
         Ok(())
     })
@@ -386,5 +396,5 @@ pub unsafe extern "C" fn acrobot_batch_set_params(
         let placed = placed_mut(batch)?;
         Ok(placed.batch.set_params(params.try_into()?)?)
     };
-    unsafe { explained(error, set) }
+    unsafe { explained(error, batch, set) }
 }

@@ -1,24 +1,26 @@
 //! The structs that pass data.
 
+use core::ffi::c_int;
+
 use acrobot::physics::Dynamics;
 use acrobot::{Observation, Params, State, Step};
 
 use crate::status::Rejected;
 
 /// Action 0: −1 N m by default.
-pub const ACROBOT_ACTION_NEGATIVE: u8 = 0;
+pub const ACROBOT_ACTION_NEGATIVE: c_int = 0;
 
 /// Action 1: no torque by default.
-pub const ACROBOT_ACTION_ZERO: u8 = 1;
+pub const ACROBOT_ACTION_ZERO: c_int = 1;
 
 /// Action 2: +1 N m by default.
-pub const ACROBOT_ACTION_POSITIVE: u8 = 2;
+pub const ACROBOT_ACTION_POSITIVE: c_int = 2;
 
 /// The equations of Sutton & Barto's book: the physical double pendulum. Gymnasium's default.
-pub const ACROBOT_DYNAMICS_BOOK: u8 = 0;
+pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 
 /// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is not conserved.
-pub const ACROBOT_DYNAMICS_NIPS: u8 = 1;
+pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
 /// An observation: six floats without padding, in Gymnasium's order.
 #[repr(C)]
@@ -156,7 +158,7 @@ pub struct acrobot_params_t {
     /// draws nothing.
     pub torque_noise: f32,
     /// The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
-    pub dynamics: u8,
+    pub dynamics: c_int,
 }
 
 /// A struct of another type with the same parameters. Only `dynamics` has another type, too.
@@ -207,7 +209,7 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
 }
 
 /// Rejects a number that none of the constants has.
-pub fn unknown(name: &'static str, number: u8, rule: &'static str) -> Rejected {
+pub fn unknown(name: &'static str, number: c_int, rule: &'static str) -> Rejected {
     Rejected::OutOfRange {
         name,
         value: number.into(),

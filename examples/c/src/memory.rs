@@ -26,18 +26,21 @@ pub unsafe fn read<T: Copy>(from: *const T) -> Result<T, Rejected> {
 pub struct Out<T>(*mut T);
 
 impl<T> Out<T> {
-    pub unsafe fn new(to: *mut T) -> Result<Self, Rejected> {
+    /// Rejects a result that would overwrite the holder.
+    pub unsafe fn new<H: Holder>(to: *mut T, holder: *const H) -> Result<Self, Rejected> {
         check(to)?;
+        // SAFETY: as in the caller.
+        check_apart(&[Span::new(to, 1), unsafe { H::span(holder)? }])?;
         Ok(Self(to))
     }
 
     /// For a result that the caller may not want.
-    pub unsafe fn optional(to: *mut T) -> Result<Self, Rejected> {
+    pub unsafe fn optional<H: Holder>(to: *mut T, holder: *const H) -> Result<Self, Rejected> {
         if to.is_null() {
             return Ok(Self(to));
         }
         // SAFETY: as in the caller.
-        unsafe { Self::new(to) }
+        unsafe { Self::new(to, holder) }
     }
 
     pub fn write(self, value: T) {
@@ -54,6 +57,11 @@ pub trait Holder: Sized {
 
     /// Marks initialized memory.
     const TAG: u32;
+
+    /// The memory that belongs to the value.
+    unsafe fn span(this: *const Self) -> Result<Span, Rejected> {
+        Ok(Span::new(this, 1))
+    }
 
     /// Writes the value.
     unsafe fn init(this: *mut Self, value: Self::Value) -> Result<(), Rejected> {
@@ -102,29 +110,31 @@ pub const fn fits<T: Holder>() {
     assert!(align_of::<Tagged<T>>() <= align_of::<T>());
 }
 
-/// The addresses of an array, to find out whether arrays overlap.
+/// The addresses of an argument, to find out whether arguments overlap.
 #[derive(Clone, Copy)]
 pub struct Span {
     start: usize,
-    end: usize,
+    bytes: usize,
 }
 
 impl Span {
     /// No address: what an array that is not there overlaps.
-    const NONE: Self = Self { start: 0, end: 0 };
+    const NONE: Self = Self { start: 0, bytes: 0 };
 
     pub fn new<T>(start: *const T, count: usize) -> Self {
-        let start = start.addr();
-        let end = start.saturating_add(count.saturating_mul(size_of::<T>()));
-        Self { start, end }
+        Self {
+            start: start.addr(),
+            bytes: count.saturating_mul(size_of::<T>()),
+        }
     }
 
     fn overlaps(self, other: Self) -> bool {
-        self.start < other.end && other.start < self.end
+        let contains = |one: Self, start: usize| start.wrapping_sub(one.start) < one.bytes;
+        contains(self, other.start) || contains(other, self.start)
     }
 }
 
-/// Rejects arrays that overlap.
+/// Rejects arguments that overlap.
 pub fn check_apart(spans: &[Span]) -> Result<(), Rejected> {
     let mut rest = spans.iter();
     while let Some(span) = rest.next() {

@@ -1,11 +1,13 @@
 //! One acrobot in arithmetic `Fast`, with Gymnasium's limit of 500 steps.
 
+use core::ffi::c_int;
+
 use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t};
 use crate::memory::{Holder, Out, fits, read};
-use crate::status::{acrobot_error_t, acrobot_status_t, explained, status};
+use crate::status::{acrobot_error_t, acrobot_status_t, acrobot_status_t::*, explained, status};
 
 /// The bytes of an acrobot_t: the most that any target needs.
 pub const ACROBOT_SIZE: usize = 224;
@@ -46,7 +48,7 @@ pub unsafe extern "C" fn acrobot_reset(
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let observation = Out::optional(observation)?;
+        let observation = Out::optional(observation, acrobot)?;
         observation.write(Holder::value_mut(acrobot)?.reset().into());
         Ok(())
     })
@@ -60,7 +62,7 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let observation = Out::optional(observation)?;
+        let observation = Out::optional(observation, acrobot)?;
         observation.write(Holder::value_mut(acrobot)?.reset_with_seed(seed).into());
         Ok(())
     })
@@ -77,13 +79,13 @@ pub unsafe extern "C" fn acrobot_reset_within(
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     let reset = || unsafe {
-        let observation = Out::optional(observation)?;
+        let observation = Out::optional(observation, acrobot)?;
         let acrobot = Holder::value_mut(acrobot)?;
         let bounds = ResetBounds::new(low, high)?;
         observation.write(acrobot.reset_within(bounds).into());
         Ok(())
     };
-    unsafe { explained(error, reset) }
+    unsafe { explained(error, acrobot, reset) }
 }
 
 /// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
@@ -91,12 +93,13 @@ pub unsafe extern "C" fn acrobot_reset_within(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step(
     acrobot: *mut acrobot_t,
-    action: u8,
+    action: c_int,
     step: *mut acrobot_step_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let step = Out::new(step)?;
+        let step = Out::new(step, acrobot)?;
         let acrobot = Holder::value_mut(acrobot)?;
+        let action = u8::try_from(action).map_err(|_| ACROBOT_ERROR_UNKNOWN_ACTION)?;
         let action = Action::try_from(action)?;
         step.write(acrobot.step(action).into());
         Ok(())
@@ -112,11 +115,11 @@ pub unsafe extern "C" fn acrobot_step_torque(
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     let apply = || unsafe {
-        let step = Out::new(step)?;
+        let step = Out::new(step, acrobot)?;
         step.write(Holder::value_mut(acrobot)?.step_torque(torque)?.into());
         Ok(())
     };
-    unsafe { explained(error, apply) }
+    unsafe { explained(error, acrobot, apply) }
 }
 
 /// The observation of the state.
@@ -126,7 +129,7 @@ pub unsafe extern "C" fn acrobot_observe(
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let observation = Out::new(observation)?;
+        let observation = Out::new(observation, acrobot)?;
         observation.write(Holder::value(acrobot)?.inner().observation().into());
         Ok(())
     })
@@ -139,7 +142,7 @@ pub unsafe extern "C" fn acrobot_elapsed(
     steps: *mut u32,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let steps = Out::new(steps)?;
+        let steps = Out::new(steps, acrobot)?;
         steps.write(Holder::value(acrobot)?.elapsed());
         Ok(())
     })
@@ -152,7 +155,7 @@ pub unsafe extern "C" fn acrobot_state(
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let state = Out::new(state)?;
+        let state = Out::new(state, acrobot)?;
         state.write(Holder::value(acrobot)?.inner().state().into());
         Ok(())
     })
@@ -170,7 +173,7 @@ pub unsafe extern "C" fn acrobot_set_state(
         let acrobot = Holder::value_mut(acrobot)?;
         Ok(acrobot.inner_mut().set_state(state.into())?)
     };
-    unsafe { explained(error, set) }
+    unsafe { explained(error, acrobot, set) }
 }
 
 /// The parameters.
@@ -180,7 +183,7 @@ pub unsafe extern "C" fn acrobot_params(
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let params = Out::new(params)?;
+        let params = Out::new(params, acrobot)?;
         params.write(Holder::value(acrobot)?.inner().params().into());
         Ok(())
     })
@@ -198,7 +201,7 @@ pub unsafe extern "C" fn acrobot_set_params(
         let acrobot = Holder::value_mut(acrobot)?;
         Ok(acrobot.inner_mut().set_params(params.try_into()?)?)
     };
-    unsafe { explained(error, set) }
+    unsafe { explained(error, acrobot, set) }
 }
 
 /// The total energy of the state, J.
@@ -208,7 +211,7 @@ pub unsafe extern "C" fn acrobot_energy(
     energy: *mut f32,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let energy = Out::new(energy)?;
+        let energy = Out::new(energy, acrobot)?;
         energy.write(Holder::value(acrobot)?.inner().energy());
         Ok(())
     })
@@ -221,7 +224,7 @@ pub unsafe extern "C" fn acrobot_tip_height(
     height: *mut f32,
 ) -> acrobot_status_t {
     status(|| unsafe {
-        let height = Out::new(height)?;
+        let height = Out::new(height, acrobot)?;
         height.write(Holder::value(acrobot)?.inner().tip_height());
         Ok(())
     })

@@ -1,8 +1,10 @@
 //! What functions return, and why a number was rejected.
 
-use core::ffi::{CStr, c_char};
+use core::ffi::{CStr, c_char, c_int};
 
 use acrobot::Error;
+
+use crate::memory::{Holder, Out};
 
 /// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 #[repr(u8)]
@@ -28,7 +30,7 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_WRONG_COUNT = 8,
     /// The index is not below the count.
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,
-    /// Two arrays overlap each other, or one overlaps the batch.
+    /// Two arguments overlap: arrays, or a result and the acrobot or batch.
     ACROBOT_ERROR_OVERLAP = 10,
 }
 
@@ -36,6 +38,7 @@ use acrobot_status_t::*;
 
 /// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
 /// with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
+/// A misaligned pointer to it is rejected even if all numbers are valid.
 #[repr(C)]
 pub struct acrobot_error_t {
     /// The value that was rejected, in `unit`.
@@ -110,11 +113,14 @@ pub fn status(call: impl FnOnce() -> Result<(), Rejected>) -> acrobot_status_t {
 }
 
 /// As [`status`]. Fills `error`, unless it is null, if a number is out of range.
-pub unsafe fn explained(
+pub unsafe fn explained<H: Holder>(
     error: *mut acrobot_error_t,
+    holder: *const H,
     call: impl FnOnce() -> Result<(), Rejected>,
 ) -> acrobot_status_t {
     status(|| {
+        // SAFETY: as in the caller.
+        let error = unsafe { Out::optional(error, holder)? };
         let result = call();
         if let Err(Rejected::OutOfRange {
             name,
@@ -122,17 +128,13 @@ pub unsafe fn explained(
             unit,
             rule,
         }) = result
-            && !error.is_null()
-            && error.is_aligned()
         {
-            let filled = acrobot_error_t {
+            error.write(acrobot_error_t {
                 value,
                 name: text(name),
                 unit: text(unit),
                 rule: text(rule),
-            };
-            // SAFETY: `error` points to an acrobot_error_t of the caller.
-            unsafe { error.write(filled) }
+            });
         }
         result
     })
@@ -149,7 +151,7 @@ fn text<const N: usize>(text: &str) -> [c_char; N] {
 
 /// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_status_text(status: u8) -> *const c_char {
+pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
     const TEXTS: [&CStr; 11] = [
         c"no error",
         c"a pointer is null",
@@ -161,8 +163,9 @@ pub extern "C" fn acrobot_status_text(status: u8) -> *const c_char {
         c"a number is out of range",
         c"the count is not that of the batch",
         c"there is no acrobot with this index",
-        c"two arrays overlap",
+        c"two arguments overlap",
     ];
-    let text = TEXTS.get(usize::from(status)).copied();
+    let index = usize::try_from(status).unwrap_or(usize::MAX);
+    let text = TEXTS.get(index).copied();
     text.unwrap_or(c"unknown status").as_ptr()
 }

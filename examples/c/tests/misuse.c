@@ -150,8 +150,10 @@ static void arguments_of_an_acrobot(void)
     CHECK(acrobot_state(&acrobot, &state) == ACROBOT_OK);
     copy(&before, &acrobot, sizeof acrobot);
 
-    for (unsigned action = 3; action < 256; action++) {
-        CHECK(acrobot_step(&acrobot, (uint8_t)action, &step) == ACROBOT_ERROR_UNKNOWN_ACTION);
+    for (int action = -1000; action <= 1000; action++) {
+        if (action < 0 || action > 2) {
+            CHECK(acrobot_step(&acrobot, action, &step) == ACROBOT_ERROR_UNKNOWN_ACTION);
+        }
     }
     CHECK(acrobot_step(&acrobot, 0, NULL) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_step(&acrobot, 0, (acrobot_step_t *)misaligned(&step)) == ACROBOT_ERROR_MISALIGNED);
@@ -180,6 +182,13 @@ static void arguments_of_an_acrobot(void)
     changed.dynamics = 2;
     CHECK(acrobot_set_params(&acrobot, &changed, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(names(&error, "dynamics", 2, "", "0 (book) or 1 (NIPS)"));
+    for (int i = 0; i < 2; i++) {
+        changed.dynamics = i == 0 ? 256 : -255;
+        CHECK(acrobot_set_params(&acrobot, &changed, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+        CHECK(names(&error, "dynamics", i == 0 ? 256 : -255, "", "0 (book) or 1 (NIPS)"));
+    }
+    CHECK(acrobot_set_params(&acrobot, &changed, (acrobot_error_t *)misaligned(&error)) == ACROBOT_ERROR_MISALIGNED);
+    CHECK(acrobot_set_params(&acrobot, &params, (acrobot_error_t *)misaligned(&error)) == ACROBOT_ERROR_MISALIGNED);
     changed = params;
     changed.inertia2 = changed.center_of_mass2 = 0;
     CHECK(acrobot_set_params(&acrobot, &changed, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
@@ -202,6 +211,9 @@ static void a_batch(void)
     for (size_t count = 1; count < 100; count++) {
         CHECK(acrobot_batch_size(count) == ACROBOT_BATCH_SIZE(count));
     }
+    // Too many for the products to be ints.
+    CHECK(acrobot_batch_size(30000000) == ACROBOT_BATCH_SIZE(30000000));
+    CHECK(sizeof ACROBOT_BATCH_SIZE(COUNT) == sizeof size);
     CHECK(acrobot_batch_size(SIZE_MAX) == SIZE_MAX);
     expect_of_batch(batch, ACROBOT_ERROR_NOT_INITIALIZED);
     expect_of_batch(NULL, ACROBOT_ERROR_NULL);
@@ -261,6 +273,10 @@ static void arguments_of_a_batch(void)
     results = all;
     results.truncated = (bool *)actions;
     CHECK(acrobot_batch_step(batch, actions, &results, COUNT) == ACROBOT_ERROR_OVERLAP);
+    results = all;
+    results.terminated = (bool *)(void *)&results;
+    CHECK(acrobot_batch_step(batch, actions, &results, COUNT) == ACROBOT_ERROR_OVERLAP);
+    CHECK(results.rewards == rewards);
     CHECK(acrobot_batch_observe(batch, NULL, COUNT) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_batch_observe(batch, observations, COUNT + 1) == ACROBOT_ERROR_WRONG_COUNT);
     CHECK(acrobot_batch_observe(batch, (acrobot_observation_t *)(void *)memory, COUNT) == ACROBOT_ERROR_OVERLAP);
@@ -272,6 +288,9 @@ static void arguments_of_a_batch(void)
     CHECK(acrobot_batch_reset_masked(batch, mask, COUNT) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(acrobot_batch_set_autoreset(batch, 3, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(names(&error, "autoreset", 3, "", "0, 1 or 2"));
+    CHECK(acrobot_batch_set_autoreset(batch, 256, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+    CHECK(names(&error, "autoreset", 256, "", "0, 1 or 2"));
+    CHECK(acrobot_batch_set_autoreset(batch, 0, (acrobot_error_t *)misaligned(&error)) == ACROBOT_ERROR_MISALIGNED);
     CHECK(acrobot_batch_state(batch, COUNT, &state) == ACROBOT_ERROR_NO_SUCH_INDEX);
     CHECK(acrobot_batch_state(batch, SIZE_MAX, &state) == ACROBOT_ERROR_NO_SUCH_INDEX);
     CHECK(acrobot_batch_state(batch, 0, NULL) == ACROBOT_ERROR_NULL);
@@ -291,12 +310,92 @@ static void arguments_of_a_batch(void)
     CHECK(!same(memory, before, sizeof memory));
 }
 
+#define MARGIN 192
+ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t arena[MARGIN + ACROBOT_BATCH_SIZE(COUNT) + MARGIN];
+static uint8_t saved[ACROBOT_BATCH_SIZE(COUNT)];
+static void *const held = arena + MARGIN;
+
+// Makes a call with `out` at each address in the arena. If it overlaps the `size` bytes that are held, the call must be
+// rejected and change none of them.
+#define AT_EACH_ADDRESS(type, align, size, call, otherwise) \
+    do { \
+        copy(saved, held, size); \
+        for (size_t at = 0; at + sizeof(type) <= sizeof arena; at += (align)) { \
+            type *out = (type *)(void *)(arena + at); \
+            if (at + sizeof(type) <= MARGIN || at >= MARGIN + (size)) { \
+                CHECK((call) == (otherwise)); \
+                copy(held, saved, size); \
+            } else { \
+                CHECK((call) == ACROBOT_ERROR_OVERLAP); \
+                CHECK(same(held, saved, size)); \
+            } \
+        } \
+    } while (0)
+
+static void overlaps_of_an_acrobot(void)
+{
+    acrobot_t *acrobot = (acrobot_t *)held;
+    acrobot_action_space_t *action_space = (acrobot_action_space_t *)held;
+    const acrobot_state_t rest = {0, 0, 0, 0}, infinite = {infinity(), 0, 0, 0};
+    acrobot_params_t params;
+    acrobot_step_t step;
+    CHECK(acrobot_init(acrobot, 42) == ACROBOT_OK);
+    CHECK(acrobot_params(acrobot, &params) == ACROBOT_OK);
+#define AT_EACH(type, align, call, otherwise) AT_EACH_ADDRESS(type, align, ACROBOT_SIZE, call, otherwise)
+    AT_EACH(acrobot_observation_t, 4, acrobot_reset(acrobot, out), ACROBOT_OK);
+    AT_EACH(acrobot_observation_t, 4, acrobot_reset_with_seed(acrobot, 7, out), ACROBOT_OK);
+    AT_EACH(acrobot_observation_t, 4, acrobot_reset_within(acrobot, -1, 1, out, NULL), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_reset_within(acrobot, -1, 1, NULL, out), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_reset_within(acrobot, 1, -1, NULL, out), ACROBOT_ERROR_OUT_OF_RANGE);
+    AT_EACH(acrobot_step_t, 4, acrobot_step(acrobot, 2, out), ACROBOT_OK);
+    AT_EACH(acrobot_step_t, 4, acrobot_step_torque(acrobot, 1, out, NULL), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_step_torque(acrobot, infinity(), &step, out), ACROBOT_ERROR_OUT_OF_RANGE);
+    AT_EACH(acrobot_observation_t, 4, acrobot_observe(acrobot, out), ACROBOT_OK);
+    AT_EACH(uint32_t, 4, acrobot_elapsed(acrobot, out), ACROBOT_OK);
+    AT_EACH(acrobot_state_t, 4, acrobot_state(acrobot, out), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_set_state(acrobot, &rest, out), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_set_state(acrobot, &infinite, out), ACROBOT_ERROR_OUT_OF_RANGE);
+    AT_EACH(acrobot_params_t, 4, acrobot_params(acrobot, out), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_set_params(acrobot, &params, out), ACROBOT_OK);
+    params.dt = 0;
+    AT_EACH(acrobot_error_t, 8, acrobot_set_params(acrobot, &params, out), ACROBOT_ERROR_OUT_OF_RANGE);
+    AT_EACH(float, 4, acrobot_energy(acrobot, out), ACROBOT_OK);
+    AT_EACH(float, 4, acrobot_tip_height(acrobot, out), ACROBOT_OK);
+    CHECK(acrobot_action_space_init(action_space, 42) == ACROBOT_OK);
+    AT_EACH_ADDRESS(uint8_t, 1, ACROBOT_ACTION_SPACE_SIZE, acrobot_action_space_sample(action_space, out), ACROBOT_OK);
+#undef AT_EACH
+}
+
+static void overlaps_of_a_batch(void)
+{
+    const size_t size = ACROBOT_BATCH_SIZE(COUNT);
+    const acrobot_state_t infinite = {infinity(), 0, 0, 0};
+    acrobot_params_t params;
+    acrobot_batch_t *batch;
+    typedef acrobot_observation_t observations_t[COUNT];
+#define AT_EACH(type, align, call, otherwise) AT_EACH_ADDRESS(type, align, ACROBOT_BATCH_SIZE(COUNT), call, otherwise)
+    AT_EACH(acrobot_batch_t *, 8, acrobot_batch_init(held, size, COUNT, 42, out), ACROBOT_OK);
+    CHECK(acrobot_batch_init(held, size, COUNT, 42, &batch) == ACROBOT_OK);
+    CHECK(acrobot_batch_params(batch, &params) == ACROBOT_OK);
+    params.dt = 0;
+    AT_EACH(observations_t, 4, acrobot_batch_observe(batch, *out, COUNT), ACROBOT_OK);
+    AT_EACH(size_t, 8, acrobot_batch_count(batch, out), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_batch_set_autoreset(batch, 1, out), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_batch_set_autoreset(batch, 3, out), ACROBOT_ERROR_OUT_OF_RANGE);
+    AT_EACH(acrobot_state_t, 4, acrobot_batch_state(batch, 0, out), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_batch_set_state(batch, 0, &infinite, out), ACROBOT_ERROR_OUT_OF_RANGE);
+    AT_EACH(acrobot_params_t, 4, acrobot_batch_params(batch, out), ACROBOT_OK);
+    AT_EACH(acrobot_error_t, 8, acrobot_batch_set_params(batch, &params, out), ACROBOT_ERROR_OUT_OF_RANGE);
+#undef AT_EACH
+}
+
 static void texts(void)
 {
     CHECK(same_text(acrobot_status_text(ACROBOT_OK), "no error"));
-    CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_OVERLAP), "two arrays overlap"));
+    CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_OVERLAP), "two arguments overlap"));
     CHECK(same_text(acrobot_status_text(ACROBOT_ERROR_OVERLAP + 1), "unknown status"));
-    CHECK(same_text(acrobot_status_text(255), "unknown status"));
+    CHECK(same_text(acrobot_status_text(256), "unknown status"));
+    CHECK(same_text(acrobot_status_text(-1), "unknown status"));
 }
 
 int main(void)
@@ -305,6 +404,8 @@ int main(void)
     arguments_of_an_acrobot();
     a_batch();
     arguments_of_a_batch();
+    overlaps_of_an_acrobot();
+    overlaps_of_a_batch();
     texts();
     return report("misuse");
 }

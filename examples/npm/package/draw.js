@@ -1,12 +1,17 @@
 // Draws an acrobot on a canvas, with the geometry of the crate's pictures and of Gymnasium's.
 
+import { checked, invalid } from "./wasm.js";
+
 /** Gymnasium's colours. Its pictures have no torque. */
 const COLORS = { background: "white", target: "black", link: "rgb(0, 204, 204)", joint: "rgb(204, 204, 0)", torque: "rgb(204, 0, 0)" };
 
 /** Draws into the square from (0, 0) to (size, size) of the context's coordinates. */
-export function draw(context, { theta1, theta2 }, { length1, length2 }, torque, options) {
-  const { size = Math.min(context.canvas.width, context.canvas.height) } = options;
-  const colors = { ...COLORS, ...options.colors };
+export function draw(context, { theta1, theta2 }, { length1, length2 }, torque, options = {}) {
+  if (typeof context?.arc !== "function") throw invalid("context must be a canvas's 2D context", context);
+  const { size = Math.min(context.canvas?.width, context.canvas?.height), colors: given = {} } = checked("options", options, ["size", "colors"]);
+  if (!Number.isFinite(size) || size < 0) throw invalid("size must be finite and at least 0 pixels", size);
+  const colors = { ...COLORS, ...checked("colors", given, Object.keys(COLORS)) };
+  for (const [name, color] of Object.entries(colors)) if (typeof color !== "string") throw invalid(`colors.${name} must be a string`, color);
   const reach = length1 + length2 + 0.2;
   const metre = size / 2 / reach;
   const elbow = [length1 * Math.sin(theta1), -length1 * Math.cos(theta1)];

@@ -95,7 +95,7 @@ export interface Context {
 }
 
 export interface DrawOptions {
-  /** The side of the square from (0, 0) to draw into. The default is the canvas's shorter side. */
+  /** The side of the square from (0, 0) to draw into, pixels; 0 or more. The default is the canvas's shorter side. */
   size?: number;
   /** CSS colours. The defaults are Gymnasium's, with red for the torque. */
   colors?: { background?: string; target?: string; link?: string; joint?: string; torque?: string };
@@ -148,7 +148,10 @@ export interface BatchOptions extends Options {
   autoreset?: "NextStep" | "SameStep" | "Disabled";
 }
 
-/** What a batch's step returns: arrays with an element, or a row of six numbers, for each acrobot. The next step overwrites them. */
+/**
+ * What a batch's step returns: arrays with an element, or a row of six numbers, for each acrobot. The next step overwrites them,
+ * or makes new ones if you have transferred them to another thread.
+ */
 export interface BatchStep {
   observations: Float32Array;
   /** −1, or 0 if the acrobot terminated or was only reset. */

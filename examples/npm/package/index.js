@@ -9,6 +9,7 @@ const NUMBERS = [
   "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2", "gravity", "dt",
   "maxVelocity1", "maxVelocity2", "torques", "torqueNoise",
 ];
+const RESULTS = ["observations", "rewards", "terminated", "truncated", "finalObservations"];
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
@@ -49,9 +50,14 @@ class Kept {
   }
 
   setParams(changes) {
-    const params = { ...this.params, ...checked("params", changes, [...NUMBERS, "dynamics"]) };
+    const given = checked("params", changes, [...NUMBERS, "dynamics"]);
+    if ("torques" in given) {
+      const { torques } = given;
+      if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques);
+      given.torques = [0, 1, 2].map((i) => torques[i]);
+    }
+    const params = { ...this.params, ...given };
     const { torques, dynamics } = params;
-    if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques);
     if (dynamics !== "book" && dynamics !== "nips") throw invalid('dynamics must be "book" or "nips"', dynamics);
     const values = NUMBERS.flatMap((name) => {
       const of = name === "torques" ? torques : [params[name]];
@@ -152,11 +158,10 @@ export class Acrobot extends Kept {
   }
 
   set state(state) {
-    const values = STATE.map((name) => checked("state", state, STATE)[name]);
-    const wrong = values.findIndex((value) => typeof value !== "number");
-    if (wrong >= 0) throw invalid(`${STATE[wrong]} must be a number`, values[wrong]);
-    numbers().set(values);
-    accept(wasm().acrobot_set_state(this[NUMBER]), (name) => state[name]);
+    const given = checked("state", state, STATE);
+    for (const name of STATE) if (typeof given[name] !== "number") throw invalid(`${name} must be a number`, given[name]);
+    numbers().set(STATE.map((name) => given[name]));
+    accept(wasm().acrobot_set_state(this[NUMBER]), (name) => given[name]);
   }
 
   get energy() {
@@ -187,19 +192,21 @@ export class Acrobot extends Kept {
 
   restore(snapshot) {
     if (!(snapshot instanceof Uint8Array)) throw invalid("the snapshot must be a Uint8Array", snapshot);
-    const length = snapshot.length - 4;
-    const found = new DataView(snapshot.buffer, snapshot.byteOffset, snapshot.length);
-    if (length < 0 || length > 256 || found.getUint32(length, true) !== checksum(snapshot.subarray(0, length))) {
-      throw new RangeError(`the snapshot must have the bytes of snapshot(), got ${length + 4} bytes with another checksum`);
+    const { length } = snapshot;
+    // A copy, because other threads may write shared memory, and a proxy can run code.
+    const copy = Uint8Array.from({ length: Math.min(length, 261) }, (_, i) => snapshot[i]);
+    const content = copy.subarray(0, -4);
+    if (length < 4 || length > 260 || new DataView(copy.buffer).getUint32(content.length, true) !== checksum(content)) {
+      throw new RangeError(`the snapshot must have the bytes of snapshot(), got ${length} bytes with another checksum`);
     }
     wasm().acrobot_save(this[NUMBER]);
     const rule = `the snapshot must be a valid one of ${header(bytes())}`;
-    bytes().set(snapshot.subarray(0, length));
-    if (!wasm().acrobot_load(this[NUMBER], length)) throw new RangeError(`${rule}, got ${header(snapshot)}`);
+    bytes().set(content);
+    if (!wasm().acrobot_load(this[NUMBER], content.length)) throw new RangeError(`${rule}, got ${header(content)}`);
     this.#action = 1;
   }
 
-  draw(context, options = {}) {
+  draw(context, options) {
     const { params } = this;
     draw(context, this.state, params, params.torques[this.#action], options);
   }
@@ -209,9 +216,12 @@ export class Batch extends Kept {
   #count;
   /** The addresses of the actions and of the results. */
   #addresses;
+  /** The names of the results. */
+  #names;
   /** Views of these results. */
   #views;
-  #results;
+  /** Their copies in JavaScript's memory, because views of the module's memory end when that memory grows. */
+  #results = {};
 
   constructor(options) {
     const names = ["count", "seed", "params", "maxSteps", "autoreset"];
@@ -219,19 +229,15 @@ export class Batch extends Kept {
     positive("count", count);
     positive("maxSteps", maxSteps);
     if (!AUTORESETS.includes(autoreset)) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset);
-    super("batch", wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset)), count);
+    const number = wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset));
+    const addresses = new Uint32Array(bytes().slice(0, 24).buffer);
+    super("batch", number, count);
     this.#count = count;
-    this.#addresses = new Uint32Array(bytes().slice(0, 24).buffer);
+    this.#addresses = addresses;
+    this.#names = autoreset === "SameStep" ? RESULTS : RESULTS.slice(0, -1);
     try {
       this.setParams(params);
-      // In JavaScript's memory, because views of the module's memory end when that memory grows.
-      this.#results = {
-        observations: new Float32Array(6 * count),
-        rewards: new Float32Array(count),
-        terminated: new Uint8Array(count),
-        truncated: new Uint8Array(count),
-        ...(autoreset === "SameStep" && { finalObservations: new Float32Array(6 * count) }),
-      };
+      this.#copy(...this.#names);
     } catch (error) {
       this.free();
       throw error;
@@ -256,7 +262,11 @@ export class Batch extends Kept {
         finalObservations: this.#view(5, Float32Array, 6 * count),
       };
     }
-    for (const name of names) this.#results[name].set(this.#views[name]);
+    for (const name of names) {
+      // An array that the caller has transferred to another thread has no elements.
+      if (this.#results[name]?.length) this.#results[name].set(this.#views[name]);
+      else this.#results[name] = this.#views[name].slice();
+    }
   }
 
   #observe() {
@@ -270,6 +280,7 @@ export class Batch extends Kept {
 
   get observations() {
     this[NUMBER];
+    if (!this.#results.observations.length) this.#observe();
     return this.#results.observations;
   }
 
@@ -280,20 +291,28 @@ export class Batch extends Kept {
   }
 
   step(actions) {
+    const length = actions?.length;
+    if (length !== this.#count) throw invalid(`actions must have ${this.#count} elements`, length ?? actions);
+    let given = actions;
+    // A Uint8Array that is neither a proxy nor has a `length` of its own is copied as it is. Reading other elements can run code
+    // that frees the batch or makes the module's memory grow, so they are read first, and once. Not converted: 258 and "2" are not 2.
+    if (!ArrayBuffer.isView(actions) || !(actions instanceof Uint8Array) || actions.byteLength !== length) {
+      given = [];
+      for (let i = 0; i < length; i++) {
+        const action = actions[i];
+        if (!isAction(action)) throw invalid(`actions[${i}] ${ACTION}`, action);
+        given.push(action);
+      }
+    }
     const number = this[NUMBER];
-    if (actions?.length !== this.#count) {
-      throw invalid(`actions must have ${this.#count} elements`, actions?.length ?? actions);
-    }
-    // Without a conversion, which would turn 258 and "2" into 2.
-    const wrong = actions instanceof Uint8Array ? -1 : Array.prototype.findIndex.call(actions, (action) => !isAction(action));
     this.#copy();
-    if (wrong < 0) this.#views.actions.set(actions);
-    if (wrong >= 0 || !wasm().batch_step(number)) {
-      const index = wrong >= 0 ? wrong : actions.findIndex((action) => action > 2);
-      throw invalid(`actions[${index}] ${ACTION}`, actions[index]);
+    this.#views.actions.set(given);
+    if (!wasm().batch_step(number)) {
+      const index = this.#views.actions.findIndex((action) => action > 2);
+      throw invalid(`actions[${index}] ${ACTION}`, this.#views.actions[index]);
     }
-    this.#copy(...Object.keys(this.#results));
-    return this.#results;
+    this.#copy(...this.#names);
+    return { ...this.#results };
   }
 
   state(index) {
@@ -305,7 +324,7 @@ export class Batch extends Kept {
     return readState();
   }
 
-  draw(context, index, options = {}) {
+  draw(context, index, options) {
     draw(context, this.state(index), this.params, 0, options);
   }
 }

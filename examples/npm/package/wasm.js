@@ -41,12 +41,15 @@ export function invalid(rule, value) {
   return new (["number", "bigint"].includes(typeof value) ? RangeError : TypeError)(`${rule}, got ${got}`);
 }
 
-/** The properties of `given`, which must be an object without others than `names`. */
+/**
+ * A copy of `given`, which must be an object without other properties than `names`. Each is read once, because that can run code of the
+ * caller, which may use the package and change the module's memory.
+ */
 export function checked(what, given, names) {
   if (typeof given !== "object" || given === null) throw invalid(`${what} must be an object`, given);
   const unknown = Object.keys(given).find((name) => !names.includes(name));
   if (unknown !== undefined) throw new TypeError(`${what} must be among ${names.join(", ")}, got ${unknown}`);
-  return given;
+  return Object.fromEntries(names.filter((name) => name in given).map((name) => [name, given[name]]));
 }
 
 /** An integer from 1 to 2³² − 1. */

@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { ACTIONS, trace } from "../../web/test/native.mjs";
-import { Acrobot } from "../dist/index.js";
+import { Acrobot, Batch } from "../dist/index.js";
 import { bits } from "./bits.mjs";
 
 /** An episode that is not in its initial state. */
@@ -73,6 +73,58 @@ test("reset, limit, state, energy and height are the crate's", () => {
   // Arrays are copies.
   observation.fill(9);
   assert.notDeepEqual(observation, acrobot.observation);
+});
+
+/** A context that records calls. */
+function canvas() {
+  const calls = [];
+  const names = ["save", "restore", "translate", "scale", "clearRect", "fillRect", "beginPath", "lineTo", "arc", "stroke", "fill"];
+  const methods = names.map((name) => [name, (...args) => calls.push([name, ...args])]);
+  return { calls, canvas: { width: 300, height: 200 }, ...Object.fromEntries(methods) };
+}
+
+test("a picture fills the canvas or a square of the given size, and undefined options are the default", () => {
+  const acrobot = new Acrobot();
+  const square = (options) => {
+    const context = canvas();
+    acrobot.draw(context, options);
+    return context.calls.find(([name]) => name === "fillRect");
+  };
+  assert.deepEqual(square(), ["fillRect", 0, 0, 200, 200]);
+  assert.deepEqual(square({ size: undefined, colors: undefined }), ["fillRect", 0, 0, 200, 200]);
+  assert.deepEqual(square({ size: 50 }), ["fillRect", 0, 0, 50, 50]);
+  assert.deepEqual(square({ size: 0 }), ["fillRect", 0, 0, 0, 0]);
+});
+
+const CONTEXT = "context must be a canvas's 2D context, got ";
+const SIZE = "size must be finite and at least 0 pixels, got ";
+
+test("invalid arguments of draw are rejected with the value and the rule, and nothing is drawn", () => {
+  const [batch, acrobot, context] = [new Batch({ count: 1 }), new Acrobot(), canvas()];
+  for (const [args, name, message] of [
+    [[], "TypeError", `${CONTEXT}undefined`],
+    [[null], "TypeError", `${CONTEXT}null`],
+    [[1], "RangeError", `${CONTEXT}1`],
+    [[context.canvas], "TypeError", `${CONTEXT}[object Object]`],
+    [[context, null], "TypeError", "options must be an object, got null"],
+    [[context, 100], "RangeError", "options must be an object, got 100"],
+    [[context, { sise: 1 }], "TypeError", "options must be among size, colors, got sise"],
+    [[context, { size: -1 }], "RangeError", `${SIZE}-1`],
+    [[context, { size: Infinity }], "RangeError", `${SIZE}Infinity`],
+    [[context, { size: NaN }], "RangeError", `${SIZE}NaN`],
+    [[context, { size: "100" }], "TypeError", `${SIZE}"100"`],
+    [[context, { size: null }], "TypeError", `${SIZE}null`],
+    [[{ ...context, canvas: undefined }], "RangeError", `${SIZE}NaN`],
+    [[context, { colors: null }], "TypeError", "colors must be an object, got null"],
+    [[context, { colors: "red" }], "TypeError", 'colors must be an object, got "red"'],
+    [[context, { colors: { lnik: "red" } }], "TypeError", "colors must be among background, target, link, joint, torque, got lnik"],
+    [[context, { colors: { link: 5 } }], "RangeError", "colors.link must be a string, got 5"],
+    [[context, { colors: { torque: undefined } }], "TypeError", "colors.torque must be a string, got undefined"],
+  ]) {
+    assert.throws(() => acrobot.draw(...args), { name, message });
+    assert.throws(() => batch.draw(args[0], 0, ...args.slice(1)), { name, message });
+  }
+  assert.deepEqual(context.calls, []);
 });
 
 const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1, got ";

@@ -1,13 +1,12 @@
 // Acrobots of a batch have the bits of acrobots alone. Memory is used again.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { setFlagsFromString } from "node:v8";
 import { runInNewContext } from "node:vm";
-import { inflateRawSync } from "node:zlib";
 
 import { Acrobot, Batch } from "../dist/index.js";
+import { instance } from "./instance.mjs";
 
 const COUNT = 21; // the last block is partly filled
 const OPTIONS = { seed: 42n, count: COUNT, maxSteps: 25, params: { torqueNoise: 0.5, mass1: 1.5 } };
@@ -106,16 +105,6 @@ test("invalid arguments are rejected, and nothing changes", () => {
     assert.throws(use, { name: "Error", message: "the batch has been freed" });
   }
 });
-
-/** The source with its own instance of the module, whose memory a test can see. */
-async function instance() {
-  const bundle = readFileSync(new URL("../dist/index.js", import.meta.url), "utf8");
-  globalThis.MODULE = /"([\w+/=]{10000,})"/.exec(bundle)[1];
-  globalThis.LENGTH = inflateRawSync(Buffer.from(globalThis.MODULE, "base64")).length;
-  const classes = await import("../package/index.js");
-  const { wasm } = await import("../package/wasm.js");
-  return { ...classes, size: () => wasm().memory.buffer.byteLength };
-}
 
 test("memory grows while batches are in use, and is used again after free and after garbage collection", async () => {
   const { Acrobot, Batch, size } = await instance();

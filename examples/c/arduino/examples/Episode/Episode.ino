@@ -21,7 +21,7 @@ void setup() {
 
 void loop() {
   // Torque against the velocity of link 1.
-  uint8_t action = result.observation.dtheta1 > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
+  int action = result.observation.dtheta1 > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
   check(acrobot_step(&acrobot, action, &result));
   if (result.terminated || result.truncated) {
     uint32_t steps;

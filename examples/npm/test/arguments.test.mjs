@@ -1,0 +1,202 @@
+// Reading an argument can run code of the caller: getters, proxies. It can also be memory that other threads write.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { instance } from "./instance.mjs";
+
+const { Acrobot, Batch, size } = await instance();
+
+/** Makes batches until the memory has grown, which ends all views of it. */
+function grow() {
+  const before = size();
+  while (size() === before) new Batch({ count: 5000 });
+}
+
+/** The object, whose getters call `act` first. */
+function acting(object, act) {
+  const getters = Object.entries(object).map(([name, value]) => [name, { get: () => (act(name), value), enumerable: true }]);
+  return Object.defineProperties(Array.isArray(object) ? [] : {}, Object.fromEntries(getters));
+}
+
+/** A proxy that calls `act` before each property is read. Methods get the object and not the proxy. */
+function proxy(object, act) {
+  const get = (target, name) => {
+    act(name);
+    const value = target[name];
+    return typeof value === "function" ? value.bind(target) : value;
+  };
+  return new Proxy(object, { get });
+}
+
+const PARAMS = { dt: 0.05, torques: [-2, 0, 2], torqueNoise: 0.1 };
+const STATE = { theta1: 1, theta2: 2, dtheta1: 3, dtheta2: 4 };
+const SNAPSHOT = new Acrobot({ seed: 3, params: PARAMS }).snapshot();
+
+/** A use of an object as an argument: what the object is, the use, and what it changes. */
+const USES = [
+  { given: [2, 2, 2], kind: "batch", use: (batch, actions) => batch.step(actions) },
+  { given: { length: 3, 0: 2, 1: 2, 2: 2 }, kind: "batch", use: (batch, actions) => batch.step(actions) },
+  { given: Uint8Array.of(2, 2, 2), kind: "batch", use: (batch, actions) => batch.step(actions) },
+  { given: Float64Array.of(2, 2, 2), kind: "batch", use: (batch, actions) => batch.step(actions) },
+  { given: PARAMS, kind: "batch", use: (batch, params) => batch.setParams(params) },
+  { given: PARAMS, kind: "acrobot", use: (acrobot, params) => acrobot.setParams(params) },
+  { given: PARAMS.torques, kind: "acrobot", use: (acrobot, torques) => acrobot.setParams({ torques }) },
+  { given: STATE, kind: "acrobot", use: (acrobot, state) => (acrobot.state = state) },
+  { given: SNAPSHOT, kind: "acrobot", use: (acrobot, snapshot) => acrobot.restore(snapshot) },
+];
+
+const make = (kind) => (kind === "batch" ? new Batch({ seed: 1, count: 3 }) : new Acrobot({ seed: 1 }));
+/** All that can be seen of an acrobot or a batch, which this steps. */
+function seen(of) {
+  if (!of.count) return of.snapshot();
+  const numbers = [...Array(of.count).keys()];
+  return [of.params, numbers.map((i) => of.state(i)), of.step(numbers.map((i) => i % 3))];
+}
+const hostile = (given, act) => [...(ArrayBuffer.isView(given) ? [] : [acting(given, act)]), proxy(given, act)];
+
+test("memory that grows while an argument is read changes no result", () => {
+  for (const { given, kind, use } of USES) {
+    for (const argument of hostile(given, grow)) {
+      const [one, other] = [make(kind), make(kind)];
+      use(one, argument);
+      use(other, given);
+      assert.deepEqual(seen(one), seen(other), use);
+    }
+  }
+});
+
+test("an argument that frees what gets it is rejected, and changes no other acrobot", () => {
+  const others = () => [new Acrobot({ seed: 1 }), ...Array.from({ length: 40 }, (_, i) => 40 - i).map((count) => new Batch({ seed: 1, count }))];
+  for (const { given, kind, use } of USES) {
+    for (const index of [0, 1]) {
+      const one = make(kind);
+      let found;
+      // Others get the memory.
+      const argument = hostile(given, () => (one.free(), (found ??= others()))).at(index - 1);
+      assert.throws(() => use(one, argument), { name: "Error", message: `the ${kind} has been freed` });
+      assert.deepEqual(found.map(seen), others().map(seen));
+    }
+  }
+});
+
+test("an argument that uses what gets it acts before the call", () => {
+  for (const { given, kind, use } of USES) {
+    for (const argument of [0, 1]) {
+      const [one, other] = [make(kind), make(kind)];
+      const act = (of) => {
+        of.setParams({ gravity: of.params.gravity / 2 });
+        of.step(kind === "batch" ? [0, 0, 0] : 0);
+      };
+      let acts = 0;
+      use(one, hostile(given, () => (acts++, act(one))).at(argument - 1));
+      for (let i = 0; i < acts; i++) act(other);
+      use(other, given);
+      assert.deepEqual(seen(one), seen(other), use);
+    }
+  }
+});
+
+test("each property is read once, so that what is checked is what is used", () => {
+  for (const { given, kind, use } of USES) {
+    const reads = new Map();
+    use(make(kind), proxy(given, (name) => reads.set(name, (reads.get(name) ?? 0) + 1)));
+    assert.deepEqual([...reads].filter(([name, count]) => count > 1), [], use);
+  }
+  // The second read would give an object, whose conversion runs code.
+  const torques = [-2, 0, 2];
+  let reads = 0;
+  Object.defineProperty(torques, 1, { get: () => (reads++ ? { valueOf: grow } : 0) });
+  const acrobot = new Acrobot();
+  acrobot.setParams({ torques });
+  assert.deepEqual(acrobot.params.torques, [-2, 0, 2]);
+  // The message has the value that was rejected.
+  const values = [NaN, 1];
+  const state = { ...STATE, get theta1() { return values.shift(); } };
+  assert.throws(() => (acrobot.state = state), { message: "theta1 must be a finite number of rad, got NaN" });
+});
+
+test("options whose getters use the package make the same acrobots", () => {
+  const options = { seed: 7, params: PARAMS, maxSteps: 9 };
+  const act = () => (grow(), new Acrobot({ seed: 1 }).step(2));
+  const nested = (make) => make(acting({ ...options, params: acting(PARAMS, act) }, act));
+  assert.deepEqual(seen(nested((given) => new Acrobot(given))), seen(new Acrobot(options)));
+  const batches = { ...options, count: 3, autoreset: "SameStep" };
+  assert.deepEqual(seen(new Batch(acting(batches, act))), seen(new Batch(batches)));
+  // The class that `new` names, too.
+  const target = new Proxy(Batch, { get: (of, name, receiver) => (act(), Reflect.get(of, name, receiver)) });
+  assert.deepEqual(seen(Reflect.construct(Batch, [batches], target)), seen(new Batch(batches)));
+});
+
+test("errors of the caller's own code pass through, and nothing changes", () => {
+  const act = () => {
+    throw new SyntaxError("own");
+  };
+  for (const { given, kind, use } of USES) {
+    for (const argument of hostile(given, act)) {
+      const one = make(kind);
+      assert.throws(() => use(one, argument), { name: "SyntaxError", message: "own" });
+      assert.deepEqual(seen(one), seen(make(kind)));
+    }
+  }
+});
+
+test("arrays in shared, resized and detached memory have the elements that they have", () => {
+  const shared = (bytes) => {
+    const array = new Uint8Array(new SharedArrayBuffer(bytes.length));
+    array.set(bytes);
+    return array;
+  };
+  const [one, other] = [make("batch"), make("batch")];
+  one.step(shared([0, 1, 2]));
+  other.step([0, 1, 2]);
+  assert.deepEqual(seen(one), seen(other));
+  assert.deepEqual(Acrobot.restore(shared(SNAPSHOT)).snapshot(), SNAPSHOT);
+  assert.throws(() => one.step(shared([0, 1, 9])), { message: /^actions\[2\] must be 0 .*, got 9$/ });
+  assert.throws(() => Acrobot.restore(shared(SNAPSHOT.map((byte) => byte ^ 1))), /^RangeError: the snapshot must have the bytes of snapshot\(\), got/);
+
+  const detached = (bytes) => {
+    const array = Uint8Array.from(bytes);
+    structuredClone(array, { transfer: [array.buffer] });
+    return array;
+  };
+  assert.throws(() => one.step(detached([0, 1, 2])), { name: "RangeError", message: "actions must have 3 elements, got 0" });
+  assert.throws(() => Acrobot.restore(detached(SNAPSHOT)), /^RangeError: the snapshot must have the bytes of snapshot\(\), got 0 bytes/);
+
+  const buffer = new ArrayBuffer(3, { maxByteLength: 8 });
+  const resizable = new Uint8Array(buffer);
+  one.step(resizable);
+  if (buffer.resizable) {
+    buffer.resize(5);
+    assert.throws(() => one.step(resizable), { name: "RangeError", message: "actions must have 3 elements, got 5" });
+  }
+});
+
+test("a Uint8Array that pretends another length takes no action of the last step", () => {
+  const [one, other] = [make("batch"), make("batch")];
+  one.step([2, 2, 2]);
+  other.step([2, 2, 2]);
+  const [short, long] = [2, 4].map((length) => Object.defineProperty(new Uint8Array(length), "length", { value: 3 }));
+  assert.throws(() => one.step(short), { name: "TypeError", message: /^actions\[2\] must be 0 .*, got undefined$/ });
+  assert.deepEqual(seen(one), seen(other));
+  one.step(long);
+  other.step([0, 0, 0]);
+  assert.deepEqual(seen(one), seen(other));
+});
+
+test("results that the caller changes or transfers do not change later ones", () => {
+  const [one, other] = ["SameStep", "SameStep"].map((autoreset) => new Batch({ seed: 1, count: 3, autoreset }));
+  const results = one.step([0, 1, 2]);
+  other.step([0, 1, 2]);
+  const { observations } = results;
+  results.rewards = results.more = delete results.truncated;
+  assert.deepEqual(one.step([0, 1, 2]), other.step([0, 1, 2]));
+  assert.equal(one.observations, observations);
+
+  const taken = one.step([0, 1, 2]);
+  other.step([0, 1, 2]);
+  structuredClone(taken, { transfer: Object.values(taken).map(({ buffer }) => buffer) });
+  assert.deepEqual(one.observations, other.observations);
+  assert.deepEqual(one.step([0, 1, 2]), other.step([0, 1, 2]));
+  assert.deepEqual(one.reset(), other.reset());
+});
