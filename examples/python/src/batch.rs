@@ -185,8 +185,12 @@ impl Batch {
         mut finals: Option<PyReadwriteArray2<'py, f32>>,
     ) -> PyResult<Results<'py>> {
         let py = slf.py();
-        let len = slf.try_borrow()?.settings.num_envs;
-        let inputs = match Inputs::of(actions, len) {
+        let Settings {
+            num_envs: len,
+            continuous,
+            ..
+        } = slf.try_borrow()?.settings;
+        let inputs = match Inputs::of(actions, len, continuous) {
             Some(inputs) => inputs,
             None => env.call_method1("_inputs", (actions,))?.extract()?,
         };

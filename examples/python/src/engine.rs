@@ -54,8 +54,9 @@ pub enum Inputs<'py> {
 
 impl<'py> Inputs<'py> {
     /// The actions, if no conversion is necessary.
-    pub fn of(actions: &Bound<'py, PyAny>, len: usize) -> Option<Self> {
-        if let Ok(actions) = actions.cast::<PyArray1<i64>>() {
+    pub fn of(actions: &Bound<'py, PyAny>, len: usize, continuous: bool) -> Option<Self> {
+        if !continuous {
+            let actions = actions.cast::<PyArray1<i64>>().ok()?;
             let fits = actions.len() == len && is_slice(actions);
             return fits.then(|| Some(Self::Actions(actions.try_readonly().ok()?)))?;
         }

@@ -171,13 +171,19 @@ impl Acrobot {
         action: &Bound<'py, PyAny>,
     ) -> PyResult<Step<'py>> {
         let py = slf.py();
+        let continuous = slf.try_borrow()?.kind.continuous;
+        // The conversion can be Python code.
+        let number = continuous.then(|| number(env, action)).transpose()?;
         let mut this = slf.try_borrow_mut()?;
         if !this.inner.started {
             let message = "the environment has no state yet; call reset before step";
             return Err(PyAssertionError::new_err(message));
         }
         this.read_lent(py)?;
-        let mut torque = this.torque(action)?;
+        let mut torque = match number {
+            Some(torque) => this.clipped(torque),
+            None => this.torque(action)?,
+        };
         let noise = this.inner.noise;
         if noise > 0.0 {
             drop(this); // the generator is Python code
@@ -258,9 +264,6 @@ impl Acrobot {
     /// The torque of an action, N m.
     #[inline]
     fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
-        if self.kind.continuous {
-            return self.clipped(action);
-        }
         let number = action.extract::<usize>().ok();
         let torque = number.and_then(|number| self.inner.torques.get(number));
         torque.copied().ok_or_else(|| {
@@ -269,32 +272,32 @@ impl Acrobot {
         })
     }
 
-    /// The torque of a continuous action, within the smallest and the largest of the torques.
-    fn clipped(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
-        let torque = only(action).filter(|torque| !torque.is_nan());
-        let torque = torque.ok_or_else(|| {
-            let rule = "a torque in N m, as an array of shape (1,)";
-            InvalidAction::new_err(must_be("action", rule, shown(action)))
-        })?;
+    /// A torque within the smallest and the largest of the torques.
+    fn clipped(&self, torque: f64) -> f64 {
         let torques = &self.inner.torques;
         let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
         let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Ok(torque.clamp(low, high))
+        torque.clamp(low, high)
     }
 }
 
-/// The number in an array or a sequence of length 1.
-fn only(sequence: &Bound<'_, PyAny>) -> Option<f64> {
-    if let Ok(array) = sequence.cast::<PyArray1<f32>>()
-        && array.data().is_aligned()
-    {
-        return (array.len() == 1)
-            .then(|| array.get_owned(0))?
-            .map(f64::from);
+/// The torque of a continuous action, N m. The environment converts or rejects all but an array of one `f32`.
+fn number(env: &Bound<'_, PyAny>, action: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let array = action.cast::<PyArray1<f32>>().ok();
+    let array = array.filter(|array| array.len() == 1 && array.data().is_aligned());
+    let torque = match array.and_then(|array| array.get_owned(0)) {
+        Some(torque) => f64::from(torque),
+        None => env.call_method1("_torque", (action,))?.extract()?,
+    };
+    if torque.is_nan() {
+        let rule = "a torque in N m, as an array of shape (1,)";
+        return Err(InvalidAction::new_err(must_be(
+            "action",
+            rule,
+            shown(action),
+        )));
     }
-    let number = (sequence.len().ok()? == 1).then(|| sequence.get_item(0).ok())??;
-    // An array in an array converts to a number too.
-    number.len().is_err().then(|| number.extract().ok())?
+    Ok(torque)
 }
 
 /// A state from an array, and whether its numbers are `f32`.

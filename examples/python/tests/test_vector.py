@@ -1,5 +1,6 @@
 """The vector environment has the documented streams, resets as SyncVectorEnv does, and steps as Gymnasium does within float32."""
 
+import collections
 import copy
 import functools
 import multiprocessing
@@ -238,13 +239,15 @@ def test_observations_are_copies_or_one_array():
 @pytest.mark.parametrize(
     "actions",
     [[0, 1, 2, 3], [0, 0, 0, -1], [0, 0, 256, 0], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]], [0.0, 1.0, 2.0, 0.0], "0120", 1,
-     np.array([0, 0, 0, 2**63], dtype=np.uint64)],
+     np.array([0, 0, 0, 2**63], dtype=np.uint64), b"\0\1\2\0", bytearray(4), dict.fromkeys(range(4), 1), {0, 1, 2}, iter([0] * 4),
+     collections.UserDict.fromkeys(range(4), 1), [True] * 4, [1j] * 4, [None] * 4, np.zeros(4, object), [[0], [1, 2]],
+     np.zeros((4, 1), np.float32), None],
 )  # fmt: skip
 def test_invalid_actions_are_rejected(actions):
     envs = make_vec(4)
     envs.reset(seed=1)
     before = envs.state
-    with pytest.raises(InvalidAction, match=r"actions(\[\d\])? must be "):
+    with pytest.raises(InvalidAction, match=r"actions must be integers of shape \(4,\), got |actions\[\d\] must be "):
         envs.step(actions)
     assert (envs.state == before).all()
 
@@ -785,8 +788,10 @@ def test_continuous_torques_give_the_episodes_of_single_environments(mode):
 
 
 @pytest.mark.parametrize(
-    "actions", [[[0.5]], [0.5, 0.5], [[0.5, 0.5]], [[np.nan], [0.0]], [["0"], ["1"]], [[True], [False]], None]
-)
+    "actions",
+    [[[0.5]], [0.5, 0.5], [[0.5, 0.5]], [[np.nan], [0.0]], [["0"], ["1"]], [[True], [False]], None, [[1], [2, 3]], {0: [1], 1: [1]},
+     [[1j], [1j]], np.zeros(2, np.int64), np.zeros(2, np.float32), b"ab", bytearray(2), np.zeros((2, 1), object)],
+)  # fmt: skip
 def test_invalid_torques_are_rejected(actions):
     envs = AcrobotContinuousVectorEnv(2)
     envs.reset(seed=1)

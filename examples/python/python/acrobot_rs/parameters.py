@@ -8,13 +8,15 @@ import dataclasses
 import difflib
 import functools
 import math
+import reprlib
 import weakref
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, NoReturn
 
 import numpy as np
 from gymnasium import logger, spaces
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
+from numpy.typing import NDArray
 
 from acrobot_rs._native import Acrobot, Batch, check_reset_bounds
 
@@ -265,3 +267,25 @@ def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
     check_reset_bounds(low, high)
     return low, high
+
+
+def numbers(
+    name: str, rule: str, value: Any, shape: tuple[int, ...], kinds: str = "fiu", error: type[Exception] = ValueError
+) -> NDArray[Any]:
+    """Actions or states as an array.
+
+    They may be an array, or a list or another sequence that NumPy converts to one, of this shape, and of integers (``iu``) or
+    floats (``f``). Texts, bytes, bools, complex numbers, other objects, sets, mappings and iterators are rejected.
+    """
+    array = None
+    # NumPy takes the bytes of a bytearray, and the keys of some mappings.
+    if not isinstance(value, bytearray | Mapping):
+        try:
+            array = np.asarray(value)
+        except (TypeError, ValueError):  # rows of different lengths
+            pass
+    if array is not None and array.dtype.kind in kinds and array.shape == shape:
+        return array
+    is_numeric = array is not None and array.dtype.kind in "biufc"
+    found = f"{array.dtype} of shape {array.shape}" if is_numeric else reprlib.repr(value)
+    raise error(f"{name} must be {rule}, got {found}")

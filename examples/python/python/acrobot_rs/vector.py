@@ -14,7 +14,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, _highest, _lowest, reset_bounds
+from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, _highest, _lowest, numbers, reset_bounds
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 Floats = NDArray[np.float32]
@@ -145,11 +145,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     @state.setter
     def state(self, states: ArrayLike) -> None:
-        states = np.asarray(states)
-        if states.shape != (self.num_envs, 4) or states.dtype.kind not in "fiu":
-            raise ValueError(
-                f"state must be numbers of shape ({self.num_envs}, 4), got {states.dtype} of shape {states.shape}"
-            )
+        shape = (self.num_envs, 4)
+        states = numbers("state", f"numbers of shape {shape}", states, shape)
         with np.errstate(over="ignore"):
             finite = np.isfinite(states if self._gymnasium_episodes else states.astype(np.float32))
         if not finite.all():
@@ -345,11 +342,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
         """The actions, checked and converted to an array that the native part reads. It calls this where necessary."""
-        actions = np.asarray(actions)
-        if actions.dtype.kind not in "iu" or actions.shape != (self.num_envs,):
-            raise InvalidAction(
-                f"actions must be integers of shape ({self.num_envs},), got {actions.dtype} of shape {actions.shape}"
-            )
+        shape = (self.num_envs,)
+        actions = numbers("actions", f"integers of shape {shape}", actions, shape, "iu", InvalidAction)
         # An array over packed bytes is not aligned, which Rust requires.
         return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.int64)
 
@@ -408,11 +402,8 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
         return spaces.Box(min(_lowest(self.AVAIL_TORQUE)), max(_highest(self.AVAIL_TORQUE)), (1,), np.float32)
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
-        actions = np.asarray(actions)
-        if actions.dtype.kind not in "fiu" or actions.shape != (self.num_envs, 1):
-            raise InvalidAction(
-                f"actions must be numbers of shape ({self.num_envs}, 1), got {actions.dtype} of shape {actions.shape}"
-            )
+        shape = (self.num_envs, 1)
+        actions = numbers("actions", f"numbers of shape {shape}", actions, shape, error=InvalidAction)
         return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.float32)
 
 
