@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 use serde::{Deserialize, Serialize};
 
-use crate::{InvalidAction, convert, load, must_be, rejected, render, save, shown, with};
+use crate::{InvalidAction, alone, convert, load, must_be, rejected, render, save, shown, with};
 
 /// What `Env.step` returns: observation, reward, terminated, truncated and info.
 type Step<'py> = (
@@ -48,7 +48,7 @@ struct Kind {
 }
 
 /// What a snapshot contains.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 struct Inner {
     /// Without noise and with the default torques: the crate has three.
     acrobot: acrobot::Acrobot<Host>,
@@ -61,6 +61,24 @@ struct Inner {
 }
 
 impl Inner {
+    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        match name {
+            "AVAIL_TORQUE" => {
+                if value.len().is_ok_and(|count| count > MAX_TORQUES) {
+                    let rule = format_args!("at most {MAX_TORQUES} numbers");
+                    return Err(PyValueError::new_err(must_be(name, rule, value.len()?)));
+                }
+                let torques = convert(name, "a sequence of numbers", value)?;
+                self.set_torques(torques)
+            }
+            "torque_noise_max" => self.set_noise(convert(name, "a number", value)?),
+            _ => {
+                let params = with(*self.acrobot.params(), name, value)?;
+                self.acrobot.set_params(params).map_err(rejected)
+            }
+        }
+    }
+
     fn set_noise(&mut self, noise: f64) -> PyResult<()> {
         let params = Params {
             torque_noise: noise,
@@ -107,22 +125,8 @@ impl Acrobot {
         }
     }
 
-    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        match name {
-            "AVAIL_TORQUE" => {
-                if value.len().is_ok_and(|count| count > MAX_TORQUES) {
-                    let rule = format_args!("at most {MAX_TORQUES} numbers");
-                    return Err(PyValueError::new_err(must_be(name, rule, value.len()?)));
-                }
-                let torques = convert(name, "a sequence of numbers", value)?;
-                self.inner.set_torques(torques)
-            }
-            "torque_noise_max" => self.inner.set_noise(convert(name, "a number", value)?),
-            _ => {
-                let params = with(*self.inner.acrobot.params(), name, value)?;
-                self.inner.acrobot.set_params(params).map_err(rejected)
-            }
-        }
+    fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        Self::change(slf, name, value)?()
     }
 
     /// The state, as an array whose elements can be assigned until the next step.
@@ -252,6 +256,21 @@ impl Acrobot {
 }
 
 impl Acrobot {
+    /// Checks a parameter. Returns what sets it.
+    pub fn change<'py>(
+        slf: &Bound<'py, Self>,
+        name: &str,
+        value: &Bound<'py, PyAny>,
+    ) -> PyResult<impl FnOnce() -> PyResult<()> + use<'py>> {
+        let mut this = alone(slf)?;
+        let mut inner = this.inner.clone();
+        inner.set(name, value)?;
+        Ok(move || {
+            this.inner = inner;
+            Ok(())
+        })
+    }
+
     /// Takes over what Python assigned to elements of the state.
     fn read_lent(&mut self, py: Python<'_>) -> PyResult<()> {
         if let Some(lent) = &self.lent {

@@ -187,12 +187,12 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         low, high = reset_bounds(options)
         mask = self._mask(options)
         child_of, seeds = self._seeds(seed)
-        if not isinstance(seed, list | tuple):
-            super().reset(seed=seed)
         if seeds is not None:
             every = np.ones(self.num_envs, np.bool_) if mask is None else mask
             self._native.seed([each if some else None for each, some in zip(seeds, every, strict=True)])
         self._native.reset(child_of, low, high, mask)
+        if not isinstance(seed, list | tuple):
+            super().reset(seed=seed)
         if mask is not None and options is not None:
             del options["reset_mask"]
         if self._ended is not None:
@@ -319,17 +319,18 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     def _action_space(self) -> spaces.Space[Any]:
         return spaces.Discrete(3)
 
-    def _pass(self, name: str, value: Any) -> Any:
+    def _check(self, name: str, value: Any) -> None:
         ranged = isinstance(value, Uniform)
-        each = _each(name, value)
-        for other in _NAMES if ranged or each is not None else ():
+        for other in _NAMES if ranged or _each(name, value) is not None else ():
             if other != name and isinstance(getattr(self, other), np.ndarray if ranged else Uniform):
                 found = "a Uniform" if ranged else "different values"
                 rule = "one value for all environments" if ranged else "a value or an array, not a Uniform"
                 raise ValueError(f"{other} must be {rule}, if {name} has {found}")
-        if ranged:
-            self._native.set_range(name, value.low, value.high)
-        elif each is None:
+
+    def _pass(self, name: str, value: Any) -> Any:
+        self._check(name, value)
+        each = _each(name, value)
+        if each is None:
             self._native.set(name, value)
         else:
             self._native.set_each(name, each)
