@@ -9,13 +9,14 @@ use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyR
 use postcard::experimental::serialized_size;
 use pyo3::exceptions::{PyIndexError, PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyType};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::engine::{Engine, Inputs, MODES, Range, Settings, assemble, memory};
 use crate::pool::Pool;
-use crate::{VERSION, must_be, number, positive, rejected, render, unknown, with};
+use crate::{VERSION, alone, must_be, number, positive, rejected, render, unknown, with};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -73,65 +74,34 @@ impl Batch {
         self.settings.num_envs
     }
 
-    /// Sets a parameter of all acrobots.
-    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let range = self
-            .range
-            .map(|[low, high]| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]));
-        let range = range.transpose()?;
-        let count = if self.settings.own {
-            self.settings.num_envs
-        } else {
-            1
-        };
-        let each = (0..count).map(|index| self.changed(index, name, value));
-        self.set_params(each.collect::<PyResult<_>>()?, range)
+    /// Sets a parameter of all acrobots: a value, or a `Uniform` between whose bounds each reset draws it.
+    fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        Self::change(slf, name, value)?()
     }
 
     /// Sets a parameter of each acrobot. No parameter is drawn then.
-    fn set_each(&mut self, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
-        let num_envs = self.settings.num_envs;
+    fn set_each(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
+        let mut this = alone(slf)?;
+        let num_envs = this.settings.num_envs;
         if values.len() != num_envs {
             let rule = format_args!("one value, or one for each of {num_envs} environments");
             let got = format_args!("{} values", values.len());
             return Err(PyValueError::new_err(must_be(name, rule, got)));
         }
         let each = values.iter().enumerate().map(|(index, value)| {
-            let changed = self.changed(index, name, value);
+            let changed = this.changed(index, name, value);
             changed.map_err(|error| indexed(value.py(), error, index))
         });
-        self.set_params(each.collect::<PyResult<_>>()?, None)
-    }
-
-    /// Sets the bounds between which each reset draws a parameter.
-    fn set_range(
-        &mut self,
-        name: &str,
-        low: &Bound<'_, PyAny>,
-        high: &Bound<'_, PyAny>,
-    ) -> PyResult<()> {
-        // The crate would draw another LINK_MOI for each link, and knows no range of equations.
-        if matches!(name, "LINK_MOI" | "book_or_nips") {
-            let message = format!("{name} must be a value or an array, not a Uniform");
-            return Err(PyValueError::new_err(message));
-        }
-        let [lows, highs] = match self.range {
-            Some(range) => range,
-            None => [self.params(0)?; 2],
-        };
-        let range = [with(lows, name, low)?, with(highs, name, high)?];
-        // A batch with shared parameters only checks it.
-        self.engine.set_range(Some(range)).map_err(rejected)?;
-        self.own()?;
-        self.engine.set_range(Some(range)).map_err(rejected)?;
-        self.range = Some(range);
-        Ok(())
+        let each = each.collect::<PyResult<_>>()?;
+        let plan = this.plan(each, None)?;
+        this.apply(plan)
     }
 
     /// A parameter of each acrobot.
-    fn get<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let each = (0..self.settings.num_envs).map(|index| {
-            let mut params = self.params(index)?;
+    fn get<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let (py, this) = (slf.py(), alone(slf)?);
+        let each = (0..this.settings.num_envs).map(|index| {
+            let mut params = this.params(index)?;
             Ok(match number(&mut params, name) {
                 Some(number) => number.into_pyobject(py)?.into_any(),
                 None => params.torques.into_pyobject(py)?.into_any(),
@@ -141,8 +111,8 @@ impl Batch {
     }
 
     /// Gives acrobots streams of their own: those of `default_rng(seed)`, for each seed that is not `None`.
-    fn seed(&mut self, seeds: Vec<Option<String>>) -> PyResult<()> {
-        for (rng, seed) in self.engine.generators_mut().iter_mut().zip(seeds) {
+    fn seed(slf: &Bound<'_, Self>, seeds: Vec<Option<String>>) -> PyResult<()> {
+        for (rng, seed) in alone(slf)?.engine.generators_mut().iter_mut().zip(seeds) {
             if let Some(seed) = seed {
                 *rng = parse(&seed)?.into();
             }
@@ -153,8 +123,7 @@ impl Batch {
     /// Resets all acrobots, or those that the mask selects, to initial states within these bounds. With a seed, each
     /// acrobot that is reset first takes the stream of its child.
     fn reset(
-        &mut self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         seed: Option<&str>,
         low: f64,
         high: f64,
@@ -165,13 +134,18 @@ impl Batch {
             bounds: Some(ResetBounds::new(low, high).map_err(rejected)?),
         };
         let mask = mask.as_ref().map(|mask| mask.as_slice()).transpose()?;
-        py.detach(|| self.engine.reset(options, mask))
+        let engine = &mut alone(slf)?.engine;
+        slf.py()
+            .detach(|| engine.reset(options, mask))
             .map_err(rejected)
     }
 
-    fn observe(&self, mut observations: PyReadwriteArray2<'_, f32>) -> PyResult<()> {
+    fn observe(
+        slf: &Bound<'_, Self>,
+        mut observations: PyReadwriteArray2<'_, f32>,
+    ) -> PyResult<()> {
         let rows = observations.as_slice_mut()?.as_chunks_mut().0;
-        self.engine.observe(rows).map_err(rejected)
+        alone(slf)?.engine.observe(rows).map_err(rejected)
     }
 
     /// Steps, and writes the observations into an array. Releases Python's lock meanwhile. The environment converts the
@@ -185,12 +159,16 @@ impl Batch {
         mut finals: Option<PyReadwriteArray2<'py, f32>>,
     ) -> PyResult<Results<'py>> {
         let py = slf.py();
-        let len = slf.try_borrow()?.settings.num_envs;
-        let inputs = match Inputs::of(actions, len) {
+        let Settings {
+            num_envs: len,
+            continuous,
+            ..
+        } = alone(slf)?.settings;
+        let inputs = match Inputs::of(actions, len, continuous) {
             Some(inputs) => inputs,
             None => env.call_method1("_inputs", (actions,))?.extract()?,
         };
-        let this = &mut *slf.try_borrow_mut()?;
+        let this = &mut *alone(slf)?;
         this.engine.read(inputs)?;
         let no_memory = || PyMemoryError::new_err("the results do not fit into memory");
         let mut rewards = memory(0.0, len).ok_or_else(no_memory)?;
@@ -230,48 +208,52 @@ impl Batch {
     }
 
     /// Writes θ1, θ2 and their velocities, a row for each acrobot.
-    fn states(&self, mut states: PyReadwriteArray2<'_, f64>) -> PyResult<()> {
+    fn states(slf: &Bound<'_, Self>, mut states: PyReadwriteArray2<'_, f64>) -> PyResult<()> {
+        let this = alone(slf)?;
         let rows = states.as_slice_mut()?.as_chunks_mut().0;
         for (index, row) in rows.iter_mut().enumerate() {
-            *row = self.engine.state(index).ok_or_else(no_such(index))?.into();
+            *row = this.engine.state(index).ok_or_else(no_such(index))?.into();
         }
         Ok(())
     }
 
     /// Sets all states, which must be finite. Episodes continue.
-    fn set_states(&mut self, states: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
+    fn set_states(slf: &Bound<'_, Self>, states: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
+        let mut this = alone(slf)?;
         let rows = states.as_slice()?.as_chunks::<4>().0;
         for (index, row) in rows.iter().enumerate() {
             let state = State::from(*row);
-            self.engine.set_state(index, state).map_err(rejected)?;
+            this.engine.set_state(index, state).map_err(rejected)?;
         }
         Ok(())
     }
 
     /// Writes the number of steps of each acrobot's episode.
-    fn elapsed(&self, mut elapsed: PyReadwriteArray1<'_, i64>) -> PyResult<()> {
+    fn elapsed(slf: &Bound<'_, Self>, mut elapsed: PyReadwriteArray1<'_, i64>) -> PyResult<()> {
+        let this = alone(slf)?;
         for (index, elapsed) in elapsed.as_slice_mut()?.iter_mut().enumerate() {
-            *elapsed = self.member(index)?.elapsed.into();
+            *elapsed = this.member(index)?.elapsed.into();
         }
         Ok(())
     }
 
     fn render<'py>(
-        &self,
-        py: Python<'py>,
+        slf: &Bound<'py, Self>,
         index: usize,
         mode: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let state = self.engine.state(index).ok_or_else(no_such(index))?;
-        render(py, self.params(index)?, state, mode)
+        let this = alone(slf)?;
+        let state = this.engine.state(index).ok_or_else(no_such(index))?;
+        render(slf.py(), this.params(index)?, state, mode)
     }
 
     /// Not a clone of the memory, which would abort the process where it does not fit.
-    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+    fn __deepcopy__(slf: &Bound<'_, Self>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let this = alone(slf)?;
         Ok(Self {
-            settings: self.settings,
-            range: self.range,
-            engine: self.copied(&self.settings)?,
+            settings: this.settings,
+            range: this.range,
+            engine: this.copied(&this.settings)?,
             pool: None,
         })
     }
@@ -279,28 +261,30 @@ impl Batch {
     /// With arguments that make the smallest batch, which `__setstate__` then replaces. Every protocol of pickle calls this;
     /// `__getnewargs__` would serve those from 2 only.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let state = slf.try_borrow()?.__getstate__(slf.py())?;
+        let state = Self::__getstate__(slf)?;
         Ok((slf.get_type(), (1, "0", 1, "NextStep"), state))
     }
 
     /// A header, and the records one after the other. They are serialized twice, first to learn their size: a buffer
     /// that grows would need twice the memory, and abort the process where there is none.
-    fn __getstate__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let header = (VERSION, self.settings, self.range);
+    fn __getstate__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
+        let this = alone(slf)?;
+        let header = (VERSION, this.settings, this.range);
         let mut size = serialized_size(&header).map_err(failed)?;
-        for index in 0..self.settings.num_envs {
-            size += serialized_size(&self.record(index)?).map_err(failed)?;
+        for index in 0..this.settings.num_envs {
+            size += serialized_size(&this.record(index)?).map_err(failed)?;
         }
-        PyBytes::new_with(py, size, |mut bytes| {
+        PyBytes::new_with(slf.py(), size, |mut bytes| {
             bytes = put(&header, bytes)?;
-            for index in 0..self.settings.num_envs {
-                bytes = put(&self.record(index)?, bytes)?;
+            for index in 0..this.settings.num_envs {
+                bytes = put(&this.record(index)?, bytes)?;
             }
             Ok(())
         })
     }
 
-    fn __setstate__(&mut self, mut bytes: &[u8]) -> PyResult<()> {
+    fn __setstate__(slf: &Bound<'_, Self>, mut bytes: &[u8]) -> PyResult<()> {
+        let mut this = alone(slf)?;
         let version: u32 = take(&mut bytes)?;
         if version != VERSION {
             let message = must_be("the snapshot's version", VERSION, version);
@@ -327,7 +311,7 @@ impl Batch {
             let message = format!("the snapshot must have no bytes after its end, got {count}");
             return Err(PyValueError::new_err(message));
         }
-        *self = Self {
+        *this = Self {
             settings,
             range,
             engine,
@@ -347,6 +331,15 @@ type Results<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
+/// A change of parameters that was checked.
+struct Plan {
+    /// An engine with own parameters, if there was none.
+    engine: Option<Box<dyn Engine>>,
+    /// The parameters of each acrobot, one for all if they share them, or none if they stay.
+    params: Vec<Params>,
+    range: Option<Range>,
+}
+
 impl Batch {
     fn params(&self, index: usize) -> PyResult<Params> {
         self.engine.params(index).ok_or_else(no_such(index))
@@ -359,28 +352,78 @@ impl Batch {
         Ok(params)
     }
 
-    /// Sets checked parameters of each acrobot, and the range of those that are drawn.
-    fn set_params(&mut self, each: Vec<Params>, range: Option<Range>) -> PyResult<()> {
-        if each.iter().any(|params| *params != each[0]) {
-            self.own()?;
-        }
-        self.engine.set_range(range).map_err(rejected)?;
-        self.range = range;
-        for (index, params) in each.into_iter().enumerate() {
-            self.engine.set_params(index, params).map_err(rejected)?;
-        }
-        Ok(())
+    /// Checks a parameter. Returns what sets it.
+    pub fn change<'py>(
+        slf: &Bound<'py, Self>,
+        name: &str,
+        value: &Bound<'py, PyAny>,
+    ) -> PyResult<impl FnOnce() -> PyResult<()> + use<'py>> {
+        let mut this = alone(slf)?;
+        let plan = match bounds(value)? {
+            Some([low, high]) => this.drawn(name, &low, &high)?,
+            None => this.fixed(name, value)?,
+        };
+        Ok(move || this.apply(plan))
     }
 
-    /// Gives each acrobot its own parameters.
-    fn own(&mut self) -> PyResult<()> {
-        if !self.settings.own {
-            let settings = Settings {
-                own: true,
-                ..self.settings
-            };
-            self.engine = self.copied(&settings)?;
-            self.settings = settings;
+    /// What sets a parameter of all acrobots.
+    fn fixed(&self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Plan> {
+        let range = self
+            .range
+            .map(|[low, high]| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]));
+        let range = range.transpose()?;
+        let count = if self.settings.own {
+            self.settings.num_envs
+        } else {
+            1
+        };
+        let each = (0..count).map(|index| self.changed(index, name, value));
+        self.plan(each.collect::<PyResult<_>>()?, range)
+    }
+
+    /// What sets the bounds between which each reset draws a parameter.
+    fn drawn(&self, name: &str, low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>) -> PyResult<Plan> {
+        // The crate would draw another LINK_MOI for each link, and knows no range of equations.
+        if matches!(name, "LINK_MOI" | "book_or_nips") {
+            let message = format!("{name} must be a value or an array, not a Uniform");
+            return Err(PyValueError::new_err(message));
+        }
+        let [lows, highs] = match self.range {
+            Some(range) => range,
+            None => [self.params(0)?; 2],
+        };
+        let range = [with(lows, name, low)?, with(highs, name, high)?];
+        self.plan(Vec::new(), Some(range))
+    }
+
+    /// Checks a range, and gives each acrobot its own parameters if necessary.
+    fn plan(&self, params: Vec<Params>, range: Option<Range>) -> PyResult<Plan> {
+        if let Some(range) = range {
+            self.engine.check_range(range).map_err(rejected)?;
+        }
+        let own = range.is_some() || params.iter().any(|each| *each != params[0]);
+        let settings = Settings {
+            own,
+            ..self.settings
+        };
+        let engine = (own && !self.settings.own).then(|| self.copied(&settings));
+        Ok(Plan {
+            engine: engine.transpose()?,
+            params,
+            range,
+        })
+    }
+
+    /// Carries out a plan, which cannot fail: everything was checked.
+    fn apply(&mut self, plan: Plan) -> PyResult<()> {
+        if let Some(engine) = plan.engine {
+            self.engine = engine;
+            self.settings.own = true;
+        }
+        self.engine.set_range(plan.range).map_err(rejected)?;
+        self.range = plan.range;
+        for (index, params) in plan.params.into_iter().enumerate() {
+            self.engine.set_params(index, params).map_err(rejected)?;
         }
         Ok(())
     }
@@ -407,6 +450,14 @@ impl Batch {
         let params = has_params.then(|| self.params(index)).transpose()?;
         Ok((params, self.member(index)?))
     }
+}
+
+/// The bounds of a `Uniform`.
+fn bounds<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
+    static UNIFORM: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    let uniform = UNIFORM.import(value.py(), "acrobot_rs.parameters", "Uniform")?;
+    let bounds = || Ok([value.getattr("low")?, value.getattr("high")?]);
+    value.is_instance(uniform)?.then(bounds).transpose()
 }
 
 /// The same error with an index after the parameter's name, with which its message begins.

@@ -54,8 +54,9 @@ pub enum Inputs<'py> {
 
 impl<'py> Inputs<'py> {
     /// The actions, if no conversion is necessary.
-    pub fn of(actions: &Bound<'py, PyAny>, len: usize) -> Option<Self> {
-        if let Ok(actions) = actions.cast::<PyArray1<i64>>() {
+    pub fn of(actions: &Bound<'py, PyAny>, len: usize, continuous: bool) -> Option<Self> {
+        if !continuous {
+            let actions = actions.cast::<PyArray1<i64>>().ok()?;
             let fits = actions.len() == len && is_slice(actions);
             return fits.then(|| Some(Self::Actions(actions.try_readonly().ok()?)))?;
         }
@@ -77,7 +78,9 @@ pub trait Engine: Send + Sync {
     fn check(&self, params: Params) -> Result<(), Error>;
     /// Sets the parameters of an acrobot, or of all if they share them.
     fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error>;
-    /// Checks a range, and draws parameters from it if the acrobots do not share them.
+    /// Rejects what `set_range` rejects.
+    fn check_range(&self, range: Range) -> Result<(), Error>;
+    /// Draws parameters from a range, if the acrobots do not share them.
     fn set_range(&mut self, range: Option<Range>) -> Result<(), Error>;
     fn generators_mut(&mut self) -> &mut [Pcg64];
     fn state(&self, index: usize) -> Option<State>;
@@ -205,8 +208,11 @@ impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
         P::set_params(&mut self.batch, index, params.cast())
     }
 
+    fn check_range(&self, range: Range) -> Result<(), Error> {
+        cast::<A::Scalar>(range).map(drop)
+    }
+
     fn set_range(&mut self, range: Option<Range>) -> Result<(), Error> {
-        let cast = |[low, high]: Range| ParamsRange::new(low.cast(), high.cast());
         P::set_range(&mut self.batch, range.map(cast).transpose()?);
         Ok(())
     }
@@ -290,6 +296,10 @@ impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
             self.batch.par_step_torques(&self.torques, buffers)
         }
     }
+}
+
+fn cast<R: Real>([low, high]: Range) -> Result<ParamsRange<R>, Error> {
+    ParamsRange::new(low.cast(), high.cast())
 }
 
 /// Checks all inputs, then converts them.

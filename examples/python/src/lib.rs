@@ -13,10 +13,15 @@ use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
+use pyo3::PyClass;
 use pyo3::exceptions::{PyAttributeError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::pyclass::boolean_struct::False;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+
+use crate::batch::Batch;
+use crate::single::Acrobot;
 
 pyo3::import_exception!(gymnasium.error, InvalidAction);
 
@@ -27,6 +32,8 @@ mod _native {
     #[pymodule_export]
     use super::check_reset_bounds;
     #[pymodule_export]
+    use super::set_all;
+    #[pymodule_export]
     use super::single::Acrobot;
 }
 
@@ -35,6 +42,41 @@ mod _native {
 fn check_reset_bounds(low: f64, high: f64) -> PyResult<()> {
     ResetBounds::new(low, high).map_err(rejected)?;
     Ok(())
+}
+
+#[derive(FromPyObject)]
+enum Native<'py> {
+    Acrobot(Bound<'py, Acrobot>),
+    Batch(Bound<'py, Batch>),
+}
+
+/// Sets a parameter of these environments, each to its value, and calls `then`. If anything fails, nothing changes: all
+/// environments are locked and all values checked before the first one is set.
+#[pyfunction]
+fn set_all(
+    name: &str,
+    values: Vec<(Native<'_>, Bound<'_, PyAny>)>,
+    then: &Bound<'_, PyAny>,
+) -> PyResult<()> {
+    let mut changes: Vec<Box<dyn FnOnce() -> PyResult<()> + '_>> = Vec::new();
+    for (native, value) in &values {
+        changes.push(match native {
+            Native::Acrobot(acrobot) => Box::new(Acrobot::change(acrobot, name, value)?),
+            Native::Batch(batch) => Box::new(Batch::change(batch, name, value)?),
+        });
+    }
+    then.call0()?;
+    changes.into_iter().try_for_each(|change| change())
+}
+
+/// The only access to a native part. Only a step and a reset of a batch let other threads run.
+fn alone<'py, T: PyClass<Frozen = False>>(slf: &Bound<'py, T>) -> PyResult<PyRefMut<'py, T>> {
+    slf.try_borrow_mut().map_err(|_| {
+        PyRuntimeError::new_err(
+            "another thread is stepping or resetting an environment; \
+             change parameters and call methods between its steps",
+        )
+    })
 }
 
 /// The crate's names of parameters, with Gymnasium's where they differ.

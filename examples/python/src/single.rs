@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 use serde::{Deserialize, Serialize};
 
-use crate::{InvalidAction, convert, load, must_be, rejected, render, save, shown, with};
+use crate::{InvalidAction, alone, convert, load, must_be, rejected, render, save, shown, with};
 
 /// What `Env.step` returns: observation, reward, terminated, truncated and info.
 type Step<'py> = (
@@ -48,7 +48,7 @@ struct Kind {
 }
 
 /// What a snapshot contains.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 struct Inner {
     /// Without noise and with the default torques: the crate has three.
     acrobot: acrobot::Acrobot<Host>,
@@ -61,6 +61,24 @@ struct Inner {
 }
 
 impl Inner {
+    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        match name {
+            "AVAIL_TORQUE" => {
+                if value.len().is_ok_and(|count| count > MAX_TORQUES) {
+                    let rule = format_args!("at most {MAX_TORQUES} numbers");
+                    return Err(PyValueError::new_err(must_be(name, rule, value.len()?)));
+                }
+                let torques = convert(name, "a sequence of numbers", value)?;
+                self.set_torques(torques)
+            }
+            "torque_noise_max" => self.set_noise(convert(name, "a number", value)?),
+            _ => {
+                let params = with(*self.acrobot.params(), name, value)?;
+                self.acrobot.set_params(params).map_err(rejected)
+            }
+        }
+    }
+
     fn set_noise(&mut self, noise: f64) -> PyResult<()> {
         let params = Params {
             torque_noise: noise,
@@ -107,22 +125,8 @@ impl Acrobot {
         }
     }
 
-    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        match name {
-            "AVAIL_TORQUE" => {
-                if value.len().is_ok_and(|count| count > MAX_TORQUES) {
-                    let rule = format_args!("at most {MAX_TORQUES} numbers");
-                    return Err(PyValueError::new_err(must_be(name, rule, value.len()?)));
-                }
-                let torques = convert(name, "a sequence of numbers", value)?;
-                self.inner.set_torques(torques)
-            }
-            "torque_noise_max" => self.inner.set_noise(convert(name, "a number", value)?),
-            _ => {
-                let params = with(*self.inner.acrobot.params(), name, value)?;
-                self.inner.acrobot.set_params(params).map_err(rejected)
-            }
-        }
+    fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        Self::change(slf, name, value)?()
     }
 
     /// The state, as an array whose elements can be assigned until the next step.
@@ -171,13 +175,19 @@ impl Acrobot {
         action: &Bound<'py, PyAny>,
     ) -> PyResult<Step<'py>> {
         let py = slf.py();
+        let continuous = slf.try_borrow()?.kind.continuous;
+        // The conversion can be Python code.
+        let number = continuous.then(|| number(env, action)).transpose()?;
         let mut this = slf.try_borrow_mut()?;
         if !this.inner.started {
             let message = "the environment has no state yet; call reset before step";
             return Err(PyAssertionError::new_err(message));
         }
         this.read_lent(py)?;
-        let mut torque = this.torque(action)?;
+        let mut torque = match number {
+            Some(torque) => this.clipped(torque),
+            None => this.torque(action)?,
+        };
         let noise = this.inner.noise;
         if noise > 0.0 {
             drop(this); // the generator is Python code
@@ -246,6 +256,21 @@ impl Acrobot {
 }
 
 impl Acrobot {
+    /// Checks a parameter. Returns what sets it.
+    pub fn change<'py>(
+        slf: &Bound<'py, Self>,
+        name: &str,
+        value: &Bound<'py, PyAny>,
+    ) -> PyResult<impl FnOnce() -> PyResult<()> + use<'py>> {
+        let mut this = alone(slf)?;
+        let mut inner = this.inner.clone();
+        inner.set(name, value)?;
+        Ok(move || {
+            this.inner = inner;
+            Ok(())
+        })
+    }
+
     /// Takes over what Python assigned to elements of the state.
     fn read_lent(&mut self, py: Python<'_>) -> PyResult<()> {
         if let Some(lent) = &self.lent {
@@ -258,9 +283,6 @@ impl Acrobot {
     /// The torque of an action, N m.
     #[inline]
     fn torque(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
-        if self.kind.continuous {
-            return self.clipped(action);
-        }
         let number = action.extract::<usize>().ok();
         let torque = number.and_then(|number| self.inner.torques.get(number));
         torque.copied().ok_or_else(|| {
@@ -269,32 +291,32 @@ impl Acrobot {
         })
     }
 
-    /// The torque of a continuous action, within the smallest and the largest of the torques.
-    fn clipped(&self, action: &Bound<'_, PyAny>) -> PyResult<f64> {
-        let torque = only(action).filter(|torque| !torque.is_nan());
-        let torque = torque.ok_or_else(|| {
-            let rule = "a torque in N m, as an array of shape (1,)";
-            InvalidAction::new_err(must_be("action", rule, shown(action)))
-        })?;
+    /// A torque within the smallest and the largest of the torques.
+    fn clipped(&self, torque: f64) -> f64 {
         let torques = &self.inner.torques;
         let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
         let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Ok(torque.clamp(low, high))
+        torque.clamp(low, high)
     }
 }
 
-/// The number in an array or a sequence of length 1.
-fn only(sequence: &Bound<'_, PyAny>) -> Option<f64> {
-    if let Ok(array) = sequence.cast::<PyArray1<f32>>()
-        && array.data().is_aligned()
-    {
-        return (array.len() == 1)
-            .then(|| array.get_owned(0))?
-            .map(f64::from);
+/// The torque of a continuous action, N m. The environment converts or rejects all but an array of one `f32`.
+fn number(env: &Bound<'_, PyAny>, action: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let array = action.cast::<PyArray1<f32>>().ok();
+    let array = array.filter(|array| array.len() == 1 && array.data().is_aligned());
+    let torque = match array.and_then(|array| array.get_owned(0)) {
+        Some(torque) => f64::from(torque),
+        None => env.call_method1("_torque", (action,))?.extract()?,
+    };
+    if torque.is_nan() {
+        let rule = "a torque in N m, as an array of shape (1,)";
+        return Err(InvalidAction::new_err(must_be(
+            "action",
+            rule,
+            shown(action),
+        )));
     }
-    let number = (sequence.len().ok()? == 1).then(|| sequence.get_item(0).ok())??;
-    // An array in an array converts to a number too.
-    number.len().is_err().then(|| number.extract().ok())?
+    Ok(torque)
 }
 
 /// A state from an array, and whether its numbers are `f32`.

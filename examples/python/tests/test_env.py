@@ -1,6 +1,7 @@
 """The single environment passes Gymnasium's own checks, and rejects what Gymnasium's environment rejects."""
 
 import abc
+import collections
 import copy
 import itertools
 import pickle
@@ -125,7 +126,11 @@ def test_a_window_shows_each_reset_and_step(monkeypatch):
     assert pygame.quit.called and env.unwrapped.screen is None and not env.unwrapped.isopen
 
 
-@pytest.mark.parametrize("action", [3, -1, 256, 2**70, 1.0, "1", None, np.array([1]), np.array([1, 2])])
+@pytest.mark.parametrize(
+    "action",
+    [3, -1, 256, 2**70, 1.0, "1", None, np.array([1]), np.array([1, 2]), b"\1", bytearray(b"\1"), [1], {1}, {1: 1}, 1j,
+     np.True_, np.array(True), np.timedelta64(1), iter([1])],
+)  # fmt: skip
 def test_invalid_actions_are_rejected(env, action):
     env.unwrapped.torque_noise_max = 0.5
     before, drawn = env.state, env.np_random.bit_generator.state
@@ -255,7 +260,8 @@ def test_the_state_can_be_set_from_any_four_numbers(env):
     assert env.state.dtype == np.float32 and list(env.state) == [0.0, 2.0, 4.0, 6.0]
     env.state = (1, 2, 3, 4)
     assert env.state.dtype == np.float64 and list(env.state) == [1.0, 2.0, 3.0, 4.0]
-    for state in ([1, 2, 3], "abcd", None, [[1], [2, 3]], 5.0, np.zeros((4, 1))):
+    others = (["1", "2", "3", "4"], [True] * 4, bytearray(4), {1: 1}, np.ones(4, complex), np.zeros(4, "M8[s]"))
+    for state in ([1, 2, 3], "abcd", None, [[1], [2, 3]], 5.0, np.zeros((4, 1)), *others):
         with pytest.raises(ValueError, match="state must be .*four .*numbers, got "):
             env.state = state
 
@@ -418,7 +424,9 @@ def test_continuous_torques_are_those_of_the_discrete_environment(torques):
 @pytest.mark.parametrize(
     "action",
     [1, 1.0, np.float32(1.0), None, "1", ["1"], [], [1.0, 1.0], [[1.0]], [None], [np.nan], np.float32([np.nan]),
-     np.zeros((1, 1), np.float32), np.zeros(2, np.float32), np.zeros(0, np.float32), np.zeros((), np.float32)],
+     np.zeros((1, 1), np.float32), np.zeros(2, np.float32), np.zeros(0, np.float32), np.zeros((), np.float32),
+     b"a", bytearray(b"a"), {0: 0.5}, collections.UserDict({0: 0.5}), {0.5}, iter([0.5]), [True], np.array([True]), [1j],
+     np.array([1j]), np.array(["0.5"]), np.array([0.5], object), np.array([1], "m8[s]"), [10**400], [[1], [2, 3]]],
 )  # fmt: skip
 def test_invalid_continuous_actions_are_rejected(action):
     env = acrobot_rs.AcrobotContinuousEnv()

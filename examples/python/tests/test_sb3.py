@@ -178,6 +178,40 @@ def test_attributes_and_methods(sb3):
         envs.step(np.zeros(3, int))
 
 
+def test_a_range_is_for_all_environments(sb3):
+    """Another value in one environment would end the draws of the others."""
+    envs = make(sb3, 3)
+    drawn = acrobot_rs.Uniform(0.1, 0.3)
+    for indices in (None, [0, 1, -1]):
+        envs.set_attr("dt", drawn, indices=indices)
+        envs.reset()
+        assert envs.envs.dt == drawn and len(set(envs.get_attr("dt"))) == 3
+        before = envs.envs._native.__getstate__()
+        for value, some in [(0.3, [0]), (0.3, 1), (drawn, [0]), (drawn, [0, 2])]:
+            with pytest.raises(ValueError, match="dt must be set in all environments, if it is or becomes a Uniform, got"):
+                envs.set_attr("dt", value, indices=some)
+        envs.set_attr("dt", 0.3, indices=[])
+        assert envs.envs.dt == drawn and envs.envs._native.__getstate__() == before
+        envs.set_attr("dt", 0.2, indices=indices)
+        assert envs.envs.dt == 0.2 and envs.get_attr("dt") == [0.2] * 3
+    with pytest.raises(ValueError, match="dt must be set in all environments, if it is or becomes a Uniform"):
+        envs.set_attr("dt", drawn, indices=[0])
+    with pytest.raises(IndexError):
+        envs.set_attr("dt", 0.1, indices=[3])
+
+
+def test_step_wait_needs_actions(sb3):
+    envs = make(sb3, 2)
+    envs.reset()
+    before = envs.envs._native.__getstate__()
+    for _ in range(2):
+        with pytest.raises(gymnasium.error.NoAsyncCallError, match="call step_async with the actions before each step_wait"):
+            envs.step_wait()
+        assert envs.envs._native.__getstate__() == before
+        envs.step([0, 1])
+        before = envs.envs._native.__getstate__()
+
+
 def test_other_autoreset_modes_are_rejected(sb3):
     with pytest.raises(ValueError, match='autoreset_mode must be "SameStep", got "NextStep"'):
         sb3.AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(2))

@@ -1,5 +1,7 @@
 """The vector environment has the documented streams, resets as SyncVectorEnv does, and steps as Gymnasium does within float32."""
 
+import collections
+import contextlib
 import copy
 import functools
 import multiprocessing
@@ -8,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -238,13 +241,15 @@ def test_observations_are_copies_or_one_array():
 @pytest.mark.parametrize(
     "actions",
     [[0, 1, 2, 3], [0, 0, 0, -1], [0, 0, 256, 0], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]], [0.0, 1.0, 2.0, 0.0], "0120", 1,
-     np.array([0, 0, 0, 2**63], dtype=np.uint64)],
+     np.array([0, 0, 0, 2**63], dtype=np.uint64), b"\0\1\2\0", bytearray(4), dict.fromkeys(range(4), 1), {0, 1, 2}, iter([0] * 4),
+     collections.UserDict.fromkeys(range(4), 1), [True] * 4, [1j] * 4, [None] * 4, np.zeros(4, object), [[0], [1, 2]],
+     np.zeros((4, 1), np.float32), None],
 )  # fmt: skip
 def test_invalid_actions_are_rejected(actions):
     envs = make_vec(4)
     envs.reset(seed=1)
     before = envs.state
-    with pytest.raises(InvalidAction, match=r"actions(\[\d\])? must be "):
+    with pytest.raises(InvalidAction, match=r"actions must be integers of shape \(4,\), got |actions\[\d\] must be "):
         envs.step(actions)
     assert (envs.state == before).all()
 
@@ -738,6 +743,141 @@ def test_a_thread_steps_while_the_program_does_something_else():
         assert_equal(step.result(), twin.step(actions))
 
 
+#: So many that a step takes long enough for other calls meanwhile.
+MANY = 500_000
+
+
+@contextlib.contextmanager
+def stepping(envs):
+    """While another thread steps these environments."""
+    envs.reset()
+    with ThreadPoolExecutor(1) as executor:
+        step = executor.submit(envs.step, np.ones(envs.num_envs, np.int64))
+        with contextlib.suppress(RuntimeError):
+            while not step.done():
+                len(envs._native)  # fails as soon as the step is under way
+        yield
+        assert not step.done(), "more environments are necessary"
+        step.result()
+
+
+BUSY = "^another thread is stepping or resetting an environment; change parameters and call methods between its steps$"
+
+
+@pytest.mark.parametrize("value", [0.05, Uniform(0.05, 0.1)], ids=["value", "drawn"])
+def test_a_class_changes_all_its_environments_or_none(value):
+    class Some(acrobot_rs.AcrobotVectorEnv):
+        dt = 0.3
+
+    few, many, more = Some(2), Some(MANY, gymnasium_episodes=True), Some(2)
+    before = few._native.__getstate__(), more._native.__getstate__()
+    with stepping(many):
+        for change in (lambda: setattr(Some, "dt", value), lambda: delattr(Some, "dt")):
+            with pytest.raises(RuntimeError, match=BUSY):
+                change()
+            assert Some.dt == few.dt == 0.3 and before == (few._native.__getstate__(), more._native.__getstate__())
+    assert set(many._native.get("dt")) == {0.3}
+    few.LINK_MASS_1 = [1.0, 2.0]
+    if isinstance(value, Uniform):
+        before = many._native.__getstate__(), more._native.__getstate__()
+        with pytest.raises(ValueError, match="LINK_MASS_1 must be one value for all environments, if dt has a Uniform"):
+            Some.dt = value
+        assert Some.dt == 0.3 and before == (many._native.__getstate__(), more._native.__getstate__())
+        few.LINK_MASS_1 = 1.0
+    Some.dt = value
+    for envs in (few, many, more):
+        envs.reset(seed=1)
+        drawn = envs._native.get("dt")
+        assert envs.dt == value and 0.049 < min(drawn) <= max(drawn) < 0.101
+        assert (min(drawn) < max(drawn)) == isinstance(value, Uniform)
+    del Some.dt
+    assert few.get_attr("dt") == more.get_attr("dt") == (0.2, 0.2) and set(many.get_attr("dt")) == {0.2}
+
+
+def test_a_class_changes_while_other_environments_step():
+    """Those of another class, and those whose own value or subclass hides the change."""
+
+    class Hiding(acrobot_rs.AcrobotVectorEnv):
+        dt = 0.3
+
+    own = acrobot_rs.AcrobotVectorEnv(MANY, gymnasium_episodes=True)
+    own.dt = 0.3
+    single = acrobot_rs.AcrobotEnv()
+    for envs in (Hiding(MANY, gymnasium_episodes=True), own):
+        with (
+            stepping(envs),
+            unittest.mock.patch.object(acrobot_rs.AcrobotEnv, "dt", 0.1),
+            unittest.mock.patch.object(acrobot_rs.AcrobotVectorEnv, "dt", 0.1),
+        ):
+            assert single.dt == 0.1 and envs.dt == 0.3
+
+
+def test_a_call_during_a_step_is_rejected_and_changes_nothing():
+    envs = acrobot_rs.AcrobotVectorEnv(MANY, gymnasium_episodes=True, render_mode="ansi")
+    states, actions = np.zeros((MANY, 4)), np.ones(MANY, np.int64)
+    calls = [
+        *(lambda: envs.state, lambda: setattr(envs, "state", states), lambda: envs.elapsed_steps, lambda: envs.render()),
+        *(lambda: setattr(envs, "dt", 0.1), lambda: setattr(envs, "dt", Uniform(0.1, 0.2)), lambda: setattr(envs, "dt", [0.1])),
+        *(lambda: envs.step(actions), envs.reset, lambda: envs._native.seed(["1"])),
+        *(lambda: pickle.dumps(envs), lambda: copy.deepcopy(envs), lambda: envs._native.__setstate__(b"")),
+    ]
+    for call in calls:
+        with stepping(envs), pytest.raises(RuntimeError, match=BUSY):
+            call()
+        assert envs.dt == 0.2 and (envs.elapsed_steps == 1).all()
+
+
+def test_environments_made_or_copied_while_their_class_changes_have_its_values():
+    class Some(acrobot_rs.AcrobotVectorEnv):
+        pass
+
+    def make(first):
+        made = []
+        for _ in range(50):
+            made += [Some(1), copy.copy(first)]
+            made[-1].LINK_MASS_1 = 2.0
+            del made[-1].LINK_MASS_1
+        return made
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        for last in range(20):
+            with ThreadPoolExecutor(2) as executor:
+                makers = [executor.submit(make, Some(2)) for _ in range(2)]
+                for change in range(30):
+                    Some.dt = Some.LINK_MASS_1 = 0.1 + 0.01 * change + 0.001 * last
+            for envs in (envs for maker in makers for envs in maker.result()):
+                assert (envs._native.get("dt")[0], envs._native.get("LINK_MASS_1")[0]) == (np.float32(Some.dt),) * 2
+    finally:
+        sys.setswitchinterval(interval)
+
+
+@pytest.mark.skipif("fork" not in multiprocessing.get_all_start_methods(), reason="needs fork")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+@pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")
+def test_a_forked_process_can_make_environments():
+    """Also if a thread, which the child does not have, was changing a parameter."""
+    envs, done = make_vec(1000), threading.Event()
+    envs.dt = np.linspace(0.1, 0.2, 1000)
+
+    def change():
+        while not done.is_set():
+            envs.LINK_MASS_1 = 1.5
+
+    with ThreadPoolExecutor(1) as executor:
+        executor.submit(change)
+        try:
+            for _ in range(10):
+                child = multiprocessing.get_context("fork").Process(target=acrobot_rs.AcrobotEnv)
+                child.start()
+                child.join(30)
+                child.kill()
+                assert child.exitcode == 0, "the child hangs"
+        finally:
+            done.set()
+
+
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
 def test_copy_copy_shares_nothing(gymnasium_episodes):
     for copies in (True, False):
@@ -785,8 +925,10 @@ def test_continuous_torques_give_the_episodes_of_single_environments(mode):
 
 
 @pytest.mark.parametrize(
-    "actions", [[[0.5]], [0.5, 0.5], [[0.5, 0.5]], [[np.nan], [0.0]], [["0"], ["1"]], [[True], [False]], None]
-)
+    "actions",
+    [[[0.5]], [0.5, 0.5], [[0.5, 0.5]], [[np.nan], [0.0]], [["0"], ["1"]], [[True], [False]], None, [[1], [2, 3]], {0: [1], 1: [1]},
+     [[1j], [1j]], np.zeros(2, np.int64), np.zeros(2, np.float32), b"ab", bytearray(2), np.zeros((2, 1), object)],
+)  # fmt: skip
 def test_invalid_torques_are_rejected(actions):
     envs = AcrobotContinuousVectorEnv(2)
     envs.reset(seed=1)

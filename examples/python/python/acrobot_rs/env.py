@@ -7,11 +7,11 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium import spaces
-from gymnasium.error import DependencyNotInstalled
+from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.parameters import Parameters, reset_bounds
+from acrobot_rs.parameters import Parameters, numbers, reset_bounds
 
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between the links must swing them up.
@@ -118,12 +118,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     @state.setter
     def state(self, state: ArrayLike) -> None:
-        single = getattr(state, "dtype", None) == np.float32
-        try:
-            array: NDArray[Any] = np.array(state, dtype=np.float32 if single else np.float64)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"state must be four finite numbers, got {state!r}") from error
-        self._native.state = array
+        array = numbers("state", "four finite numbers", state, (4,))
+        self._native.state = np.array(array, dtype=np.float32 if array.dtype == np.float32 else np.float64)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -249,6 +245,10 @@ class AcrobotContinuousEnv(AcrobotEnv):
             AssertionError: If the environment was never reset.
         """
         return self._native.step(self, action)
+
+    def _torque(self, action: ArrayLike) -> float:
+        """The torque, N m. The native part calls this for all but arrays of ``float32``."""
+        return float(numbers("action", "a torque in N m, as an array of shape (1,)", action, (1,), error=InvalidAction)[0])
 
 
 class AcrobotV0Env(AcrobotEnv):

@@ -8,15 +8,19 @@ import dataclasses
 import difflib
 import functools
 import math
+import os
+import reprlib
+import threading
 import weakref
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Literal, NoReturn
 
 import numpy as np
 from gymnasium import logger, spaces
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
+from numpy.typing import NDArray
 
-from acrobot_rs._native import Acrobot, Batch, check_reset_bounds
+from acrobot_rs._native import Acrobot, Batch, check_reset_bounds, set_all
 
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()
@@ -33,6 +37,11 @@ _IGNORED = {
 }
 #: All environments, for changes of class attributes.
 _LIVE: weakref.WeakSet[Parameters] = weakref.WeakSet()
+#: Held while a parameter changes or an environment takes over those of its class.
+_LOCK = threading.RLock()
+if hasattr(os, "register_at_fork"):
+    # A child has no other threads, so one that holds the lock would never release it.
+    os.register_at_fork(before=_LOCK.acquire, after_in_parent=_LOCK.release, after_in_child=_LOCK.release)
 
 
 class Torques(tuple[float, ...]):
@@ -58,7 +67,7 @@ class Uniform:
 def _checked(name: str, value: Any) -> Any:
     """The value of a parameter, for a class."""
     if isinstance(value, Uniform):
-        Batch(1, "0", 1, "NextStep").set_range(name, value.low, value.high)
+        Batch(1, "0", 1, "NextStep").set(name, value)
     else:
         Acrobot().set(name, value)
     return _fixed(name, value)
@@ -100,12 +109,6 @@ def _meant(name: str) -> str | None:
     return names[close[0]] if close else None
 
 
-def _tell(name: str) -> None:
-    """Pass a parameter that a class has changed to the environments."""
-    for env in list(_LIVE) if name in _NAMES else ():
-        env._pass(name, getattr(env, name))
-
-
 class Live(abc.ABCMeta):
     """The type of classes with parameters. What is set on a class acts on its environments from the next step."""
 
@@ -121,25 +124,31 @@ class Live(abc.ABCMeta):
                     _reject_ignored(cls, each)
 
     def __setattr__(cls, name: str, value: Any) -> None:
-        if name in _NAMES:
-            value = _checked(name, value)
-        else:
+        if name not in _NAMES:
             _reject_ignored(cls, name)
-        before = vars(cls).get(name)
-        super().__setattr__(name, value)
-        try:
-            _tell(name)
-        except (TypeError, ValueError):  # an environment rejects it, perhaps in combination with another value
-            if before is None:
-                super().__delattr__(name)
-            else:
-                super().__setattr__(name, before)
-            _tell(name)
-            raise
+            super().__setattr__(name, value)
+            return
+        value = _checked(name, value)
+        cls._change(name, lambda env: value, functools.partial(super().__setattr__, name, value))
 
     def __delattr__(cls, name: str) -> None:
-        super().__delattr__(name)
-        _tell(name)
+        change = functools.partial(super().__delattr__, name)
+        if name in _NAMES and name in vars(cls):
+            cls._change(name, lambda env: getattr(super(cls, env), name), change)
+        else:
+            change()
+
+    def _change(cls, name: str, value: Callable[[Parameters], Any], change: Callable[[], None]) -> None:
+        """Change a parameter of the class and of all environments that have it from the class, or of none."""
+        with _LOCK:
+            values = []
+            for env in _LIVE:
+                classes = type(env).__mro__
+                if cls in classes and not any(name in vars(each) for each in (env, *classes[: classes.index(cls)])):
+                    env._check(name, value(env))
+                    values.append((env._native, value(env)))
+            # In one call, so that no other thread, error or interrupt comes between.
+            set_all(name, values, change)
 
 
 class Parameters(metaclass=Live):
@@ -196,11 +205,15 @@ class Parameters(metaclass=Live):
 
     def _set_all(self) -> None:
         """Pass all parameters to the native part: class attributes may have changed since a pickle."""
-        # Any centre of mass is valid with an inertia. LINK_MOI comes last.
-        self._native.set("LINK_MOI", 1.0)
-        for name in _NAMES:
-            self._pass(name, getattr(self, name))
-        _LIVE.add(self)
+        with _LOCK:
+            # Any centre of mass is valid with an inertia. LINK_MOI comes last.
+            self._native.set("LINK_MOI", 1.0)
+            for name in _NAMES:
+                self._pass(name, getattr(self, name))
+            _LIVE.add(self)
+
+    def _check(self, name: str, value: Any) -> None:
+        """Reject a value that the value of another parameter excludes, except what the native part rejects."""
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
@@ -210,16 +223,18 @@ class Parameters(metaclass=Live):
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a parameter and set it."""
         if name in _NAMES:
-            value = self._pass(name, value)
+            with _LOCK:
+                super().__setattr__(name, self._pass(name, value))
         else:
             _reject_ignored(type(self), name)
-        super().__setattr__(name, value)
+            super().__setattr__(name, value)
 
     def __delattr__(self, name: str) -> None:
         """Set a parameter back to the value of its class. ``unittest.mock.patch.object`` does this when it ends."""
-        if name in _NAMES and name in vars(self):
-            self._pass(name, getattr(type(self), name))
-        super().__delattr__(name)
+        with _LOCK:
+            if name in _NAMES and name in vars(self):
+                self._pass(name, getattr(type(self), name))
+            super().__delattr__(name)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
@@ -265,3 +280,25 @@ def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
     check_reset_bounds(low, high)
     return low, high
+
+
+def numbers(
+    name: str, rule: str, value: Any, shape: tuple[int, ...], kinds: str = "fiu", error: type[Exception] = ValueError
+) -> NDArray[Any]:
+    """Actions or states as an array.
+
+    They may be an array, or a list or another sequence that NumPy converts to one, of this shape, and of integers (``iu``) or
+    floats (``f``). Texts, bytes, bools, complex numbers, other objects, sets, mappings and iterators are rejected.
+    """
+    array = None
+    # NumPy takes the bytes of a bytearray, and the keys of some mappings.
+    if not isinstance(value, bytearray | Mapping):
+        try:
+            array = np.asarray(value)
+        except (TypeError, ValueError):  # rows of different lengths
+            pass
+    if array is not None and array.dtype.kind in kinds and array.shape == shape:
+        return array
+    is_numeric = array is not None and array.dtype.kind in "biufc"
+    found = f"{array.dtype} of shape {array.shape}" if is_numeric else reprlib.repr(value)
+    raise error(f"{name} must be {rule}, got {found}")

@@ -10,10 +10,12 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from gymnasium.error import NoAsyncCallError
 from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
+from acrobot_rs.parameters import Uniform
 from acrobot_rs.vector import AcrobotVectorEnv
 
 Indices = int | Iterable[int] | None
@@ -46,6 +48,7 @@ class AcrobotVecEnv(VecEnv):
         if envs.autoreset_mode is not AutoresetMode.SAME_STEP:
             raise ValueError(f'autoreset_mode must be "SameStep", got "{envs.autoreset_mode.value}"')
         self.envs = envs
+        self._actions: NDArray[Any] | None = None
         super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
 
     def reset(self) -> NDArray[np.float32]:
@@ -68,8 +71,14 @@ class AcrobotVecEnv(VecEnv):
 
         Returns:
             Observations, rewards, whether the episodes ended, and an info for each environment.
+
+        Raises:
+            gymnasium.error.NoAsyncCallError: If there were no actions since the last step.
         """
-        observations, rewards, terminated, truncated, infos = self.envs.step(self._actions)
+        if self._actions is None:
+            raise NoAsyncCallError("call step_async with the actions before each step_wait", "step")
+        actions, self._actions = self._actions, None
+        observations, rewards, terminated, truncated, infos = self.envs.step(actions)
         ended = terminated | truncated
         each: list[dict[str, Any]] = [{"TimeLimit.truncated": False} for _ in range(self.num_envs)]
         for index in np.flatnonzero(ended):
@@ -85,11 +94,23 @@ class AcrobotVecEnv(VecEnv):
         return [values[index] for index in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
-        """Set a parameter or the state of these environments. See :meth:`AcrobotVectorEnv.set_attr`."""
-        values = list(self.envs.get_attr(attr_name))
-        for index in self._get_indices(indices):
-            values[index] = value
-        self.envs.set_attr(attr_name, values)
+        """Set a parameter or the state of these environments. See :meth:`AcrobotVectorEnv.set_attr`.
+
+        Raises:
+            ValueError: If a parameter is or becomes an :class:`acrobot_rs.Uniform`, and these are not all environments. Nothing
+                changes then.
+        """
+        values = self.envs.get_attr(attr_name)
+        indices = list(self._get_indices(indices))
+        chosen = np.zeros(self.num_envs, np.bool_)
+        chosen[indices] = True
+        if isinstance(value, Uniform) and chosen.all():
+            self.envs.set_attr(attr_name, value)
+        elif chosen.any():
+            if not chosen.all() and (isinstance(value, Uniform) or isinstance(getattr(self.envs, attr_name), Uniform)):
+                rule = "set in all environments, if it is or becomes a Uniform"
+                raise ValueError(f"{attr_name} must be {rule}, got indices {indices}")
+            self.envs.set_attr(attr_name, [value if new else old for new, old in zip(chosen, values, strict=True)])
 
     def env_method(self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any) -> list[Any]:
         """The results of a method, which can only be ``render``, for each of these environments."""

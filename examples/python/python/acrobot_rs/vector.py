@@ -14,7 +14,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, _highest, _lowest, reset_bounds
+from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, _highest, _lowest, numbers, reset_bounds
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 Floats = NDArray[np.float32]
@@ -145,11 +145,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     @state.setter
     def state(self, states: ArrayLike) -> None:
-        states = np.asarray(states)
-        if states.shape != (self.num_envs, 4) or states.dtype.kind not in "fiu":
-            raise ValueError(
-                f"state must be numbers of shape ({self.num_envs}, 4), got {states.dtype} of shape {states.shape}"
-            )
+        shape = (self.num_envs, 4)
+        states = numbers("state", f"numbers of shape {shape}", states, shape)
         with np.errstate(over="ignore"):
             finite = np.isfinite(states if self._gymnasium_episodes else states.astype(np.float32))
         if not finite.all():
@@ -190,12 +187,12 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         low, high = reset_bounds(options)
         mask = self._mask(options)
         child_of, seeds = self._seeds(seed)
-        if not isinstance(seed, list | tuple):
-            super().reset(seed=seed)
         if seeds is not None:
             every = np.ones(self.num_envs, np.bool_) if mask is None else mask
             self._native.seed([each if some else None for each, some in zip(seeds, every, strict=True)])
         self._native.reset(child_of, low, high, mask)
+        if not isinstance(seed, list | tuple):
+            super().reset(seed=seed)
         if mask is not None and options is not None:
             del options["reset_mask"]
         if self._ended is not None:
@@ -322,17 +319,18 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     def _action_space(self) -> spaces.Space[Any]:
         return spaces.Discrete(3)
 
-    def _pass(self, name: str, value: Any) -> Any:
+    def _check(self, name: str, value: Any) -> None:
         ranged = isinstance(value, Uniform)
-        each = _each(name, value)
-        for other in _NAMES if ranged or each is not None else ():
+        for other in _NAMES if ranged or _each(name, value) is not None else ():
             if other != name and isinstance(getattr(self, other), np.ndarray if ranged else Uniform):
                 found = "a Uniform" if ranged else "different values"
                 rule = "one value for all environments" if ranged else "a value or an array, not a Uniform"
                 raise ValueError(f"{other} must be {rule}, if {name} has {found}")
-        if ranged:
-            self._native.set_range(name, value.low, value.high)
-        elif each is None:
+
+    def _pass(self, name: str, value: Any) -> Any:
+        self._check(name, value)
+        each = _each(name, value)
+        if each is None:
             self._native.set(name, value)
         else:
             self._native.set_each(name, each)
@@ -345,11 +343,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
         """The actions, checked and converted to an array that the native part reads. It calls this where necessary."""
-        actions = np.asarray(actions)
-        if actions.dtype.kind not in "iu" or actions.shape != (self.num_envs,):
-            raise InvalidAction(
-                f"actions must be integers of shape ({self.num_envs},), got {actions.dtype} of shape {actions.shape}"
-            )
+        shape = (self.num_envs,)
+        actions = numbers("actions", f"integers of shape {shape}", actions, shape, "iu", InvalidAction)
         # An array over packed bytes is not aligned, which Rust requires.
         return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.int64)
 
@@ -408,11 +403,8 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
         return spaces.Box(min(_lowest(self.AVAIL_TORQUE)), max(_highest(self.AVAIL_TORQUE)), (1,), np.float32)
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
-        actions = np.asarray(actions)
-        if actions.dtype.kind not in "fiu" or actions.shape != (self.num_envs, 1):
-            raise InvalidAction(
-                f"actions must be numbers of shape ({self.num_envs}, 1), got {actions.dtype} of shape {actions.shape}"
-            )
+        shape = (self.num_envs, 1)
+        actions = numbers("actions", f"numbers of shape {shape}", actions, shape, error=InvalidAction)
         return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.float32)
 
 
