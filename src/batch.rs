@@ -29,6 +29,7 @@
 
 mod block;
 mod buffers;
+mod inputs;
 mod lane_model;
 mod member;
 mod params;
@@ -42,6 +43,7 @@ use core::num::NonZeroU32;
 
 pub use block::Block;
 pub use buffers::{Observations, StepBuffers};
+pub use inputs::Input;
 pub use member::Member;
 pub use params::{OwnParams, ParamsKind, SharedParams};
 pub use simd::SimdLevel;
@@ -54,8 +56,8 @@ use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{ResetBounds, State};
 use crate::time_limit::V1;
-use block::{Actions, Drive, Torques};
 use buffers::{check_length, take_mut};
+use inputs::Inputs;
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
@@ -171,32 +173,23 @@ where
         self.generators.as_ref().len()
     }
 
-    /// Applies an action to each acrobot for one dt: the numbers 0, 1 and 2, or [`Action`](crate::Action)s.
+    /// Applies an action or a torque to each acrobot for one dt: the numbers 0, 1 and 2, [`Action`](crate::Action)s, or
+    /// any finite torques in N m.
     ///
     /// # Errors
     ///
-    /// [`Error::WrongLength`] unless each slice has one element for each acrobot, and [`Error::UnknownAction`] for a
-    /// number above 2.
-    pub fn step<T: Copy + Into<u8> + Sync>(
+    /// [`Error::WrongLength`] unless each slice has one element for each acrobot, [`Error::UnknownAction`] for a
+    /// number above 2, and [`Error::OutOfRange`] for a torque that is not finite.
+    pub fn step<I: Input<A::Scalar>>(
         &mut self,
-        actions: &[T],
+        inputs: &[I],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        self.drive::<Actions<T>>(actions, buffers)
-    }
-
-    /// Applies any finite torque, N m, to each acrobot for one dt: for controllers.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::WrongLength`] unless each slice has one element for each acrobot, and [`Error::OutOfRange`] for a
-    /// torque that is not finite.
-    pub fn step_torques(
-        &mut self,
-        torques: &[A::Scalar],
-        buffers: StepBuffers<'_>,
-    ) -> Result<(), Error> {
-        self.drive::<Torques>(torques, buffers)
+        let inputs = self.check(inputs, &buffers)?;
+        let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
+        self.simd_level
+            .step(&self.settings, blocks, generators, inputs, buffers);
+        Ok(())
     }
 
     /// As [`step`](Self::step), on all cores with rayon. The number of threads changes no bit.
@@ -205,61 +198,27 @@ where
     ///
     /// Those of [`step`](Self::step).
     #[cfg(feature = "rayon")]
-    pub fn par_step<T: Copy + Into<u8> + Sync>(
+    pub fn par_step<I: Input<A::Scalar>>(
         &mut self,
-        actions: &[T],
+        inputs: &[I],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        self.par_drive::<Actions<T>>(actions, buffers)
-    }
-
-    /// As [`step_torques`](Self::step_torques), on all cores with rayon. The number of threads changes no bit.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`step_torques`](Self::step_torques).
-    #[cfg(feature = "rayon")]
-    pub fn par_step_torques(
-        &mut self,
-        torques: &[A::Scalar],
-        buffers: StepBuffers<'_>,
-    ) -> Result<(), Error> {
-        self.par_drive::<Torques>(torques, buffers)
-    }
-
-    fn drive<D: Drive<A>>(
-        &mut self,
-        inputs: &[D::Input],
-        buffers: StepBuffers<'_>,
-    ) -> Result<(), Error> {
-        self.check::<D>(inputs, &buffers)?;
+        let inputs = self.check(inputs, &buffers)?;
         let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
         self.simd_level
-            .step::<A, D, N, P>(&self.settings, blocks, generators, inputs, buffers);
+            .par_step(&self.settings, blocks, generators, inputs, buffers);
         Ok(())
     }
 
-    #[cfg(feature = "rayon")]
-    fn par_drive<D: Drive<A>>(
-        &mut self,
-        inputs: &[D::Input],
-        buffers: StepBuffers<'_>,
-    ) -> Result<(), Error> {
-        self.check::<D>(inputs, &buffers)?;
-        let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
-        self.simd_level
-            .par_step::<A, D, N, P>(&self.settings, blocks, generators, inputs, buffers);
-        Ok(())
-    }
-
-    fn check<D: Drive<A>>(
+    fn check<'a, I: Input<A::Scalar>>(
         &self,
-        inputs: &[D::Input],
+        inputs: &'a [I],
         buffers: &StepBuffers<'_>,
-    ) -> Result<(), Error> {
-        check_length(D::NAME, inputs.len(), self.len())?;
-        D::check(inputs)?;
-        buffers.check(self.len())
+    ) -> Result<Inputs<'a, A::Scalar>, Error> {
+        let inputs = I::inputs(inputs);
+        inputs.check(self.len())?;
+        buffers.check(self.len())?;
+        Ok(inputs)
     }
 
     /// Writes the observations of the states.

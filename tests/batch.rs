@@ -76,12 +76,12 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         )
     }
 
-    /// [`step`](Self::step) with torques, by `step_torques` or `par_step_torques`.
+    /// [`step`](Self::step) with torques, on one core or on all.
     fn step_torques(&mut self, torques: &[A::Scalar], parallel: bool) -> Vec<bool> {
         self.step_by(
             |batch, buffers| match parallel {
-                true => batch.par_step_torques(torques, buffers),
-                false => batch.step_torques(torques, buffers),
+                true => batch.par_step(torques, buffers),
+                false => batch.step(torques, buffers),
             },
             |i, alone| alone.step_torque(torques[i]).unwrap(),
         )
@@ -324,11 +324,9 @@ fn threads_change_no_bit() {
         let torques: Vec<f32> = (0..len)
             .map(|_| uniform(&mut rng, -2.0, 2.0) as f32)
             .collect();
-        let alone = run(&mut one, &|batch, buffers| {
-            batch.step_torques(&torques, buffers)
-        });
+        let alone = run(&mut one, &|batch, buffers| batch.step(&torques, buffers));
         let shared = run(&mut many, &|batch, buffers| {
-            batch.par_step_torques(&torques, buffers)
+            batch.par_step(&torques, buffers)
         });
         assert!(alone == shared);
     }
@@ -387,9 +385,9 @@ fn slices_that_change_their_length_cannot_panic() {
                 };
                 let torques = &vec![1.0; len];
                 if parallel {
-                    batch.par_step_torques(torques, buffers).unwrap();
+                    batch.par_step(torques, buffers).unwrap();
                 } else {
-                    batch.step_torques(torques, buffers).unwrap();
+                    batch.step(torques, buffers).unwrap();
                 }
                 (rewards, terminated, truncated, rows)
             };

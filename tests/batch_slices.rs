@@ -180,8 +180,8 @@ fn rejections(
         let result = match kind {
             0 => batch.step(actions, buffers),
             1 => batch.par_step(actions, buffers),
-            2 => batch.step_torques(torques, buffers),
-            _ => batch.par_step_torques(torques, buffers),
+            2 => batch.step(torques, buffers),
+            _ => batch.par_step(torques, buffers),
         };
         assert_eq!(members(batch), before);
         assert!(rewards.iter().all(|x| *x == 9.0));

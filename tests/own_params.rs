@@ -244,7 +244,7 @@ fn threads_change_no_bit() {
             .map(|_| uniform(&mut rng, -2.0, 2.0) as f32)
             .collect();
         assert!(one.step(&actions).unwrap() == many.par_step(&actions).unwrap());
-        assert!(one.step_torques(&torques).unwrap() == many.par_step_torques(&torques).unwrap());
+        assert!(one.step(&torques).unwrap() == many.par_step(&torques).unwrap());
     }
 }
 

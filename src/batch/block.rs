@@ -1,16 +1,14 @@
 //! `N` acrobots side by side, and their step.
 
 use core::hint::black_box;
-use core::marker::PhantomData;
 
-use super::buffers::{take, take_mut};
-use super::lane_model::LaneModel;
+use super::buffers::take_mut;
+use super::inputs::Inputs;
 use super::params::{ParamsKind, SharedParams};
 use super::{Autoreset, Observations, Settings, StepBuffers};
 use crate::arithmetic::{Arithmetic, Fast, Lanes, Real, SinCos, Zeroed};
-use crate::error::Error;
 use crate::numpy::{Pcg64, uniform};
-use crate::physics::{ResetBounds, State, check_torque, sin_cos, step};
+use crate::physics::{ResetBounds, State, sin_cos, step};
 
 /// The memory of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) consists of these.
 ///
@@ -182,16 +180,16 @@ impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
 
     /// One step of all lanes. Writes the results, and removes the written elements from `buffers`.
     #[inline(always)]
-    fn step<D: Drive<A>>(
+    fn step(
         &mut self,
         settings: &Settings<A, P>,
         splat: &P::Splat<N>,
-        inputs: &[D::Input],
+        inputs: Inputs<'_, A::Scalar>,
         generators: &mut [Pcg64],
         buffers: &mut StepBuffers<'_>,
     ) {
         let model = P::model(splat, &self.own);
-        let mut torques = D::torques(model, inputs);
+        let mut torques = inputs.torques(model);
         if model.has_noise {
             add_noise(&mut torques, &model.noise, &self.ended, generators);
         }
@@ -268,104 +266,26 @@ pub(super) fn set<T>(lanes: &mut [T], lane: usize, x: T) {
     }
 }
 
-/// The kind of input to a step: actions or torques.
-pub(super) trait Drive<A: Arithmetic> {
-    /// The argument's name, for errors.
-    const NAME: &'static str;
-
-    /// The input to one acrobot.
-    type Input: Copy + Sync;
-
-    /// Rejects invalid inputs.
-    fn check(inputs: &[Self::Input]) -> Result<(), Error>;
-
-    /// The torques of one block, N m. Lanes without an input get a valid torque.
-    fn torques<const N: usize>(model: &LaneModel<A, N>, inputs: &[Self::Input]) -> [A::Scalar; N];
-}
-
-/// Action numbers: 0, 1 and 2.
-pub(super) struct Actions<T>(PhantomData<T>);
-
-impl<A: Arithmetic, T: Copy + Into<u8> + Sync> Drive<A> for Actions<T> {
-    const NAME: &'static str = "actions";
-
-    type Input = T;
-
-    fn check(inputs: &[T]) -> Result<(), Error> {
-        match inputs.iter().map(|&action| action.into()).fold(0, u8::max) {
-            0..=2 => Ok(()),
-            highest => Err(Error::UnknownAction(highest)),
-        }
-    }
-
-    #[inline(always)]
-    fn torques<const N: usize>(model: &LaneModel<A, N>, inputs: &[T]) -> [A::Scalar; N] {
-        choose(model.torques, read(inputs, 1, T::into))
-    }
-}
-
-/// The torque of each lane's action.
-#[inline(always)]
-fn choose<S: Real, const N: usize>(
-    [mut torques, zero, positive]: [[S; N]; 3],
-    actions: [u8; N],
-) -> [S; N] {
-    let lanes = torques.iter_mut().zip(zero).zip(positive).zip(actions);
-    for (((torque, zero), positive), action) in lanes {
-        *torque = S::pick([*torque, zero, positive], action);
-    }
-    torques
-}
-
-/// Finite torques, N m.
-pub(super) struct Torques;
-
-impl<A: Arithmetic> Drive<A> for Torques {
-    const NAME: &'static str = "torques";
-
-    type Input = A::Scalar;
-
-    fn check(inputs: &[A::Scalar]) -> Result<(), Error> {
-        inputs.iter().try_for_each(|torque| check_torque(*torque))
-    }
-
-    #[inline(always)]
-    fn torques<const N: usize>(_: &LaneModel<A, N>, inputs: &[A::Scalar]) -> [A::Scalar; N] {
-        read(inputs, A::Scalar::ZERO, |torque| torque)
-    }
-}
-
 /// Steps all blocks. `HIDE` hides from the compiler that they share a model. With AVX-512 it would otherwise hold the
 /// model in registers and spill the state.
 #[inline(always)]
-pub(super) fn step_blocks<A, D, const N: usize, P, const HIDE: bool>(
+pub(super) fn step_blocks<A, const N: usize, P, const HIDE: bool>(
     settings: &Settings<A, P>,
     blocks: &mut [Block<A, N, P>],
     mut generators: &mut [Pcg64],
-    mut inputs: &[D::Input],
+    mut inputs: Inputs<'_, A::Scalar>,
     mut buffers: StepBuffers<'_>,
 ) where
     A: Arithmetic,
-    D: Drive<A>,
     P: ParamsKind<A>,
 {
     let splat = P::splat(&settings.params);
     for block in blocks {
         let splat = if HIDE { black_box(&splat) } else { &splat };
-        let inputs = take(&mut inputs, N);
+        let inputs = inputs.take(N);
         let generators = take_mut(&mut generators, N);
-        block.step::<D>(settings, splat, inputs, generators, &mut buffers);
+        block.step(settings, splat, inputs, generators, &mut buffers);
     }
-}
-
-/// Converts a block's inputs. The last block may have fewer than `N`; its other lanes get `rest`.
-#[inline(always)]
-fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(T) -> U) -> [U; N] {
-    let mut to = [rest; N];
-    for (to, &x) in to.iter_mut().zip(from) {
-        *to = convert(x);
-    }
-    to
 }
 
 /// Writes as many elements as fit, and removes them from `to`.

@@ -1,8 +1,9 @@
 //! The SIMD instructions that a step of a batch uses.
 
-use super::block::{Block, Drive, step_blocks};
+use super::block::{Block, step_blocks};
 #[cfg(feature = "rayon")]
-use super::buffers::{take, take_mut};
+use super::buffers::take_mut;
+use super::inputs::Inputs;
 use super::params::ParamsKind;
 use super::{Settings, StepBuffers};
 use crate::arithmetic::Arithmetic;
@@ -70,12 +71,12 @@ impl SimdLevel {
         unsafe_code,
         reason = "the one place that uses instructions which the machine has and the build does not assume"
     )]
-    pub(super) fn step<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
+    pub(super) fn step<A: Arithmetic, const N: usize, P: ParamsKind<A>>(
         self,
         settings: &Settings<A, P>,
         blocks: &mut [Block<A, N, P>],
         generators: &mut [Pcg64],
-        inputs: &[D::Input],
+        inputs: Inputs<'_, A::Scalar>,
         buffers: StepBuffers<'_>,
     ) {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
@@ -83,14 +84,14 @@ impl SimdLevel {
             macro_rules! compiled_for {
                 ($name:ident, $features:literal, $hide:literal) => {
                     #[target_feature(enable = $features)]
-                    fn $name<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
+                    fn $name<A: Arithmetic, const N: usize, P: ParamsKind<A>>(
                         settings: &Settings<A, P>,
                         blocks: &mut [Block<A, N, P>],
                         generators: &mut [Pcg64],
-                        inputs: &[D::Input],
+                        inputs: Inputs<'_, A::Scalar>,
                         buffers: StepBuffers<'_>,
                     ) {
-                        step_blocks::<A, D, N, P, $hide>(
+                        step_blocks::<A, N, P, $hide>(
                             settings, blocks, generators, inputs, buffers,
                         );
                     }
@@ -102,12 +103,10 @@ impl SimdLevel {
             unsafe {
                 match self {
                     Self::Avx2 if self.is_available() => {
-                        return with_avx2::<A, D, N, P>(
-                            settings, blocks, generators, inputs, buffers,
-                        );
+                        return with_avx2::<A, N, P>(settings, blocks, generators, inputs, buffers);
                     }
                     Self::Avx512 if self.is_available() => {
-                        return with_avx512::<A, D, N, P>(
+                        return with_avx512::<A, N, P>(
                             settings, blocks, generators, inputs, buffers,
                         );
                     }
@@ -115,17 +114,17 @@ impl SimdLevel {
                 }
             }
         }
-        step_blocks::<A, D, N, P, false>(settings, blocks, generators, inputs, buffers);
+        step_blocks::<A, N, P, false>(settings, blocks, generators, inputs, buffers);
     }
 
     /// As [`step`](Self::step), on all cores: halves the blocks until a task is too small to share.
     #[cfg(feature = "rayon")]
-    pub(super) fn par_step<A: Arithmetic, D: Drive<A>, const N: usize, P: ParamsKind<A>>(
+    pub(super) fn par_step<A: Arithmetic, const N: usize, P: ParamsKind<A>>(
         self,
         settings: &Settings<A, P>,
         blocks: &mut [Block<A, N, P>],
         mut generators: &mut [Pcg64],
-        mut inputs: &[D::Input],
+        mut inputs: Inputs<'_, A::Scalar>,
         mut buffers: StepBuffers<'_>,
     ) {
         // Both are about 100 µs of work: waking a thread takes 10 µs.
@@ -134,18 +133,18 @@ impl SimdLevel {
             _ => 1024,
         };
         if blocks.len() * N <= acrobots_of_a_task {
-            return self.step::<A, D, N, P>(settings, blocks, generators, inputs, buffers);
+            return self.step::<A, N, P>(settings, blocks, generators, inputs, buffers);
         }
         let middle = blocks.len() / 2;
         let acrobots = middle * N;
         let (blocks1, blocks2) = blocks.split_at_mut(middle);
         // Unlike `split_at`, these cannot panic, whatever length a user's `AsMut` returns.
         let generators1 = take_mut(&mut generators, acrobots);
-        let inputs1 = take(&mut inputs, acrobots);
+        let inputs1 = inputs.take(acrobots);
         let buffers1 = buffers.take(acrobots);
         rayon::join(
-            || self.par_step::<A, D, N, P>(settings, blocks1, generators1, inputs1, buffers1),
-            || self.par_step::<A, D, N, P>(settings, blocks2, generators, inputs, buffers),
+            || self.par_step::<A, N, P>(settings, blocks1, generators1, inputs1, buffers1),
+            || self.par_step::<A, N, P>(settings, blocks2, generators, inputs, buffers),
         );
     }
 }

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::{Deref, DerefMut};
 
-use super::{Batch, Block, Observations, ParamsKind, SharedParams, StepBuffers};
+use super::{Batch, Block, Input, Observations, ParamsKind, SharedParams, StepBuffers};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
@@ -130,25 +130,14 @@ impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
         &self.results.observations
     }
 
-    /// Applies an action to each acrobot for one dt: the numbers 0, 1 and 2, or [`Action`](crate::Action)s.
+    /// Applies an action or a torque to each acrobot for one dt: the numbers 0, 1 and 2, [`Action`](crate::Action)s, or
+    /// any finite torques in N m.
     ///
     /// # Errors
     ///
     /// Those of [`Batch::step`].
-    pub fn step<T: Copy + Into<u8> + Sync>(
-        &mut self,
-        actions: &[T],
-    ) -> Result<StepResults<'_>, Error> {
-        self.step_by(|batch, buffers| batch.step(actions, buffers))
-    }
-
-    /// Applies any finite torque, N m, to each acrobot for one dt: for controllers.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Batch::step_torques`].
-    pub fn step_torques(&mut self, torques: &[A::Scalar]) -> Result<StepResults<'_>, Error> {
-        self.step_by(|batch, buffers| batch.step_torques(torques, buffers))
+    pub fn step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<StepResults<'_>, Error> {
+        self.step_by(|batch, buffers| batch.step(inputs, buffers))
     }
 
     /// As [`step`](Self::step), on all cores with rayon. The number of threads changes no bit.
@@ -157,21 +146,11 @@ impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
     ///
     /// Those of [`Batch::step`].
     #[cfg(feature = "rayon")]
-    pub fn par_step<T: Copy + Into<u8> + Sync>(
+    pub fn par_step<I: Input<A::Scalar>>(
         &mut self,
-        actions: &[T],
+        inputs: &[I],
     ) -> Result<StepResults<'_>, Error> {
-        self.step_by(|batch, buffers| batch.par_step(actions, buffers))
-    }
-
-    /// As [`step_torques`](Self::step_torques), on all cores with rayon. The number of threads changes no bit.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Batch::step_torques`].
-    #[cfg(feature = "rayon")]
-    pub fn par_step_torques(&mut self, torques: &[A::Scalar]) -> Result<StepResults<'_>, Error> {
-        self.step_by(|batch, buffers| batch.par_step_torques(torques, buffers))
+        self.step_by(|batch, buffers| batch.par_step(inputs, buffers))
     }
 
     #[inline(always)]

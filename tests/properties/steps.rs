@@ -244,7 +244,7 @@ fn lanes_of_a_batch_equal_single_acrobots() {
             })
             .collect();
         for _ in 0..2 {
-            let results = batch.step_torques(torques).unwrap();
+            let results = batch.step(torques).unwrap();
             let (rows, terminated) = (results.observations.to_vec(), results.terminated.to_vec());
             for (i, alone) in alone.iter_mut().enumerate() {
                 let step = alone.step_torque(torques[i]).unwrap();

@@ -285,7 +285,7 @@ impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
         if self.torques.is_empty() {
             self.batch.step(&self.actions, buffers)
         } else {
-            self.batch.step_torques(&self.torques, buffers)
+            self.batch.step(&self.torques, buffers)
         }
     }
 
@@ -293,7 +293,7 @@ impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
         if self.torques.is_empty() {
             self.batch.par_step(&self.actions, buffers)
         } else {
-            self.batch.par_step_torques(&self.torques, buffers)
+            self.batch.par_step(&self.torques, buffers)
         }
     }
 }

@@ -182,7 +182,7 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                     &mut alone,
                     &settings,
                     valid,
-                    |batch, buffers| batch.step_torques(&torques, buffers),
+                    |batch, buffers| batch.step(&torques, buffers),
                     |acrobot, index| acrobot.step_torque(torques[index]),
                 );
             }

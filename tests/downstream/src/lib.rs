@@ -97,7 +97,7 @@ fn a_borrowed_batch_takes_torques() -> Result<(), Error> {
     let (mut blocks, mut generators) = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 3]);
     let mut batch = Batch::<Fast, _, _>::new(42, &mut blocks[..], &mut generators[..])?;
     let mut rewards = [0.0; 3];
-    batch.step_torques(
+    batch.step(
         &[-0.5, 0.0, 0.5],
         StepBuffers {
             rewards: &mut rewards,

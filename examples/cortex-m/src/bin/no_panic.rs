@@ -201,7 +201,7 @@ fn batch<A: Arithmetic>() {
         let _ = black_box(if black_box(true) {
             batch.step(&actions, buffers)
         } else {
-            batch.step_torques(&torques, buffers)
+            batch.step(&torques, buffers)
         });
         black_box((&rewards, &terminated, &truncated, &rows, &finals));
         let _ = black_box(batch.observe(Observations::Rows(&mut rows)));
