@@ -37,7 +37,7 @@ fn alone<A: Arithmetic>(bencher: Bencher, how: &str) {
                     acrobot.reset();
                 }
             }
-            black_box(acrobot.inner().state());
+            black_box(acrobot.state());
         });
 }
 

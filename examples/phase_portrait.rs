@@ -55,14 +55,14 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
 
 fn record(seed: &SeedSequence) -> Vec<Sample> {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(seed.clone().into()));
-    let sample = |acrobot: &TimeLimit<Acrobot>| Sample {
-        time: f64::from(acrobot.elapsed()) * acrobot.inner().params().dt,
-        state: acrobot.inner().state(),
+    let sample = |acrobot: &TimeLimit<Acrobot<Portable>>| Sample {
+        time: f64::from(acrobot.elapsed()) * acrobot.params().dt,
+        state: acrobot.state(),
         energy: acrobot.inner().energy(),
     };
     let mut samples = vec![sample(&acrobot)];
     loop {
-        let step = acrobot.step(bang_bang(acrobot.inner().state().dtheta1));
+        let step = acrobot.step(bang_bang(acrobot.state().dtheta1));
         samples.push(sample(&acrobot));
         if step.done() {
             return samples;

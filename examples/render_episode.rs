@@ -81,13 +81,13 @@ fn draw_episode(seed: &SeedSequence, out: &Path) -> Result<(), Box<dyn Error>> {
 fn episode(seed: &SeedSequence) -> (Vec<Figure>, Vec<State>) {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(seed.clone().into()));
     let mut figures = vec![Figure::new(acrobot.inner())];
-    let mut states = vec![acrobot.inner().state()];
+    let mut states = vec![acrobot.state()];
     loop {
-        let action = bang_bang(acrobot.inner().state().dtheta1);
+        let action = bang_bang(acrobot.state().dtheta1);
         let step = acrobot.step(action);
-        let torque = acrobot.inner().params().torque(action) as f32;
+        let torque = acrobot.params().torque(action) as f32;
         figures.push(Figure::new(acrobot.inner()).with_torque(torque));
-        states.push(acrobot.inner().state());
+        states.push(acrobot.state());
         if step.done() {
             return (figures, states);
         }

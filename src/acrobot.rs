@@ -3,7 +3,7 @@
 use rand_core::Rng;
 
 use crate::action::Action;
-use crate::arithmetic::{Arithmetic, Portable, Real, SinCos};
+use crate::arithmetic::{Arithmetic, Real, SinCos};
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence, uniform};
 use crate::observation::Observation;
@@ -52,6 +52,7 @@ impl<O, I> Step<O, I> {
 ///     seed: Some(SeedSequence::new(42)),
 ///     bounds: Some(ResetBounds::new(-0.2, 0.2)?),
 /// });
+/// acrobot.reset_with(ResetBounds::new(-0.2, 0.2)?.into()); // the generator continues its stream
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,10 +65,37 @@ pub struct ResetOptions {
     pub bounds: Option<ResetBounds>,
 }
 
+impl From<u64> for ResetOptions {
+    /// This seed, and the default bounds.
+    fn from(seed: u64) -> Self {
+        SeedSequence::new(seed).into()
+    }
+}
+
+impl From<SeedSequence> for ResetOptions {
+    /// This seed, and the default bounds.
+    fn from(seed: SeedSequence) -> Self {
+        Self {
+            seed: Some(seed),
+            bounds: None,
+        }
+    }
+}
+
+impl From<ResetBounds> for ResetOptions {
+    /// These bounds, and no seed.
+    fn from(bounds: ResetBounds) -> Self {
+        Self {
+            seed: None,
+            bounds: Some(bounds),
+        }
+    }
+}
+
 /// One Acrobot: Gymnasium's environment without its wrappers.
 ///
-/// `A` is the [arithmetic](crate::arithmetic), which determines every bit. Always write it, because Rust does not infer
-/// defaulted type parameters. `R` is the generator for initial states and torque noise.
+/// `A` is the [arithmetic](crate::arithmetic), which determines every bit. `R` is the generator for initial states and
+/// torque noise.
 ///
 /// The state is always finite ([why](Pendulum#results-that-are-not-finite)). After the goal an acrobot can step on, as
 /// in Gymnasium. [`TimeLimit`](crate::TimeLimit) adds truncation.
@@ -111,7 +139,7 @@ pub struct ResetOptions {
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Acrobot<A: Arithmetic = Portable, R = Pcg64> {
+pub struct Acrobot<A: Arithmetic, R = Pcg64> {
     pendulum: Pendulum<A>,
     rng: R,
 }
@@ -134,6 +162,17 @@ impl<A: Arithmetic> Acrobot<A> {
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self::with_rng(Pcg64::new(seed))
+    }
+
+    /// As [`new`](Self::new), with other parameters. They change no initial state.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`].
+    pub fn with_params(seed: u64, params: Params<A::Scalar>) -> Result<Self, Error> {
+        let mut acrobot = Self::new(seed);
+        acrobot.set_params(params)?;
+        Ok(acrobot)
     }
 
     /// Gymnasium's `reset(seed=seed)`: seeds the generator and draws an initial state from it.

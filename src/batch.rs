@@ -13,16 +13,8 @@
 //! let mut batch = Batch::<Fast, _, _>::new(42, blocks, generators)?;
 //! let (mut rewards, mut terminated, mut truncated) = ([0.0; 50], [false; 50], [false; 50]);
 //! let mut observations = [[0.0; 6]; 50];
-//! batch.step(
-//!     &[2_u8; 50],
-//!     StepBuffers {
-//!         rewards: &mut rewards,
-//!         terminated: &mut terminated,
-//!         truncated: &mut truncated,
-//!         observations: Observations::Rows(&mut observations),
-//!         final_observations: Observations::None,
-//!     },
-//! )?;
+//! let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
+//! batch.step(&[2_u8; 50], buffers.with_observations(Observations::Rows(&mut observations)))?;
 //! assert_eq!(rewards, [-1.0; 50]);
 //! # Ok::<(), acrobot::Error>(())
 //! ```

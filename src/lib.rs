@@ -29,7 +29,7 @@
 //! # What everybody uses
 //!
 //! - [`Acrobot`] is the environment. Its type parameter is the arithmetic: [`Fast`] (`f32`), [`Portable`] (`f64`), or
-//!   [another one](arithmetic). Always write it, because Rust does not infer it.
+//!   [another one](arithmetic).
 //! - [`TimeLimit`] truncates episodes, after 500 steps as `Acrobot-v1`.
 //! - [`Action`] goes into a step. [`Step`] comes out, with the [`Observation`], the reward, and whether the episode is done.
 //! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques. Both can be set at any time.

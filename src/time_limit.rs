@@ -9,7 +9,7 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::physics::ResetBounds;
+use crate::physics::{Params, ResetBounds, State};
 
 pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
 const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
@@ -30,7 +30,7 @@ const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct TimeLimit<E = Acrobot> {
+pub struct TimeLimit<E> {
     pub(crate) inner: E,
     limit: NonZeroU32,
     elapsed: u32,
@@ -122,6 +122,40 @@ impl<A: Arithmetic> TimeLimit<Acrobot<A>> {
     pub fn reset_with(&mut self, options: ResetOptions) -> Observation {
         self.restart();
         self.inner.reset_with(options)
+    }
+}
+
+impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
+    /// The state.
+    #[must_use]
+    #[inline]
+    pub fn state(&self) -> State<A::Scalar> {
+        self.inner.state()
+    }
+
+    /// Calls [`Acrobot::set_state`]. The count of steps does not change.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a number that is not finite.
+    pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
+        self.inner.set_state(state)
+    }
+
+    /// The parameters.
+    #[must_use]
+    #[inline]
+    pub fn params(&self) -> &Params<A::Scalar> {
+        self.inner.params()
+    }
+
+    /// Calls [`Acrobot::set_params`]. The count of steps does not change.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`].
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        self.inner.set_params(params)
     }
 }
 

@@ -157,11 +157,11 @@ fn time_limits_truncate_whether_or_not_an_episode_terminates() {
             theta1: core::f32::consts::PI,
             ..State::default()
         };
-        acrobot.inner_mut().set_state(upright).unwrap();
+        acrobot.set_state(upright).unwrap();
         let last = acrobot.step(Action::Zero);
         assert!(last.terminated && last.truncated, "both on the last step");
         assert_eq!(acrobot.elapsed(), limit);
-        acrobot.inner_mut().set_state(State::default()).unwrap();
+        acrobot.set_state(State::default()).unwrap();
         let beyond = acrobot.step(Action::Zero);
         assert!(!beyond.terminated && beyond.truncated, "as in Gymnasium");
         assert!(beyond.done() && last.done());
@@ -487,23 +487,23 @@ fn custom_generators_draw_initial_states_and_noise() {
         State::from(numbers)
     };
     let mut acrobot = TimeLimit::v1(Acrobot::<Fast, _>::with_rng(Strides(1)));
-    assert_eq!(acrobot.inner().state(), drawn(-0.1, 0.1));
+    assert_eq!(acrobot.state(), drawn(-0.1, 0.1));
     acrobot.reset();
-    assert_eq!(acrobot.inner().state(), drawn(-0.1, 0.1));
+    assert_eq!(acrobot.state(), drawn(-0.1, 0.1));
     acrobot.reset_within(ResetBounds::new(1.0, 2.0).unwrap());
-    assert_eq!(acrobot.inner().state(), drawn(1.0, 2.0));
+    assert_eq!(acrobot.state(), drawn(1.0, 2.0));
 
     let noisy = Params {
         torque_noise: 0.5,
         ..Params::DEFAULT
     };
-    acrobot.inner_mut().set_params(noisy).unwrap();
+    acrobot.set_params(noisy).unwrap();
     let mut twin = acrobot.inner().clone();
     twin.set_params(Params::DEFAULT).unwrap();
     let noise = uniform(twin.rng_mut(), -0.5, 0.5) as f32;
     acrobot.step(Action::Positive);
     twin.step_torque(1.0 + noise).unwrap();
-    assert_eq!(acrobot.inner().state(), twin.state());
+    assert_eq!(acrobot.state(), twin.state());
     assert_eq!(acrobot.inner().rng(), twin.rng());
 }
 

@@ -39,7 +39,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
     fn set_params(&mut self, params: Params<A::Scalar>) {
         self.batch.set_params(params).unwrap();
         for alone in &mut self.alone {
-            alone.inner_mut().set_params(params).unwrap();
+            alone.set_params(params).unwrap();
         }
     }
 
@@ -96,13 +96,9 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         let (mut rewards, mut terminated, mut truncated) =
             (vec![9.0; len], vec![true; len], vec![true; len]);
         let (mut rows, mut finals) = (vec![[9.0; 6]; len], vec![[9.0; 6]; len]);
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::Rows(&mut rows),
-            final_observations: Observations::Rows(&mut finals),
-        };
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+            .with_observations(Observations::Rows(&mut rows))
+            .with_final_observations(Observations::Rows(&mut finals));
         step(&mut self.batch, buffers).unwrap();
         let (autoreset, bounds) = (self.batch.autoreset(), self.batch.reset_bounds());
         let mut done = vec![false; len];
@@ -150,7 +146,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
 
     /// Torque against θ̇1, which reaches the goal.
     fn swinging(&self) -> Vec<Action> {
-        let velocities = self.alone.iter().map(|alone| alone.inner().state().dtheta1);
+        let velocities = self.alone.iter().map(|alone| alone.state().dtheta1);
         velocities.map(against).collect()
     }
 
@@ -299,15 +295,11 @@ fn threads_change_no_bit() {
             (vec![9.0; len], vec![true; len], vec![true; len]);
         let mut columns = [(); 6].map(|()| vec![9.0; len]);
         let mut finals = columns.clone();
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::Columns(columns.each_mut().map(|column| &mut column[..])),
-            final_observations: Observations::Columns(
-                finals.each_mut().map(|column| &mut column[..]),
-            ),
-        };
+        let [columns_to, finals_to] = [&mut columns, &mut finals]
+            .map(|to| Observations::Columns(to.each_mut().map(|column| &mut column[..])));
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+            .with_observations(columns_to)
+            .with_final_observations(finals_to);
         step(batch, buffers).unwrap();
         let bits = |xs: Vec<f32>| xs.into_iter().map(f32::to_bits).collect::<Vec<_>>();
         let seen = [columns, finals].map(|columns| columns.map(bits));
@@ -376,13 +368,8 @@ fn slices_that_change_their_length_cannot_panic() {
                 let (mut rewards, mut terminated, mut truncated) =
                     (vec![9.0; len], vec![true; len], vec![true; len]);
                 let mut rows = vec![[9.0; 6]; len];
-                let buffers = StepBuffers {
-                    rewards: &mut rewards,
-                    terminated: &mut terminated,
-                    truncated: &mut truncated,
-                    observations: Observations::Rows(&mut rows),
-                    final_observations: Observations::None,
-                };
+                let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+                    .with_observations(Observations::Rows(&mut rows));
                 let torques = &vec![1.0; len];
                 if parallel {
                     batch.par_step(torques, buffers).unwrap();
@@ -506,7 +493,7 @@ fn torques_equal_single_acrobots() {
                 for _ in 0..steps {
                     let torques = twins.alone.iter().map(|alone| {
                         let size = uniform(&mut rng, 0.0, 3.0);
-                        let falling = alone.inner().state().dtheta1 > A::Scalar::ZERO;
+                        let falling = alone.state().dtheta1 > A::Scalar::ZERO;
                         A::Scalar::from_f64(if falling { -size } else { size })
                     });
                     let torques: Vec<_> = torques.collect();
@@ -607,7 +594,7 @@ fn set_state_equals_that_of_a_single_acrobot() {
             let numbers = [(); 4].map(|()| A::Scalar::from_f64(uniform(&mut rng, -10.0, 10.0)));
             let state = State::from(numbers);
             twins.batch.set_state(index, state).unwrap();
-            twins.alone[index].inner_mut().set_state(state).unwrap();
+            twins.alone[index].set_state(state).unwrap();
             twins.assert_equal();
             let mut rows = [[0.0; 6]; 35];
             twins.batch.observe(Observations::Rows(&mut rows)).unwrap();

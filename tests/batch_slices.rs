@@ -45,14 +45,12 @@ fn a_limit_truncates_at_every_simd_level() {
         batch.set_simd_level(level);
         for expected in [false, true] {
             let mut truncated = [!expected; 3];
-            let buffers = StepBuffers {
-                rewards: &mut [0.0; 3],
-                terminated: &mut [false; 3],
-                truncated: &mut truncated,
-                observations: Observations::None,
-                final_observations: Observations::None,
-            };
-            batch.par_step(&[1_u8; 3], buffers).unwrap();
+            batch
+                .par_step(
+                    &[1_u8; 3],
+                    StepBuffers::new(&mut [0.0; 3], &mut [false; 3], &mut truncated),
+                )
+                .unwrap();
             assert_eq!(truncated, [expected; 3]);
         }
     }
@@ -68,14 +66,12 @@ fn an_episode_ends_once_if_it_reaches_the_goal_on_its_last_step() {
     };
     batch.reset_to(&[upright]).unwrap();
     let (mut terminated, mut truncated) = ([false], [false]);
-    let buffers = StepBuffers {
-        rewards: &mut [0.0],
-        terminated: &mut terminated,
-        truncated: &mut truncated,
-        observations: Observations::None,
-        final_observations: Observations::None,
-    };
-    batch.step(&[1_u8], buffers).unwrap();
+    batch
+        .step(
+            &[1_u8],
+            StepBuffers::new(&mut [0.0], &mut terminated, &mut truncated),
+        )
+        .unwrap();
     assert_eq!((terminated, truncated), ([true], [true]));
     assert!(batch.member(0).unwrap().ended);
 }
@@ -170,13 +166,9 @@ fn rejections(
         let mut rows = [vec![[9.0; 6]; rows], vec![[9.0; 6]; finals]];
         let [terminated, truncated] = &mut ends;
         let [observations, finals] = &mut rows;
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated,
-            truncated,
-            observations: Observations::Rows(observations),
-            final_observations: Observations::Rows(finals),
-        };
+        let buffers = StepBuffers::new(&mut rewards, terminated, truncated)
+            .with_observations(Observations::Rows(observations))
+            .with_final_observations(Observations::Rows(finals));
         let result = match kind {
             0 => batch.step(actions, buffers),
             1 => batch.par_step(actions, buffers),
@@ -311,14 +303,12 @@ fn rejected_changes_change_nothing() {
     assert_eq!(members(&batch), members(&twin));
     assert_eq!(batch.params(), twin.params());
     for batch in [&mut batch, &mut twin] {
-        let buffers = StepBuffers {
-            rewards: &mut [0.0; 3],
-            terminated: &mut [false; 3],
-            truncated: &mut [false; 3],
-            observations: Observations::None,
-            final_observations: Observations::None,
-        };
-        batch.step(&[2_u8; 3], buffers).unwrap();
+        batch
+            .step(
+                &[2_u8; 3],
+                StepBuffers::new(&mut [0.0; 3], &mut [false; 3], &mut [false; 3]),
+            )
+            .unwrap();
     }
     assert_eq!(members(&batch), members(&twin));
 }

@@ -71,7 +71,7 @@ impl<A: Arithmetic> Twins<A> {
     fn reset_alone(batch: &VecBatch<A, OwnParams>, alone: &mut TimeLimit<Acrobot<A>>) -> [f32; 6] {
         if let Some(range) = batch.params_range() {
             let params = range.draw(alone.inner_mut().rng_mut());
-            alone.inner_mut().set_params(params).unwrap();
+            alone.set_params(params).unwrap();
         }
         alone.reset_within(batch.reset_bounds()).to_array()
     }
@@ -88,7 +88,7 @@ impl<A: Arithmetic> Twins<A> {
     fn set_params(&mut self, params: impl Fn(usize) -> Params<A::Scalar>) {
         for (i, alone) in self.alone.iter_mut().enumerate() {
             self.batch.set_params_of(i, params(i)).unwrap();
-            alone.inner_mut().set_params(params(i)).unwrap();
+            alone.set_params(params(i)).unwrap();
         }
         self.assert_equal();
     }

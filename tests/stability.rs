@@ -14,7 +14,7 @@ fn digest<A: Arithmetic>() -> u64 {
         for _ in 0..3 {
             loop {
                 let step = acrobot.step(Action::sample(&mut actions));
-                for x in <[A::Scalar; 4]>::from(acrobot.inner().state()) {
+                for x in <[A::Scalar; 4]>::from(acrobot.state()) {
                     digest.add(x.to_f64().to_bits());
                 }
                 for x in step.observation.to_array() {

@@ -21,10 +21,10 @@ fn record<const N: usize>(steps: usize) -> (Trajectory<f32, N>, Vec<Transition<f
             ..
         } = twin.step(action);
         all.push(Transition {
-            state: acrobot.inner().state(),
+            state: acrobot.state(),
             torque: [-1.0, 0.0, 1.0][i % 3],
             reward,
-            next: twin.inner().state(),
+            next: twin.state(),
             terminated,
             truncated,
         });

@@ -194,7 +194,7 @@ fn a_link_needs_inertia_about_its_joint() {
 fn states_and_torques_that_are_not_finite_are_rejected() {
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(1));
     let before = acrobot.clone();
-    let mut pendulum = Pendulum::<Portable>::new(Params::DEFAULT, before.inner().state()).unwrap();
+    let mut pendulum = Pendulum::<Portable>::new(Params::DEFAULT, before.state()).unwrap();
     let pendulum_before = pendulum.clone();
     for value in NOT_FINITE {
         for (i, name) in ["theta1", "theta2", "dtheta1", "dtheta2"]
@@ -207,7 +207,7 @@ fn states_and_torques_that_are_not_finite_are_rejected() {
             let message = format!("{name} must be a finite number of {unit}, got {value}");
             let state = State::from(numbers);
             for result in [
-                acrobot.inner_mut().set_state(state),
+                acrobot.set_state(state),
                 pendulum.set_state(state),
                 Pendulum::<Portable>::new(Params::DEFAULT, state).map(drop),
                 Pendulum::<Portable>::at(state).map(drop),

@@ -23,13 +23,9 @@ fn check_beside_arrays<const N: usize>() {
     arrays.set_limit(5.try_into().unwrap());
     arrays.set_autoreset(Autoreset::SameStep);
     for _ in 0..30 {
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::Rows(&mut observations),
-            final_observations: Observations::Rows(&mut final_observations),
-        };
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+            .with_observations(Observations::Rows(&mut observations))
+            .with_final_observations(Observations::Rows(&mut final_observations));
         arrays.step(&[2_u8; 20], buffers).unwrap();
         let expected = StepResults {
             rewards: &rewards,

@@ -53,16 +53,11 @@ impl<A: Arithmetic, P: ParamsKind<A>> Play<A, P> {
 
     /// Steps with `step`. Returns the number of acrobots.
     pub fn step(&mut self, observe: bool, step: Step<A, P>) -> usize {
-        let buffers = StepBuffers {
-            rewards: &mut self.rewards,
-            terminated: &mut self.terminated,
-            truncated: &mut self.truncated,
-            observations: match observe {
-                true => Observations::Rows(&mut self.rows),
-                false => Observations::None,
-            },
-            final_observations: Observations::None,
-        };
+        let mut buffers =
+            StepBuffers::new(&mut self.rewards, &mut self.terminated, &mut self.truncated);
+        if observe {
+            buffers.observations = Observations::Rows(&mut self.rows);
+        }
         step(&mut self.batch, &self.actions, buffers).expect("slices of the batch's length");
         self.batch.len()
     }

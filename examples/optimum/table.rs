@@ -80,7 +80,7 @@ fn mean(mut policy: impl FnMut(&State<f32>) -> Action) -> f64 {
     for seed in (0..SEEDS).progress() {
         env.reset_with_seed(seed.into());
         loop {
-            let step = env.step(policy(&env.inner().state()));
+            let step = env.step(policy(&env.state()));
             sum += f64::from(step.reward);
             if step.done() {
                 break;

@@ -148,9 +148,9 @@ pub fn figures(env: &mut Env, policy: impl Fn(&State<f32>) -> Action) -> Vec<Fig
     env.reset();
     let mut figures = vec![Figure::new(env.inner())];
     loop {
-        let action = policy(&env.inner().state());
+        let action = policy(&env.state());
         let step = env.step(action);
-        let torque = env.inner().params().torque(action);
+        let torque = env.params().torque(action);
         figures.push(Figure::new(env.inner()).with_torque(torque));
         if step.done() {
             return figures;

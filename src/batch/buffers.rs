@@ -4,6 +4,7 @@ use crate::error::Error;
 
 /// Where a step of a [`Batch`](super::Batch) writes its results. Each slice has one element for each acrobot.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct StepBuffers<'a> {
     /// −1, or 0 if the acrobot terminated or was only reset.
     pub rewards: &'a mut [f32],
@@ -29,7 +30,41 @@ pub enum Observations<'a> {
     Columns([&'a mut [f32]; 6]),
 }
 
-impl StepBuffers<'_> {
+impl<'a> StepBuffers<'a> {
+    /// Buffers without observations.
+    #[must_use]
+    pub fn new(
+        rewards: &'a mut [f32],
+        terminated: &'a mut [bool],
+        truncated: &'a mut [bool],
+    ) -> Self {
+        Self {
+            rewards,
+            terminated,
+            truncated,
+            observations: Observations::None,
+            final_observations: Observations::None,
+        }
+    }
+
+    /// The same buffers, and one for the observations.
+    #[must_use]
+    pub fn with_observations(self, observations: Observations<'a>) -> Self {
+        Self {
+            observations,
+            ..self
+        }
+    }
+
+    /// The same buffers, and one for the last observations of episodes that end.
+    #[must_use]
+    pub fn with_final_observations(self, final_observations: Observations<'a>) -> Self {
+        Self {
+            final_observations,
+            ..self
+        }
+    }
+
     /// Splits off the buffers of the first `n` acrobots, or of all if there are fewer.
     #[cfg(feature = "rayon")]
     pub(super) fn take(&mut self, n: usize) -> Self {

@@ -162,13 +162,13 @@ impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
         let Self { batch, results } = self;
         step(
             batch,
-            StepBuffers {
-                rewards: &mut results.rewards,
-                terminated: &mut results.terminated,
-                truncated: &mut results.truncated,
-                observations: Observations::Rows(&mut results.observations),
-                final_observations: Observations::Rows(&mut results.final_observations),
-            },
+            StepBuffers::new(
+                &mut results.rewards,
+                &mut results.terminated,
+                &mut results.truncated,
+            )
+            .with_observations(Observations::Rows(&mut results.observations))
+            .with_final_observations(Observations::Rows(&mut results.final_observations)),
         )?;
         Ok(StepResults {
             rewards: &results.rewards,

@@ -15,9 +15,9 @@ fn sweep_row(seed: u64, episodes: u64, mass: f32, torque: f32) -> String {
             torques: [-torque, 0.0, torque],
             ..Params::default()
         };
-        acrobot.inner_mut().set_params(params).unwrap();
+        acrobot.set_params(params).unwrap();
         let end = loop {
-            let against = acrobot.inner().state().dtheta1 > 0.0;
+            let against = acrobot.state().dtheta1 > 0.0;
             let step = acrobot.step(if against {
                 Action::Negative
             } else {

@@ -38,8 +38,7 @@ fn snapshots_resume_to_the_same_bits() {
                 );
                 for _ in 0..3 {
                     assert_eq!(resumed, original);
-                    let [state, other] =
-                        [&resumed, &original].map(|limited| limited.inner().state());
+                    let [state, other] = [&resumed, &original].map(|limited| limited.state());
                     assert_eq!(bits(state), bits(other));
                     let action = Action::sample(original.inner_mut().rng_mut());
                     assert_eq!(Action::sample(resumed.inner_mut().rng_mut()), action);
@@ -100,8 +99,8 @@ fn damaged_snapshots_are_rejected_or_valid() {
                 bytes.truncate(kept.index(bytes.len()));
             }
             if let Ok(mut loaded) = postcard::from_bytes::<TimeLimit<Acrobot<A>>>(&bytes) {
-                loaded.inner().params().validate().unwrap();
-                loaded.inner().state().validate().unwrap();
+                loaded.params().validate().unwrap();
+                loaded.state().validate().unwrap();
                 let observation = loaded.step(Action::Positive).observation;
                 assert!(observation.as_ref().iter().all(|x| x.is_finite()));
                 let bytes = postcard::to_stdvec(&loaded).unwrap();

@@ -163,13 +163,7 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Implementation {
             for (action, stream) in actions.iter_mut().zip(&mut streams) {
                 *action = draw(stream);
             }
-            let buffers = StepBuffers {
-                rewards: &mut rewards,
-                terminated: &mut terminated,
-                truncated: &mut truncated,
-                observations: observe(&mut rows),
-                final_observations: Observations::None,
-            };
+            let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(observe(&mut rows));
             batch
                 .step(&actions, buffers)
                 .expect("slices of the batch's length");

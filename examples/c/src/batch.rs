@@ -227,13 +227,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
         };
         placed.batch.step(
             actions.get(),
-            StepBuffers {
-                rewards: rewards.get_mut(),
-                terminated: terminated.cleared(),
-                truncated: truncated.cleared(),
-                observations: written(observations),
-                final_observations: written(finals),
-            },
+            StepBuffers::new(rewards.get_mut(), terminated.cleared(), truncated.cleared()).with_observations(written(observations)).with_final_observations(written(finals)),
         )?;
         Ok(())
     })

@@ -156,7 +156,7 @@ pub unsafe extern "C" fn acrobot_state(
 ) -> acrobot_status_t {
     status(|| unsafe {
         let state = Out::new(state, acrobot)?;
-        state.write(Holder::value(acrobot)?.inner().state().into());
+        state.write(Holder::value(acrobot)?.state().into());
         Ok(())
     })
 }
@@ -171,7 +171,7 @@ pub unsafe extern "C" fn acrobot_set_state(
     let set = || unsafe {
         let state = read(state)?;
         let acrobot = Holder::value_mut(acrobot)?;
-        Ok(acrobot.inner_mut().set_state(state.into())?)
+        Ok(acrobot.set_state(state.into())?)
     };
     unsafe { explained(error, acrobot, set) }
 }
@@ -184,7 +184,7 @@ pub unsafe extern "C" fn acrobot_params(
 ) -> acrobot_status_t {
     status(|| unsafe {
         let params = Out::new(params, acrobot)?;
-        params.write(Holder::value(acrobot)?.inner().params().into());
+        params.write(Holder::value(acrobot)?.params().into());
         Ok(())
     })
 }
@@ -199,7 +199,7 @@ pub unsafe extern "C" fn acrobot_set_params(
     let set = || unsafe {
         let params = read(params)?;
         let acrobot = Holder::value_mut(acrobot)?;
-        Ok(acrobot.inner_mut().set_params(params.try_into()?)?)
+        Ok(acrobot.set_params(params.try_into()?)?)
     };
     unsafe { explained(error, acrobot, set) }
 }

@@ -140,7 +140,7 @@ pub fn greedy<const S: usize, const T: usize>(
 /// Learns for one episode from a new initial state. Returns the sum of the rewards.
 pub fn learn(learner: &mut impl Learn<4>, env: &mut Env, choices: &mut Pcg64) -> f32 {
     env.reset();
-    let mut action = learner.start(&view(&env.inner().state()), choices);
+    let mut action = learner.start(&view(&env.state()), choices);
     let mut sum = 0.0;
     loop {
         let step = env.step(torque(action));
@@ -149,7 +149,7 @@ pub fn learn(learner: &mut impl Learn<4>, env: &mut Env, choices: &mut Pcg64) ->
             learner.end(step.reward);
             return sum;
         }
-        action = learner.step(step.reward, &view(&env.inner().state()), choices);
+        action = learner.step(step.reward, &view(&env.state()), choices);
         if step.truncated {
             learner.cut();
             return sum;
@@ -162,7 +162,7 @@ pub fn play(env: &mut Env, mut policy: impl FnMut(&State<f32>) -> Action) -> (f3
     env.reset();
     let mut sum = 0.0;
     loop {
-        let step = env.step(policy(&env.inner().state()));
+        let step = env.step(policy(&env.state()));
         sum += step.reward;
         if step.done() {
             return (sum, step.terminated);

@@ -71,14 +71,14 @@ pub extern "C" fn acrobot_set_state(number: usize) -> usize {
     let [theta1, theta2, dtheta1, dtheta2, ..] = memory::get_numbers();
     let state = State::from([theta1, theta2, dtheta1, dtheta2]);
     memory::with_value(&ENVS, number, |env| {
-        memory::reason(env.inner_mut().set_state(state))
+        memory::reason(env.set_state(state))
     })
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_params(number: usize) {
     memory::with_value(&ENVS, number, |env| {
-        memory::set_params(env.inner().params())
+        memory::set_params(env.params())
     });
 }
 
@@ -86,7 +86,7 @@ pub extern "C" fn acrobot_params(number: usize) {
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_set_params(number: usize) -> usize {
     memory::with_value(&ENVS, number, |env| {
-        memory::reason(env.inner_mut().set_params(memory::get_params()))
+        memory::reason(env.set_params(memory::get_params()))
     })
 }
 

@@ -174,16 +174,13 @@ impl Batch {
         let mut rewards = memory(0.0, len).ok_or_else(no_memory)?;
         let mut terminated = memory(false, len).ok_or_else(no_memory)?;
         let mut truncated = memory(false, len).ok_or_else(no_memory)?;
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::Rows(observations.as_slice_mut()?.as_chunks_mut().0),
-            final_observations: match &mut finals {
-                Some(finals) => Observations::Rows(finals.as_slice_mut()?.as_chunks_mut().0),
-                None => Observations::None,
-            },
-        };
+        let rows = observations.as_slice_mut()?.as_chunks_mut().0;
+        let mut buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+            .with_observations(Observations::Rows(rows));
+        if let Some(finals) = &mut finals {
+            buffers.final_observations =
+                Observations::Rows(finals.as_slice_mut()?.as_chunks_mut().0);
+        }
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
         let task = if this.settings.gymnasium {

@@ -95,7 +95,7 @@ pub extern "C" fn load(len: usize) -> usize {
 pub extern "C" fn learnt() -> u8 {
     let policy = POLICY.borrow();
     let action = policy.as_ref().map_or(Action::Zero, |learner| {
-        simulation::with(|simulation| greedy(learner, &simulation.env.inner().state()))
+        simulation::with(|simulation| greedy(learner, &simulation.env.state()))
     });
     action.into()
 }

@@ -11,7 +11,7 @@ use crate::simulation;
 #[unsafe(no_mangle)]
 pub extern "C" fn bang_bang() -> u8 {
     simulation::with(|simulation| {
-        let against = simulation.env.inner().state().dtheta1 > 0.0;
+        let against = simulation.env.state().dtheta1 > 0.0;
         let action = if against {
             Action::Negative
         } else {
@@ -45,5 +45,5 @@ pub extern "C" fn standing() -> f32 {
         theta1: PI,
         ..State::default()
     };
-    simulation::with(|simulation| energy::<Fast>(simulation.env.inner().params(), &upright))
+    simulation::with(|simulation| energy::<Fast>(simulation.env.params(), &upright))
 }

@@ -51,7 +51,7 @@ pub extern "C" fn reset(words: usize) {
             seed: Some(seed),
             ..ResetOptions::default()
         });
-        simulation.before = simulation.env.inner().state();
+        simulation.before = simulation.env.state();
         simulation.torque = 0.0;
     });
 }
@@ -65,8 +65,8 @@ pub extern "C" fn step(action: u32) -> u32 {
         return 4;
     };
     with(|simulation| {
-        simulation.before = simulation.env.inner().state();
-        simulation.torque = simulation.env.inner().params().torque(action);
+        simulation.before = simulation.env.state();
+        simulation.torque = simulation.env.params().torque(action);
         let step = simulation.env.step(action);
         u32::from(step.terminated) | u32::from(step.truncated) << 1
     })
@@ -117,7 +117,7 @@ pub extern "C" fn set_params(
         },
         ..Params::DEFAULT
     };
-    let set = with(|simulation| simulation.env.inner_mut().set_params(params));
+    let set = with(|simulation| simulation.env.set_params(params));
     set.map_or_else(reason, |()| 0)
 }
 

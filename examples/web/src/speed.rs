@@ -54,13 +54,7 @@ pub extern "C" fn batch_steps(steps: u32) {
         for (action, stream) in actions.iter_mut().zip(&mut streams) {
             *action = stream.draw();
         }
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::None,
-            final_observations: Observations::None,
-        };
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
         if batch.step(&actions, buffers).is_err() {
             return;
         }

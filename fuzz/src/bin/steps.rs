@@ -138,7 +138,7 @@ fn episode<A: Arithmetic<Scalar: FromStr>>(
     for count in 1..=steps {
         let step = trajectory.step(&mut limited, *u.choose(&Action::ALL)?);
         assert_eq!(step.truncated, count >= limited.limit().get());
-        assert_settled(limited.inner().state(), limited.inner().params());
+        assert_settled(limited.state(), limited.params());
     }
     let mut csv = String::new();
     assert!(trajectory.write_csv(&mut csv).is_ok());
@@ -149,7 +149,7 @@ fn episode<A: Arithmetic<Scalar: FromStr>>(
         .into_iter()
         .flat_map(|line| line.split(',').skip(7).take(4));
     let last: Vec<A::Scalar> = last.flat_map(str::parse).collect();
-    let state: [A::Scalar; 4] = limited.inner().state().into();
+    let state: [A::Scalar; 4] = limited.state().into();
     assert_eq!(last, state, "{csv}");
     let mut buffer = [0; 4096];
     let mut rows = String::new();

@@ -77,10 +77,10 @@ fn set_params(u: &mut Unstructured<'_>) -> Result<()> {
     let mut number = |usual: f64| acrobot_fuzz::number(u, usual).map(|x| x as f32);
     let (dt, gravity) = (number(0.2)?, number(9.8)?);
     let [mass1, mass2, length1, length2] = [number(1.0)?, number(1.0)?, number(1.0)?, number(1.0)?];
-    let before = simulation::with(|simulation| *simulation.env.inner().params());
+    let before = simulation::with(|simulation| *simulation.env.params());
     let len = simulation::set_params(u.arbitrary()?, dt, mass1, mass2, length1, length2, gravity);
     if len > 0 {
-        let after = simulation::with(|simulation| *simulation.env.inner().params());
+        let after = simulation::with(|simulation| *simulation.env.params());
         assert_eq!(before, after);
         let buffer = BUFFER.borrow();
         let text = str::from_utf8(&buffer[8..len]).expect("a name, a unit and a rule");

@@ -50,7 +50,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
     let mut env = TimeLimit::new(Acrobot::<Fast>::new(0), 8.try_into().expect("not 0"));
     for _ in 0..2 {
-        greedy(&learner, &env.inner().state());
+        greedy(&learner, &env.state());
         learn(&mut learner, &mut env, &mut Pcg64::new(0));
     }
 });

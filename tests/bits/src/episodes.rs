@@ -31,7 +31,7 @@ pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
         let action = if episode.is_multiple_of(2) {
             Action::sample(&mut actions)
         } else {
-            against(acrobot.inner().state().dtheta1)
+            against(acrobot.state().dtheta1)
         };
         let step = acrobot.step(action);
         add_seen(&mut digest, acrobot.inner(), step.observation);
@@ -144,13 +144,9 @@ fn batch<const LEN: usize, const N: usize, const BLOCKS: usize, P: ParamsKind<Fa
     let (mut rows, mut finals) = ([[0.0; 6]; LEN], [[0.0; 6]; LEN]);
     for _ in 0..200 {
         let actions = rows.map(|[.., dtheta1, _]| against(dtheta1));
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::Rows(&mut rows),
-            final_observations: Observations::Rows(&mut finals),
-        };
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+            .with_observations(Observations::Rows(&mut rows))
+            .with_final_observations(Observations::Rows(&mut finals));
         if batch.step(&actions, buffers).is_err() {
             return 0;
         }

@@ -30,7 +30,7 @@ pub fn play<D: DrawTarget<Color = BinaryColor>>(
     loop {
         let action = policy(acrobot.inner());
         let step = acrobot.step(action);
-        let torque = acrobot.inner().params().torque(action);
+        let torque = acrobot.params().torque(action);
         let figure = Figure::new(acrobot.inner()).with_torque(torque);
         figure.redraw(&last, display, &Theme::MONOCHROME)?;
         shown(display);

@@ -99,13 +99,7 @@ fn a_borrowed_batch_takes_torques() -> Result<(), Error> {
     let mut rewards = [0.0; 3];
     batch.step(
         &[-0.5, 0.0, 0.5],
-        StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut [false; 3],
-            truncated: &mut [false; 3],
-            observations: Observations::None,
-            final_observations: Observations::None,
-        },
+        StepBuffers::new(&mut rewards, &mut [false; 3], &mut [false; 3]),
     )?;
     assert_eq!(rewards, [-1.0; 3]);
     Ok(())

@@ -43,7 +43,7 @@ fn SysTick() {
     critical_section::with(|cs| {
         let acrobot = &mut *ACROBOT.borrow_ref_mut(cs);
         // Torque against the velocity of link 1.
-        let action = match acrobot.inner().state().dtheta1 > 0.0 {
+        let action = match acrobot.state().dtheta1 > 0.0 {
             true => Action::Negative,
             false => Action::Positive,
         };

@@ -22,13 +22,13 @@ defmt::timestamp!("{=u32}", CLOCK.load(Ordering::Relaxed));
 #[entry]
 fn main() -> ! {
     let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(42), STEPS);
-    defmt::info!("start {}", acrobot.inner().state());
+    defmt::info!("start {}", acrobot.state());
 
     let rejected = Params {
         dt: 0.0,
         ..Params::DEFAULT
     };
-    if let Err(error) = acrobot.inner_mut().set_params(rejected) {
+    if let Err(error) = acrobot.set_params(rejected) {
         defmt::warn!("{}", error);
     }
     if let Err(error) = ResetBounds::new(0.1, -0.1) {
@@ -36,7 +36,7 @@ fn main() -> ! {
     }
 
     loop {
-        let action = match acrobot.inner().state().dtheta1 > 0.0 {
+        let action = match acrobot.state().dtheta1 > 0.0 {
             true => Action::Negative,
             false => Action::Positive,
         };

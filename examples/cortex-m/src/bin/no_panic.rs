@@ -191,13 +191,7 @@ fn batch<A: Arithmetic>() {
         let _ = black_box(batch.set_params(params()));
         let actions = black_box([1_u8; LEN]);
         let torques = black_box([A::Scalar::ZERO; LEN]);
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::Rows(&mut rows),
-            final_observations: Observations::Rows(&mut finals),
-        };
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(Observations::Rows(&mut rows)).with_final_observations(Observations::Rows(&mut finals));
         let _ = black_box(if black_box(true) {
             batch.step(&actions, buffers)
         } else {
@@ -230,13 +224,7 @@ fn own_params<A: Arithmetic>() {
         let _ = black_box(batch.set_params_of(black_box(3), params()));
         batch.set_params_range(ParamsRange::new(params(), params()).ok());
         batch.reset();
-        let buffers = StepBuffers {
-            rewards: &mut rewards,
-            terminated: &mut terminated,
-            truncated: &mut truncated,
-            observations: Observations::None,
-            final_observations: Observations::None,
-        };
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
         let _ = black_box(batch.step(&black_box([1_u8; LEN]), buffers));
         let _ = black_box(
             batch.reset_to_masked(&black_box([true; LEN]), &black_box([State::default(); LEN])),

@@ -58,9 +58,9 @@ fn stack_of_a_step<A: Arithmetic>() -> Option<usize> {
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(42));
     let params = Params {
         torque_noise: A::Scalar::from_f64(20.0),
-        ..*acrobot.inner().params()
+        ..*acrobot.params()
     };
-    acrobot.inner_mut().set_params(params).ok()?;
+    acrobot.set_params(params).ok()?;
     let mut action_space = Pcg64::new(42);
     let mut deepest = 0;
     for _ in 0..1000 {
