@@ -94,7 +94,7 @@ fn main() -> ExitCode {
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let grid = grid(options);
     let episodes = episodes_of_a_cell(options.episodes, grid.len())?;
-    let seeded = VecBatch::with_seed(options.seed.clone(), episodes)?;
+    let seeded = VecBatch::new(options.seed.clone(), episodes)?;
 
     let began = Instant::now();
     let progress = ProgressBar::new(options.episodes as u64);

@@ -1,12 +1,13 @@
 //! Acrobots wait for their reset only in mode `NextStep`, also those that `set_member` placed in the batch.
 
 use acrobot::batch::{Autoreset, Member, VecBatch};
+use acrobot::numpy::SeedSequence;
 use acrobot::physics::ResetBounds;
 use acrobot::{Fast, Params};
 
 /// One acrobot with noise, and with reset bounds that tell its initial states from others.
 fn one(autoreset: Autoreset) -> VecBatch<Fast> {
-    let mut batch = VecBatch::new(42, 1).unwrap();
+    let mut batch = VecBatch::new(SeedSequence::new(42), 1).unwrap();
     let noisy = Params {
         torque_noise: 1.0,
         ..Params::default()

@@ -55,7 +55,7 @@ struct Twins<A: Arithmetic> {
 
 impl<A: Arithmetic> Twins<A> {
     fn new(len: usize, autoreset: Autoreset) -> Self {
-        let mut batch = VecBatch::new(42, len).unwrap();
+        let mut batch = VecBatch::new(SeedSequence::new(42), len).unwrap();
         batch.set_autoreset(autoreset);
         let seeds = SeedSequence::new(42).spawn(len as u64);
         Self {
@@ -215,8 +215,8 @@ fn every_arithmetic_and_mode_equals_single_acrobots() {
 
 #[test]
 fn equal_parameters_equal_shared_ones() {
-    let mut own = VecBatch::<Fast, OwnParams>::new(3, 100).unwrap();
-    let mut shared = VecBatch::<Fast>::new(3, 100).unwrap();
+    let mut own = VecBatch::<Fast, OwnParams>::new(SeedSequence::new(3), 100).unwrap();
+    let mut shared = VecBatch::<Fast>::new(SeedSequence::new(3), 100).unwrap();
     let params = range(Dynamics::Nips).draw(&mut Pcg64::new(1));
     shared.set_params(params).unwrap();
     for i in 0..100 {
@@ -230,7 +230,7 @@ fn equal_parameters_equal_shared_ones() {
 
 #[test]
 fn threads_change_no_bit() {
-    let mut one = VecBatch::<Fast, OwnParams>::new(3, 50_003).unwrap();
+    let mut one = VecBatch::<Fast, OwnParams>::new(SeedSequence::new(3), 50_003).unwrap();
     one.set_params_range(Some(range(Dynamics::Book)));
     one.set_autoreset(Autoreset::SameStep);
     one.set_limit(7.try_into().unwrap());
@@ -250,7 +250,7 @@ fn threads_change_no_bit() {
 
 #[test]
 fn a_rejected_call_changes_nothing() {
-    let mut batch = VecBatch::<Fast, OwnParams>::new(3, 20).unwrap();
+    let mut batch = VecBatch::<Fast, OwnParams>::new(SeedSequence::new(3), 20).unwrap();
     let params = Params {
         mass1: 2.0,
         ..Params::DEFAULT

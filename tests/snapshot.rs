@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real};
 use acrobot::batch::{Member, VecBatch};
-use acrobot::numpy::Pcg64;
+use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Lean;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use common::Digest;
@@ -126,7 +126,7 @@ fn member() -> Member<Fast> {
 }
 
 fn batch_of_one() -> VecBatch<Fast> {
-    VecBatch::new(42, 1).unwrap()
+    VecBatch::new(SeedSequence::new(42), 1).unwrap()
 }
 
 /// 100 steps of an acrobot, and its reset.

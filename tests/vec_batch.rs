@@ -3,7 +3,7 @@
 use acrobot::batch::{
     Autoreset, Batch, Block, Observations, SharedParams, StepBuffers, StepResults, VecBatch,
 };
-use acrobot::numpy::Pcg64;
+use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Acrobot, Fast, ResetOptions, State};
 
 /// The owning batch steps as the one that borrows its memory.
@@ -14,7 +14,7 @@ fn a_batch_in_vecs_equals_one_in_arrays() {
 }
 
 fn check_beside_arrays<const N: usize>() {
-    let mut owning = VecBatch::<Fast, SharedParams, N>::new(9, 20).unwrap();
+    let mut owning = VecBatch::<Fast, SharedParams, N>::new(SeedSequence::new(9), 20).unwrap();
     let mut arrays = Batch::<Fast, _, _>::new(9, [Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]).unwrap();
     let (mut rewards, mut terminated, mut truncated) = ([0.0; 20], [false; 20], [false; 20]);
     let (mut observations, mut final_observations) = ([[0.0; 6]; 20], [[0.0; 6]; 20]);
@@ -41,7 +41,7 @@ fn check_beside_arrays<const N: usize>() {
 /// Episodes of some begin in given states. The others do not change.
 #[test]
 fn some_begin_in_given_states() {
-    let mut batch = VecBatch::<Fast>::new(9, 35).unwrap();
+    let mut batch = VecBatch::<Fast>::new(SeedSequence::new(9), 35).unwrap();
     batch.step(&[2_u8; 35]).unwrap();
     let mask: Vec<bool> = (0..35).map(|i| i % 3 == 0).collect();
     let states: Vec<State<f32>> = (0..35)
@@ -76,7 +76,8 @@ fn some_begin_in_given_states() {
 #[test]
 fn replaced_batches_of_other_lengths_have_their_own_results() {
     const LENGTHS: [usize; 2] = [5, 40];
-    let mut batches = LENGTHS.map(|len| VecBatch::<Fast>::new(len as u64, len).unwrap());
+    let mut batches =
+        LENGTHS.map(|len| VecBatch::<Fast>::new(SeedSequence::new(len as u64), len).unwrap());
     for batch in &mut batches {
         batch.set_limit(3.try_into().unwrap());
         batch.set_autoreset(Autoreset::SameStep);
@@ -112,7 +113,11 @@ fn replaced_batches_of_other_lengths_have_their_own_results() {
 
 #[test]
 fn a_batch_that_does_not_fit_into_memory_is_rejected() {
-    let new = |len| VecBatch::<Fast>::new(0, len).unwrap_err().to_string();
+    let new = |len| {
+        VecBatch::<Fast>::new(SeedSequence::new(0), len)
+            .unwrap_err()
+            .to_string()
+    };
     assert_eq!(
         new(usize::MAX / 2),
         format!(

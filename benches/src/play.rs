@@ -3,7 +3,7 @@
 use acrobot::Error;
 use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{Batch, Block, Observations, ParamsKind, SharedParams, StepBuffers, VecBatch};
-use acrobot::numpy::Pcg64;
+use acrobot::numpy::{Pcg64, SeedSequence};
 
 /// A batch, the random policy that plays it, and the buffers of its steps.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ type Step<A, P> = fn(
 impl<A: Arithmetic, P: ParamsKind<A>> Play<A, P> {
     pub fn new(len: usize) -> Self {
         Self {
-            batch: VecBatch::new(0, len).expect("memory for the batch"),
+            batch: VecBatch::new(SeedSequence::new(0), len).expect("memory for the batch"),
             streams: (0..len as u32)
                 .map(|i| i.wrapping_mul(0x9e37_79b9))
                 .collect(),

@@ -4,6 +4,7 @@ use std::array::from_fn;
 use std::f32::consts::{PI, TAU};
 
 use acrobot::batch::VecBatch;
+use acrobot::numpy::SeedSequence;
 use acrobot::{Action, Error, Fast, State};
 use indicatif::ProgressIterator;
 use rayon::prelude::*;
@@ -141,7 +142,7 @@ impl Stepper {
     /// Steps `lanes` states at a time.
     pub fn new(lanes: usize) -> Result<Self, Error> {
         Ok(Self {
-            batch: VecBatch::new(0, lanes)?,
+            batch: VecBatch::new(SeedSequence::new(0), lanes)?,
             states: vec![State::default(); lanes],
             actions: vec![Action::Zero; lanes],
         })

@@ -22,8 +22,9 @@ type InVecs<A, P, const N: usize> = Batch<A, Vec<Block<A, N, P>>, Vec<Pcg64>, N,
 /// ```
 /// use acrobot::Fast;
 /// use acrobot::batch::VecBatch;
+/// use acrobot::numpy::SeedSequence;
 ///
-/// let mut batch = VecBatch::<Fast>::new(42, 1024)?;
+/// let mut batch = VecBatch::<Fast>::new(SeedSequence::new(42), 1024)?;
 /// for _ in 0..100 {
 ///     let results = batch.step(&[2_u8; 1024])?;
 ///     assert_eq!(results.observations.len(), 1024);
@@ -35,12 +36,13 @@ type InVecs<A, P, const N: usize> = Batch<A, Vec<Block<A, N, P>>, Vec<Pcg64>, N,
 ///
 /// ```
 /// use acrobot::batch::{OwnParams, VecBatch};
+/// use acrobot::numpy::SeedSequence;
 /// use acrobot::physics::ParamsRange;
 /// use acrobot::{Fast, Params};
 ///
 /// let light = Params { mass1: 0.9, mass2: 0.9, ..Params::DEFAULT };
 /// let heavy = Params { mass1: 1.1, mass2: 1.1, ..Params::DEFAULT };
-/// let mut batch = VecBatch::<Fast, OwnParams>::new(42, 1024)?;
+/// let mut batch = VecBatch::<Fast, OwnParams>::new(SeedSequence::new(42), 1024)?;
 /// batch.set_params_range(Some(ParamsRange::new(light, heavy)?));
 /// batch.reset();
 /// assert_ne!(batch.params_of(0), batch.params_of(1));
@@ -78,24 +80,14 @@ struct Memory {
 }
 
 impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
-    /// A batch of `len` acrobots. Acrobot `i` is seeded with the `i`-th child of `seed` and is in its initial state.
-    /// The batch has the default parameters, a limit of 500 steps and
+    /// A batch of `len` acrobots. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet spawned, and is in
+    /// its initial state. The batch has the default parameters, a limit of 500 steps and
     /// [`Autoreset::NextStep`](super::Autoreset::NextStep).
     ///
     /// # Errors
     ///
     /// [`Error::EmptyBatch`] for a `len` of 0, and [`Error::OutOfMemory`].
-    pub fn new(seed: u64, len: usize) -> Result<Self, Error> {
-        Self::with_seed(SeedSequence::new(seed), len)
-    }
-
-    /// As [`new`](Self::new), with a seed of any size. Acrobot `i` is seeded with the `i`-th child that `seed` has not
-    /// yet spawned.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`new`](Self::new).
-    pub fn with_seed(seed: SeedSequence, len: usize) -> Result<Self, Error> {
+    pub fn new(seed: SeedSequence, len: usize) -> Result<Self, Error> {
         let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
         let batch = Batch::with_seed(seed, blocks, fill(Pcg64::UNSEEDED, len, len)?)?;
         let results = Memory::default();

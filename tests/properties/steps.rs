@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
 use acrobot::batch::{Autoreset, OwnParams, ParamsKind, VecBatch};
-use acrobot::numpy::{Pcg64, integers};
+use acrobot::numpy::{Pcg64, SeedSequence, integers};
 use acrobot::physics::{Pendulum, derivative, rk4};
 use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, Step, TimeLimit};
 use proptest::prelude::*;
@@ -263,10 +263,10 @@ fn lanes_of_a_batch_equal_single_acrobots() {
             1000,
             (params, states, torques),
             |(params, states, torques)| {
-                let mut shared = VecBatch::<A>::new(0, LEN).unwrap();
+                let mut shared = VecBatch::<A>::new(SeedSequence::new(0), LEN).unwrap();
                 shared.set_params(params[0]).unwrap();
                 play(shared, &[params[0]; LEN], &states, &torques);
-                let mut own = VecBatch::<A, OwnParams>::new(0, LEN).unwrap();
+                let mut own = VecBatch::<A, OwnParams>::new(SeedSequence::new(0), LEN).unwrap();
                 for (i, params) in params.iter().enumerate() {
                     own.set_params_of(i, *params).unwrap();
                 }

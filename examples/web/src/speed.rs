@@ -2,7 +2,7 @@
 
 use core::hint::black_box;
 
-use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+use acrobot::batch::{Batch, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
