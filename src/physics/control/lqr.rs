@@ -118,7 +118,8 @@ pub fn lqr<S: Real>(model: &Discrete<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>
 const DOUBLINGS: u32 = 40;
 /// Newton's method converges in 1 to 3 iterations for the acrobot, and in up to 25 for models of many decades.
 const NEWTON_ITERATIONS: u32 = 60;
-/// The largest error of a gain, relative to its largest element. The estimate can be too small by a factor of ten.
+/// The largest estimated error of a gain, relative to its largest element. The estimate was too small by a factor of 26 in
+/// the worst of 160,000 random models.
 const TOLERANCE: f64 = 1e-9;
 
 /// A model and its weights, in coordinates y in which the torque changes one number only: where R is small, P b would
