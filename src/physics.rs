@@ -121,6 +121,7 @@ macro_rules! constants_of_form {
 
 mod bounds;
 pub mod control;
+pub(crate) mod equations;
 mod gymnasium;
 mod lean;
 mod model;

@@ -3,12 +3,13 @@
 use core::hint::black_box;
 use core::marker::PhantomData;
 
-use super::buffers::{take, take_mut};
+use super::buffers::{set, take, take_mut};
 use super::lane_model::LaneModel;
 use super::params::{ParamsKind, SharedParams};
 use super::{Autoreset, Observations, Settings, StepBuffers};
-use crate::arithmetic::{Arithmetic, Fast, Lanes, Real, SinCos, Zeroed};
+use crate::arithmetic::{Arithmetic, Fast};
 use crate::error::Error;
+use crate::math::{Lanes, Real, SinCos, Zeroed};
 use crate::numpy::{Pcg64, uniform};
 use crate::physics::{ResetBounds, State, check_torque, sin_cos, step};
 
@@ -259,12 +260,6 @@ fn clear<const N: usize>(
     let results = rewards.iter_mut().zip(terminated).zip(truncated);
     for (((reward, terminated), truncated), _) in results.zip(resets).filter(|(_, reset)| **reset) {
         (*reward, *terminated, *truncated) = (0.0, false, false);
-    }
-}
-
-pub(super) fn set<T>(lanes: &mut [T], lane: usize, x: T) {
-    if let Some(to) = lanes.get_mut(lane) {
-        *to = x;
     }
 }
 

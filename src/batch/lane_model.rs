@@ -1,10 +1,10 @@
 //! What a step reads of the parameters: a number for each lane.
 
-use super::block::set;
-use crate::arithmetic::{
-    Arithmetic, Coefficients, Constants, Equations, Lanes, Model, Numbers, Real, Zeroed,
-};
+use super::buffers::set;
+use crate::arithmetic::Arithmetic;
+use crate::math::{Lanes, Numbers, Real, SinCos, Zeroed};
 use crate::physics::Dynamics;
+use crate::physics::equations::{Coefficients, Constants, Equations, Model};
 
 /// A model for each lane. Aligned, because an SSE instruction can read only aligned numbers from memory.
 #[derive(Clone, Debug)]
@@ -95,5 +95,11 @@ impl<A: Arithmetic, const N: usize> Coefficients<A, Lanes<A::Scalar, N>> for Lan
             *to = if *is_book { x } else { *to };
         }
         nips
+    }
+
+    #[inline(always)]
+    fn sin_cos(&self, x: Lanes<A::Scalar, N>) -> SinCos<Lanes<A::Scalar, N>> {
+        let (sin, cos) = A::sin_cos_lanes(x.0);
+        (Lanes(sin), Lanes(cos))
     }
 }

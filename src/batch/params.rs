@@ -2,12 +2,14 @@
 
 use core::fmt;
 
-use super::block::set;
+use super::buffers::set;
 use super::lane_model::LaneModel;
 use super::{Batch, Block, check_index};
-use crate::arithmetic::{Arithmetic, Model, Zeroed};
+use crate::arithmetic::Arithmetic;
 use crate::error::Error;
+use crate::math::Zeroed;
 use crate::numpy::Pcg64;
+use crate::physics::equations::Model;
 use crate::physics::{Params, ParamsRange};
 
 /// All acrobots of a batch have the same parameters.

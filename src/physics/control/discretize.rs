@@ -2,9 +2,10 @@
 
 use super::linearize::partials;
 use super::matrix::{check_finite, dot, identity, transpose};
-use crate::arithmetic::{Arithmetic, Equations, Model, Real, SinCos};
 use crate::error::Error;
+use crate::math::{Real, SinCos};
 use crate::physics::Pendulum;
+use crate::physics::equations::{Arithmetic, Equations, Model};
 use crate::physics::pendulum::check_torque;
 use crate::physics::rk4::{Along, Derivative, compact};
 

@@ -1,9 +1,10 @@
 //! Forces from accelerations, and velocities of points.
 
 use super::matrix::check_finite;
-use crate::arithmetic::{Arithmetic, Coefficients, Real};
 use crate::error::{Error, Range};
+use crate::math::Real;
 use crate::physics::Pendulum;
+use crate::physics::equations::{Arithmetic, Coefficients};
 use crate::physics::model::directions;
 
 /// The torques and forces of a motion.

@@ -1,8 +1,9 @@
 //! The derivatives of the equations of motion.
 
 use super::matrix::check_finite;
-use crate::arithmetic::{Arithmetic, Coefficients, Equations, Model, Real, SinCos};
 use crate::error::Error;
+use crate::math::{Real, SinCos};
+use crate::physics::equations::{Arithmetic, Coefficients, Equations, Model};
 use crate::physics::pendulum::check_torque;
 use crate::physics::{Common, Pendulum};
 

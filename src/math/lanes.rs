@@ -1,11 +1,91 @@
-//! `N` numbers side by side, for batches.
-//!
-//! These are plain arrays and loops over them, which LLVM compiles to the SIMD instructions of the target.
+//! One number, or `N` side by side for batches.
 
+use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Arithmetic, Numbers, Real, SinCos, Zeroed};
+use super::real::{Real, Zeroed};
 
+/// One number, or many side by side. The code of a step is generic over this, so it is written once.
+pub trait Numbers<S: Real>:
+    Copy
+    + fmt::Debug
+    + Send
+    + Sync
+    + Zeroed
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A truth value for each number.
+    type Mask;
+
+    /// Whether this is a single number.
+    const IS_ONE: bool;
+
+    /// `x` in each lane.
+    fn splat(x: S) -> Self;
+
+    /// Applies `f` to each number.
+    fn map(self, f: impl FnMut(S) -> S) -> Self;
+
+    /// Applies `f` to each pair of numbers.
+    fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
+
+    /// Whether |x| ≤ `limit` for all numbers x; false for NaN.
+    fn all_within(self, limit: Self) -> bool;
+
+    /// `inside` where |x| ≤ `limit`, `outside` elsewhere and for NaN.
+    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self;
+
+    /// Which numbers are above `limit`.
+    fn above(self, limit: S) -> Self::Mask;
+
+    /// Each number clamped to \[−`limit`, `limit`\]; NaN stays NaN.
+    #[inline(always)]
+    fn bound(self, limit: Self) -> Self {
+        self.zip(limit, |x, limit| if x > limit { limit } else { x })
+            .zip(limit, |x, limit| if x < -limit { -limit } else { x })
+    }
+}
+
+impl<S: Real> Numbers<S> for S {
+    type Mask = bool;
+    const IS_ONE: bool = true;
+
+    #[inline(always)]
+    fn splat(x: S) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn map(self, mut f: impl FnMut(S) -> S) -> Self {
+        f(self)
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, mut f: impl FnMut(S, S) -> S) -> Self {
+        f(self, other)
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: S) -> bool {
+        self.abs() <= limit
+    }
+
+    #[inline(always)]
+    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self {
+        if self.abs() <= limit { inside } else { outside }
+    }
+
+    #[inline(always)]
+    fn above(self, limit: S) -> bool {
+        self > limit
+    }
+}
+
+/// `N` numbers: a plain array and loops over it, which LLVM compiles to the SIMD instructions of the target.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes<S, const N: usize>(pub(crate) [S; N]);
 
@@ -94,11 +174,5 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
             *above = x > limit;
         }
         above
-    }
-
-    #[inline(always)]
-    fn sin_cos<A: Arithmetic<Scalar = S>>(self) -> SinCos<Self> {
-        let (sin, cos) = A::sin_cos_lanes(self.0);
-        (Self(sin), Self(cos))
     }
 }
