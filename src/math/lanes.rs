@@ -117,16 +117,6 @@ impl<S: Real, const N: usize> Neg for Lanes<S, N> {
     }
 }
 
-impl<S: Real, const N: usize> Lanes<S, N> {
-    /// The same numbers, but `x` in one lane.
-    pub(crate) fn with(mut self, lane: usize, x: S) -> Self {
-        if let Some(to) = self.0.get_mut(lane) {
-            *to = x;
-        }
-        self
-    }
-}
-
 // Loops and not `array::map`, which LLVM keeps out of line, where it may not use the SIMD instructions of its caller.
 impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     type Mask = [bool; N];

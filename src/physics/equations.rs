@@ -4,7 +4,7 @@
 use core::fmt;
 
 use super::model::Common;
-use super::params::{Dynamics, Params};
+use super::{Dynamics, Params};
 use crate::math::{Numbers, Real, SinCos, Zeroed};
 
 /// A scalar, its sines and the form of the equations: they determine every bit of a result.
@@ -17,8 +17,7 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// The type of angles, velocities, torques and parameters.
     type Scalar: Real;
 
-    /// How the equations of motion are evaluated: [`Lean`](super::Lean) or
-    /// [`Gymnasium`](super::Gymnasium).
+    /// How the equations of motion are evaluated: [`Lean`](super::Lean) or [`Gymnasium`](super::Gymnasium).
     type Form: Form<Self::Scalar>;
 
     /// Sine and cosine of `x` rad. Both must be within \[−1, 1\] for every finite `x`.

@@ -1,8 +1,7 @@
 //! Gymnasium's expressions, operation by operation.
 
-use super::Params;
-use super::equations::{Arithmetic, Coefficients, Equations};
 use super::model::{Common, FromParams};
+use super::{Arithmetic, Coefficients, Equations, Params};
 use crate::math::{Numbers, Real, SinCos, Zeroed};
 
 /// The equations as Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.

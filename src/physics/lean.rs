@@ -1,8 +1,7 @@
 //! The lean form: one division and the sines and cosines of θ1 and θ2 for each evaluation.
 
-use super::equations::{Arithmetic, Coefficients, Equations};
 use super::model::{Common, FromParams};
-use super::{Dynamics, Params};
+use super::{Arithmetic, Coefficients, Dynamics, Equations, Params};
 use crate::math::{Numbers, Real, SinCos, Zeroed};
 
 /// The equations solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.

@@ -1,8 +1,7 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
-use super::equations::{Arithmetic, Equations, Model};
 use super::model;
-use super::{Params, State, step};
+use super::{Arithmetic, Equations, Model, Params, State, step};
 use crate::error::{Error, Range};
 use crate::math::{Real, SinCos};
 

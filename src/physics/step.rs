@@ -2,8 +2,8 @@
 
 use core::marker::PhantomData;
 
-use super::equations::{Arithmetic, Coefficients, Equations};
 use super::rk4::{Derivative, classical, compact};
+use super::{Arithmetic, Coefficients, Equations};
 use crate::math::{Numbers, Real, SinCos};
 
 /// Advances `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 by one dt under a constant torque, N m.

@@ -1,8 +1,5 @@
 //! `f64` by the platform's C library.
-#![expect(
-    clippy::disallowed_methods,
-    reason = "this is where the platform's library is called"
-)]
+#![expect(clippy::disallowed_methods, reason = "this file calls the library")]
 
 use core::hint::black_box;
 

@@ -3,9 +3,8 @@
 use super::matrix::check_finite;
 use crate::error::{Error, Range};
 use crate::math::Real;
-use crate::physics::Pendulum;
-use crate::physics::equations::{Arithmetic, Coefficients};
 use crate::physics::model::directions;
+use crate::physics::{Arithmetic, Coefficients, Pendulum};
 
 /// The torques and forces of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

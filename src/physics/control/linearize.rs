@@ -3,9 +3,8 @@
 use super::matrix::check_finite;
 use crate::error::Error;
 use crate::math::{Real, SinCos};
-use crate::physics::equations::{Arithmetic, Coefficients, Equations, Model};
-use crate::physics::pendulum::check_torque;
-use crate::physics::{Common, Pendulum};
+use crate::physics::model::Common;
+use crate::physics::{Arithmetic, Coefficients, Equations, Model, Pendulum, check_torque};
 
 /// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
 /// rad/s, and u that from the torque, N m.

@@ -7,8 +7,7 @@ use super::matrix::{
 };
 use crate::error::{Error, Range};
 use crate::math::Real;
-use crate::physics::equations::Arithmetic;
-use crate::physics::{State, wrap};
+use crate::physics::{Arithmetic, State, wrap};
 
 /// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one with the least sum of
 /// xᵀ Q x + R u² over all steps.
