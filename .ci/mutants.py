@@ -28,14 +28,14 @@ SHARDS = os.cpu_count() if len(sys.argv) == 1 else 1
 OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines", "batch"} | {"properties"})
 ROUNDS = [
     (["src/physics/control*"], ["control"]),
-    (["src/arithmetic*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
-    (["src/arithmetic/reference*"], ["sines"]),
+    (["src/arithmetic*", "src/math*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
+    (["src/math/sines/correctly_rounded*"], ["sines"]),
     (["src/trajectory.rs"], ["trajectory"]),
-    (["src/batch*", "src/arithmetic/lanes.rs"], ["autoreset", "batch_slices", "own_params", "stability", "vec_batch"]),
+    (["src/batch*", "src/math/lanes.rs"], ["autoreset", "batch_slices", "own_params", "stability", "vec_batch"]),
     (["src/env*", "src/render*"], ["check_env", "env", "render"]),
     (["src/*"], ["acrobot", "validation", "seeding", "snapshot", "trajectory"]),
     (["src/*"], OTHERS),
-    (["src/batch*", "src/arithmetic/lanes.rs"], ["batch"]),
+    (["src/batch*", "src/math/lanes.rs"], ["batch"]),
 ]
 # Without optimization the crate and a test compile in a fifth of the time; dependencies stay as they are.
 CARGO = ["--config=profile.dev.package.acrobot.opt-level=0", "--config=profile.dev.package.acrobot.debug=false"]

@@ -3,8 +3,9 @@
 use rand_core::Rng;
 
 use crate::action::Action;
-use crate::arithmetic::{Arithmetic, Real, SinCos};
+use crate::arithmetic::Arithmetic;
 use crate::error::Error;
+use crate::math::{Real, SinCos};
 use crate::numpy::{Pcg64, SeedSequence, uniform};
 use crate::observation::Observation;
 use crate::physics::{Params, Pendulum, ResetBounds, State, check_torque};

@@ -40,85 +40,214 @@
 //! assert_eq!(step.reward, -1.0);
 //! ```
 
-mod equations;
-mod fast;
+use crate::error::Error;
+use crate::math::Lanes;
 #[cfg(feature = "std")]
-mod host;
-mod lanes;
-mod micro;
-mod portable;
-mod real;
-mod reference;
+use crate::math::sines::platform;
+use crate::math::sines::{self, correctly_rounded, polynomial, table};
+use crate::physics::{Gymnasium, Lean, Pendulum, State};
 
-use core::fmt;
+pub use crate::math::Real;
+pub use crate::physics::equations::{Arithmetic, Form};
 
-pub(crate) use equations::{Coefficients, Constants, Equations, Model, Numbers};
-pub use fast::Fast;
-#[cfg(feature = "std")]
-pub use host::Host;
-pub(crate) use lanes::Lanes;
-pub use micro::Micro;
-pub use portable::Portable;
-pub use real::Real;
-pub(crate) use real::{SinCos, Zeroed};
-pub use reference::Reference;
+/// `f64`, correctly rounded sines and cosines, and Gymnasium's expressions: the same bits on every target, defined by
+/// mathematics and not by a library.
+///
+/// For each x one `f64` is nearest to sin x. This arithmetic returns it, as any other correctly rounded sine does.
+/// 99.75 % of its steps are [bit-identical to Gymnasium's](crate::guide::parity#bit-identical-steps), about as many as
+/// between Gymnasium on two CPUs. `src/math/sines/correctly_rounded.rs` explains the method.
+///
+/// ```
+/// use acrobot::arithmetic::{Arithmetic, Reference};
+///
+/// let (sin, cos) = Reference::sin_cos(1.0);
+/// assert_eq!([sin, cos].map(f64::to_bits), [0x3fea_ed54_8f09_0cee, 0x3fe1_4a28_0fb5_068c]);
+/// // A large x needs more than 53 bits of π.
+/// assert_eq!(Reference::sin_cos(f64::MAX).0, 0.004961954789184062);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Reference;
 
-/// A scalar, its sines and the form of the equations: they determine every bit of a result.
-pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
-    /// A short name in lower case, of at most 16 bytes. Snapshots hold it, so no other arithmetic can load them. The
-    /// crate's names are "reference", "portable", "fast", "micro" and "host". With a longer name, code that saves or
-    /// loads a snapshot does not compile.
-    const NAME: &'static str;
+impl Arithmetic for Reference {
+    const NAME: &'static str = "reference";
+    type Scalar = f64;
+    type Form = Gymnasium;
 
-    /// The type of angles, velocities, torques and parameters.
-    type Scalar: Real;
-
-    /// How the equations of motion are evaluated: [`Lean`](crate::physics::Lean) or
-    /// [`Gymnasium`](crate::physics::Gymnasium).
-    type Form: Form<Self::Scalar>;
-
-    /// Sine and cosine of `x` rad. Both must be within \[−1, 1\] for every finite `x`.
-    fn sin_cos(x: Self::Scalar) -> (Self::Scalar, Self::Scalar);
-
-    /// Sine and cosine, bit-identical to [`sin_cos`](Self::sin_cos) for |x| ≤ 2¹⁹ rad. Beyond, any result is valid,
-    /// even NaN. Steps call this method for speed: it can leave out range checks.
+    /// Sine and cosine, correctly rounded. NaN for infinity and NaN.
     #[inline]
-    fn sin_cos_near(x: Self::Scalar) -> (Self::Scalar, Self::Scalar) {
-        Self::sin_cos(x)
+    fn sin_cos(x: f64) -> (f64, f64) {
+        correctly_rounded::sin_cos(x)
     }
 
-    /// Sines and cosines of `N` angles, bit-identical to [`sin_cos_near`](Self::sin_cos_near). Batches call it, so it
-    /// is the place for SIMD.
-    #[inline(always)]
-    fn sin_cos_lanes<const N: usize>(
-        mut x: [Self::Scalar; N],
-    ) -> ([Self::Scalar; N], [Self::Scalar; N]) {
-        let mut cos = x;
-        for (x, cos) in x.iter_mut().zip(&mut cos) {
-            (*x, *cos) = Self::sin_cos_near(*x);
-        }
-        (x, cos)
-    }
-
-    /// Cosine of `x` rad, bit-identical to the cosine of [`sin_cos`](Self::sin_cos).
     #[inline]
-    fn cos(x: Self::Scalar) -> Self::Scalar {
-        Self::sin_cos(x).1
-    }
-
-    /// The square of `x`.
-    #[inline]
-    fn square(x: Self::Scalar) -> Self::Scalar {
-        x * x
+    fn cos(x: f64) -> f64 {
+        correctly_rounded::cos(x)
     }
 }
 
-/// A form of the equations of motion: [`Gymnasium`](crate::physics::Gymnasium) or [`Lean`](crate::physics::Lean), which
-/// agree up to rounding. No other type can implement it.
-pub trait Form<S: Real>: Equations<S> {}
+/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: bit-identical to Gymnasium if NumPy calls the
+/// same library, as on x86-64 Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
+///
+/// ```
+/// use acrobot::arithmetic::{Arithmetic, Host};
+///
+/// assert_eq!(Host::sin_cos(1.0), 1.0_f64.sin_cos());
+/// ```
+#[cfg(feature = "std")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Host;
 
-impl<S: Real, F: Equations<S>> Form<S> for F {}
+#[cfg(feature = "std")]
+impl Arithmetic for Host {
+    const NAME: &'static str = "host";
+    type Scalar = f64;
+    type Form = Gymnasium;
 
-/// The largest angle that the `f32` arithmetics reduce, rad: 2¹⁹, where neighbouring `f32` are 1/16 rad apart. Their
-/// `sin_cos` clamps larger angles to it.
-const FARTHEST: f32 = 524_288.0;
+    #[inline]
+    fn sin_cos(x: f64) -> (f64, f64) {
+        platform::sin_cos(x)
+    }
+
+    #[inline]
+    fn cos(x: f64) -> f64 {
+        platform::cos(x)
+    }
+
+    #[inline(always)]
+    fn square(x: f64) -> f64 {
+        platform::square(x)
+    }
+}
+
+/// `f64`, sines from the crate `libm`, and the lean form: the fastest `f64` with the same bits on every target.
+///
+/// A release of `libm` could round its sines differently and so change the bits. [Fix its
+/// version](crate::guide::determinism#limits), or use [`Reference`], which depends on no library.
+///
+/// ```
+/// use acrobot::Portable;
+/// use acrobot::arithmetic::Arithmetic;
+///
+/// let (sin, cos) = Portable::sin_cos(1.0);
+/// assert_eq!([sin, cos].map(f64::to_bits), [0x3fea_ed54_8f09_0cee, 0x3fe1_4a28_0fb5_068c]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Portable;
+
+impl Arithmetic for Portable {
+    const NAME: &'static str = "portable";
+    type Scalar = f64;
+    type Form = Lean;
+
+    #[inline]
+    fn sin_cos(x: f64) -> (f64, f64) {
+        libm::sincos(x)
+    }
+
+    #[inline]
+    fn cos(x: f64) -> f64 {
+        libm::cos(x)
+    }
+}
+
+/// `f32`, polynomial sines, and the lean form: the same bits on every target, with or without an FPU.
+///
+/// ```
+/// use acrobot::Fast;
+/// use acrobot::arithmetic::Arithmetic;
+///
+/// let (sin, cos) = Fast::sin_cos(1.0);
+/// assert!((sin - 0.84147098).abs() < 1.2e-7 && (cos - 0.54030231).abs() < 1.2e-7);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Fast;
+
+impl Arithmetic for Fast {
+    const NAME: &'static str = "fast";
+    type Scalar = f32;
+    type Form = Lean;
+
+    /// Sine and cosine with an error of at most 1.2e-7 (two units in the last place of 1) for |x| ≤ 64 rad. The largest
+    /// error over all these `f32` is 1.17e-7 (`cargo test --release --test trigonometry`). For larger angles the error
+    /// is that of an angle in `f32`, 1.2e-7 |x|. Angles beyond ±2¹⁹ rad are clamped to ±2¹⁹ rad.
+    #[inline]
+    fn sin_cos(x: f32) -> (f32, f32) {
+        polynomial::sin_cos(sines::clamp(x))
+    }
+
+    #[inline(always)]
+    fn sin_cos_near(x: f32) -> (f32, f32) {
+        polynomial::sin_cos(x)
+    }
+
+    #[inline(always)]
+    fn sin_cos_lanes<const N: usize>(x: [f32; N]) -> ([f32; N], [f32; N]) {
+        let (sin, cos) = polynomial::sin_cos(Lanes(x));
+        (sin.0, cos.0)
+    }
+}
+
+/// `f32`, a table of sixteen sines for half a turn, and the lean form: a sixth fewer instructions than [`Fast`] on a
+/// Cortex-M4, and about seven times its error for |x| ≤ π.
+///
+/// ```
+/// use acrobot::arithmetic::{Arithmetic, Micro};
+///
+/// let (sin, cos) = Micro::sin_cos(1.0);
+/// assert!((sin - 0.84147098).abs() < 8e-7 && (cos - 0.54030231).abs() < 8e-7);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Micro;
+
+impl Arithmetic for Micro {
+    const NAME: &'static str = "micro";
+    type Scalar = f32;
+    type Form = Lean;
+
+    /// Sine and cosine with an error of at most 8e-7 for |x| ≤ π, and 4e-6 for |x| ≤ 64 rad
+    /// (`cargo test --release --test trigonometry`). For larger angles the error is 2e-7 |x|.
+    /// Angles beyond ±2¹⁹ rad are clamped to ±2¹⁹ rad.
+    #[inline]
+    fn sin_cos(x: f32) -> (f32, f32) {
+        table::sin_cos(sines::clamp(x))
+    }
+
+    #[inline(always)]
+    fn sin_cos_near(x: f32) -> (f32, f32) {
+        table::sin_cos(x)
+    }
+}
+
+// Not generic, because a `const fn` cannot convert a generic scalar.
+macro_rules! at {
+    ($($(#[$attribute:meta])* $arithmetic:ident: $scalar:ident),*) => {$(
+        $(#[$attribute])*
+        impl Pendulum<$arithmetic> {
+            /// A pendulum with the default parameters in this state, also in a `const`.
+            ///
+            /// # Errors
+            ///
+            /// [`Error::OutOfRange`] for a number that is not finite.
+            pub const fn at(state: State<$scalar>) -> Result<Self, Error> {
+                let State { theta1, theta2, dtheta1, dtheta2 } = state;
+                let wide = State {
+                    theta1: theta1 as f64,
+                    theta2: theta2 as f64,
+                    dtheta1: dtheta1 as f64,
+                    dtheta2: dtheta2 as f64,
+                };
+                if let Err(error) = wide.check() {
+                    return Err(error);
+                }
+                Ok(Self::starting_at([theta1, theta2, dtheta1, dtheta2]))
+            }
+        }
+    )*};
+}
+
+at!(Reference: f64, Portable: f64, Fast: f32, Micro: f32, #[cfg(feature = "std")] Host: f64);

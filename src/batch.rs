@@ -38,6 +38,7 @@ pub use buffers::{Observations, StepBuffers};
 pub use inputs::Input;
 pub use member::Member;
 pub use params::{OwnParams, ParamsKind, SharedParams};
+pub use settings::Autoreset;
 pub use simd::SimdLevel;
 #[cfg(feature = "alloc")]
 pub use vec_batch::{StepResults, VecBatch};
@@ -46,26 +47,11 @@ use crate::acrobot::ResetOptions;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::physics::{ResetBounds, State};
+use crate::physics::{Model, Params, ParamsRange, ResetBounds, State};
 use crate::time_limit::V1;
 use buffers::{check_length, take_mut};
 use inputs::Inputs;
-
-/// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Autoreset {
-    /// In the next step, which ignores its action and returns the initial observation and a reward of 0.
-    #[default]
-    NextStep,
-    /// In the step that ends the episode. It returns the initial observation of the next episode, and the last one of
-    /// the ended episode in [`final_observations`](StepBuffers::final_observations).
-    SameStep,
-    /// Never. Acrobots continue after the end of an episode, as an [`Acrobot`](crate::Acrobot) does, until
-    /// [`Batch::reset_masked`] or another reset.
-    Disabled,
-}
+use settings::Settings;
 
 /// Many acrobots, each with its own stream of random numbers.
 ///
@@ -95,15 +81,6 @@ where
     simd_level: SimdLevel,
     blocks: B,
     generators: G,
-}
-
-/// What all acrobots of a batch share.
-#[derive(Clone, Debug)]
-struct Settings<A: Arithmetic, P: ParamsKind<A>> {
-    params: P::Shared,
-    bounds: ResetBounds,
-    limit: NonZeroU32,
-    autoreset: Autoreset,
 }
 
 impl<A, B, G, const N: usize, P> Batch<A, B, G, N, P>
@@ -259,6 +236,122 @@ where
             block.set_state(index % N, state);
         }
         Ok(())
+    }
+
+    /// The SIMD instructions that a step uses.
+    #[must_use]
+    pub fn simd_level(&self) -> SimdLevel {
+        self.simd_level
+    }
+
+    /// Sets the SIMD instructions that a step uses. A level that the machine does not have acts as the baseline.
+    pub fn set_simd_level(&mut self, level: SimdLevel) {
+        self.simd_level = level;
+    }
+
+    /// The bounds of initial states.
+    #[must_use]
+    pub fn reset_bounds(&self) -> ResetBounds {
+        self.settings.bounds
+    }
+
+    /// Sets the bounds of initial states for the next resets.
+    pub fn set_reset_bounds(&mut self, bounds: ResetBounds) {
+        self.settings.bounds = bounds;
+    }
+
+    /// The number of steps after which episodes are truncated.
+    #[must_use]
+    pub fn limit(&self) -> NonZeroU32 {
+        self.settings.limit
+    }
+
+    /// Sets the number of steps after which episodes are truncated.
+    pub fn set_limit(&mut self, limit: NonZeroU32) {
+        self.settings.limit = limit;
+    }
+
+    /// When ended episodes are reset.
+    #[must_use]
+    pub fn autoreset(&self) -> Autoreset {
+        self.settings.autoreset
+    }
+
+    /// Sets when ended episodes are reset. Acrobots whose reset is pending are reset immediately by
+    /// [`Autoreset::SameStep`], and never by [`Autoreset::Disabled`].
+    pub fn set_autoreset(&mut self, autoreset: Autoreset) {
+        self.settings.autoreset = autoreset;
+        for (block, generators) in
+            each_block::<_, N>(self.blocks.as_mut(), self.generators.as_mut())
+        {
+            block.stop_waiting(&self.settings, generators);
+        }
+    }
+}
+
+impl<A, B, G, const N: usize> Batch<A, B, G, N, SharedParams>
+where
+    A: Arithmetic,
+    B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
+    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
+{
+    /// The parameters of all acrobots.
+    #[must_use]
+    pub fn params(&self) -> &Params<A::Scalar> {
+        &self.settings.params.params
+    }
+
+    /// Sets the parameters of all acrobots for the next steps.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`].
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        self.settings.params = Model::new(params);
+        Ok(())
+    }
+}
+
+/// Parameters for each acrobot.
+impl<A, B, G, const N: usize> Batch<A, B, G, N, OwnParams>
+where
+    A: Arithmetic,
+    B: AsRef<[Block<A, N, OwnParams>]> + AsMut<[Block<A, N, OwnParams>]>,
+    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
+{
+    /// The parameters of acrobot `index`, if there is one.
+    #[must_use]
+    pub fn params_of(&self, index: usize) -> Option<&Params<A::Scalar>> {
+        check_index(index, self.len()).ok()?;
+        let block = self.blocks.as_ref().get(index / N)?;
+        block.own.params.get(index % N)
+    }
+
+    /// Sets the parameters of acrobot `index` for the next steps.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`], and [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len).
+    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        check_index(index, self.len())?;
+        if let Some(block) = self.blocks.as_mut().get_mut(index / N) {
+            block.own.set_params(index % N, params);
+        }
+        Ok(())
+    }
+
+    /// The range from which each reset draws the acrobot's parameters.
+    #[must_use]
+    pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
+        self.settings.params.as_ref()
+    }
+
+    /// Sets the range from which each reset, also one in a step, first draws the acrobot's parameters and then its
+    /// initial state. With `None`, the default, a reset does not change parameters.
+    pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) {
+        self.settings.params = range;
     }
 }
 

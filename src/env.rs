@@ -26,6 +26,8 @@ mod space;
 mod statistics;
 mod wrapper;
 
+use std::time::Duration;
+
 pub use acrobot_env::{AcrobotEnv, DynAcrobot, ObservationKind};
 pub use check::{Violation, check_env};
 pub use error::Error;
@@ -34,7 +36,7 @@ pub use make::{
 };
 pub use rendering::{Display, RenderMode, Rendering};
 pub use space::{BoxSpace, Discrete, Space};
-pub use statistics::{EpisodeStatistics, RecordEpisodeStatistics};
+pub use statistics::RecordEpisodeStatistics;
 
 use crate::acrobot::{ResetOptions, Step};
 use crate::numpy::SeedSequence;
@@ -128,4 +130,15 @@ pub trait Env {
 pub struct Info {
     /// Statistics of the episode that this step ended, if [`RecordEpisodeStatistics`] records them.
     pub episode: Option<EpisodeStatistics>,
+}
+
+/// Statistics of one episode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EpisodeStatistics {
+    /// The sum of its rewards.
+    pub episode_return: f32,
+    /// The number of its steps.
+    pub length: u32,
+    /// The time from its reset to its end.
+    pub elapsed: Duration,
 }

@@ -93,6 +93,7 @@ pub mod env;
 mod error;
 #[cfg(doc)]
 pub mod guide;
+mod math;
 pub mod numpy;
 mod observation;
 pub mod physics;

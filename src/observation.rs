@@ -2,7 +2,7 @@
 
 use core::f32::consts::PI;
 
-use crate::arithmetic::Real;
+use crate::math::Real;
 use crate::physics::State;
 
 /// What an agent sees: `N` numbers in Gymnasium's order.

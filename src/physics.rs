@@ -121,6 +121,7 @@ macro_rules! constants_of_form {
 
 mod bounds;
 pub mod control;
+pub(crate) mod equations;
 mod gymnasium;
 mod lean;
 mod model;
@@ -132,9 +133,9 @@ mod state;
 mod step;
 
 pub use bounds::{bound, wrap};
+pub(crate) use equations::{Arithmetic, Coefficients, Constants, Equations, Model};
 pub use gymnasium::Gymnasium;
 pub use lean::Lean;
-pub(crate) use model::Common;
 pub use params::{Dynamics, Params};
 pub use params_range::ParamsRange;
 pub use pendulum::{Pendulum, derivative, energy, mass_matrix, positions, tip_height};

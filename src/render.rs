@@ -26,16 +26,12 @@
 mod frame;
 mod scene;
 
-use embedded_graphics_core::Pixel;
-use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::pixelcolor::{BinaryColor, Rgb888};
-use embedded_graphics_core::primitives::PointsIter;
 
 #[cfg(feature = "std")]
 pub use frame::Frame;
 #[cfg(feature = "std")]
 pub(crate) use frame::text;
-use scene::Scene;
 
 use crate::acrobot::Acrobot;
 use crate::arithmetic::{Arithmetic, Real};
@@ -150,56 +146,5 @@ impl Figure {
     pub fn with_torque(mut self, torque: f32) -> Self {
         self.torque = i8::from(torque > 0.0) - i8::from(torque < 0.0);
         self
-    }
-
-    /// Draws the whole picture, each pixel of the target once.
-    ///
-    /// # Errors
-    ///
-    /// Those of the target.
-    pub fn draw<D: DrawTarget>(
-        &self,
-        target: &mut D,
-        theme: &Theme<D::Color>,
-    ) -> Result<(), D::Error> {
-        let area = target.bounding_box();
-        let Some(scene) = Scene::new(self, area) else {
-            return Ok(());
-        };
-        target.fill_contiguous(&area, area.points().map(|point| scene.color(point, theme)))
-    }
-
-    /// Draws over a drawing of `previous`. Only the pixels that differ are written.
-    ///
-    /// # Errors
-    ///
-    /// Those of the target.
-    pub fn redraw<D: DrawTarget>(
-        &self,
-        previous: &Self,
-        target: &mut D,
-        theme: &Theme<D::Color>,
-    ) -> Result<(), D::Error>
-    where
-        D::Color: PartialEq,
-    {
-        if self == previous {
-            return Ok(());
-        }
-        let area = target.bounding_box();
-        let (Some(old), Some(new)) = (Scene::new(previous, area), Scene::new(self, area)) else {
-            return Ok(());
-        };
-        // If the line moved, pixels change across the whole width.
-        let changed = if old.line == new.line {
-            old.bounds_with(&new)
-        } else {
-            area
-        };
-        let moved = changed.points().filter_map(|point| {
-            let color = new.color(point, theme);
-            (color != old.color(point, theme)).then_some(Pixel(point, color))
-        });
-        target.draw_iter(moved)
     }
 }

@@ -1,6 +1,7 @@
-//! The architecture: a file imports only from files in its own row of ARCHITECTURE.md's table or above.
+//! The architecture: a module imports only from modules above it in ARCHITECTURE.md's table, and no files import each
+//! other.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -25,55 +26,88 @@ fn defined(line: &str) -> Option<&str> {
     words.find(|word| !kinds.contains(word))
 }
 
-/// The names in all paths from `crate::` or `super::`, also those in braces.
-fn imported(code: &str) -> impl Iterator<Item = &str> {
-    let starts = ["crate::", "super::"].map(|root| code.match_indices(root));
-    starts.into_iter().flatten().flat_map(|(start, _)| {
-        let is_part = |c: char| c.is_alphanumeric() || "_:{}, \n".contains(c);
-        words(code[start..].split(|c| !is_part(c)).next().unwrap())
-    })
+/// All paths in the code, such as `crate/physics/Model`, with groups in braces taken apart.
+fn paths(code: &str) -> Vec<PathBuf> {
+    let is_other = |c: char| !c.is_alphanumeric() && !"_/".contains(c);
+    let (mut paths, mut group) = (Vec::new(), "");
+    for token in code.split_inclusive(is_other) {
+        let path = token.trim_end_matches(is_other);
+        if token.ends_with("/{") {
+            group = path;
+        } else if !path.is_empty() {
+            paths.push(Path::new(group).join(path));
+        }
+        if token.ends_with('}') {
+            group = "";
+        }
+    }
+    paths
+}
+
+/// The file to which a path in `file` leads: the one that defines the item, otherwise that of the module.
+fn target(sources: &BTreeMap<PathBuf, String>, file: &Path, path: &Path) -> Option<PathBuf> {
+    path.iter().nth(1)?; // not the path in `pub(super)`
+    let path = match path.iter().next()?.to_str()? {
+        "crate" => path.strip_prefix("crate").ok()?.to_owned(),
+        "super" => file.parent()?.join(path.strip_prefix("super").ok()?),
+        child => Some(file.join(path)).filter(|_| sources.contains_key(&file.join(child)))?,
+    };
+    let mut modules = path.ancestors().filter(|path| sources.contains_key(*path));
+    let module = modules.next().unwrap_or(Path::new(""));
+    let item = path.strip_prefix(module).ok()?.to_str()?.split('/').next();
+    let defines = |code: &str| code.lines().any(|line| defined(line) == item);
+    let files = sources.iter().filter(|(_, code)| defines(code));
+    let homes = files.filter(|(home, _)| home.starts_with(module));
+    let home = homes.min_by_key(|(home, _)| home.iter().count());
+    Some(home.map_or(module, |(home, _)| home).to_owned())
 }
 
 #[test]
-fn files_import_only_from_their_own_row_or_above() {
-    let (src, text) = (Path::new("src"), include_str!("../ARCHITECTURE.md"));
-    let (_, table) = text.split_once("| files in `src/` |").unwrap();
-    let lines = table.lines().skip(2).take_while(|line| !line.is_empty());
-    let mut rows = HashMap::new();
-    for (row, line) in lines.enumerate() {
-        let names = line.split('|').nth(1).unwrap().split('`');
-        rows.extend(names.skip(1).step_by(2).map(|name| (name, row)));
-    }
-    for name in rows.keys() {
-        assert!(src.join(format!("{name}.rs")).exists(), "no {name}.rs");
-    }
+fn imports_go_one_way() {
+    let text = include_str!("../ARCHITECTURE.md");
+    let (_, table) = text.split_once("| modules in `src/` |").unwrap();
+    let rows = table.lines().skip(2).take_while(|line| !line.is_empty());
+    let order: Vec<&str> = rows.map(|row| row.split('`').nth(1).unwrap()).collect();
+    let row = |file: &Path| order.iter().position(|module| file.starts_with(module));
 
-    let (mut sources, mut homes) = (Vec::new(), HashMap::new());
-    for path in files(src.into()) {
-        let file = path.strip_prefix(src).unwrap().with_extension("");
-        // These have no row, because they only re-export, document and define macros.
-        if ["lib", "guide", "physics"].map(Path::new).contains(&&*file) {
-            continue;
-        }
-        // A file that the table does not name is in the row of its folder.
-        let row = file.ancestors().find_map(|name| rows.get(name.to_str()?));
-        let row = *row.unwrap_or_else(|| panic!("ARCHITECTURE.md has no {file:?}"));
-        let text = fs::read_to_string(path).unwrap();
-        let code = text.lines().map(|line| line.split("//").next().unwrap());
-        let code = code.collect::<Vec<_>>().join("\n");
-        for name in code.lines().filter_map(defined) {
-            // `error` and `env/error` define the same name: the higher row counts.
-            let home = homes.entry(name.to_owned()).or_insert(row);
-            *home = row.min(*home);
-        }
-        sources.push((file, row, code));
+    let mut sources = BTreeMap::new();
+    for path in files("src".into()) {
+        let file = path.strip_prefix("src").unwrap().with_extension("");
+        let text = fs::read_to_string(path).unwrap().replace("::", "/");
+        let lines = text.lines().map(|line| line.split("//").next().unwrap());
+        let code = lines.filter(|line| !line.ends_with(';') || !line.contains("mod "));
+        sources.insert(file, code.collect::<Vec<_>>().join("\n"));
     }
-    let mut imports = 0;
-    for (file, row, code) in &sources {
-        for name in imported(code).filter(|&name| homes.contains_key(name)) {
-            imports += 1;
-            assert!(homes[name] <= *row, "{file:?} imports {name} from below");
+    // These only re-export and document.
+    sources.retain(|file, _| !["lib", "guide"].map(Path::new).contains(&&**file));
+
+    let mut imports = BTreeMap::new();
+    for (file, code) in &sources {
+        let (mut own, mut exported) = (String::new(), Vec::new());
+        for item in code.split_inclusive(';') {
+            let (before, last) = item.split_at(item.rfind("\npub").unwrap_or(item.len()));
+            own += before;
+            match last.split_whitespace().nth(1) {
+                Some("use") => exported.extend(paths(last)),
+                _ => own += last,
+            }
         }
+        // A re-export is an import if the file uses the name itself.
+        exported.retain(|path| words(&own).any(|word| path.ends_with(word)));
+        let all = paths(&own).into_iter().chain(exported);
+        let found = all.filter_map(|path| target(&sources, file, &path));
+        let found: BTreeSet<_> = found.filter(|to| to != file && row(to).is_some()).collect();
+        assert!(row(file).is_some(), "ARCHITECTURE.md has no {file:?}");
+        let below = found.iter().find(|import| row(import) > row(file));
+        assert_eq!(below, None, "{file:?} imports from below");
+        imports.insert(file, found);
     }
-    assert!(imports > 100, "only {imports} imports were found");
+    assert!(imports.values().flatten().count() > 200, "{imports:#?}");
+    while !imports.is_empty() {
+        let rest: Vec<_> = imports.keys().copied().collect();
+        let used: Vec<_> = imports.values().flatten().cloned().collect();
+        let imports_one = |found: &BTreeSet<_>| found.iter().any(|file| rest.contains(&file));
+        imports.retain(|file, found| used.contains(file) && imports_one(found));
+        assert!(imports.len() < rest.len(), "a circle: {imports:#?}");
+    }
 }

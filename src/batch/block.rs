@@ -2,11 +2,12 @@
 
 use core::hint::black_box;
 
-use super::buffers::take_mut;
+use super::buffers::{set, take_mut};
 use super::inputs::Inputs;
 use super::params::{ParamsKind, SharedParams};
 use super::{Autoreset, Observations, Settings, StepBuffers};
-use crate::arithmetic::{Arithmetic, Fast, Lanes, Real, SinCos, Zeroed};
+use crate::arithmetic::{Arithmetic, Fast};
+use crate::math::{Lanes, Real, SinCos, Zeroed};
 use crate::numpy::{Pcg64, uniform};
 use crate::physics::{ResetBounds, State, sin_cos, step};
 
@@ -257,12 +258,6 @@ fn clear<const N: usize>(
     let results = rewards.iter_mut().zip(terminated).zip(truncated);
     for (((reward, terminated), truncated), _) in results.zip(resets).filter(|(_, reset)| **reset) {
         (*reward, *terminated, *truncated) = (0.0, false, false);
-    }
-}
-
-pub(super) fn set<T>(lanes: &mut [T], lane: usize, x: T) {
-    if let Some(to) = lanes.get_mut(lane) {
-        *to = x;
     }
 }
 

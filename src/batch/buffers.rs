@@ -113,16 +113,10 @@ impl Observations<'_> {
     pub(super) fn write(&mut self, index: usize, row: [f32; 6]) {
         match self {
             Self::None => {}
-            Self::Rows(rows) => {
-                if let Some(to) = rows.get_mut(index) {
-                    *to = row;
-                }
-            }
+            Self::Rows(rows) => set(rows, index, row),
             Self::Columns(columns) => {
                 for (column, x) in columns.iter_mut().zip(row) {
-                    if let Some(to) = column.get_mut(index) {
-                        *to = x;
-                    }
+                    set(column, index, x);
                 }
             }
         }
@@ -142,6 +136,13 @@ pub(super) fn take<'a, T>(rest: &mut &'a [T], n: usize) -> &'a [T] {
 pub(super) fn take_mut<'a, T>(rest: &mut &'a mut [T], n: usize) -> &'a mut [T] {
     let first = rest.split_off_mut(..n);
     first.unwrap_or_else(|| core::mem::take(rest))
+}
+
+/// Writes one element, if `index` is in range.
+pub(super) fn set<T>(to: &mut [T], index: usize, x: T) {
+    if let Some(to) = to.get_mut(index) {
+        *to = x;
+    }
 }
 
 /// Rejects a slice whose length is not `expected`.

@@ -3,8 +3,9 @@
 use super::buffers::{check_length, take};
 use super::lane_model::LaneModel;
 use crate::action::Action;
-use crate::arithmetic::{Arithmetic, Real};
+use crate::arithmetic::Arithmetic;
 use crate::error::Error;
+use crate::math::Real;
 use crate::physics::check_torque;
 
 /// What a step of a batch applies to an acrobot: an action as a `u8` (0, 1 or 2) or an [`Action`], or any finite torque in

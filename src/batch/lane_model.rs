@@ -1,10 +1,9 @@
 //! What a step reads of the parameters: a number for each lane.
 
-use super::block::set;
-use crate::arithmetic::{
-    Arithmetic, Coefficients, Constants, Equations, Lanes, Model, Numbers, Real, Zeroed,
-};
-use crate::physics::Dynamics;
+use super::buffers::set;
+use crate::arithmetic::Arithmetic;
+use crate::math::{Lanes, Numbers, Real, SinCos, Zeroed};
+use crate::physics::{Coefficients, Constants, Dynamics, Equations, Model};
 
 /// A model for each lane. Aligned, because an SSE instruction can read only aligned numbers from memory.
 #[derive(Clone, Debug)]
@@ -55,8 +54,11 @@ impl<A: Arithmetic, const N: usize> LaneModel<A, N> {
 
     /// Replaces the model of one lane.
     pub(super) fn set(&mut self, lane: usize, Model { params, constants }: Model<A>) {
-        self.constants = A::Form::zip(self.constants, constants, |lanes, x| lanes.with(lane, x));
-        self.dt = self.dt.with(lane, params.dt);
+        self.constants = A::Form::zip(self.constants, constants, |mut lanes, x| {
+            set(&mut lanes.0, lane, x);
+            lanes
+        });
+        set(&mut self.dt.0, lane, params.dt);
         let [max_velocity1, max_velocity2] = &mut self.max_velocities;
         set(&mut max_velocity1.0, lane, params.max_velocity1);
         set(&mut max_velocity2.0, lane, params.max_velocity2);
@@ -95,5 +97,11 @@ impl<A: Arithmetic, const N: usize> Coefficients<A, Lanes<A::Scalar, N>> for Lan
             *to = if *is_book { x } else { *to };
         }
         nips
+    }
+
+    #[inline(always)]
+    fn sin_cos(&self, x: Lanes<A::Scalar, N>) -> SinCos<Lanes<A::Scalar, N>> {
+        let (sin, cos) = A::sin_cos_lanes(x.0);
+        (Lanes(sin), Lanes(cos))
     }
 }

@@ -2,13 +2,12 @@
 
 use core::fmt;
 
-use super::block::set;
+use super::buffers::set;
 use super::lane_model::LaneModel;
-use super::{Batch, Block, check_index};
-use crate::arithmetic::{Arithmetic, Model, Zeroed};
-use crate::error::Error;
+use crate::arithmetic::Arithmetic;
+use crate::math::Zeroed;
 use crate::numpy::Pcg64;
-use crate::physics::{Params, ParamsRange};
+use crate::physics::{Model, Params, ParamsRange};
 
 /// All acrobots of a batch have the same parameters.
 #[derive(Clone, Copy, Debug)]
@@ -118,7 +117,7 @@ impl<A: Arithmetic> Kind<A> for OwnParams {
 #[derive(Clone, Debug)]
 pub struct Own<A: Arithmetic, const N: usize> {
     model: LaneModel<A, N>,
-    params: [Params<A::Scalar>; N],
+    pub(super) params: [Params<A::Scalar>; N],
 }
 
 impl<A: Arithmetic, const N: usize> Zeroed for Own<A, N> {
@@ -130,74 +129,8 @@ impl<A: Arithmetic, const N: usize> Zeroed for Own<A, N> {
 
 impl<A: Arithmetic, const N: usize> Own<A, N> {
     /// Replaces the parameters of a lane by valid ones.
-    fn set_params(&mut self, lane: usize, params: Params<A::Scalar>) {
+    pub(super) fn set_params(&mut self, lane: usize, params: Params<A::Scalar>) {
         self.model.set(lane, Model::new(params));
         set(&mut self.params, lane, params);
-    }
-}
-
-impl<A, B, G, const N: usize> Batch<A, B, G, N, SharedParams>
-where
-    A: Arithmetic,
-    B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
-    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
-{
-    /// The parameters of all acrobots.
-    #[must_use]
-    pub fn params(&self) -> &Params<A::Scalar> {
-        &self.settings.params.params
-    }
-
-    /// Sets the parameters of all acrobots for the next steps.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`].
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
-        params.validate()?;
-        self.settings.params = Model::new(params);
-        Ok(())
-    }
-}
-
-/// Parameters for each acrobot.
-impl<A, B, G, const N: usize> Batch<A, B, G, N, OwnParams>
-where
-    A: Arithmetic,
-    B: AsRef<[Block<A, N, OwnParams>]> + AsMut<[Block<A, N, OwnParams>]>,
-    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
-{
-    /// The parameters of acrobot `index`, if there is one.
-    #[must_use]
-    pub fn params_of(&self, index: usize) -> Option<&Params<A::Scalar>> {
-        check_index(index, self.len()).ok()?;
-        let block = self.blocks.as_ref().get(index / N)?;
-        block.own.params.get(index % N)
-    }
-
-    /// Sets the parameters of acrobot `index` for the next steps.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`], and [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len).
-    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
-        params.validate()?;
-        check_index(index, self.len())?;
-        if let Some(block) = self.blocks.as_mut().get_mut(index / N) {
-            block.own.set_params(index % N, params);
-        }
-        Ok(())
-    }
-
-    /// The range from which each reset draws the acrobot's parameters.
-    #[must_use]
-    pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
-        self.settings.params.as_ref()
-    }
-
-    /// Sets the range from which each reset, also one in a step, first draws the acrobot's parameters and then its
-    /// initial state. With `None`, the default, a reset does not change parameters.
-    pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) {
-        self.settings.params = range;
     }
 }

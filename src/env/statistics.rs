@@ -1,22 +1,11 @@
 //! The lengths and returns of episodes.
 
 use std::collections::VecDeque;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::wrapper::forward;
-use super::{Env, Error, Info, Rendering};
+use super::{Env, EpisodeStatistics, Error, Info, Rendering};
 use crate::acrobot::{ResetOptions, Step};
-
-/// Statistics of one episode.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EpisodeStatistics {
-    /// The sum of its rewards.
-    pub episode_return: f32,
-    /// The number of its steps.
-    pub length: u32,
-    /// The time from its reset to its end.
-    pub elapsed: Duration,
-}
 
 /// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode reports its statistics in [`Info`]. Those of
 /// the last 100 episodes are kept.

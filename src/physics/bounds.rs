@@ -1,6 +1,7 @@
 //! The bounds of a state: angles are wrapped, velocities are clamped.
 
-use crate::arithmetic::{Arithmetic, Equations, Numbers, Real};
+use super::{Arithmetic, Equations};
+use crate::math::{Numbers, Real};
 
 /// The angle `x`, rad, wrapped to \[−π, π\] by whole turns, as a step of `A` wraps it.
 ///

@@ -1,8 +1,8 @@
 //! Gymnasium's expressions, operation by operation.
 
-use super::Params;
 use super::model::{Common, FromParams};
-use crate::arithmetic::{Arithmetic, Coefficients, Equations, Numbers, Real, SinCos, Zeroed};
+use super::{Arithmetic, Coefficients, Equations, Params};
+use crate::math::{Numbers, Real, SinCos, Zeroed};
 
 /// The equations as Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +85,7 @@ where
         } = model.constants();
         let (sin2, cos2) = match sin_cos {
             Some([_, second]) => second,
-            None => theta2.sin_cos::<A>(),
+            None => model.sin_cos(theta2),
         };
         let (quarter, two) = (V::splat(S::PI * S::HALF), V::splat(S::from_f64(2.0)));
         let square = |x: V| x.map(A::square);

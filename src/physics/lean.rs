@@ -1,8 +1,8 @@
 //! The lean form: one division and the sines and cosines of θ1 and θ2 for each evaluation.
 
 use super::model::{Common, FromParams};
-use super::{Dynamics, Params};
-use crate::arithmetic::{Arithmetic, Coefficients, Equations, Numbers, Real, SinCos, Zeroed};
+use super::{Arithmetic, Coefficients, Dynamics, Equations, Params};
+use crate::math::{Numbers, Real, SinCos, Zeroed};
 
 /// The equations solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +58,7 @@ where
     ) -> [V; 4] {
         let [(sin1, cos1), (sin2, cos2)] = match sin_cos {
             Some(sin_cos) => sin_cos,
-            None => [theta1.sin_cos::<A>(), theta2.sin_cos::<A>()],
+            None => [model.sin_cos(theta1), model.sin_cos(theta2)],
         };
         let &Constants {
             common:

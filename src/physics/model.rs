@@ -4,7 +4,7 @@
 //! Sutton & Barto, *Reinforcement Learning: An Introduction* (1998), section 11.3: d1, d2, phi1 and phi2.
 
 use super::Params;
-use crate::arithmetic::{Real, SinCos, Zeroed};
+use crate::math::{Real, SinCos, Zeroed};
 
 /// The constants of a form of the equations, computed from parameters.
 pub trait FromParams<S>: Sized {

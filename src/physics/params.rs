@@ -1,8 +1,8 @@
 //! The parameters, in SI units, and their ranges.
 
 use crate::action::Action;
-use crate::arithmetic::Real;
 use crate::error::{Error, Range};
+use crate::math::Real;
 
 /// Which equations of motion to use: Gymnasium's `book_or_nips`.
 #[non_exhaustive]

@@ -3,8 +3,8 @@
 use rand_core::Rng;
 
 use super::Params;
-use crate::arithmetic::Real;
 use crate::error::Error;
+use crate::math::Real;
 use crate::numpy::uniform;
 
 /// A range for each parameter, to draw from: domain randomization.

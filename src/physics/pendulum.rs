@@ -1,13 +1,9 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
 use super::model;
-use super::{Params, State, step};
-#[cfg(feature = "std")]
-use crate::arithmetic::Host;
-use crate::arithmetic::{
-    Arithmetic, Equations, Fast, Micro, Model, Portable, Real, Reference, SinCos,
-};
+use super::{Arithmetic, Equations, Model, Params, State, step};
 use crate::error::{Error, Range};
+use crate::math::{Real, SinCos};
 
 /// A double pendulum with a motor between its links.
 ///
@@ -48,9 +44,14 @@ impl<A: Arithmetic> Pendulum<A> {
     /// A pendulum with the default parameters that hangs at rest.
     #[must_use]
     pub const fn hanging() -> Self {
+        Self::starting_at([A::Scalar::ZERO; 4])
+    }
+
+    /// A pendulum with the default parameters in a state that is known to be finite.
+    pub(crate) const fn starting_at(y: [A::Scalar; 4]) -> Self {
         Self {
             model: Model::DEFAULT,
-            y: [A::Scalar::ZERO; 4],
+            y,
             sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2],
             is_current: false,
         }
@@ -212,36 +213,6 @@ impl<A: Arithmetic> Pendulum<A> {
         [theta1, theta2]
     }
 }
-
-macro_rules! at {
-    ($($(#[$attribute:meta])* $arithmetic:ident: $scalar:ident),*) => {$(
-        $(#[$attribute])*
-        impl Pendulum<$arithmetic> {
-            /// A pendulum with the default parameters in this state, also in a `const`.
-            ///
-            /// # Errors
-            ///
-            /// [`Error::OutOfRange`] for a number that is not finite.
-            pub const fn at(state: State<$scalar>) -> Result<Self, Error> {
-                let State { theta1, theta2, dtheta1, dtheta2 } = state;
-                let wide = State {
-                    theta1: theta1 as f64,
-                    theta2: theta2 as f64,
-                    dtheta1: dtheta1 as f64,
-                    dtheta2: dtheta2 as f64,
-                };
-                if let Err(error) = wide.check() {
-                    return Err(error);
-                }
-                let mut pendulum = Self::hanging();
-                pendulum.y = [theta1, theta2, dtheta1, dtheta2];
-                Ok(pendulum)
-            }
-        }
-    )*};
-}
-
-at!(Reference: f64, Portable: f64, Fast: f32, Micro: f32, #[cfg(feature = "std")] Host: f64);
 
 impl<A: Arithmetic> PartialEq for Pendulum<A> {
     /// Compares parameters and state only: extreme parameters can make constants NaN, which does not equal itself.

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Mul};
 
-use crate::arithmetic::{Numbers, Real};
+use crate::math::{Numbers, Real};
 
 /// One step of the classical Runge-Kutta method: approximates the solution of `y' = derivative(y)` after the time `dt`.
 /// The order of operations is Gymnasium's.

@@ -2,8 +2,8 @@
 
 use rand_core::Rng;
 
-use crate::arithmetic::Real;
 use crate::error::{Error, Range};
+use crate::math::Real;
 use crate::numpy::uniform;
 
 /// The state of an acrobot: two angles and their velocities.
@@ -87,7 +87,7 @@ impl<S: Real> State<S> {
 
 impl State<f64> {
     /// As [`State::validate`], also in a `const`.
-    pub(super) const fn check(&self) -> Result<(), Error> {
+    pub(crate) const fn check(&self) -> Result<(), Error> {
         // `?` is not allowed in a `const fn`.
         if let Err(error) = Range::Finite.check("theta1", self.theta1, "rad") {
             return Err(error);

@@ -3,7 +3,8 @@
 use core::marker::PhantomData;
 
 use super::rk4::{Derivative, classical, compact};
-use crate::arithmetic::{Arithmetic, Coefficients, Equations, Numbers, Real, SinCos};
+use super::{Arithmetic, Coefficients, Equations};
+use crate::math::{Numbers, Real, SinCos};
 
 /// Advances `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 by one dt under a constant torque, N m.
 /// Returns whether the new state is a goal state.
@@ -35,7 +36,7 @@ pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
     } else if !is_within_bounds(model, y) {
         enforce_bounds_apart(model, y, angles);
     }
-    *sin_cos = [y[0].sin_cos::<A>(), y[1].sin_cos::<A>()];
+    *sin_cos = [model.sin_cos(y[0]), model.sin_cos(y[1])];
     A::Form::reaches_goal::<A, V>([y[0], y[1]], *sin_cos)
 }
 

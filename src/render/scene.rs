@@ -1,18 +1,73 @@
-//! The geometry of a drawing in pixels.
+//! Drawing: the geometry of a figure in pixels, and their colours.
 
+use embedded_graphics_core::Pixel;
+use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::pixelcolor::PixelColor;
-use embedded_graphics_core::primitives::Rectangle;
+use embedded_graphics_core::primitives::{PointsIter, Rectangle};
 use micromath::F32Ext;
 
 use super::{Figure, Theme};
 
+impl Figure {
+    /// Draws the whole picture, each pixel of the target once.
+    ///
+    /// # Errors
+    ///
+    /// Those of the target.
+    pub fn draw<D: DrawTarget>(
+        &self,
+        target: &mut D,
+        theme: &Theme<D::Color>,
+    ) -> Result<(), D::Error> {
+        let area = target.bounding_box();
+        let Some(scene) = Scene::new(self, area) else {
+            return Ok(());
+        };
+        target.fill_contiguous(&area, area.points().map(|point| scene.color(point, theme)))
+    }
+
+    /// Draws over a drawing of `previous`. Only the pixels that differ are written.
+    ///
+    /// # Errors
+    ///
+    /// Those of the target.
+    pub fn redraw<D: DrawTarget>(
+        &self,
+        previous: &Self,
+        target: &mut D,
+        theme: &Theme<D::Color>,
+    ) -> Result<(), D::Error>
+    where
+        D::Color: PartialEq,
+    {
+        if self == previous {
+            return Ok(());
+        }
+        let area = target.bounding_box();
+        let (Some(old), Some(new)) = (Scene::new(previous, area), Scene::new(self, area)) else {
+            return Ok(());
+        };
+        // If the line moved, pixels change across the whole width.
+        let changed = if old.line == new.line {
+            old.bounds_with(&new)
+        } else {
+            area
+        };
+        let moved = changed.points().filter_map(|point| {
+            let color = new.color(point, theme);
+            (color != old.color(point, theme)).then_some(Pixel(point, color))
+        });
+        target.draw_iter(moved)
+    }
+}
+
 /// A figure in the pixels of one target. The parts overlap as in Gymnasium, the lower link over the upper.
-pub(super) struct Scene {
+struct Scene {
     /// Corners of a rectangle around all parts except the line. Pixels outside are not tested against parts.
     corners: [Point; 2],
     /// The row of the target height.
-    pub(super) line: i32,
+    line: i32,
     links: [Bar; 2],
     joints: [Disc; 2],
     arrow: Option<[Bar; 8]>,
@@ -27,7 +82,7 @@ const TOLERANCE: f32 = 0.5;
 
 impl Scene {
     /// `None` for an area without pixels, and for an area beyond `i32::MAX`, where embedded-graphics would overflow.
-    pub(super) fn new(figure: &Figure, area: Rectangle) -> Option<Self> {
+    fn new(figure: &Figure, area: Rectangle) -> Option<Self> {
         let Size { width, height } = area.size;
         let last = |start: i32, side: u32| {
             let end = start.checked_add(side.try_into().ok()?)?;
@@ -75,7 +130,7 @@ impl Scene {
     }
 
     /// A rectangle around the parts of both scenes.
-    pub(super) fn bounds_with(&self, other: &Self) -> Rectangle {
+    fn bounds_with(&self, other: &Self) -> Rectangle {
         let ([first, last], [other_first, other_last]) = (self.corners, other.corners);
         Rectangle::with_corners(
             first.component_min(other_first),
@@ -83,7 +138,7 @@ impl Scene {
         )
     }
 
-    pub(super) fn color<C: PixelColor>(&self, point: Point, theme: &Theme<C>) -> C {
+    fn color<C: PixelColor>(&self, point: Point, theme: &Theme<C>) -> C {
         let [link1, link2] = &self.links;
         let [joint1, joint2] = &self.joints;
         let line_or_ground = if point.y == self.line {

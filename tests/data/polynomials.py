@@ -1,5 +1,5 @@
-"""Prints the constants of src/arithmetic/fast.rs and src/arithmetic/micro.rs, as bits of f32, and the error of
-each polynomial. Fails if the source has other constants.
+"""Prints the constants of polynomial.rs and table.rs in src/math/sines, as bits of f32, and the error of each
+polynomial. Fails if the source has other constants.
 
     pip install -r tests/data/requirements.txt
     python tests/data/polynomials.py
@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import linprog
 
-SOURCES = Path(__file__).parents[2] / "src/arithmetic"
+SOURCES = Path(__file__).parents[2] / "src/math/sines"
 
 
 def fit(r, target, powers):
@@ -41,15 +41,15 @@ def check(name, what, constants, error=""):
     print(name, what, *constants, error)
     source = (SOURCES / f"{name}.rs").read_text().replace("_", "")
     if missing := [constant for constant in constants if constant not in source]:
-        sys.exit(f"src/arithmetic/{name}.rs has no {', '.join(missing)}")
+        sys.exit(f"src/math/sines/{name}.rs has no {', '.join(missing)}")
 
 
 for name, end, sin_powers, cos_powers in [
-    ("fast", np.pi / 4, (3, 5, 7), (2, 4, 6)),
-    ("micro", np.pi / 32, (3,), (2,)),
+    ("polynomial", np.pi / 4, (3, 5, 7), (2, 4, 6)),
+    ("table", np.pi / 32, (3,), (2,)),
 ]:
     r = np.linspace(1e-4, end + 1e-6, 3000)
     for function, target, powers in [("S", np.sin(r) - r, sin_powers), ("C", np.cos(r) - 1, cos_powers)]:
         coefficients, error = fit(r, target, powers)
         check(name, function, bits(coefficients), f"within {error:.1e}")
-check("micro", "sines", bits(np.sin(np.arange(9) * np.pi / 16)))
+check("table", "sines", bits(np.sin(np.arange(9) * np.pi / 16)))

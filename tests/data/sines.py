@@ -1,6 +1,6 @@
-"""Derives the constants of src/arithmetic/reference, bounds the errors of its two fast paths, and records MPFR's correctly
-rounded sines and cosines in sines.txt in its folder. Fails if the source has other constants or an error exceeds its
-margin.
+"""Derives the constants of src/math/sines/correctly_rounded, bounds the errors of its two fast paths, and records
+MPFR's correctly rounded sines and cosines in sines.txt in its folder. Fails if the source has other constants or an
+error exceeds its margin.
 
     pip install -r tests/data/requirements.txt
     python tests/data/sines.py          records the first digest of each family again, in seconds
@@ -19,7 +19,7 @@ import mpmath as mp
 import numpy as np
 
 HERE = Path(__file__).parent
-SOURCES = HERE.parents[1] / "src/arithmetic/reference"
+SOURCES = HERE.parents[1] / "src/math/sines/correctly_rounded"
 MASK = 2**64 - 1
 CHUNKS, CHUNK = 12, 250_000
 MULTIPLIER = 0x9E3779B97F4A7C15

@@ -2,11 +2,10 @@
 
 use super::linearize::partials;
 use super::matrix::{check_finite, dot, identity, transpose};
-use crate::arithmetic::{Arithmetic, Equations, Model, Real, SinCos};
 use crate::error::Error;
-use crate::physics::Pendulum;
-use crate::physics::pendulum::check_torque;
+use crate::math::{Real, SinCos};
 use crate::physics::rk4::{Along, Derivative, compact};
+use crate::physics::{Arithmetic, Equations, Model, Pendulum, check_torque};
 
 /// The model x′ = A x + B u of one step about a state and a torque: x and x′ are the deviations before and after the
 /// step, \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u is that of the torque, N m.

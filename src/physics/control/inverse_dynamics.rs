@@ -1,10 +1,10 @@
 //! Forces from accelerations, and velocities of points.
 
 use super::matrix::check_finite;
-use crate::arithmetic::{Arithmetic, Coefficients, Real};
 use crate::error::{Error, Range};
-use crate::physics::Pendulum;
+use crate::math::Real;
 use crate::physics::model::directions;
+use crate::physics::{Arithmetic, Coefficients, Pendulum};
 
 /// The torques and forces of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

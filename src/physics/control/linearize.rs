@@ -1,10 +1,10 @@
 //! The derivatives of the equations of motion.
 
 use super::matrix::check_finite;
-use crate::arithmetic::{Arithmetic, Coefficients, Equations, Model, Real, SinCos};
 use crate::error::Error;
-use crate::physics::pendulum::check_torque;
-use crate::physics::{Common, Pendulum};
+use crate::math::{Real, SinCos};
+use crate::physics::model::Common;
+use crate::physics::{Arithmetic, Coefficients, Equations, Model, Pendulum, check_torque};
 
 /// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
 /// rad/s, and u that from the torque, N m.

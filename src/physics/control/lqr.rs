@@ -5,9 +5,9 @@ use super::matrix::{
     Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, dot, eliminate, identity,
     inner, largest, product, scale, symmetrize, transpose,
 };
-use crate::arithmetic::{Arithmetic, Real};
 use crate::error::{Error, Range};
-use crate::physics::{State, wrap};
+use crate::math::Real;
+use crate::physics::{Arithmetic, State, wrap};
 
 /// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one with the least sum of
 /// xᵀ Q x + R u² over all steps.

@@ -2,8 +2,8 @@
 
 use core::mem::swap;
 
-use crate::arithmetic::Real;
 use crate::error::Error;
+use crate::math::Real;
 
 /// Rows.
 pub type Matrix<S = f64> = [[S; 4]; 4];

@@ -1,50 +1,11 @@
-//! `f32` with polynomials: for single-precision FPUs, WASM and SIMD.
+//! `f32` by two polynomials: for single-precision FPUs, WASM and SIMD.
 
-use super::{Arithmetic, FARTHEST, Lanes, Numbers};
-use crate::physics::Lean;
-
-/// `f32`, polynomial sines, and the lean form: the same bits on every target, with or without an FPU.
-///
-/// ```
-/// use acrobot::Fast;
-/// use acrobot::arithmetic::Arithmetic;
-///
-/// let (sin, cos) = Fast::sin_cos(1.0);
-/// assert!((sin - 0.84147098).abs() < 1.2e-7 && (cos - 0.54030231).abs() < 1.2e-7);
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Fast;
-
-impl Arithmetic for Fast {
-    const NAME: &'static str = "fast";
-    type Scalar = f32;
-    type Form = Lean;
-
-    /// Sine and cosine with an error of at most 1.2e-7 (two units in the last place of 1) for |x| ≤ 64 rad. The largest
-    /// error over all these `f32` is 1.17e-7 (`cargo test --release --test trigonometry`). For larger angles the error
-    /// is that of an angle in `f32`, 1.2e-7 |x|. Angles beyond ±2¹⁹ rad are clamped to ±2¹⁹ rad.
-    #[inline]
-    fn sin_cos(x: f32) -> (f32, f32) {
-        sin_cos_kernel(x.clamp(-FARTHEST, FARTHEST))
-    }
-
-    #[inline(always)]
-    fn sin_cos_near(x: f32) -> (f32, f32) {
-        sin_cos_kernel(x)
-    }
-
-    #[inline(always)]
-    fn sin_cos_lanes<const N: usize>(x: [f32; N]) -> ([f32; N], [f32; N]) {
-        let (sin, cos) = sin_cos_kernel(Lanes(x));
-        (sin.0, cos.0)
-    }
-}
+use crate::math::{Lanes, Numbers};
 
 /// Cody-Waite reduction to the nearest multiple of π/2, then two polynomials. Two constants suffice: for
 /// |x| ≤ 64 the multiple has at most 6 bits and `PI_2_HIGH` has 18, so their product is exact.
 #[inline(always)]
-fn sin_cos_kernel<V: QuarterTurns>(x: V) -> (V, V) {
+pub fn sin_cos<V: QuarterTurns>(x: V) -> (V, V) {
     /// π/2: its leading 18 bits, and the rest.
     const PI_2_HIGH: f32 = f32::from_bits(0x3fc9_0fc0);
     const PI_2_LOW: f32 = (core::f64::consts::FRAC_PI_2 - PI_2_HIGH as f64) as f32;
@@ -76,7 +37,7 @@ fn sin_cos_kernel<V: QuarterTurns>(x: V) -> (V, V) {
 }
 
 /// Numbers that can be rotated by quarter turns.
-trait QuarterTurns: Numbers<f32> {
+pub trait QuarterTurns: Numbers<f32> {
     /// Rotates sine and cosine by 0 to 3 quarter turns: the two lowest bits of `turns`. A quarter turn changes
     /// (sin, cos) to (cos, −sin).
     fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self);
@@ -155,7 +116,7 @@ mod tests {
         for i in -100..=100 {
             let angle = i as f32 / 128.0;
             // Within a quarter turn about 0 nothing is rotated.
-            let (sin, cos) = Fast::sin_cos(angle);
+            let (sin, cos) = sin_cos(angle);
             for turns in 0..8 {
                 let [products, selection] = [rotate_by_products, rotate_by_selection]
                     .map(|rotate| rotate(turns, sin, cos))

@@ -1,46 +1,11 @@
-//! `f32` with a table of sines: the fewest instructions on a microcontroller.
+//! `f32` by a table: the fewest instructions on a microcontroller.
 
 use core::f32::consts::{FRAC_1_PI, PI};
-
-use super::{Arithmetic, FARTHEST};
-use crate::physics::Lean;
-
-/// `f32`, a table of sixteen sines for half a turn, and the lean form: a sixth fewer instructions than
-/// [`Fast`](crate::Fast) on a Cortex-M4, and about seven times its error for |x| ≤ π.
-///
-/// ```
-/// use acrobot::arithmetic::{Arithmetic, Micro};
-///
-/// let (sin, cos) = Micro::sin_cos(1.0);
-/// assert!((sin - 0.84147098).abs() < 8e-7 && (cos - 0.54030231).abs() < 8e-7);
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Micro;
-
-impl Arithmetic for Micro {
-    const NAME: &'static str = "micro";
-    type Scalar = f32;
-    type Form = Lean;
-
-    /// Sine and cosine with an error of at most 8e-7 for |x| ≤ π, and 4e-6 for |x| ≤ 64 rad
-    /// (`cargo test --release --test trigonometry`). For larger angles the error is 2e-7 |x|.
-    /// Angles beyond ±2¹⁹ rad are clamped to ±2¹⁹ rad.
-    #[inline]
-    fn sin_cos(x: f32) -> (f32, f32) {
-        sin_cos_kernel(x.clamp(-FARTHEST, FARTHEST))
-    }
-
-    #[inline(always)]
-    fn sin_cos_near(x: f32) -> (f32, f32) {
-        sin_cos_kernel(x)
-    }
-}
 
 /// A table gives sine and cosine of the nearest multiple of π/16, and polynomials those of the remainder `r`. The
 /// addition theorem combines them.
 #[inline(always)]
-fn sin_cos_kernel(x: f32) -> (f32, f32) {
+pub fn sin_cos(x: f32) -> (f32, f32) {
     const STEP: f32 = PI / 16.0;
     /// 1.5 × 2²³: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
     const MAGIC: f32 = 12_582_912.0;

@@ -1,10 +1,60 @@
-//! What a form of the equations of motion provides, for one number or for many at once.
+//! What determines every bit of a step, for one number or for many at once: an arithmetic, which names a form of the
+//! equations of motion.
 
 use core::fmt;
-use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Arithmetic, Real, SinCos, Zeroed};
-use crate::physics::{Common, Dynamics, Params};
+use super::model::Common;
+use super::{Dynamics, Params};
+use crate::math::{Numbers, Real, SinCos, Zeroed};
+
+/// A scalar, its sines and the form of the equations: they determine every bit of a result.
+pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
+    /// A short name in lower case, of at most 16 bytes. Snapshots hold it, so no other arithmetic can load them. The
+    /// crate's names are "reference", "portable", "fast", "micro" and "host". With a longer name, code that saves or
+    /// loads a snapshot does not compile.
+    const NAME: &'static str;
+
+    /// The type of angles, velocities, torques and parameters.
+    type Scalar: Real;
+
+    /// How the equations of motion are evaluated: [`Lean`](super::Lean) or [`Gymnasium`](super::Gymnasium).
+    type Form: Form<Self::Scalar>;
+
+    /// Sine and cosine of `x` rad. Both must be within \[−1, 1\] for every finite `x`.
+    fn sin_cos(x: Self::Scalar) -> (Self::Scalar, Self::Scalar);
+
+    /// Sine and cosine, bit-identical to [`sin_cos`](Self::sin_cos) for |x| ≤ 2¹⁹ rad. Beyond, any result is valid,
+    /// even NaN. Steps call this method for speed: it can leave out range checks.
+    #[inline]
+    fn sin_cos_near(x: Self::Scalar) -> (Self::Scalar, Self::Scalar) {
+        Self::sin_cos(x)
+    }
+
+    /// Sines and cosines of `N` angles, bit-identical to [`sin_cos_near`](Self::sin_cos_near). Batches call it, so it
+    /// is the place for SIMD.
+    #[inline(always)]
+    fn sin_cos_lanes<const N: usize>(
+        mut x: [Self::Scalar; N],
+    ) -> ([Self::Scalar; N], [Self::Scalar; N]) {
+        let mut cos = x;
+        for (x, cos) in x.iter_mut().zip(&mut cos) {
+            (*x, *cos) = Self::sin_cos_near(*x);
+        }
+        (x, cos)
+    }
+
+    /// Cosine of `x` rad, bit-identical to the cosine of [`sin_cos`](Self::sin_cos).
+    #[inline]
+    fn cos(x: Self::Scalar) -> Self::Scalar {
+        Self::sin_cos(x).1
+    }
+
+    /// The square of `x`.
+    #[inline]
+    fn square(x: Self::Scalar) -> Self::Scalar {
+        x * x
+    }
+}
 
 /// The constants that the form of the equations computes from the parameters.
 pub type Constants<A, V> =
@@ -30,6 +80,9 @@ pub trait Coefficients<A: Arithmetic, V: Numbers<A::Scalar>> {
 
     /// `book` where the equations are those of the book, `nips` where they are those of the 1996 paper.
     fn select(&self, book: V, nips: V) -> V;
+
+    /// [`Arithmetic::sin_cos_near`] of each number.
+    fn sin_cos(&self, x: V) -> SinCos<V>;
 }
 
 impl<A: Arithmetic> Coefficients<A, A::Scalar> for Model<A> {
@@ -55,6 +108,11 @@ impl<A: Arithmetic> Coefficients<A, A::Scalar> for Model<A> {
             Dynamics::Nips => nips,
         }
     }
+
+    #[inline(always)]
+    fn sin_cos(&self, x: A::Scalar) -> SinCos<A::Scalar> {
+        A::sin_cos_near(x)
+    }
 }
 
 impl<A: Arithmetic> Model<A> {
@@ -77,6 +135,12 @@ impl<A: Arithmetic> Model<A> {
         }
     }
 }
+
+/// A form of the equations of motion: [`Gymnasium`](super::Gymnasium) or [`Lean`](super::Lean), which
+/// agree up to rounding. No other type can implement it.
+pub trait Form<S: Real>: Equations<S> {}
+
+impl<S: Real, F: Equations<S>> Form<S> for F {}
 
 /// A form of the equations of motion, in the scalar `S`.
 pub trait Equations<S: Real>: Copy + fmt::Debug {
@@ -119,92 +183,4 @@ pub trait Equations<S: Real>: Copy + fmt::Debug {
         angles: [V; 2],
         sin_cos: [SinCos<V>; 2],
     ) -> V::Mask;
-}
-
-/// One number, or many side by side. The code of a step is generic over this, so it is written once.
-pub trait Numbers<S: Real>:
-    Copy
-    + fmt::Debug
-    + Send
-    + Sync
-    + Zeroed
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-{
-    /// A truth value for each number.
-    type Mask;
-
-    /// Whether this is a single number.
-    const IS_ONE: bool;
-
-    /// `x` in each lane.
-    fn splat(x: S) -> Self;
-
-    /// Applies `f` to each number.
-    fn map(self, f: impl FnMut(S) -> S) -> Self;
-
-    /// Applies `f` to each pair of numbers.
-    fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
-
-    /// Whether |x| ≤ `limit` for all numbers x; false for NaN.
-    fn all_within(self, limit: Self) -> bool;
-
-    /// `inside` where |x| ≤ `limit`, `outside` elsewhere and for NaN.
-    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self;
-
-    /// Which numbers are above `limit`.
-    fn above(self, limit: S) -> Self::Mask;
-
-    /// [`Arithmetic::sin_cos_near`] of each number.
-    fn sin_cos<A: Arithmetic<Scalar = S>>(self) -> SinCos<Self>;
-
-    /// Each number clamped to \[−`limit`, `limit`\]; NaN stays NaN.
-    #[inline(always)]
-    fn bound(self, limit: Self) -> Self {
-        self.zip(limit, |x, limit| if x > limit { limit } else { x })
-            .zip(limit, |x, limit| if x < -limit { -limit } else { x })
-    }
-}
-
-impl<S: Real> Numbers<S> for S {
-    type Mask = bool;
-    const IS_ONE: bool = true;
-
-    #[inline(always)]
-    fn splat(x: S) -> Self {
-        x
-    }
-
-    #[inline(always)]
-    fn map(self, mut f: impl FnMut(S) -> S) -> Self {
-        f(self)
-    }
-
-    #[inline(always)]
-    fn zip(self, other: Self, mut f: impl FnMut(S, S) -> S) -> Self {
-        f(self, other)
-    }
-
-    #[inline(always)]
-    fn all_within(self, limit: S) -> bool {
-        self.abs() <= limit
-    }
-
-    #[inline(always)]
-    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self {
-        if self.abs() <= limit { inside } else { outside }
-    }
-
-    #[inline(always)]
-    fn above(self, limit: S) -> bool {
-        self > limit
-    }
-
-    #[inline(always)]
-    fn sin_cos<A: Arithmetic<Scalar = S>>(self) -> SinCos<Self> {
-        A::sin_cos_near(self)
-    }
 }

@@ -1,57 +1,34 @@
-//! `f64` with the platform's C library: Gymnasium's own bits.
+//! `f64` by the platform's C library.
+#![expect(clippy::disallowed_methods, reason = "this file calls the library")]
 
 use core::hint::black_box;
 
-use super::Arithmetic;
-use crate::physics::Gymnasium;
+/// C's `sin` and `cos`.
+#[inline(always)]
+pub fn sin_cos(x: f64) -> (f64, f64) {
+    x.sin_cos()
+}
 
-/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: bit-identical to Gymnasium if NumPy calls the
-/// same library, as on x86-64 Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
-///
-/// ```
-/// use acrobot::arithmetic::{Arithmetic, Host};
-///
-/// assert_eq!(Host::sin_cos(1.0), 1.0_f64.sin_cos());
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Host;
+/// C's `cos`.
+#[inline(always)]
+pub fn cos(x: f64) -> f64 {
+    x.cos()
+}
 
-#[expect(
-    clippy::disallowed_methods,
-    reason = "this is where the platform's library is called"
-)]
-impl Arithmetic for Host {
-    const NAME: &'static str = "host";
-    type Scalar = f64;
-    type Form = Gymnasium;
-
-    #[inline]
-    fn sin_cos(x: f64) -> (f64, f64) {
-        x.sin_cos()
-    }
-
-    #[inline]
-    fn cos(x: f64) -> f64 {
-        x.cos()
-    }
-
-    /// NumPy computes `x**2` of a scalar by C's `pow`. For one argument in a thousand, whose exact square is about half
-    /// way between two doubles, glibc's `pow` rounds differently from `x * x`. All others avoid `pow`, which would cost
-    /// much of a step.
-    #[inline(always)]
-    fn square(x: f64) -> f64 {
-        if is_far_from_a_tie(x) {
-            x * x
-        } else {
-            power(x)
-        }
+/// NumPy computes `x**2` of a scalar by C's `pow`. For one argument in a thousand, whose exact square is about half
+/// way between two doubles, glibc's `pow` rounds differently from `x * x`. All others avoid `pow`, which would cost
+/// much of a step.
+#[inline(always)]
+pub fn square(x: f64) -> f64 {
+    if is_far_from_a_tie(x) {
+        x * x
+    } else {
+        power(x)
     }
 }
 
 /// `pow(x, 2.0)`.
 #[cold]
-#[expect(clippy::disallowed_methods, reason = "as above")]
 fn power(x: f64) -> f64 {
     // LLVM replaces the call by `x * x` if it sees the exponent.
     x.powf(black_box(2.0))

@@ -1,0 +1,8 @@
+//! Numbers without physics: the scalars, numbers side by side, and sines.
+
+mod lanes;
+mod real;
+pub mod sines;
+
+pub use lanes::{Lanes, Numbers};
+pub use real::{Real, SinCos, Zeroed};

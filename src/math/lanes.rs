@@ -1,0 +1,168 @@
+//! One number, or `N` side by side for batches.
+
+use core::fmt;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::real::{Real, Zeroed};
+
+/// One number, or many side by side. The code of a step is generic over this, so it is written once.
+pub trait Numbers<S: Real>:
+    Copy
+    + fmt::Debug
+    + Send
+    + Sync
+    + Zeroed
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// A truth value for each number.
+    type Mask;
+
+    /// Whether this is a single number.
+    const IS_ONE: bool;
+
+    /// `x` in each lane.
+    fn splat(x: S) -> Self;
+
+    /// Applies `f` to each number.
+    fn map(self, f: impl FnMut(S) -> S) -> Self;
+
+    /// Applies `f` to each pair of numbers.
+    fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
+
+    /// Whether |x| ≤ `limit` for all numbers x; false for NaN.
+    fn all_within(self, limit: Self) -> bool;
+
+    /// `inside` where |x| ≤ `limit`, `outside` elsewhere and for NaN.
+    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self;
+
+    /// Which numbers are above `limit`.
+    fn above(self, limit: S) -> Self::Mask;
+
+    /// Each number clamped to \[−`limit`, `limit`\]; NaN stays NaN.
+    #[inline(always)]
+    fn bound(self, limit: Self) -> Self {
+        self.zip(limit, |x, limit| if x > limit { limit } else { x })
+            .zip(limit, |x, limit| if x < -limit { -limit } else { x })
+    }
+}
+
+impl<S: Real> Numbers<S> for S {
+    type Mask = bool;
+    const IS_ONE: bool = true;
+
+    #[inline(always)]
+    fn splat(x: S) -> Self {
+        x
+    }
+
+    #[inline(always)]
+    fn map(self, mut f: impl FnMut(S) -> S) -> Self {
+        f(self)
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, mut f: impl FnMut(S, S) -> S) -> Self {
+        f(self, other)
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: S) -> bool {
+        self.abs() <= limit
+    }
+
+    #[inline(always)]
+    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self {
+        if self.abs() <= limit { inside } else { outside }
+    }
+
+    #[inline(always)]
+    fn above(self, limit: S) -> bool {
+        self > limit
+    }
+}
+
+/// `N` numbers: a plain array and loops over it, which LLVM compiles to the SIMD instructions of the target.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes<S, const N: usize>(pub(crate) [S; N]);
+
+impl<S: Zeroed + Copy, const N: usize> Zeroed for Lanes<S, N> {
+    const ZEROED: Self = Self([S::ZEROED; N]);
+}
+
+macro_rules! lane_by_lane {
+    ($($trait:ident $method:ident),*) => {$(
+        impl<S: Real, const N: usize> $trait for Lanes<S, N> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.zip(other, S::$method)
+            }
+        }
+    )*};
+}
+
+lane_by_lane!(Add add, Sub sub, Mul mul, Div div);
+
+impl<S: Real, const N: usize> Neg for Lanes<S, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(S::neg)
+    }
+}
+
+// Loops and not `array::map`, which LLVM keeps out of line, where it may not use the SIMD instructions of its caller.
+impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
+    type Mask = [bool; N];
+    const IS_ONE: bool = false;
+
+    #[inline(always)]
+    fn splat(x: S) -> Self {
+        Self([x; N])
+    }
+
+    #[inline(always)]
+    fn map(mut self, mut f: impl FnMut(S) -> S) -> Self {
+        for x in &mut self.0 {
+            *x = f(*x);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn zip(mut self, other: Self, mut f: impl FnMut(S, S) -> S) -> Self {
+        for (x, y) in self.0.iter_mut().zip(other.0) {
+            *x = f(*x, y);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn all_within(self, limit: Self) -> bool {
+        let pairs = self.0.iter().zip(&limit.0);
+        pairs.fold(true, |all, (x, limit)| all & (x.abs() <= *limit))
+    }
+
+    #[inline(always)]
+    fn select_within(self, limit: S, inside: Self, mut outside: Self) -> Self {
+        for ((x, inside), outside) in self.0.iter().zip(inside.0).zip(&mut outside.0) {
+            *outside = if x.abs() <= limit { inside } else { *outside };
+        }
+        outside
+    }
+
+    #[inline(always)]
+    fn above(self, limit: S) -> [bool; N] {
+        let mut above = [false; N];
+        for (above, x) in above.iter_mut().zip(self.0) {
+            *above = x > limit;
+        }
+        above
+    }
+}
