@@ -249,18 +249,17 @@ impl Problem {
     /// gain that is best for this cost.
     #[inline(never)]
     fn refine(&self, mut gain: [f64; 4]) -> Result<Solution, Error> {
-        let (mut change, mut noise) = (f64::INFINITY, 0.0);
-        for iteration in 0..NEWTON_ITERATIONS {
+        let (mut change, mut noise) = (f64::INFINITY, f64::INFINITY);
+        for _ in 0..NEWTON_ITERATIONS {
             let (mut closed, mut stage) = (self.a, self.q);
             add_outer(&mut closed, -1.0, &self.b, &gain);
             add_outer(&mut stage, self.r, &gain, &gain);
             let Some(cost) = lyapunov(&closed, &stage) else {
-                match iteration {
-                    0 => return Err(Error::NotStabilizable),
+                if noise < change {
                     // The gain approaches one that lets a motion persist.
-                    _ if noise <= change => return Err(Error::NotDetectable),
-                    _ => break,
+                    return Err(Error::NotDetectable);
                 }
+                break;
             };
             // What the residual of the equation adds to the cost, and thereby to the gain.
             add(&mut stage, 1.0, &congruence(&cost, &closed));
