@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Member, VecBatch};
-use acrobot::numpy::{Pcg64, uniform, SeedSequence};
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::Dynamics;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use serde::Serialize;
@@ -156,7 +156,8 @@ where
             Autoreset::SameStep,
             Autoreset::Disabled,
         ] {
-            let mut batch = VecBatch::<A>::new(SeedSequence::new(0), 1).expect("memory for one acrobot");
+            let mut batch =
+                VecBatch::<A>::new(SeedSequence::new(0), 1).expect("memory for one acrobot");
             batch.set_autoreset(autoreset);
             batch.set_limit(NonZeroU32::MAX);
             assert!(batch.set_member(0, self.clone()).is_ok());

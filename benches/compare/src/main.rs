@@ -163,7 +163,8 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Implementation {
             for (action, stream) in actions.iter_mut().zip(&mut streams) {
                 *action = draw(stream);
             }
-            let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(observe(&mut rows));
+            let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+                .with_observations(observe(&mut rows));
             batch
                 .step(&actions, buffers)
                 .expect("slices of the batch's length");

@@ -227,7 +227,9 @@ pub unsafe extern "C" fn acrobot_batch_step(
         };
         placed.batch.step(
             actions.get(),
-            StepBuffers::new(rewards.get_mut(), terminated.cleared(), truncated.cleared()).with_observations(written(observations)).with_final_observations(written(finals)),
+            StepBuffers::new(rewards.get_mut(), terminated.cleared(), truncated.cleared())
+                .with_observations(written(observations))
+                .with_final_observations(written(finals)),
         )?;
         Ok(())
     })

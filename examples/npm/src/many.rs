@@ -110,7 +110,10 @@ pub extern "C" fn batch_observe(number: usize) {
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_step(number: usize) -> bool {
     memory::with_value(&BATCHES, number, |many| {
-        let buffers = StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated).with_observations(Observations::Rows(&mut many.observations)).with_final_observations(Observations::Rows(&mut many.final_observations));
+        let buffers =
+            StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
+                .with_observations(Observations::Rows(&mut many.observations))
+                .with_final_observations(Observations::Rows(&mut many.final_observations));
         many.batch.step(&many.actions, buffers).is_ok()
     })
 }

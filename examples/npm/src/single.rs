@@ -70,16 +70,12 @@ pub extern "C" fn acrobot_read(number: usize) {
 pub extern "C" fn acrobot_set_state(number: usize) -> usize {
     let [theta1, theta2, dtheta1, dtheta2, ..] = memory::get_numbers();
     let state = State::from([theta1, theta2, dtheta1, dtheta2]);
-    memory::with_value(&ENVS, number, |env| {
-        memory::reason(env.set_state(state))
-    })
+    memory::with_value(&ENVS, number, |env| memory::reason(env.set_state(state)))
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_params(number: usize) {
-    memory::with_value(&ENVS, number, |env| {
-        memory::set_params(env.params())
-    });
+    memory::with_value(&ENVS, number, |env| memory::set_params(env.params()));
 }
 
 /// Sets the parameters. Returns 0, or the length of the reason for which they are rejected.

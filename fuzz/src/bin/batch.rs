@@ -298,7 +298,9 @@ fn step<A: Arithmetic, const N: usize>(
     let (mut rewards, mut terminated, mut truncated) =
         (vec![UNTOUCHED; len], vec![false; len], vec![false; len]);
     let (mut rows, mut finals) = (vec![[UNTOUCHED; 6]; len], vec![[UNTOUCHED; 6]; len]);
-    let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(Observations::Rows(&mut rows)).with_final_observations(Observations::Rows(&mut finals));
+    let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+        .with_observations(Observations::Rows(&mut rows))
+        .with_final_observations(Observations::Rows(&mut finals));
     let stepped = step(batch, buffers);
     assert_eq!(stepped.is_ok(), valid);
     if stepped.is_err() {

@@ -191,7 +191,9 @@ fn batch<A: Arithmetic>() {
         let _ = black_box(batch.set_params(params()));
         let actions = black_box([1_u8; LEN]);
         let torques = black_box([A::Scalar::ZERO; LEN]);
-        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(Observations::Rows(&mut rows)).with_final_observations(Observations::Rows(&mut finals));
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+            .with_observations(Observations::Rows(&mut rows))
+            .with_final_observations(Observations::Rows(&mut finals));
         let _ = black_box(if black_box(true) {
             batch.step(&actions, buffers)
         } else {
