@@ -6,9 +6,10 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::{Real, SinCos};
-use crate::numpy::{Pcg64, SeedSequence, uniform};
+use crate::numpy::{Pcg64, uniform};
 use crate::observation::Observation;
 use crate::physics::{Params, Pendulum, ResetBounds, State, check_torque};
+use crate::reset_options::ResetOptions;
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -37,59 +38,6 @@ impl<O, I> Step<O, I> {
     #[inline]
     pub fn done(&self) -> bool {
         self.terminated || self.truncated
-    }
-}
-
-/// The arguments of Gymnasium's `reset(seed=…, options=…)`.
-///
-/// ```
-/// use acrobot::numpy::SeedSequence;
-/// use acrobot::physics::ResetBounds;
-/// use acrobot::{Acrobot, Fast, ResetOptions};
-///
-/// let mut acrobot = Acrobot::<Fast>::new(0);
-/// // env.reset(seed=42, options={"low": -0.2, "high": 0.2})
-/// acrobot.reset_with(ResetOptions {
-///     seed: Some(SeedSequence::new(42)),
-///     bounds: Some(ResetBounds::new(-0.2, 0.2)?),
-/// });
-/// acrobot.reset_with(ResetBounds::new(-0.2, 0.2)?.into()); // the generator continues its stream
-/// # Ok::<(), acrobot::Error>(())
-/// ```
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ResetOptions {
-    /// Seeds the generator. With `None` the generator continues its stream.
-    pub seed: Option<SeedSequence>,
-    /// The bounds of the initial state. `None` means [`ResetBounds::DEFAULT`], or a batch's
-    /// [`reset_bounds`](crate::batch::Batch::reset_bounds).
-    pub bounds: Option<ResetBounds>,
-}
-
-impl From<u64> for ResetOptions {
-    /// This seed, and the default bounds.
-    fn from(seed: u64) -> Self {
-        SeedSequence::new(seed).into()
-    }
-}
-
-impl From<SeedSequence> for ResetOptions {
-    /// This seed, and the default bounds.
-    fn from(seed: SeedSequence) -> Self {
-        Self {
-            seed: Some(seed),
-            bounds: None,
-        }
-    }
-}
-
-impl From<ResetBounds> for ResetOptions {
-    /// These bounds, and no seed.
-    fn from(bounds: ResetBounds) -> Self {
-        Self {
-            seed: None,
-            bounds: Some(bounds),
-        }
     }
 }
 
@@ -159,7 +107,7 @@ const _: () = {
 
 impl<A: Arithmetic> Acrobot<A> {
     /// An acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. For a
-    /// [`SeedSequence`]: `Acrobot::with_rng(Pcg64::from(sequence))`.
+    /// [`SeedSequence`](crate::numpy::SeedSequence): `Acrobot::with_rng(Pcg64::from(sequence))`.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self::with_rng(Pcg64::new(seed))

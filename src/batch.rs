@@ -43,11 +43,11 @@ pub use simd::SimdLevel;
 #[cfg(feature = "alloc")]
 pub use vec_batch::{StepResults, VecBatch};
 
-use crate::acrobot::ResetOptions;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{Model, Params, ParamsRange, ResetBounds, State};
+use crate::reset_options::ResetOptions;
 use crate::time_limit::V1;
 use buffers::{check_length, take_mut};
 use inputs::Inputs;

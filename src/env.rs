@@ -38,8 +38,10 @@ pub use rendering::{Display, RenderMode, Rendering};
 pub use space::{BoxSpace, Discrete, Space};
 pub use statistics::RecordEpisodeStatistics;
 
-use crate::acrobot::{ResetOptions, Step};
+use crate::acrobot::Step;
+
 use crate::numpy::SeedSequence;
+use crate::reset_options::ResetOptions;
 
 /// An environment: Gymnasium's `Env`, with its types known at compile time.
 ///

@@ -99,15 +99,17 @@ mod observation;
 pub mod physics;
 #[cfg(feature = "graphics")]
 pub mod render;
+mod reset_options;
 #[cfg(feature = "serde")]
 mod snapshot;
 mod time_limit;
 pub mod trajectory;
 
-pub use acrobot::{Acrobot, REWARD_THRESHOLD, ResetOptions, Step};
+pub use acrobot::{Acrobot, REWARD_THRESHOLD, Step};
 pub use action::Action;
 pub use arithmetic::{Fast, Portable};
 pub use error::Error;
 pub use observation::Observation;
 pub use physics::{Params, State};
+pub use reset_options::ResetOptions;
 pub use time_limit::TimeLimit;

@@ -4,12 +4,14 @@ use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
-use crate::acrobot::{Acrobot, ResetOptions, Step};
+use crate::acrobot::{Acrobot, Step};
+
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::observation::Observation;
 use crate::physics::{Params, ResetBounds, State};
+use crate::reset_options::ResetOptions;
 
 pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
 const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();

@@ -594,3 +594,47 @@ fn angles_wrap() {
         }
     }
 }
+
+/// `with_params`, and what a time limit passes to its acrobot.
+#[test]
+fn parameters_and_states_need_no_inner_acrobot() {
+    let heavy = Params {
+        mass1: 2.0,
+        ..Params::DEFAULT
+    };
+    let acrobot = Acrobot::<Portable>::with_params(42, heavy).unwrap();
+    assert_eq!(*acrobot.params(), heavy);
+    assert_eq!(acrobot.state(), Acrobot::<Portable>::new(42).state());
+    let without_mass = Params {
+        mass1: 0.0,
+        ..heavy
+    };
+    assert!(Acrobot::<Portable>::with_params(42, without_mass).is_err());
+
+    let mut limited = TimeLimit::v1(acrobot);
+    limited.step(Action::Zero);
+    assert!(limited.set_params(without_mass).is_err());
+    assert_eq!(*limited.params(), heavy);
+    limited.set_params(Params::DEFAULT).unwrap();
+    limited.set_state(State::UPRIGHT).unwrap();
+    assert_eq!(*limited.inner().params(), Params::DEFAULT);
+    assert_eq!(
+        [limited.state(), limited.inner().state()],
+        [State::UPRIGHT; 2]
+    );
+    assert_eq!(limited.elapsed(), 1);
+}
+
+#[test]
+fn a_seed_or_bounds_are_reset_options() {
+    let bounds = ResetBounds::new(1.0, 2.0).unwrap();
+    let [mut by_options, mut by_name] = [0, 0].map(Acrobot::<Portable>::new);
+    for options in [42.into(), SeedSequence::new(42).into()] {
+        by_options.reset_with(options);
+        by_name.reset_with_seed(42);
+        assert_eq!(by_options, by_name);
+    }
+    by_options.reset_with(bounds.into());
+    by_name.reset_within(bounds);
+    assert_eq!(by_options, by_name);
+}

@@ -2,11 +2,11 @@
 
 use super::buffers::check_length;
 use super::{Batch, Block, ParamsKind, each_block};
-use crate::acrobot::ResetOptions;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{ResetBounds, State};
+use crate::reset_options::ResetOptions;
 
 impl<A, B, G, const N: usize, P> Batch<A, B, G, N, P>
 where

@@ -4,12 +4,13 @@ use core::fmt;
 use core::marker::PhantomData;
 
 use super::{BoxSpace, Discrete, Env, Error, Info, RenderMode, Rendering};
-use crate::acrobot::{Acrobot, ResetOptions, Step};
+use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::observation::Observation;
 use crate::physics::{Params, ResetBounds, State};
 use crate::render::Figure;
+use crate::reset_options::ResetOptions;
 
 /// A kind of observation of an acrobot.
 ///

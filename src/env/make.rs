@@ -5,11 +5,12 @@ use std::boxed::Box;
 use std::string::String;
 
 use super::{AcrobotEnv, BoxSpace, Discrete, DynAcrobot, Env, Error, Info, RenderMode, Rendering};
-use crate::acrobot::{ResetOptions, Step};
+use crate::acrobot::Step;
 use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Reference};
 use crate::observation::Observation;
 use crate::physics::Params;
+use crate::reset_options::ResetOptions;
 use crate::time_limit::TimeLimit;
 
 /// The arithmetic that [`make_with`] computes in.

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use super::wrapper::forward;
 use super::{Env, EpisodeStatistics, Error, Info, Rendering};
-use crate::acrobot::{ResetOptions, Step};
+use crate::acrobot::Step;
+use crate::reset_options::ResetOptions;
 
 /// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode reports its statistics in [`Info`]. Those of
 /// the last 100 episodes are kept.

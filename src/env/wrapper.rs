@@ -3,7 +3,8 @@
 use std::boxed::Box;
 
 use super::{Env, Error, Info, Rendering};
-use crate::acrobot::{ResetOptions, Step};
+use crate::acrobot::Step;
+use crate::reset_options::ResetOptions;
 use crate::time_limit::TimeLimit;
 
 /// Forwards parts of [`Env`] to the wrapped one: types, `reset_with` and `step`, or the other methods.

@@ -294,8 +294,8 @@ export class Batch extends Kept {
     const length = actions?.length;
     if (length !== this.#count) throw invalid(`actions must have ${this.#count} elements`, length ?? actions);
     let given = actions;
-    // A Uint8Array that is neither a proxy nor has a `length` of its own is copied as it is. Reading other elements can run code
-    // that frees the batch or makes the module's memory grow, so they are read first, and once. Not converted: 258 and "2" are not 2.
+    // The elements of a plain Uint8Array are bytes, so the module can check them. Reading others can run code that frees the batch or
+    // makes the module's memory grow, so they are read first, and once. They are not converted: 258 and "2" are not 2.
     if (!ArrayBuffer.isView(actions) || !(actions instanceof Uint8Array) || actions.byteLength !== length) {
       given = [];
       for (let i = 0; i < length; i++) {

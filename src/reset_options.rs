@@ -1,0 +1,58 @@
+//! What a reset may choose.
+
+use crate::numpy::SeedSequence;
+use crate::physics::ResetBounds;
+
+/// The arguments of Gymnasium's `reset(seed=…, options=…)`.
+///
+/// ```
+/// use acrobot::numpy::SeedSequence;
+/// use acrobot::physics::ResetBounds;
+/// use acrobot::{Acrobot, Fast, ResetOptions};
+///
+/// let mut acrobot = Acrobot::<Fast>::new(0);
+/// // env.reset(seed=42, options={"low": -0.2, "high": 0.2})
+/// acrobot.reset_with(ResetOptions {
+///     seed: Some(SeedSequence::new(42)),
+///     bounds: Some(ResetBounds::new(-0.2, 0.2)?),
+/// });
+/// acrobot.reset_with(ResetBounds::new(-0.2, 0.2)?.into()); // the generator continues its stream
+/// acrobot.reset_with(42.into()); // as reset_with_seed(42)
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ResetOptions {
+    /// Seeds the generator. With `None` the generator continues its stream.
+    pub seed: Option<SeedSequence>,
+    /// The bounds of the initial state. `None` means [`ResetBounds::DEFAULT`], or a batch's
+    /// [`reset_bounds`](crate::batch::Batch::reset_bounds).
+    pub bounds: Option<ResetBounds>,
+}
+
+impl From<u64> for ResetOptions {
+    /// This seed, and the default bounds.
+    fn from(seed: u64) -> Self {
+        SeedSequence::new(seed).into()
+    }
+}
+
+impl From<SeedSequence> for ResetOptions {
+    /// This seed, and the default bounds.
+    fn from(seed: SeedSequence) -> Self {
+        Self {
+            seed: Some(seed),
+            bounds: None,
+        }
+    }
+}
+
+impl From<ResetBounds> for ResetOptions {
+    /// These bounds, and no seed.
+    fn from(bounds: ResetBounds) -> Self {
+        Self {
+            seed: None,
+            bounds: Some(bounds),
+        }
+    }
+}
