@@ -41,13 +41,12 @@
 //! ```
 
 use crate::error::Error;
-use crate::math::Lanes;
 #[cfg(feature = "std")]
 use crate::math::sines::platform;
 use crate::math::sines::{self, correctly_rounded, polynomial, table};
 use crate::physics::{Gymnasium, Lean, Pendulum, State};
 
-pub use crate::math::Real;
+pub use crate::math::{Numbers, Real};
 pub use crate::physics::equations::{Arithmetic, Form};
 
 /// `f64`, correctly rounded sines and cosines, and Gymnasium's expressions: the same bits on every target, defined by
@@ -180,14 +179,8 @@ impl Arithmetic for Fast {
     }
 
     #[inline(always)]
-    fn sin_cos_near(x: f32) -> (f32, f32) {
+    fn sin_cos_near<V: Numbers<f32>>(x: V) -> (V, V) {
         polynomial::sin_cos(x)
-    }
-
-    #[inline(always)]
-    fn sin_cos_lanes<const N: usize>(x: [f32; N]) -> ([f32; N], [f32; N]) {
-        let (sin, cos) = polynomial::sin_cos(Lanes(x));
-        (sin.0, cos.0)
     }
 }
 
@@ -218,8 +211,8 @@ impl Arithmetic for Micro {
     }
 
     #[inline(always)]
-    fn sin_cos_near(x: f32) -> (f32, f32) {
-        table::sin_cos(x)
+    fn sin_cos_near<V: Numbers<f32>>(x: V) -> (V, V) {
+        x.zip3(x, x, |x, _, _| table::sin_cos(x))
     }
 }
 

@@ -9,8 +9,7 @@
 //! use acrobot::batch::{Batch, Block, Observations, StepBuffers};
 //! use acrobot::numpy::Pcg64;
 //!
-//! let (blocks, generators) = ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50]);
-//! let mut batch = Batch::<Fast, _, _>::new(42, blocks, generators)?;
+//! let mut batch = Batch::<Fast, _>::new(42, ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50]))?;
 //! let (mut rewards, mut terminated, mut truncated) = ([0.0; 50], [false; 50], [false; 50]);
 //! let mut observations = [[0.0; 6]; 50];
 //! let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
@@ -22,24 +21,28 @@
 mod block;
 mod buffers;
 mod inputs;
-mod lane_model;
+mod lane_params;
 mod member;
-mod params;
 mod reset;
 mod settings;
 mod simd;
+#[cfg(feature = "serde")]
+mod snapshot;
+mod storage;
 #[cfg(feature = "alloc")]
 mod vec_batch;
+mod work;
 
 use core::num::NonZeroU32;
 
 pub use block::Block;
 pub use buffers::{Observations, StepBuffers};
 pub use inputs::Input;
+pub use lane_params::LaneParams;
 pub use member::Member;
-pub use params::{OwnParams, ParamsKind, SharedParams};
 pub use settings::Autoreset;
 pub use simd::SimdLevel;
+pub use storage::Storage;
 #[cfg(feature = "alloc")]
 pub use vec_batch::{StepResults, VecBatch};
 
@@ -47,11 +50,10 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{Model, Params, ParamsRange, ResetBounds, State};
-use crate::reset_options::ResetOptions;
 use crate::time_limit::V1;
 use buffers::{check_length, take_mut};
-use inputs::Inputs;
 use settings::Settings;
+use work::Work;
 
 /// Many acrobots, each with its own stream of random numbers.
 ///
@@ -59,46 +61,32 @@ use settings::Settings;
 /// [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side; with the `std` feature it uses
 /// the widest SIMD instructions that the machine has. Neither `N` nor the instructions change a bit.
 ///
-/// `B` holds a [`Block`] for each `N` acrobots, and `G` a generator for each acrobot: arrays, slices or `Vec`s. They
-/// are separate because most steps draw no random number. See [the example](self). `P` says whether acrobots share
-/// their parameters: [`SharedParams`] or [`OwnParams`]. `N` must be from 1 to 32:
+/// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32:
 ///
 /// ```compile_fail,E0080
 /// use acrobot::Fast;
 /// use acrobot::batch::{Batch, Block};
 /// use acrobot::numpy::Pcg64;
 ///
-/// let block = vec![Block::EMPTY];
-/// let batch = Batch::<Fast, _, _, 33>::new(42, block, vec![Pcg64::UNSEEDED; 33]);
+/// let batch = Batch::<Fast, _, 33>::new(42, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 33]));
 /// ```
 #[derive(Clone, Debug)]
-pub struct Batch<A, B, G, const N: usize = 16, P = SharedParams>
-where
-    A: Arithmetic,
-    P: ParamsKind<A>,
-{
-    settings: Settings<A, P>,
+pub struct Batch<A: Arithmetic, S, const N: usize = 16> {
+    settings: Settings<A>,
     simd_level: SimdLevel,
-    blocks: B,
-    generators: G,
+    storage: S,
 }
 
-impl<A, B, G, const N: usize, P> Batch<A, B, G, N, P>
-where
-    A: Arithmetic,
-    B: AsRef<[Block<A, N, P>]> + AsMut<[Block<A, N, P>]>,
-    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
-    P: ParamsKind<A>,
-{
+impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child of `seed` and is in its
     /// initial state. The batch has the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
     ///
     /// # Errors
     ///
     /// [`Error::EmptyBatch`] without generators, and [`Error::WrongLength`] unless there is one block for each `N`
-    /// generators; the last block may be partly filled.
-    pub fn new(seed: u64, blocks: B, generators: G) -> Result<Self, Error> {
-        Self::with_seed(SeedSequence::new(seed), blocks, generators)
+    /// generators, and one [`LaneParams`] for each block or none. The last block may be partly filled.
+    pub fn new(seed: u64, storage: S) -> Result<Self, Error> {
+        Self::with_seed(SeedSequence::new(seed), storage)
     }
 
     /// As [`new`](Self::new), with a seed of any size. Acrobot `i` is seeded with the `i`-th child that `seed` has not
@@ -107,31 +95,29 @@ where
     /// # Errors
     ///
     /// Those of [`new`](Self::new).
-    pub fn with_seed(seed: SeedSequence, blocks: B, generators: G) -> Result<Self, Error> {
+    pub fn with_seed(seed: SeedSequence, mut storage: S) -> Result<Self, Error> {
         const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
-        let len = generators.as_ref().len();
-        if len == 0 {
+        let (blocks, generators, lane_params) = storage.slices_mut();
+        if generators.is_empty() {
             return Err(Error::EmptyBatch);
         }
-        check_length("blocks", blocks.as_ref().len(), len.div_ceil(N))?;
+        check_length("blocks", blocks.len(), generators.len().div_ceil(N))?;
+        if !lane_params.is_empty() {
+            check_length("lane_params", lane_params.len(), blocks.len())?;
+            lane_params.fill(LaneParams::default());
+        }
         let mut batch = Self {
             settings: Settings {
-                params: P::SHARED,
+                shared_model: Model::DEFAULT,
+                params_range: None,
                 bounds: ResetBounds::DEFAULT,
                 limit: V1,
                 autoreset: Autoreset::default(),
             },
             simd_level: SimdLevel::widest(),
-            blocks,
-            generators,
+            storage,
         };
-        for block in batch.blocks.as_mut() {
-            block.own = P::own();
-        }
-        batch.reset_with(ResetOptions {
-            seed: Some(seed),
-            bounds: None,
-        });
+        batch.reset_with(seed.into());
         Ok(batch)
     }
 
@@ -139,7 +125,8 @@ where
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "no batch is empty")]
     pub fn len(&self) -> usize {
-        self.generators.as_ref().len()
+        let (_, generators, _) = self.storage.slices();
+        generators.len()
     }
 
     /// Applies an action or a torque to each acrobot for one dt: the numbers 0, 1 and 2, [`Action`](crate::Action)s, or
@@ -154,10 +141,8 @@ where
         inputs: &[I],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        let inputs = self.check(inputs, &buffers)?;
-        let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
-        self.simd_level
-            .step(&self.settings, blocks, generators, inputs, buffers);
+        let level = self.simd_level;
+        level.step(self.work(inputs, buffers)?);
         Ok(())
     }
 
@@ -172,22 +157,29 @@ where
         inputs: &[I],
         buffers: StepBuffers<'_>,
     ) -> Result<(), Error> {
-        let inputs = self.check(inputs, &buffers)?;
-        let (blocks, generators) = (self.blocks.as_mut(), self.generators.as_mut());
-        self.simd_level
-            .par_step(&self.settings, blocks, generators, inputs, buffers);
+        let level = self.simd_level;
+        level.par_step(self.work(inputs, buffers)?);
         Ok(())
     }
 
-    fn check<'a, I: Input<A::Scalar>>(
-        &self,
+    /// Checks what a step reads and writes.
+    fn work<'a, I: Input<A::Scalar>>(
+        &'a mut self,
         inputs: &'a [I],
-        buffers: &StepBuffers<'_>,
-    ) -> Result<Inputs<'a, A::Scalar>, Error> {
+        buffers: StepBuffers<'a>,
+    ) -> Result<Work<'a, A, N>, Error> {
         let inputs = I::inputs(inputs);
         inputs.check(self.len())?;
         buffers.check(self.len())?;
-        Ok(inputs)
+        let (blocks, generators, lane_params) = self.storage.slices_mut();
+        Ok(Work {
+            settings: &self.settings,
+            blocks,
+            generators,
+            lane_params,
+            inputs,
+            buffers,
+        })
     }
 
     /// Writes the observations of the states.
@@ -197,7 +189,8 @@ where
     /// [`Error::WrongLength`] unless each slice has one element for each acrobot.
     pub fn observe(&self, mut observations: Observations<'_>) -> Result<(), Error> {
         observations.check("observations", self.len())?;
-        for block in self.blocks.as_ref() {
+        let (blocks, ..) = self.storage.slices();
+        for block in blocks {
             block.observe(&mut observations);
         }
         Ok(())
@@ -205,22 +198,21 @@ where
 
     /// The generators, one for each acrobot, to draw from them or to replace them.
     pub fn generators_mut(&mut self) -> &mut [Pcg64] {
-        self.generators.as_mut()
+        let (_, generators, _) = self.storage.slices_mut();
+        generators
     }
 
     /// The number of steps of acrobot `index` since its last reset, if there is one.
     #[must_use]
     pub fn elapsed(&self, index: usize) -> Option<u32> {
-        check_index(index, self.len()).ok()?;
-        let (elapsed, _) = self.blocks.as_ref().get(index / N)?.progress(index % N)?;
+        let (elapsed, _) = self.block_of(index).ok()?.progress(index % N)?;
         Some(elapsed)
     }
 
     /// The state of acrobot `index`, if there is one.
     #[must_use]
     pub fn state(&self, index: usize) -> Option<State<A::Scalar>> {
-        check_index(index, self.len()).ok()?;
-        self.blocks.as_ref().get(index / N)?.state(index % N)
+        self.block_of(index).ok()?.state(index % N)
     }
 
     /// Sets the state of acrobot `index`. Its number of steps and a pending reset do not change.
@@ -231,10 +223,82 @@ where
     /// that is not finite.
     pub fn set_state(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
-        check_index(index, self.len())?;
-        if let Some(block) = self.blocks.as_mut().get_mut(index / N) {
-            block.set_state(index % N, state);
+        self.block_of_mut(index)?.set_state(index % N, state);
+        Ok(())
+    }
+
+    /// The block with acrobot `index`.
+    fn block_of(&self, index: usize) -> Result<&Block<A, N>, Error> {
+        let (blocks, generators, _) = self.storage.slices();
+        let len = generators.len();
+        let block = blocks.get(index / N).filter(|_| index < len);
+        block.ok_or(no_such_member(index, len))
+    }
+
+    fn block_of_mut(&mut self, index: usize) -> Result<&mut Block<A, N>, Error> {
+        let (blocks, generators, _) = self.storage.slices_mut();
+        let len = generators.len();
+        let block = blocks.get_mut(index / N).filter(|_| index < len);
+        block.ok_or(no_such_member(index, len))
+    }
+
+    /// The parameters of acrobot `index`, if there is one.
+    #[must_use]
+    pub fn params_of(&self, index: usize) -> Option<Params<A::Scalar>> {
+        let (_, generators, lane_params) = self.storage.slices();
+        generators.get(index)?;
+        Some(match lane_params.get(index / N) {
+            Some(own) => own.get(index % N),
+            None => self.settings.shared_model.params,
+        })
+    }
+
+    /// Sets the parameters of all acrobots for the next steps.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`].
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        self.settings.shared_model = Model::new(params);
+        let (.., lane_params) = self.storage.slices_mut();
+        lane_params.fill(LaneParams::shared(&self.settings.shared_model));
+        Ok(())
+    }
+
+    /// Sets the parameters of acrobot `index` for the next steps.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`], [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and
+    /// [`Error::SharedParams`] without memory for [`LaneParams`].
+    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
+        params.validate()?;
+        self.block_of(index)?;
+        let (.., lane_params) = self.storage.slices_mut();
+        let own = lane_params.get_mut(index / N).ok_or(Error::SharedParams)?;
+        own.set(index % N, params);
+        Ok(())
+    }
+
+    /// The range from which each reset draws the acrobot's parameters.
+    #[must_use]
+    pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
+        self.settings.params_range.as_ref()
+    }
+
+    /// Sets the range from which each reset, also one in a step, first draws the acrobot's parameters and then its
+    /// initial state. With `None`, the default, a reset does not change parameters.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::SharedParams`] for a range without memory for [`LaneParams`].
+    pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) -> Result<(), Error> {
+        let (.., lane_params) = self.storage.slices();
+        if range.is_some() && lane_params.is_empty() {
+            return Err(Error::SharedParams);
         }
+        self.settings.params_range = range;
         Ok(())
     }
 
@@ -281,96 +345,27 @@ where
     /// [`Autoreset::SameStep`], and never by [`Autoreset::Disabled`].
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.settings.autoreset = autoreset;
-        for (block, generators) in
-            each_block::<_, N>(self.blocks.as_mut(), self.generators.as_mut())
-        {
-            block.stop_waiting(&self.settings, generators);
+        for (block, generators, own) in each_block(&mut self.storage) {
+            block.settle_pending_resets(&self.settings, generators, own);
         }
     }
 }
 
-impl<A, B, G, const N: usize> Batch<A, B, G, N, SharedParams>
-where
-    A: Arithmetic,
-    B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
-    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
-{
-    /// The parameters of all acrobots.
-    #[must_use]
-    pub fn params(&self) -> &Params<A::Scalar> {
-        &self.settings.params.params
-    }
-
-    /// Sets the parameters of all acrobots for the next steps.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`].
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
-        params.validate()?;
-        self.settings.params = Model::new(params);
-        Ok(())
-    }
-}
-
-/// Parameters for each acrobot.
-impl<A, B, G, const N: usize> Batch<A, B, G, N, OwnParams>
-where
-    A: Arithmetic,
-    B: AsRef<[Block<A, N, OwnParams>]> + AsMut<[Block<A, N, OwnParams>]>,
-    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
-{
-    /// The parameters of acrobot `index`, if there is one.
-    #[must_use]
-    pub fn params_of(&self, index: usize) -> Option<&Params<A::Scalar>> {
-        check_index(index, self.len()).ok()?;
-        let block = self.blocks.as_ref().get(index / N)?;
-        block.own.params.get(index % N)
-    }
-
-    /// Sets the parameters of acrobot `index` for the next steps.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`], and [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len).
-    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
-        params.validate()?;
-        check_index(index, self.len())?;
-        if let Some(block) = self.blocks.as_mut().get_mut(index / N) {
-            block.own.set_params(index % N, params);
-        }
-        Ok(())
-    }
-
-    /// The range from which each reset draws the acrobot's parameters.
-    #[must_use]
-    pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
-        self.settings.params.as_ref()
-    }
-
-    /// Sets the range from which each reset, also one in a step, first draws the acrobot's parameters and then its
-    /// initial state. With `None`, the default, a reset does not change parameters.
-    pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) {
-        self.settings.params = range;
-    }
-}
-
-/// Each block with its generators. The last may have fewer than `N`.
-fn each_block<'a, B, const N: usize>(
-    blocks: &'a mut [B],
-    mut generators: &'a mut [Pcg64],
-) -> impl Iterator<Item = (&'a mut B, &'a mut [Pcg64])> {
+/// Each block with its generators, of which the last may have fewer than `N`, and with its own parameters if it has
+/// any.
+fn each_block<'a, A: Arithmetic, const N: usize>(
+    storage: &'a mut impl Storage<A, N>,
+) -> impl Iterator<
+    Item = (
+        &'a mut Block<A, N>,
+        &'a mut [Pcg64],
+        Option<&'a mut LaneParams<A, N>>,
+    ),
+> {
+    let (blocks, mut generators, lane_params) = storage.slices_mut();
+    let mut lane_params = lane_params.iter_mut();
     let blocks = blocks.iter_mut();
-    blocks.map(move |block| (block, take_mut(&mut generators, N)))
-}
-
-/// Rejects an index that no acrobot has.
-fn check_index(index: usize, len: usize) -> Result<(), Error> {
-    if index < len {
-        Ok(())
-    } else {
-        Err(no_such_member(index, len))
-    }
+    blocks.map(move |block| (block, take_mut(&mut generators, N), lane_params.next()))
 }
 
 fn no_such_member(index: usize, len: usize) -> Error {

@@ -88,6 +88,8 @@ pub enum Error {
     },
     /// The two bounds of a range of parameters have different dynamics.
     DifferentDynamics,
+    /// The acrobots of a batch share their parameters: it has no memory for those of each.
+    SharedParams,
     /// A batch has no acrobots.
     EmptyBatch,
     /// A batch does not fit into memory.
@@ -192,6 +194,12 @@ impl fmt::Display for Error {
             ),
             Self::DifferentDynamics => {
                 write!(f, "dynamics must be the same in both bounds of a range")
+            }
+            Self::SharedParams => {
+                write!(
+                    f,
+                    "a batch must have memory for the parameters of each acrobot"
+                )
             }
             Self::EmptyBatch => {
                 write!(f, "a batch must have at least 1 acrobot, got 0 generators")

@@ -5,4 +5,4 @@ mod real;
 pub mod sines;
 
 pub use lanes::{Lanes, Numbers};
-pub use real::{Real, SinCos, Zeroed};
+pub use real::{Real, SinCos};

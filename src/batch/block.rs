@@ -1,59 +1,56 @@
 //! `N` acrobots side by side, and their step.
 
-use core::hint::black_box;
-
 use super::buffers::{set, take_mut};
 use super::inputs::Inputs;
-use super::params::{ParamsKind, SharedParams};
-use super::{Autoreset, Observations, Settings, StepBuffers};
+use super::settings::Settings;
+use super::{Autoreset, LaneParams, Observations, StepBuffers};
 use crate::arithmetic::{Arithmetic, Fast};
-use crate::math::{Lanes, Real, SinCos, Zeroed};
+use crate::math::{Lanes, Numbers, Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
 use crate::physics::{ResetBounds, State, sin_cos, step};
 
-/// The memory of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) consists of these.
+/// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
 ///
 /// `N` = 16 suits a machine with SIMD. For a few acrobots, a smaller `N` wastes less memory: a `Block<Fast, 1>` takes 64
-/// bytes, a `Block<Fast, 16>` 640. With [`OwnParams`](super::OwnParams) it has the parameters of its acrobots, too.
+/// bytes, a `Block<Fast, 16>` 640.
 ///
 /// ```
 /// use acrobot::Fast;
-/// use acrobot::batch::{Block, OwnParams};
+/// use acrobot::batch::Block;
 ///
 /// let blocks = vec![Block::<Fast>::EMPTY; 1000_usize.div_ceil(Block::<Fast>::LANES)];
 /// assert_eq!(size_of_val(&blocks[..]), 63 * 640);
 /// assert_eq!(size_of::<Block<Fast, 1>>(), 64);
-/// assert_eq!(size_of::<Block<Fast, 16, OwnParams>>(), 2880);
 /// ```
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-pub struct Block<A: Arithmetic = Fast, const N: usize = 16, P: ParamsKind<A> = SharedParams> {
+pub struct Block<A: Arithmetic = Fast, const N: usize = 16> {
     /// θ1, θ2, θ̇1 and θ̇2.
     y: [Lanes<A::Scalar, N>; 4],
     /// Sines and cosines of θ1 and θ2, for the observation and the next step.
     sin_cos: [SinCos<Lanes<A::Scalar, N>>; 2],
     elapsed: [u32; N],
     /// Whether the next step resets the lane.
-    ended: [bool; N],
-    pub(super) own: P::Own<N>,
+    reset_pending: [bool; N],
 }
 
-impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
+impl<A: Arithmetic, const N: usize> Block<A, N> {
+    const ZEROS: Lanes<A::Scalar, N> = Lanes([A::Scalar::ZERO; N]);
+
     /// The number of acrobots in a block.
     pub const LANES: usize = N;
 
     /// A block to create a batch with, which resets it.
     pub const EMPTY: Self = Self {
-        y: [Zeroed::ZEROED; 4],
-        sin_cos: [(Zeroed::ZEROED, Zeroed::ZEROED); 2],
+        y: [Self::ZEROS; 4],
+        sin_cos: [(Self::ZEROS, Self::ZEROS); 2],
         elapsed: [0; N],
-        ended: [false; N],
-        own: Zeroed::ZEROED,
+        reset_pending: [false; N],
     };
 }
 
 // Lanes are accessed by iterators or `get`, so no compiler has to prove that an index cannot panic.
-impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
+impl<A: Arithmetic, const N: usize> Block<A, N> {
     pub(super) fn state(&self, lane: usize) -> Option<State<A::Scalar>> {
         let [theta1, theta2, dtheta1, dtheta2] = &self.y;
         Some(State {
@@ -78,52 +75,61 @@ impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
 
     /// The number of steps of a lane's episode, and whether the next step resets it.
     pub(super) fn progress(&self, lane: usize) -> Option<(u32, bool)> {
-        Some((*self.elapsed.get(lane)?, *self.ended.get(lane)?))
+        Some((*self.elapsed.get(lane)?, *self.reset_pending.get(lane)?))
     }
 
-    /// Sets the state and the progress of a lane.
-    pub(super) fn resume(
-        &mut self,
-        lane: usize,
-        state: State<A::Scalar>,
-        (elapsed, ended): (u32, bool),
-    ) {
-        self.set_state(lane, state);
+    pub(super) fn set_progress(&mut self, lane: usize, elapsed: u32, reset_pending: bool) {
         set(&mut self.elapsed, lane, elapsed);
-        set(&mut self.ended, lane, ended);
+        set(&mut self.reset_pending, lane, reset_pending);
     }
 
-    /// Resets the lanes in `some`, each with its generator. A lane without one has no acrobot and hangs at rest.
+    /// Begins an episode of a lane.
+    pub(super) fn begin_episode(&mut self, lane: usize, state: State<A::Scalar>) {
+        self.set_state(lane, state);
+        self.set_progress(lane, 0, false);
+    }
+
+    /// Resets the lanes in `mask`, each with its generator. A lane without one has no acrobot and hangs at rest. If
+    /// each has its own parameters, draws them first from the range.
     #[cold]
     pub(super) fn reset(
         &mut self,
-        some: &[bool; N],
-        params: &P::Shared,
+        mask: &[bool; N],
+        settings: &Settings<A>,
         bounds: ResetBounds,
         generators: &mut [Pcg64],
+        mut lane_params: Option<&mut LaneParams<A, N>>,
     ) {
         let mut generators = generators.iter_mut();
-        for (lane, resets) in some.iter().enumerate() {
+        for (lane, resets) in mask.iter().enumerate() {
             let rng = generators.next();
             if *resets {
                 let state = rng.map_or(State::HANGING, |rng| {
-                    P::draw(params, &mut self.own, lane, rng);
+                    if let (Some(params), Some(range)) = (&mut lane_params, &settings.params_range)
+                    {
+                        params.set(lane, range.draw(rng));
+                    }
                     bounds.draw(rng).cast()
                 });
-                self.resume(lane, state, (0, false));
+                self.begin_episode(lane, state);
             }
         }
     }
 
     /// Ends pending resets: `SameStep` resets the lanes now, `Disabled` never.
-    pub(super) fn stop_waiting(&mut self, settings: &Settings<A, P>, generators: &mut [Pcg64]) {
-        let ended = self.ended;
+    pub(super) fn settle_pending_resets(
+        &mut self,
+        settings: &Settings<A>,
+        generators: &mut [Pcg64],
+        lane_params: Option<&mut LaneParams<A, N>>,
+    ) {
+        let pending = self.reset_pending;
         match settings.autoreset {
             Autoreset::NextStep => {}
             Autoreset::SameStep => {
-                self.reset(&ended, &settings.params, settings.bounds, generators);
+                self.reset(&pending, settings, settings.bounds, generators, lane_params);
             }
-            Autoreset::Disabled => self.ended = [false; N],
+            Autoreset::Disabled => self.reset_pending = [false; N],
         }
     }
 
@@ -166,36 +172,34 @@ impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
         }
     }
 
-    /// Writes the observations of the lanes in `some`, at their index in `to`.
+    /// Writes the observations of the lanes in `mask`, at their index in `to`.
     #[cold]
-    fn observe_some(&self, some: &[bool; N], to: &mut Observations<'_>) {
+    fn observe_masked(&self, mask: &[bool; N], to: &mut Observations<'_>) {
         for ((lane, row), _) in self
             .rows()
             .enumerate()
-            .zip(some)
+            .zip(mask)
             .filter(|(_, is_one)| **is_one)
         {
             to.write(lane, row);
         }
     }
 
-    /// One step of all lanes. Writes the results, and removes the written elements from `buffers`.
+    /// One step of all lanes, without resets.
     #[inline(always)]
-    fn step(
+    pub(super) fn advance(
         &mut self,
-        settings: &Settings<A, P>,
-        splat: &P::Splat<N>,
+        settings: &Settings<A>,
+        LaneParams { model }: &LaneParams<A, N>,
         inputs: Inputs<'_, A::Scalar>,
         generators: &mut [Pcg64],
-        buffers: &mut StepBuffers<'_>,
-    ) {
-        let model = P::model(splat, &self.own);
-        let mut torques = inputs.torques(model);
-        if model.has_noise {
-            add_noise(&mut torques, &model.noise, &self.ended, generators);
+    ) -> Results<N> {
+        let mut torques = inputs.torques(&model.params.torques);
+        let noise = model.params.torque_noise;
+        if !noise.all_within(Self::ZEROS) {
+            add_noise(&mut torques.0, &noise.0, &self.reset_pending, generators);
         }
-        let torques = Lanes(torques);
-        let mut terminated = step::<A, _>(model, &mut self.y, &mut self.sin_cos, torques);
+        let terminated = step(model, &mut self.y, &mut self.sin_cos, torques);
         let (mut rewards, mut truncated, mut ended) = ([-1.0; N], [false; N], [false; N]);
         let results = rewards.iter_mut().zip(&mut truncated).zip(&mut ended);
         for ((elapsed, terminated), ((reward, truncated), ended)) in
@@ -208,25 +212,74 @@ impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
             }
             *ended = *terminated | *truncated;
         }
-
         let resets = match settings.autoreset {
-            Autoreset::NextStep => core::mem::replace(&mut self.ended, ended),
+            Autoreset::NextStep => core::mem::replace(&mut self.reset_pending, ended),
             Autoreset::SameStep => ended,
             Autoreset::Disabled => [false; N],
         };
-        if resets.iter().fold(false, |any, &reset| any | reset) {
+        Results {
+            rewards,
+            terminated,
+            truncated,
+            resets,
+        }
+    }
+
+    /// Resets lanes whose episodes ended, writes the results, and removes the written elements from `buffers`.
+    #[inline(always)]
+    pub(super) fn finish(
+        &mut self,
+        settings: &Settings<A>,
+        mut results: Results<N>,
+        generators: &mut [Pcg64],
+        lane_params: Option<&mut LaneParams<A, N>>,
+        buffers: &mut StepBuffers<'_>,
+    ) {
+        if results.resets.iter().fold(false, |any, &reset| any | reset) {
             if settings.autoreset == Autoreset::NextStep {
-                clear(&resets, &mut rewards, &mut terminated, &mut truncated);
+                results.clear();
             } else {
-                self.observe_some(&resets, &mut buffers.final_observations);
+                self.observe_masked(&results.resets, &mut buffers.final_observations);
             }
-            self.reset(&resets, &settings.params, settings.bounds, generators);
+            self.reset(
+                &results.resets,
+                settings,
+                settings.bounds,
+                generators,
+                lane_params,
+            );
         }
         buffers.final_observations.take(N);
-        write(&mut buffers.rewards, &rewards);
-        write(&mut buffers.terminated, &terminated);
-        write(&mut buffers.truncated, &truncated);
+        write(&mut buffers.rewards, &results.rewards);
+        write(&mut buffers.terminated, &results.terminated);
+        write(&mut buffers.truncated, &results.truncated);
         self.observe(&mut buffers.observations);
+    }
+}
+
+/// The results of a step.
+pub(super) struct Results<const N: usize> {
+    rewards: [f32; N],
+    terminated: [bool; N],
+    truncated: [bool; N],
+    /// Which lanes this step resets.
+    resets: [bool; N],
+}
+
+impl<const N: usize> Results<N> {
+    /// Clears the results of lanes that the step only resets.
+    #[cold]
+    fn clear(&mut self) {
+        let results = self
+            .rewards
+            .iter_mut()
+            .zip(&mut self.terminated)
+            .zip(&mut self.truncated);
+        for (((reward, terminated), truncated), _) in
+            results.zip(self.resets).filter(|(_, resets)| *resets)
+        {
+            (*reward, *terminated, *truncated) = (0.0, false, false);
+        }
     }
 }
 
@@ -235,51 +288,19 @@ impl<A: Arithmetic, const N: usize, P: ParamsKind<A>> Block<A, N, P> {
 fn add_noise<S: Real, const N: usize>(
     torques: &mut [S; N],
     noise: &[S; N],
-    ended: &[bool; N],
+    reset_pending: &[bool; N],
     generators: &mut [Pcg64],
 ) {
-    let lanes = torques.iter_mut().zip(noise).zip(ended).zip(generators);
+    let lanes = torques
+        .iter_mut()
+        .zip(noise)
+        .zip(reset_pending)
+        .zip(generators);
     for (((torque, noise), _), rng) in
-        lanes.filter(|(((_, noise), ended), _)| **noise > S::ZERO && !**ended)
+        lanes.filter(|(((_, noise), pending), _)| **noise > S::ZERO && !**pending)
     {
         let noise = noise.to_f64();
         *torque = *torque + S::from_f64(uniform(rng, -noise, noise));
-    }
-}
-
-/// Sets the results of lanes that the step only resets.
-#[cold]
-fn clear<const N: usize>(
-    resets: &[bool; N],
-    rewards: &mut [f32; N],
-    terminated: &mut [bool; N],
-    truncated: &mut [bool; N],
-) {
-    let results = rewards.iter_mut().zip(terminated).zip(truncated);
-    for (((reward, terminated), truncated), _) in results.zip(resets).filter(|(_, reset)| **reset) {
-        (*reward, *terminated, *truncated) = (0.0, false, false);
-    }
-}
-
-/// Steps all blocks. `HIDE` hides from the compiler that they share a model. With AVX-512 it would otherwise hold the
-/// model in registers and spill the state.
-#[inline(always)]
-pub(super) fn step_blocks<A, const N: usize, P, const HIDE: bool>(
-    settings: &Settings<A, P>,
-    blocks: &mut [Block<A, N, P>],
-    mut generators: &mut [Pcg64],
-    mut inputs: Inputs<'_, A::Scalar>,
-    mut buffers: StepBuffers<'_>,
-) where
-    A: Arithmetic,
-    P: ParamsKind<A>,
-{
-    let splat = P::splat(&settings.params);
-    for block in blocks {
-        let splat = if HIDE { black_box(&splat) } else { &splat };
-        let inputs = inputs.take(N);
-        let generators = take_mut(&mut generators, N);
-        block.step(settings, splat, inputs, generators, &mut buffers);
     }
 }
 
@@ -289,7 +310,7 @@ fn write<T: Copy, const N: usize>(to: &mut &mut [T], from: &[T; N]) {
     let to = take_mut(to, N);
     match <&mut [T; N]>::try_from(&mut *to) {
         Ok(to) => *to = *from,
-        Err(_) => write_some(to, from),
+        Err(_) => write_partial(to, from),
     }
 }
 
@@ -297,6 +318,6 @@ fn write<T: Copy, const N: usize>(to: &mut &mut [T], from: &[T; N]) {
 /// time.
 #[cold]
 #[inline(never)]
-fn write_some<T: Copy>(to: &mut [T], from: &[T]) {
+fn write_partial<T: Copy>(to: &mut [T], from: &[T]) {
     to.iter_mut().zip(from).for_each(|(to, &from)| *to = from);
 }

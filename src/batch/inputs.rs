@@ -1,11 +1,9 @@
 //! What a step applies: actions or torques, one for each acrobot.
 
 use super::buffers::{check_length, take};
-use super::lane_model::LaneModel;
 use crate::action::Action;
-use crate::arithmetic::Arithmetic;
 use crate::error::Error;
-use crate::math::Real;
+use crate::math::{Lanes, Real};
 use crate::physics::check_torque;
 
 /// What a step of a batch applies to an acrobot: an action as a `u8` (0, 1 or 2) or an [`Action`], or any finite torque in
@@ -71,16 +69,13 @@ impl<S: Real> Inputs<'_, S> {
         }
     }
 
-    /// The torques of one block, N m. Lanes without an acrobot get a valid torque.
+    /// The torques of one block, N m, given those of the three actions. Lanes without an acrobot get a valid torque.
     #[inline(always)]
-    pub(super) fn torques<A: Arithmetic<Scalar = S>, const N: usize>(
-        self,
-        model: &LaneModel<A, N>,
-    ) -> [S; N] {
+    pub(super) fn torques<const N: usize>(self, of_actions: &[Lanes<S, N>; 3]) -> Lanes<S, N> {
         match self {
-            Self::Numbers(numbers) => choose(&model.torques, read(numbers, 1, |number| number)),
-            Self::Actions(actions) => choose(&model.torques, read(actions, 1, u8::from)),
-            Self::Torques(torques) => read(torques, S::ZERO, |torque| torque),
+            Self::Numbers(numbers) => choose(of_actions, read(numbers, 1, |number| number)),
+            Self::Actions(actions) => choose(of_actions, read(actions, 1, u8::from)),
+            Self::Torques(torques) => Lanes(read(torques, S::ZERO, |torque| torque)),
         }
     }
 }
@@ -88,12 +83,12 @@ impl<S: Real> Inputs<'_, S> {
 /// The torque of each lane's action.
 #[inline(always)]
 fn choose<S: Real, const N: usize>(
-    [negative, zero, positive]: &[[S; N]; 3],
+    [negative, zero, positive]: &[Lanes<S, N>; 3],
     actions: [u8; N],
-) -> [S; N] {
+) -> Lanes<S, N> {
     let mut torques = *negative;
-    let lanes = torques.iter_mut().zip(zero).zip(positive).zip(actions);
-    for (((torque, zero), positive), action) in lanes {
+    let others = zero.0.iter().zip(&positive.0).zip(actions);
+    for (torque, ((zero, positive), action)) in torques.0.iter_mut().zip(others) {
         *torque = S::pick([*torque, *zero, *positive], action);
     }
     torques
@@ -112,7 +107,7 @@ fn read<T: Copy, U: Copy, const N: usize>(
             .iter_mut()
             .zip(from)
             .for_each(|(to, &x)| *to = convert(x)),
-        Err(_) => read_some(&mut to, from, convert),
+        Err(_) => read_partial(&mut to, from, convert),
     }
     to
 }
@@ -120,7 +115,7 @@ fn read<T: Copy, U: Copy, const N: usize>(
 /// Out of line: with a constant number of inputs LLVM needs no call of `memcpy`.
 #[cold]
 #[inline(never)]
-fn read_some<T: Copy, U>(to: &mut [U], from: &[T], convert: impl Fn(T) -> U) {
+fn read_partial<T: Copy, U>(to: &mut [U], from: &[T], convert: impl Fn(T) -> U) {
     to.iter_mut()
         .zip(from)
         .for_each(|(to, &x)| *to = convert(x));

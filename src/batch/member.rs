@@ -1,84 +1,90 @@
 //! One acrobot of a batch, to save and to load.
 
-use super::buffers::take_mut;
-use super::{Batch, Block, ParamsKind, check_index, no_such_member};
+use super::{Batch, Storage, each_block};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
-use crate::physics::State;
+use crate::physics::{Params, State};
 
-/// One acrobot's saved state. Saving all members saves the batch except its settings. With the `serde` feature it
-/// can be stored, as an [`Acrobot`](crate::Acrobot#snapshots) can.
+/// One acrobot of a batch. With the `serde` feature it can be stored, as an [`Acrobot`](crate::Acrobot#snapshots) can,
+/// and so can a [whole batch](Batch#snapshots).
 ///
 /// ```
 /// use acrobot::Fast;
 /// use acrobot::batch::{Batch, Block, Member};
 /// use acrobot::numpy::Pcg64;
 ///
-/// let new = |seed| Batch::<Fast, _, _>::new(seed, [Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
-/// let (batch, mut twin) = (new(42)?, new(0)?);
-/// let saved: Vec<Member<Fast>> = (0..20).filter_map(|index| batch.member(index)).collect();
-/// for (index, member) in saved.into_iter().enumerate() {
-///     twin.set_member(index, member)?;
+/// let new = |seed| Batch::<Fast, _>::new(seed, ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]));
+/// let (batch, mut other) = (new(42)?, new(0)?);
+/// let best: Member<Fast> = batch.member(19).unwrap();
+/// for index in 0..other.len() {
+///     other.set_member(index, best.clone())?; // all continue from the best
 /// }
-/// assert_eq!(twin.member(19), batch.member(19));
+/// assert_eq!(other.member(0), batch.member(19));
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Member<A: Arithmetic> {
+    /// The parameters.
+    pub params: Params<A::Scalar>,
     /// The state.
     pub state: State<A::Scalar>,
     /// The number of steps since the last reset.
     pub elapsed: u32,
     /// Whether the next step resets it; only with [`Autoreset::NextStep`](super::Autoreset::NextStep).
-    pub ended: bool,
+    pub reset_pending: bool,
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
 }
 
-impl<A, B, G, const N: usize, P> Batch<A, B, G, N, P>
-where
-    A: Arithmetic,
-    B: AsRef<[Block<A, N, P>]> + AsMut<[Block<A, N, P>]>,
-    G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
-    P: ParamsKind<A>,
-{
+impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// Acrobot `index`, if there is one.
     #[must_use]
     pub fn member(&self, index: usize) -> Option<Member<A>> {
-        let rng = self.generators.as_ref().get(index)?.clone();
-        let block = self.blocks.as_ref().get(index / N)?;
-        let (elapsed, ended) = block.progress(index % N)?;
+        let (_, generators, _) = self.storage.slices();
+        let block = self.block_of(index).ok()?;
+        let (elapsed, reset_pending) = block.progress(index % N)?;
         Some(Member {
+            params: self.params_of(index)?,
             state: block.state(index % N)?,
             elapsed,
-            ended,
-            rng,
+            reset_pending,
+            rng: generators.get(index)?.clone(),
         })
     }
 
-    /// Replaces acrobot `index` by `member`, which continues bit-identically. If its reset is pending,
-    /// [`Autoreset::SameStep`](super::Autoreset::SameStep) resets it immediately, and
+    /// Replaces acrobot `index` by `member`, which continues bit-identically if the settings are the same. If its reset
+    /// is pending, [`Autoreset::SameStep`](super::Autoreset::SameStep) resets it immediately, and
     /// [`Autoreset::Disabled`](super::Autoreset::Disabled) never.
     ///
     /// # Errors
     ///
-    /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and [`Error::OutOfRange`] for a state with a
-    /// number that is not finite.
+    /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), [`Error::OutOfRange`] for a state with a
+    /// number that is not finite, those of [`Params::validate`], and [`Error::SharedParams`] for parameters other than
+    /// those that all acrobots of this batch share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
-        member.state.validate()?;
-        let len = self.len();
-        check_index(index, len)?;
-        let block = self.blocks.as_mut().get_mut(index / N);
-        let mut generators = self.generators.as_mut().get_mut(index - index % N..);
-        let generators = take_mut(generators.get_or_insert_default(), N);
-        let (Some(block), Some(rng)) = (block, generators.get_mut(index % N)) else {
-            return Err(no_such_member(index, len));
-        };
-        block.resume(index % N, member.state, (member.elapsed, member.ended));
-        *rng = member.rng;
-        block.stop_waiting(&self.settings, generators);
+        member.validate()?;
+        self.block_of(index)?;
+        if self.params_of(index) != Some(member.params) {
+            self.set_params_of(index, member.params)?;
+        }
+        let block = self.block_of_mut(index)?;
+        block.set_state(index % N, member.state);
+        block.set_progress(index % N, member.elapsed, member.reset_pending);
+        if let Some(rng) = self.generators_mut().get_mut(index) {
+            *rng = member.rng;
+        }
+        if let Some((block, generators, own)) = each_block(&mut self.storage).nth(index / N) {
+            block.settle_pending_resets(&self.settings, generators, own);
+        }
         Ok(())
+    }
+}
+
+impl<A: Arithmetic> Member<A> {
+    fn validate(&self) -> Result<(), Error> {
+        self.params.validate()?;
+        self.state.validate()
     }
 }
 
@@ -87,7 +93,7 @@ mod snapshot {
     use serde::de::{Deserialize, Deserializer, Error};
     use serde::ser::{Serialize, Serializer};
 
-    use super::{Member, Pcg64, State};
+    use super::{Member, Params, State};
     use crate::arithmetic::Arithmetic;
     use crate::snapshot::{Header, Subject};
 
@@ -100,9 +106,10 @@ mod snapshot {
     #[serde(rename = "Member")]
     struct Snapshot<H, S, R> {
         snapshot: H,
+        params: Params<S>,
         state: State<S>,
         elapsed: u32,
-        ended: bool,
+        reset_pending: bool,
         rng: R,
     }
 
@@ -110,9 +117,10 @@ mod snapshot {
         fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
             Snapshot {
                 snapshot: Header::<Self>::NEW,
+                params: self.params,
                 state: self.state,
                 elapsed: self.elapsed,
-                ended: self.ended,
+                reset_pending: self.reset_pending,
                 rng: &self.rng,
             }
             .serialize(serializer)
@@ -122,20 +130,23 @@ mod snapshot {
     impl<'de, A: Arithmetic<Scalar: Deserialize<'de>>> Deserialize<'de> for Member<A> {
         /// Rejects what [`set_member`](crate::batch::Batch::set_member) rejects.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot::<Header<Self>, _, Pcg64> {
+            let Snapshot::<Header<Self>, _, _> {
+                params,
                 state,
                 elapsed,
-                ended,
+                reset_pending,
                 rng,
                 ..
             } = Snapshot::deserialize(deserializer)?;
-            state.validate().map_err(D::Error::custom)?;
-            Ok(Self {
+            let member = Self {
+                params,
                 state,
                 elapsed,
-                ended,
+                reset_pending,
                 rng,
-            })
+            };
+            member.validate().map_err(D::Error::custom)?;
+            Ok(member)
         }
     }
 }

@@ -2,14 +2,14 @@
 
 use core::num::NonZeroU32;
 
-use super::params::ParamsKind;
 use crate::arithmetic::Arithmetic;
-use crate::physics::ResetBounds;
+use crate::physics::{Model, ParamsRange, ResetBounds};
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Autoreset {
     /// In the next step, which ignores its action and returns the initial observation and a reward of 0.
     #[default]
@@ -24,8 +24,11 @@ pub enum Autoreset {
 
 /// What all acrobots of a batch share.
 #[derive(Clone, Debug)]
-pub(super) struct Settings<A: Arithmetic, P: ParamsKind<A>> {
-    pub(super) params: P::Shared,
+pub(super) struct Settings<A: Arithmetic> {
+    /// The model of all acrobots that have no parameters of their own.
+    pub(super) shared_model: Model<A>,
+    /// From which a reset draws an acrobot's own parameters.
+    pub(super) params_range: Option<ParamsRange<A::Scalar>>,
     pub(super) bounds: ResetBounds,
     pub(super) limit: NonZeroU32,
     pub(super) autoreset: Autoreset,

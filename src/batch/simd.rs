@@ -1,13 +1,7 @@
 //! The SIMD instructions that a step of a batch uses.
 
-use super::block::{Block, step_blocks};
-#[cfg(feature = "rayon")]
-use super::buffers::take_mut;
-use super::inputs::Inputs;
-use super::params::ParamsKind;
-use super::{Settings, StepBuffers};
+use super::work::Work;
 use crate::arithmetic::Arithmetic;
-use crate::numpy::Pcg64;
 
 /// The SIMD instructions that a step of a [`Batch`](super::Batch) uses. They change no bit.
 ///
@@ -71,80 +65,41 @@ impl SimdLevel {
         unsafe_code,
         reason = "the one place that uses instructions which the machine has and the build does not assume"
     )]
-    pub(super) fn step<A: Arithmetic, const N: usize, P: ParamsKind<A>>(
-        self,
-        settings: &Settings<A, P>,
-        blocks: &mut [Block<A, N, P>],
-        generators: &mut [Pcg64],
-        inputs: Inputs<'_, A::Scalar>,
-        buffers: StepBuffers<'_>,
-    ) {
+    pub(super) fn step<A: Arithmetic, const N: usize>(self, work: Work<'_, A, N>) {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {
-            macro_rules! compiled_for {
-                ($name:ident, $features:literal, $hide:literal) => {
-                    #[target_feature(enable = $features)]
-                    fn $name<A: Arithmetic, const N: usize, P: ParamsKind<A>>(
-                        settings: &Settings<A, P>,
-                        blocks: &mut [Block<A, N, P>],
-                        generators: &mut [Pcg64],
-                        inputs: Inputs<'_, A::Scalar>,
-                        buffers: StepBuffers<'_>,
-                    ) {
-                        step_blocks::<A, N, P, $hide>(
-                            settings, blocks, generators, inputs, buffers,
-                        );
-                    }
-                };
+            #[target_feature(enable = "avx2")]
+            fn with_avx2<A: Arithmetic, const N: usize>(work: Work<'_, A, N>) {
+                work.step();
             }
-            compiled_for!(with_avx2, "avx2", false);
-            compiled_for!(with_avx512, "avx512f,avx512bw,avx512dq,avx512vl", true);
+            #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+            fn with_avx512<A: Arithmetic, const N: usize>(work: Work<'_, A, N>) {
+                work.step();
+            }
             // SAFETY: the machine has the features that the function was compiled for.
             unsafe {
                 match self {
-                    Self::Avx2 if self.is_available() => {
-                        return with_avx2::<A, N, P>(settings, blocks, generators, inputs, buffers);
-                    }
-                    Self::Avx512 if self.is_available() => {
-                        return with_avx512::<A, N, P>(
-                            settings, blocks, generators, inputs, buffers,
-                        );
-                    }
+                    Self::Avx2 if self.is_available() => return with_avx2(work),
+                    Self::Avx512 if self.is_available() => return with_avx512(work),
                     _ => {}
                 }
             }
         }
-        step_blocks::<A, N, P, false>(settings, blocks, generators, inputs, buffers);
+        work.step();
     }
 
     /// As [`step`](Self::step), on all cores: halves the blocks until a task is too small to share.
     #[cfg(feature = "rayon")]
-    pub(super) fn par_step<A: Arithmetic, const N: usize, P: ParamsKind<A>>(
-        self,
-        settings: &Settings<A, P>,
-        blocks: &mut [Block<A, N, P>],
-        mut generators: &mut [Pcg64],
-        mut inputs: Inputs<'_, A::Scalar>,
-        mut buffers: StepBuffers<'_>,
-    ) {
+    pub(super) fn par_step<A: Arithmetic, const N: usize>(self, mut work: Work<'_, A, N>) {
         // Both are about 100 µs of work: waking a thread takes 10 µs.
         let acrobots_of_a_task = match size_of::<A::Scalar>() {
             4 => 16_384,
             _ => 1024,
         };
-        if blocks.len() * N <= acrobots_of_a_task {
-            return self.step::<A, N, P>(settings, blocks, generators, inputs, buffers);
+        if work.blocks.len() * N <= acrobots_of_a_task {
+            return self.step(work);
         }
-        let middle = blocks.len() / 2;
-        let acrobots = middle * N;
-        let (blocks1, blocks2) = blocks.split_at_mut(middle);
-        // Unlike `split_at`, these cannot panic, whatever length a user's `AsMut` returns.
-        let generators1 = take_mut(&mut generators, acrobots);
-        let inputs1 = inputs.take(acrobots);
-        let buffers1 = buffers.take(acrobots);
-        rayon::join(
-            || self.par_step::<A, N, P>(settings, blocks1, generators1, inputs1, buffers1),
-            || self.par_step::<A, N, P>(settings, blocks2, generators, inputs, buffers),
-        );
+        let first = work.take(work.blocks.len() / 2);
+        rayon::join(|| self.par_step(first), || self.par_step(work));
     }
 }

@@ -3,16 +3,17 @@
 use alloc::vec::Vec;
 use core::ops::{Deref, DerefMut};
 
-use super::{Batch, Block, Input, Observations, ParamsKind, SharedParams, StepBuffers};
+use super::{Batch, Block, Input, LaneParams, Observations, StepBuffers};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
+use crate::reset_options::ResetOptions;
 
-type InVecs<A, P, const N: usize> = Batch<A, Vec<Block<A, N, P>>, Vec<Pcg64>, N, P>;
+type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>), N>;
 
 /// A [`Batch`] in `Vec`s, with the memory for the results of its steps.
 ///
-/// It has all methods of [`Batch`], except that its steps return their results instead of writing them into buffers.
+/// It has all methods of [`Batch`], except that its steps return their results, and its resets the observations.
 /// Only the feature `alloc` has it. `N` is as in [`Batch`]; on a core without SIMD, 1 takes less memory than 16.
 ///
 /// A [`Batch`] of another length may replace the one inside, for example by [`core::mem::swap`]. The next step or
@@ -32,25 +33,25 @@ type InVecs<A, P, const N: usize> = Batch<A, Vec<Block<A, N, P>>, Vec<Pcg64>, N,
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
-/// With [`OwnParams`](super::OwnParams) each acrobot has its own parameters. Here each episode draws new ones:
+/// Each acrobot can have its own parameters. Here each episode draws new ones:
 ///
 /// ```
-/// use acrobot::batch::{OwnParams, VecBatch};
+/// use acrobot::batch::VecBatch;
 /// use acrobot::numpy::SeedSequence;
 /// use acrobot::physics::ParamsRange;
 /// use acrobot::{Fast, Params};
 ///
 /// let light = Params { mass1: 0.9, mass2: 0.9, ..Params::DEFAULT };
 /// let heavy = Params { mass1: 1.1, mass2: 1.1, ..Params::DEFAULT };
-/// let mut batch = VecBatch::<Fast, OwnParams>::new(SeedSequence::new(42), 1024)?;
-/// batch.set_params_range(Some(ParamsRange::new(light, heavy)?));
+/// let mut batch = VecBatch::<Fast>::with_own_params(SeedSequence::new(42), 1024)?;
+/// batch.set_params_range(Some(ParamsRange::new(light, heavy)?))?;
 /// batch.reset();
 /// assert_ne!(batch.params_of(0), batch.params_of(1));
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct VecBatch<A: Arithmetic, P: ParamsKind<A> = SharedParams, const N: usize = 16> {
-    batch: InVecs<A, P, N>,
+pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
+    batch: InVecs<A, N>,
     results: Memory,
 }
 
@@ -79,7 +80,7 @@ struct Memory {
     final_observations: Vec<[f32; 6]>,
 }
 
-impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
+impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     /// A batch of `len` acrobots. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet spawned, and is in
     /// its initial state. The batch has the default parameters, a limit of 500 steps and
     /// [`Autoreset::NextStep`](super::Autoreset::NextStep).
@@ -88,12 +89,63 @@ impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
     ///
     /// [`Error::EmptyBatch`] for a `len` of 0, and [`Error::OutOfMemory`].
     pub fn new(seed: SeedSequence, len: usize) -> Result<Self, Error> {
-        let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
-        let batch = Batch::with_seed(seed, blocks, fill(Pcg64::UNSEEDED, len, len)?)?;
+        Self::allocate(seed, len, 0)
+    }
+
+    /// As [`new`](Self::new), with parameters for each acrobot.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new`](Self::new).
+    pub fn with_own_params(seed: SeedSequence, len: usize) -> Result<Self, Error> {
+        Self::allocate(seed, len, len.div_ceil(N))
+    }
+
+    pub(super) fn allocate(
+        seed: SeedSequence,
+        len: usize,
+        lane_params: usize,
+    ) -> Result<Self, Error> {
+        let storage = (
+            fill(Block::EMPTY, len.div_ceil(N), len)?,
+            fill(Pcg64::UNSEEDED, len, len)?,
+            fill(LaneParams::default(), lane_params, len)?,
+        );
+        let batch = Batch::with_seed(seed, storage)?;
         let results = Memory::default();
         let mut batch = Self { batch, results };
         batch.fit_results()?;
         Ok(batch)
+    }
+
+    /// Calls [`Batch::reset`] and returns the observations.
+    pub fn reset(&mut self) -> &[[f32; 6]] {
+        self.reset_with(ResetOptions::default())
+    }
+
+    /// Calls [`Batch::reset_with_seed`] and returns the observations.
+    pub fn reset_with_seed(&mut self, seed: u64) -> &[[f32; 6]] {
+        self.reset_with(seed.into())
+    }
+
+    /// Calls [`Batch::reset_with`] and returns the observations.
+    pub fn reset_with(&mut self, options: ResetOptions) -> &[[f32; 6]] {
+        self.batch.reset_with(options);
+        self.observations()
+    }
+
+    /// Calls [`Batch::reset_masked`] and returns the observations of all acrobots.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Batch::reset_masked`].
+    pub fn reset_masked(
+        &mut self,
+        mask: &[bool],
+        options: ResetOptions,
+    ) -> Result<&[[f32; 6]], Error> {
+        self.batch.reset_masked(mask, options)?;
+        Ok(self.observations())
     }
 
     /// Allocates new results if a batch of another length is in place. If that fails, the results are empty.
@@ -148,7 +200,7 @@ impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
     #[inline(always)]
     fn step_by(
         &mut self,
-        step: impl FnOnce(&mut InVecs<A, P, N>, StepBuffers<'_>) -> Result<(), Error>,
+        step: impl FnOnce(&mut InVecs<A, N>, StepBuffers<'_>) -> Result<(), Error>,
     ) -> Result<StepResults<'_>, Error> {
         self.fit_results()?;
         let Self { batch, results } = self;
@@ -172,15 +224,15 @@ impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> VecBatch<A, P, N> {
     }
 }
 
-impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> Deref for VecBatch<A, P, N> {
-    type Target = InVecs<A, P, N>;
+impl<A: Arithmetic, const N: usize> Deref for VecBatch<A, N> {
+    type Target = InVecs<A, N>;
 
     fn deref(&self) -> &Self::Target {
         &self.batch
     }
 }
 
-impl<A: Arithmetic, P: ParamsKind<A>, const N: usize> DerefMut for VecBatch<A, P, N> {
+impl<A: Arithmetic, const N: usize> DerefMut for VecBatch<A, N> {
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.batch
     }

@@ -3,15 +3,15 @@
 use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::real::{Real, Zeroed};
+use super::real::Real;
 
-/// One number, or many side by side. The code of a step is generic over this, so it is written once.
+/// One number, or many side by side. The code of a step is generic over this, so it is written once. The crate
+/// implements it for `f32`, for `f64` and for their lanes in a batch.
 pub trait Numbers<S: Real>:
     Copy
     + fmt::Debug
     + Send
     + Sync
-    + Zeroed
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
@@ -32,6 +32,9 @@ pub trait Numbers<S: Real>:
 
     /// Applies `f` to each pair of numbers.
     fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
+
+    /// Applies `f` to each triple of numbers. Its results are the numbers of two.
+    fn zip3(self, second: Self, third: Self, f: impl FnMut(S, S, S) -> (S, S)) -> (Self, Self);
 
     /// Whether |x| ≤ `limit` for all numbers x; false for NaN.
     fn all_within(self, limit: Self) -> bool;
@@ -70,6 +73,11 @@ impl<S: Real> Numbers<S> for S {
     }
 
     #[inline(always)]
+    fn zip3(self, second: S, third: S, mut f: impl FnMut(S, S, S) -> (S, S)) -> (S, S) {
+        f(self, second, third)
+    }
+
+    #[inline(always)]
     fn all_within(self, limit: S) -> bool {
         self.abs() <= limit
     }
@@ -88,10 +96,6 @@ impl<S: Real> Numbers<S> for S {
 /// `N` numbers: a plain array and loops over it, which LLVM compiles to the SIMD instructions of the target.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes<S, const N: usize>(pub(crate) [S; N]);
-
-impl<S: Zeroed + Copy, const N: usize> Zeroed for Lanes<S, N> {
-    const ZEROED: Self = Self([S::ZEROED; N]);
-}
 
 macro_rules! lane_by_lane {
     ($($trait:ident $method:ident),*) => {$(
@@ -141,6 +145,19 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
             *x = f(*x, y);
         }
         self
+    }
+
+    #[inline(always)]
+    fn zip3(
+        self,
+        mut second: Self,
+        mut third: Self,
+        mut f: impl FnMut(S, S, S) -> (S, S),
+    ) -> (Self, Self) {
+        for ((x, y), z) in self.0.iter().zip(&mut second.0).zip(&mut third.0) {
+            (*y, *z) = f(*x, *y, *z);
+        }
+        (second, third)
     }
 
     #[inline(always)]

@@ -21,7 +21,6 @@ pub trait Real:
     + Mul<Output = Self>
     + Div<Output = Self>
     + Neg<Output = Self>
-    + Zeroed
     + sealed::Sealed
 {
     /// 0.
@@ -47,16 +46,6 @@ pub trait Real:
 
     /// The exact remainder of the division by `divisor`, with the sign of `self`.
     fn remainder(self, divisor: Self) -> Self;
-}
-
-/// Numbers with a value to fill memory with.
-pub trait Zeroed {
-    /// All numbers are 0.
-    const ZEROED: Self;
-}
-
-impl Zeroed for () {
-    const ZEROED: Self = ();
 }
 
 /// Sine and cosine of one angle.
@@ -88,10 +77,6 @@ macro_rules! impl_real {
             fn abs(self) -> Self {
                 self.abs()
             }
-        }
-
-        impl Zeroed for $scalar {
-            const ZEROED: Self = 0.0;
         }
 
         impl Real for $scalar {

@@ -1,6 +1,6 @@
 //! The bounds of a state: angles are wrapped, velocities are clamped.
 
-use super::{Arithmetic, Equations};
+use super::{Arithmetic, Form};
 use crate::math::{Numbers, Real};
 
 /// The angle `x`, rad, wrapped to \[−π, π\] by whole turns, as a step of `A` wraps it.

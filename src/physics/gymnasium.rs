@@ -1,66 +1,112 @@
 //! Gymnasium's expressions, operation by operation.
 
-use super::model::{Common, FromParams};
-use super::{Arithmetic, Coefficients, Equations, Params};
-use crate::math::{Numbers, Real, SinCos, Zeroed};
+use super::common::{Common, FromParams};
+use super::{Arithmetic, Form, Model, Params};
+use crate::math::{Numbers, Real, SinCos};
 
 /// The equations as Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
 #[derive(Clone, Copy, Debug)]
 pub struct Gymnasium;
 
-numbers! {
-    /// The constants, and three parameters.
-    struct Constants(common: Common<V>) {
-        /// m1 lc1², kg m².
-        link1: V,
-        /// l1² + lc2², m².
-        arms_squared: V,
-        /// l1 lc2, m².
-        arms_product: V,
-        /// lc2², m².
-        lc2_squared: V,
-        /// 2 m2 l1 lc2, kg m².
-        twice_coupling: V,
-        /// kg.
-        m2: V,
-        /// kg m².
-        inertia1: V,
-        /// kg m².
-        inertia2: V,
-    }
+/// The constants, and three parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct Constants<V> {
+    common: Common<V>,
+    /// m1 lc1², kg m².
+    link1: V,
+    /// l1² + lc2², m².
+    arms_squared: V,
+    /// l1 lc2, m².
+    arms_product: V,
+    /// lc2², m².
+    lc2_squared: V,
+    /// 2 m2 l1 lc2, kg m².
+    twice_coupling: V,
+    /// kg.
+    m2: V,
+    /// kg m².
+    inertia1: V,
+    /// kg m².
+    inertia2: V,
 }
 
-constants_of_form!(|params, [l1_squared, lc1_squared, lc2_squared]| {
-    let common = Common::<S>::new(params, lc2_squared);
-    Self {
-        common,
-        link1: params.mass1 * lc1_squared,
-        arms_squared: l1_squared + lc2_squared,
-        arms_product: params.length1 * params.center_of_mass2,
-        lc2_squared,
-        twice_coupling: 2.0 * common.coupling,
-        m2: params.mass2,
-        inertia1: params.inertia1,
-        inertia2: params.inertia2,
+for_f32_and_f64! {
+    impl Constants<S> {
+        /// From parameters and l1², lc1² and lc2².
+        pub(crate) const fn new(
+            params: &Params<S>,
+            [l1_squared, lc1_squared, lc2_squared]: [S; 3],
+        ) -> Self {
+            let common = Common::<S>::new(params, lc2_squared);
+            Self {
+                common,
+                link1: params.mass1 * lc1_squared,
+                arms_squared: l1_squared + lc2_squared,
+                arms_product: params.length1 * params.center_of_mass2,
+                lc2_squared,
+                twice_coupling: 2.0 * common.coupling,
+                m2: params.mass2,
+                inertia1: params.inertia1,
+                inertia2: params.inertia2,
+            }
+        }
     }
-});
+
+    impl FromParams<S> for Constants<S> {
+        const DEFAULT: Self = Self::new(&Params::DEFAULT, [1.0, 0.25, 0.25]);
+
+        fn from_params(params: &Params<S>, squares: [S; 3]) -> Self {
+            Self::new(params, squares)
+        }
+    }
+}
 
 /// Beyond this number of turns `wrap` takes the remainder, unlike Gymnasium.
 const MAX_TURNS: u32 = 64;
 
-impl<S: Real> Equations<S> for Gymnasium
+impl<S: Real> Form<S> for Gymnasium
 where
     Constants<S>: FromParams<S>,
 {
-    equations_with_constants!();
+    type Constants<V: Numbers<S>> = Constants<V>;
+    const DEFAULT: Constants<S> = FromParams::DEFAULT;
     const COMPACT: bool = false;
+
+    #[inline(always)]
+    fn constants(params: &Params<S>, squares: [S; 3]) -> Constants<S> {
+        FromParams::from_params(params, squares)
+    }
+
+    #[inline(always)]
+    fn common<V: Numbers<S>>(constants: &Constants<V>) -> &Common<V> {
+        &constants.common
+    }
+
+    #[inline(always)]
+    fn zip<V: Numbers<S>, W: Numbers<S>>(
+        constants: Constants<V>,
+        numbers: Constants<S>,
+        f: impl Fn(V, S) -> W + Copy,
+    ) -> Constants<W> {
+        Constants {
+            common: constants.common.zip(numbers.common, f),
+            link1: f(constants.link1, numbers.link1),
+            arms_squared: f(constants.arms_squared, numbers.arms_squared),
+            arms_product: f(constants.arms_product, numbers.arms_product),
+            lc2_squared: f(constants.lc2_squared, numbers.lc2_squared),
+            twice_coupling: f(constants.twice_coupling, numbers.twice_coupling),
+            m2: f(constants.m2, numbers.m2),
+            inertia1: f(constants.inertia1, numbers.inertia1),
+            inertia2: f(constants.inertia2, numbers.inertia2),
+        }
+    }
 
     /// `AcrobotEnv._dsdt`, except for the place of the factors 2, which are exact.
     // Inlined with `std`, because `Host` takes a tenth longer otherwise. On a microcontroller inlining would cost flash
     // and gain nothing.
     #[cfg_attr(feature = "std", inline(always))]
     fn derivative<A: Arithmetic<Scalar = S, Form = Self>, V: Numbers<S>>(
-        model: &impl Coefficients<A, V>,
+        model: &Model<A, V>,
         [theta1, theta2, dtheta1, dtheta2]: [V; 4],
         sin_cos: Option<[SinCos<V>; 2]>,
         torque: V,
@@ -72,6 +118,7 @@ where
                     link2,
                     gravity1,
                     gravity2,
+                    nips,
                     ..
                 },
             link1,
@@ -82,10 +129,10 @@ where
             m2,
             inertia1,
             inertia2,
-        } = model.constants();
+        } = &model.constants;
         let (sin2, cos2) = match sin_cos {
             Some([_, second]) => second,
-            None => model.sin_cos(theta2),
+            None => A::sin_cos_near(theta2),
         };
         let (quarter, two) = (V::splat(S::PI * S::HALF), V::splat(S::from_f64(2.0)));
         let square = |x: V| x.map(A::square);
@@ -100,7 +147,8 @@ where
             + gravity1 * cos1
             + phi2;
         let driven = torque + d2 / d1 * phi1;
-        let driven = model.select(driven - coupling * square(dtheta1) * sin2, driven);
+        let centrifugal = coupling * square(dtheta1) * sin2;
+        let driven = nips.select_within(S::ZERO, driven - centrifugal, driven);
         let ddtheta2 = (driven - phi2) / (link2 - square(d2) / d1);
         let ddtheta1 = -(d2 * ddtheta2 + phi1) / d1;
         [dtheta1, dtheta2, ddtheta1, ddtheta2]

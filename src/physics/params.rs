@@ -109,9 +109,78 @@ impl<S: Real> Params<S> {
         self.zip(self, |x, _| T::from_f64(x.to_f64()))
     }
 
-    /// Applies `f` to each number and that of `other`, in the order of the fields. The dynamics are those of `self`.
+    /// The torque of an action, N m.
+    #[must_use]
     #[inline]
-    pub(super) fn zip<T>(&self, other: &Self, mut f: impl FnMut(S, S) -> T) -> Params<T> {
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "there is a torque for every action"
+    )]
+    pub fn torque(&self, action: Action) -> S {
+        self.torques[action as usize]
+    }
+
+    /// Checks every field against the range in its documentation.
+    ///
+    /// With extreme but valid parameters a step can still overflow: see
+    /// [results that are not finite](super::Pendulum#results-that-are-not-finite).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] with the first field outside its range, and [`Error::NoInertia`] for a link without
+    /// inertia about its joint.
+    pub fn validate(&self) -> Result<(), Error> {
+        for (name, value, unit, range) in self.fields() {
+            range.check(name, value.to_f64(), unit)?;
+        }
+
+        // The acceleration of a link without inertia about its joint is undetermined.
+        for (name, inertia, mass, center) in [
+            ("inertia1", self.inertia1, self.mass1, self.center_of_mass1),
+            ("inertia2", self.inertia2, self.mass2, self.center_of_mass2),
+        ] {
+            if inertia + mass * center * center <= S::ZERO {
+                let value = inertia.to_f64();
+                return Err(Error::NoInertia { name, value });
+            }
+        }
+        Ok(())
+    }
+
+    /// The name, value, unit and range of each number.
+    pub(super) fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
+        use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
+
+        let [negative, zero, positive] = self.torques;
+        [
+            ("length1", self.length1, "m", AboveZero),
+            ("length2", self.length2, "m", AboveZero),
+            ("mass1", self.mass1, "kg", AboveZero),
+            ("mass2", self.mass2, "kg", AboveZero),
+            ("center_of_mass1", self.center_of_mass1, "m", AtLeastZero),
+            ("center_of_mass2", self.center_of_mass2, "m", AtLeastZero),
+            ("inertia1", self.inertia1, "kg m²", AtLeastZero),
+            ("inertia2", self.inertia2, "kg m²", AtLeastZero),
+            ("gravity", self.gravity, "m/s²", Finite),
+            ("dt", self.dt, "s", AboveZero),
+            ("max_velocity1", self.max_velocity1, "rad/s", NormalF32),
+            ("max_velocity2", self.max_velocity2, "rad/s", NormalF32),
+            ("torques[0]", negative, "N m", Finite),
+            ("torques[1]", zero, "N m", Finite),
+            ("torques[2]", positive, "N m", Finite),
+            ("torque_noise", self.torque_noise, "N m", AtLeastZero),
+        ]
+    }
+}
+
+impl<S: Copy> Params<S> {
+    /// Applies `f` to each number and that of `other`, in the order of the fields. The dynamics are those of `self`.
+    #[inline(always)]
+    pub(crate) fn zip<T: Copy, U>(
+        &self,
+        other: &Params<T>,
+        mut f: impl FnMut(S, T) -> U,
+    ) -> Params<U> {
         let ([negative, zero, positive], torques) = (self.torques, other.torques);
         Params {
             length1: f(self.length1, other.length1),
@@ -134,68 +203,5 @@ impl<S: Real> Params<S> {
             torque_noise: f(self.torque_noise, other.torque_noise),
             dynamics: self.dynamics,
         }
-    }
-
-    /// The torque of an action, N m.
-    #[must_use]
-    #[inline]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "there is a torque for every action"
-    )]
-    pub fn torque(&self, action: Action) -> S {
-        self.torques[action as usize]
-    }
-
-    /// Checks every field against the range in its documentation.
-    ///
-    /// With extreme but valid parameters a step can still overflow: see
-    /// [results that are not finite](super::Pendulum#results-that-are-not-finite).
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] with the first field outside its range, and [`Error::NoInertia`] for a link without
-    /// inertia about its joint.
-    pub fn validate(&self) -> Result<(), Error> {
-        for (name, value, unit, range) in self.numbers() {
-            range.check(name, value.to_f64(), unit)?;
-        }
-
-        // The acceleration of a link without inertia about its joint is undetermined.
-        for (name, inertia, mass, center) in [
-            ("inertia1", self.inertia1, self.mass1, self.center_of_mass1),
-            ("inertia2", self.inertia2, self.mass2, self.center_of_mass2),
-        ] {
-            if inertia + mass * center * center <= S::ZERO {
-                let value = inertia.to_f64();
-                return Err(Error::NoInertia { name, value });
-            }
-        }
-        Ok(())
-    }
-
-    /// The name, value, unit and range of each number.
-    pub(super) fn numbers(&self) -> [(&'static str, S, &'static str, Range); 16] {
-        use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
-
-        let [negative, zero, positive] = self.torques;
-        [
-            ("length1", self.length1, "m", AboveZero),
-            ("length2", self.length2, "m", AboveZero),
-            ("mass1", self.mass1, "kg", AboveZero),
-            ("mass2", self.mass2, "kg", AboveZero),
-            ("center_of_mass1", self.center_of_mass1, "m", AtLeastZero),
-            ("center_of_mass2", self.center_of_mass2, "m", AtLeastZero),
-            ("inertia1", self.inertia1, "kg m²", AtLeastZero),
-            ("inertia2", self.inertia2, "kg m²", AtLeastZero),
-            ("gravity", self.gravity, "m/s²", Finite),
-            ("dt", self.dt, "s", AboveZero),
-            ("max_velocity1", self.max_velocity1, "rad/s", NormalF32),
-            ("max_velocity2", self.max_velocity2, "rad/s", NormalF32),
-            ("torques[0]", negative, "N m", Finite),
-            ("torques[1]", zero, "N m", Finite),
-            ("torques[2]", positive, "N m", Finite),
-            ("torque_noise", self.torque_noise, "N m", AtLeastZero),
-        ]
     }
 }

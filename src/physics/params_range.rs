@@ -41,7 +41,7 @@ impl<S: Real> ParamsRange<S> {
     pub fn new(low: Params<S>, high: Params<S>) -> Result<Self, Error> {
         low.validate()?;
         high.validate()?;
-        for ((name, low, unit, _), (_, high, ..)) in low.numbers().into_iter().zip(high.numbers()) {
+        for ((name, low, unit, _), (_, high, ..)) in low.fields().into_iter().zip(high.fields()) {
             let (low, high) = (low.to_f64(), high.to_f64());
             if low > high {
                 return Err(Error::ReversedRange {

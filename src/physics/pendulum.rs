@@ -1,7 +1,7 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
-use super::model;
-use super::{Arithmetic, Equations, Model, Params, State, step};
+use super::common;
+use super::{Arithmetic, Form, Model, Params, State, step};
 use crate::error::{Error, Range};
 use crate::math::{Real, SinCos};
 
@@ -191,7 +191,7 @@ impl<A: Arithmetic> Pendulum<A> {
     /// [`positions`] of elbow and tip, m.
     #[must_use]
     pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
-        model::positions(self.params(), self.sin_cos())
+        common::positions(self.params(), self.sin_cos())
     }
 
     /// The height of the tip above the fixed joint, m.

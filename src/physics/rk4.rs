@@ -1,111 +1,83 @@
-//! The classical Runge-Kutta method of fourth order, for any derivative.
+//! The classical Runge-Kutta method of fourth order.
 
 use core::ops::{Add, Mul};
 
-use crate::math::{Numbers, Real};
+use super::{Arithmetic, Form, Model};
+use crate::math::{Numbers, Real, SinCos};
 
-/// One step of the classical Runge-Kutta method: approximates the solution of `y' = derivative(y)` after the time `dt`.
-/// The order of operations is Gymnasium's.
-///
-/// ```
-/// let y = acrobot::physics::rk4([1.0_f64], 0.1, |[y]| [-y]);
-/// assert!((y[0] - (-0.1_f64).exp()).abs() < 1e-7);
-/// ```
-#[must_use]
-#[inline]
-pub fn rk4<S: Real, const N: usize>(
-    y: [S; N],
-    dt: S,
-    derivative: impl Fn([S; N]) -> [S; N],
-) -> [S; N] {
-    let dts = [dt * S::from_f64(0.5), dt, dt / S::from_f64(6.0)];
-    let k1 = Any(derivative(y));
-    classical(Any(y), k1, dts, &Closure(derivative)).0
-}
-
-/// The state of any system.
-#[derive(Clone, Copy)]
-struct Any<S, const N: usize>([S; N]);
-
-impl<S: Real, const N: usize> Along<S> for Any<S, N> {
-    #[inline(always)]
-    fn along(mut self, h: S, k: Self) -> Self {
-        for (y, k) in self.0.iter_mut().zip(k.0) {
-            *y = *y + h * k;
-        }
-        self
-    }
-}
-
-struct Closure<F>(F);
-
-impl<S, const N: usize, F: Fn([S; N]) -> [S; N]> Derivative<Any<S, N>> for Closure<F> {
-    #[inline(always)]
-    fn at(&self, y: Any<S, N>) -> Any<S, N> {
-        Any((self.0)(y.0))
-    }
-}
-
-/// The right side of `y' = f(y)`. It is not a closure, because closures cannot be marked for inlining: LLVM keeps a
-/// large one out of line, where it may not use the SIMD instructions of its caller.
-pub trait Derivative<Y> {
-    /// f(y).
-    fn at(&self, y: Y) -> Y;
-}
-
-/// A state, to which a multiple of its derivative can be added.
-pub trait Along<V>: Copy {
-    /// y + h k.
-    fn along(self, h: V, k: Self) -> Self;
-}
-
-impl<V: Copy + Add<Output = V> + Mul<Output = V>> Along<V> for [V; 4] {
-    // Not a loop, which LLVM can vectorize across the four numbers instead of across their lanes.
-    #[inline(always)]
-    fn along(self, h: V, k: Self) -> Self {
-        let ([y1, y2, y3, y4], [k1, k2, k3, k4]) = (self, k);
-        [y1 + h * k1, y2 + h * k2, y3 + h * k3, y4 + h * k4]
-    }
-}
-
-/// [`rk4`], given `k1`, the derivative at `y`, and dt/2, dt and dt/6.
+/// The state \[θ1, θ2, θ̇1, θ̇2\] one dt after `y`, under a constant torque, N m. `sin_cos` are the sines and cosines of
+/// θ1 and θ2.
+// The derivative is not a closure, which cannot be marked for inlining: LLVM keeps a large one out of line, where it may
+// not use the SIMD instructions of its caller.
 #[inline(always)]
-pub(super) fn classical<S: Real, V: Numbers<S>, Y: Along<V>>(
-    y: Y,
-    k1: Y,
-    [half, dt, sixth]: [V; 3],
-    derivative: &impl Derivative<Y>,
-) -> Y {
-    let k2 = derivative.at(y.along(half, k1));
-    let k3 = derivative.at(y.along(half, k2));
-    let k4 = derivative.at(y.along(dt, k3));
-    let [one, two] = [V::splat(S::ONE), V::splat(S::from_f64(2.0))];
-    y.along(sixth, k1.along(two, k2).along(two, k3).along(one, k4))
+pub(super) fn rk4<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<A, V>,
+    y: [V; 4],
+    sin_cos: [SinCos<V>; 2],
+    torque: V,
+) -> [V; 4] {
+    let k1 = A::Form::derivative(model, y, Some(sin_cos), torque);
+    if A::Form::COMPACT {
+        compact(model, y, k1, torque)
+    } else {
+        classical(model, y, k1, torque)
+    }
 }
 
-/// [`classical`] with another order of additions: a loop adds each stage to the result at once. Few numbers are alive
-/// at a time, and the derivative is inlined only once, which saves flash.
+/// Gymnasium's order of additions.
 #[inline(always)]
-pub(super) fn compact<V: Copy + Add<Output = V>, Y: Along<V>>(
-    y: Y,
-    k1: Y,
-    [half, dt, sixth]: [V; 3],
-    derivative: &impl Derivative<Y>,
-) -> Y {
+fn classical<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<A, V>,
+    y: [V; 4],
+    k1: [V; 4],
+    torque: V,
+) -> [V; 4] {
+    let common = A::Form::common(&model.constants);
+    let (half, dt, sixth) = (common.half_dt, model.params.dt, common.sixth_dt);
+    let k2 = A::Form::derivative(model, plus_scaled(y, half, k1), None, torque);
+    let k3 = A::Form::derivative(model, plus_scaled(y, half, k2), None, torque);
+    let k4 = A::Form::derivative(model, plus_scaled(y, dt, k3), None, torque);
+    let [one, two] = [1.0, 2.0].map(|x| V::splat(A::Scalar::from_f64(x)));
+    let sum = plus_scaled(plus_scaled(k1, two, k2), two, k3);
+    plus_scaled(y, sixth, plus_scaled(sum, one, k4))
+}
+
+/// Another order: a loop adds each stage to the result at once. Few numbers are alive at a time, and the derivative is
+/// inlined only once, which saves flash.
+#[inline(always)]
+fn compact<A: Arithmetic, V: Numbers<A::Scalar>>(
+    model: &Model<A, V>,
+    y: [V; 4],
+    k1: [V; 4],
+    torque: V,
+) -> [V; 4] {
+    let common = A::Form::common(&model.constants);
+    let sixth = common.sixth_dt;
     let third = sixth + sixth;
-    let mut next = y.along(sixth, k1);
+    let mut next = plus_scaled(y, sixth, k1);
     let mut k = k1;
-    let mut h = half;
+    let mut h = common.half_dt;
     let mut stage = 2;
     loop {
-        k = derivative.at(y.along(h, k));
+        k = A::Form::derivative(model, plus_scaled(y, h, k), None, torque);
         if stage == 4 {
-            return next.along(sixth, k);
+            return plus_scaled(next, sixth, k);
         }
-        next = next.along(third, k);
+        next = plus_scaled(next, third, k);
         if stage == 3 {
-            h = dt;
+            h = model.params.dt;
         }
         stage += 1;
     }
+}
+
+/// y + h k.
+// Not a loop, which LLVM can vectorize across the four numbers instead of across their lanes.
+#[inline(always)]
+pub(super) fn plus_scaled<V: Copy + Add<Output = V> + Mul<Output = V>>(
+    [y1, y2, y3, y4]: [V; 4],
+    h: V,
+    [k1, k2, k3, k4]: [V; 4],
+) -> [V; 4] {
+    [y1 + h * k1, y2 + h * k2, y3 + h * k3, y4 + h * k4]
 }

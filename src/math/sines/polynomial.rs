@@ -1,11 +1,11 @@
 //! `f32` by two polynomials: for single-precision FPUs, WASM and SIMD.
 
-use crate::math::{Lanes, Numbers};
+use crate::math::Numbers;
 
 /// Cody-Waite reduction to the nearest multiple of π/2, then two polynomials. Two constants suffice: for
 /// |x| ≤ 64 the multiple has at most 6 bits and `PI_2_HIGH` has 18, so their product is exact.
 #[inline(always)]
-pub fn sin_cos<V: QuarterTurns>(x: V) -> (V, V) {
+pub fn sin_cos<V: Numbers<f32>>(x: V) -> (V, V) {
     /// π/2: its leading 18 bits, and the rest.
     const PI_2_HIGH: f32 = f32::from_bits(0x3fc9_0fc0);
     const PI_2_LOW: f32 = (core::f64::consts::FRAC_PI_2 - PI_2_HIGH as f64) as f32;
@@ -33,14 +33,18 @@ pub fn sin_cos<V: QuarterTurns>(x: V) -> (V, V) {
     let z = r * r;
     let sin = r + (r * z) * (c(S[0]) + z * (c(S[1]) + z * c(S[2])));
     let cos = c(1.0) + z * (c(C[0]) + z * (c(C[1]) + z * c(C[2])));
-    V::rotate(shifted, sin, cos)
-}
 
-/// Numbers that can be rotated by quarter turns.
-pub trait QuarterTurns: Numbers<f32> {
-    /// Rotates sine and cosine by 0 to 3 quarter turns: the two lowest bits of `turns`. A quarter turn changes
-    /// (sin, cos) to (cos, −sin).
-    fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self);
+    // By 0 to 3 quarter turns, the two lowest bits of `shifted`. One changes (sin, cos) to (cos, −sin).
+    shifted.zip3(sin, cos, |shifted, sin, cos| {
+        let turns = shifted.to_bits();
+        if !V::IS_ONE {
+            rotate_by_bits(turns, sin, cos)
+        } else if HAS_F32 {
+            rotate_by_products(turns, sin, cos)
+        } else {
+            rotate_by_selection(turns, sin, cos)
+        }
+    })
 }
 
 /// Whether the target may have instructions for `f32`. Results do not depend on it.
@@ -49,17 +53,6 @@ const HAS_F32: bool = !cfg!(any(
     // Stable Rust does not tell whether RISC-V has the extension F. All its targets with F also have A.
     all(target_arch = "riscv32", not(target_feature = "a")),
 ));
-
-impl QuarterTurns for f32 {
-    #[inline(always)]
-    fn rotate(turns: Self, sin: Self, cos: Self) -> (Self, Self) {
-        if HAS_F32 {
-            rotate_by_products(turns.to_bits(), sin, cos)
-        } else {
-            rotate_by_selection(turns.to_bits(), sin, cos)
-        }
-    }
-}
 
 /// Uses the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and cheaper on an FPU
 /// than selecting and negating. No −0 is lost: `sin` is never −0, `cos` never 0.
@@ -87,41 +80,39 @@ fn rotate_by_selection(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
     }
 }
 
-impl<const N: usize> QuarterTurns for Lanes<f32, N> {
-    /// Selects and flips signs. Adding 0 changes −0 to 0, which is the result for a single `f32`. Where a single `f32`
-    /// gives NaN, this can give infinity; a step with either is not finite.
-    #[inline(always)]
-    fn rotate(turns: Self, mut sin: Self, mut cos: Self) -> (Self, Self) {
-        const SIGN: u32 = 1 << 31;
-        for ((turns, sin), cos) in turns.0.iter().zip(&mut sin.0).zip(&mut cos.0) {
-            let turns = turns.to_bits();
-            let even = (turns & 1).wrapping_sub(1);
-            let kept = (sin.to_bits() ^ cos.to_bits()) & even;
-            let turned_sin = cos.to_bits() ^ kept ^ (turns << 30 & SIGN);
-            let turned_cos = sin.to_bits() ^ kept ^ (turns.wrapping_add(1) << 30 & SIGN);
-            *sin = f32::from_bits(turned_sin) + 0.0;
-            *cos = f32::from_bits(turned_cos) + 0.0;
-        }
-        (sin, cos)
-    }
+/// Selects and flips signs, without a branch or a table: for SIMD. Adding 0 changes −0 to 0, which is the result for a
+/// single `f32`. Where a single `f32` gives NaN, this can give infinity; a step with either is not finite.
+#[inline(always)]
+fn rotate_by_bits(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
+    const SIGN: u32 = 1 << 31;
+    let even = (turns & 1).wrapping_sub(1);
+    let kept = (sin.to_bits() ^ cos.to_bits()) & even;
+    let turned_sin = cos.to_bits() ^ kept ^ (turns << 30 & SIGN);
+    let turned_cos = sin.to_bits() ^ kept ^ (turns.wrapping_add(1) << 30 & SIGN);
+    (
+        f32::from_bits(turned_sin) + 0.0,
+        f32::from_bits(turned_cos) + 0.0,
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A target uses only one of the two. This test runs both.
+    /// A target uses only one for a single number. This test runs all.
     #[test]
-    fn both_rotations_agree() {
+    fn all_rotations_agree() {
         for i in -100..=100 {
             let angle = i as f32 / 128.0;
             // Within a quarter turn about 0 nothing is rotated.
             let (sin, cos) = sin_cos(angle);
             for turns in 0..8 {
-                let [products, selection] = [rotate_by_products, rotate_by_selection]
-                    .map(|rotate| rotate(turns, sin, cos))
-                    .map(|(sin, cos)| [sin, cos].map(f32::to_bits));
+                let [products, selection, bits] =
+                    [rotate_by_products, rotate_by_selection, rotate_by_bits]
+                        .map(|rotate| rotate(turns, sin, cos))
+                        .map(|(sin, cos)| [sin, cos].map(f32::to_bits));
                 assert_eq!(products, selection, "{angle} {turns}");
+                assert_eq!(products, bits, "{angle} {turns}");
             }
         }
     }

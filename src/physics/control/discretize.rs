@@ -4,8 +4,8 @@ use super::linearize::partials;
 use super::matrix::{check_finite, dot, identity, transpose};
 use crate::error::Error;
 use crate::math::{Real, SinCos};
-use crate::physics::rk4::{Along, Derivative, compact};
-use crate::physics::{Arithmetic, Equations, Model, Pendulum, check_torque};
+use crate::physics::rk4::plus_scaled;
+use crate::physics::{Arithmetic, Form, Model, Pendulum, check_torque};
 
 /// The model x′ = A x + B u of one step about a state and a torque: x and x′ are the deviations before and after the
 /// step, \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u is that of the torque, N m.
@@ -49,15 +49,22 @@ pub fn discretize<A: Arithmetic>(
     check_torque(torque)?;
     let model = pendulum.model();
     let common = A::Form::common(&model.constants);
-    let dts = [common.half_dt, model.params.dt, common.sixth_dt];
-    let variational = Variational { model, torque };
+    let (half, dt, sixth) = (common.half_dt, model.params.dt, common.sixth_dt);
+    let third = sixth + sixth;
     let before = Sensitive {
         y: pendulum.state().into(),
         by_state: identity(),
         by_torque: [A::Scalar::ZERO; 4],
     };
-    let k1 = variational.at_known(before, pendulum.sin_cos());
-    let after = compact(before, k1, dts, &variational);
+    let mut k = rates(model, &before, pendulum.sin_cos(), torque);
+    let mut after = before.plus_scaled(sixth, &k);
+    // The other stages of the Runge-Kutta step.
+    for (h, weight) in [(half, third), (half, third), (dt, sixth)] {
+        let x = before.plus_scaled(h, &k);
+        let [theta1, theta2, ..] = x.y;
+        k = rates(model, &x, [theta1, theta2].map(A::sin_cos_near), torque);
+        after = after.plus_scaled(weight, &k);
+    }
     let model = Discrete {
         a: transpose(&after.by_state),
         b: after.by_torque,
@@ -75,66 +82,52 @@ struct Sensitive<S> {
     by_torque: [S; 4],
 }
 
-impl<S: Real> Along<S> for Sensitive<S> {
-    fn along(mut self, h: S, k: Self) -> Self {
+impl<S: Real> Sensitive<S> {
+    /// self + h k.
+    fn plus_scaled(mut self, h: S, k: &Self) -> Self {
         for (column, k) in self.by_state.iter_mut().zip(k.by_state) {
-            *column = column.along(h, k);
+            *column = plus_scaled(*column, h, k);
         }
         Self {
-            y: self.y.along(h, k.y),
-            by_torque: self.by_torque.along(h, k.by_torque),
+            y: plus_scaled(self.y, h, k.y),
+            by_torque: plus_scaled(self.by_torque, h, k.by_torque),
             ..self
         }
     }
 }
 
 /// The equations of motion with their variational equations. A Runge-Kutta step of both gives the state after a step of
-/// the first, and its exact derivatives.
-struct Variational<'a, A: Arithmetic> {
-    model: &'a Model<A>,
+/// the first, and its exact derivatives. `sin_cos` are the sines and cosines of θ1 and θ2.
+#[inline(never)] // saves flash: it is called in two places
+fn rates<A: Arithmetic>(
+    model: &Model<A>,
+    x: &Sensitive<A::Scalar>,
+    sin_cos: [SinCos<A::Scalar>; 2],
     torque: A::Scalar,
-}
-
-impl<A: Arithmetic> Derivative<Sensitive<A::Scalar>> for Variational<'_, A> {
-    fn at(&self, x: Sensitive<A::Scalar>) -> Sensitive<A::Scalar> {
-        let [theta1, theta2, ..] = x.y;
-        self.at_known(x, [theta1, theta2].map(A::sin_cos_near))
-    }
-}
-
-impl<A: Arithmetic> Variational<'_, A> {
-    /// As `at`, given the sines and cosines of θ1 and θ2.
-    #[inline(never)] // saves flash: it is called in two places
-    fn at_known(
-        &self,
-        x: Sensitive<A::Scalar>,
-        sin_cos: [SinCos<A::Scalar>; 2],
-    ) -> Sensitive<A::Scalar> {
-        let ([ddtheta1, ddtheta2], [by_state @ .., by_torque]) =
-            partials(self.model, x.y, sin_cos, self.torque);
-        let [_, _, dtheta1, dtheta2] = x.y;
-        let y = [dtheta1, dtheta2, ddtheta1, ddtheta2];
-        let ddtheta1 = by_state.map(|[ddtheta1, _]| ddtheta1);
-        let ddtheta2 = by_state.map(|[_, ddtheta2]| ddtheta2);
-        let rate = |column: [A::Scalar; 4]| {
-            let [_, _, dtheta1, dtheta2] = column;
-            [
-                dtheta1,
-                dtheta2,
-                dot(ddtheta1, column),
-                dot(ddtheta2, column),
-            ]
-        };
-        let [dtheta1, dtheta2, first, second] = rate(x.by_torque);
-        Sensitive {
-            y,
-            by_state: x.by_state.map(rate),
-            by_torque: [
-                dtheta1,
-                dtheta2,
-                first + by_torque[0],
-                second + by_torque[1],
-            ],
-        }
+) -> Sensitive<A::Scalar> {
+    let ([ddtheta1, ddtheta2], [by_state @ .., by_torque]) = partials(model, x.y, sin_cos, torque);
+    let [_, _, dtheta1, dtheta2] = x.y;
+    let y = [dtheta1, dtheta2, ddtheta1, ddtheta2];
+    let ddtheta1 = by_state.map(|[ddtheta1, _]| ddtheta1);
+    let ddtheta2 = by_state.map(|[_, ddtheta2]| ddtheta2);
+    let rate = |column: [A::Scalar; 4]| {
+        let [_, _, dtheta1, dtheta2] = column;
+        [
+            dtheta1,
+            dtheta2,
+            dot(ddtheta1, column),
+            dot(ddtheta2, column),
+        ]
+    };
+    let [dtheta1, dtheta2, first, second] = rate(x.by_torque);
+    Sensitive {
+        y,
+        by_state: x.by_state.map(rate),
+        by_torque: [
+            dtheta1,
+            dtheta2,
+            first + by_torque[0],
+            second + by_torque[1],
+        ],
     }
 }

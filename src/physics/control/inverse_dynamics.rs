@@ -3,8 +3,8 @@
 use super::matrix::check_finite;
 use crate::error::{Error, Range};
 use crate::math::Real;
-use crate::physics::model::directions;
-use crate::physics::{Arithmetic, Coefficients, Pendulum};
+use crate::physics::common::directions;
+use crate::physics::{Arithmetic, Dynamics, Pendulum};
 
 /// The torques and forces of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,10 +86,10 @@ pub fn inverse_dynamics<A: Arithmetic>(
     let (sin2, _) = pendulum.sin_cos()[1];
     let centrifugal = params.mass2 * l1 * lc2 * (rate1 * rate1) * sin2;
     let forces = Forces {
-        torques: [
-            torque1,
-            pendulum.model().select(torque2, torque2 - centrifugal),
-        ],
+        torques: match params.dynamics {
+            Dynamics::Book => [torque1, torque2],
+            Dynamics::Nips => [torque1, torque2 - centrifugal],
+        },
         reaction: force1,
         elbow: force2,
     };

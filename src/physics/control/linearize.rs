@@ -3,8 +3,8 @@
 use super::matrix::check_finite;
 use crate::error::Error;
 use crate::math::{Real, SinCos};
-use crate::physics::model::Common;
-use crate::physics::{Arithmetic, Coefficients, Equations, Model, Pendulum, check_torque};
+use crate::physics::common::Common;
+use crate::physics::{Arithmetic, Form, Model, Pendulum, check_torque};
 
 /// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
 /// rad/s, and u that from the torque, N m.
@@ -80,6 +80,7 @@ pub(super) fn partials<A: Arithmetic>(
         link2,
         gravity1,
         gravity2,
+        nips,
         ..
     } = *A::Form::common(&model.constants);
     let params = &model.params;
@@ -98,7 +99,7 @@ pub(super) fn partials<A: Arithmetic>(
     };
 
     // The term in α̇² acts on link 2 in the book's equations, and on link 1 in those of the paper.
-    let (book, nips) = (model.select(one, zero), model.select(zero, one));
+    let book = one - nips;
     let (dalpha, dbeta) = (dtheta1, dtheta1 + dtheta2);
     let sin_sum = sin1 * cos2 + cos1 * sin2;
     let cos_sum = cos1 * cos2 - sin1 * sin2;

@@ -3,8 +3,8 @@
 //! M(θ2) θ̈ = f(θ, θ̇, torque), with the mass matrix M = \[\[d1, d2\], \[d2, m2 lc2² + I2\]\] and the names of
 //! Sutton & Barto, *Reinforcement Learning: An Introduction* (1998), section 11.3: d1, d2, phi1 and phi2.
 
-use super::Params;
-use crate::math::{Real, SinCos, Zeroed};
+use super::{Dynamics, Params};
+use crate::math::{Real, SinCos};
 
 /// The constants of a form of the equations, computed from parameters.
 pub trait FromParams<S>: Sized {
@@ -12,24 +12,41 @@ pub trait FromParams<S>: Sized {
     const DEFAULT: Self;
 
     /// The constants of `params`. l1², lc1² and lc2² are arguments, because `Host` squares with the platform's `pow`.
-    fn new(params: &Params<S>, squares: [S; 3]) -> Self;
+    fn from_params(params: &Params<S>, squares: [S; 3]) -> Self;
 }
 
-numbers! {
-    /// The constants that both forms need.
-    struct Common {
-        /// m2 l1 lc2, kg m²: how strongly the links accelerate each other.
-        coupling: V,
-        /// m2 lc2² + I2, kg m²: the inertia of link 2 about its joint.
-        link2: V,
-        /// (m1 lc1 + m2 l1) g, N m.
-        gravity1: V,
-        /// m2 lc2 g, N m.
-        gravity2: V,
-        /// dt/2, s.
-        half_dt: V,
-        /// dt/6, s.
-        sixth_dt: V,
+/// The constants that both forms need.
+#[derive(Clone, Copy, Debug)]
+pub struct Common<V> {
+    /// m2 l1 lc2, kg m²: how strongly the links accelerate each other.
+    pub coupling: V,
+    /// m2 lc2² + I2, kg m²: the inertia of link 2 about its joint.
+    pub link2: V,
+    /// (m1 lc1 + m2 l1) g, N m.
+    pub gravity1: V,
+    /// m2 lc2 g, N m.
+    pub gravity2: V,
+    /// 1 for the equations of the 1996 paper, otherwise 0.
+    pub nips: V,
+    /// dt/2, s.
+    pub half_dt: V,
+    /// dt/6, s.
+    pub sixth_dt: V,
+}
+
+impl<V> Common<V> {
+    /// Applies `f` to each pair of numbers.
+    #[inline(always)]
+    pub fn zip<W, X>(self, other: Common<W>, f: impl Fn(V, W) -> X) -> Common<X> {
+        Common {
+            coupling: f(self.coupling, other.coupling),
+            link2: f(self.link2, other.link2),
+            gravity1: f(self.gravity1, other.gravity1),
+            gravity2: f(self.gravity2, other.gravity2),
+            nips: f(self.nips, other.nips),
+            half_dt: f(self.half_dt, other.half_dt),
+            sixth_dt: f(self.sixth_dt, other.sixth_dt),
+        }
     }
 }
 
@@ -45,6 +62,7 @@ for_f32_and_f64! {
                 inertia2,
                 gravity,
                 dt,
+                dynamics,
                 ..
             } = *params;
             Self {
@@ -52,6 +70,10 @@ for_f32_and_f64! {
                 link2: m2 * lc2_squared + inertia2,
                 gravity1: (m1 * lc1 + m2 * l1) * gravity,
                 gravity2: m2 * lc2 * gravity,
+                nips: match dynamics {
+                    Dynamics::Book => 0.0,
+                    Dynamics::Nips => 1.0,
+                },
                 half_dt: dt * 0.5,
                 sixth_dt: dt / 6.0,
             }

@@ -1,0 +1,68 @@
+//! Parameters as a step reads them: a number for each lane.
+
+use crate::arithmetic::{Arithmetic, Fast};
+use crate::math::{Lanes, Real};
+use crate::physics::{Dynamics, Form, Model, Params};
+
+use super::buffers::set;
+
+/// The memory for the parameters of `N` acrobots, where each has its own. The default is [`Params::DEFAULT`] for all.
+///
+/// ```
+/// use acrobot::Fast;
+/// use acrobot::batch::LaneParams;
+///
+/// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 1856);
+/// assert_eq!(size_of::<LaneParams<Fast, 1>>(), 128);
+/// ```
+// Aligned, because an SSE instruction can read only aligned numbers from memory.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct LaneParams<A: Arithmetic = Fast, const N: usize = 16> {
+    pub(super) model: Model<A, Lanes<A::Scalar, N>>,
+}
+
+impl<A: Arithmetic, const N: usize> Default for LaneParams<A, N> {
+    fn default() -> Self {
+        Self::shared(&Model::DEFAULT)
+    }
+}
+
+impl<A: Arithmetic, const N: usize> LaneParams<A, N> {
+    /// The same model in all lanes.
+    #[inline(always)]
+    pub(super) fn shared(Model { params, constants }: &Model<A>) -> Self {
+        let model = Model {
+            params: params.zip(params, |x, _| Lanes([x; N])),
+            constants: A::Form::zip(*constants, *constants, |_, x| Lanes([x; N])),
+        };
+        Self { model }
+    }
+
+    /// Replaces the parameters of a lane by valid ones.
+    pub(super) fn set(&mut self, lane: usize, params: Params<A::Scalar>) {
+        let one = Model::<A>::new(params);
+        let replace = |mut lanes: Lanes<_, N>, x| {
+            set(&mut lanes.0, lane, x);
+            lanes
+        };
+        self.model = Model {
+            params: self.model.params.zip(&one.params, replace),
+            constants: A::Form::zip(self.model.constants, one.constants, replace),
+        };
+    }
+
+    /// The parameters of a lane below `N`.
+    pub(super) fn get(&self, lane: usize) -> Params<A::Scalar> {
+        let Model { params, constants } = &self.model;
+        let number = |lanes: Lanes<A::Scalar, N>| *lanes.0.get(lane).unwrap_or(&A::Scalar::ZERO);
+        Params {
+            dynamics: if number(A::Form::common(constants).nips) > A::Scalar::ZERO {
+                Dynamics::Nips
+            } else {
+                Dynamics::Book
+            },
+            ..params.zip(params, |lanes, _| number(lanes))
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! One step of all blocks of a batch, or of some.
+
+use super::buffers::take_mut;
+use super::inputs::Inputs;
+use super::settings::Settings;
+use super::{Block, LaneParams, StepBuffers};
+use crate::arithmetic::Arithmetic;
+use crate::numpy::Pcg64;
+
+/// What a step reads and writes.
+pub(super) struct Work<'a, A: Arithmetic, const N: usize> {
+    pub(super) settings: &'a Settings<A>,
+    pub(super) blocks: &'a mut [Block<A, N>],
+    pub(super) generators: &'a mut [Pcg64],
+    /// Empty where acrobots share their parameters.
+    pub(super) lane_params: &'a mut [LaneParams<A, N>],
+    pub(super) inputs: Inputs<'a, A::Scalar>,
+    pub(super) buffers: StepBuffers<'a>,
+}
+
+impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
+    /// Whether acrobots share their parameters is decided once, and not for each block: the compiler then sees that all
+    /// lanes have the same constants.
+    #[inline(always)]
+    pub(super) fn step(self) {
+        let Self {
+            settings,
+            blocks,
+            mut generators,
+            lane_params,
+            mut inputs,
+            mut buffers,
+        } = self;
+        if lane_params.is_empty() {
+            let shared = LaneParams::shared(&settings.shared_model);
+            for block in blocks {
+                let generators = take_mut(&mut generators, N);
+                let results = block.advance(settings, &shared, inputs.take(N), generators);
+                block.finish(settings, results, generators, None, &mut buffers);
+            }
+        } else {
+            for (block, own) in blocks.iter_mut().zip(lane_params) {
+                let generators = take_mut(&mut generators, N);
+                let results = block.advance(settings, own, inputs.take(N), generators);
+                block.finish(settings, results, generators, Some(own), &mut buffers);
+            }
+        }
+    }
+
+    /// Splits off the first `blocks` blocks. Unlike `split_at`, it cannot panic, whatever lengths a user's
+    /// [`Storage`](super::Storage) has.
+    #[cfg(feature = "rayon")]
+    pub(super) fn take(&mut self, blocks: usize) -> Work<'a, A, N> {
+        let acrobots = blocks * N;
+        Work {
+            settings: self.settings,
+            blocks: take_mut(&mut self.blocks, blocks),
+            generators: take_mut(&mut self.generators, acrobots),
+            lane_params: take_mut(&mut self.lane_params, blocks),
+            inputs: self.inputs.take(acrobots),
+            buffers: self.buffers.take(acrobots),
+        }
+    }
+}
