@@ -44,7 +44,9 @@ use crate::error::Error;
 #[cfg(feature = "std")]
 use crate::math::sines::platform;
 use crate::math::sines::{self, correctly_rounded, polynomial, table};
-use crate::physics::{Gymnasium, Lean, Pendulum, State};
+use crate::physics::{
+    Gymnasium, GymnasiumConstants, Lean, LeanConstants, Model, Params, Pendulum, State,
+};
 
 pub use crate::math::{Numbers, Real};
 pub use crate::physics::equations::{Arithmetic, Form};
@@ -216,31 +218,39 @@ impl Arithmetic for Micro {
     }
 }
 
-// Not generic, because a `const fn` cannot convert a generic scalar.
-macro_rules! at {
-    ($($(#[$attribute:meta])* $arithmetic:ident: $scalar:ident),*) => {$(
-        $(#[$attribute])*
+// Not generic, because a `const fn` cannot calculate with a generic scalar. `Host` has none: it squares with the C library.
+macro_rules! const_new {
+    ($($arithmetic:ident, $scalar:ident, $constants:ident;)*) => {$(
         impl Pendulum<$arithmetic> {
-            /// A pendulum with the default parameters in this state, also in a `const`.
+            /// [`Pendulum::new`] in a `const`, so that a `static` needs no initialization.
             ///
             /// # Errors
             ///
-            /// [`Error::OutOfRange`] for a number that is not finite.
-            pub const fn at(state: State<$scalar>) -> Result<Self, Error> {
-                let State { theta1, theta2, dtheta1, dtheta2 } = state;
-                let wide = State {
-                    theta1: theta1 as f64,
-                    theta2: theta2 as f64,
-                    dtheta1: dtheta1 as f64,
-                    dtheta2: dtheta2 as f64,
-                };
-                if let Err(error) = wide.check() {
+            /// Those of [`Pendulum::new`].
+            pub const fn const_new(
+                params: Params<$scalar>,
+                state: State<$scalar>,
+            ) -> Result<Self, Error> {
+                if let Err(error) = params.check() {
                     return Err(error);
                 }
-                Ok(Self::starting_at([theta1, theta2, dtheta1, dtheta2]))
+                if let Err(error) = state.check() {
+                    return Err(error);
+                }
+                let (l1, lc1, lc2) =
+                    (params.length1, params.center_of_mass1, params.center_of_mass2);
+                let constants = $constants::<$scalar>::new(&params, [l1 * l1, lc1 * lc1, lc2 * lc2]);
+                let State { theta1, theta2, dtheta1, dtheta2 } = state;
+                let y = [theta1, theta2, dtheta1, dtheta2];
+                Ok(Self::from_model(Model { params, constants }, y))
             }
         }
     )*};
 }
 
-at!(Reference: f64, Portable: f64, Fast: f32, Micro: f32, #[cfg(feature = "std")] Host: f64);
+const_new! {
+    Reference, f64, GymnasiumConstants;
+    Portable, f64, LeanConstants;
+    Fast, f32, LeanConstants;
+    Micro, f32, LeanConstants;
+}

@@ -50,7 +50,9 @@ mod step;
 
 pub use bounds::{bound, wrap};
 pub(crate) use equations::{Arithmetic, Form, Model};
+pub(crate) use gymnasium::Constants as GymnasiumConstants;
 pub use gymnasium::Gymnasium;
+pub(crate) use lean::Constants as LeanConstants;
 pub use lean::Lean;
 pub use params::{Dynamics, Params};
 pub use params_range::ParamsRange;

@@ -130,25 +130,17 @@ impl<S: Real> Params<S> {
     /// [`Error::OutOfRange`] with the first field outside its range, and [`Error::NoInertia`] for a link without
     /// inertia about its joint.
     pub fn validate(&self) -> Result<(), Error> {
-        for (name, value, unit, range) in self.fields() {
-            range.check(name, value.to_f64(), unit)?;
+        // The casts change nothing: `S` is one of these two.
+        match size_of::<S>() {
+            4 => self.cast::<f32>().check(),
+            _ => self.cast::<f64>().check(),
         }
-
-        // The acceleration of a link without inertia about its joint is undetermined.
-        for (name, inertia, mass, center) in [
-            ("inertia1", self.inertia1, self.mass1, self.center_of_mass1),
-            ("inertia2", self.inertia2, self.mass2, self.center_of_mass2),
-        ] {
-            if inertia + mass * center * center <= S::ZERO {
-                let value = inertia.to_f64();
-                return Err(Error::NoInertia { name, value });
-            }
-        }
-        Ok(())
     }
+}
 
+impl<S: Copy> Params<S> {
     /// The name, value, unit and range of each number.
-    pub(super) fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
+    pub(super) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
         use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
 
         let [negative, zero, positive] = self.torques;
@@ -171,9 +163,7 @@ impl<S: Real> Params<S> {
             ("torque_noise", self.torque_noise, "N m", AtLeastZero),
         ]
     }
-}
 
-impl<S: Copy> Params<S> {
     /// Applies `f` to each number and that of `other`, in the order of the fields. The dynamics are those of `self`.
     #[inline(always)]
     pub(crate) fn zip<T: Copy, U>(
@@ -202,6 +192,33 @@ impl<S: Copy> Params<S> {
             ],
             torque_noise: f(self.torque_noise, other.torque_noise),
             dynamics: self.dynamics,
+        }
+    }
+}
+
+for_f32_and_f64! {
+    impl Params<S> {
+        /// [`Params::validate`], also in a `const`, where neither `?` nor `for` is allowed.
+        pub(crate) const fn check(&self) -> Result<(), Error> {
+            let mut fields: &[_] = &self.fields();
+            while let [(name, value, unit, range), rest @ ..] = fields {
+                if let Err(error) = range.check(name, *value as f64, unit) {
+                    return Err(error);
+                }
+                fields = rest;
+            }
+            // The acceleration of a link without inertia about its joint is undetermined.
+            let (m1, lc1) = (self.mass1, self.center_of_mass1);
+            if self.inertia1 + m1 * lc1 * lc1 <= 0.0 {
+                let (name, value) = ("inertia1", self.inertia1 as f64);
+                return Err(Error::NoInertia { name, value });
+            }
+            let (m2, lc2) = (self.mass2, self.center_of_mass2);
+            if self.inertia2 + m2 * lc2 * lc2 <= 0.0 {
+                let (name, value) = ("inertia2", self.inertia2 as f64);
+                return Err(Error::NoInertia { name, value });
+            }
+            Ok(())
         }
     }
 }

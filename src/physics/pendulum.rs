@@ -44,13 +44,13 @@ impl<A: Arithmetic> Pendulum<A> {
     /// A pendulum with the default parameters that hangs at rest.
     #[must_use]
     pub const fn hanging() -> Self {
-        Self::starting_at([A::Scalar::ZERO; 4])
+        Self::from_model(Model::DEFAULT, [A::Scalar::ZERO; 4])
     }
 
-    /// A pendulum with the default parameters in a state that is known to be finite.
-    pub(crate) const fn starting_at(y: [A::Scalar; 4]) -> Self {
+    /// A pendulum with this model in a state that is known to be finite.
+    pub(crate) const fn from_model(model: Model<A>, y: [A::Scalar; 4]) -> Self {
         Self {
-            model: Model::DEFAULT,
+            model,
             y,
             sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2],
             is_current: false,

@@ -85,20 +85,21 @@ impl<S: Real> State<S> {
     }
 }
 
-impl State<f64> {
-    /// As [`State::validate`], also in a `const`.
-    pub(crate) const fn check(&self) -> Result<(), Error> {
-        // `?` is not allowed in a `const fn`.
-        if let Err(error) = Range::Finite.check("theta1", self.theta1, "rad") {
-            return Err(error);
+for_f32_and_f64! {
+    impl State<S> {
+        /// [`State::validate`], also in a `const`, where `?` is not allowed.
+        pub(crate) const fn check(&self) -> Result<(), Error> {
+            if let Err(error) = Range::Finite.check("theta1", self.theta1 as f64, "rad") {
+                return Err(error);
+            }
+            if let Err(error) = Range::Finite.check("theta2", self.theta2 as f64, "rad") {
+                return Err(error);
+            }
+            if let Err(error) = Range::Finite.check("dtheta1", self.dtheta1 as f64, "rad/s") {
+                return Err(error);
+            }
+            Range::Finite.check("dtheta2", self.dtheta2 as f64, "rad/s")
         }
-        if let Err(error) = Range::Finite.check("theta2", self.theta2, "rad") {
-            return Err(error);
-        }
-        if let Err(error) = Range::Finite.check("dtheta1", self.dtheta1, "rad/s") {
-            return Err(error);
-        }
-        Range::Finite.check("dtheta2", self.dtheta2, "rad/s")
     }
 }
 
