@@ -5,10 +5,11 @@ use std::array::from_fn;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::physics::control::{
-    Discrete, Forces, Lqr, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, Discrete, Forces, Lqr, difference, discretize, inverse_dynamics, linearize, lqr,
+    velocities,
 };
 use acrobot::physics::{Dynamics, Pendulum};
-use acrobot::{Error, Fast, Params, Portable, State};
+use acrobot::{Fast, Params, Portable, State};
 use common::text_of;
 
 /// The rest of each line of the recording that starts with this word.
@@ -218,7 +219,7 @@ fn regulators() -> Vec<Recorded> {
 }
 
 /// The model and the weights in another scalar.
-fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, Error> {
+fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, ControlError> {
     let model = Discrete {
         a: model.a.map(cast),
         b: cast(model.b),
@@ -277,7 +278,7 @@ fn gains_are_exact_over_many_decades_or_errors() {
                 }
                 Err(error) => {
                     assert!(
-                        matches!(error, Error::IllConditioned { .. }),
+                        matches!(error, ControlError::IllConditioned { .. }),
                         "{error} {line}"
                     );
                     assert_eq!(kind, "any", "{error} {line}");
@@ -429,7 +430,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let persistent = diagonal([1.0, 0.5, 0.4, 0.3]);
     let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
     let not_first = [0.0, 1.0, 1.0, 1.0];
-    let (stabilizable, detectable) = (Error::NotStabilizable, Error::NotDetectable);
+    let (stabilizable, detectable) = (ControlError::NotStabilizable, ControlError::NotDetectable);
     for (a, b, q, expected) in [
         (growing, not_first, IDENTITY, stabilizable),
         (persistent, not_first, IDENTITY, stabilizable),
@@ -457,7 +458,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
     let model = discretize(&pendulum, 0.0).unwrap();
     let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
-    assert_eq!(error, Error::NotStabilizable);
+    assert_eq!(error, ControlError::NotStabilizable);
 
     // What `f32` cannot hold has a name.
     let model = Discrete {

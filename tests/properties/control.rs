@@ -2,21 +2,20 @@
 
 use std::array::from_fn;
 
-use acrobot::Error;
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
-    Discrete, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, Discrete, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
 };
 use proptest::prelude::*;
 
 use crate::given::{Number, Range, holds, number, params, state};
 
 /// Whether the result is finite, or an error that says what is not.
-fn is_finite<S: Real>(result: Result<Vec<S>, Error>) -> bool {
+fn is_finite<S: Real>(result: Result<Vec<S>, ControlError>) -> bool {
     match result {
         Ok(elements) => elements.iter().all(|x| x.is_finite()),
-        Err(error) => matches!(error, Error::NotFinite { .. }),
+        Err(error) => matches!(error, ControlError::NotFinite { .. }),
     }
 }
 

@@ -1,8 +1,8 @@
 //! The derivatives of a step.
 
+use super::ControlError;
 use super::linearize::partials;
 use super::matrix::{check_finite, dot, identity, transpose};
-use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::physics::rk4::{Along, Derivative, compact};
 use crate::physics::{Arithmetic, Equations, Model, Pendulum, check_torque};
@@ -35,17 +35,17 @@ pub struct Discrete<S = f64> {
 /// let mut pushed = upright.clone();
 /// pushed.step(1e-6)?; // N m
 /// assert!((pushed.state().dtheta2 - model.b[3] * 1e-6).abs() < 1e-11);
-/// # Ok::<(), acrobot::Error>(())
+/// # Ok::<(), acrobot::physics::control::ControlError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// [`Error::OutOfRange`] for a torque that is not finite, and [`Error::NotFinite`] if extreme parameters or velocities
-/// make an element overflow.
+/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if extreme parameters or
+/// velocities make an element overflow.
 pub fn discretize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
-) -> Result<Discrete<A::Scalar>, Error> {
+) -> Result<Discrete<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let model = pendulum.model();
     let common = A::Form::common(&model.constants);

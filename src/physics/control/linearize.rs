@@ -1,7 +1,7 @@
 //! The derivatives of the equations of motion.
 
+use super::ControlError;
 use super::matrix::check_finite;
-use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::physics::model::Common;
 use crate::physics::{Arithmetic, Coefficients, Equations, Model, Pendulum, check_torque};
@@ -32,17 +32,17 @@ pub struct Continuous<S = f64> {
 /// let model = linearize(&upright, 0.0)?;
 /// assert_eq!(model.a[0], [0.0, 0.0, 1.0, 0.0]); // the derivative of θ1 is θ̇1
 /// assert!(model.a[2][0] > 0.0); // gravity drives link 1 away
-/// # Ok::<(), acrobot::Error>(())
+/// # Ok::<(), acrobot::physics::control::ControlError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// [`Error::OutOfRange`] for a torque that is not finite, and [`Error::NotFinite`] if extreme parameters or velocities
-/// make an element overflow.
+/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if extreme parameters or
+/// velocities make an element overflow.
 pub fn linearize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
-) -> Result<Continuous<A::Scalar>, Error> {
+) -> Result<Continuous<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
     let y = pendulum.state().into();
