@@ -5,8 +5,8 @@ use std::array::from_fn;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::physics::control::{
-    ControlError, Discrete, Forces, Lqr, difference, discretize, inverse_dynamics, linearize, lqr,
-    velocities,
+    ControlError, DiscreteModel, Forces, Lqr, difference, discretize, inverse_dynamics, linearize,
+    lqr, velocities,
 };
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::{Fast, Params, Portable, State};
@@ -190,7 +190,7 @@ fn inverse_dynamics_inverts_the_derivative() {
 struct Recorded {
     theta1: f64,
     dt: f64,
-    model: Discrete,
+    model: DiscreteModel,
     q: [[f64; 4]; 4],
     r: f64,
     gain: [f64; 4],
@@ -205,7 +205,7 @@ fn regulators() -> Vec<Recorded> {
         Recorded {
             theta1: x[0],
             dt: x[1],
-            model: Discrete {
+            model: DiscreteModel {
                 a: matrix(&x[2..18]),
                 b: vector(&x[18..22]),
             },
@@ -220,7 +220,7 @@ fn regulators() -> Vec<Recorded> {
 
 /// The model and the weights in another scalar.
 fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, ControlError> {
-    let model = Discrete {
+    let model = DiscreteModel {
         a: model.a.map(cast),
         b: cast(model.b),
     };
@@ -270,7 +270,7 @@ fn gains_are_exact_over_many_decades_or_errors() {
             x[..37].iter_mut().for_each(|x| *x = f64::from(*x as f32));
             let [a, q] = [&x[..16], &x[20..36]].map(|m| matrix(m).map(cast));
             let b = cast(vector(&x[16..20]));
-            match lqr::<S>(&Discrete { a, b }, &q, S::from_f64(x[36])) {
+            match lqr::<S>(&DiscreteModel { a, b }, &q, S::from_f64(x[36])) {
                 Ok(regulator) => {
                     let error = relative(&regulator.gain, &x[37..]);
                     assert!(error < limit, "{error:e} {line}");
@@ -381,7 +381,7 @@ fn a_step_moves_as_its_derivatives_say() {
     }
 }
 
-fn upright() -> Discrete {
+fn upright() -> DiscreteModel {
     discretize(&Pendulum::<Portable>::at(State::UPRIGHT).unwrap(), 0.0).unwrap()
 }
 
@@ -444,7 +444,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
             detectable,
         ),
     ] {
-        let error = lqr(&Discrete { a, b }, &q, 1.0).unwrap_err();
+        let error = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap_err();
         assert_eq!(error, expected, "{a:?} {b:?} {q:?}");
     }
 
@@ -461,7 +461,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     assert_eq!(error, ControlError::NotStabilizable);
 
     // What `f32` cannot hold has a name.
-    let model = Discrete {
+    let model = DiscreteModel {
         a: growing.map(cast::<f32, 4>),
         b: [1e-30; 4],
     };
@@ -475,7 +475,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
 /// Of all gains that stabilize, the regulator has the cheapest, even where the weights do not ask for one.
 #[test]
 fn a_motion_that_grows_is_stopped_without_weights() {
-    let gain = |a, b, q| lqr(&Discrete { a, b }, &q, 1.0).unwrap().gain;
+    let gain = |a, b, q| lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap().gain;
     let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
     // The cheapest way mirrors 1.1 in the unit circle: 1.1 − k = 1 / 1.1.
     let found = gain(diagonal([1.1, 0.5, 0.4, 0.3]), all, none);

@@ -42,8 +42,8 @@ mod linearize;
 mod lqr;
 mod matrix;
 
-pub use discretize::{Discrete, discretize};
+pub use discretize::{DiscreteModel, discretize};
 pub use error::ControlError;
 pub use inverse_dynamics::{Forces, inverse_dynamics, velocities};
-pub use linearize::{Continuous, linearize};
+pub use linearize::{ContinuousModel, linearize};
 pub use lqr::{Lqr, difference, lqr};

@@ -5,7 +5,8 @@ use std::array::from_fn;
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
-    ControlError, Discrete, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, DiscreteModel, difference, discretize, inverse_dynamics, linearize, lqr,
+    velocities,
 };
 use proptest::prelude::*;
 
@@ -116,7 +117,7 @@ fn regulators_stabilize_or_are_errors() {
             number::<S>(range),
         );
         holds(2000, given, |(a, b, q, r)| {
-            let model = Discrete { a, b };
+            let model = DiscreteModel { a, b };
             let Ok(regulator) = lqr(&model, &q, r) else {
                 return;
             };

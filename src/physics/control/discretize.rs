@@ -11,7 +11,7 @@ use crate::physics::{Arithmetic, Equations, Model, Pendulum, check_torque};
 /// step, \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u is that of the torque, N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Discrete<S = f64> {
+pub struct DiscreteModel<S = f64> {
     /// A by rows: `a[i][j]` is the derivative of the i-th number after the step by the j-th before.
     pub a: [[S; 4]; 4],
     /// B: the derivatives of the state after the step by the torque.
@@ -45,7 +45,7 @@ pub struct Discrete<S = f64> {
 pub fn discretize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
-) -> Result<Discrete<A::Scalar>, ControlError> {
+) -> Result<DiscreteModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let model = pendulum.model();
     let common = A::Form::common(&model.constants);
@@ -58,7 +58,7 @@ pub fn discretize<A: Arithmetic>(
     };
     let k1 = variational.at_known(before, pendulum.sin_cos());
     let after = compact(before, k1, dts, &variational);
-    let model = Discrete {
+    let model = DiscreteModel {
         a: transpose(&after.by_state),
         b: after.by_torque,
     };

@@ -10,7 +10,7 @@ use crate::physics::{Arithmetic, Coefficients, Equations, Model, Pendulum, check
 /// rad/s, and u that from the torque, N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Continuous<S = f64> {
+pub struct ContinuousModel<S = f64> {
     /// A by rows: `a[i][j]` is the derivative of the i-th rate by the j-th number of the state.
     pub a: [[S; 4]; 4],
     /// B: the derivatives of the rates by the torque.
@@ -42,12 +42,12 @@ pub struct Continuous<S = f64> {
 pub fn linearize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
-) -> Result<Continuous<A::Scalar>, ControlError> {
+) -> Result<ContinuousModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
     let y = pendulum.state().into();
     let (_, [by_state @ .., by_torque]) = partials(pendulum.model(), y, pendulum.sin_cos(), torque);
-    let model = Continuous {
+    let model = ContinuousModel {
         a: [
             [zero, zero, one, zero],
             [zero, zero, zero, one],

@@ -4,7 +4,7 @@ use super::matrix::{
     Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, dot, eliminate, identity,
     inner, largest, product, scale, symmetrize, transpose,
 };
-use super::{ControlError, Discrete};
+use super::{ControlError, DiscreteModel};
 use crate::error::Range;
 use crate::math::Real;
 use crate::physics::{Arithmetic, State, wrap};
@@ -72,12 +72,12 @@ pub fn difference<A: Arithmetic>(
 /// 1971) makes it exact up to rounding.
 ///
 /// ```
-/// use acrobot::physics::control::{Discrete, lqr};
+/// use acrobot::physics::control::{DiscreteModel, lqr};
 ///
 /// // A force moves a mass of 1 kg in steps of 0.1 s: position and velocity are the first and the third number. The
 /// // others decay.
 /// let a: [[f64; 4]; 4] = [[1.0, 0.0, 0.1, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.5]];
-/// let model = Discrete { a, b: [0.005, 0.0, 0.1, 0.0] };
+/// let model = DiscreteModel { a, b: [0.005, 0.0, 0.1, 0.0] };
 /// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
 /// let regulator = lqr(&model, &q, 1.0)?;
 /// assert!((regulator.gain[0] - 0.9317).abs() < 1e-4 && regulator.gain[1] == 0.0);
@@ -96,7 +96,11 @@ pub fn difference<A: Arithmetic>(
 /// - [`ControlError::NotDetectable`] if `q` does not weight a motion that persists: it would need more than 2⁴⁰ steps to
 ///   vanish.
 /// - [`ControlError::IllConditioned`] if the estimated error of the gain is above 1e-9 of its largest element.
-pub fn lqr<S: Real>(model: &Discrete<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, ControlError> {
+pub fn lqr<S: Real>(
+    model: &DiscreteModel<S>,
+    q: &[[S; 4]; 4],
+    r: S,
+) -> Result<Lqr<S>, ControlError> {
     check_finite("a", model.a.as_flattened())?;
     check_finite("b", &model.b)?;
     check_finite("q", q.as_flattened())?;
