@@ -94,7 +94,7 @@ fn choose<S: Real, const N: usize>(
     let mut torques = *negative;
     let lanes = torques.iter_mut().zip(zero).zip(positive).zip(actions);
     for (((torque, zero), positive), action) in lanes {
-        *torque = S::pick([*torque, *zero, *positive], action);
+        *torque = S::select([*torque, *zero, *positive], action);
     }
     torques
 }
