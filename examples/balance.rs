@@ -9,6 +9,7 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use acrobot::physics::control::ControlError;
 use acrobot::{Acrobot, Fast, Params, State};
 use clap::Parser;
 use controller::Controller;
@@ -56,7 +57,7 @@ fn data_url(svg: &str) -> String {
 }
 
 /// The state of each frame.
-fn play(seed: u64) -> Result<Vec<State>, acrobot::Error> {
+fn play(seed: u64) -> Result<Vec<State>, ControlError> {
     // As in the firmware with a largest torque of 10 N m.
     let params = Params {
         dt: 0.01,

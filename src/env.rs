@@ -35,7 +35,7 @@ pub use make::{
     ArithmeticKind, DynEnv, DynObservation, Options, acrobot_v0, acrobot_v1, make, make_with,
 };
 pub use rendering::{Display, RenderMode, Rendering};
-pub use space::{BoxSpace, Discrete, Space};
+pub use space::{BoxSpace, DiscreteSpace, Space};
 pub use statistics::RecordEpisodeStatistics;
 
 use crate::acrobot::Step;

@@ -36,38 +36,6 @@ pub enum Error {
         /// The moment of inertia given, kg m².
         value: f64,
     },
-    /// An element of a matrix or a vector is infinite or NaN: it was given, or extreme parameters made it overflow.
-    NotFinite {
-        /// The argument or the result.
-        name: &'static str,
-        /// The first element that is not finite, in SI units.
-        value: f64,
-    },
-    /// A matrix of weights is not symmetric.
-    NotSymmetric {
-        /// The argument.
-        name: &'static str,
-        /// An element above the diagonal.
-        upper: f64,
-        /// Its mirror image below the diagonal.
-        lower: f64,
-    },
-    /// A matrix of weights is not positive semidefinite.
-    NotSemidefinite {
-        /// The argument.
-        name: &'static str,
-        /// The largest absolute value that remains after the elimination of all positive pivots.
-        value: f64,
-    },
-    /// The torque does not reach a motion of the model that grows or persists, so no regulator makes it vanish.
-    NotStabilizable,
-    /// The weights do not see a motion of the model that persists, so the best regulator lets it persist.
-    NotDetectable,
-    /// The gain of a regulator cannot be computed precisely enough.
-    IllConditioned {
-        /// The estimated error of the gain, relative to its largest element.
-        error: f64,
-    },
     /// The lower reset bound is above the upper one.
     ReversedBounds {
         /// The lower bound given, rad and rad/s.
@@ -155,29 +123,6 @@ impl fmt::Display for Error {
             Self::NoInertia { name, value } => write!(
                 f,
                 "{name} must be above 0 kg m² if the centre of mass is on the joint, got {value}"
-            ),
-            Self::NotFinite { name, value } => {
-                write!(f, "{name} must be finite in each element, got {value}")
-            }
-            Self::NotSymmetric { name, upper, lower } => write!(
-                f,
-                "{name} must be symmetric, got {upper} and {lower} on both sides of the diagonal"
-            ),
-            Self::NotSemidefinite { name, value } => write!(
-                f,
-                "{name} must be positive semidefinite, got {value} after the elimination of its positive pivots"
-            ),
-            Self::NotStabilizable => write!(
-                f,
-                "the torque must reach each motion that grows or persists, but does not reach one"
-            ),
-            Self::NotDetectable => write!(
-                f,
-                "q must weight each motion that persists, but does not weight one"
-            ),
-            Self::IllConditioned { error } => write!(
-                f,
-                "the relative error of the gain must be at most 1e-9, got {error:e}"
             ),
             Self::ReversedBounds { low, high } => write!(
                 f,

@@ -5,6 +5,7 @@ use std::convert::Infallible;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::control::ControlError;
 use acrobot::physics::{
     Dynamics, Gymnasium, Lean, Pendulum, ResetBounds, derivative, energy, mass_matrix, positions,
     tip_height, wrap,
@@ -36,6 +37,7 @@ const _: () = {
     is_send_sync_clone::<Trajectory<f32, 10>>();
     is_send_sync_clone::<Pcg64>();
     is_send_sync_clone::<Error>();
+    is_send_sync_clone::<ControlError>();
 };
 
 #[test]

@@ -6,8 +6,8 @@ use std::rc::Rc;
 
 use acrobot::arithmetic::{Host, Micro};
 use acrobot::env::{
-    AcrobotEnv, BoxSpace, Discrete, Env, Error, Info, Options, RecordEpisodeStatistics, RenderMode,
-    Rendering, Space, Violation, acrobot_v0, acrobot_v1, check_env,
+    AcrobotEnv, BoxSpace, DiscreteSpace, Env, Error, Info, Options, RecordEpisodeStatistics,
+    RenderMode, Rendering, Space, Violation, acrobot_v0, acrobot_v1, check_env,
 };
 use acrobot::{
     Acrobot, Action, Fast, Observation, Params, Portable, ResetOptions, Step, TimeLimit,
@@ -127,7 +127,7 @@ impl Env for Broken {
     type Observation = Observation;
     type Action = Action;
     type ObservationSpace = Altered<BoxSpace<Observation>>;
-    type ActionSpace = Altered<Discrete<Action>>;
+    type ActionSpace = Altered<DiscreteSpace<Action>>;
     type Unwrapped = Acrobot<Fast>;
 
     fn reset_with(&mut self, mut options: ResetOptions) -> (Observation, Info) {
@@ -167,10 +167,10 @@ impl Env for Broken {
         step
     }
 
-    fn action_space(&self) -> Altered<Discrete<Action>> {
+    fn action_space(&self) -> Altered<DiscreteSpace<Action>> {
         match self.flaw {
             Flaw::ActionSamples => Altered {
-                space: Discrete::new(&[Action::Negative, Action::Zero]).unwrap(),
+                space: DiscreteSpace::new(&[Action::Negative, Action::Zero]).unwrap(),
                 alter: |_| Action::Positive,
             },
             _ => Altered {

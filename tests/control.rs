@@ -5,10 +5,11 @@ use std::array::from_fn;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::physics::control::{
-    Discrete, Forces, Lqr, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, DiscreteModel, Forces, Lqr, difference, discretize, inverse_dynamics, linearize,
+    lqr, velocities,
 };
 use acrobot::physics::{Dynamics, Pendulum};
-use acrobot::{Error, Fast, Params, Portable, State};
+use acrobot::{Fast, Params, Portable, State};
 use common::text_of;
 
 /// The rest of each line of the recording that starts with this word.
@@ -189,7 +190,7 @@ fn inverse_dynamics_inverts_the_derivative() {
 struct Recorded {
     theta1: f64,
     dt: f64,
-    model: Discrete,
+    model: DiscreteModel,
     q: [[f64; 4]; 4],
     r: f64,
     gain: [f64; 4],
@@ -204,7 +205,7 @@ fn regulators() -> Vec<Recorded> {
         Recorded {
             theta1: x[0],
             dt: x[1],
-            model: Discrete {
+            model: DiscreteModel {
                 a: matrix(&x[2..18]),
                 b: vector(&x[18..22]),
             },
@@ -218,8 +219,8 @@ fn regulators() -> Vec<Recorded> {
 }
 
 /// The model and the weights in another scalar.
-fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, Error> {
-    let model = Discrete {
+fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, ControlError> {
+    let model = DiscreteModel {
         a: model.a.map(cast),
         b: cast(model.b),
     };
@@ -269,7 +270,7 @@ fn gains_are_exact_over_many_decades_or_errors() {
             x[..37].iter_mut().for_each(|x| *x = f64::from(*x as f32));
             let [a, q] = [&x[..16], &x[20..36]].map(|m| matrix(m).map(cast));
             let b = cast(vector(&x[16..20]));
-            match lqr::<S>(&Discrete { a, b }, &q, S::from_f64(x[36])) {
+            match lqr::<S>(&DiscreteModel { a, b }, &q, S::from_f64(x[36])) {
                 Ok(regulator) => {
                     let error = relative(&regulator.gain, &x[37..]);
                     assert!(error < limit, "{error:e} {line}");
@@ -277,7 +278,7 @@ fn gains_are_exact_over_many_decades_or_errors() {
                 }
                 Err(error) => {
                     assert!(
-                        matches!(error, Error::IllConditioned { .. }),
+                        matches!(error, ControlError::IllConditioned { .. }),
                         "{error} {line}"
                     );
                     assert_eq!(kind, "any", "{error} {line}");
@@ -380,7 +381,7 @@ fn a_step_moves_as_its_derivatives_say() {
     }
 }
 
-fn upright() -> Discrete {
+fn upright() -> DiscreteModel {
     discretize(&Pendulum::<Portable>::at(State::UPRIGHT).unwrap(), 0.0).unwrap()
 }
 
@@ -429,7 +430,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let persistent = diagonal([1.0, 0.5, 0.4, 0.3]);
     let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
     let not_first = [0.0, 1.0, 1.0, 1.0];
-    let (stabilizable, detectable) = (Error::NotStabilizable, Error::NotDetectable);
+    let (stabilizable, detectable) = (ControlError::NotStabilizable, ControlError::NotDetectable);
     for (a, b, q, expected) in [
         (growing, not_first, IDENTITY, stabilizable),
         (persistent, not_first, IDENTITY, stabilizable),
@@ -443,7 +444,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
             detectable,
         ),
     ] {
-        let error = lqr(&Discrete { a, b }, &q, 1.0).unwrap_err();
+        let error = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap_err();
         assert_eq!(error, expected, "{a:?} {b:?} {q:?}");
     }
 
@@ -457,10 +458,10 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
     let model = discretize(&pendulum, 0.0).unwrap();
     let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
-    assert_eq!(error, Error::NotStabilizable);
+    assert_eq!(error, ControlError::NotStabilizable);
 
     // What `f32` cannot hold has a name.
-    let model = Discrete {
+    let model = DiscreteModel {
         a: growing.map(cast::<f32, 4>),
         b: [1e-30; 4],
     };
@@ -474,7 +475,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
 /// Of all gains that stabilize, the regulator has the cheapest, even where the weights do not ask for one.
 #[test]
 fn a_motion_that_grows_is_stopped_without_weights() {
-    let gain = |a, b, q| lqr(&Discrete { a, b }, &q, 1.0).unwrap().gain;
+    let gain = |a, b, q| lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap().gain;
     let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
     // The cheapest way mirrors 1.1 in the unit circle: 1.1 − k = 1 / 1.1.
     let found = gain(diagonal([1.1, 0.5, 0.4, 0.3]), all, none);

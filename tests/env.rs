@@ -6,8 +6,9 @@ use std::time::Duration;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::env::{
-    AcrobotEnv, ArithmeticKind, BoxSpace, Discrete, Display, DynEnv, DynObservation, Env, Error,
-    Options, RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make, make_with,
+    AcrobotEnv, ArithmeticKind, BoxSpace, DiscreteSpace, Display, DynEnv, DynObservation, Env,
+    Error, Options, RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make,
+    make_with,
 };
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, ResetBounds};
@@ -459,7 +460,7 @@ fn spaces_know_their_elements() {
     assert!(
         Action::ALL
             .iter()
-            .all(|action| Discrete::ACTIONS.contains(action))
+            .all(|action| DiscreteSpace::ACTIONS.contains(action))
     );
 }
 

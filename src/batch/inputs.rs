@@ -89,7 +89,7 @@ fn choose<S: Real, const N: usize>(
     let mut torques = *negative;
     let others = zero.0.iter().zip(&positive.0).zip(actions);
     for (torque, ((zero, positive), action)) in torques.0.iter_mut().zip(others) {
-        *torque = S::pick([*torque, *zero, *positive], action);
+        *torque = S::select([*torque, *zero, *positive], action);
     }
     torques
 }

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::marker::PhantomData;
 
-use super::{BoxSpace, Discrete, Env, Error, Info, RenderMode, Rendering};
+use super::{BoxSpace, DiscreteSpace, Env, Error, Info, RenderMode, Rendering};
 use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
@@ -108,7 +108,7 @@ impl<A: Arithmetic, O: ObservationKind> Env for AcrobotEnv<A, O> {
     type Observation = O;
     type Action = Action;
     type ObservationSpace = BoxSpace<O>;
-    type ActionSpace = Discrete<Action>;
+    type ActionSpace = DiscreteSpace<Action>;
     type Unwrapped = Acrobot<A>;
 
     fn reset_with(&mut self, options: ResetOptions) -> (O, Info) {
@@ -129,8 +129,8 @@ impl<A: Arithmetic, O: ObservationKind> Env for AcrobotEnv<A, O> {
         }
     }
 
-    fn action_space(&self) -> Discrete<Action> {
-        Discrete::ACTIONS
+    fn action_space(&self) -> DiscreteSpace<Action> {
+        DiscreteSpace::ACTIONS
     }
 
     fn observation_space(&self) -> BoxSpace<O> {

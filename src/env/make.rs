@@ -4,7 +4,9 @@ use core::fmt;
 use std::boxed::Box;
 use std::string::String;
 
-use super::{AcrobotEnv, BoxSpace, Discrete, DynAcrobot, Env, Error, Info, RenderMode, Rendering};
+use super::{
+    AcrobotEnv, BoxSpace, DiscreteSpace, DynAcrobot, Env, Error, Info, RenderMode, Rendering,
+};
 use crate::acrobot::Step;
 use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Reference};
@@ -68,7 +70,7 @@ pub type DynEnv = dyn Env<
         Observation = DynObservation,
         Action = Action,
         ObservationSpace = BoxSpace<DynObservation>,
-        ActionSpace = Discrete<Action>,
+        ActionSpace = DiscreteSpace<Action>,
         Unwrapped = dyn DynAcrobot,
     > + Send;
 
@@ -234,7 +236,7 @@ where
             Observation = O,
             Action = Action,
             ObservationSpace = BoxSpace<O>,
-            ActionSpace = Discrete<Action>,
+            ActionSpace = DiscreteSpace<Action>,
             Unwrapped: DynAcrobot + Sized + 'static,
         >,
     O: AsRef<[f32]> + AsMut<[f32]> + Clone + Into<DynObservation>,
@@ -242,7 +244,7 @@ where
     type Observation = DynObservation;
     type Action = Action;
     type ObservationSpace = BoxSpace<DynObservation>;
-    type ActionSpace = Discrete<Action>;
+    type ActionSpace = DiscreteSpace<Action>;
     type Unwrapped = dyn DynAcrobot;
 
     fn reset_with(&mut self, options: ResetOptions) -> (DynObservation, Info) {
@@ -261,7 +263,7 @@ where
         }
     }
 
-    fn action_space(&self) -> Discrete<Action> {
+    fn action_space(&self) -> DiscreteSpace<Action> {
         self.0.action_space()
     }
 

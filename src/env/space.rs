@@ -25,22 +25,22 @@ pub trait Space {
 /// Gymnasium's `Discrete`: a list of elements, numbered from 0.
 ///
 /// ```
-/// use acrobot::env::{Discrete, Space};
+/// use acrobot::env::{DiscreteSpace, Space};
 /// use acrobot::Action;
 /// use acrobot::numpy::Pcg64;
 ///
-/// let space = Discrete::new(&[10, 20, 30]).unwrap();
+/// let space = DiscreteSpace::new(&[10, 20, 30]).unwrap();
 /// assert_eq!(space.sample(&mut Pcg64::new(42)), 10);
 /// assert!(space.contains(&20) && !space.contains(&25));
-/// assert!(Discrete::<Action>::new(&[]).is_none());
+/// assert!(DiscreteSpace::<Action>::new(&[]).is_none());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Discrete<T: 'static> {
+pub struct DiscreteSpace<T: 'static> {
     elements: &'static [T],
     n: NonZeroU32,
 }
 
-impl Discrete<Action> {
+impl DiscreteSpace<Action> {
     /// Acrobot's three actions.
     pub const ACTIONS: Self = Self {
         elements: &Action::ALL,
@@ -48,7 +48,7 @@ impl Discrete<Action> {
     };
 }
 
-impl<T> Discrete<T> {
+impl<T> DiscreteSpace<T> {
     /// A space of these elements. `None` if there are none, or more than 2³² − 1.
     #[must_use]
     pub fn new(elements: &'static [T]) -> Option<Self> {
@@ -63,7 +63,7 @@ impl<T> Discrete<T> {
     }
 }
 
-impl<T: Clone + PartialEq> Space for Discrete<T> {
+impl<T: Clone + PartialEq> Space for DiscreteSpace<T> {
     type Element = T;
 
     fn contains(&self, element: &T) -> bool {

@@ -58,13 +58,13 @@ macro_rules! impl_real {
             const MINUS_ONE: Self = -1.0;
             const HALF: Self = 0.5;
             const EPSILON: Self = $scalar::EPSILON;
-            const GYMNASIUM: [Self; 4] = {
-                use core::f64::consts::PI;
-                [9.8, 0.2, (4.0 * PI) as $scalar, (9.0 * PI) as $scalar]
-            };
+            const GRAVITY: Self = 9.8;
+            const DT: Self = 0.2;
+            const MAX_VELOCITY1: Self = (4.0 * core::f64::consts::PI) as $scalar;
+            const MAX_VELOCITY2: Self = (9.0 * core::f64::consts::PI) as $scalar;
 
             #[inline]
-            fn pick([first, second, third]: [Self; 3], index: u8) -> Self {
+            fn select([first, second, third]: [Self; 3], index: u8) -> Self {
                 let mask = |i| u64::from(index == i).wrapping_neg() as $bits;
                 $scalar::from_bits(
                     (first.to_bits() & mask(0))
@@ -132,11 +132,20 @@ pub(crate) mod sealed {
         /// The distance from 1 to the next number.
         const EPSILON: Self;
 
-        /// Gymnasium's gravity in m/s², time step in s, and both velocity bounds in rad/s.
-        const GYMNASIUM: [Self; 4];
+        /// Gymnasium's gravity, m/s².
+        const GRAVITY: Self;
+
+        /// Gymnasium's time step, s.
+        const DT: Self;
+
+        /// Gymnasium's bound of |θ̇1|, rad/s.
+        const MAX_VELOCITY1: Self;
+
+        /// Gymnasium's bound of |θ̇2|, rad/s.
+        const MAX_VELOCITY2: Self;
 
         /// The element with an index of 0 to 2, without a branch or an address that depends on the index.
-        fn pick(three: [Self; 3], index: u8) -> Self;
+        fn select(three: [Self; 3], index: u8) -> Self;
 
         /// The absolute value.
         fn abs(self) -> Self;

@@ -1,7 +1,7 @@
 //! What a controller needs of the model: linearization, inverse dynamics, velocities and a linear-quadratic regulator.
 //!
-//! No function needs a heap or panics. A result is finite, or an [`Error`](crate::Error) that names what overflows with
-//! extreme parameters. All functions work in `f32` and `f64`, and with both [`Dynamics`](super::Dynamics).
+//! No function needs a heap or panics. A result is finite, or a [`ControlError`] that names what overflows with extreme
+//! parameters. All functions work in `f32` and `f64`, and with both [`Dynamics`](super::Dynamics).
 //!
 //! | function | result |
 //! |---|---|
@@ -32,16 +32,18 @@
 //! }
 //! let error = difference::<Fast>(pendulum.state(), State::UPRIGHT);
 //! assert!(error.iter().all(|x| x.abs() < 1e-3));
-//! # Ok::<(), acrobot::Error>(())
+//! # Ok::<(), acrobot::physics::control::ControlError>(())
 //! ```
 
 mod discretize;
+mod error;
 mod inverse_dynamics;
 mod linearize;
 mod lqr;
 mod matrix;
 
-pub use discretize::{Discrete, discretize};
+pub use discretize::{DiscreteModel, discretize};
+pub use error::ControlError;
 pub use inverse_dynamics::{Forces, inverse_dynamics, velocities};
-pub use linearize::{Continuous, linearize};
+pub use linearize::{ContinuousModel, linearize};
 pub use lqr::{Lqr, difference, lqr};

@@ -81,25 +81,22 @@ impl<S: Real> Default for Params<S> {
 
 impl<S: Real> Params<S> {
     /// The parameters of Gymnasium's `Acrobot-v1`, each rounded to the scalar.
-    pub const DEFAULT: Self = {
-        let [gravity, dt, max_velocity1, max_velocity2] = S::GYMNASIUM;
-        Self {
-            length1: S::ONE,
-            length2: S::ONE,
-            mass1: S::ONE,
-            mass2: S::ONE,
-            center_of_mass1: S::HALF,
-            center_of_mass2: S::HALF,
-            inertia1: S::ONE,
-            inertia2: S::ONE,
-            gravity,
-            dt,
-            max_velocity1,
-            max_velocity2,
-            torques: [S::MINUS_ONE, S::ZERO, S::ONE],
-            torque_noise: S::ZERO,
-            dynamics: Dynamics::Book,
-        }
+    pub const DEFAULT: Self = Self {
+        length1: S::ONE,
+        length2: S::ONE,
+        mass1: S::ONE,
+        mass2: S::ONE,
+        center_of_mass1: S::HALF,
+        center_of_mass2: S::HALF,
+        inertia1: S::ONE,
+        inertia2: S::ONE,
+        gravity: S::GRAVITY,
+        dt: S::DT,
+        max_velocity1: S::MAX_VELOCITY1,
+        max_velocity2: S::MAX_VELOCITY2,
+        torques: [S::MINUS_ONE, S::ZERO, S::ONE],
+        torque_noise: S::ZERO,
+        dynamics: Dynamics::Book,
     };
 
     /// The same parameters in another scalar. Each number is rounded to the nearest.

@@ -2,21 +2,21 @@
 
 use std::array::from_fn;
 
-use acrobot::Error;
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
-    Discrete, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, DiscreteModel, difference, discretize, inverse_dynamics, linearize, lqr,
+    velocities,
 };
 use proptest::prelude::*;
 
 use crate::given::{Number, Range, holds, number, params, state};
 
 /// Whether the result is finite, or an error that says what is not.
-fn is_finite<S: Real>(result: Result<Vec<S>, Error>) -> bool {
+fn is_finite<S: Real>(result: Result<Vec<S>, ControlError>) -> bool {
     match result {
         Ok(elements) => elements.iter().all(|x| x.is_finite()),
-        Err(error) => matches!(error, Error::NotFinite { .. }),
+        Err(error) => matches!(error, ControlError::NotFinite { .. }),
     }
 }
 
@@ -117,7 +117,7 @@ fn regulators_stabilize_or_are_errors() {
             number::<S>(range),
         );
         holds(2000, given, |(a, b, q, r)| {
-            let model = Discrete { a, b };
+            let model = DiscreteModel { a, b };
             let Ok(regulator) = lqr(&model, &q, r) else {
                 return;
             };

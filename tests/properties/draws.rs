@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::env::{BoxSpace, Discrete, Space};
+use acrobot::env::{BoxSpace, DiscreteSpace, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Portable};
@@ -158,7 +158,7 @@ fn spaces_contain_their_samples() {
             let sample = space.sample(&mut rng);
             assert!(space.contains(&sample), "{sample:?}");
         }
-        let space = Discrete::new(&[1, 2, 3, 5, 8]).unwrap();
+        let space = DiscreteSpace::new(&[1, 2, 3, 5, 8]).unwrap();
         assert!(space.contains(&space.sample(&mut rng)));
     });
 }

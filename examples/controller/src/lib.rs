@@ -13,7 +13,7 @@
 
 #![no_std]
 
-use acrobot::physics::control::{Lqr, difference, discretize, lqr};
+use acrobot::physics::control::{ControlError, Lqr, difference, discretize, lqr};
 use acrobot::physics::{Pendulum, State, bound};
 use acrobot::{Error, Fast, Params};
 
@@ -54,7 +54,7 @@ impl Controller {
     /// # Errors
     ///
     /// A parameter is out of range, or the gains overflow.
-    pub fn new(params: Params<f32>, limit: f32) -> Result<Self, Error> {
+    pub fn new(params: Params<f32>, limit: f32) -> Result<Self, ControlError> {
         let machine = Pendulum::<Fast>::new(params, State::UPRIGHT)?;
         let weights = [
             [1.0, 0.0, 0.0, 0.0],

@@ -1,8 +1,8 @@
 //! The derivatives of a step.
 
+use super::ControlError;
 use super::linearize::partials;
 use super::matrix::{check_finite, dot, identity, transpose};
-use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::physics::rk4::plus_scaled;
 use crate::physics::{Arithmetic, Form, Model, Pendulum, check_torque};
@@ -11,7 +11,7 @@ use crate::physics::{Arithmetic, Form, Model, Pendulum, check_torque};
 /// step, \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u is that of the torque, N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Discrete<S = f64> {
+pub struct DiscreteModel<S = f64> {
     /// A by rows: `a[i][j]` is the derivative of the i-th number after the step by the j-th before.
     pub a: [[S; 4]; 4],
     /// B: the derivatives of the state after the step by the torque.
@@ -35,17 +35,17 @@ pub struct Discrete<S = f64> {
 /// let mut pushed = upright.clone();
 /// pushed.step(1e-6)?; // N m
 /// assert!((pushed.state().dtheta2 - model.b[3] * 1e-6).abs() < 1e-11);
-/// # Ok::<(), acrobot::Error>(())
+/// # Ok::<(), acrobot::physics::control::ControlError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// [`Error::OutOfRange`] for a torque that is not finite, and [`Error::NotFinite`] if extreme parameters or velocities
-/// make an element overflow.
+/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if extreme parameters or
+/// velocities make an element overflow.
 pub fn discretize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
-) -> Result<Discrete<A::Scalar>, Error> {
+) -> Result<DiscreteModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let model = pendulum.model();
     let common = A::Form::common(&model.constants);
@@ -65,7 +65,7 @@ pub fn discretize<A: Arithmetic>(
         k = rates(model, &x, [theta1, theta2].map(A::sin_cos_near), torque);
         after = after.plus_scaled(weight, &k);
     }
-    let model = Discrete {
+    let model = DiscreteModel {
         a: transpose(&after.by_state),
         b: after.by_torque,
     };

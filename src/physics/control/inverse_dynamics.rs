@@ -1,7 +1,8 @@
 //! Forces from accelerations, and velocities of points.
 
+use super::ControlError;
 use super::matrix::check_finite;
-use crate::error::{Error, Range};
+use crate::error::Range;
 use crate::math::Real;
 use crate::physics::common::directions;
 use crate::physics::{Arithmetic, Dynamics, Pendulum};
@@ -38,17 +39,17 @@ pub struct Forces<S = f64> {
 ///
 /// let hanging = inverse_dynamics(&Pendulum::<Portable>::hanging(), [0.0, 0.0])?;
 /// assert_eq!(hanging.reaction, [0.0, 2.0 * 9.8]); // the weight of both links
-/// # Ok::<(), acrobot::Error>(())
+/// # Ok::<(), acrobot::physics::control::ControlError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// [`Error::OutOfRange`] for an acceleration that is not finite, and [`Error::NotFinite`] if extreme parameters or
-/// velocities make a torque or a force overflow.
+/// [`ControlError::Invalid`] for an acceleration that is not finite, and [`ControlError::NotFinite`] if extreme
+/// parameters or velocities make a torque or a force overflow.
 pub fn inverse_dynamics<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     [ddtheta1, ddtheta2]: [A::Scalar; 2],
-) -> Result<Forces<A::Scalar>, Error> {
+) -> Result<Forces<A::Scalar>, ControlError> {
     Range::Finite.check("ddtheta1", ddtheta1.to_f64(), "rad/s²")?;
     Range::Finite.check("ddtheta2", ddtheta2.to_f64(), "rad/s²")?;
     let params = pendulum.params();
@@ -111,13 +112,15 @@ pub fn inverse_dynamics<A: Arithmetic>(
 /// let swinging = State { dtheta1: 1.0, ..State::HANGING };
 /// let [elbow, tip] = velocities(&Pendulum::<Portable>::at(swinging)?)?;
 /// assert_eq!((elbow, tip), ([1.0, 0.0], [2.0, 0.0]));
-/// # Ok::<(), acrobot::Error>(())
+/// # Ok::<(), acrobot::physics::control::ControlError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// [`Error::NotFinite`] if extreme lengths or velocities make a velocity overflow.
-pub fn velocities<A: Arithmetic>(pendulum: &Pendulum<A>) -> Result<[[A::Scalar; 2]; 2], Error> {
+/// [`ControlError::NotFinite`] if extreme lengths or velocities make a velocity overflow.
+pub fn velocities<A: Arithmetic>(
+    pendulum: &Pendulum<A>,
+) -> Result<[[A::Scalar; 2]; 2], ControlError> {
     let params = pendulum.params();
     let state = pendulum.state();
     let [(sin1, cos1), (sin_sum, cos_sum)] = directions(pendulum.sin_cos());

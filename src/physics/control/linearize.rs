@@ -1,7 +1,7 @@
 //! The derivatives of the equations of motion.
 
+use super::ControlError;
 use super::matrix::check_finite;
-use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::physics::common::Common;
 use crate::physics::{Arithmetic, Form, Model, Pendulum, check_torque};
@@ -10,7 +10,7 @@ use crate::physics::{Arithmetic, Form, Model, Pendulum, check_torque};
 /// rad/s, and u that from the torque, N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Continuous<S = f64> {
+pub struct ContinuousModel<S = f64> {
     /// A by rows: `a[i][j]` is the derivative of the i-th rate by the j-th number of the state.
     pub a: [[S; 4]; 4],
     /// B: the derivatives of the rates by the torque.
@@ -32,22 +32,22 @@ pub struct Continuous<S = f64> {
 /// let model = linearize(&upright, 0.0)?;
 /// assert_eq!(model.a[0], [0.0, 0.0, 1.0, 0.0]); // the derivative of θ1 is θ̇1
 /// assert!(model.a[2][0] > 0.0); // gravity drives link 1 away
-/// # Ok::<(), acrobot::Error>(())
+/// # Ok::<(), acrobot::physics::control::ControlError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// [`Error::OutOfRange`] for a torque that is not finite, and [`Error::NotFinite`] if extreme parameters or velocities
-/// make an element overflow.
+/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if extreme parameters or
+/// velocities make an element overflow.
 pub fn linearize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
-) -> Result<Continuous<A::Scalar>, Error> {
+) -> Result<ContinuousModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
     let y = pendulum.state().into();
     let (_, [by_state @ .., by_torque]) = partials(pendulum.model(), y, pendulum.sin_cos(), torque);
-    let model = Continuous {
+    let model = ContinuousModel {
         a: [
             [zero, zero, one, zero],
             [zero, zero, zero, one],

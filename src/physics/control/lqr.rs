@@ -1,11 +1,11 @@
 //! The linear-quadratic regulator of a discrete model.
 
-use super::Discrete;
 use super::matrix::{
     Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, dot, eliminate, identity,
     inner, largest, product, scale, symmetrize, transpose,
 };
-use crate::error::{Error, Range};
+use super::{ControlError, DiscreteModel};
+use crate::error::Range;
 use crate::math::Real;
 use crate::physics::{Arithmetic, State, wrap};
 
@@ -72,29 +72,35 @@ pub fn difference<A: Arithmetic>(
 /// 1971) makes it exact up to rounding.
 ///
 /// ```
-/// use acrobot::physics::control::{Discrete, lqr};
+/// use acrobot::physics::control::{DiscreteModel, lqr};
 ///
 /// // A force moves a mass of 1 kg in steps of 0.1 s: position and velocity are the first and the third number. The
 /// // others decay.
 /// let a: [[f64; 4]; 4] = [[1.0, 0.0, 0.1, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.5]];
-/// let model = Discrete { a, b: [0.005, 0.0, 0.1, 0.0] };
+/// let model = DiscreteModel { a, b: [0.005, 0.0, 0.1, 0.0] };
 /// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
 /// let regulator = lqr(&model, &q, 1.0)?;
 /// assert!((regulator.gain[0] - 0.9317).abs() < 1e-4 && regulator.gain[1] == 0.0);
-/// # Ok::<(), acrobot::Error>(())
+/// # Ok::<(), acrobot::physics::control::ControlError>(())
 /// ```
 ///
 /// # Errors
 ///
-/// - [`Error::OutOfRange`] for an `r` that is not above 0.
-/// - [`Error::NotFinite`] for an element of the model or of `q` that is not finite, or an element of the result that the
-///   scalar cannot hold.
-/// - [`Error::NotSymmetric`] and [`Error::NotSemidefinite`] for such a `q`. Elements smaller than 16 machine epsilons of
-///   the largest one count as 0.
-/// - [`Error::NotStabilizable`] if the torque does not reach a motion that grows or persists, as far as `f64` shows.
-/// - [`Error::NotDetectable`] if `q` does not weight a motion that persists: it would need more than 2⁴⁰ steps to vanish.
-/// - [`Error::IllConditioned`] if the estimated error of the gain is above 1e-9 of its largest element.
-pub fn lqr<S: Real>(model: &Discrete<S>, q: &[[S; 4]; 4], r: S) -> Result<Lqr<S>, Error> {
+/// - [`ControlError::Invalid`] for an `r` that is not above 0.
+/// - [`ControlError::NotFinite`] for an element of the model or of `q` that is not finite, or an element of the result
+///   that the scalar cannot hold.
+/// - [`ControlError::NotSymmetric`] and [`ControlError::NotSemidefinite`] for such a `q`. Elements smaller than 16
+///   machine epsilons of the largest one count as 0.
+/// - [`ControlError::NotStabilizable`] if the torque does not reach a motion that grows or persists, as far as `f64`
+///   shows.
+/// - [`ControlError::NotDetectable`] if `q` does not weight a motion that persists: it would need more than 2⁴⁰ steps to
+///   vanish.
+/// - [`ControlError::IllConditioned`] if the estimated error of the gain is above 1e-9 of its largest element.
+pub fn lqr<S: Real>(
+    model: &DiscreteModel<S>,
+    q: &[[S; 4]; 4],
+    r: S,
+) -> Result<Lqr<S>, ControlError> {
     check_finite("a", model.a.as_flattened())?;
     check_finite("b", &model.b)?;
     check_finite("q", q.as_flattened())?;
@@ -136,7 +142,7 @@ struct Problem {
 /// K and P.
 type Solution = ([f64; 4], Matrix);
 
-fn regulator(a: &Matrix, b: &[f64; 4], q: &Matrix, r: f64) -> Result<Solution, Error> {
+fn regulator(a: &Matrix, b: &[f64; 4], q: &Matrix, r: f64) -> Result<Solution, ControlError> {
     let cost_unit = r.max(largest(q.as_flattened())); // so that no cost overflows
     let problem = Problem::new(a, b, q, r, 1.0 / cost_unit);
     let (gain, mut cost) = problem.solve()?;
@@ -183,7 +189,7 @@ impl Problem {
         problem
     }
 
-    fn solve(&self) -> Result<Solution, Error> {
+    fn solve(&self) -> Result<Solution, ControlError> {
         let solution = self.solve_from(&self.q, self.r);
         if solution.is_ok() {
             return solution;
@@ -200,8 +206,8 @@ impl Problem {
     }
 
     /// The solution, beginning with the gain for other weights.
-    fn solve_from(&self, q: &Matrix, r: f64) -> Result<Solution, Error> {
-        let gain = self.double(q, r).ok_or(Error::NotStabilizable)?;
+    fn solve_from(&self, q: &Matrix, r: f64) -> Result<Solution, ControlError> {
+        let gain = self.double(q, r).ok_or(ControlError::NotStabilizable)?;
         self.refine(gain)
     }
 
@@ -248,7 +254,7 @@ impl Problem {
     /// The solution near a gain that stabilizes, by Newton's method. It alternates between the cost of a gain and the
     /// gain that is best for this cost.
     #[inline(never)]
-    fn refine(&self, mut gain: [f64; 4]) -> Result<Solution, Error> {
+    fn refine(&self, mut gain: [f64; 4]) -> Result<Solution, ControlError> {
         let (mut change, mut noise) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..NEWTON_ITERATIONS {
             let (mut closed, mut stage) = (self.a, self.q);
@@ -257,7 +263,7 @@ impl Problem {
             let Some(cost) = lyapunov(&closed, &stage) else {
                 if noise < change {
                     // The gain approaches one that lets a motion persist.
-                    return Err(Error::NotDetectable);
+                    return Err(ControlError::NotDetectable);
                 }
                 break;
             };
@@ -277,7 +283,7 @@ impl Problem {
                 return Ok((gain, cost));
             }
         }
-        Err(Error::IllConditioned {
+        Err(ControlError::IllConditioned {
             error: change.max(noise) / largest(&gain),
         })
     }
@@ -303,11 +309,11 @@ fn has_vanished(m: &Matrix) -> bool {
     m.iter().fold(0.0, |sum, row| sum + inner(row, row)) < 1e-24
 }
 
-fn check_symmetric(q: &Matrix) -> Result<(), Error> {
+fn check_symmetric(q: &Matrix) -> Result<(), ControlError> {
     let transposed = transpose(q);
     let mut pairs = q.as_flattened().iter().zip(transposed.as_flattened());
     match pairs.find(|(upper, lower)| upper != lower) {
-        Some((upper, lower)) => Err(Error::NotSymmetric {
+        Some((upper, lower)) => Err(ControlError::NotSymmetric {
             name: "q",
             upper: *upper,
             lower: *lower,
@@ -318,7 +324,7 @@ fn check_symmetric(q: &Matrix) -> Result<(), Error> {
 
 /// Subtracts (column columnᵀ) / pivot for the largest pivot on the diagonal, until none is above the rounding. What
 /// remains of a positive semidefinite matrix is rounding.
-fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), Error> {
+fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), ControlError> {
     let mut rest = *q;
     let rounding = relative_rounding * largest(q.as_flattened());
     for _ in 0..4 {
@@ -337,7 +343,7 @@ fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), Error> {
     }
     let most = largest(rest.as_flattened());
     if most > rounding {
-        return Err(Error::NotSemidefinite {
+        return Err(ControlError::NotSemidefinite {
             name: "q",
             value: most,
         });

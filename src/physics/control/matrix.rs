@@ -2,7 +2,7 @@
 
 use core::mem::swap;
 
-use crate::error::Error;
+use super::ControlError;
 use crate::math::Real;
 
 /// Rows.
@@ -32,9 +32,9 @@ pub fn transpose<S: Copy>([p, q, r, s]: &Matrix<S>) -> Matrix<S> {
 }
 
 /// Rejects elements that are not finite.
-pub fn check_finite<S: Real>(name: &'static str, elements: &[S]) -> Result<(), Error> {
+pub fn check_finite<S: Real>(name: &'static str, elements: &[S]) -> Result<(), ControlError> {
     match elements.iter().find(|x| !x.is_finite()) {
-        Some(x) => Err(Error::NotFinite {
+        Some(x) => Err(ControlError::NotFinite {
             name,
             value: x.to_f64(),
         }),

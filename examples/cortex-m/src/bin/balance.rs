@@ -9,7 +9,7 @@
 
 use core::cell::RefCell;
 
-use acrobot::physics::control::difference;
+use acrobot::physics::control::{ControlError, difference};
 use acrobot::{Acrobot, Error, Fast, Params, State};
 use acrobot_cortex_m::ram;
 use controller::Controller;
@@ -122,7 +122,7 @@ fn main() -> ! {
 
 /// Plays episodes with a largest torque, N m. Prints the figures, times and errors rounded up, and returns how many acrobots
 /// were not caught.
-fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, Error> {
+fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, ControlError> {
     let params = Params {
         dt: 1.0 / RATE as f32,
         torque_noise: DISTURBANCE,

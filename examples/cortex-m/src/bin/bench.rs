@@ -10,10 +10,10 @@ use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
-    difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
 };
 use acrobot::render::{Figure, Theme};
-use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, Step, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, State, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::micromath::Micromath;
 use bits::episodes;
@@ -85,7 +85,7 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
 }
 
 /// A controller at 100 Hz, about the upright position.
-fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Error> {
+fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), ControlError> {
     let params = Params {
         dt: A::Scalar::from_f64(0.01),
         ..Params::DEFAULT

@@ -1,0 +1,93 @@
+//! The error type of the module: why a model, a force or a regulator cannot be computed.
+
+use core::fmt;
+
+use crate::error::Error;
+
+/// Why a model, a force or a regulator cannot be computed. The message names the value, its unit and the rule.
+///
+/// ```
+/// use acrobot::physics::control::{ControlError, DiscreteModel, lqr};
+///
+/// let doubling = [[2.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
+/// let without_motor = DiscreteModel { a: doubling, b: [0.0; 4] };
+/// assert_eq!(lqr(&without_motor, &[[0.0; 4]; 4], 1.0), Err(ControlError::NotStabilizable));
+/// ```
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ControlError {
+    /// An argument was rejected.
+    Invalid(Error),
+    /// An element of a matrix or a vector is infinite or NaN: it was given, or extreme parameters made it overflow.
+    NotFinite {
+        /// The argument or the result.
+        name: &'static str,
+        /// The first element that is not finite, in SI units.
+        value: f64,
+    },
+    /// A matrix of weights is not symmetric.
+    NotSymmetric {
+        /// The argument.
+        name: &'static str,
+        /// An element above the diagonal.
+        upper: f64,
+        /// Its mirror image below the diagonal.
+        lower: f64,
+    },
+    /// A matrix of weights is not positive semidefinite.
+    NotSemidefinite {
+        /// The argument.
+        name: &'static str,
+        /// The largest absolute value that remains after the elimination of all positive pivots.
+        value: f64,
+    },
+    /// The torque does not reach a motion of the model that grows or persists, so no regulator makes it vanish.
+    NotStabilizable,
+    /// The weights do not see a motion of the model that persists, so the best regulator lets it persist.
+    NotDetectable,
+    /// The gain of a regulator cannot be computed precisely enough.
+    IllConditioned {
+        /// The estimated error of the gain, relative to its largest element.
+        error: f64,
+    },
+}
+
+impl fmt::Display for ControlError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Invalid(error) => error.fmt(f),
+            Self::NotFinite { name, value } => {
+                write!(f, "{name} must be finite in each element, got {value}")
+            }
+            Self::NotSymmetric { name, upper, lower } => write!(
+                f,
+                "{name} must be symmetric, got {upper} and {lower} on both sides of the diagonal"
+            ),
+            Self::NotSemidefinite { name, value } => write!(
+                f,
+                "{name} must be positive semidefinite, got {value} after the elimination of its positive pivots"
+            ),
+            Self::NotStabilizable => write!(
+                f,
+                "the torque must reach each motion that grows or persists, but does not reach one"
+            ),
+            Self::NotDetectable => write!(
+                f,
+                "q must weight each motion that persists, but does not weight one"
+            ),
+            Self::IllConditioned { error } => write!(
+                f,
+                "the relative error of the gain must be at most 1e-9, got {error:e}"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ControlError {}
+
+impl From<Error> for ControlError {
+    fn from(error: Error) -> Self {
+        Self::Invalid(error)
+    }
+}
