@@ -4,7 +4,6 @@
 use std::time::Duration;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
-use acrobot::batch::Batch;
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use benches::Play;
@@ -75,7 +74,7 @@ fn batch_on_all_cores<A: Arithmetic>(bencher: Bencher, len: usize) {
     let mut play = Play::<A>::new(len);
     bencher
         .counter(ItemsCount::new(len))
-        .bench_local(|| play.step(false, Batch::par_step));
+        .bench_local(|| play.step(false, true));
 }
 
 /// Handwritten AVX2 with eight lanes, with and without fused multiply-adds.

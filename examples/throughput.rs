@@ -16,8 +16,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
-use acrobot::batch::{Batch, OwnParams, SimdLevel};
-use acrobot::numpy::Pcg64;
+use acrobot::batch::{SimdLevel, VecBatch};
+use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use benches::{Lanes, Play, bare_f32, bare_f64};
 use clap::Parser;
@@ -122,7 +122,8 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) -> io::R
 
 /// Each acrobot has its own parameters; the ratio is to a batch that shares them.
 fn own_params(len: usize) -> io::Result<()> {
-    let (mut own, mut shared) = (Play::<Fast, OwnParams>::new(len), Play::<Fast>::new(len));
+    let own = VecBatch::with_own_params(SeedSequence::new(0), len).expect("memory for the batch");
+    let (mut own, mut shared) = (Play::<Fast>::from(own), Play::<Fast>::new(len));
     let rates = compare(
         || (0..2000).map(|_| own.play(true)).sum(),
         || (0..2000).map(|_| shared.play(true)).sum(),
@@ -135,8 +136,8 @@ fn own_params(len: usize) -> io::Result<()> {
 fn threads(len: usize) -> io::Result<()> {
     let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
     let rates = compare(
-        || many.step(false, Batch::par_step),
-        || one.step(false, Batch::step),
+        || many.step(false, true),
+        || one.step(false, false),
     );
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     report(&format!("batch_fast_{len}_threads_{threads}"), rates)

@@ -2,13 +2,13 @@
 
 use acrobot::Error;
 use acrobot::arithmetic::Arithmetic;
-use acrobot::batch::{Batch, Block, Observations, ParamsKind, SharedParams, StepBuffers, VecBatch};
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::batch::{Observations, StepBuffers, VecBatch};
+use acrobot::numpy::SeedSequence;
 
 /// A batch, the random policy that plays it, and the buffers of its steps.
 #[derive(Debug)]
-pub struct Play<A: Arithmetic, P: ParamsKind<A> = SharedParams> {
-    pub batch: VecBatch<A, P>,
+pub struct Play<A: Arithmetic> {
+    pub batch: VecBatch<A>,
     streams: Vec<u32>,
     actions: Vec<u8>,
     rewards: Vec<f32>,
@@ -17,16 +17,17 @@ pub struct Play<A: Arithmetic, P: ParamsKind<A> = SharedParams> {
     rows: Vec<[f32; 6]>,
 }
 
-type Step<A, P> = fn(
-    &mut Batch<A, Vec<Block<A, 16, P>>, Vec<Pcg64>, 16, P>,
-    &[u8],
-    StepBuffers<'_>,
-) -> Result<(), Error>;
-
-impl<A: Arithmetic, P: ParamsKind<A>> Play<A, P> {
+impl<A: Arithmetic> Play<A> {
     pub fn new(len: usize) -> Self {
+        Self::from(VecBatch::new(SeedSequence::new(0), len).expect("memory for the batch"))
+    }
+}
+
+impl<A: Arithmetic> From<VecBatch<A>> for Play<A> {
+    fn from(batch: VecBatch<A>) -> Self {
+        let len = batch.len();
         Self {
-            batch: VecBatch::new(SeedSequence::new(0), len).expect("memory for the batch"),
+            batch,
             streams: (0..len as u32)
                 .map(|i| i.wrapping_mul(0x9e37_79b9))
                 .collect(),
@@ -37,7 +38,9 @@ impl<A: Arithmetic, P: ParamsKind<A>> Play<A, P> {
             rows: vec![[0.0; 6]; len],
         }
     }
+}
 
+impl<A: Arithmetic> Play<A> {
     fn draw_actions(&mut self) {
         for (stream, action) in self.streams.iter_mut().zip(&mut self.actions) {
             *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -48,17 +51,22 @@ impl<A: Arithmetic, P: ParamsKind<A>> Play<A, P> {
     /// Draws actions and steps. Returns the number of acrobots.
     pub fn play(&mut self, observe: bool) -> usize {
         self.draw_actions();
-        self.step(observe, Batch::step)
+        self.step(observe, false)
     }
 
-    /// Steps with `step`. Returns the number of acrobots.
-    pub fn step(&mut self, observe: bool, step: Step<A, P>) -> usize {
+    /// Steps with the last actions, on one core or on all. Returns the number of acrobots.
+    pub fn step(&mut self, observe: bool, parallel: bool) -> usize {
         let mut buffers =
             StepBuffers::new(&mut self.rewards, &mut self.terminated, &mut self.truncated);
         if observe {
             buffers.observations = Observations::Rows(&mut self.rows);
         }
-        step(&mut self.batch, &self.actions, buffers).expect("slices of the batch's length");
+        // The batch inside, which writes into buffers.
+        let stepped = match parallel {
+            true => (*self.batch).par_step(&self.actions, buffers),
+            false => (*self.batch).step(&self.actions, buffers),
+        };
+        stepped.expect("slices of the batch's length");
         self.batch.len()
     }
 }

@@ -1,9 +1,7 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
-use acrobot::batch::{
-    Autoreset, Batch, Block, Observations, OwnParams, ParamsKind, SharedParams, StepBuffers,
-};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Observations, Storage, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::ParamsRange;
 use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, TimeLimit};
@@ -87,18 +85,17 @@ fn subnormal_in<A: Arithmetic>() -> u64 {
     digest.0
 }
 
-type Arrays<const LEN: usize, const N: usize, const BLOCKS: usize, P> =
-    Batch<Fast, [Block<Fast, N, P>; BLOCKS], [Pcg64; LEN], N, P>;
-
 /// Every bit that a batch of twenty in `Fast` with the same parameters returns. It is the same for any width `N`.
 pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
-    batch::<20, N, BLOCKS, SharedParams>(|_| {})
+    let memory = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
+    batch::<20, N, _>(memory, |_| {})
 }
 
 /// As [`shared_params`] with subnormal numbers.
 pub fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
-    batch::<20, N, BLOCKS, SharedParams>(|batch| {
-        let mut params = *batch.params();
+    let memory = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
+    batch::<20, N, _>(memory, |batch| {
+        let mut params = Params::DEFAULT;
         subnormal_torques::<Fast>(&mut params);
         // Neither fails: a failure changes the digest.
         let _ = batch.set_params(params);
@@ -122,19 +119,22 @@ pub fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
         torque_noise: 0.1,
         ..Params::DEFAULT
     };
-    batch::<8, N, BLOCKS, OwnParams>(|batch| {
-        batch.set_params_range(ParamsRange::new(low, high).ok());
+    let generators = [Pcg64::UNSEEDED; 8];
+    let memory = ([Block::EMPTY; BLOCKS], generators, [LaneParams::default(); BLOCKS]);
+    batch::<8, N, _>(memory, |batch| {
+        // It does not fail: a failure changes the digest.
+        let _ = batch.set_params_range(ParamsRange::new(low, high).ok());
         batch.reset();
     })
 }
 
 /// Every bit that a batch returns in 200 steps under torque against θ̇1, which ends episodes.
 #[inline(never)] // each frees its stack before the next, because RAM has 16 KiB
-fn batch<const LEN: usize, const N: usize, const BLOCKS: usize, P: ParamsKind<Fast>>(
-    prepare: impl FnOnce(&mut Arrays<LEN, N, BLOCKS, P>),
+fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
+    memory: S,
+    prepare: impl FnOnce(&mut Batch<Fast, S, N>),
 ) -> u64 {
-    let (blocks, generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]);
-    let Ok(mut batch) = Arrays::new(42, blocks, generators) else {
+    let Ok(mut batch) = Batch::new(42, memory) else {
         return 0;
     };
     prepare(&mut batch);
