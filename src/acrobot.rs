@@ -144,7 +144,7 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {
         let state = ResetBounds::DEFAULT.draw(&mut rng).cast();
-        Self::from_pendulum(Pendulum::unchecked(Params::default(), state), rng)
+        Self::from_pendulum(Pendulum::new_unchecked(Params::default(), state), rng)
     }
 
     /// Draws a new initial state from [`ResetBounds::DEFAULT`] and returns its observation.
@@ -154,7 +154,8 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
 
     /// Draws a new initial state from `bounds` and returns its observation.
     pub fn reset_within(&mut self, bounds: ResetBounds) -> Observation {
-        self.pendulum.place(bounds.draw(&mut self.rng).cast());
+        self.pendulum
+            .set_state_unchecked(bounds.draw(&mut self.rng).cast());
         self.observe(self.pendulum.current_sin_cos())
     }
 

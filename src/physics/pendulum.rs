@@ -65,12 +65,12 @@ impl<A: Arithmetic> Pendulum<A> {
     pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
         params.validate()?;
         state.validate()?;
-        Ok(Self::unchecked(params, state))
+        Ok(Self::new_unchecked(params, state))
     }
 
     /// As [`new`](Self::new), with parameters and a state that are known to be valid.
     #[inline]
-    pub(crate) fn unchecked(params: Params<A::Scalar>, state: State<A::Scalar>) -> Self {
+    pub(crate) fn new_unchecked(params: Params<A::Scalar>, state: State<A::Scalar>) -> Self {
         Self {
             model: Model::new(params),
             sin_cos: sin_cos::<A>([state.theta1, state.theta2]),
@@ -114,12 +114,12 @@ impl<A: Arithmetic> Pendulum<A> {
     /// [`Error::OutOfRange`] for a number that is not finite.
     pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
-        self.place(state);
+        self.set_state_unchecked(state);
         Ok(())
     }
 
     /// As [`set_state`](Self::set_state), with a state that is known to be finite.
-    pub(crate) fn place(&mut self, state: State<A::Scalar>) {
+    pub(crate) fn set_state_unchecked(&mut self, state: State<A::Scalar>) {
         self.y = state.into();
         self.compute_sines();
     }
@@ -239,11 +239,14 @@ pub(crate) fn check_torque<S: Real>(torque: S) -> Result<(), Error> {
 pub(crate) fn sin_cos<A: Arithmetic>(angles: [A::Scalar; 2]) -> [SinCos<A::Scalar>; 2] {
     /// Out of line to save flash: a step does not call it.
     #[inline(never)]
-    fn apart<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
+    fn sin_cos_out_of_line<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
         A::sin_cos(x)
     }
     let [theta1, theta2] = angles;
-    [apart::<A>(theta1), apart::<A>(theta2)]
+    [
+        sin_cos_out_of_line::<A>(theta1),
+        sin_cos_out_of_line::<A>(theta2),
+    ]
 }
 
 /// The derivative of a state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque between the links, N m.
@@ -265,7 +268,7 @@ pub fn derivative<A: Arithmetic>(
     state: &State<A::Scalar>,
     torque: A::Scalar,
 ) -> [A::Scalar; 4] {
-    Pendulum::<A>::unchecked(*params, *state).derivative(torque)
+    Pendulum::<A>::new_unchecked(*params, *state).derivative(torque)
 }
 
 /// The mass matrix M at a state, kg m². The kinetic energy is θ̇ᵀ M θ̇ / 2. M is symmetric and positive definite.
@@ -283,7 +286,7 @@ pub fn mass_matrix<A: Arithmetic>(
     params: &Params<A::Scalar>,
     state: &State<A::Scalar>,
 ) -> [[A::Scalar; 2]; 2] {
-    Pendulum::<A>::unchecked(*params, *state).mass_matrix()
+    Pendulum::<A>::new_unchecked(*params, *state).mass_matrix()
 }
 
 /// The total mechanical energy of a state, J. The potential energy is 0 at the height of the fixed joint, so the
@@ -301,7 +304,7 @@ pub fn mass_matrix<A: Arithmetic>(
 /// ```
 #[must_use]
 pub fn energy<A: Arithmetic>(params: &Params<A::Scalar>, state: &State<A::Scalar>) -> A::Scalar {
-    Pendulum::<A>::unchecked(*params, *state).energy()
+    Pendulum::<A>::new_unchecked(*params, *state).energy()
 }
 
 /// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the right and y up.
@@ -318,7 +321,7 @@ pub fn positions<A: Arithmetic>(
     params: &Params<A::Scalar>,
     state: &State<A::Scalar>,
 ) -> [[A::Scalar; 2]; 2] {
-    Pendulum::<A>::unchecked(*params, *state).positions()
+    Pendulum::<A>::new_unchecked(*params, *state).positions()
 }
 
 /// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from −(l1 + l2) hanging to
@@ -335,5 +338,5 @@ pub fn tip_height<A: Arithmetic>(
     params: &Params<A::Scalar>,
     state: &State<A::Scalar>,
 ) -> A::Scalar {
-    Pendulum::<A>::unchecked(*params, *state).tip_height()
+    Pendulum::<A>::new_unchecked(*params, *state).tip_height()
 }
