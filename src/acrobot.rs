@@ -221,7 +221,8 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         Self { pendulum, rng }
     }
 
-    /// The pendulum. Its clone is a model of this acrobot without noise.
+    /// The pendulum, with its energy, positions, mass matrix and derivative. Its clone is a model of this acrobot without
+    /// noise.
     #[must_use]
     #[inline]
     pub const fn pendulum(&self) -> &Pendulum<A> {
@@ -289,36 +290,6 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     #[inline]
     pub fn rng_mut(&mut self) -> &mut R {
         &mut self.rng
-    }
-
-    /// The derivative of the state under a torque in N m; see [`Pendulum::derivative`].
-    #[must_use]
-    pub fn derivative(&self, torque: A::Scalar) -> [A::Scalar; 4] {
-        self.pendulum.derivative(torque)
-    }
-
-    /// The total energy of the state, J; see [`Pendulum::energy`].
-    #[must_use]
-    pub fn energy(&self) -> A::Scalar {
-        self.pendulum.energy()
-    }
-
-    /// The mass matrix at the state, kg m²; see [`Pendulum::mass_matrix`].
-    #[must_use]
-    pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
-        self.pendulum.mass_matrix()
-    }
-
-    /// The positions of elbow and tip, m; see [`Pendulum::positions`].
-    #[must_use]
-    pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
-        self.pendulum.positions()
-    }
-
-    /// The height of the tip above the fixed joint, m; see [`Pendulum::tip_height`].
-    #[must_use]
-    pub fn tip_height(&self) -> A::Scalar {
-        self.pendulum.tip_height()
     }
 }
 

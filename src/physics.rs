@@ -17,9 +17,8 @@
 //! # Ok::<(), acrobot::Error>(())
 //! ```
 //!
-//! For your own integrators and controllers, the functions [`derivative`], [`energy`], [`mass_matrix`], [`positions`]
-//! and [`tip_height`] take any parameters and any state, and [`rk4`] integrates any derivative. The module [`control`]
-//! linearizes and regulates. The guide explains the [equations](crate::guide::equations).
+//! For your own integrator, use [`Pendulum::derivative`]. The module [`control`] linearizes and regulates. The guide
+//! explains the [equations](crate::guide::equations).
 
 /// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
 macro_rules! for_f32_and_f64 {
@@ -138,7 +137,7 @@ pub use gymnasium::Gymnasium;
 pub use lean::Lean;
 pub use params::{Dynamics, Params};
 pub use params_range::ParamsRange;
-pub use pendulum::{Pendulum, derivative, energy, mass_matrix, positions, tip_height};
+pub use pendulum::Pendulum;
 pub(crate) use pendulum::{check_torque, sin_cos};
 pub use rk4::rk4;
 pub use state::{ResetBounds, State};
