@@ -152,7 +152,8 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         self.reset_within(ResetBounds::DEFAULT)
     }
 
-    /// Draws a new initial state from `bounds` and returns its observation.
+    /// Draws a new initial state from `bounds` and returns its observation: for generators other than [`Pcg64`], which
+    /// [`reset_with`](Acrobot::reset_with) cannot seed.
     pub fn reset_within(&mut self, bounds: ResetBounds) -> Observation {
         self.pendulum
             .set_state_unchecked(bounds.draw(&mut self.rng).cast());

@@ -264,7 +264,7 @@ fn reset_with_takes_a_seed_and_bounds() {
         ..options
     });
     let mut expected = TimeLimit::v1(Acrobot::hanging(Pcg64::new(7)));
-    assert_eq!(observation, expected.reset_within(bounds));
+    assert_eq!(observation, expected.inner_mut().reset_within(bounds));
     assert_eq!(acrobot, expected);
 
     acrobot.step(Action::Zero);
@@ -272,7 +272,7 @@ fn reset_with_takes_a_seed_and_bounds() {
         seed: None,
         bounds: Some(bounds),
     });
-    expected.reset_within(bounds);
+    expected.inner_mut().reset_within(bounds);
     assert_eq!(acrobot, expected, "without a seed the stream continues");
 }
 
@@ -481,7 +481,8 @@ fn custom_generators_draw_initial_states_and_noise() {
     assert_eq!(acrobot.state(), drawn(-0.1, 0.1));
     acrobot.reset();
     assert_eq!(acrobot.state(), drawn(-0.1, 0.1));
-    acrobot.reset_within(ResetBounds::new(1.0, 2.0).unwrap());
+    let bounds = ResetBounds::new(1.0, 2.0).unwrap();
+    acrobot.inner_mut().reset_within(bounds);
     assert_eq!(acrobot.state(), drawn(1.0, 2.0));
 
     let noisy = Params {

@@ -81,7 +81,7 @@ fn any_settings_and_steps_stay_in_bounds() {
                             assert_seen(&acrobot, observation);
                         }
                         1 => {
-                            let observation = acrobot.reset_within(bounds);
+                            let observation = acrobot.reset_with(bounds.into());
                             assert_seen(&acrobot, observation);
                         }
                         2 | 3 => {

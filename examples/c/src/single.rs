@@ -82,7 +82,7 @@ pub unsafe extern "C" fn acrobot_reset_within(
         let observation = Out::optional(observation, acrobot)?;
         let acrobot = Holder::value_mut(acrobot)?;
         let bounds = ResetBounds::new(low, high)?;
-        observation.write(acrobot.reset_within(bounds).into());
+        observation.write(acrobot.reset_with(bounds.into()).into());
         Ok(())
     };
     unsafe { explained(error, acrobot, reset) }

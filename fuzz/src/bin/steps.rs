@@ -71,7 +71,7 @@ fn sequence<A: Arithmetic<Scalar: FromStr>>(u: &mut Unstructured<'_>) -> Result<
                     .is_some_and(|(low, high)| low <= high);
                 assert_eq!(bounds.is_ok(), valid);
                 if let Ok(bounds) = bounds {
-                    acrobot.reset_within(bounds);
+                    acrobot.reset_with(bounds.into());
                     let [low, high] = [low, high].map(|bound| f64::from(bound as f32));
                     for x in <[f64; 4]>::from(acrobot.state().cast::<f64>()) {
                         assert!((low..=high).contains(&x), "{x} of {low} to {high}");

@@ -132,7 +132,7 @@ fn environment<A: Arithmetic>() {
         let _ = black_box(inner.set_params(params()));
         let _ = black_box(inner.set_state(state()));
         if let Ok(bounds) = ResetBounds::new(black_box(-0.2), black_box(0.2)) {
-            black_box(acrobot.reset_within(bounds));
+            black_box(acrobot.inner_mut().reset_within(bounds));
             let (seed, bounds) = (Some(seed), Some(bounds));
             black_box(acrobot.reset_with(ResetOptions { seed, bounds }));
         }
