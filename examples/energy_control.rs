@@ -138,7 +138,7 @@ fn is_upright(state: State) -> bool {
 }
 
 fn at(state: State) -> Pendulum {
-    Pendulum::at(state).expect("a finite state")
+    Pendulum::new(Params::DEFAULT, state).expect("a finite state")
 }
 
 /// A linear-quadratic regulator about the upright position, for steps of 0.2 s, and a controller of the energy.

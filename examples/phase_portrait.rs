@@ -58,7 +58,7 @@ fn record(seed: &SeedSequence) -> Vec<Sample> {
     let sample = |acrobot: &TimeLimit<Acrobot<Portable>>| Sample {
         time: f64::from(acrobot.elapsed()) * acrobot.params().dt,
         state: acrobot.state(),
-        energy: acrobot.inner().energy(),
+        energy: acrobot.inner().pendulum().energy(),
     };
     let mut samples = vec![sample(&acrobot)];
     loop {

@@ -59,7 +59,7 @@ fn main() -> ExitCode {
 
 fn draw_state(state: State, out: &Path) -> Result<(), Box<dyn Error>> {
     expect_extension(out, "png")?;
-    let acrobot = Acrobot::from_pendulum(Pendulum::<Portable>::at(state)?, ());
+    let acrobot = Acrobot::from_pendulum(Pendulum::<Portable>::new(Params::DEFAULT, state)?, ());
     files::write(out, png(&Frame::of(&Figure::new(&acrobot)))?)?;
     writeln!(io::stdout(), "{}: the frame", out.display())?;
     Ok(())

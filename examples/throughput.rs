@@ -135,10 +135,7 @@ fn own_params(len: usize) -> io::Result<()> {
 /// runs on all cores.
 fn threads(len: usize) -> io::Result<()> {
     let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
-    let rates = compare(
-        || many.step(false, true),
-        || one.step(false, false),
-    );
+    let rates = compare(|| many.step(false, true), || one.step(false, false));
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     report(&format!("batch_fast_{len}_threads_{threads}"), rates)
 }

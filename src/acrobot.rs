@@ -135,7 +135,7 @@ impl<A: Arithmetic> Acrobot<A> {
         if let Some(seed) = options.seed {
             self.rng = seed.into();
         }
-        self.reset_within(options.bounds.unwrap_or_default())
+        self.begin(options.bounds.unwrap_or_default())
     }
 }
 
@@ -144,18 +144,18 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {
         let state = ResetBounds::DEFAULT.draw(&mut rng).cast();
-        Self::from_pendulum(Pendulum::unchecked(Params::default(), state), rng)
+        Self::from_pendulum(Pendulum::new_unchecked(Params::default(), state), rng)
     }
 
     /// Draws a new initial state from [`ResetBounds::DEFAULT`] and returns its observation.
     pub fn reset(&mut self) -> Observation {
-        self.reset_within(ResetBounds::DEFAULT)
+        self.begin(ResetBounds::DEFAULT)
     }
 
-    /// Draws a new initial state from `bounds` and returns its observation.
-    pub fn reset_within(&mut self, bounds: ResetBounds) -> Observation {
-        self.pendulum.place(bounds.draw(&mut self.rng).cast());
-        self.observe(self.pendulum.current_sin_cos())
+    fn begin(&mut self, bounds: ResetBounds) -> Observation {
+        let state = bounds.draw(&mut self.rng).cast();
+        let sin_cos = self.pendulum.set_state_unchecked(state);
+        self.observe(sin_cos)
     }
 
     /// Applies the torque of `action` for one dt.
@@ -184,9 +184,9 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         } else {
             torque
         };
-        let terminated = self.pendulum.advance(torque);
+        let (terminated, sin_cos) = self.pendulum.advance(torque);
         Step {
-            observation: self.observe(self.pendulum.current_sin_cos()),
+            observation: self.observe(sin_cos),
             reward: if terminated { 0.0 } else { -1.0 },
             terminated,
             truncated: false,
@@ -220,7 +220,8 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         Self { pendulum, rng }
     }
 
-    /// The pendulum. Its clone is a model of this acrobot without noise.
+    /// The pendulum, with its energy, positions, mass matrix and derivative. Its clone is a model of this acrobot without
+    /// noise.
     #[must_use]
     #[inline]
     pub const fn pendulum(&self) -> &Pendulum<A> {
@@ -288,36 +289,6 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     #[inline]
     pub fn rng_mut(&mut self) -> &mut R {
         &mut self.rng
-    }
-
-    /// The derivative of the state under a torque in N m; see [`Pendulum::derivative`].
-    #[must_use]
-    pub fn derivative(&self, torque: A::Scalar) -> [A::Scalar; 4] {
-        self.pendulum.derivative(torque)
-    }
-
-    /// The total energy of the state, J; see [`Pendulum::energy`].
-    #[must_use]
-    pub fn energy(&self) -> A::Scalar {
-        self.pendulum.energy()
-    }
-
-    /// The mass matrix at the state, kg m²; see [`Pendulum::mass_matrix`].
-    #[must_use]
-    pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
-        self.pendulum.mass_matrix()
-    }
-
-    /// The positions of elbow and tip, m; see [`Pendulum::positions`].
-    #[must_use]
-    pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
-        self.pendulum.positions()
-    }
-
-    /// The height of the tip above the fixed joint, m; see [`Pendulum::tip_height`].
-    #[must_use]
-    pub fn tip_height(&self) -> A::Scalar {
-        self.pendulum.tip_height()
     }
 }
 

@@ -38,8 +38,8 @@
 //!
 //! # Modules
 //!
-//! - [`physics`]: the model alone, [`Pendulum`](physics::Pendulum), its functions, from the derivative to the energy, and
-//!   [`control`](physics::control), from the linearization to a regulator.
+//! - [`physics`]: the model alone, [`Pendulum`](physics::Pendulum), and [`control`](physics::control), from the
+//!   linearization to a regulator.
 //! - [`batch`]: many acrobots at once, with SIMD and on all cores.
 //! - [`numpy`]: NumPy's seeds and random numbers, as Gymnasium draws them.
 //! - [`trajectory`]: the last steps in fixed memory, as CSV.

@@ -17,9 +17,8 @@
 //! # Ok::<(), acrobot::Error>(())
 //! ```
 //!
-//! For your own integrators and controllers, the functions [`derivative`], [`energy`], [`mass_matrix`], [`positions`]
-//! and [`tip_height`] take any parameters and any state. The module [`control`]
-//! linearizes and regulates. The guide explains the [equations](crate::guide::equations).
+//! For your own integrator, use [`Pendulum::derivative`]. The module [`control`] linearizes and regulates. The guide
+//! explains the [equations](crate::guide::equations).
 
 /// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
 macro_rules! for_f32_and_f64 {
@@ -56,7 +55,7 @@ pub(crate) use lean::Constants as LeanConstants;
 pub use lean::Lean;
 pub use params::{Dynamics, Params};
 pub use params_range::ParamsRange;
-pub use pendulum::{Pendulum, derivative, energy, mass_matrix, positions, tip_height};
+pub use pendulum::Pendulum;
 pub(crate) use pendulum::{check_torque, sin_cos};
 pub use state::{ResetBounds, State};
 pub(crate) use step::step;

@@ -10,7 +10,7 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::physics::{Params, ResetBounds, State};
+use crate::physics::{Params, State};
 use crate::reset_options::ResetOptions;
 
 pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
@@ -166,12 +166,6 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
     pub fn reset(&mut self) -> Observation {
         self.restart();
         self.inner.reset()
-    }
-
-    /// Calls [`Acrobot::reset_within`] and sets the count of steps to 0.
-    pub fn reset_within(&mut self, bounds: ResetBounds) -> Observation {
-        self.restart();
-        self.inner.reset_within(bounds)
     }
 
     /// Calls [`Acrobot::step`] and counts the step.

@@ -55,7 +55,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.batch.set_reset_bounds(bounds);
         self.batch.reset();
         self.reset_alone(|_, alone| {
-            alone.reset_within(bounds);
+            alone.reset_with(bounds.into());
         });
     }
 
@@ -105,7 +105,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         for (i, alone) in self.alone.iter_mut().enumerate() {
             let mut last = [9.0; 6];
             let expected = if std::mem::take(&mut self.waiting[i]) {
-                (alone.reset_within(bounds), 0.0, false, false)
+                (alone.reset_with(bounds.into()), 0.0, false, false)
             } else {
                 let step = step_alone(i, alone);
                 done[i] = step.done();
@@ -113,7 +113,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
                 match autoreset {
                     Autoreset::SameStep if done[i] => {
                         last = observation.to_array();
-                        observation = alone.reset_within(bounds);
+                        observation = alone.reset_with(bounds.into());
                     }
                     Autoreset::NextStep => self.waiting[i] = done[i],
                     _ => {}
@@ -452,7 +452,7 @@ fn resets_equal_those_of_single_acrobots() {
         twins.play_randomly(steps);
         twins.batch.reset_within(bounds);
         twins.reset_alone(|_, alone| {
-            alone.reset_within(bounds);
+            alone.reset_with(bounds.into());
         });
 
         twins.play_randomly(steps);

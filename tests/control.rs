@@ -382,7 +382,11 @@ fn a_step_moves_as_its_derivatives_say() {
 }
 
 fn upright() -> DiscreteModel {
-    discretize(&Pendulum::<Portable>::at(State::UPRIGHT).unwrap(), 0.0).unwrap()
+    discretize(
+        &Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap(),
+        0.0,
+    )
+    .unwrap()
 }
 
 fn diagonal(x: [f64; 4]) -> [[f64; 4]; 4] {

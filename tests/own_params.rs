@@ -73,7 +73,7 @@ impl<A: Arithmetic> Twins<A> {
             let params = range.draw(alone.inner_mut().rng_mut());
             alone.set_params(params).unwrap();
         }
-        alone.reset_within(batch.reset_bounds()).to_array()
+        alone.reset_with(batch.reset_bounds().into()).to_array()
     }
 
     fn reset(&mut self) {

@@ -264,7 +264,10 @@ fn seeds_and_bounds_can_be_made_in_a_const() {
     let mut twin = Acrobot::<Fast>::new(42);
     assert_eq!(acrobot, twin);
     let bounds = ResetBounds::new(-0.25, 0.5).unwrap();
-    assert_eq!(acrobot.reset_within(BOUNDS), twin.reset_within(bounds));
+    assert_eq!(
+        acrobot.reset_with(BOUNDS.into()),
+        twin.reset_with(bounds.into())
+    );
 }
 
 #[test]

@@ -210,8 +210,8 @@ fn states_and_torques_that_are_not_finite_are_rejected() {
                 acrobot.set_state(state),
                 pendulum.set_state(state),
                 Pendulum::<Portable>::new(Params::DEFAULT, state).map(drop),
-                Pendulum::<Portable>::at(state).map(drop),
-                Pendulum::<Fast>::at(state.cast()).map(drop),
+                Pendulum::<Portable>::const_new(Params::DEFAULT, state).map(drop),
+                Pendulum::<Fast>::const_new(Params::DEFAULT, state.cast()).map(drop),
             ] {
                 assert_eq!(result.unwrap_err().to_string(), message);
             }

@@ -1,6 +1,5 @@
 //! A random policy that plays a batch.
 
-use acrobot::Error;
 use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{Observations, StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;

@@ -243,8 +243,8 @@ mod tests {
         for _ in 0..20_000 {
             let (region, position, [alpha, beta, v, w]) = draw(&mut rng);
             let state = State::from([alpha, beta - alpha, v, w - v]);
-            let mut pendulum = Pendulum::<Reference>::at(state).unwrap();
-            let hanging = Pendulum::<Reference>::at(State::HANGING).unwrap();
+            let mut pendulum = Pendulum::<Reference>::new(Params::DEFAULT, state).unwrap();
+            let hanging = Pendulum::<Reference>::new(Params::DEFAULT, State::HANGING).unwrap();
             let above = pendulum.energy() - hanging.energy();
             assert_contains(energy(region), position, above);
 

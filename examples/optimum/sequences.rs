@@ -60,7 +60,8 @@ pub fn text(sequences: &[Vec<Action>]) -> String {
 
 /// Whether the last action reaches the goal, and none before, in `Reference`.
 pub fn reaches(initial: State, actions: &[Action]) -> bool {
-    let mut pendulum = Pendulum::<Reference>::at(initial).expect("a finite state");
+    let mut pendulum =
+        Pendulum::<Reference>::new(Params::DEFAULT, initial).expect("a finite state");
     let last = actions.iter().position(|&action| {
         let torque = pendulum.params().torque(action);
         pendulum.step(torque).expect("a finite torque")

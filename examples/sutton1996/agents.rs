@@ -9,7 +9,7 @@ use learners::{
     Table, TileCoder, displacement,
 };
 
-use super::simulator::{decide, is_goal};
+use super::simulator::{acrobot, decide, is_goal};
 
 /// The tiles of Sutton's learner: 12 tilings of 6×6×7×7, and all the smaller ones.
 const TILES: usize = 25_028;
@@ -116,17 +116,17 @@ fn learn<F: Features<4, T>, const S: usize, const A: usize, const T: usize>(
     episodes: usize,
 ) -> Vec<u32> {
     let episode = |_| {
-        let mut state = State::default();
-        let mut action = learner.start(&state.cast().into(), random);
+        let mut acrobot = acrobot(State::HANGING);
+        let mut action = learner.start(&acrobot.state().cast().into(), random);
         let mut steps = 0;
         loop {
             steps += 1;
-            state = decide(state, torques[action]);
-            if is_goal(&state) {
+            decide(&mut acrobot, torques[action]);
+            if is_goal(&acrobot) {
                 learner.end(-1.0);
                 return steps;
             }
-            action = learner.step(-1.0, &state.cast().into(), random);
+            action = learner.step(-1.0, &acrobot.state().cast().into(), random);
         }
     };
     (0..episodes).map(episode).collect()

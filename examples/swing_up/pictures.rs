@@ -3,9 +3,9 @@
 use std::error::Error;
 use std::f32::consts::PI;
 
-use acrobot::physics::tip_height;
+use acrobot::physics::Pendulum;
 use acrobot::render::Figure;
-use acrobot::{Action, Fast, Params, REWARD_THRESHOLD, State};
+use acrobot::{Action, Fast, REWARD_THRESHOLD, State};
 use plotters::prelude::*;
 
 use crate::curve::running_mean;
@@ -93,8 +93,8 @@ pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> Result<()
             theta2,
             ..State::default()
         };
-        let is_goal = tip_height::<Fast>(&Params::DEFAULT, &rest) > 1.0;
-        let value = (!is_goal).then(|| f64::from(value(&rest)));
+        let pendulum = Pendulum::<Fast>::new(Params::DEFAULT, rest).expect("the angles are finite");
+        let value = (pendulum.tip_height() <= 1.0).then(|| f64::from(value(&rest)));
         (f64::from(theta1), f64::from(theta2), value)
     });
     let cells: Vec<_> = cells.collect();

@@ -8,7 +8,7 @@ use crate::math::{Numbers, Real, SinCos};
 #[derive(Clone, Copy, Debug)]
 pub struct Gymnasium;
 
-/// The constants, and three parameters.
+/// The constants.
 #[derive(Clone, Copy, Debug)]
 pub struct Constants<V> {
     common: Common<V>,
@@ -22,12 +22,6 @@ pub struct Constants<V> {
     lc2_squared: V,
     /// 2 m2 l1 lc2, kg m².
     twice_coupling: V,
-    /// kg.
-    m2: V,
-    /// kg m².
-    inertia1: V,
-    /// kg m².
-    inertia2: V,
 }
 
 for_f32_and_f64! {
@@ -45,9 +39,6 @@ for_f32_and_f64! {
                 arms_product: params.length1 * params.center_of_mass2,
                 lc2_squared,
                 twice_coupling: 2.0 * common.coupling,
-                m2: params.mass2,
-                inertia1: params.inertia1,
-                inertia2: params.inertia2,
             }
         }
     }
@@ -95,9 +86,6 @@ where
             arms_product: f(constants.arms_product, numbers.arms_product),
             lc2_squared: f(constants.lc2_squared, numbers.lc2_squared),
             twice_coupling: f(constants.twice_coupling, numbers.twice_coupling),
-            m2: f(constants.m2, numbers.m2),
-            inertia1: f(constants.inertia1, numbers.inertia1),
-            inertia2: f(constants.inertia2, numbers.inertia2),
         }
     }
 
@@ -126,10 +114,13 @@ where
             arms_product,
             lc2_squared,
             twice_coupling,
-            m2,
+        } = &model.constants;
+        let &Params {
+            mass2: m2,
             inertia1,
             inertia2,
-        } = &model.constants;
+            ..
+        } = &model.params;
         let (sin2, cos2) = match sin_cos {
             Some([_, second]) => second,
             None => A::sin_cos_near(theta2),

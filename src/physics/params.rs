@@ -37,8 +37,8 @@ pub enum Dynamics {
 pub struct Params<S = f64> {
     /// Length of link 1, m; above 0.
     pub length1: S,
-    /// Length of link 2, m; above 0. Only [`positions`](super::positions), the tip's height and drawings use it:
-    /// neither the equations of motion nor Gymnasium's goal contain it.
+    /// Length of link 2, m; above 0. Only [`positions`](super::Pendulum::positions), the tip's height and drawings use
+    /// it: neither the equations of motion nor Gymnasium's goal contain it.
     pub length2: S,
     /// Mass of link 1, kg; above 0.
     pub mass1: S,

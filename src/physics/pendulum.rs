@@ -65,12 +65,12 @@ impl<A: Arithmetic> Pendulum<A> {
     pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
         params.validate()?;
         state.validate()?;
-        Ok(Self::unchecked(params, state))
+        Ok(Self::new_unchecked(params, state))
     }
 
     /// As [`new`](Self::new), with parameters and a state that are known to be valid.
     #[inline]
-    pub(crate) fn unchecked(params: Params<A::Scalar>, state: State<A::Scalar>) -> Self {
+    pub(crate) fn new_unchecked(params: Params<A::Scalar>, state: State<A::Scalar>) -> Self {
         Self {
             model: Model::new(params),
             sin_cos: sin_cos::<A>([state.theta1, state.theta2]),
@@ -88,16 +88,18 @@ impl<A: Arithmetic> Pendulum<A> {
     #[inline]
     pub fn step(&mut self, torque: A::Scalar) -> Result<bool, Error> {
         check_torque(torque)?;
-        Ok(self.advance(torque))
+        let (terminated, _) = self.advance(torque);
+        Ok(terminated)
     }
 
-    /// As [`step`](Self::step), with a torque that is known to be finite.
+    /// As [`step`](Self::step), with a torque that is known to be finite. Also returns the sines and cosines.
     #[inline]
-    pub(crate) fn advance(&mut self, torque: A::Scalar) -> bool {
+    pub(crate) fn advance(&mut self, torque: A::Scalar) -> (bool, [SinCos<A::Scalar>; 2]) {
         if !self.is_current {
             self.compute_sines();
         }
-        step::<A, A::Scalar>(&self.model, &mut self.y, &mut self.sin_cos, torque)
+        let terminated = step(&self.model, &mut self.y, &mut self.sin_cos, torque);
+        (terminated, self.sin_cos)
     }
 
     /// The state.
@@ -114,14 +116,18 @@ impl<A: Arithmetic> Pendulum<A> {
     /// [`Error::OutOfRange`] for a number that is not finite.
     pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
-        self.place(state);
+        self.set_state_unchecked(state);
         Ok(())
     }
 
-    /// As [`set_state`](Self::set_state), with a state that is known to be finite.
-    pub(crate) fn place(&mut self, state: State<A::Scalar>) {
+    /// As [`set_state`](Self::set_state), with a state that is known to be finite. Returns its sines and cosines.
+    pub(crate) fn set_state_unchecked(
+        &mut self,
+        state: State<A::Scalar>,
+    ) -> [SinCos<A::Scalar>; 2] {
         self.y = state.into();
         self.compute_sines();
+        self.sin_cos
     }
 
     #[inline(never)] // saves registers: a step seldom calls it
@@ -159,19 +165,45 @@ impl<A: Arithmetic> Pendulum<A> {
         }
     }
 
-    /// As [`sin_cos`](Self::sin_cos), when the cache is known to be up to date.
-    #[inline]
-    pub(crate) fn current_sin_cos(&self) -> [SinCos<A::Scalar>; 2] {
-        self.sin_cos
-    }
-
-    /// [`derivative`] at the state under a torque, N m, from cached sines and constants.
+    /// The derivative of the state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque between the links, N m.
+    ///
+    /// [`Arithmetic::Form`] determines the order of evaluation, and [`Params::dynamics`] the
+    /// [equations](crate::guide::equations). A torque that is not finite gives what IEEE 754 gives.
+    ///
+    /// Your own integrator sets each state at which it needs the derivative. The constants stay cached:
+    ///
+    /// ```
+    /// use acrobot::physics::Pendulum;
+    /// use acrobot::{Portable, State};
+    ///
+    /// let mut pendulum = Pendulum::<Portable>::hanging();
+    /// // One step of the midpoint method: 0.01 s under 1 N m.
+    /// let y: [f64; 4] = pendulum.state().into();
+    /// for h in [0.005, 0.01] {
+    ///     let rates = pendulum.derivative(1.0);
+    ///     pendulum.set_state(State::from(std::array::from_fn(|i| y[i] + h * rates[i])))?;
+    /// }
+    /// assert!(pendulum.state().dtheta2 > 0.0);
+    /// # Ok::<(), acrobot::Error>(())
+    /// ```
     #[must_use]
     pub fn derivative(&self, torque: A::Scalar) -> [A::Scalar; 4] {
         A::Form::derivative(&self.model, self.y, Some(self.sin_cos()), torque)
     }
 
-    /// [`energy`] of the state, J.
+    /// The total mechanical energy of the state, J. The potential energy is 0 at the height of the fixed joint, so the
+    /// least energy is that of hanging at rest.
+    ///
+    /// Without a torque, `Dynamics::Book` conserves it and `Dynamics::Nips` does not. Extreme velocities or parameters
+    /// can make it infinite or NaN.
+    ///
+    /// ```
+    /// use acrobot::Portable;
+    /// use acrobot::physics::Pendulum;
+    ///
+    /// let hanging = Pendulum::<Portable>::hanging().energy();
+    /// assert!((hanging + 9.8 * (0.5 + 1.5)).abs() < 1e-12);
+    /// ```
     #[must_use]
     pub fn energy(&self) -> A::Scalar {
         let [_, _, dtheta1, dtheta2] = self.y;
@@ -180,7 +212,16 @@ impl<A: Arithmetic> Pendulum<A> {
         common.energy(params, [dtheta1, dtheta2], self.sin_cos())
     }
 
-    /// [`mass_matrix`] at the state, kg m².
+    /// The mass matrix M at the state, kg m². The kinetic energy is θ̇ᵀ M θ̇ / 2. M is symmetric and positive definite.
+    /// Extreme parameters can make its elements infinite or NaN.
+    ///
+    /// ```
+    /// use acrobot::Portable;
+    /// use acrobot::physics::Pendulum;
+    ///
+    /// let stretched = Pendulum::<Portable>::hanging().mass_matrix();
+    /// assert_eq!(stretched, [[4.5, 1.75], [1.75, 1.25]]);
+    /// ```
     #[must_use]
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
         let [_, (_, cos2)] = self.sin_cos();
@@ -188,13 +229,29 @@ impl<A: Arithmetic> Pendulum<A> {
         A::Form::common(constants).mass_matrix(params, cos2)
     }
 
-    /// [`positions`] of elbow and tip, m.
+    /// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the right and y up.
+    ///
+    /// ```
+    /// use acrobot::Portable;
+    /// use acrobot::physics::Pendulum;
+    ///
+    /// let [elbow, tip] = Pendulum::<Portable>::hanging().positions();
+    /// assert_eq!((elbow, tip), ([0.0, -1.0], [0.0, -2.0]));
+    /// ```
     #[must_use]
     pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
         common::positions(self.params(), self.sin_cos())
     }
 
-    /// The height of the tip above the fixed joint, m.
+    /// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from −(l1 + l2) hanging to
+    /// l1 + l2 upright.
+    ///
+    /// ```
+    /// use acrobot::Portable;
+    /// use acrobot::physics::Pendulum;
+    ///
+    /// assert_eq!(Pendulum::<Portable>::hanging().tip_height(), -2.0);
+    /// ```
     #[must_use]
     pub fn tip_height(&self) -> A::Scalar {
         let [_, [_, height]] = self.positions();
@@ -239,101 +296,12 @@ pub(crate) fn check_torque<S: Real>(torque: S) -> Result<(), Error> {
 pub(crate) fn sin_cos<A: Arithmetic>(angles: [A::Scalar; 2]) -> [SinCos<A::Scalar>; 2] {
     /// Out of line to save flash: a step does not call it.
     #[inline(never)]
-    fn apart<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
+    fn sin_cos_out_of_line<A: Arithmetic>(x: A::Scalar) -> SinCos<A::Scalar> {
         A::sin_cos(x)
     }
     let [theta1, theta2] = angles;
-    [apart::<A>(theta1), apart::<A>(theta2)]
-}
-
-/// The derivative of a state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque between the links, N m.
-///
-/// The arithmetic's form determines the order of evaluation, and `params.dynamics` the equations. Inputs are not
-/// checked: values out of range give what IEEE 754 gives. Each call computes the constants that depend only on the
-/// parameters; [`Pendulum::derivative`] caches them.
-///
-/// ```
-/// use acrobot::physics::derivative;
-/// use acrobot::{Params, Portable, State};
-///
-/// let hanging = derivative::<Portable>(&Params::DEFAULT, &State::default(), 0.0);
-/// assert!(hanging.iter().all(|rate| rate.abs() < 1e-15));
-/// ```
-#[must_use]
-pub fn derivative<A: Arithmetic>(
-    params: &Params<A::Scalar>,
-    state: &State<A::Scalar>,
-    torque: A::Scalar,
-) -> [A::Scalar; 4] {
-    Pendulum::<A>::unchecked(*params, *state).derivative(torque)
-}
-
-/// The mass matrix M at a state, kg m². The kinetic energy is θ̇ᵀ M θ̇ / 2. M is symmetric and positive definite.
-/// Extreme parameters can make its elements infinite or NaN.
-///
-/// ```
-/// use acrobot::physics::mass_matrix;
-/// use acrobot::{Params, Portable, State};
-///
-/// let stretched = mass_matrix::<Portable>(&Params::DEFAULT, &State::default());
-/// assert_eq!(stretched, [[4.5, 1.75], [1.75, 1.25]]);
-/// ```
-#[must_use]
-pub fn mass_matrix<A: Arithmetic>(
-    params: &Params<A::Scalar>,
-    state: &State<A::Scalar>,
-) -> [[A::Scalar; 2]; 2] {
-    Pendulum::<A>::unchecked(*params, *state).mass_matrix()
-}
-
-/// The total mechanical energy of a state, J. The potential energy is 0 at the height of the fixed joint, so the
-/// least energy is that of hanging at rest.
-///
-/// Without a torque, `Dynamics::Book` conserves it and `Dynamics::Nips` does not. Extreme velocities or parameters can
-/// make it infinite or NaN.
-///
-/// ```
-/// use acrobot::physics::energy;
-/// use acrobot::{Params, Portable, State};
-///
-/// let hanging = energy::<Portable>(&Params::DEFAULT, &State::default());
-/// assert!((hanging + 9.8 * (0.5 + 1.5)).abs() < 1e-12);
-/// ```
-#[must_use]
-pub fn energy<A: Arithmetic>(params: &Params<A::Scalar>, state: &State<A::Scalar>) -> A::Scalar {
-    Pendulum::<A>::unchecked(*params, *state).energy()
-}
-
-/// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the right and y up.
-///
-/// ```
-/// use acrobot::physics::positions;
-/// use acrobot::{Params, Portable, State};
-///
-/// let [elbow, tip] = positions::<Portable>(&Params::DEFAULT, &State::default());
-/// assert_eq!((elbow, tip), ([0.0, -1.0], [0.0, -2.0]));
-/// ```
-#[must_use]
-pub fn positions<A: Arithmetic>(
-    params: &Params<A::Scalar>,
-    state: &State<A::Scalar>,
-) -> [[A::Scalar; 2]; 2] {
-    Pendulum::<A>::unchecked(*params, *state).positions()
-}
-
-/// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from −(l1 + l2) hanging to
-/// l1 + l2 upright.
-///
-/// ```
-/// use acrobot::physics::tip_height;
-/// use acrobot::{Params, Portable, State};
-///
-/// assert_eq!(tip_height::<Portable>(&Params::DEFAULT, &State::default()), -2.0);
-/// ```
-#[must_use]
-pub fn tip_height<A: Arithmetic>(
-    params: &Params<A::Scalar>,
-    state: &State<A::Scalar>,
-) -> A::Scalar {
-    Pendulum::<A>::unchecked(*params, *state).tip_height()
+    [
+        sin_cos_out_of_line::<A>(theta1),
+        sin_cos_out_of_line::<A>(theta2),
+    ]
 }

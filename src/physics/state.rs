@@ -152,7 +152,7 @@ impl ResetBounds {
 
     /// Draws an initial state. It is `f32` in every arithmetic, as in Gymnasium.
     #[inline(never)] // saves flash: each kind of reset calls it
-    pub(crate) fn draw<R: Rng>(&self, rng: &mut R) -> State<f32> {
+    pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> State<f32> {
         [(); 4]
             .map(|()| uniform(rng, self.low, self.high) as f32)
             .into()

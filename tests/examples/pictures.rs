@@ -21,7 +21,7 @@ fn a_state_is_rendered_as_its_frame() {
     let folder = Folder::new();
     printed(&mut folder.command("render_episode --state -0.6,1.5"));
     let state = State::from([-0.6, 1.5, 0.0, 0.0]);
-    let pendulum = Pendulum::<Portable>::at(state).unwrap();
+    let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, state).unwrap();
     let expected = Frame::of(&Figure::new(&Acrobot::from_pendulum(pendulum, ())));
     let expected = (500, 500, expected.bytes().to_vec());
     assert!(png(&folder, "frame.png") == expected);

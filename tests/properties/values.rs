@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::{bound, derivative, energy, mass_matrix, positions, rk4, tip_height, wrap};
+use acrobot::physics::{Pendulum, bound, wrap};
 use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{Fast, Observation, Params, State};
 use proptest::prelude::*;
@@ -86,38 +86,18 @@ fn sines_and_cosines_are_on_the_unit_circle() {
     in_every_arithmetic!(check);
 }
 
-/// The methods of an acrobot are bit-identical to the functions of `physics`, and the tip is within reach.
+/// An acrobot returns the parameters and the state that it was given, and the tip is within reach.
 #[test]
-fn methods_equal_the_functions_of_the_same_name() {
+fn the_tip_is_within_reach() {
     fn check<A: Arithmetic<Scalar: Number>>() {
-        let given = (params(Range::Any), state(Range::Any), number(Range::Any));
-        holds(1000, given, |(params, state, torque)| {
+        let given = (params(Range::Any), state(Range::Any));
+        holds(1000, given, |(params, state)| {
             let acrobot = acrobot::<A>(params, state, 0);
-            let bits = |x: A::Scalar| {
-                if x.to_f64().is_nan() {
-                    None
-                } else {
-                    Some(x.bits())
-                }
-            };
             assert_eq!(acrobot.params(), &params);
             assert_eq!(acrobot.state(), state);
-            assert_eq!(
-                acrobot.mass_matrix().map(|row| row.map(bits)),
-                mass_matrix::<A>(&params, &state).map(|row| row.map(bits))
-            );
-            assert_eq!(
-                acrobot.derivative(torque).map(bits),
-                derivative::<A>(&params, &state, torque).map(bits)
-            );
-            assert_eq!(
-                acrobot.positions().map(|point| point.map(bits)),
-                positions::<A>(&params, &state).map(|point| point.map(bits))
-            );
-            assert_eq!(bits(acrobot.energy()), bits(energy::<A>(&params, &state)));
-            let height = acrobot.tip_height();
-            assert_eq!(height, tip_height::<A>(&params, &state));
-            let reach = params.length1 + params.length2;
+            let height = acrobot.pendulum().tip_height();
+            // As above, `Micro`'s sines of large angles are not quite on the unit circle.
+            let reach = A::Scalar::from_f64(1.0001) * (params.length1 + params.length2);
             assert!(-reach <= height && height <= reach, "{height}");
 
             let angles = Observation::<4>::from(state);
@@ -143,7 +123,8 @@ fn the_equations_are_those_of_a_pendulum() {
             2000,
             given,
             |(params, state, torque): (Params<A::Scalar>, _, _)| {
-                let rates = derivative::<A>(&params, &state, torque).map(Real::to_f64);
+                let mut pendulum = Pendulum::<A>::new(params, state).unwrap();
+                let rates = pendulum.derivative(torque).map(Real::to_f64);
                 assert!(rates.into_iter().all(f64::is_finite), "{rates:?}");
                 let State {
                     dtheta1, dtheta2, ..
@@ -151,44 +132,25 @@ fn the_equations_are_those_of_a_pendulum() {
                 assert_eq!(rates[..2], [dtheta1, dtheta2]);
 
                 let [[m11, m12], [m21, m22]] =
-                    mass_matrix::<A>(&params, &state).map(|row| row.map(Real::to_f64));
+                    pendulum.mass_matrix().map(|row| row.map(Real::to_f64));
                 assert_eq!(m12, m21);
                 assert!(m11 > 0.0 && m22 > 0.0, "{m11} {m22}");
 
                 // The kinetic energy is never negative, except for rounding where parts cancel.
+                let total = pendulum.energy().to_f64();
                 let at_rest = State {
                     dtheta1: A::Scalar::ZERO,
                     dtheta2: A::Scalar::ZERO,
                     ..state
                 };
-                let [potential, total] =
-                    [at_rest, state].map(|state| energy::<A>(&params, &state).to_f64());
+                pendulum.set_state(at_rest).unwrap();
+                let potential = pendulum.energy().to_f64();
                 let parts = m11 * dtheta1 * dtheta1 + m22 * dtheta2 * dtheta2 + potential.abs();
                 assert!(total >= potential - 1e-5 * parts, "{total} {potential}");
             },
         );
     }
     in_every_arithmetic!(check);
-}
-
-/// The Runge-Kutta step solves y' = c and y' = t exactly up to rounding, and with dt = 0 it changes nothing.
-#[test]
-fn rk4_solves_lines_and_parabolas() {
-    let given = (
-        [number::<f64>(Range::Moderate), number(Range::Moderate)],
-        number(Range::Any),
-    );
-    holds(1000, given, |([y, rate], dt)| {
-        let [line, parabola, time] = rk4([y, y, 0.0], dt, |[_, _, time]| [rate, time, 1.0]);
-        let close = |x: f64, expected: f64| {
-            let scale = expected.abs().max(y.abs());
-            x == expected || (x - expected).abs() <= 1e-14 * scale || !scale.is_finite()
-        };
-        assert!(close(time, dt), "{time}");
-        assert!(close(line, y + rate * dt), "{line}");
-        assert!(close(parabola, y + 0.5 * dt * dt), "{parabola}");
-        assert_eq!(rk4([y], 0.0, |_| [rate]), [y]);
-    });
 }
 
 #[test]

@@ -153,7 +153,7 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Implementation {
     let blocks = vec![Block::EMPTY; N.div_ceil(Block::<Fast>::LANES)];
     let generators = vec![Pcg64::UNSEEDED; N];
     let mut batch =
-        Batch::<Fast, _, _>::new(0, blocks, generators).expect("blocks for all acrobots");
+        Batch::<Fast, _>::new(0, (blocks, generators)).expect("blocks for all acrobots");
     let mut streams: Vec<u32> = (0..N as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect();
     let (mut actions, mut rewards, mut rows) = (vec![0; N], vec![0.0; N], vec![[0.0; 6]; N]);
     let (mut terminated, mut truncated) = (vec![false; N], vec![false; N]);

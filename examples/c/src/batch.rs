@@ -5,7 +5,7 @@ use core::slice;
 
 use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
 use acrobot::numpy::Pcg64;
-use acrobot::{Fast, ResetOptions};
+use acrobot::{Fast, Params, ResetOptions};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, unknown};
 use crate::memory::{Array, Holder, Out, Span, check, check_apart, fits, read};
@@ -78,7 +78,7 @@ type LanesBlock = Block<Fast, ACROBOT_BATCH_LANES>;
 pub struct Placed {
     /// Where `acrobot_batch_init` put it.
     address: usize,
-    batch: Batch<Fast, &'static mut [LanesBlock], &'static mut [Pcg64], ACROBOT_BATCH_LANES>,
+    batch: Batch<Fast, (&'static mut [LanesBlock], &'static mut [Pcg64]), ACROBOT_BATCH_LANES>,
 }
 
 impl Holder for acrobot_batch_t {
@@ -181,7 +181,7 @@ pub unsafe extern "C" fn acrobot_batch_init(
         let generators = slice::from_raw_parts_mut(generators, count);
         let value = Placed {
             address: to.addr(),
-            batch: Batch::new(seed, blocks, generators)?,
+            batch: Batch::new(seed, (blocks, generators))?,
         };
         Holder::init(to, value)?;
         batch.write(to);
@@ -375,7 +375,8 @@ pub unsafe extern "C" fn acrobot_batch_params(
 ) -> acrobot_status_t {
     status(|| unsafe {
         let params = Out::new(params, batch)?;
-        params.write(placed(batch)?.batch.params().into());
+        let found = placed(batch)?.batch.params_of(0).unwrap_or(Params::DEFAULT);
+        params.write((&found).into());
         Ok(())
     })
 }

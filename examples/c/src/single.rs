@@ -82,7 +82,7 @@ pub unsafe extern "C" fn acrobot_reset_within(
         let observation = Out::optional(observation, acrobot)?;
         let acrobot = Holder::value_mut(acrobot)?;
         let bounds = ResetBounds::new(low, high)?;
-        observation.write(acrobot.reset_within(bounds).into());
+        observation.write(acrobot.reset_with(bounds.into()).into());
         Ok(())
     };
     unsafe { explained(error, acrobot, reset) }
@@ -212,7 +212,7 @@ pub unsafe extern "C" fn acrobot_energy(
 ) -> acrobot_status_t {
     status(|| unsafe {
         let energy = Out::new(energy, acrobot)?;
-        energy.write(Holder::value(acrobot)?.inner().energy());
+        energy.write(Holder::value(acrobot)?.inner().pendulum().energy());
         Ok(())
     })
 }
@@ -225,7 +225,7 @@ pub unsafe extern "C" fn acrobot_tip_height(
 ) -> acrobot_status_t {
     status(|| unsafe {
         let height = Out::new(height, acrobot)?;
-        height.write(Holder::value(acrobot)?.inner().tip_height());
+        height.write(Holder::value(acrobot)?.inner().pendulum().tip_height());
         Ok(())
     })
 }

@@ -15,7 +15,7 @@ const LANES: usize = 4;
 
 /// A batch with its memory. A `VecBatch` would take 12 KB more code, because its blocks have 16 lanes.
 struct Many {
-    batch: Batch<Fast, Vec<Block<Fast, LANES>>, Vec<Pcg64>, LANES>,
+    batch: Batch<Fast, (Vec<Block<Fast, LANES>>, Vec<Pcg64>), LANES>,
     /// JavaScript writes here before a step.
     actions: Vec<u8>,
     observations: Vec<[f32; 6]>,
@@ -45,7 +45,7 @@ impl Many {
         let blocks = fill(Block::EMPTY, count.div_ceil(LANES))?;
         let generators = fill(Pcg64::UNSEEDED, count)?;
         Some(Self {
-            batch: Batch::with_seed(memory::seed(words), blocks, generators).ok()?,
+            batch: Batch::with_seed(memory::seed(words), (blocks, generators)).ok()?,
             actions: fill(0, count)?,
             observations: fill([0.0; 6], count)?,
             rewards: fill(0.0, count)?,
@@ -131,7 +131,9 @@ pub extern "C" fn batch_state(number: usize, index: usize) {
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_params(number: usize) {
     memory::with_value(&BATCHES, number, |many| {
-        memory::set_params(many.batch.params());
+        if let Some(params) = many.batch.params_of(0) {
+            memory::set_params(&params);
+        }
     });
 }
 

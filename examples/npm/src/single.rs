@@ -59,9 +59,9 @@ pub extern "C" fn acrobot_observe(number: usize) {
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_read(number: usize) {
     memory::with_value(&ENVS, number, |env| {
-        let acrobot = env.inner();
-        let [a, b, c, d] = acrobot.state().into();
-        set_numbers([a, b, c, d, acrobot.energy(), acrobot.tip_height()]);
+        let pendulum = env.inner().pendulum();
+        let [a, b, c, d] = pendulum.state().into();
+        set_numbers([a, b, c, d, pendulum.energy(), pendulum.tip_height()]);
     });
 }
 

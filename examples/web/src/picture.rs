@@ -141,7 +141,7 @@ pub extern "C" fn draw(part: f32) -> *const [f32; 2] {
             None => figure.draw(&mut frame, &canvas.theme),
         };
         canvas.shown = Some(figure);
-        [_, *TIP.borrow()] = acrobot.positions();
+        [_, *TIP.borrow()] = acrobot.pendulum().positions();
     });
     TIP.address()
 }

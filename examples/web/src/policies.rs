@@ -1,9 +1,7 @@
 //! Two policies that need no training.
 
-use core::f32::consts::PI;
-
-use acrobot::physics::energy;
-use acrobot::{Action, Fast, State};
+use acrobot::physics::{Pendulum, State};
+use acrobot::{Action, Fast};
 
 use crate::simulation;
 
@@ -28,7 +26,7 @@ pub extern "C" fn energy_law() -> u8 {
     let standing = standing();
     simulation::with(|simulation| {
         let acrobot = simulation.env.inner();
-        let missing = standing - acrobot.energy();
+        let missing = standing - acrobot.pendulum().energy();
         let action = match -missing * acrobot.state().dtheta1 {
             torque if torque <= -0.5 => Action::Negative,
             torque if torque >= 0.5 => Action::Positive,
@@ -41,9 +39,8 @@ pub extern "C" fn energy_law() -> u8 {
 /// The energy of standing upright, J.
 #[unsafe(no_mangle)]
 pub extern "C" fn standing() -> f32 {
-    let upright = State {
-        theta1: PI,
-        ..State::default()
-    };
-    simulation::with(|simulation| energy::<Fast>(simulation.env.params(), &upright))
+    simulation::with(|simulation| {
+        Pendulum::<Fast>::new(*simulation.env.params(), State::UPRIGHT)
+            .map_or(f32::NAN, |upright| upright.energy())
+    })
 }

@@ -83,9 +83,9 @@ pub extern "C" fn random() -> u8 {
 pub extern "C" fn numbers() -> *const [f32; 6] {
     static NUMBERS: Shared<[f32; 6]> = Shared::new([0.0; 6]);
     with(|simulation| {
-        let acrobot = simulation.env.inner();
-        let [theta1, theta2, dtheta1, dtheta2] = acrobot.state().into();
-        let (energy, height) = (acrobot.energy(), acrobot.tip_height());
+        let pendulum = simulation.env.inner().pendulum();
+        let [theta1, theta2, dtheta1, dtheta2] = pendulum.state().into();
+        let (energy, height) = (pendulum.energy(), pendulum.tip_height());
         *NUMBERS.borrow() = [theta1, theta2, dtheta1, dtheta2, energy, height];
     });
     NUMBERS.address()

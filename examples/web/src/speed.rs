@@ -42,7 +42,7 @@ const LANES: usize = if cfg!(target_feature = "simd128") {
 pub extern "C" fn batch_steps(steps: u32) {
     let mut blocks = [Block::EMPTY; LEN / LANES];
     let mut generators = [Pcg64::UNSEEDED; LEN];
-    let batch = Batch::<Fast, _, _, LANES>::new(0, &mut blocks[..], &mut generators[..]);
+    let batch = Batch::<Fast, _, LANES>::new(0, (&mut blocks[..], &mut generators[..]));
     let Ok(mut batch) = batch else {
         return;
     };

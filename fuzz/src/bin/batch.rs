@@ -46,7 +46,7 @@ impl<A: Arithmetic> Alone<A> {
     }
 
     fn reset(&mut self, bounds: ResetBounds) {
-        self.acrobot.reset_within(bounds);
+        self.acrobot.reset_with(bounds.into());
         self.begin();
     }
 

@@ -29,7 +29,7 @@ pub struct DiscreteModel<S = f64> {
 /// use acrobot::physics::control::discretize;
 /// use acrobot::{Portable, State};
 ///
-/// let upright = Pendulum::<Portable>::at(State::UPRIGHT)?;
+/// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
 /// let model = discretize(&upright, 0.0)?;
 ///
 /// let mut pushed = upright.clone();

@@ -32,7 +32,7 @@ pub struct Forces<S = f64> {
 /// use acrobot::physics::control::inverse_dynamics;
 /// use acrobot::{Portable, State};
 ///
-/// let pendulum = Pendulum::<Portable>::at(State::from([0.5, -0.3, 1.0, 2.0]))?;
+/// let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, State::from([0.5, -0.3, 1.0, 2.0]))?;
 /// let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(0.7);
 /// let forces = inverse_dynamics(&pendulum, [ddtheta1, ddtheta2])?;
 /// assert!(forces.torques[0].abs() < 1e-12 && (forces.torques[1] - 0.7).abs() < 1e-12);
@@ -110,7 +110,7 @@ pub fn inverse_dynamics<A: Arithmetic>(
 /// use acrobot::{Portable, State};
 ///
 /// let swinging = State { dtheta1: 1.0, ..State::HANGING };
-/// let [elbow, tip] = velocities(&Pendulum::<Portable>::at(swinging)?)?;
+/// let [elbow, tip] = velocities(&Pendulum::<Portable>::new(Params::DEFAULT, swinging)?)?;
 /// assert_eq!((elbow, tip), ([1.0, 0.0], [2.0, 0.0]));
 /// # Ok::<(), acrobot::physics::control::ControlError>(())
 /// ```

@@ -28,7 +28,7 @@ pub struct ContinuousModel<S = f64> {
 /// use acrobot::physics::control::linearize;
 /// use acrobot::{Portable, State};
 ///
-/// let upright = Pendulum::<Portable>::at(State::UPRIGHT)?;
+/// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
 /// let model = linearize(&upright, 0.0)?;
 /// assert_eq!(model.a[0], [0.0, 0.0, 1.0, 0.0]); // the derivative of θ1 is θ̇1
 /// assert!(model.a[2][0] > 0.0); // gravity drives link 1 away

@@ -1,7 +1,7 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Observations, Storage, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Observations, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::ParamsRange;
 use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, TimeLimit};
@@ -120,7 +120,11 @@ pub fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
         ..Params::DEFAULT
     };
     let generators = [Pcg64::UNSEEDED; 8];
-    let memory = ([Block::EMPTY; BLOCKS], generators, [LaneParams::default(); BLOCKS]);
+    let memory = (
+        [Block::EMPTY; BLOCKS],
+        generators,
+        [LaneParams::default(); BLOCKS],
+    );
     batch::<8, N, _>(memory, |batch| {
         // It does not fail: a failure changes the digest.
         let _ = batch.set_params_range(ParamsRange::new(low, high).ok());

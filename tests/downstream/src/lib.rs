@@ -11,7 +11,7 @@ use acrobot::env::{Env, Space, make};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Lean, Pendulum};
 use acrobot::trajectory::Trajectory;
-use acrobot::{Acrobot, Action, Error, Fast, Portable, State, TimeLimit};
+use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
 use critical_section::Mutex;
 use rand_core::TryRng;
 
@@ -62,12 +62,17 @@ fn the_newest_libm_has_the_sines_of_portables_recorded_bits() {
 /// A controller steps the pendulum alone, from a state that the compiler has checked.
 #[test]
 fn a_controller_steps_the_pendulum() {
-    static RAISED: Pendulum<Fast> = match Pendulum::<Fast>::at(State {
+    const PARAMS: Params<f32> = Params {
+        dt: 0.05,
+        ..Params::DEFAULT
+    };
+    const STATE: State<f32> = State {
         theta1: 1.5,
         ..State::HANGING
-    }) {
+    };
+    static RAISED: Pendulum<Fast> = match Pendulum::<Fast>::const_new(PARAMS, STATE) {
         Ok(pendulum) => pendulum,
-        Err(_) => panic!("the state must be finite"),
+        Err(_) => panic!("a parameter or the state is out of range"),
     };
     let mut pendulum = RAISED.clone();
     assert!(!pendulum.step(0.5).unwrap());
@@ -95,7 +100,7 @@ fn an_agent_plays_by_id() {
 #[test]
 fn a_borrowed_batch_takes_torques() -> Result<(), Error> {
     let (mut blocks, mut generators) = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 3]);
-    let mut batch = Batch::<Fast, _, _>::new(42, &mut blocks[..], &mut generators[..])?;
+    let mut batch = Batch::<Fast, _>::new(42, (&mut blocks[..], &mut generators[..]))?;
     let mut rewards = [0.0; 3];
     batch.step(
         &[-0.5, 0.0, 0.5],

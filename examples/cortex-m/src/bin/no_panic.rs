@@ -12,12 +12,12 @@ use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, Observations, OwnParams, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::control::{
     difference, discretize, inverse_dynamics, linearize, lqr, velocities,
 };
-use acrobot::physics::{self, ParamsRange, Pendulum, ResetBounds};
+use acrobot::physics::{ParamsRange, Pendulum, ResetBounds, wrap};
 use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
@@ -101,15 +101,7 @@ fn pendulum<A: Arithmetic>() {
         let _ = black_box(pendulum.set_params(params()));
         let _ = black_box(pendulum.set_state(state()));
     }
-    let (params, state) = (params(), state());
-    black_box((
-        physics::derivative::<A>(&params, &state, number()),
-        physics::positions::<A>(&params, &state),
-        physics::energy::<A>(&params, &state),
-        physics::mass_matrix::<A>(&params, &state),
-        physics::tip_height::<A>(&params, &state),
-        physics::wrap::<A>(number()),
-    ));
+    black_box(wrap::<A>(number()));
 }
 
 /// What a controller needs.
@@ -140,7 +132,7 @@ fn environment<A: Arithmetic>() {
         let _ = black_box(inner.set_params(params()));
         let _ = black_box(inner.set_state(state()));
         if let Ok(bounds) = ResetBounds::new(black_box(-0.2), black_box(0.2)) {
-            black_box(acrobot.reset_within(bounds));
+            black_box(bounds.draw(acrobot.inner_mut().rng_mut()));
             let (seed, bounds) = (Some(seed), Some(bounds));
             black_box(acrobot.reset_with(ResetOptions { seed, bounds }));
         }
@@ -156,14 +148,7 @@ fn environment<A: Arithmetic>() {
             let _ = black_box(Action::try_from(black_box(3)));
             let _ = black_box(acrobot.step_torque(number()));
             let inner = acrobot.inner();
-            black_box((
-                inner.observation(),
-                inner.derivative(number()),
-                inner.positions(),
-                inner.energy(),
-                inner.mass_matrix(),
-                inner.tip_height(),
-            ));
+            black_box(inner.observation());
             let figure = Figure::new(inner).with_torque(black_box(1.0));
             let _ = figure.redraw(&shown, &mut display, &Theme::MONOCHROME);
             black_box(display.data());
@@ -180,8 +165,8 @@ fn environment<A: Arithmetic>() {
 /// A batch whose last block is not full.
 fn batch<A: Arithmetic>() {
     const LEN: usize = 20;
-    let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; LEN]);
-    let Ok(mut batch) = Batch::<A, _, _>::new(black_box(42), blocks, generators) else {
+    let memory = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; LEN]);
+    let Ok(mut batch) = Batch::<A, _>::new(black_box(42), memory) else {
         return;
     };
     let (mut rows, mut finals) = ([[0.0; 6]; LEN], [[0.0; 6]; LEN]);
@@ -216,21 +201,23 @@ fn batch<A: Arithmetic>() {
 /// A batch whose acrobots have their own parameters.
 fn own_params<A: Arithmetic>() {
     const LEN: usize = 6;
-    let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; LEN]);
-    let batch = Batch::<A, _, _, 4, OwnParams>::new(black_box(42), blocks, generators);
+    let generators = [Pcg64::UNSEEDED; LEN];
+    let memory = ([Block::EMPTY; 2], generators, [LaneParams::default(); 2]);
+    let batch = Batch::<A, _, 4>::new(black_box(42), memory);
     let Ok(mut batch) = batch else {
         return;
     };
     let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
     for _ in 0..black_box(10) {
         let _ = black_box(batch.set_params_of(black_box(3), params()));
-        batch.set_params_range(ParamsRange::new(params(), params()).ok());
+        let _ = black_box(batch.set_params_range(ParamsRange::new(params(), params()).ok()));
+        let _ = black_box(batch.set_params(params()));
+        if let Some(member) = batch.member(black_box(3)) {
+            let _ = black_box(batch.set_member(black_box(4), member));
+        }
         batch.reset();
         let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
         let _ = black_box(batch.step(&black_box([1_u8; LEN]), buffers));
-        let _ = black_box(
-            batch.reset_to_masked(&black_box([true; LEN]), &black_box([State::default(); LEN])),
-        );
         black_box((batch.params_of(black_box(3)), batch.elapsed(black_box(3))));
         black_box((&rewards, &terminated, &truncated, batch.generators_mut()));
     }
