@@ -19,7 +19,7 @@ use std::process::ExitCode;
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics;
 use acrobot::physics::control::{Lqr, difference, discretize, lqr};
-use acrobot::{Acrobot, Action, Portable, State};
+use acrobot::{Acrobot, Action, Params, Portable, State};
 use clap::Parser;
 use examples_common::exit;
 

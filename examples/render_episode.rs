@@ -14,7 +14,7 @@ use std::process::ExitCode;
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Frame};
-use acrobot::{Acrobot, Portable, State, TimeLimit};
+use acrobot::{Acrobot, Params, Portable, State, TimeLimit};
 use clap::Parser;
 use examples_common::{animation, bang_bang, exit, files};
 

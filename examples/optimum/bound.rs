@@ -209,10 +209,10 @@ pub fn least_steps(state: State) -> u32 {
 mod tests {
     use std::f64::consts::TAU;
 
-    use acrobot::Action;
     use acrobot::arithmetic::Reference;
     use acrobot::numpy::{Pcg64, uniform};
     use acrobot::physics::Pendulum;
+    use acrobot::{Action, Params};
 
     use super::*;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use acrobot::arithmetic::Reference;
 use acrobot::physics::Pendulum;
-use acrobot::{Action, State};
+use acrobot::{Action, Params, State};
 
 use crate::{SEEDS, initial};
 

@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 
 use acrobot::physics::Pendulum;
 use acrobot::render::Figure;
-use acrobot::{Action, Fast, REWARD_THRESHOLD, State};
+use acrobot::{Action, Fast, Params, REWARD_THRESHOLD, State};
 use plotters::prelude::*;
 
 use crate::curve::running_mean;

@@ -6,7 +6,7 @@ use std::io::BufReader;
 use super::{Folder, printed};
 use acrobot::physics::Pendulum;
 use acrobot::render::{Figure, Frame};
-use acrobot::{Acrobot, Portable, State};
+use acrobot::{Acrobot, Params, Portable, State};
 
 fn png(folder: &Folder, name: &str) -> (u32, u32, Vec<u8>) {
     let file = BufReader::new(File::open(folder.path(name)).unwrap());
