@@ -1,12 +1,11 @@
-//! A whole batch, saved and loaded with serde.
+//! A whole batch, saved and loaded with serde: a sequence of its settings and its members.
 
 use core::fmt;
 use core::marker::PhantomData;
 use core::num::NonZeroU32;
 
 use heapless::Vec;
-use serde::de::{Deserialize, DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess};
-use serde::de::{Error as _, Visitor};
+use serde::de::{Deserialize, Deserializer, Error as _, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeSeq, Serializer};
 
 use super::buffers::check_length;
@@ -20,33 +19,17 @@ use crate::numpy::SeedSequence;
 use crate::physics::{Params, ParamsRange, ResetBounds};
 use crate::snapshot::{Header, Subject};
 
-impl<A: Arithmetic, S, const N: usize> Subject for Batch<A, S, N> {
-    const NAME: &'static str = "batch";
-    type Arithmetic = A;
-}
-
-#[derive(serde::Serialize)]
-#[serde(rename = "Batch")]
-struct Snapshot<H, T, M> {
-    snapshot: H,
-    settings: T,
-    members: M,
-}
-
-#[derive(serde::Deserialize)]
-#[serde(field_identifier, rename_all = "snake_case")]
-enum Field {
-    Snapshot,
-    Settings,
-    Members,
-    #[serde(other)]
-    Other,
-}
-
 /// The settings. The parameters that all acrobots share are those of each member.
 #[derive(serde::Serialize, serde::Deserialize)]
-#[serde(rename = "Settings")]
-struct Settings<S> {
+#[serde(
+    rename = "Settings",
+    bound(
+        serialize = "A::Scalar: Serialize",
+        deserialize = "A::Scalar: Deserialize<'de>"
+    )
+)]
+struct Settings<A: Arithmetic> {
+    snapshot: Header<Self>,
     low: f64,
     high: f64,
     limit: NonZeroU32,
@@ -54,24 +37,12 @@ struct Settings<S> {
     /// Whether each acrobot has its own parameters.
     own_params: bool,
     /// Both ends of the range, or nothing.
-    params_range: Vec<Params<S>, 2>,
+    params_range: Vec<Params<A::Scalar>, 2>,
 }
 
-/// The members of a batch, saved one by one.
-struct Members<'a, T>(&'a T);
-
-impl<A, S, const N: usize> Serialize for Members<'_, Batch<A, S, N>>
-where
-    A: Arithmetic<Scalar: Serialize>,
-    S: Storage<A, N>,
-{
-    fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
-        let mut members = serializer.serialize_seq(Some(self.0.len()))?;
-        for member in (0..self.0.len()).filter_map(|index| self.0.member(index)) {
-            members.serialize_element(&member)?;
-        }
-        members.end()
-    }
+impl<A: Arithmetic> Subject for Settings<A> {
+    const NAME: &'static str = "batch";
+    type Arithmetic = A;
 }
 
 impl<A, S, const N: usize> Serialize for Batch<A, S, N>
@@ -81,23 +52,22 @@ where
 {
     fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
         let (.., lane_params) = self.storage.slices();
-        let range = self
-            .params_range()
-            .map(|range| [*range.low(), *range.high()]);
-        let settings = Settings {
+        let range = self.params_range();
+        let ends = range.map(|range| Vec::from_array([*range.low(), *range.high()]));
+        let mut records = serializer.serialize_seq(Some(1 + self.len()))?;
+        records.serialize_element(&Settings::<A> {
+            snapshot: Header::NEW,
             low: self.settings.bounds.low(),
             high: self.settings.bounds.high(),
             limit: self.settings.limit,
             autoreset: self.settings.autoreset,
             own_params: !lane_params.is_empty(),
-            params_range: range.map(Vec::from_array).unwrap_or_default(),
-        };
-        Snapshot {
-            snapshot: Header::<Self>::NEW,
-            settings,
-            members: Members(self),
+            params_range: ends.unwrap_or_default(),
+        })?;
+        for member in (0..self.len()).filter_map(|index| self.member(index)) {
+            records.serialize_element(&member)?;
         }
-        .serialize(serializer)
+        records.end()
     }
 }
 
@@ -106,9 +76,9 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// Those of the format, of [`new`](Self::new) and of [`set_member`](Self::set_member), [`Error::WrongLength`] for
-    /// another number of members, and those of [`ResetBounds::new`] and [`ParamsRange::new`]. The memory then has any
-    /// contents.
+    /// Those of the format, of [`new`](Self::new), of [`set_member`](Self::set_member), of [`ResetBounds::new`] and of
+    /// [`ParamsRange::new`], and [`Error::WrongLength`] for another number of members. The contents of the memory are
+    /// then unspecified.
     pub fn from_snapshot<'de, D>(storage: S, deserializer: D) -> Result<Self, D::Error>
     where
         D: Deserializer<'de>,
@@ -117,9 +87,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         let mut batch = Self::new(0, storage).map_err(D::Error::custom)?;
         let mut index = 0;
         let settings = read(deserializer, |member| {
-            batch.load(index, member)?;
             index += 1;
-            Ok(())
+            batch.load(index - 1, member)
         })?;
         batch.apply(settings, index).map_err(D::Error::custom)?;
         Ok(batch)
@@ -136,7 +105,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         self.set_member(index, member)
     }
 
-    fn apply(&mut self, settings: Settings<A::Scalar>, members: usize) -> Result<(), Error> {
+    fn apply(&mut self, settings: Settings<A>, members: usize) -> Result<(), Error> {
         check_length("members", members, self.len())?;
         if let [low, high] = *settings.params_range {
             self.set_params_range(Some(ParamsRange::new(low, high)?))?;
@@ -169,21 +138,19 @@ where
             members.push(member);
             Ok(())
         })?;
-        let load = || {
-            let len = members.len();
-            let lane_params = if settings.own_params {
-                len.div_ceil(N)
-            } else {
-                0
-            };
-            let mut batch = Self::allocate(SeedSequence::new(0), len, lane_params)?;
+        let assemble = || {
+            let (seed, len) = (SeedSequence::new(0), members.len());
+            let mut batch = match settings.own_params {
+                true => Self::with_own_params(seed, len),
+                false => Self::new(seed, len),
+            }?;
             for (index, member) in members.into_iter().enumerate() {
                 batch.load(index, member)?;
             }
             batch.apply(settings, len)?;
             Ok(batch)
         };
-        load().map_err(|error: Error| D::Error::custom(error))
+        assemble().map_err(|error: Error| D::Error::custom(error))
     }
 }
 
@@ -191,85 +158,33 @@ where
 fn read<'de, A, D>(
     deserializer: D,
     each: impl FnMut(Member<A>) -> Result<(), Error>,
-) -> Result<Settings<A::Scalar>, D::Error>
+) -> Result<Settings<A>, D::Error>
 where
     A: Arithmetic<Scalar: Deserialize<'de>>,
     D: Deserializer<'de>,
 {
-    let fields = &["snapshot", "settings", "members"];
-    deserializer.deserialize_struct("Batch", fields, Reader(each, PhantomData))
-}
+    struct Records<A, F>(F, PhantomData<A>);
 
-struct Reader<A, F>(F, PhantomData<A>);
+    impl<'de, A, F> Visitor<'de> for Records<A, F>
+    where
+        A: Arithmetic<Scalar: Deserialize<'de>>,
+        F: FnMut(Member<A>) -> Result<(), Error>,
+    {
+        type Value = Settings<A>;
 
-impl<'de, A, F> Visitor<'de> for Reader<A, F>
-where
-    A: Arithmetic<Scalar: Deserialize<'de>>,
-    F: FnMut(Member<A>) -> Result<(), Error>,
-{
-    type Value = Settings<A::Scalar>;
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("the settings of a batch and its members")
+        }
 
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a snapshot of a batch")
-    }
-
-    /// Formats without names, such as postcard.
-    fn visit_seq<T: SeqAccess<'de>>(mut self, mut fields: T) -> Result<Self::Value, T::Error> {
-        let header = fields.next_element::<Header<Batch<A, (), 1>>>()?;
-        header.ok_or_else(|| T::Error::missing_field("snapshot"))?;
-        let settings = fields.next_element()?;
-        let members = fields.next_element_seed(Each(&mut self))?;
-        members.ok_or_else(|| T::Error::missing_field("members"))?;
-        settings.ok_or_else(|| T::Error::missing_field("settings"))
-    }
-
-    /// Formats with names. Some sort them.
-    fn visit_map<T: MapAccess<'de>>(mut self, mut fields: T) -> Result<Self::Value, T::Error> {
-        let (mut header, mut settings, mut members) = (None, None, None);
-        while let Some(field) = fields.next_key()? {
-            match field {
-                Field::Snapshot => header = Some(fields.next_value::<Header<Batch<A, (), 1>>>()?),
-                Field::Settings => settings = Some(fields.next_value()?),
-                Field::Members => members = Some(fields.next_value_seed(Each(&mut self))?),
-                Field::Other => _ = fields.next_value::<IgnoredAny>()?,
+        fn visit_seq<T: SeqAccess<'de>>(mut self, mut records: T) -> Result<Settings<A>, T::Error> {
+            let settings = records.next_element()?;
+            let settings = settings.ok_or_else(|| T::Error::invalid_length(0, &self))?;
+            while let Some(member) = records.next_element()? {
+                (self.0)(member).map_err(T::Error::custom)?;
             }
+            Ok(settings)
         }
-        header.ok_or_else(|| T::Error::missing_field("snapshot"))?;
-        members.ok_or_else(|| T::Error::missing_field("members"))?;
-        settings.ok_or_else(|| T::Error::missing_field("settings"))
-    }
-}
-
-/// Passes each member on.
-struct Each<'a, T>(&'a mut T);
-
-impl<'de, A, F> DeserializeSeed<'de> for Each<'_, Reader<A, F>>
-where
-    A: Arithmetic<Scalar: Deserialize<'de>>,
-    F: FnMut(Member<A>) -> Result<(), Error>,
-{
-    type Value = ();
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
-        deserializer.deserialize_seq(self)
-    }
-}
-
-impl<'de, A, F> Visitor<'de> for Each<'_, Reader<A, F>>
-where
-    A: Arithmetic<Scalar: Deserialize<'de>>,
-    F: FnMut(Member<A>) -> Result<(), Error>,
-{
-    type Value = ();
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("members of a batch")
     }
 
-    fn visit_seq<T: SeqAccess<'de>>(self, mut members: T) -> Result<(), T::Error> {
-        while let Some(member) = members.next_element()? {
-            (self.0.0)(member).map_err(T::Error::custom)?;
-        }
-        Ok(())
-    }
+    deserializer.deserialize_seq(Records(each, PhantomData))
 }
