@@ -232,14 +232,14 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         let (blocks, generators, _) = self.storage.slices();
         let len = generators.len();
         let block = blocks.get(index / N).filter(|_| index < len);
-        block.ok_or(no_such_member(index, len))
+        block.ok_or(Error::NoSuchIndex { index, len })
     }
 
     fn block_of_mut(&mut self, index: usize) -> Result<&mut Block<A, N>, Error> {
         let (blocks, generators, _) = self.storage.slices_mut();
         let len = generators.len();
         let block = blocks.get_mut(index / N).filter(|_| index < len);
-        block.ok_or(no_such_member(index, len))
+        block.ok_or(Error::NoSuchIndex { index, len })
     }
 
     /// The parameters of acrobot `index`, if there is one.
@@ -366,12 +366,4 @@ fn each_block<'a, A: Arithmetic, const N: usize>(
     let mut lane_params = lane_params.iter_mut();
     let blocks = blocks.iter_mut();
     blocks.map(move |block| (block, take_mut(&mut generators, N), lane_params.next()))
-}
-
-fn no_such_member(index: usize, len: usize) -> Error {
-    Error::NoSuchIndex {
-        name: "member",
-        index,
-        len,
-    }
 }

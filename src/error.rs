@@ -75,21 +75,12 @@ pub enum Error {
         /// The length that it must have.
         expected: usize,
     },
-    /// There is no element with this index.
+    /// A batch has no acrobot with this index.
     NoSuchIndex {
-        /// What was indexed: `"member"` or `"row"`.
-        name: &'static str,
         /// The index given, counted from 0.
         index: usize,
-        /// The number of elements.
+        /// The number of acrobots.
         len: usize,
-    },
-    /// A text does not fit into the buffer given for it.
-    BufferTooSmall {
-        /// The length of the buffer, bytes.
-        len: usize,
-        /// The length of the text, bytes.
-        needed: usize,
     },
     /// An action number other than 0, 1 and 2.
     UnknownAction(u8),
@@ -158,11 +149,8 @@ impl fmt::Display for Error {
                 len,
                 expected,
             } => write!(f, "{name} must have {expected} elements, got {len}"),
-            Self::NoSuchIndex { name, index, len } => {
-                write!(f, "{name} index must be below {len}, got {index}")
-            }
-            Self::BufferTooSmall { len, needed } => {
-                write!(f, "buffer must have at least {needed} bytes, got {len}")
+            Self::NoSuchIndex { index, len } => {
+                write!(f, "member index must be below {len}, got {index}")
             }
             Self::UnknownAction(number) => write!(
                 f,

@@ -2,9 +2,10 @@
 //!
 //! ```
 //! use acrobot::trajectory::Trajectory;
-//! use acrobot::{Acrobot, Action, Fast};
+//! use acrobot::{Acrobot, Action, Fast, TimeLimit};
+//! use core::fmt::Write;
 //!
-//! let mut acrobot = Acrobot::<Fast>::new(42);
+//! let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(42));
 //! let mut trajectory = Trajectory::<f32, 100>::new();
 //! for action in Action::ALL {
 //!     trajectory.step(&mut acrobot, action); // acrobot.step(action), recorded
@@ -13,36 +14,21 @@
 //! let mut csv = String::new();
 //! trajectory.write_csv(&mut csv)?;
 //! assert_eq!(csv.lines().count(), 1 + 3);
+//!
+//! let mut line = heapless::String::<200>::new(); // row by row, without a heap
+//! for row in trajectory.rows() {
+//!     line.clear();
+//!     write!(line, "{row}")?;
+//! }
+//! assert!(csv.trim_end().ends_with(line.as_str()));
 //! # Ok::<(), core::fmt::Error>(())
 //! ```
 //!
-//! # On a microcontroller
-//!
-//! Formatting floats as CSV costs 28 KB of flash, and the linker cannot prove it free of panics, because `core`'s code
-//! for it slices with bounds checks. The alternative is binary: with the `serde` feature, postcard writes a
-//! `Transition<f32>` into 42 bytes. If you need CSV, [`Trajectory::write_row`] takes a buffer for one row:
-//!
-//! ```
-//! # use acrobot::trajectory::Trajectory;
-//! # use acrobot::{Acrobot, Action, Fast};
-//! # let mut acrobot = Acrobot::<Fast>::new(42);
-//! # let mut trajectory = Trajectory::<f32, 100>::new();
-//! # trajectory.step(&mut acrobot, Action::Zero);
-//! let mut buffer = [0; 200];
-//! # let mut sent = String::new();
-//! # let mut send = |text: &str| sent.push_str(text);
-//! send(trajectory.write_header(&mut buffer)?);
-//! for index in 0..trajectory.len() {
-//!     send(trajectory.write_row(index, &mut buffer)?);
-//! }
-//! # let mut csv = String::new();
-//! # trajectory.write_csv(&mut csv).unwrap();
-//! # assert_eq!(sent, csv);
-//! # Ok::<(), acrobot::Error>(())
-//! ```
+//! Formatting floats costs a microcontroller 28 KB of flash, and the linker cannot prove it free of panics, because
+//! `core`'s code for it slices with bounds checks. The alternative is binary: with the `serde` feature, postcard writes a
+//! `Transition<f32>` into 42 bytes.
 
-use core::fmt::{self, Write as _};
-use core::str;
+use core::fmt;
 
 use heapless::Deque;
 use rand_core::Rng;
@@ -73,45 +59,6 @@ pub struct Transition<S = f64> {
     pub truncated: bool,
 }
 
-/// An environment whose steps a [`Trajectory`] records.
-mod sealed {
-    use super::{Acrobot, Action, Arithmetic, Error, Rng, State, Step, TimeLimit};
-
-    pub trait Recorded<S> {
-        fn state(&self) -> State<S>;
-        fn torque(&self, action: Action) -> S;
-        fn step(&mut self, action: Action) -> Step;
-        fn step_torque(&mut self, torque: S) -> Result<Step, Error>;
-    }
-
-    macro_rules! recorded {
-        ($environment:ty, $self:ident, $acrobot:expr) => {
-            impl<A: Arithmetic, R: Rng> Recorded<A::Scalar> for $environment {
-                fn state(&$self) -> State<A::Scalar> {
-                    $acrobot.state()
-                }
-
-                fn torque(&$self, action: Action) -> A::Scalar {
-                    $acrobot.params().torque(action)
-                }
-
-                #[inline]
-                fn step(&mut $self, action: Action) -> Step {
-                    $self.step(action)
-                }
-
-                #[inline]
-                fn step_torque(&mut $self, torque: A::Scalar) -> Result<Step, Error> {
-                    $self.step_torque(torque)
-                }
-            }
-        };
-    }
-
-    recorded!(Acrobot<A, R>, self, self);
-    recorded!(TimeLimit<Acrobot<A, R>>, self, self.inner());
-}
-
 /// The last `N` transitions, oldest first. Older ones are dropped.
 ///
 /// With `f32` it takes about 44 bytes for each transition, and no heap. See [the example](self).
@@ -134,11 +81,15 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         }
     }
 
-    /// Steps an [`Acrobot`], or a [`TimeLimit`] around one, and adds the transition.
-    pub fn step(&mut self, environment: &mut impl sealed::Recorded<S>, action: Action) -> Step {
-        let (state, torque) = (environment.state(), environment.torque(action));
-        let step = environment.step(action);
-        self.record(state, torque, &step, environment.state());
+    /// Steps an acrobot and adds the transition.
+    pub fn step<A: Arithmetic<Scalar = S>, R: Rng>(
+        &mut self,
+        acrobot: &mut TimeLimit<Acrobot<A, R>>,
+        action: Action,
+    ) -> Step {
+        let (state, torque) = (acrobot.state(), acrobot.params().torque(action));
+        let step = acrobot.step(action);
+        self.record(state, torque, &step, acrobot.state());
         step
     }
 
@@ -147,14 +98,14 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for a torque that is not finite; nothing is added.
-    pub fn step_torque(
+    pub fn step_torque<A: Arithmetic<Scalar = S>, R: Rng>(
         &mut self,
-        environment: &mut impl sealed::Recorded<S>,
+        acrobot: &mut TimeLimit<Acrobot<A, R>>,
         torque: S,
     ) -> Result<Step, Error> {
-        let state = environment.state();
-        let step = environment.step_torque(torque)?;
-        self.record(state, torque, &step, environment.state());
+        let state = acrobot.state();
+        let step = acrobot.step_torque(torque)?;
+        self.record(state, torque, &step, acrobot.state());
         Ok(step)
     }
 
@@ -204,119 +155,53 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         self.transitions.iter()
     }
 
-    /// Writes all transitions as CSV, oldest first, below a line of column names with units.
+    /// All transitions as rows of CSV, oldest first. [`HEADER`] names their columns.
     ///
     /// `step` counts from 1 at the first push, including dropped ones. Numbers have the fewest digits that parse to the
-    /// same bits. On a microcontroller [this costs flash](self#on-a-microcontroller).
+    /// same bits. With `f32` and Gymnasium's parameters 150 bytes a row are usually enough; numbers near 0 have more
+    /// digits.
+    pub fn rows(&self) -> impl Iterator<Item = impl fmt::Display> {
+        let forgotten = self.pushed.saturating_sub(self.len() as u32);
+        let steps = (1..).map(move |i| forgotten.saturating_add(i));
+        steps.zip(self.iter()).map(|(step, row)| Row(step, row))
+    }
+
+    /// Writes [`HEADER`] and all [`rows`](Self::rows), one a line.
     ///
     /// # Errors
     ///
     /// Those of `out`.
     pub fn write_csv<W: fmt::Write + ?Sized>(&self, out: &mut W) -> fmt::Result {
-        out.write_str(HEADER)?;
-        for (number, transition) in self.numbered() {
-            row(out, number, transition)?;
-        }
-        Ok(())
-    }
-
-    /// Writes the line of column names of [`write_csv`](Self::write_csv), 182 bytes, into `buffer` and returns it.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::BufferTooSmall`] with the length needed.
-    pub fn write_header<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a str, Error> {
-        Buffer::write(buffer, |out| out.write_str(HEADER))
-    }
-
-    /// Writes one row of [`write_csv`](Self::write_csv) into `buffer` and returns it; index 0 is the oldest. With
-    /// `f32` and Gymnasium's parameters 150 bytes are usually enough; numbers near 0 have more digits.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and [`Error::BufferTooSmall`] with the
-    /// length needed.
-    pub fn write_row<'a>(&self, index: usize, buffer: &'a mut [u8]) -> Result<&'a str, Error> {
-        let Some((number, transition)) = self.numbered().nth(index) else {
-            let len = self.len();
-            return Err(Error::NoSuchIndex {
-                name: "row",
-                index,
-                len,
-            });
-        };
-        Buffer::write(buffer, |out| row(out, number, transition))
-    }
-
-    /// All transitions, each with the number of its step.
-    fn numbered(&self) -> impl Iterator<Item = (u32, &Transition<S>)> {
-        let forgotten = self.pushed.saturating_sub(self.len() as u32);
-        let number = move |i| forgotten.saturating_add(i);
-        (1..).map(number).zip(self.iter())
+        writeln!(out, "{HEADER}")?;
+        self.rows().try_for_each(|row| writeln!(out, "{row}"))
     }
 }
 
-const HEADER: &str = "step,theta1 (rad),theta2 (rad),dtheta1 (rad/s),dtheta2 (rad/s),torque (N m),reward,\
+/// The names of the columns of the CSV, with units.
+pub const HEADER: &str = "step,theta1 (rad),theta2 (rad),dtheta1 (rad/s),dtheta2 (rad/s),torque (N m),reward,\
     next theta1 (rad),next theta2 (rad),next dtheta1 (rad/s),next dtheta2 (rad/s),\
-    terminated,truncated\n";
+    terminated,truncated";
 
-fn row<S: Real, W: fmt::Write + ?Sized>(
-    out: &mut W,
-    number: u32,
-    transition: &Transition<S>,
-) -> fmt::Result {
-    let Transition {
-        state,
-        torque,
-        reward,
-        next,
-        terminated,
-        truncated,
-    } = transition;
-    write!(out, "{number}")?;
-    for x in <[S; 4]>::from(*state) {
-        write!(out, ",{x}")?;
-    }
-    write!(out, ",{torque},{reward}")?;
-    for x in <[S; 4]>::from(*next) {
-        write!(out, ",{x}")?;
-    }
-    writeln!(out, ",{},{}", u8::from(*terminated), u8::from(*truncated))
-}
+/// A transition with the number of its step.
+struct Row<'a, S>(u32, &'a Transition<S>);
 
-/// Keeps the text that fits and counts the bytes of all.
-struct Buffer<'a> {
-    bytes: &'a mut [u8],
-    needed: usize,
-}
-
-impl<'a> Buffer<'a> {
-    /// Returns the text that `text` writes.
-    fn write(
-        bytes: &'a mut [u8],
-        text: impl FnOnce(&mut Self) -> fmt::Result,
-    ) -> Result<&'a str, Error> {
-        let mut buffer = Self { bytes, needed: 0 };
-        // `write_str` cannot fail, and it keeps whole strings only, which are UTF-8.
-        let _ = text(&mut buffer);
-        let Self { bytes, needed } = buffer;
-        let len = bytes.len();
-        let text = bytes
-            .get(..needed)
-            .and_then(|text| str::from_utf8(text).ok());
-        text.ok_or(Error::BufferTooSmall { len, needed })
-    }
-}
-
-impl fmt::Write for Buffer<'_> {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        let end = self.needed + text.len();
-        if let Some(room) = self.bytes.get_mut(self.needed..end) {
-            let each = room.iter_mut().zip(text.bytes());
-            each.for_each(|(to, byte)| *to = byte);
+impl<S: Real> fmt::Display for Row<'_, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(step, row) = self;
+        write!(f, "{step}")?;
+        for x in <[S; 4]>::from(row.state) {
+            write!(f, ",{x}")?;
         }
-        self.needed = end;
-        Ok(())
+        write!(f, ",{},{}", row.torque, row.reward)?;
+        for x in <[S; 4]>::from(row.next) {
+            write!(f, ",{x}")?;
+        }
+        write!(
+            f,
+            ",{},{}",
+            u8::from(row.terminated),
+            u8::from(row.truncated)
+        )
     }
 }
 

@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 
 use acrobot::numpy::Pcg64;
-use acrobot::trajectory::{Trajectory, Transition};
+use acrobot::trajectory::{HEADER, Trajectory, Transition};
 use acrobot::{Acrobot, Action, Error, Fast, Step, TimeLimit};
 
 fn record<const N: usize>(steps: usize) -> (Trajectory<f32, N>, Vec<Transition<f32>>) {
@@ -34,38 +34,24 @@ fn record<const N: usize>(steps: usize) -> (Trajectory<f32, N>, Vec<Transition<f
     (trajectory, all)
 }
 
-/// `step` and `step_torque` record and return the step of an acrobot, with or without a time limit.
+/// `step` and `step_torque` record and return the step of an acrobot.
 #[test]
 fn acrobots_step_the_same_with_a_trajectory() {
-    let mut acrobot = Acrobot::<Fast>::new(4);
-    let mut limited = TimeLimit::new(acrobot.clone(), NonZeroU32::new(3).unwrap());
-    let (mut twin, mut limited_twin) = (acrobot.clone(), limited.clone());
-    let [mut bare, mut with_limit] = [(); 2].map(|()| Trajectory::<f32, 10>::new());
+    let limit = NonZeroU32::new(3).unwrap();
+    let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(4), limit);
+    let mut twin = acrobot.clone();
+    let mut trajectory = Trajectory::<f32, 10>::new();
     for (action, torque) in Action::ALL.into_iter().zip([-2.5, 0.5, 3.0]) {
-        assert_eq!(bare.step(&mut acrobot, action), twin.step(action));
-        assert_eq!(
-            with_limit.step(&mut limited, action),
-            limited_twin.step(action)
-        );
-        assert_eq!(
-            bare.step_torque(&mut acrobot, torque),
-            twin.step_torque(torque)
-        );
-        assert_eq!(
-            with_limit.step_torque(&mut limited, torque),
-            limited_twin.step_torque(torque)
-        );
+        let step = trajectory.step(&mut acrobot, action);
+        assert_eq!(step, twin.step(action));
+        let step = trajectory.step_torque(&mut acrobot, torque);
+        assert_eq!(step, twin.step_torque(torque));
     }
-    assert_eq!((acrobot, limited), (twin, limited_twin));
+    assert_eq!(acrobot, twin);
     let torques = [-1.0, -2.5, 0.0, 0.5, 1.0, 3.0];
-    assert!(bare.iter().map(|row| row.torque).eq(torques));
-    assert!(bare.iter().all(|row| !row.truncated));
-    // The two trajectories differ only in the time limit.
-    let truncated = bare.iter().zip(1..).map(|(row, number)| Transition {
-        truncated: number >= 3,
-        ..*row
-    });
-    assert!(with_limit.iter().copied().eq(truncated));
+    assert!(trajectory.iter().map(|row| row.torque).eq(torques));
+    let truncated = [false, false, true, true, true, true];
+    assert!(trajectory.iter().map(|row| row.truncated).eq(truncated));
 }
 
 /// A torque that is rejected adds no transition and takes no step.
@@ -80,49 +66,16 @@ fn rejected_torques_are_not_recorded() {
     assert!(trajectory.is_empty());
 }
 
-/// `write_header` and `write_row` write the text of `write_csv`, into a buffer that is exactly long enough.
+/// `HEADER` and `rows` are the lines of `write_csv`.
 #[test]
-fn single_rows_equal_the_csv() {
+fn rows_equal_the_csv() {
     let (trajectory, _) = record::<10>(25);
     let mut csv = String::new();
     trajectory.write_csv(&mut csv).unwrap();
-    let mut lines = csv.split_inclusive('\n');
-    let mut buffer = [0; 200];
-    let header = trajectory.write_header(&mut buffer).unwrap();
-    assert_eq!(Some(header), lines.next());
-    assert_eq!(header.len(), 182);
-    for (index, line) in lines.enumerate() {
-        let needed = line.len();
-        assert_eq!(trajectory.write_row(index, &mut buffer[..needed]), Ok(line));
-        let mut short = vec![0; needed - 1];
-        let len = short.len();
-        assert_eq!(
-            trajectory.write_row(index, &mut short),
-            Err(Error::BufferTooSmall { len, needed })
-        );
-    }
-    assert_eq!(
-        trajectory.write_header(&mut buffer[..181]),
-        Err(Error::BufferTooSmall {
-            len: 181,
-            needed: 182
-        })
-    );
-    assert_eq!(
-        trajectory.write_header(&mut []),
-        Err(Error::BufferTooSmall {
-            len: 0,
-            needed: 182
-        })
-    );
-    for index in [10, usize::MAX] {
-        let error = Error::NoSuchIndex {
-            name: "row",
-            index,
-            len: 10,
-        };
-        assert_eq!(trajectory.write_row(index, &mut buffer), Err(error));
-    }
+    assert!(csv.ends_with('\n'));
+    let rows = trajectory.rows().map(|row| row.to_string());
+    let lines = [HEADER.to_owned()].into_iter().chain(rows);
+    assert!(csv.lines().eq(lines));
 }
 
 /// A row of random episodes, with `f32` and Gymnasium's parameters, takes at most 150 bytes.
@@ -130,16 +83,15 @@ fn single_rows_equal_the_csv() {
 fn rows_are_as_long_as_documented() {
     let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(4));
     let mut actions = Pcg64::new(4);
-    let (mut buffer, mut rows, mut longest) = ([0; 500], 0, 0);
+    let (mut rows, mut longest) = (0, 0);
     for _ in 0..20 {
         let mut trajectory = Trajectory::<f32, 500>::new();
         while !trajectory
             .step(&mut acrobot, Action::sample(&mut actions))
             .done()
         {}
-        for index in 0..trajectory.len() {
-            let row = trajectory.write_row(index, &mut buffer).unwrap();
-            (rows, longest) = (rows + 1, longest.max(row.len()));
+        for row in trajectory.rows() {
+            (rows, longest) = (rows + 1, longest.max(row.to_string().len()));
         }
         acrobot.reset();
     }
