@@ -93,18 +93,6 @@ pub struct Acrobot<A: Arithmetic, R = Pcg64> {
     rng: R,
 }
 
-/// The size that the docs state, bytes. Microcontrollers align `u128` to 8 bytes. With `serde` a generator also keeps
-/// its origin.
-const _: () = {
-    let limit = match (align_of::<u128>(), cfg!(feature = "serde")) {
-        (8, false) => 184,
-        (8, true) => 224,
-        (_, false) => 192,
-        (_, true) => 240,
-    };
-    assert!(size_of::<Acrobot<crate::Fast>>() <= limit);
-};
-
 impl<A: Arithmetic> Acrobot<A> {
     /// An acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. For a
     /// [`SeedSequence`](crate::numpy::SeedSequence): `Acrobot::with_rng(Pcg64::from(sequence))`.

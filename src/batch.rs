@@ -6,14 +6,14 @@
 //!
 //! ```
 //! use acrobot::Fast;
-//! use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+//! use acrobot::batch::{Batch, Block, StepBuffers};
 //! use acrobot::numpy::Pcg64;
 //!
 //! let mut batch = Batch::<Fast, _>::new(42, ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50]))?;
 //! let (mut rewards, mut terminated, mut truncated) = ([0.0; 50], [false; 50], [false; 50]);
 //! let mut observations = [[0.0; 6]; 50];
 //! let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
-//! batch.step(&[2_u8; 50], buffers.with_observations(Observations::Rows(&mut observations)))?;
+//! batch.step(&[2_u8; 50], buffers.with_observations(&mut observations))?;
 //! assert_eq!(rewards, [-1.0; 50]);
 //! # Ok::<(), acrobot::Error>(())
 //! ```
@@ -36,7 +36,7 @@ mod work;
 use core::num::NonZeroU32;
 
 pub use block::Block;
-pub use buffers::{Observations, StepBuffers};
+pub use buffers::StepBuffers;
 pub use inputs::Input;
 pub use lane_params::LaneParams;
 pub use member::Member;
@@ -182,13 +182,13 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         })
     }
 
-    /// Writes the observations of the states.
+    /// Writes the [observations](crate::Observation) of the states.
     ///
     /// # Errors
     ///
-    /// [`Error::WrongLength`] unless each slice has one element for each acrobot.
-    pub fn observe(&self, mut observations: Observations<'_>) -> Result<(), Error> {
-        observations.check("observations", self.len())?;
+    /// [`Error::WrongLength`] unless there is one element for each acrobot.
+    pub fn observe(&self, mut observations: &mut [[f32; 6]]) -> Result<(), Error> {
+        check_length("observations", observations.len(), self.len())?;
         let (blocks, ..) = self.storage.slices();
         for block in blocks {
             block.observe(&mut observations);

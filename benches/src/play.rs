@@ -1,7 +1,7 @@
 //! A random policy that plays a batch.
 
 use acrobot::arithmetic::Arithmetic;
-use acrobot::batch::{Observations, StepBuffers, VecBatch};
+use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
 
 /// A batch, the random policy that plays it, and the buffers of its steps.
@@ -58,7 +58,7 @@ impl<A: Arithmetic> Play<A> {
         let mut buffers =
             StepBuffers::new(&mut self.rewards, &mut self.terminated, &mut self.truncated);
         if observe {
-            buffers.observations = Observations::Rows(&mut self.rows);
+            buffers.observations = Some(&mut self.rows);
         }
         // The batch inside, which writes into buffers.
         let stepped = match parallel {

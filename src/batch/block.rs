@@ -3,7 +3,7 @@
 use super::buffers::{set, take_mut};
 use super::inputs::Inputs;
 use super::settings::Settings;
-use super::{Autoreset, LaneParams, Observations, StepBuffers};
+use super::{Autoreset, LaneParams, StepBuffers};
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Numbers, Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
@@ -133,20 +133,13 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// The observations: six columns with one number for each lane.
-    #[inline(always)]
-    fn columns(&self) -> [&[A::Scalar; N]; 6] {
-        let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
-        let [_, _, dtheta1, dtheta2] = &self.y;
-        [&cos1.0, &sin1.0, &cos2.0, &sin2.0, &dtheta1.0, &dtheta2.0]
-    }
-
-    /// The observations: one row of six numbers for each lane.
+    /// The observations of the lanes.
     #[inline(always)]
     fn rows(&self) -> impl Iterator<Item = [f32; 6]> {
-        let [cos1, sin1, cos2, sin2, dtheta1, dtheta2] = self.columns();
-        let angles = cos1.iter().zip(sin1).zip(cos2.iter().zip(sin2));
-        let all = angles.zip(dtheta1.iter().zip(dtheta2));
+        let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
+        let [_, _, dtheta1, dtheta2] = &self.y;
+        let angles = (cos1.0.iter().zip(&sin1.0)).zip(cos2.0.iter().zip(&sin2.0));
+        let all = angles.zip(dtheta1.0.iter().zip(&dtheta2.0));
         all.map(|(((cos1, sin1), (cos2, sin2)), (dtheta1, dtheta2))| {
             [cos1, sin1, cos2, sin2, dtheta1, dtheta2].map(|x| x.to_f64() as f32)
         })
@@ -154,34 +147,22 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
 
     /// Writes the observations, and removes the written elements from `to`.
     #[inline(always)]
-    pub(super) fn observe(&self, to: &mut Observations<'_>) {
-        match to {
-            Observations::None => {}
-            Observations::Rows(rows) => {
-                for (to, row) in take_mut(rows, N).iter_mut().zip(self.rows()) {
-                    *to = row;
-                }
-            }
-            Observations::Columns(columns) => {
-                for (to, column) in columns.iter_mut().zip(self.columns()) {
-                    for (to, x) in take_mut(to, N).iter_mut().zip(column) {
-                        *to = x.to_f64() as f32;
-                    }
-                }
-            }
+    pub(super) fn observe(&self, to: &mut &mut [[f32; 6]]) {
+        for (to, row) in take_mut(to, N).iter_mut().zip(self.rows()) {
+            *to = row;
         }
     }
 
-    /// Writes the observations of the lanes in `mask`, at their index in `to`.
+    /// Writes the observations of the lanes in `mask`.
     #[cold]
-    fn observe_masked(&self, mask: &[bool; N], to: &mut Observations<'_>) {
-        for ((lane, row), _) in self
-            .rows()
-            .enumerate()
+    fn observe_masked(&self, mask: &[bool; N], to: &mut [[f32; 6]]) {
+        for ((to, row), _) in to
+            .iter_mut()
+            .zip(self.rows())
             .zip(mask)
-            .filter(|(_, is_one)| **is_one)
+            .filter(|(_, mask)| **mask)
         {
-            to.write(lane, row);
+            *to = row;
         }
     }
 
@@ -235,11 +216,13 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         lane_params: Option<&mut LaneParams<A, N>>,
         buffers: &mut StepBuffers<'_>,
     ) {
+        let finals = buffers.final_observations.as_mut();
+        let finals = finals.map(|rows| take_mut(rows, N));
         if results.resets.iter().fold(false, |any, &reset| any | reset) {
             if settings.autoreset == Autoreset::NextStep {
                 results.clear();
-            } else {
-                self.observe_masked(&results.resets, &mut buffers.final_observations);
+            } else if let Some(finals) = finals {
+                self.observe_masked(&results.resets, finals);
             }
             self.reset(
                 &results.resets,
@@ -249,11 +232,12 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
                 lane_params,
             );
         }
-        buffers.final_observations.take(N);
         write(&mut buffers.rewards, &results.rewards);
         write(&mut buffers.terminated, &results.terminated);
         write(&mut buffers.truncated, &results.truncated);
-        self.observe(&mut buffers.observations);
+        if let Some(rows) = &mut buffers.observations {
+            self.observe(rows);
+        }
     }
 }
 

@@ -12,22 +12,11 @@ pub struct StepBuffers<'a> {
     pub terminated: &'a mut [bool],
     /// Whether the time limit is reached.
     pub truncated: &'a mut [bool],
-    /// The observations of the new states.
-    pub observations: Observations<'a>,
+    /// The [observations](crate::Observation) of the new states. With `None` they are not computed.
+    pub observations: Option<&'a mut [[f32; 6]]>,
     /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the episodes that this step
     /// ended. Elements of other acrobots are not written.
-    pub final_observations: Observations<'a>,
-}
-
-/// Where a [`Batch`](super::Batch) writes [observations](crate::Observation).
-#[derive(Debug)]
-pub enum Observations<'a> {
-    /// Nowhere: they are not computed.
-    None,
-    /// Six numbers for each acrobot.
-    Rows(&'a mut [[f32; 6]]),
-    /// Six slices with one number for each acrobot.
-    Columns([&'a mut [f32]; 6]),
+    pub final_observations: Option<&'a mut [[f32; 6]]>,
 }
 
 impl<'a> StepBuffers<'a> {
@@ -42,25 +31,25 @@ impl<'a> StepBuffers<'a> {
             rewards,
             terminated,
             truncated,
-            observations: Observations::None,
-            final_observations: Observations::None,
+            observations: None,
+            final_observations: None,
         }
     }
 
     /// The same buffers, and one for the observations.
     #[must_use]
-    pub fn with_observations(self, observations: Observations<'a>) -> Self {
+    pub fn with_observations(self, observations: &'a mut [[f32; 6]]) -> Self {
         Self {
-            observations,
+            observations: Some(observations),
             ..self
         }
     }
 
     /// The same buffers, and one for the last observations of episodes that end.
     #[must_use]
-    pub fn with_final_observations(self, final_observations: Observations<'a>) -> Self {
+    pub fn with_final_observations(self, final_observations: &'a mut [[f32; 6]]) -> Self {
         Self {
-            final_observations,
+            final_observations: Some(final_observations),
             ..self
         }
     }
@@ -72,8 +61,11 @@ impl<'a> StepBuffers<'a> {
             rewards: take_mut(&mut self.rewards, n),
             terminated: take_mut(&mut self.terminated, n),
             truncated: take_mut(&mut self.truncated, n),
-            observations: self.observations.take(n),
-            final_observations: self.final_observations.take(n),
+            observations: self.observations.as_mut().map(|rows| take_mut(rows, n)),
+            final_observations: self
+                .final_observations
+                .as_mut()
+                .map(|rows| take_mut(rows, n)),
         }
     }
 
@@ -81,45 +73,15 @@ impl<'a> StepBuffers<'a> {
         check_length("rewards", self.rewards.len(), len)?;
         check_length("terminated", self.terminated.len(), len)?;
         check_length("truncated", self.truncated.len(), len)?;
-        self.observations.check("observations", len)?;
-        self.final_observations.check("final_observations", len)
-    }
-}
-
-impl Observations<'_> {
-    /// Splits off the observations of the first `n` acrobots, or of all if there are fewer.
-    #[inline(always)]
-    pub(super) fn take(&mut self, n: usize) -> Self {
-        match self {
-            Self::None => Self::None,
-            Self::Rows(rows) => Self::Rows(take_mut(rows, n)),
-            Self::Columns(columns) => {
-                Self::Columns(columns.each_mut().map(|column| take_mut(column, n)))
+        for (name, rows) in [
+            ("observations", &self.observations),
+            ("final_observations", &self.final_observations),
+        ] {
+            if let Some(rows) = rows {
+                check_length(name, rows.len(), len)?;
             }
         }
-    }
-
-    pub(super) fn check(&self, name: &'static str, len: usize) -> Result<(), Error> {
-        match self {
-            Self::None => Ok(()),
-            Self::Rows(rows) => check_length(name, rows.len(), len),
-            Self::Columns(columns) => columns
-                .iter()
-                .try_for_each(|column| check_length(name, column.len(), len)),
-        }
-    }
-
-    /// Writes the six numbers of one acrobot, if `index` is in range.
-    pub(super) fn write(&mut self, index: usize, row: [f32; 6]) {
-        match self {
-            Self::None => {}
-            Self::Rows(rows) => set(rows, index, row),
-            Self::Columns(columns) => {
-                for (column, x) in columns.iter_mut().zip(row) {
-                    set(column, index, x);
-                }
-            }
-        }
+        Ok(())
     }
 }
 

@@ -6,8 +6,8 @@ use crate::error::Error;
 use crate::numpy::Pcg64;
 use crate::physics::{Params, State};
 
-/// One acrobot of a batch. With the `serde` feature it can be stored, as an [`Acrobot`](crate::Acrobot#snapshots) can,
-/// and so can a [whole batch](Batch#snapshots).
+/// One acrobot of a batch, as plain data. With the `serde` feature it can be stored, without a version; a
+/// [whole batch](Batch#snapshots) has one.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -24,6 +24,14 @@ use crate::physics::{Params, State};
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "A::Scalar: serde::Serialize",
+        deserialize = "A::Scalar: serde::Deserialize<'de>"
+    ))
+)]
 pub struct Member<A: Arithmetic> {
     /// The parameters.
     pub params: Params<A::Scalar>,
@@ -63,7 +71,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// number that is not finite, those of [`Params::validate`], and [`Error::SharedParams`] for parameters other than
     /// those that all acrobots of this batch share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
-        member.validate()?;
+        member.params.validate()?;
+        member.state.validate()?;
         self.block_of(index)?;
         if self.params_of(index) != Some(member.params) {
             self.set_params_of(index, member.params)?;
@@ -78,75 +87,5 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
             block.settle_pending_resets(&self.settings, generators, own);
         }
         Ok(())
-    }
-}
-
-impl<A: Arithmetic> Member<A> {
-    fn validate(&self) -> Result<(), Error> {
-        self.params.validate()?;
-        self.state.validate()
-    }
-}
-
-#[cfg(feature = "serde")]
-mod snapshot {
-    use serde::de::{Deserialize, Deserializer, Error};
-    use serde::ser::{Serialize, Serializer};
-
-    use super::{Member, Params, State};
-    use crate::arithmetic::Arithmetic;
-    use crate::snapshot::{Header, Subject};
-
-    impl<A: Arithmetic> Subject for Member<A> {
-        const NAME: &'static str = "batch member";
-        type Arithmetic = A;
-    }
-
-    #[derive(serde::Serialize, serde::Deserialize)]
-    #[serde(rename = "Member")]
-    struct Snapshot<H, S, R> {
-        snapshot: H,
-        params: Params<S>,
-        state: State<S>,
-        elapsed: u32,
-        reset_pending: bool,
-        rng: R,
-    }
-
-    impl<A: Arithmetic<Scalar: Serialize>> Serialize for Member<A> {
-        fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
-            Snapshot {
-                snapshot: Header::<Self>::NEW,
-                params: self.params,
-                state: self.state,
-                elapsed: self.elapsed,
-                reset_pending: self.reset_pending,
-                rng: &self.rng,
-            }
-            .serialize(serializer)
-        }
-    }
-
-    impl<'de, A: Arithmetic<Scalar: Deserialize<'de>>> Deserialize<'de> for Member<A> {
-        /// Rejects what [`set_member`](crate::batch::Batch::set_member) rejects.
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot::<Header<Self>, _, _> {
-                params,
-                state,
-                elapsed,
-                reset_pending,
-                rng,
-                ..
-            } = Snapshot::deserialize(deserializer)?;
-            let member = Self {
-                params,
-                state,
-                elapsed,
-                reset_pending,
-                rng,
-            };
-            member.validate().map_err(D::Error::custom)?;
-            Ok(member)
-        }
     }
 }

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::ops::{Deref, DerefMut};
 
-use super::{Batch, Block, Input, LaneParams, Observations, StepBuffers};
+use super::{Batch, Block, Input, LaneParams, StepBuffers};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
@@ -167,9 +167,8 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     /// The observations of the states, for example after a reset.
     pub fn observations(&mut self) -> &[[f32; 6]] {
         if self.fit_results().is_ok() {
-            let to = Observations::Rows(&mut self.results.observations);
             // It fails only for another length.
-            let _ = self.batch.observe(to);
+            let _ = self.batch.observe(&mut self.results.observations);
         }
         &self.results.observations
     }
@@ -211,8 +210,8 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
                 &mut results.terminated,
                 &mut results.truncated,
             )
-            .with_observations(Observations::Rows(&mut results.observations))
-            .with_final_observations(Observations::Rows(&mut results.final_observations)),
+            .with_observations(&mut results.observations)
+            .with_final_observations(&mut results.final_observations),
         )?;
         Ok(StepResults {
             rewards: &results.rewards,

@@ -26,6 +26,19 @@ impl fmt::Display for Violation {
 
 impl core::error::Error for Violation {}
 
+/// An error unless the rule `holds`.
+fn require(
+    holds: bool,
+    rule: &'static str,
+    found: impl FnOnce() -> String,
+) -> Result<(), Violation> {
+    if holds {
+        return Ok(());
+    }
+    let found = found();
+    Err(Violation { rule, found })
+}
+
 const IN_SPACE: &str = "observations are in the observation space";
 const ACTIONS: &str = "the action space contains its samples";
 const REWARD: &str = "rewards are finite";
@@ -66,12 +79,8 @@ where
     let space = env.action_space();
     let actions: Vec<E::Action> = (0..STEPS).map(|_| space.sample(&mut rng)).collect();
     in_space(env, &env.observation_space().sample(&mut rng))?;
-    if !actions.iter().all(|action| space.contains(action)) {
-        return Err(Violation {
-            rule: ACTIONS,
-            found: "a sample is outside".into(),
-        });
-    }
+    let contained = actions.iter().all(|action| space.contains(action));
+    require(contained, ACTIONS, || "a sample is outside".into())?;
 
     let mut played = env.clone();
     let mut otherwise_seeded = env.clone();
@@ -84,17 +93,11 @@ where
     let next = play(&mut played, None, &actions)?;
     same(SEED, &next, &play(&mut otherwise_seeded, None, &actions)?)?;
     let truncated = |episode: &Episode<_>| episode.steps.last().is_some_and(|step| step.truncated);
-    if truncated(&first) && truncated(&next) && next.steps.len() < first.steps.len() {
-        let found = format!(
-            "truncated after {} and then {} steps",
-            first.steps.len(),
-            next.steps.len()
-        );
-        return Err(Violation {
-            rule: AFTER_END,
-            found,
-        });
-    }
+    let (len, next_len) = (first.steps.len(), next.steps.len());
+    let shortened = truncated(&first) && truncated(&next) && next_len < len;
+    require(!shortened, AFTER_END, || {
+        format!("truncated after {len} and then {next_len} steps")
+    })?;
     same(AFTER_END, &first, &play(&mut played, Some(seed), &actions)?)?;
 
     let (before, after) = actions.split_at(first.steps.len() / 2);
@@ -148,12 +151,8 @@ where
     for action in actions {
         let step = env.step(action.clone());
         in_space(env, &step.observation)?;
-        if !step.reward.is_finite() {
-            return Err(Violation {
-                rule: REWARD,
-                found: format!("{}", step.reward),
-            });
-        }
+        let reward = step.reward;
+        require(reward.is_finite(), REWARD, || format!("{reward}"))?;
         let done = step.done();
         steps.push(step);
         if done {
@@ -167,13 +166,8 @@ fn in_space<E: Env<Observation: fmt::Debug>>(
     env: &E,
     observation: &E::Observation,
 ) -> Result<(), Violation> {
-    if env.observation_space().contains(observation) {
-        return Ok(());
-    }
-    Err(Violation {
-        rule: IN_SPACE,
-        found: format!("{observation:?}"),
-    })
+    let contained = env.observation_space().contains(observation);
+    require(contained, IN_SPACE, || format!("{observation:?}"))
 }
 
 fn same<O: fmt::Debug + PartialEq>(
@@ -181,10 +175,9 @@ fn same<O: fmt::Debug + PartialEq>(
     x: &Episode<O>,
     y: &Episode<O>,
 ) -> Result<(), Violation> {
-    if x.start != y.start {
-        let found = format!("starts at {:?} and at {:?}", x.start, y.start);
-        return Err(Violation { rule, found });
-    }
+    require(x.start == y.start, rule, || {
+        format!("starts at {:?} and at {:?}", x.start, y.start)
+    })?;
     same_steps(rule, &x.steps, &y.steps)
 }
 
@@ -198,12 +191,7 @@ fn same_steps<O: fmt::Debug + PartialEq>(
         let same = x.observation == y.observation
             && x.reward == y.reward
             && (x.terminated, x.truncated) == (y.terminated, y.truncated);
-        if !same {
-            return Err(Violation {
-                rule,
-                found: format!("step {} is {x:?} and {y:?}", i + 1),
-            });
-        }
+        require(same, rule, || format!("step {} is {x:?} and {y:?}", i + 1))?;
     }
     Ok(())
 }

@@ -28,7 +28,10 @@ pub trait Numbers<S: Real>:
     fn splat(x: S) -> Self;
 
     /// Applies `f` to each number.
-    fn map(self, f: impl FnMut(S) -> S) -> Self;
+    #[inline(always)]
+    fn map(self, mut f: impl FnMut(S) -> S) -> Self {
+        self.zip(self, |x, _| f(x))
+    }
 
     /// Applies `f` to each pair of numbers.
     fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
@@ -60,11 +63,6 @@ impl<S: Real> Numbers<S> for S {
     #[inline(always)]
     fn splat(x: S) -> Self {
         x
-    }
-
-    #[inline(always)]
-    fn map(self, mut f: impl FnMut(S) -> S) -> Self {
-        f(self)
     }
 
     #[inline(always)]
@@ -129,14 +127,6 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     #[inline(always)]
     fn splat(x: S) -> Self {
         Self([x; N])
-    }
-
-    #[inline(always)]
-    fn map(mut self, mut f: impl FnMut(S) -> S) -> Self {
-        for x in &mut self.0 {
-            *x = f(*x);
-        }
-        self
     }
 
     #[inline(always)]

@@ -168,17 +168,11 @@ const fn mix(x: u32, y: u32) -> u32 {
     mixed ^ (mixed >> SHIFT)
 }
 
-macro_rules! from_integers {
-    ($($integer:ident)*) => {$(
-        impl From<$integer> for SeedSequence {
-            fn from(seed: $integer) -> Self {
-                Self::new(seed.into())
-            }
-        }
-    )*};
+impl From<u64> for SeedSequence {
+    fn from(seed: u64) -> Self {
+        Self::new(seed)
+    }
 }
-
-from_integers!(u8 u16 u32 u64);
 
 impl From<u128> for SeedSequence {
     fn from(seed: u128) -> Self {

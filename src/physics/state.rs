@@ -87,18 +87,21 @@ impl<S: Real> State<S> {
 
 for_f32_and_f64! {
     impl State<S> {
-        /// [`State::validate`], also in a `const`, where `?` is not allowed.
+        /// [`State::validate`], also in a `const`, where neither `?` nor `for` is allowed.
         pub(crate) const fn check(&self) -> Result<(), Error> {
-            if let Err(error) = Range::Finite.check("theta1", self.theta1 as f64, "rad") {
-                return Err(error);
+            let mut fields: &[_] = &[
+                ("theta1", self.theta1, "rad"),
+                ("theta2", self.theta2, "rad"),
+                ("dtheta1", self.dtheta1, "rad/s"),
+                ("dtheta2", self.dtheta2, "rad/s"),
+            ];
+            while let [(name, value, unit), rest @ ..] = fields {
+                if let Err(error) = Range::Finite.check(name, *value as f64, unit) {
+                    return Err(error);
+                }
+                fields = rest;
             }
-            if let Err(error) = Range::Finite.check("theta2", self.theta2 as f64, "rad") {
-                return Err(error);
-            }
-            if let Err(error) = Range::Finite.check("dtheta1", self.dtheta1 as f64, "rad/s") {
-                return Err(error);
-            }
-            Range::Finite.check("dtheta2", self.dtheta2 as f64, "rad/s")
+            Ok(())
         }
     }
 }

@@ -227,7 +227,7 @@ impl Bar {
     #[inline(never)]
     fn new(from: Vector, to: Vector, half_width: f32) -> Self {
         let (x, y) = (to.x - from.x, to.y - from.y);
-        let length = sqrt(x * x + y * y);
+        let length = libm::sqrtf(x * x + y * y);
         // A bar of length 0 has an infinite or NaN direction and covers nothing.
         let along = Vector {
             x: x / length,
@@ -266,23 +266,4 @@ impl Disc {
         let Vector { x, y } = self.center.to(point);
         x * x + y * y <= self.radius * self.radius
     }
-}
-
-/// The square root of `x`, correctly rounded; just below a power of 4 it can be the next number above. For `x` below
-/// 1e-30, where the remainder would be subnormal, it is 0.
-fn sqrt(x: f32) -> f32 {
-    if x < 1e-30 {
-        return 0.0;
-    }
-    // Called by path, because with std `x.sqrt()` is the platform's.
-    let mut root = F32Ext::sqrt(x);
-    // The estimate is up to 6 % off. Each Newton step doubles the number of correct digits.
-    for _ in 0..3 {
-        root = 0.5 * (root + x / root);
-    }
-    // The last step computes x − root² exactly, because products of numbers with half the digits are exact.
-    let high = f32::from_bits(root.to_bits() & 0xffff_f000);
-    let low = root - high;
-    let remainder = x - high * high - 2.0 * high * low - low * low;
-    root + 0.5 * remainder / root
 }

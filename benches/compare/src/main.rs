@@ -14,7 +14,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 
 use acrobot::arithmetic::{Arithmetic, Host, Reference};
-use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+use acrobot::batch::{Batch, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use cpu_time::ProcessTime;
@@ -38,10 +38,8 @@ const IMPLEMENTATIONS: [(&str, &str, New); 9] = [
     ("reference", "acrobot", ours::<Reference>),
     ("portable", "acrobot", ours::<Portable>),
     ("fast", "acrobot", ours::<Fast>),
-    ("batch", "acrobot", || batch(|_| Observations::None)),
-    ("observations", "acrobot", || {
-        batch(|rows| Observations::Rows(rows))
-    }),
+    ("batch", "acrobot", || batch(false)),
+    ("observations", "acrobot", || batch(true)),
     ("gmgn", "gmgn", gmgn),
     ("ogym", "ogym", ogym),
     ("rlevo", "rlevo-environments", rlevo),
@@ -148,7 +146,7 @@ fn ours<A: Arithmetic + 'static>() -> Implementation {
     })
 }
 
-fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Implementation {
+fn batch(observe: bool) -> Implementation {
     const N: usize = ACROBOTS;
     let blocks = vec![Block::EMPTY; N.div_ceil(Block::<Fast>::LANES)];
     let generators = vec![Pcg64::UNSEEDED; N];
@@ -163,8 +161,8 @@ fn batch(observe: fn(&mut [[f32; 6]]) -> Observations<'_>) -> Implementation {
             for (action, stream) in actions.iter_mut().zip(&mut streams) {
                 *action = draw(stream);
             }
-            let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-                .with_observations(observe(&mut rows));
+            let mut buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
+            buffers.observations = observe.then_some(&mut rows);
             batch
                 .step(&actions, buffers)
                 .expect("slices of the batch's length");

@@ -3,7 +3,7 @@
 use core::ffi::{c_int, c_void};
 use core::slice;
 
-use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, Params, ResetOptions};
 
@@ -220,17 +220,11 @@ pub unsafe extern "C" fn acrobot_batch_step(
             Array::span_of(&observations),
             Array::span_of(&finals),
         ])?;
-        let written = |array: Option<Array<_>>| {
-            array.map_or(Observations::None, |array| {
-                Observations::Rows(array.get_mut())
-            })
-        };
-        placed.batch.step(
-            actions.get(),
-            StepBuffers::new(rewards.get_mut(), terminated.cleared(), truncated.cleared())
-                .with_observations(written(observations))
-                .with_final_observations(written(finals)),
-        )?;
+        let mut buffers =
+            StepBuffers::new(rewards.get_mut(), terminated.cleared(), truncated.cleared());
+        buffers.observations = observations.map(|array| array.get_mut());
+        buffers.final_observations = finals.map(|array| array.get_mut());
+        placed.batch.step(actions.get(), buffers)?;
         Ok(())
     })
 }
@@ -252,9 +246,7 @@ pub unsafe extern "C" fn acrobot_batch_observe(
         check_count(placed, count)?;
         let observations = Array::new(rows(observations), count)?;
         check_apart(&[memory_of(batch, count), observations.span()])?;
-        Ok(placed
-            .batch
-            .observe(Observations::Rows(observations.get_mut()))?)
+        Ok(placed.batch.observe(observations.get_mut())?)
     })
 }
 

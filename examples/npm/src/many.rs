@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::num::NonZeroU32;
 
-use acrobot::batch::{Autoreset, Batch, Block, Observations, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, ResetOptions};
 
@@ -102,7 +102,7 @@ pub extern "C" fn batch_observe(number: usize) {
         // The lengths are equal, so this cannot fail.
         let _ = many
             .batch
-            .observe(Observations::Rows(&mut many.observations));
+            .observe(&mut many.observations);
     });
 }
 
@@ -112,8 +112,8 @@ pub extern "C" fn batch_step(number: usize) -> bool {
     memory::with_value(&BATCHES, number, |many| {
         let buffers =
             StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
-                .with_observations(Observations::Rows(&mut many.observations))
-                .with_final_observations(Observations::Rows(&mut many.final_observations));
+                .with_observations(&mut many.observations)
+                .with_final_observations(&mut many.final_observations);
         many.batch.step(&many.actions, buffers).is_ok()
     })
 }

@@ -1,7 +1,7 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Observations, StepBuffers, Storage};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::ParamsRange;
 use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, TimeLimit};
@@ -149,8 +149,8 @@ fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
     for _ in 0..200 {
         let actions = rows.map(|[.., dtheta1, _]| against(dtheta1));
         let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-            .with_observations(Observations::Rows(&mut rows))
-            .with_final_observations(Observations::Rows(&mut finals));
+            .with_observations(&mut rows)
+            .with_final_observations(&mut finals);
         if batch.step(&actions, buffers).is_err() {
             return 0;
         }

@@ -6,7 +6,7 @@ use core::cell::RefCell;
 use core::convert::Infallible;
 
 use acrobot::arithmetic::Arithmetic;
-use acrobot::batch::{Batch, Block, Observations, StepBuffers};
+use acrobot::batch::{Batch, Block, StepBuffers};
 use acrobot::env::{Env, Space, make};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::{Lean, Pendulum};

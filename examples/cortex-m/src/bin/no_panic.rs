@@ -12,7 +12,7 @@ use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Observations, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::control::{
     difference, discretize, inverse_dynamics, linearize, lqr, velocities,
@@ -175,15 +175,15 @@ fn batch<A: Arithmetic>() {
         let actions = black_box([1_u8; LEN]);
         let torques = black_box([A::Scalar::ZERO; LEN]);
         let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-            .with_observations(Observations::Rows(&mut rows))
-            .with_final_observations(Observations::Rows(&mut finals));
+            .with_observations(&mut rows)
+            .with_final_observations(&mut finals);
         let _ = black_box(if black_box(true) {
             batch.step(&actions, buffers)
         } else {
             batch.step(&torques, buffers)
         });
         black_box((&rewards, &terminated, &truncated, &rows, &finals));
-        let _ = black_box(batch.observe(Observations::Rows(&mut rows)));
+        let _ = black_box(batch.observe(&mut rows));
         let _ = black_box(batch.reset_masked(&black_box([true; LEN]), ResetOptions::default()));
         let _ = black_box(batch.reset_to(&black_box([State::default(); LEN])));
         let _ = black_box(batch.set_state(black_box(3), state()));
