@@ -52,7 +52,7 @@ use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{Model, Params, ParamsRange, ResetBounds, State};
 use crate::time_limit::V1;
 use buffers::{check_length, take_mut};
-use settings::Settings;
+use settings::{Parameters, Settings};
 use work::Work;
 
 /// Many acrobots, each with its own stream of random numbers.
@@ -102,14 +102,16 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
             return Err(Error::EmptyBatch);
         }
         check_length("blocks", blocks.len(), generators.len().div_ceil(N))?;
-        if !lane_params.is_empty() {
+        let parameters = if lane_params.is_empty() {
+            Parameters::Shared(Model::DEFAULT)
+        } else {
             check_length("lane_params", lane_params.len(), blocks.len())?;
             lane_params.fill(LaneParams::default());
-        }
+            Parameters::Own(None)
+        };
         let mut batch = Self {
             settings: Settings {
-                shared_model: Model::DEFAULT,
-                params_range: None,
+                parameters,
                 bounds: ResetBounds::DEFAULT,
                 limit: V1,
                 autoreset: Autoreset::default(),
@@ -247,10 +249,10 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     pub fn params_of(&self, index: usize) -> Option<Params<A::Scalar>> {
         let (_, generators, lane_params) = self.storage.slices();
         generators.get(index)?;
-        Some(match lane_params.get(index / N) {
-            Some(own) => own.get(index % N),
-            None => self.settings.shared_model.params,
-        })
+        match &self.settings.parameters {
+            Parameters::Shared(model) => Some(model.params),
+            Parameters::Own(_) => Some(lane_params.get(index / N)?.get(index % N)),
+        }
     }
 
     /// Sets the parameters of all acrobots for the next steps.
@@ -260,9 +262,12 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// Those of [`Params::validate`].
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         params.validate()?;
-        self.settings.shared_model = Model::new(params);
+        let model = Model::new(params);
         let (.., lane_params) = self.storage.slices_mut();
-        lane_params.fill(LaneParams::shared(&self.settings.shared_model));
+        lane_params.fill(LaneParams::shared(&model));
+        if let Parameters::Shared(shared) = &mut self.settings.parameters {
+            *shared = model;
+        }
         Ok(())
     }
 
@@ -284,7 +289,10 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// The range from which each reset draws the acrobot's parameters.
     #[must_use]
     pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
-        self.settings.params_range.as_ref()
+        match &self.settings.parameters {
+            Parameters::Shared(_) => None,
+            Parameters::Own(range) => range.as_ref(),
+        }
     }
 
     /// Sets the range from which each reset, also one in a step, first draws the acrobot's parameters and then its
@@ -294,11 +302,11 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// [`Error::SharedParams`] for a range without memory for [`LaneParams`].
     pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) -> Result<(), Error> {
-        let (.., lane_params) = self.storage.slices();
-        if range.is_some() && lane_params.is_empty() {
-            return Err(Error::SharedParams);
+        match &mut self.settings.parameters {
+            Parameters::Own(own) => *own = range,
+            Parameters::Shared(_) if range.is_none() => {}
+            Parameters::Shared(_) => return Err(Error::SharedParams),
         }
-        self.settings.params_range = range;
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use super::buffers::{set, take_mut};
 use super::inputs::Inputs;
-use super::settings::Settings;
+use super::settings::{Parameters, Settings};
 use super::{Autoreset, LaneParams, StepBuffers};
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Numbers, Real, SinCos};
@@ -105,7 +105,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
             let rng = generators.next();
             if *resets {
                 let state = rng.map_or(State::HANGING, |rng| {
-                    if let (Some(params), Some(range)) = (&mut lane_params, &settings.params_range)
+                    if let (Some(params), Parameters::Own(Some(range))) =
+                        (&mut lane_params, &settings.parameters)
                     {
                         params.set(lane, range.draw(rng));
                     }

@@ -22,13 +22,19 @@ pub enum Autoreset {
     Disabled,
 }
 
+/// Which parameters the acrobots have.
+#[derive(Clone, Debug)]
+pub(super) enum Parameters<A: Arithmetic> {
+    /// All have those of this model.
+    Shared(Model<A>),
+    /// Each has its own, and a reset draws them if there is a range.
+    Own(Option<ParamsRange<A::Scalar>>),
+}
+
 /// What all acrobots of a batch share.
 #[derive(Clone, Debug)]
 pub(super) struct Settings<A: Arithmetic> {
-    /// The model of all acrobots that have no parameters of their own.
-    pub(super) shared_model: Model<A>,
-    /// From which a reset draws an acrobot's own parameters.
-    pub(super) params_range: Option<ParamsRange<A::Scalar>>,
+    pub(super) parameters: Parameters<A>,
     pub(super) bounds: ResetBounds,
     pub(super) limit: NonZeroU32,
     pub(super) autoreset: Autoreset,

@@ -9,6 +9,7 @@ use serde::de::{Deserialize, Deserializer, Error as _, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeSeq, Serializer};
 
 use super::buffers::check_length;
+use super::settings::Parameters;
 #[cfg(feature = "alloc")]
 use super::vec_batch::VecBatch;
 use super::{Autoreset, Batch, Member, Storage};
@@ -51,7 +52,6 @@ where
     S: Storage<A, N>,
 {
     fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
-        let (.., lane_params) = self.storage.slices();
         let range = self.params_range();
         let ends = range.map(|range| Vec::from_array([*range.low(), *range.high()]));
         let mut records = serializer.serialize_seq(Some(1 + self.len()))?;
@@ -61,7 +61,7 @@ where
             high: self.settings.bounds.high(),
             limit: self.settings.limit,
             autoreset: self.settings.autoreset,
-            own_params: !lane_params.is_empty(),
+            own_params: matches!(self.settings.parameters, Parameters::Own(_)),
             params_range: ends.unwrap_or_default(),
         })?;
         for member in (0..self.len()).filter_map(|index| self.member(index)) {

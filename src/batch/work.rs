@@ -2,7 +2,7 @@
 
 use super::buffers::take_mut;
 use super::inputs::Inputs;
-use super::settings::Settings;
+use super::settings::{Parameters, Settings};
 use super::{Block, LaneParams, StepBuffers};
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
@@ -31,8 +31,8 @@ impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
             mut inputs,
             mut buffers,
         } = self;
-        if lane_params.is_empty() {
-            let shared = LaneParams::shared(&settings.shared_model);
+        if let Parameters::Shared(model) = &settings.parameters {
+            let shared = LaneParams::shared(model);
             for block in blocks {
                 let generators = take_mut(&mut generators, N);
                 let results = block.advance(settings, &shared, inputs.take(N), generators);

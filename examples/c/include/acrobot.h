@@ -68,7 +68,7 @@
 #define ACROBOT_BATCH_ALIGN 64
 
 // Part of ACROBOT_BATCH_SIZE.
-#define ACROBOT_BATCH_HEADER 192
+#define ACROBOT_BATCH_HEADER 256
 
 #if defined(ACROBOT_64_BIT)
 // Part of ACROBOT_BATCH_SIZE: acrobots that are stepped side by side, by SIMD if there is any.

@@ -17,7 +17,7 @@ use crate::status::{
 pub const ACROBOT_BATCH_ALIGN: usize = 64;
 
 /// Part of ACROBOT_BATCH_SIZE.
-pub const ACROBOT_BATCH_HEADER: usize = 192;
+pub const ACROBOT_BATCH_HEADER: usize = 256;
 
 /// Part of ACROBOT_BATCH_SIZE: acrobots that are stepped side by side, by SIMD if there is any.
 #[cfg(target_pointer_width = "64")]
