@@ -31,7 +31,7 @@ ROUNDS = [
     (["src/arithmetic*", "src/math*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
     (["src/math/sines/correctly_rounded*"], ["sines"]),
     (["src/trajectory.rs"], ["trajectory"]),
-    (["src/batch*", "src/math/lanes.rs"], ["autoreset", "batch_slices", "own_params", "stability", "vec_batch"]),
+    (["src/batch*", "src/math/lanes.rs"], ["autoreset", "batch_slices", "stability", "vec_batch"]),
     (["src/env*", "src/render*"], ["check_env", "env", "render"]),
     (["src/*"], ["acrobot", "validation", "seeding", "snapshot", "trajectory"]),
     (["src/*"], OTHERS),

@@ -64,11 +64,32 @@ use work::Work;
 /// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32:
 ///
 /// ```compile_fail,E0080
+/// # use acrobot::{Fast, batch::{Batch, Block}, numpy::Pcg64};
+/// let batch = Batch::<Fast, _, 33>::new(42, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 33]));
+/// ```
+///
+/// # Snapshots
+///
+/// With the `serde` feature a batch can be saved as a whole: settings, parameters and their range, states, progress,
+/// pending resets and generators. A loaded batch continues bit-identically, with any `N` and on any machine. A
+/// snapshot is a sequence of the settings and the members; the first field holds type, version and arithmetic, as in
+/// that of an [`Acrobot`](crate::Acrobot#snapshots).
+///
+#[cfg_attr(feature = "serde", doc = "```")]
+#[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
 /// use acrobot::Fast;
 /// use acrobot::batch::{Batch, Block};
 /// use acrobot::numpy::Pcg64;
 ///
-/// let batch = Batch::<Fast, _, 33>::new(42, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 33]));
+/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
+/// let batch = Batch::<Fast, _>::new(42, memory()).unwrap();
+/// let bytes = postcard::to_stdvec(&batch)?;
+/// let loaded = Batch::<Fast, _>::from_snapshot(
+///     memory(),
+///     &mut postcard::Deserializer::from_bytes(&bytes),
+/// )?;
+/// assert_eq!(loaded.member(19), batch.member(19));
+/// # Ok::<(), postcard::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Batch<A: Arithmetic, S, const N: usize = 16> {
@@ -361,13 +382,13 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 
 /// Each block with its generators, of which the last may have fewer than `N`, and with its own parameters if it has
 /// any.
-fn each_block<'a, A: Arithmetic, const N: usize>(
-    storage: &'a mut impl Storage<A, N>,
+fn each_block<A: Arithmetic, const N: usize>(
+    storage: &mut impl Storage<A, N>,
 ) -> impl Iterator<
     Item = (
-        &'a mut Block<A, N>,
-        &'a mut [Pcg64],
-        Option<&'a mut LaneParams<A, N>>,
+        &mut Block<A, N>,
+        &mut [Pcg64],
+        Option<&mut LaneParams<A, N>>,
     ),
 > {
     let (blocks, mut generators, lane_params) = storage.slices_mut();

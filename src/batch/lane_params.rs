@@ -12,7 +12,7 @@ use super::buffers::set;
 /// use acrobot::Fast;
 /// use acrobot::batch::LaneParams;
 ///
-/// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 1856);
+/// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 1728);
 /// assert_eq!(size_of::<LaneParams<Fast, 1>>(), 128);
 /// ```
 // Aligned, because an SSE instruction can read only aligned numbers from memory.

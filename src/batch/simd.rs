@@ -13,7 +13,7 @@ use crate::arithmetic::Arithmetic;
 /// use acrobot::batch::{Batch, Block, SimdLevel};
 /// use acrobot::numpy::Pcg64;
 ///
-/// let mut batch = Batch::<Fast, _, _>::new(42, [Block::EMPTY; 1], [Pcg64::UNSEEDED; 16])?;
+/// let mut batch = Batch::<Fast, _>::new(42, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 16]))?;
 /// assert_eq!(batch.simd_level(), SimdLevel::widest());
 /// batch.set_simd_level(SimdLevel::Baseline); // to compare their speed
 /// # assert!(SimdLevel::widest().is_available());

@@ -27,7 +27,7 @@ pub struct DiscreteModel<S = f64> {
 /// ```
 /// use acrobot::physics::Pendulum;
 /// use acrobot::physics::control::discretize;
-/// use acrobot::{Portable, State};
+/// use acrobot::{Params, Portable, State};
 ///
 /// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
 /// let model = discretize(&upright, 0.0)?;

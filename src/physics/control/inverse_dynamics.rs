@@ -30,7 +30,7 @@ pub struct Forces<S = f64> {
 /// ```
 /// use acrobot::physics::Pendulum;
 /// use acrobot::physics::control::inverse_dynamics;
-/// use acrobot::{Portable, State};
+/// use acrobot::{Params, Portable, State};
 ///
 /// let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, State::from([0.5, -0.3, 1.0, 2.0]))?;
 /// let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(0.7);
@@ -107,7 +107,7 @@ pub fn inverse_dynamics<A: Arithmetic>(
 /// ```
 /// use acrobot::physics::Pendulum;
 /// use acrobot::physics::control::velocities;
-/// use acrobot::{Portable, State};
+/// use acrobot::{Params, Portable, State};
 ///
 /// let swinging = State { dtheta1: 1.0, ..State::HANGING };
 /// let [elbow, tip] = velocities(&Pendulum::<Portable>::new(Params::DEFAULT, swinging)?)?;

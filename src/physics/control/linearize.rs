@@ -26,7 +26,7 @@ pub struct ContinuousModel<S = f64> {
 /// ```
 /// use acrobot::physics::Pendulum;
 /// use acrobot::physics::control::linearize;
-/// use acrobot::{Portable, State};
+/// use acrobot::{Params, Portable, State};
 ///
 /// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
 /// let model = linearize(&upright, 0.0)?;
