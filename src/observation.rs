@@ -94,13 +94,6 @@ impl<const N: usize> From<[f32; N]> for Observation<N> {
     }
 }
 
-impl<const N: usize> From<Observation<N>> for [f32; N] {
-    #[inline]
-    fn from(observation: Observation<N>) -> Self {
-        observation.0
-    }
-}
-
 impl<const N: usize> AsRef<[f32]> for Observation<N> {
     #[inline]
     fn as_ref(&self) -> &[f32] {

@@ -75,20 +75,6 @@ impl Theme<BinaryColor> {
     };
 }
 
-impl Default for Theme<Rgb888> {
-    /// [`Theme::GYMNASIUM`].
-    fn default() -> Self {
-        Self::GYMNASIUM
-    }
-}
-
-impl Default for Theme<BinaryColor> {
-    /// [`Theme::MONOCHROME`].
-    fn default() -> Self {
-        Self::MONOCHROME
-    }
-}
-
 impl<C> Theme<C> {
     /// The same theme in another colour type, such as a display's `Rgb565`.
     #[must_use]

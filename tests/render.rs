@@ -257,15 +257,6 @@ fn a_link_of_almost_no_length_is_not_drawn() {
     }
 }
 
-/// `Theme::default()` is Gymnasium's in RGB, and monochrome on displays of one colour.
-#[test]
-fn default_themes_fit_their_colours() {
-    assert_eq!(Theme::<Rgb888>::default(), Theme::GYMNASIUM);
-    assert_eq!(Theme::<BinaryColor>::default(), Theme::MONOCHROME);
-    assert_eq!(Theme::<Rgb888>::default().background, Rgb888::WHITE);
-    assert_eq!(Theme::<BinaryColor>::default().link, BinaryColor::On);
-}
-
 #[test]
 fn a_frame_ignores_pixels_outside_it() {
     let mut frame = Frame::new(3, 2);

@@ -43,7 +43,12 @@ pub trait Numbers<S: Real>:
     fn all_within(self, limit: Self) -> bool;
 
     /// `inside` where |x| ≤ `limit`, `outside` elsewhere and for NaN.
-    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self;
+    #[inline(always)]
+    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self {
+        let select = |x: S, inside, outside| if x.abs() <= limit { inside } else { outside };
+        let (selected, _) = self.zip3(inside, outside, |x, y, z| (select(x, y, z), z));
+        selected
+    }
 
     /// Which numbers are above `limit`.
     fn above(self, limit: S) -> Self::Mask;
@@ -78,11 +83,6 @@ impl<S: Real> Numbers<S> for S {
     #[inline(always)]
     fn all_within(self, limit: S) -> bool {
         self.abs() <= limit
-    }
-
-    #[inline(always)]
-    fn select_within(self, limit: S, inside: Self, outside: Self) -> Self {
-        if self.abs() <= limit { inside } else { outside }
     }
 
     #[inline(always)]
@@ -154,14 +154,6 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     fn all_within(self, limit: Self) -> bool {
         let pairs = self.0.iter().zip(&limit.0);
         pairs.fold(true, |all, (x, limit)| all & (x.abs() <= *limit))
-    }
-
-    #[inline(always)]
-    fn select_within(self, limit: S, inside: Self, mut outside: Self) -> Self {
-        for ((x, inside), outside) in self.0.iter().zip(inside.0).zip(&mut outside.0) {
-            *outside = if x.abs() <= limit { inside } else { *outside };
-        }
-        outside
     }
 
     #[inline(always)]
