@@ -1,6 +1,8 @@
 //! One acrobot of a batch, to save and to load.
 
-use super::{Batch, Storage, each_block};
+use super::buffers::take_mut;
+use super::settings::Parameters;
+use super::{Batch, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
@@ -74,16 +76,19 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         member.params.validate()?;
         member.state.validate()?;
         self.block_of(index)?;
-        if self.params_of(index) != Some(member.params) {
-            self.set_params_of(index, member.params)?;
+        match &self.settings.parameters {
+            Parameters::Shared(model) if model.params == member.params => {}
+            _ => self.set_params_of(index, member.params)?,
         }
-        let block = self.block_of_mut(index)?;
-        block.set_state(index % N, member.state);
-        block.set_progress(index % N, member.elapsed, member.reset_pending);
-        if let Some(rng) = self.generators_mut().get_mut(index) {
+        let (blocks, generators, lane_params) = self.storage.slices_mut();
+        let mut generators = generators.get_mut(index - index % N..);
+        let generators = take_mut(generators.get_or_insert_default(), N);
+        if let (Some(block), Some(rng)) = (blocks.get_mut(index / N), generators.get_mut(index % N))
+        {
+            block.set_state(index % N, member.state);
+            block.set_progress(index % N, member.elapsed, member.reset_pending);
             *rng = member.rng;
-        }
-        if let Some((block, generators, own)) = each_block(&mut self.storage).nth(index / N) {
+            let own = lane_params.get_mut(index / N);
             block.settle_pending_resets(&self.settings, generators, own);
         }
         Ok(())
