@@ -7,22 +7,21 @@ use acrobot::physics::ResetBounds;
 use acrobot::{Params, ResetOptions, State};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2};
 use postcard::experimental::serialized_size;
-use pyo3::exceptions::{PyIndexError, PyMemoryError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyType};
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use crate::engine::{Engine, Inputs, MODES, Range, Settings, assemble, memory};
 use crate::pool::Pool;
-use crate::{VERSION, alone, must_be, number, positive, rejected, render, unknown, with};
+use crate::{
+    VERSION, alone, failed, load, must_be, number, positive, rejected, render, take, unknown, with,
+};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
     settings: Settings,
-    /// The bounds between which each reset draws parameters, once there were any.
-    range: Option<Range>,
     engine: Box<dyn Engine>,
     pool: Option<Pool>,
 }
@@ -64,7 +63,6 @@ impl Batch {
         };
         Ok(Self {
             settings,
-            range: None,
             engine: assemble(&settings, parse(seed)?)?,
             pool: None,
         })
@@ -190,10 +188,10 @@ impl Batch {
         };
         let tasks = len.div_ceil(task);
         match tasks.min(this.settings.threads.get() as usize) {
-            1 => py.detach(|| engine.step(buffers)),
+            1 => py.detach(|| engine.step(buffers, false)),
             threads => {
                 let pool = Pool::of_this_process(&mut this.pool, threads)?;
-                py.detach(|| pool.install(|| engine.par_step(buffers)))
+                py.detach(|| pool.install(|| engine.step(buffers, true)))
             }
         }
         .map_err(rejected)?;
@@ -239,9 +237,8 @@ impl Batch {
         index: usize,
         mode: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let this = alone(slf)?;
-        let state = this.engine.state(index).ok_or_else(no_such(index))?;
-        render(slf.py(), this.params(index)?, state, mode)
+        let Member { params, state, .. } = alone(slf)?.member(index)?;
+        render(slf.py(), params, state, mode)
     }
 
     /// Not a clone of the memory, which would abort the process where it does not fit.
@@ -249,7 +246,6 @@ impl Batch {
         let this = alone(slf)?;
         Ok(Self {
             settings: this.settings,
-            range: this.range,
             engine: this.copied(&this.settings)?,
             pool: None,
         })
@@ -262,64 +258,43 @@ impl Batch {
         Ok((slf.get_type(), (1, "0", 1, "NextStep"), state))
     }
 
-    /// A header, and the records one after the other. They are serialized twice, first to learn their size: a buffer
+    /// A header, and the members one after the other. They are serialized twice, first to learn their size: a buffer
     /// that grows would need twice the memory, and abort the process where there is none.
     fn __getstate__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
         let this = alone(slf)?;
-        let header = (VERSION, this.settings, this.range);
+        let header = (VERSION, this.settings, this.engine.range());
         let mut size = serialized_size(&header).map_err(failed)?;
         for index in 0..this.settings.num_envs {
-            size += serialized_size(&this.record(index)?).map_err(failed)?;
+            size += serialized_size(&this.member(index)?).map_err(failed)?;
         }
         PyBytes::new_with(slf.py(), size, |mut bytes| {
             bytes = put(&header, bytes)?;
             for index in 0..this.settings.num_envs {
-                bytes = put(&this.record(index)?, bytes)?;
+                bytes = put(&this.member(index)?, bytes)?;
             }
             Ok(())
         })
     }
 
-    fn __setstate__(slf: &Bound<'_, Self>, mut bytes: &[u8]) -> PyResult<()> {
+    fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
         let mut this = alone(slf)?;
-        let version: u32 = take(&mut bytes)?;
-        if version != VERSION {
-            let message = must_be("the snapshot's version", VERSION, version);
-            return Err(PyValueError::new_err(message));
-        }
-        let (settings, range): (Settings, Option<Range>) = take(&mut bytes)?;
-        // A record takes at least a byte, so a damaged number cannot ask for more memory than this.
-        if settings.num_envs > bytes.len() {
-            let rule = format_args!("at most {}", bytes.len());
-            let message = must_be("the snapshot's num_envs", rule, settings.num_envs);
-            return Err(PyValueError::new_err(message));
-        }
-        let mut engine = assemble(&settings, SeedSequence::new(0))?;
-        engine.set_range(range).map_err(rejected)?;
-        for index in 0..settings.num_envs {
-            let (params, member): Record = take(&mut bytes)?;
-            if let Some(params) = params {
-                engine.set_params(index, params).map_err(rejected)?;
+        *this = load(bytes, |bytes| {
+            let (settings, range): (Settings, _) = take(bytes)?;
+            // A member takes at least a byte, so a damaged number cannot ask for more memory than this.
+            if settings.num_envs > bytes.len() {
+                let rule = format_args!("at most {}", bytes.len());
+                let message = must_be("the snapshot's num_envs", rule, settings.num_envs);
+                return Err(PyValueError::new_err(message));
             }
-            engine.set_member(index, member).map_err(rejected)?;
-        }
-        if !bytes.is_empty() {
-            let count = bytes.len();
-            let message = format!("the snapshot must have no bytes after its end, got {count}");
-            return Err(PyValueError::new_err(message));
-        }
-        *this = Self {
-            settings,
-            range,
-            engine,
-            pool: None,
-        };
+            Ok(Self {
+                settings,
+                engine: filled(&settings, range, |_| take(bytes))?,
+                pool: None,
+            })
+        })?;
         Ok(())
     }
 }
-
-/// An acrobot of a snapshot. If the acrobots share their parameters, only the first has them.
-type Record = (Option<Params>, Member<Host>);
 
 /// Rewards, terminated and truncated.
 type Results<'py> = (
@@ -339,13 +314,13 @@ struct Plan {
 
 impl Batch {
     fn params(&self, index: usize) -> PyResult<Params> {
-        self.engine.params(index).ok_or_else(no_such(index))
+        Ok(self.member(index)?.params)
     }
 
     /// The parameters of an acrobot with one of them changed.
     fn changed(&self, index: usize, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
         let params = with(self.params(index)?, name, value)?;
-        self.engine.check(params).map_err(rejected)?;
+        self.engine.check([params; 2]).map_err(rejected)?;
         Ok(params)
     }
 
@@ -365,10 +340,9 @@ impl Batch {
 
     /// What sets a parameter of all acrobots.
     fn fixed(&self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Plan> {
-        let range = self
-            .range
-            .map(|[low, high]| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]));
-        let range = range.transpose()?;
+        let both =
+            |[low, high]: Range| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]);
+        let range = self.engine.range().map(both).transpose()?;
         let count = if self.settings.own {
             self.settings.num_envs
         } else {
@@ -385,7 +359,7 @@ impl Batch {
             let message = format!("{name} must be a value or an array, not a Uniform");
             return Err(PyValueError::new_err(message));
         }
-        let [lows, highs] = match self.range {
+        let [lows, highs] = match self.engine.range() {
             Some(range) => range,
             None => [self.params(0)?; 2],
         };
@@ -396,7 +370,7 @@ impl Batch {
     /// Checks a range, and gives each acrobot its own parameters if necessary.
     fn plan(&self, params: Vec<Params>, range: Option<Range>) -> PyResult<Plan> {
         if let Some(range) = range {
-            self.engine.check_range(range).map_err(rejected)?;
+            self.engine.check(range).map_err(rejected)?;
         }
         let own = range.is_some() || params.iter().any(|each| *each != params[0]);
         let settings = Settings {
@@ -418,7 +392,6 @@ impl Batch {
             self.settings.own = true;
         }
         self.engine.set_range(plan.range).map_err(rejected)?;
-        self.range = plan.range;
         for (index, params) in plan.params.into_iter().enumerate() {
             self.engine.set_params(index, params).map_err(rejected)?;
         }
@@ -427,26 +400,31 @@ impl Batch {
 
     /// A copy of the acrobots, with these settings.
     fn copied(&self, settings: &Settings) -> PyResult<Box<dyn Engine>> {
-        let mut engine = assemble(settings, SeedSequence::new(0))?;
-        engine.set_range(self.range).map_err(rejected)?;
-        for index in 0..settings.num_envs {
-            let params = self.params(index)?;
-            engine.set_params(index, params).map_err(rejected)?;
-            let member = self.member(index)?;
-            engine.set_member(index, member).map_err(rejected)?;
-        }
-        Ok(engine)
+        filled(settings, self.engine.range(), |index| self.member(index))
     }
 
     fn member(&self, index: usize) -> PyResult<Member<Host>> {
         self.engine.member(index).ok_or_else(no_such(index))
     }
+}
 
-    fn record(&self, index: usize) -> PyResult<Record> {
-        let has_params = self.settings.own || index == 0;
-        let params = has_params.then(|| self.params(index)).transpose()?;
-        Ok((params, self.member(index)?))
+/// An engine with these settings, this range of parameters and these members.
+fn filled(
+    settings: &Settings,
+    range: Option<Range>,
+    mut member: impl FnMut(usize) -> PyResult<Member<Host>>,
+) -> PyResult<Box<dyn Engine>> {
+    let mut engine = assemble(settings, SeedSequence::new(0))?;
+    engine.set_range(range).map_err(rejected)?;
+    for index in 0..settings.num_envs {
+        let member = member(index)?;
+        // The first has the parameters that all share. Own ones are set here because `set_member` ignores the sign of 0.
+        if settings.own || index == 0 {
+            engine.set_params(index, member.params).map_err(rejected)?;
+        }
+        engine.set_member(index, member).map_err(rejected)?;
     }
+    Ok(engine)
 }
 
 /// The bounds of a `Uniform`.
@@ -478,16 +456,4 @@ fn no_such(index: usize) -> impl Fn() -> PyErr {
 fn put<'a>(value: &impl Serialize, bytes: &'a mut [u8]) -> PyResult<&'a mut [u8]> {
     let size = postcard::to_slice(value, bytes).map_err(failed)?.len();
     Ok(&mut bytes[size..])
-}
-
-/// Deserializes a value from the first bytes, and removes them.
-fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> PyResult<T> {
-    let (value, rest) = postcard::take_from_bytes(bytes)
-        .map_err(|error| PyValueError::new_err(format!("the snapshot is damaged: {error}")))?;
-    *bytes = rest;
-    Ok(value)
-}
-
-fn failed(error: postcard::Error) -> PyErr {
-    PyRuntimeError::new_err(error.to_string())
 }

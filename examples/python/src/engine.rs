@@ -1,11 +1,9 @@
-//! A batch of any arithmetic, with shared or own parameters, behind one trait.
+//! A batch of any arithmetic, behind one trait.
 
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Real};
-use acrobot::batch::{
-    Autoreset, Block, Member, Observations, OwnParams, ParamsKind, SharedParams, StepBuffers,
-};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, Observations, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::ParamsRange;
 use acrobot::{Error, Fast, Params, ResetOptions, State};
@@ -73,14 +71,13 @@ fn is_slice<T, D>(array: &Bound<'_, PyArray<T, D>>) -> bool {
 
 /// A batch of any arithmetic, and memory for its inputs. Numbers are `f64` here: conversions from `f32` and back are exact.
 pub trait Engine: Send + Sync {
-    fn params(&self, index: usize) -> Option<Params>;
-    /// Rejects what `set_params` rejects.
-    fn check(&self, params: Params) -> Result<(), Error>;
+    /// Rejects what `set_params` and `set_range` reject.
+    fn check(&self, range: Range) -> Result<(), Error>;
     /// Sets the parameters of an acrobot, or of all if they share them.
     fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error>;
-    /// Rejects what `set_range` rejects.
-    fn check_range(&self, range: Range) -> Result<(), Error>;
-    /// Draws parameters from a range, if the acrobots do not share them.
+    /// The range from which resets draw parameters.
+    fn range(&self) -> Option<Range>;
+    /// Rejects a range if the acrobots share their parameters.
     fn set_range(&mut self, range: Option<Range>) -> Result<(), Error>;
     fn generators_mut(&mut self) -> &mut [Pcg64];
     fn state(&self, index: usize) -> Option<State>;
@@ -91,130 +88,81 @@ pub trait Engine: Send + Sync {
     fn observe(&self, rows: &mut [[f32; 6]]) -> Result<(), Error>;
     /// Checks the inputs of the next step and copies them.
     fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()>;
-    fn step(&mut self, buffers: StepBuffers<'_>) -> Result<(), Error>;
-    /// As `step`, on all threads of rayon's current pool.
-    fn par_step(&mut self, buffers: StepBuffers<'_>) -> Result<(), Error>;
+    /// Steps on this thread, or on all threads of rayon's current pool.
+    fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error>;
 }
 
-type Acrobots<A, P> = acrobot::batch::Batch<A, Vec<Block<A, 16, P>>, Vec<Pcg64>, 16, P>;
+type Memory<A> = (Vec<Block<A>>, Vec<Pcg64>, Vec<LaneParams<A>>);
 
-/// How to access the parameters of a batch.
-trait Access<A: Arithmetic>: ParamsKind<A> {
-    /// Whether each acrobot has its own.
-    const OWN: bool;
-
-    fn params(batch: &Acrobots<A, Self>, index: usize) -> Option<&Params<A::Scalar>>;
-    fn set_params(
-        batch: &mut Acrobots<A, Self>,
-        index: usize,
-        params: Params<A::Scalar>,
-    ) -> Result<(), Error>;
-    fn set_range(batch: &mut Acrobots<A, Self>, range: Option<ParamsRange<A::Scalar>>);
-}
-
-impl<A: Arithmetic> Access<A> for SharedParams {
-    const OWN: bool = false;
-
-    fn params(batch: &Acrobots<A, Self>, _: usize) -> Option<&Params<A::Scalar>> {
-        Some(batch.params())
-    }
-
-    fn set_params(
-        batch: &mut Acrobots<A, Self>,
-        _: usize,
-        params: Params<A::Scalar>,
-    ) -> Result<(), Error> {
-        batch.set_params(params)
-    }
-
-    fn set_range(_: &mut Acrobots<A, Self>, _: Option<ParamsRange<A::Scalar>>) {}
-}
-
-impl<A: Arithmetic> Access<A> for OwnParams {
-    const OWN: bool = true;
-
-    fn params(batch: &Acrobots<A, Self>, index: usize) -> Option<&Params<A::Scalar>> {
-        batch.params_of(index)
-    }
-
-    fn set_params(
-        batch: &mut Acrobots<A, Self>,
-        index: usize,
-        params: Params<A::Scalar>,
-    ) -> Result<(), Error> {
-        batch.set_params_of(index, params)
-    }
-
-    fn set_range(batch: &mut Acrobots<A, Self>, range: Option<ParamsRange<A::Scalar>>) {
-        batch.set_params_range(range);
-    }
-}
-
-struct Many<A: Arithmetic, P: Access<A>> {
-    batch: Acrobots<A, P>,
+struct Many<A: Arithmetic> {
+    batch: Batch<A, Memory<A>>,
+    /// Whether each acrobot has its own parameters.
+    own: bool,
     /// Empty if the actions are torques.
     actions: Vec<u8>,
     /// Empty if they are not.
     torques: Vec<A::Scalar>,
 }
 
-impl<A: Arithmetic, P: Access<A> + 'static> Many<A, P> {
-    /// `None` if it does not fit into memory.
-    fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Option<Box<dyn Engine>>> {
-        let len = settings.num_envs;
+impl<A: Arithmetic> Many<A> {
+    fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Box<dyn Engine>> {
+        let (len, own) = (settings.num_envs, settings.own);
+        let blocks = len.div_ceil(Block::<A>::LANES);
         let (actions, torques) = if settings.continuous {
             (0, len)
         } else {
             (len, 0)
         };
-        let (Some(blocks), Some(generators), Some(actions), Some(torques)) = (
-            memory(Block::EMPTY, len.div_ceil(16)),
-            memory(Pcg64::UNSEEDED, len),
-            memory(0, actions),
-            memory(A::Scalar::ZERO, torques),
-        ) else {
-            return Ok(None);
+        let allocate = || {
+            let storage = (
+                memory(Block::EMPTY, blocks)?,
+                memory(Pcg64::UNSEEDED, len)?,
+                memory(LaneParams::default(), if own { blocks } else { 0 })?,
+            );
+            let inputs = (memory(0, actions)?, memory(A::Scalar::ZERO, torques)?);
+            Some((storage, inputs))
         };
-        let mut batch =
-            acrobot::batch::Batch::with_seed(seed, blocks, generators).map_err(rejected)?;
+        let (storage, (actions, torques)) = allocate().ok_or_else(|| {
+            let rule = "so few that they fit into memory";
+            PyMemoryError::new_err(must_be("num_envs", rule, len))
+        })?;
+        let mut batch = Batch::with_seed(seed, storage).map_err(rejected)?;
         batch.set_limit(settings.limit);
-        let mode = MODES.get(settings.mode).ok_or_else(|| {
-            let rule = format_args!("below {}", MODES.len());
-            PyValueError::new_err(must_be(
-                "the snapshot's autoreset mode",
-                rule,
-                settings.mode,
-            ))
-        });
-        batch.set_autoreset(mode?.1);
-        Ok(Some(Box::new(Self {
+        let (_, mode) = MODES.get(settings.mode).ok_or_else(|| {
+            let (name, rule) = ("the snapshot's autoreset mode", MODES.len());
+            PyValueError::new_err(must_be(name, format_args!("below {rule}"), settings.mode))
+        })?;
+        batch.set_autoreset(*mode);
+        Ok(Box::new(Self {
             batch,
+            own,
             actions,
             torques,
-        })))
+        }))
     }
 }
 
-impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
-    fn params(&self, index: usize) -> Option<Params> {
-        P::params(&self.batch, index).map(Params::cast)
-    }
-
-    fn check(&self, params: Params) -> Result<(), Error> {
-        params.cast::<A::Scalar>().validate()
+impl<A: Arithmetic> Engine for Many<A> {
+    fn check(&self, [low, high]: Range) -> Result<(), Error> {
+        ParamsRange::<A::Scalar>::new(low.cast(), high.cast()).map(drop)
     }
 
     fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error> {
-        P::set_params(&mut self.batch, index, params.cast())
+        if self.own {
+            self.batch.set_params_of(index, params.cast())
+        } else {
+            self.batch.set_params(params.cast())
+        }
     }
 
-    fn check_range(&self, range: Range) -> Result<(), Error> {
-        cast::<A::Scalar>(range).map(drop)
+    fn range(&self) -> Option<Range> {
+        let range = self.batch.params_range()?;
+        Some([range.low().cast(), range.high().cast()])
     }
 
     fn set_range(&mut self, range: Option<Range>) -> Result<(), Error> {
-        P::set_range(&mut self.batch, range.map(cast).transpose()?);
-        Ok(())
+        let cast = |[low, high]: Range| ParamsRange::new(low.cast(), high.cast());
+        self.batch.set_params_range(range.map(cast).transpose()?)
     }
 
     fn generators_mut(&mut self) -> &mut [Pcg64] {
@@ -262,7 +210,7 @@ impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
             ),
             Inputs::Torques(from) => {
                 let bounds = |index| {
-                    let params = P::params(&self.batch, index).copied().unwrap_or_default();
+                    let params = self.batch.params_of(index).unwrap_or_default();
                     let [a, b, c] = params.torques.map(Real::to_f64);
                     (a.min(b).min(c), a.max(b).max(c))
                 };
@@ -272,7 +220,7 @@ impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
                     &mut self.torques,
                     |torque| !torque.is_nan(),
                     |index, torque| {
-                        let (low, high) = if P::OWN { bounds(index) } else { first };
+                        let (low, high) = if self.own { bounds(index) } else { first };
                         A::Scalar::from_f64(f64::from(torque).max(low).min(high))
                     },
                     "a number, N m",
@@ -281,25 +229,15 @@ impl<A: Arithmetic, P: Access<A>> Engine for Many<A, P> {
         }
     }
 
-    fn step(&mut self, buffers: StepBuffers<'_>) -> Result<(), Error> {
-        if self.torques.is_empty() {
-            self.batch.step(&self.actions, buffers)
-        } else {
-            self.batch.step(&self.torques, buffers)
+    fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
+        let (batch, actions, torques) = (&mut self.batch, &self.actions, &self.torques);
+        match (torques.is_empty(), parallel) {
+            (true, false) => batch.step(actions, buffers),
+            (true, true) => batch.par_step(actions, buffers),
+            (false, false) => batch.step(torques, buffers),
+            (false, true) => batch.par_step(torques, buffers),
         }
     }
-
-    fn par_step(&mut self, buffers: StepBuffers<'_>) -> Result<(), Error> {
-        if self.torques.is_empty() {
-            self.batch.par_step(&self.actions, buffers)
-        } else {
-            self.batch.par_step(&self.torques, buffers)
-        }
-    }
-}
-
-fn cast<R: Real>([low, high]: Range) -> Result<ParamsRange<R>, Error> {
-    ParamsRange::new(low.cast(), high.cast())
 }
 
 /// Checks all inputs, then converts them.
@@ -334,25 +272,21 @@ fn read<T: Copy + std::fmt::Display, U>(
 /// The same member in another arithmetic. Exact from `f32` to `f64` and back.
 fn converted<A: Arithmetic, B: Arithmetic>(member: Member<A>) -> Member<B> {
     Member {
+        params: member.params.cast(),
         state: member.state.cast(),
         elapsed: member.elapsed,
-        ended: member.ended,
+        reset_pending: member.reset_pending,
         rng: member.rng,
     }
 }
 
-/// An engine with these settings, if it fits into memory.
+/// An engine with these settings.
 pub fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Box<dyn Engine>> {
-    let engine: Option<Box<dyn Engine>> = match (settings.gymnasium, settings.own) {
-        (false, false) => Many::<Fast, SharedParams>::assemble(settings, seed)?,
-        (false, true) => Many::<Fast, OwnParams>::assemble(settings, seed)?,
-        (true, false) => Many::<Host, SharedParams>::assemble(settings, seed)?,
-        (true, true) => Many::<Host, OwnParams>::assemble(settings, seed)?,
-    };
-    engine.ok_or_else(|| {
-        let rule = "so few that they fit into memory";
-        PyMemoryError::new_err(must_be("num_envs", rule, settings.num_envs))
-    })
+    if settings.gymnasium {
+        Many::<Host>::assemble(settings, seed)
+    } else {
+        Many::<Fast>::assemble(settings, seed)
+    }
 }
 
 /// `len` copies of a value, if they fit into memory.

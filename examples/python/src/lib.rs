@@ -233,24 +233,33 @@ const VERSION: u32 = 1;
 
 /// Serializes a snapshot, for pickle.
 fn save(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
-    postcard::to_stdvec(&(VERSION, snapshot))
-        .map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    postcard::to_stdvec(&(VERSION, snapshot)).map_err(failed)
 }
 
-/// Deserializes a snapshot. Rejects invalid snapshots, and bytes after the end.
-fn load<T: DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
-    let damaged = |error| PyValueError::new_err(format!("the snapshot is damaged: {error}"));
-    let (version, bytes) = postcard::take_from_bytes::<u32>(bytes).map_err(damaged)?;
+fn failed(error: postcard::Error) -> PyErr {
+    PyRuntimeError::new_err(error.to_string())
+}
+
+/// Deserializes a snapshot. Rejects other versions, and bytes after the end.
+fn load<T>(mut bytes: &[u8], read: impl FnOnce(&mut &[u8]) -> PyResult<T>) -> PyResult<T> {
+    let version: u32 = take(&mut bytes)?;
     if version != VERSION {
         let message = must_be("the snapshot's version", VERSION, version);
         return Err(PyValueError::new_err(message));
     }
-    match postcard::take_from_bytes(bytes).map_err(damaged)? {
-        (snapshot, []) => Ok(snapshot),
-        (_, rest) => {
-            let count = rest.len();
-            let message = format!("the snapshot must have no bytes after its end, got {count}");
-            Err(PyValueError::new_err(message))
-        }
+    let snapshot = read(&mut bytes)?;
+    if !bytes.is_empty() {
+        let count = bytes.len();
+        let message = format!("the snapshot must have no bytes after its end, got {count}");
+        return Err(PyValueError::new_err(message));
     }
+    Ok(snapshot)
+}
+
+/// Deserializes a value from the first bytes, and removes them.
+fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> PyResult<T> {
+    let (value, rest) = postcard::take_from_bytes(bytes)
+        .map_err(|error| PyValueError::new_err(format!("the snapshot is damaged: {error}")))?;
+    *bytes = rest;
+    Ok(value)
 }

@@ -10,7 +10,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 use serde::{Deserialize, Serialize};
 
-use crate::{InvalidAction, alone, convert, load, must_be, rejected, render, save, shown, with};
+use crate::{
+    InvalidAction, alone, convert, load, must_be, rejected, render, save, shown, take, with,
+};
 
 /// What `Env.step` returns: observation, reward, terminated, truncated and info.
 type Step<'py> = (
@@ -242,7 +244,7 @@ impl Acrobot {
     }
 
     fn __setstate__(&mut self, bytes: &[u8]) -> PyResult<()> {
-        let mut inner: Inner = load(bytes)?;
+        let mut inner: Inner = load(bytes, take)?;
         inner.set_noise(inner.noise)?;
         let torques = mem::take(&mut inner.torques);
         inner.set_torques(torques)?;

@@ -209,6 +209,28 @@ def test_damaged_snapshots_are_rejected():
     assert native.__getstate__() == good
 
 
+def test_a_snapshot_with_different_values_of_a_shared_parameter_is_rejected():
+    envs = make_vec(3)
+    envs.LINK_MASS_2 = 1.5
+    good = envs._native.__getstate__()
+    first, *rest = good.split(np.float64(1.5).tobytes())
+    bad = first + np.float64(1.5).tobytes() + np.float64(1.25).tobytes().join(rest)
+    with pytest.raises(ValueError, match="a batch must have memory for the parameters of each acrobot"):
+        envs._native.__setstate__(bad)
+    assert envs._native.__getstate__() == good
+
+
+@pytest.mark.parametrize("masses", [1.5, [1.5, 1.0, 2.0], Uniform(1.0, 2.0)])
+def test_a_copy_has_the_same_snapshot(masses):
+    """Also the sign of 0."""
+    envs = make_vec(3)
+    envs.LINK_MASS_2 = masses
+    if not isinstance(masses, Uniform):
+        envs.AVAIL_TORQUE = [[-2.0, 0.0, 2.0], [-1.0, -0.0, 1.0], [-1.0, 0.0, 1.0]]
+    envs.reset(seed=1)
+    assert copy.deepcopy(envs._native).__getstate__() == envs._native.__getstate__()
+
+
 def test_parameters_are_set_on_environments_and_by_subclasses():
     class Heavy(acrobot_rs.AcrobotVectorEnv):
         LINK_MASS_2 = 2.0
