@@ -1,7 +1,7 @@
 //! The vector environment: steps many acrobots at once.
 
 use acrobot::arithmetic::Host;
-use acrobot::batch::{Member, Observations, StepBuffers};
+use acrobot::batch::{Member, StepBuffers};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::ResetBounds;
 use acrobot::{Params, ResetOptions, State};
@@ -173,11 +173,10 @@ impl Batch {
         let mut terminated = memory(false, len).ok_or_else(no_memory)?;
         let mut truncated = memory(false, len).ok_or_else(no_memory)?;
         let rows = observations.as_slice_mut()?.as_chunks_mut().0;
-        let mut buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-            .with_observations(Observations::Rows(rows));
+        let mut buffers =
+            StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(rows);
         if let Some(finals) = &mut finals {
-            buffers.final_observations =
-                Observations::Rows(finals.as_slice_mut()?.as_chunks_mut().0);
+            buffers.final_observations = Some(finals.as_slice_mut()?.as_chunks_mut().0);
         }
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
@@ -418,8 +417,8 @@ fn filled(
     engine.set_range(range).map_err(rejected)?;
     for index in 0..settings.num_envs {
         let member = member(index)?;
-        // The first has the parameters that all share. Own ones are set here because `set_member` ignores the sign of 0.
-        if settings.own || index == 0 {
+        // The first has the parameters that all share.
+        if index == 0 && !settings.own {
             engine.set_params(index, member.params).map_err(rejected)?;
         }
         engine.set_member(index, member).map_err(rejected)?;

@@ -3,7 +3,7 @@
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Real};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, Observations, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::ParamsRange;
 use acrobot::{Error, Fast, Params, ResetOptions, State};
@@ -196,7 +196,7 @@ impl<A: Arithmetic> Engine for Many<A> {
     }
 
     fn observe(&self, rows: &mut [[f32; 6]]) -> Result<(), Error> {
-        self.batch.observe(Observations::Rows(rows))
+        self.batch.observe(rows)
     }
 
     fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()> {
