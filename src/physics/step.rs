@@ -33,10 +33,12 @@ fn is_within_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     [theta1, theta2, dtheta1, dtheta2]: &[V; 4],
 ) -> bool {
     let pi = V::splat(A::Scalar::PI);
+    // Read before the comparisons: otherwise a step takes 13 instructions more on x86-64.
+    let (limit1, limit2) = (model.params.max_velocity1, model.params.max_velocity2);
     theta1.all_within(pi)
         && theta2.all_within(pi)
-        && dtheta1.all_within(model.params.max_velocity1)
-        && dtheta2.all_within(model.params.max_velocity2)
+        && dtheta1.all_within(limit1)
+        && dtheta2.all_within(limit2)
 }
 
 #[inline(never)]
