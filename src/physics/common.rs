@@ -18,6 +18,8 @@ pub trait FromParams<S>: Sized {
 /// The constants that both forms need.
 #[derive(Clone, Copy, Debug)]
 pub struct Common<V> {
+    /// 1 for the equations of the 1996 paper, otherwise 0.
+    pub nips: V,
     /// m2 l1 lc2, kg m²: how strongly the links accelerate each other.
     pub coupling: V,
     /// m2 lc2² + I2, kg m²: the inertia of link 2 about its joint.
@@ -26,8 +28,6 @@ pub struct Common<V> {
     pub gravity1: V,
     /// m2 lc2 g, N m.
     pub gravity2: V,
-    /// 1 for the equations of the 1996 paper, otherwise 0.
-    pub nips: V,
     /// dt/2, s.
     pub half_dt: V,
     /// dt/6, s.
@@ -39,11 +39,11 @@ impl<V> Common<V> {
     #[inline(always)]
     pub fn zip<W, X>(self, other: Common<W>, f: impl Fn(V, W) -> X) -> Common<X> {
         Common {
+            nips: f(self.nips, other.nips),
             coupling: f(self.coupling, other.coupling),
             link2: f(self.link2, other.link2),
             gravity1: f(self.gravity1, other.gravity1),
             gravity2: f(self.gravity2, other.gravity2),
-            nips: f(self.nips, other.nips),
             half_dt: f(self.half_dt, other.half_dt),
             sixth_dt: f(self.sixth_dt, other.sixth_dt),
         }
@@ -66,14 +66,14 @@ for_f32_and_f64! {
                 ..
             } = *params;
             Self {
-                coupling: m2 * l1 * lc2,
-                link2: m2 * lc2_squared + inertia2,
-                gravity1: (m1 * lc1 + m2 * l1) * gravity,
-                gravity2: m2 * lc2 * gravity,
                 nips: match dynamics {
                     Dynamics::Book => 0.0,
                     Dynamics::Nips => 1.0,
                 },
+                coupling: m2 * l1 * lc2,
+                link2: m2 * lc2_squared + inertia2,
+                gravity1: (m1 * lc1 + m2 * l1) * gravity,
+                gravity2: m2 * lc2 * gravity,
                 half_dt: dt * 0.5,
                 sixth_dt: dt / 6.0,
             }
