@@ -25,13 +25,13 @@ SHARDS = os.cpu_count() if len(sys.argv) == 1 else 1
 
 # Without `examples`, which does not test the library, `sines`, which tests one file, and `batch`, which takes half a
 # minute without optimization.
-OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines", "batch"} | {"properties"})
+OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines"} | {"properties"})
 ROUNDS = [
     (["src/physics/control*"], ["control"]),
     (["src/arithmetic*", "src/math*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
     (["src/math/sines/correctly_rounded*"], ["sines"]),
     (["src/trajectory.rs"], ["trajectory"]),
-    (["src/batch*", "src/math/lanes.rs"], ["autoreset", "batch_slices", "stability", "vec_batch"]),
+    (["src/batch*", "src/math/lanes.rs"], ["autoreset", "batch_slices", "batch_snapshots", "stability", "vec_batch"]),
     (["src/env*", "src/render*"], ["check_env", "env", "render"]),
     (["src/*"], ["acrobot", "validation", "seeding", "snapshot", "trajectory"]),
     (["src/*"], OTHERS),

@@ -1,37 +1,28 @@
-//! What a batch reads and writes: its settings, observations in either layout, and rejected input.
+//! What a batch reads and writes: its settings, observations, and rejected input.
 
 use std::num::NonZeroU32;
 
-use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, SimdLevel, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, Member, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Error, Fast, Params, ResetOptions, State};
 
-type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, [Block; BLOCKS], [Pcg64; LEN]>;
+type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, ([Block; BLOCKS], [Pcg64; LEN])>;
 
 /// A batch without a heap.
 fn small<const BLOCKS: usize, const LEN: usize>() -> Result<Small<BLOCKS, LEN>, Error> {
-    Batch::new(1, [Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN])
+    Batch::new(1, ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]))
 }
 
+/// Also before the first step.
 #[test]
-fn columns_equal_rows() {
-    let mut batch = small::<2, 20>().unwrap();
-    batch.set_limit(NonZeroU32::MIN);
+fn observations_equal_those_of_single_acrobots() {
     let mut rows = [[0.0; 6]; 20];
-    batch.observe(Observations::Rows(&mut rows)).unwrap();
-    let mut columns = [[0.0; 20]; 6];
-    batch
-        .observe(Observations::Columns(
-            columns.each_mut().map(|column| &mut column[..]),
-        ))
-        .unwrap();
+    small::<2, 20>().unwrap().observe(&mut rows).unwrap();
     for (i, row) in rows.iter().enumerate() {
         let child = SeedSequence::new(1).child(i as u64);
         let alone = Acrobot::<Fast>::with_rng(child.into()).observation();
-        let row = row.map(f32::to_bits);
-        assert_eq!(row, columns.map(|column| column[i].to_bits()));
-        assert_eq!(row, alone.to_array().map(f32::to_bits));
+        assert_eq!(row.map(f32::to_bits), alone.to_array().map(f32::to_bits));
     }
 }
 
@@ -73,7 +64,7 @@ fn an_episode_ends_once_if_it_reaches_the_goal_on_its_last_step() {
         )
         .unwrap();
     assert_eq!((terminated, truncated), ([true], [true]));
-    assert!(batch.member(0).unwrap().ended);
+    assert!(batch.member(0).unwrap().reset_pending);
 }
 
 /// Getters return what was set, and before that the defaults.
@@ -81,7 +72,7 @@ fn an_episode_ends_once_if_it_reaches_the_goal_on_its_last_step() {
 fn settings_are_returned_as_set() {
     let mut batch = small::<1, 3>().unwrap();
     assert_eq!(batch.len(), 3);
-    assert_eq!(*batch.params(), Params::DEFAULT);
+    assert_eq!(batch.params_of(0), Some(Params::DEFAULT));
     assert_eq!(batch.simd_level(), SimdLevel::widest());
     assert_eq!(batch.reset_bounds(), ResetBounds::DEFAULT);
     assert_eq!(batch.limit().get(), 500);
@@ -92,7 +83,7 @@ fn settings_are_returned_as_set() {
         ..Params::DEFAULT
     };
     batch.set_params(params).unwrap();
-    assert_eq!(*batch.params(), params);
+    assert_eq!(batch.params_of(0), Some(params));
     for level in [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512] {
         batch.set_simd_level(level);
         assert_eq!(batch.simd_level(), level);
@@ -116,20 +107,17 @@ fn settings_are_returned_as_set() {
 #[test]
 fn a_batch_takes_seeds_of_any_size() {
     let seed: SeedSequence = "340282366920938463463374607431768211456".parse().unwrap();
-    let (blocks, generators) = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
-    let batch = Small::<2, 20>::with_seed(seed.clone(), blocks, generators).unwrap();
+    let memory = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
+    let batch = Small::<2, 20>::with_seed(seed.clone(), memory).unwrap();
     let mut reset = small::<2, 20>().unwrap();
     assert_ne!(members(&batch), members(&reset));
-    reset.reset_with(ResetOptions {
-        seed: Some(seed.clone()),
-        ..ResetOptions::default()
-    });
+    reset.reset_with(seed.clone().into());
     assert_eq!(members(&batch), members(&reset));
     let alone = Acrobot::<Fast>::with_rng(seed.child(19).into());
     assert_eq!(batch.state(19), Some(alone.state()));
 }
 
-/// `reset_within` draws from its own bounds once, and `reset` from the batch's again.
+/// A reset with bounds uses them once, and the next one those of the batch again.
 #[test]
 fn resets_within_bounds_leave_the_batchs_bounds() {
     let mut batch = small::<2, 20>().unwrap();
@@ -140,7 +128,7 @@ fn resets_within_bounds_leave_the_batchs_bounds() {
         })
     };
     batch.set_reset_bounds(ResetBounds::new(1.0, 2.0).unwrap());
-    batch.reset_within(ResetBounds::new(-4.0, -3.0).unwrap());
+    batch.reset_with(ResetBounds::new(-4.0, -3.0).unwrap().into());
     assert!(within(&batch, -4.0, -3.0));
     assert_eq!(batch.reset_bounds(), ResetBounds::new(1.0, 2.0).unwrap());
     batch.reset();
@@ -167,8 +155,8 @@ fn rejections(
         let [terminated, truncated] = &mut ends;
         let [observations, finals] = &mut rows;
         let buffers = StepBuffers::new(&mut rewards, terminated, truncated)
-            .with_observations(Observations::Rows(observations))
-            .with_final_observations(Observations::Rows(finals));
+            .with_observations(observations)
+            .with_final_observations(finals);
         let result = match kind {
             0 => batch.step(actions, buffers),
             1 => batch.par_step(actions, buffers),
@@ -245,10 +233,7 @@ fn rejected_changes_change_nothing() {
         mass1: 0.0,
         ..Params::DEFAULT
     };
-    let mut long = vec![9.0; 4];
-    let mut columns = [(); 5].map(|()| vec![9.0; 3]);
-    let [first, second, third, fourth, fifth] = columns.each_mut().map(|column| &mut column[..]);
-    let uneven = Observations::Columns([first, second, third, fourth, fifth, &mut long]);
+    let mut rows = [[9.0; 6]; 4];
     for (result, message) in [
         (
             batch.reset_masked(&[true; 2], ResetOptions::default()),
@@ -292,16 +277,15 @@ fn rejected_changes_change_nothing() {
             "mass1 must be finite and above 0 kg, got 0",
         ),
         (
-            batch.observe(uneven),
+            batch.observe(&mut rows),
             "observations must have 3 elements, got 4",
         ),
     ] {
         assert_eq!(result.unwrap_err().to_string(), message);
     }
-    assert_eq!(columns.concat(), [9.0; 15]);
+    assert_eq!(rows, [[9.0; 6]; 4]);
     assert_eq!((batch.state(3), batch.member(3)), (None, None));
     assert_eq!(members(&batch), members(&twin));
-    assert_eq!(batch.params(), twin.params());
     for batch in [&mut batch, &mut twin] {
         batch
             .step(

@@ -106,32 +106,7 @@ fn sin_cos_near_equals_sin_cos_near_the_origin() {
     check::<Host>();
 }
 
-/// A batch's sines are bit-identical to those of one acrobot, at any angle. Where they overflow, neither is finite, so
-/// both steps keep the angles.
-#[test]
-fn lanes_are_bit_identical_to_one_number() {
-    fn check<A: Arithmetic<Scalar = f32>>() {
-        for first in (0..f32::INFINITY.to_bits()).step_by(16 * EVERY.max(17)) {
-            for sign in [1.0, -1.0] {
-                let x: [f32; 16] = std::array::from_fn(|i| sign * f32::from_bits(first + i as u32));
-                let (sin, cos) = A::sin_cos_lanes(x);
-                for (x, lane) in x.into_iter().zip(sin.into_iter().zip(cos)) {
-                    let one = A::sin_cos_near(x);
-                    let is_finite = |(sin, cos): (f32, f32)| sin.is_finite() && cos.is_finite();
-                    let bits = |(sin, cos): (f32, f32)| [bits(sin), bits(cos)];
-                    assert!(
-                        bits(one) == bits(lane) || !is_finite(one) && !is_finite(lane),
-                        "{x:e}: {one:?} {lane:?}"
-                    );
-                }
-            }
-        }
-    }
-    check::<Fast>();
-    check::<Micro>();
-}
-
-/// Therefore any finite state has an observation.
+/// Any finite state has an observation.
 #[test]
 fn every_finite_angle_has_a_sine_and_a_cosine() {
     fn holds<A: Arithmetic<Scalar = f32>>() {

@@ -4,8 +4,7 @@
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Batch, Block};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Pendulum, ResetBounds};
-use acrobot::trajectory::Trajectory;
+use acrobot::physics::{Dynamics, ParamsRange, Pendulum, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
 
 const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -18,18 +17,23 @@ fn errors_name_the_value_and_the_rule() {
         change(&mut params);
         params.validate()
     }
+    fn range(change_low: fn(&mut Params), change_high: fn(&mut Params)) -> Result<(), Error> {
+        let [mut low, mut high] = [Params::DEFAULT; 2];
+        change_low(&mut low);
+        change_high(&mut high);
+        ParamsRange::new(low, high).map(drop)
+    }
     fn bounds(low: f64, high: f64) -> Result<(), Error> {
         ResetBounds::new(low, high).map(drop)
     }
-    fn batch<const LEN: usize>() -> Result<Batch<Fast, [Block; 3], [Pcg64; LEN]>, Error> {
-        Batch::new(1, [Block::EMPTY; 3], [Pcg64::UNSEEDED; LEN])
+    type Memory<const LEN: usize> = ([Block; 3], [Pcg64; LEN]);
+    fn batch<const LEN: usize>() -> Result<Batch<Fast, Memory<LEN>>, Error> {
+        Batch::new(1, ([Block::EMPTY; 3], [Pcg64::UNSEEDED; LEN]))
     }
     fn seed(text: &str) -> Result<(), Error> {
         text.parse::<SeedSequence>().map(drop)
     }
     let mut members = batch::<35>().unwrap();
-    let mut trajectory = Trajectory::<f32, 4>::new();
-    trajectory.step(&mut Acrobot::<Fast>::new(1), Action::Zero);
     for (result, message) in [
         (
             params(|params| params.gravity = f64::NAN),
@@ -61,6 +65,25 @@ fn errors_name_the_value_and_the_rule() {
             "low must not be above high, got 0.2 and -0.2 rad and rad/s",
         ),
         (
+            range(|params| params.mass2 = 3.0, |_| {}),
+            "the lower mass2 must not be above the upper one, got 3 and 1 kg",
+        ),
+        (
+            range(
+                |params| params.gravity = f64::MIN,
+                |params| params.gravity = f64::MAX,
+            ),
+            "gravity must be a range of finite width in m/s², got inf",
+        ),
+        (
+            range(|params| params.dt = -0.1, |_| {}),
+            "dt must be finite and above 0 s, got -0.1",
+        ),
+        (
+            range(|_| {}, |params| params.dynamics = Dynamics::Nips),
+            "dynamics must be the same in both bounds of a range",
+        ),
+        (
             params(|params| (params.inertia1, params.center_of_mass1) = (0.0, 0.0)),
             "inertia1 must be above 0 kg m² if the centre of mass is on the joint, got 0",
         ),
@@ -75,14 +98,6 @@ fn errors_name_the_value_and_the_rule() {
         (
             members.set_state(35, State::default()),
             "member index must be below 35, got 35",
-        ),
-        (
-            trajectory.write_row(1, &mut [0; 200]).map(drop),
-            "row index must be below 1, got 1",
-        ),
-        (
-            trajectory.write_header(&mut [0; 10]).map(drop),
-            "buffer must have at least 182 bytes, got 10",
         ),
         (
             Action::try_from(3).map(drop),
@@ -331,4 +346,31 @@ fn an_acrobot_with_extreme_parameters_equals_its_clone() {
     };
     acrobot.set_params(params).unwrap();
     assert_eq!(acrobot, acrobot.clone());
+}
+
+/// The largest draw of a generator can round to a number above the upper bound.
+#[test]
+fn draws_of_parameters_are_within_their_range() {
+    struct Largest;
+    impl rand_core::TryRng for Largest {
+        type Error = core::convert::Infallible;
+        fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
+            Ok(u32::MAX)
+        }
+        fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
+            Ok(u64::MAX)
+        }
+        fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
+            bytes.fill(u8::MAX);
+            Ok(())
+        }
+    }
+    let range = common::params_range::<f32>(Dynamics::Book);
+    assert_eq!(range.draw(&mut Largest), *range.high());
+    let mut rng = Pcg64::new(0);
+    for _ in 0..1000 {
+        let drawn = range.draw(&mut rng);
+        assert!(ParamsRange::new(*range.low(), drawn).is_ok());
+        assert!(ParamsRange::new(drawn, *range.high()).is_ok());
+    }
 }

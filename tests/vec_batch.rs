@@ -1,10 +1,8 @@
-//! The batch that owns its memory: its results, and states that are set.
+//! The batch that owns its memory: its results, and another batch in its place.
 
-use acrobot::batch::{
-    Autoreset, Batch, Block, Observations, SharedParams, StepBuffers, StepResults, VecBatch,
-};
+use acrobot::batch::{Autoreset, Batch, Block, StepBuffers, StepResults, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::{Acrobot, Fast, ResetOptions, State};
+use acrobot::{Fast, ResetOptions};
 
 /// The owning batch steps as the one that borrows its memory.
 #[test]
@@ -14,8 +12,8 @@ fn a_batch_in_vecs_equals_one_in_arrays() {
 }
 
 fn check_beside_arrays<const N: usize>() {
-    let mut owning = VecBatch::<Fast, SharedParams, N>::new(SeedSequence::new(9), 20).unwrap();
-    let mut arrays = Batch::<Fast, _, _>::new(9, [Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]).unwrap();
+    let mut owning = VecBatch::<Fast, N>::new(SeedSequence::new(9), 20).unwrap();
+    let mut arrays = Batch::<Fast, _>::new(9, ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20])).unwrap();
     let (mut rewards, mut terminated, mut truncated) = ([0.0; 20], [false; 20], [false; 20]);
     let (mut observations, mut final_observations) = ([[0.0; 6]; 20], [[0.0; 6]; 20]);
     owning.set_limit(5.try_into().unwrap());
@@ -24,8 +22,8 @@ fn check_beside_arrays<const N: usize>() {
     arrays.set_autoreset(Autoreset::SameStep);
     for _ in 0..30 {
         let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-            .with_observations(Observations::Rows(&mut observations))
-            .with_final_observations(Observations::Rows(&mut final_observations));
+            .with_observations(&mut observations)
+            .with_final_observations(&mut final_observations);
         arrays.step(&[2_u8; 20], buffers).unwrap();
         let expected = StepResults {
             rewards: &rewards,
@@ -35,40 +33,6 @@ fn check_beside_arrays<const N: usize>() {
             final_observations: &final_observations,
         };
         assert_eq!(owning.step(&[2_u8; 20]).unwrap(), expected);
-    }
-}
-
-/// Episodes of some begin in given states. The others do not change.
-#[test]
-fn some_begin_in_given_states() {
-    let mut batch = VecBatch::<Fast>::new(SeedSequence::new(9), 35).unwrap();
-    batch.step(&[2_u8; 35]).unwrap();
-    let mask: Vec<bool> = (0..35).map(|i| i % 3 == 0).collect();
-    let states: Vec<State<f32>> = (0..35)
-        .map(|i| State::from([i as f32 / 35.0, 0.5, 0.0, 1.0]))
-        .collect();
-    let before = batch.clone();
-    batch.reset_to_masked(&mask, &states).unwrap();
-    for i in 0..35 {
-        let member = batch.member(i).unwrap();
-        if mask[i] {
-            assert_eq!((member.state, member.elapsed), (states[i], 0));
-        } else {
-            assert_eq!(Some(member), before.member(i));
-        }
-    }
-    let seen = batch.observations()[3];
-    let mut alone = Acrobot::<Fast>::new(0);
-    alone.set_state(states[3]).unwrap();
-    assert_eq!(seen, alone.observation().to_array());
-
-    let before = batch.clone();
-    let mut infinite = states;
-    infinite[1].theta1 = f32::INFINITY;
-    assert!(batch.reset_to_masked(&mask, &infinite).is_err());
-    assert!(batch.reset_to_masked(&mask[1..], &infinite[1..]).is_err());
-    for i in 0..35 {
-        assert_eq!(batch.member(i), before.member(i));
     }
 }
 
@@ -104,7 +68,8 @@ fn replaced_batches_of_other_lengths_have_their_own_results() {
     }
 
     let [mut first, second] = batches;
-    let shorter = Batch::new(3, vec![Block::EMPTY], vec![Pcg64::UNSEEDED; 2]).unwrap();
+    let shorter = (vec![Block::EMPTY], vec![Pcg64::UNSEEDED; 2], vec![]);
+    let shorter = Batch::new(3, shorter).unwrap();
     assert_eq!(std::mem::replace(&mut *first, shorter).len(), 40);
     assert_eq!(first.step(&[1_u8; 2]).unwrap().rewards, [-1.0; 2]);
     *first = (*second).clone();

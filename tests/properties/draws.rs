@@ -68,9 +68,8 @@ fn uniform_draws_are_within_their_bounds() {
 fn initial_states_are_within_their_bounds() {
     holds(1000, (generator(), reset_bounds()), |(rng, bounds)| {
         let mut acrobot = Acrobot::<Portable, _>::with_rng(rng);
-        acrobot
-            .set_state(bounds.draw(acrobot.rng_mut()).cast())
-            .unwrap();
+        let state = bounds.draw(acrobot.rng_mut());
+        acrobot.set_state(state.cast()).unwrap();
         let [low, high] = [bounds.low(), bounds.high()].map(|bound| f64::from(bound as f32));
         for x in <[f64; 4]>::from(acrobot.state()) {
             assert!(low <= x && x <= high, "{x}");

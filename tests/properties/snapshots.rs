@@ -54,16 +54,19 @@ fn snapshots_resume_to_the_same_bits() {
 
 #[test]
 fn members_and_parts_load_as_stored() {
-    let given = (state(Range::Any), any::<(u32, bool, u64, bool)>());
-    holds(500, given, |(state, (elapsed, ended, seed, half))| {
+    let progress = any::<(u32, bool, u64, bool)>();
+    let given = (params(Range::Any), state(Range::Any), progress);
+    holds(500, given, |(params, state, progress)| {
+        let (elapsed, reset_pending, seed, half) = progress;
         let mut rng = Pcg64::new(seed);
         if half {
             rng.next_u32();
         }
         let member = Member::<Fast> {
+            params,
             state,
             elapsed,
-            ended,
+            reset_pending,
             rng,
         };
         for (_, loaded) in again(&member) {

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
-use acrobot::batch::{Autoreset, OwnParams, ParamsKind, VecBatch};
+use acrobot::batch::{Autoreset, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence, integers};
 use acrobot::physics::Pendulum;
 use acrobot::{
@@ -237,8 +237,8 @@ fn episodes_are_truncated_from_their_limit_on() {
 fn lanes_of_a_batch_equal_single_acrobots() {
     const LEN: usize = 18;
 
-    fn play<A: Arithmetic<Scalar: Number>, P: ParamsKind<A>>(
-        mut batch: VecBatch<A, P>,
+    fn play<A: Arithmetic<Scalar: Number>>(
+        mut batch: VecBatch<A>,
         params: &[Params<A::Scalar>],
         states: &[State<A::Scalar>],
         torques: &[A::Scalar],
@@ -275,7 +275,7 @@ fn lanes_of_a_batch_equal_single_acrobots() {
                 let mut shared = VecBatch::<A>::new(SeedSequence::new(0), LEN).unwrap();
                 shared.set_params(params[0]).unwrap();
                 play(shared, &[params[0]; LEN], &states, &torques);
-                let mut own = VecBatch::<A, OwnParams>::new(SeedSequence::new(0), LEN).unwrap();
+                let mut own = VecBatch::<A>::with_own_params(SeedSequence::new(0), LEN).unwrap();
                 for (i, params) in params.iter().enumerate() {
                     own.set_params_of(i, *params).unwrap();
                 }

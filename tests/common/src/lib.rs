@@ -7,7 +7,9 @@ mod recording;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use acrobot::State;
+use acrobot::arithmetic::Real;
+use acrobot::physics::{Dynamics, ParamsRange};
+use acrobot::{Params, State};
 
 pub use bits::Digest;
 pub use recording::*;
@@ -22,6 +24,45 @@ pub fn distance(x: State, y: State) -> f64 {
         .max(angle(x.theta2, y.theta2))
         .max((x.dtheta1 - y.dtheta1).abs())
         .max((x.dtheta2 - y.dtheta2).abs())
+}
+
+/// All parameters, each from a wide range.
+pub fn params_range<S: Real>(dynamics: Dynamics) -> ParamsRange<S> {
+    let low = Params {
+        length1: 0.5,
+        length2: 0.5,
+        mass1: 0.5,
+        mass2: 0.5,
+        center_of_mass1: 0.0,
+        center_of_mass2: 0.0,
+        inertia1: 0.5,
+        inertia2: 0.5,
+        gravity: 1.6,
+        dt: 0.05,
+        max_velocity1: 5.0,
+        max_velocity2: 5.0,
+        torques: [-2.0, -0.5, 0.5],
+        torque_noise: 0.0,
+        dynamics,
+    };
+    let high = Params {
+        length1: 2.0,
+        length2: 2.0,
+        mass1: 2.0,
+        mass2: 2.0,
+        center_of_mass1: 1.0,
+        center_of_mass2: 1.0,
+        inertia1: 2.0,
+        inertia2: 2.0,
+        gravity: 24.8,
+        dt: 0.3,
+        max_velocity1: 20.0,
+        max_velocity2: 40.0,
+        torques: [-0.5, 0.5, 2.0],
+        torque_noise: 0.5,
+        dynamics,
+    };
+    ParamsRange::new(low.cast(), high.cast()).unwrap()
 }
 
 /// Fails with the text that a page of the docs should contain. Line breaks do not count.

@@ -1,0 +1,334 @@
+//! Steps, with parameters that all acrobots share.
+
+use std::cell::Cell;
+use std::num::NonZeroU32;
+use std::rc::Rc;
+
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, StepResults, VecBatch};
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::Dynamics;
+use acrobot::{Action, Fast, Params, Portable, State};
+use common::params_range;
+
+use crate::twins::{LEVELS, MODES, Twins, bits};
+
+/// Plays through ends and resets in every mode. `len` is more than one block, and not a whole number of blocks.
+fn assert_equals_single_acrobots<A: Arithmetic>(len: usize, steps: u32) {
+    for autoreset in MODES {
+        let mut twins = Twins::<A>::new(len, autoreset);
+        twins.swing(steps);
+        twins.play_randomly(steps);
+    }
+}
+
+#[test]
+fn fast_equals_single_acrobots() {
+    assert_equals_single_acrobots::<Fast>(35, 1200);
+}
+
+#[test]
+fn other_arithmetics_equal_single_acrobots() {
+    assert_equals_single_acrobots::<Reference>(17, 600);
+    assert_equals_single_acrobots::<Portable>(17, 600);
+    assert_equals_single_acrobots::<Micro>(17, 600);
+    assert_equals_single_acrobots::<Host>(17, 600);
+}
+
+/// Tries every width with every SIMD level, and in the last one acrobots whose parameters each reset draws.
+#[test]
+fn a_thousand_acrobots_equal_single_ones_for_ten_thousand_steps() {
+    // With optimization the larger numbers take seconds.
+    let (len, steps) = match cfg!(debug_assertions) {
+        true => (100, 600),
+        false => (1000, 10_000),
+    };
+    fn play<const N: usize>(mut twins: Twins<Fast, N>, steps: u32) {
+        for level in LEVELS {
+            println!("{N} lanes, {level:?}, available: {}", level.is_available());
+            twins.batch.set_simd_level(level);
+            twins.reset(42.into());
+            twins.swing(steps);
+        }
+    }
+    play(Twins::<_, 1>::new(len, Autoreset::NextStep), steps);
+    play(Twins::<_, 4>::new(len, Autoreset::NextStep), steps);
+    play(Twins::<_, 8>::new(len, Autoreset::NextStep), steps);
+    play(Twins::<_, 16>::new(len, Autoreset::NextStep), steps);
+    let mut drawn = Twins::<_, 16>::with_own_params(len, Autoreset::NextStep);
+    let range = params_range(Dynamics::Book);
+    drawn.batch.set_params_range(Some(range)).unwrap();
+    play(drawn, steps);
+}
+
+/// Tries every arithmetic with every SIMD level, in widths below, at and above that of a vector. Initial states are far
+/// outside the bounds, and there is noise.
+#[test]
+fn any_width_equals_single_acrobots() {
+    fn play<A: Arithmetic, const N: usize>() {
+        for level in LEVELS {
+            let mut twins = Twins::<A, N>::new(37, Autoreset::SameStep);
+            twins.batch.set_simd_level(level);
+            twins.swing(200);
+            twins.set_noise(0.5);
+            twins.set_bounds(-100.0, 100.0);
+            // After an episode's end the links turn over, which wraps angles.
+            twins.batch.set_autoreset(Autoreset::Disabled);
+            twins.swing(200);
+        }
+    }
+    play::<Fast, 7>();
+    play::<Fast, 32>();
+    play::<Micro, 7>();
+    play::<Portable, 4>();
+    play::<Portable, 16>();
+    play::<Reference, 16>();
+    play::<Host, 16>();
+}
+
+#[test]
+fn any_size_equals_single_acrobots() {
+    for len in [1, 2, 15, 16, 17, 31, 32, 33, 100] {
+        Twins::<Fast>::new(len, Autoreset::SameStep).swing(200);
+    }
+}
+
+#[test]
+fn other_parameters_noise_and_initial_states_equal_single_acrobots() {
+    let mut rng = Pcg64::new(11);
+    for dynamics in [Dynamics::Book, Dynamics::Nips] {
+        for noise in [0.0, 0.5] {
+            for (size, dt) in [(0.1, 0.2), (3.2, 0.05), (100.0, 0.2), (1e5, 1.0)] {
+                let mut twins = Twins::<Fast>::new(40, Autoreset::NextStep);
+                let mut draw = || uniform(&mut rng, 0.5, 2.0) as f32;
+                twins.set_params(Params {
+                    mass1: draw(),
+                    mass2: draw(),
+                    length1: draw(),
+                    torques: [-draw(), draw() - 1.0, draw()],
+                    torque_noise: noise,
+                    dt,
+                    dynamics,
+                    ..Params::default()
+                });
+                twins.set_bounds(-size, size);
+                twins.swing(700);
+            }
+        }
+    }
+}
+
+/// Plays through ends in every mode, without and with noise.
+#[test]
+fn torques_equal_single_acrobots() {
+    fn play<A: Arithmetic, const N: usize>(len: usize, steps: u32, parallel: bool) {
+        for autoreset in MODES {
+            let mut twins = Twins::<A, N>::new(len, autoreset);
+            let mut rng = Pcg64::new(7);
+            let mut ends = 0;
+            for noise in [0.0, 0.5] {
+                twins.set_noise(noise);
+                twins.set_bounds(-2.0, 2.0);
+                for _ in 0..steps {
+                    let torques = twins.alone.iter().map(|alone| {
+                        let size = uniform(&mut rng, 0.0, 3.0);
+                        let falling = alone.state().dtheta1 > A::Scalar::ZERO;
+                        A::Scalar::from_f64(if falling { -size } else { size })
+                    });
+                    let torques: Vec<_> = torques.collect();
+                    let done = twins.step_torques(&torques, parallel);
+                    ends += done.iter().filter(|done| **done).count();
+                }
+            }
+            assert!(ends > len / 10, "{ends} ends in {autoreset:?}");
+        }
+    }
+    play::<Fast, 16>(35, 300, false);
+    play::<Micro, 16>(35, 300, false);
+    play::<Portable, 16>(35, 300, false);
+    play::<Host, 16>(35, 300, false);
+    // These are more acrobots than a thread takes at once.
+    play::<Portable, 16>(2100, 12, true);
+    play::<Fast, 16>(33_000, 4, true);
+}
+
+/// Here every force is 0 or −0, and beyond 2¹⁹ rad sines can be 0.
+#[test]
+fn zeros_have_the_same_sign_as_in_single_acrobots() {
+    for autoreset in MODES {
+        let mut twins = Twins::<Fast>::new(20, autoreset);
+        twins.set_params(Params {
+            gravity: -0.0,
+            torques: [-0.0; 3],
+            ..Params::DEFAULT
+        });
+        let far = [18_800_440.0, -18_800_440.0, 6_597_069_800_000.0, 1e30];
+        for (theta1, theta2) in far
+            .into_iter()
+            .flat_map(|x| [(0.0, x), (x, 0.0), (-0.0, x), (x, x)])
+        {
+            let state = State {
+                theta1,
+                theta2,
+                dtheta1: -0.0,
+                dtheta2: -0.0,
+            };
+            twins.reset_to(&[state; 20]);
+            twins.swing(2);
+        }
+    }
+}
+
+/// Lanes have the sines of one number at any angle, also where they overflow.
+#[test]
+fn any_angle_steps_as_in_single_acrobots() {
+    const STRIDE: usize = if cfg!(debug_assertions) { 2048 } else { 256 };
+
+    fn check<A: Arithmetic<Scalar = f32>>() {
+        let mut twins = Twins::<A>::new(1024, Autoreset::Disabled);
+        // At rest and without a torque a step changes the angles little.
+        for first in (0..f32::INFINITY.to_bits()).step_by(1024 * STRIDE) {
+            for sign in [1.0, -1.0] {
+                let angle = |i| sign * f32::from_bits(first + i);
+                let states = (0..1024).map(|i| State::from([angle(i), angle(1023 - i), 0.0, 0.0]));
+                twins.reset_to(&states.collect::<Vec<_>>());
+                twins.step(&[Action::Zero; 1024]);
+            }
+        }
+    }
+    check::<Fast>();
+    check::<Micro>();
+}
+
+/// Every bit of the results of a step.
+fn bits_of(results: StepResults<'_>) -> [Vec<u32>; 5] {
+    let bits = |xs: &[f32]| xs.iter().map(|x| x.to_bits()).collect();
+    let ends = |xs: &[bool]| xs.iter().map(|x| u32::from(*x)).collect();
+    [
+        bits(results.rewards),
+        ends(results.terminated),
+        ends(results.truncated),
+        bits(results.observations.as_flattened()),
+        bits(results.final_observations.as_flattened()),
+    ]
+}
+
+/// Steps on all cores equal those on one, with actions and with torques, with shared and with drawn parameters.
+#[test]
+fn threads_change_no_bit() {
+    let (seed, len) = (SeedSequence::new(3), 50_003);
+    let shared = VecBatch::<Fast>::new(seed.clone(), len).unwrap();
+    let mut own = VecBatch::with_own_params(seed, len).unwrap();
+    let range = params_range(Dynamics::Book);
+    own.set_params_range(Some(range)).unwrap();
+    own.reset();
+    for mut one in [shared, own] {
+        one.set_autoreset(Autoreset::SameStep);
+        one.set_limit(NonZeroU32::new(7).unwrap());
+        let mut many = one.clone();
+        let mut rng = Pcg64::new(1);
+        // This exceeds the limit of steps twice, with optimization eight times.
+        for _ in 0..if cfg!(debug_assertions) { 16 } else { 60 } {
+            let actions: Vec<Action> = (0..len).map(|_| Action::sample(&mut rng)).collect();
+            let alone = bits_of(one.step(&actions).unwrap());
+            assert!(alone == bits_of(many.par_step(&actions).unwrap()));
+            let torques = (0..len).map(|_| uniform(&mut rng, -2.0, 2.0) as f32);
+            let torques: Vec<f32> = torques.collect();
+            let alone = bits_of(one.step(&torques).unwrap());
+            assert!(alone == bits_of(many.par_step(&torques).unwrap()));
+        }
+        for i in 0..len {
+            let [one, many] = [&one, &many].map(|batch| batch.member(i).unwrap());
+            assert_eq!(bits(one.state), bits(many.state), "acrobot {i}");
+            assert_eq!(one, many, "acrobot {i}");
+        }
+    }
+}
+
+/// A user's slices can differ in length from one call to the next. Steps on all cores and on one then do the same.
+#[test]
+fn slices_that_change_their_length_cannot_panic() {
+    #[derive(Clone)]
+    struct Fickle<T> {
+        all: Vec<T>,
+        changed: Rc<Cell<usize>>,
+    }
+
+    impl<T: Clone> Fickle<T> {
+        fn new(value: T, len: usize) -> Self {
+            Self {
+                all: vec![value; len],
+                changed: Rc::new(len.into()),
+            }
+        }
+    }
+
+    impl<T> AsRef<[T]> for Fickle<T> {
+        fn as_ref(&self) -> &[T] {
+            &self.all
+        }
+    }
+
+    impl<T> AsMut<[T]> for Fickle<T> {
+        fn as_mut(&mut self) -> &mut [T] {
+            &mut self.all[..self.changed.get()]
+        }
+    }
+
+    let len = 5000_usize;
+    let all = len.div_ceil(Block::<Portable>::LANES);
+    for (own, changed) in [
+        (0, [all, 17, 0]),
+        (0, [all, 0, 0]),
+        (0, [100, len, 0]),
+        (0, [0, len, 0]),
+        (0, [all, len, 0]),
+        (all, [all, 17, all]),
+        (all, [100, len, all]),
+        (all, [all, len, 100]),
+        (all, [all, len, 0]),
+        (all, [all, len, all]),
+    ] {
+        let memory = (
+            Fickle::new(Block::EMPTY, all),
+            Fickle::new(Pcg64::UNSEEDED, len),
+            Fickle::new(LaneParams::default(), own),
+        );
+        let lengths = [&memory.0.changed, &memory.1.changed, &memory.2.changed].map(Rc::clone);
+        let mut one = Batch::<Portable, _>::new(3, memory).unwrap();
+        one.set_limit(NonZeroU32::MIN);
+        let mut many = one.clone();
+        for (len, changed) in lengths.into_iter().zip(changed) {
+            len.set(changed);
+        }
+        let step = |batch: &mut Batch<_, _>, parallel| {
+            let (mut rewards, mut terminated, mut truncated) =
+                (vec![9.0; len], vec![true; len], vec![true; len]);
+            let mut rows = vec![[9.0; 6]; len];
+            let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+                .with_observations(&mut rows);
+            let torques = &vec![1.0; len];
+            if parallel {
+                batch.par_step(torques, buffers).unwrap();
+            } else {
+                batch.step(torques, buffers).unwrap();
+            }
+            (rewards, terminated, truncated, rows)
+        };
+        for _ in 0..2 {
+            assert!(step(&mut one, false) == step(&mut many, true));
+        }
+        for batch in [&mut one, &mut many] {
+            batch.reset();
+            batch.set_autoreset(Autoreset::SameStep);
+            for index in [0, 16, 17, 1600, len - 1] {
+                let _ = batch.set_state(index, State::HANGING);
+                let _ = batch.set_params_of(index, Params::DEFAULT);
+                if let Some(member) = batch.member(index) {
+                    let _ = batch.set_member(index, member);
+                }
+            }
+        }
+        assert!(step(&mut one, false) == step(&mut many, true));
+    }
+}

@@ -1,0 +1,262 @@
+//! A batch beside single acrobots.
+
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, SimdLevel, StepBuffers, VecBatch};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::ResetBounds;
+use acrobot::{Acrobot, Action, Error, Observation, Params, ResetOptions, State, Step, TimeLimit};
+use bits::against;
+
+pub const MODES: [Autoreset; 3] = [
+    Autoreset::NextStep,
+    Autoreset::SameStep,
+    Autoreset::Disabled,
+];
+
+/// A level that the machine does not have acts as the baseline.
+pub const LEVELS: [SimdLevel; 3] = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
+
+pub type InVecs<A, const N: usize> =
+    Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>), N>;
+
+/// A batch and its scalar twins.
+pub struct Twins<A: Arithmetic, const N: usize = 16> {
+    pub batch: VecBatch<A, N>,
+    pub alone: Vec<TimeLimit<Acrobot<A>>>,
+    /// Whether the next step resets each of `alone`.
+    pub pending: Vec<bool>,
+}
+
+impl<A: Arithmetic, const N: usize> Twins<A, N> {
+    pub fn new(len: usize, autoreset: Autoreset) -> Self {
+        Self::of(VecBatch::new(SeedSequence::new(42), len), autoreset)
+    }
+
+    pub fn with_own_params(len: usize, autoreset: Autoreset) -> Self {
+        let batch = VecBatch::with_own_params(SeedSequence::new(42), len);
+        Self::of(batch, autoreset)
+    }
+
+    /// Twins of a new batch with the seed 42.
+    fn of(batch: Result<VecBatch<A, N>, Error>, autoreset: Autoreset) -> Self {
+        let mut batch = batch.unwrap();
+        batch.set_autoreset(autoreset);
+        let seeds = SeedSequence::new(42).spawn(batch.len() as u64);
+        Self {
+            alone: seeds
+                .map(|seed| TimeLimit::v1(Acrobot::with_rng(seed.into())))
+                .collect(),
+            pending: vec![false; batch.len()],
+            batch,
+        }
+    }
+
+    pub fn set_params(&mut self, params: Params<A::Scalar>) {
+        self.batch.set_params(params).unwrap();
+        for alone in &mut self.alone {
+            alone.set_params(params).unwrap();
+        }
+        self.assert_equal();
+    }
+
+    pub fn set_params_of_each(&mut self, params: &[Params<A::Scalar>]) {
+        for (i, alone) in self.alone.iter_mut().enumerate() {
+            self.batch.set_params_of(i, params[i]).unwrap();
+            alone.set_params(params[i]).unwrap();
+        }
+        self.assert_equal();
+    }
+
+    pub fn set_noise(&mut self, noise: f64) {
+        self.set_params(Params {
+            torque_noise: A::Scalar::from_f64(noise),
+            ..self.batch.params_of(0).unwrap()
+        });
+    }
+
+    pub fn reset(&mut self, options: ResetOptions) {
+        let rows = self.batch.reset_with(options.clone()).to_vec();
+        let mut expected = Vec::new();
+        for (alone, i) in self.alone.iter_mut().zip(0..) {
+            let seed = options.seed.as_ref().map(|seed| seed.child(i));
+            let options = ResetOptions { seed, ..options };
+            expected.push(reset_one(&self.batch, alone, options));
+        }
+        self.pending.fill(false);
+        assert!(rows.iter().zip(expected).all(|(row, x)| equal(row, &x)));
+        self.assert_equal();
+    }
+
+    /// Sets the bounds of initial states, and resets all.
+    pub fn set_bounds(&mut self, low: f64, high: f64) {
+        let bounds = ResetBounds::new(low, high).unwrap();
+        self.batch.set_reset_bounds(bounds);
+        self.reset(ResetOptions::default());
+    }
+
+    /// Call it when the batch has reset those whose reset was pending.
+    pub fn reset_pending(&mut self) {
+        for (alone, pending) in self.alone.iter_mut().zip(&mut self.pending) {
+            if std::mem::take(pending) {
+                reset_one(&self.batch, alone, ResetOptions::default());
+            }
+        }
+        self.assert_equal();
+    }
+
+    /// Call it after a reset of the batch. It resets each scalar twin by its index, and compares every bit.
+    pub fn reset_alone(&mut self, reset: impl Fn(usize, &mut TimeLimit<Acrobot<A>>)) {
+        for (i, alone) in self.alone.iter_mut().enumerate() {
+            reset(i, alone);
+        }
+        self.pending.fill(false);
+        self.assert_equal();
+    }
+
+    /// Begins an episode of each in a given state.
+    pub fn reset_to(&mut self, states: &[State<A::Scalar>]) {
+        self.batch.reset_to(states).unwrap();
+        self.reset_alone(|i, alone| {
+            let mut inner = alone.inner().clone();
+            inner.set_state(states[i]).unwrap();
+            *alone = TimeLimit::v1(inner);
+        });
+    }
+
+    /// Steps both with the same actions and compares every bit. Returns which episodes ended.
+    pub fn step(&mut self, actions: &[Action]) -> Vec<bool> {
+        self.step_by(
+            |batch, buffers| batch.step(actions, buffers),
+            |i, alone| alone.step(actions[i]),
+        )
+    }
+
+    /// [`step`](Self::step) with torques, on one core or on all.
+    pub fn step_torques(&mut self, torques: &[A::Scalar], parallel: bool) -> Vec<bool> {
+        self.step_by(
+            |batch, buffers| match parallel {
+                true => batch.par_step(torques, buffers),
+                false => batch.step(torques, buffers),
+            },
+            |i, alone| alone.step_torque(torques[i]).unwrap(),
+        )
+    }
+
+    fn step_by(
+        &mut self,
+        step: impl FnOnce(&mut InVecs<A, N>, StepBuffers<'_>) -> Result<(), Error>,
+        step_alone: impl Fn(usize, &mut TimeLimit<Acrobot<A>>) -> Step,
+    ) -> Vec<bool> {
+        let len = self.alone.len();
+        let (mut rewards, mut terminated, mut truncated) =
+            (vec![9.0; len], vec![true; len], vec![true; len]);
+        let (mut rows, mut finals) = (vec![[9.0; 6]; len], vec![[9.0; 6]; len]);
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
+            .with_observations(&mut rows)
+            .with_final_observations(&mut finals);
+        step(&mut self.batch, buffers).unwrap();
+        let autoreset = self.batch.autoreset();
+        let reset = |alone: &mut _| reset_one(&self.batch, alone, ResetOptions::default());
+        let mut done = vec![false; len];
+        for (i, alone) in self.alone.iter_mut().enumerate() {
+            let mut last = [9.0; 6].into();
+            let expected = if std::mem::take(&mut self.pending[i]) {
+                (reset(alone), 0.0, false, false)
+            } else {
+                let step = step_alone(i, alone);
+                done[i] = step.done();
+                let mut observation = step.observation;
+                match autoreset {
+                    Autoreset::SameStep if done[i] => {
+                        last = observation;
+                        observation = reset(alone);
+                    }
+                    Autoreset::NextStep => self.pending[i] = done[i],
+                    _ => {}
+                }
+                (observation, step.reward, step.terminated, step.truncated)
+            };
+            assert!(equal(&rows[i], &expected.0), "acrobot {i}");
+            assert!(equal(&finals[i], &last), "acrobot {i}");
+            assert_eq!(
+                (rewards[i], terminated[i], truncated[i]),
+                (expected.1, expected.2, expected.3)
+            );
+        }
+        self.assert_equal();
+        done
+    }
+
+    /// Compares every bit of the states, the steps since the last reset, the generators and the parameters.
+    pub fn assert_equal(&self) {
+        for (i, alone) in self.alone.iter().enumerate() {
+            let member = self.batch.member(i).unwrap();
+            let inner = alone.inner();
+            assert_eq!(bits(member.state), bits(inner.state()), "acrobot {i}");
+            assert_eq!(member.elapsed, alone.elapsed(), "acrobot {i}");
+            assert_eq!(self.batch.elapsed(i), Some(member.elapsed));
+            assert_eq!(member.reset_pending, self.pending[i], "acrobot {i}");
+            assert_eq!(member.rng, *inner.rng(), "acrobot {i}");
+            assert_eq!(member.params, *inner.params(), "acrobot {i}");
+            assert_eq!(self.batch.params_of(i), Some(member.params));
+        }
+    }
+
+    /// Torque against θ̇1, which reaches the goal.
+    pub fn swinging(&self) -> Vec<Action> {
+        let velocities = self.alone.iter().map(|alone| alone.state().dtheta1);
+        velocities.map(against).collect()
+    }
+
+    pub fn swing(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.step(&self.swinging());
+        }
+    }
+
+    /// Returns the first acrobot whose reset is pending.
+    pub fn swing_until_pending(&mut self) -> usize {
+        loop {
+            if let Some(index) = self.pending.iter().position(|pending| *pending) {
+                return index;
+            }
+            self.swing(1);
+        }
+    }
+
+    pub fn play_randomly(&mut self, steps: u32) {
+        let mut rng = Pcg64::new(7);
+        for _ in 0..steps {
+            let random = self.alone.iter().map(|_| Action::sample(&mut rng));
+            self.step(&random.collect::<Vec<_>>());
+        }
+    }
+}
+
+/// What a reset of a batch does to one acrobot. Its seed is the acrobot's own.
+fn reset_one<A: Arithmetic, const N: usize>(
+    batch: &VecBatch<A, N>,
+    alone: &mut TimeLimit<Acrobot<A>>,
+    ResetOptions { mut seed, bounds }: ResetOptions,
+) -> Observation {
+    if let Some(range) = batch.params_range() {
+        let rng = alone.inner_mut().rng_mut();
+        if let Some(seed) = seed.take() {
+            *rng = seed.into();
+        }
+        let params = range.draw(rng);
+        alone.set_params(params).unwrap();
+    }
+    let bounds = Some(bounds.unwrap_or(batch.reset_bounds()));
+    alone.reset_with(ResetOptions { seed, bounds })
+}
+
+/// Whether a row has the bits of an observation.
+pub fn equal(row: &[f32; 6], observation: &Observation) -> bool {
+    row.map(f32::to_bits) == observation.to_array().map(f32::to_bits)
+}
+
+/// The bits of a state, which distinguish 0 from −0.
+pub fn bits<S: Real>(state: State<S>) -> [u64; 4] {
+    <[S; 4]>::from(state).map(|x| x.to_f64().to_bits())
+}
