@@ -168,10 +168,10 @@ fn play(mut batch: VecBatch<Fast>, params: Params<f32>) -> Result<Cell, acrobot:
     };
     for step in 1..=LIMIT {
         let results = batch.step(&actions)?;
-        for (action, observation) in actions.iter_mut().zip(results.observations) {
+        for (action, observation) in actions.iter_mut().zip(&results.observations) {
             *action = against(observation);
         }
-        for (running, &terminated) in running.iter_mut().zip(results.terminated) {
+        for (running, &terminated) in running.iter_mut().zip(&results.terminated) {
             if *running && terminated {
                 *running = false;
                 cell.reached += 1;

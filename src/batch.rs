@@ -99,24 +99,14 @@ pub struct Batch<A: Arithmetic, S, const N: usize = 16> {
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
-    /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child of `seed` and is in its
-    /// initial state. The batch has the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
+    /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet
+    /// spawned, and is in its initial state. The batch has the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
     ///
     /// # Errors
     ///
     /// [`Error::EmptyBatch`] without generators, and [`Error::WrongLength`] unless there is one block for each `N`
     /// generators, and one [`LaneParams`] for each block or none. The last block may be partly filled.
-    pub fn new(seed: u64, storage: S) -> Result<Self, Error> {
-        Self::with_seed(SeedSequence::new(seed), storage)
-    }
-
-    /// As [`new`](Self::new), with a seed of any size. Acrobot `i` is seeded with the `i`-th child that `seed` has not
-    /// yet spawned.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`new`](Self::new).
-    pub fn with_seed(seed: SeedSequence, mut storage: S) -> Result<Self, Error> {
+    pub fn new(seed: impl Into<SeedSequence>, mut storage: S) -> Result<Self, Error> {
         const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
         let (blocks, generators, lane_params) = storage.slices_mut();
         if generators.is_empty() {
@@ -140,7 +130,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
             simd_level: SimdLevel::widest(),
             storage,
         };
-        batch.reset_with(seed.into());
+        batch.reset_with(seed.into().into());
         Ok(batch)
     }
 
@@ -246,7 +236,10 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// that is not finite.
     pub fn set_state(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
-        self.block_of_mut(index)?.set_state(index % N, state);
+        self.block_of(index)?;
+        if let Some(block) = self.storage.slices_mut().0.get_mut(index / N) {
+            block.set_state(index % N, state);
+        }
         Ok(())
     }
 
@@ -255,13 +248,6 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         let (blocks, generators, _) = self.storage.slices();
         let len = generators.len();
         let block = blocks.get(index / N).filter(|_| index < len);
-        block.ok_or(Error::NoSuchIndex { index, len })
-    }
-
-    fn block_of_mut(&mut self, index: usize) -> Result<&mut Block<A, N>, Error> {
-        let (blocks, generators, _) = self.storage.slices_mut();
-        let len = generators.len();
-        let block = blocks.get_mut(index / N).filter(|_| index < len);
         block.ok_or(Error::NoSuchIndex { index, len })
     }
 

@@ -39,8 +39,6 @@ pub use space::{BoxSpace, DiscreteSpace, Space};
 pub use statistics::RecordEpisodeStatistics;
 
 use crate::acrobot::Step;
-
-use crate::numpy::SeedSequence;
 use crate::reset_options::ResetOptions;
 
 /// An environment: Gymnasium's `Env`, with its types known at compile time.
@@ -92,10 +90,7 @@ pub trait Env {
 
     /// Gymnasium's `reset(seed=seed)`.
     fn reset_with_seed(&mut self, seed: u64) -> (Self::Observation, Info) {
-        self.reset_with(ResetOptions {
-            seed: Some(SeedSequence::new(seed)),
-            ..ResetOptions::default()
-        })
+        self.reset_with(seed.into())
     }
 
     /// Takes one step.

@@ -36,16 +36,9 @@ pub enum Error {
         /// The moment of inertia given, kg m².
         value: f64,
     },
-    /// The lower reset bound is above the upper one.
-    ReversedBounds {
-        /// The lower bound given, rad and rad/s.
-        low: f64,
-        /// The upper bound given, rad and rad/s.
-        high: f64,
-    },
-    /// The lower bound of a parameter's range is above the upper one.
+    /// The lower bound of initial states, or of a parameter, is above the upper one.
     ReversedRange {
-        /// The parameter.
+        /// `"reset bound"` or the parameter.
         name: &'static str,
         /// The lower bound given, in `unit`.
         low: f64,
@@ -114,10 +107,6 @@ impl fmt::Display for Error {
             Self::NoInertia { name, value } => write!(
                 f,
                 "{name} must be above 0 kg m² if the centre of mass is on the joint, got {value}"
-            ),
-            Self::ReversedBounds { low, high } => write!(
-                f,
-                "low must not be above high, got {low} and {high} rad and rad/s"
             ),
             Self::ReversedRange {
                 name,

@@ -19,13 +19,6 @@
 //! | how well it learns | [`learning`] |
 //! | how well any policy can do | [`optimum`] |
 //!
-//! ```
-//! use acrobot::{Acrobot, Action, Fast};
-//!
-//! let step = Acrobot::<Fast>::new(42).step(Action::Positive);
-//! assert!(!step.done());
-//! ```
-//!
 //! # Files
 //!
 //! Paths such as `examples/cortex-m` and `tests/data` are in the repository, beside the crate's source.

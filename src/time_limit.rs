@@ -5,7 +5,6 @@ use core::num::NonZeroU32;
 use rand_core::Rng;
 
 use crate::acrobot::{Acrobot, Step};
-
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
@@ -35,7 +34,7 @@ const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
 pub struct TimeLimit<E> {
     pub(crate) inner: E,
     limit: NonZeroU32,
-    elapsed: u32,
+    pub(crate) elapsed: u32,
 }
 
 impl<E> TimeLimit<E> {
@@ -99,12 +98,6 @@ impl<E> TimeLimit<E> {
         self.inner
     }
 
-    /// Sets the count of steps to 0.
-    #[inline]
-    pub(crate) fn restart(&mut self) {
-        self.elapsed = 0;
-    }
-
     /// Counts a step. Returns whether the episode is truncated.
     #[inline]
     pub(crate) fn count(&mut self) -> bool {
@@ -116,13 +109,13 @@ impl<E> TimeLimit<E> {
 impl<A: Arithmetic> TimeLimit<Acrobot<A>> {
     /// Calls [`Acrobot::reset_with_seed`] and sets the count of steps to 0.
     pub fn reset_with_seed(&mut self, seed: u64) -> Observation {
-        self.restart();
+        self.elapsed = 0;
         self.inner.reset_with_seed(seed)
     }
 
     /// Calls [`Acrobot::reset_with`] and sets the count of steps to 0.
     pub fn reset_with(&mut self, options: ResetOptions) -> Observation {
-        self.restart();
+        self.elapsed = 0;
         self.inner.reset_with(options)
     }
 }
@@ -164,7 +157,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
 impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
     /// Calls [`Acrobot::reset`] and sets the count of steps to 0.
     pub fn reset(&mut self) -> Observation {
-        self.restart();
+        self.elapsed = 0;
         self.inner.reset()
     }
 

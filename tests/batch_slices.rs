@@ -108,7 +108,7 @@ fn settings_are_returned_as_set() {
 fn a_batch_takes_seeds_of_any_size() {
     let seed: SeedSequence = "340282366920938463463374607431768211456".parse().unwrap();
     let memory = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
-    let batch = Small::<2, 20>::with_seed(seed.clone(), memory).unwrap();
+    let batch = Small::<2, 20>::new(seed.clone(), memory).unwrap();
     let mut reset = small::<2, 20>().unwrap();
     assert_ne!(members(&batch), members(&reset));
     reset.reset_with(seed.clone().into());

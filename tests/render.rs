@@ -9,7 +9,7 @@ use common::canvas::Canvas;
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Point, Size};
-use embedded_graphics::pixelcolor::{BinaryColor, Rgb888, RgbColor};
+use embedded_graphics::pixelcolor::BinaryColor;
 
 fn figure(theta1: f64, theta2: f64) -> Figure {
     figure_of([theta1, theta2, 1.0, 1.0])

@@ -143,7 +143,7 @@ fn there_is_always_a_next_child() {
     assert_eq!(next.generate_state(), words);
 
     let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 1]);
-    let batch = Batch::<Fast, _>::with_seed(seed, memory).unwrap();
+    let batch = Batch::<Fast, _>::new(seed, memory).unwrap();
     let alone = Acrobot::<Fast>::with_rng(next.into());
     assert_eq!(batch.state(0), Some(alone.state()));
 }
@@ -153,31 +153,21 @@ fn integers_of_every_width_are_seeds() {
     let five = SeedSequence::new(5);
     assert_eq!(SeedSequence::from_words(&[5]), five);
     assert_eq!(SeedSequence::from_words(&[5, 0, 0, 0, 0, 0]), five);
-    assert_eq!(SeedSequence::from(5_u64), five);
-    assert_eq!(SeedSequence::from(5_u128), five);
+    assert_eq!(SeedSequence::from(5), five);
     const MAX: u32 = u32::MAX;
-    for (sequence, words, decimal) in [
-        (SeedSequence::new(MAX.into()), &[MAX][..], "4294967295"),
+    for (words, decimal) in [
+        (&[MAX][..], "4294967295"),
+        (&[MAX, MAX], "18446744073709551615"),
         (
-            SeedSequence::from(u64::MAX),
-            &[MAX, MAX],
-            "18446744073709551615",
-        ),
-        (
-            SeedSequence::from(u128::MAX),
             &[MAX, MAX, MAX, MAX],
             "340282366920938463463374607431768211455",
         ),
-        (
-            SeedSequence::from((1_u128 << 96) + (2 << 64) + (3 << 32) + 4),
-            &[4, 3, 2, 1],
-            "79228162551157825753847955460",
-        ),
+        (&[4, 3, 2, 1], "79228162551157825753847955460"),
     ] {
-        assert_eq!(sequence, SeedSequence::from_words(words));
-        assert_eq!(sequence, seed(decimal));
+        assert_eq!(SeedSequence::from_words(words), seed(decimal));
     }
-    assert_eq!(SeedSequence::new(u64::MAX), SeedSequence::from(u64::MAX));
+    assert_eq!(SeedSequence::new(MAX.into()), seed("4294967295"));
+    assert_eq!(SeedSequence::new(u64::MAX), seed("18446744073709551615"));
     assert_eq!(Pcg64::seed_from_u64(42), Pcg64::new(42));
     assert_eq!(Pcg64::from(SeedSequence::new(42)), Pcg64::new(42));
     let mut bytes = [0; 32];

@@ -62,7 +62,7 @@ fn errors_name_the_value_and_the_rule() {
         ),
         (
             bounds(0.2, -0.2),
-            "low must not be above high, got 0.2 and -0.2 rad and rad/s",
+            "the lower reset bound must not be above the upper one, got 0.2 and -0.2 rad and rad/s",
         ),
         (
             range(|params| params.mass2 = 3.0, |_| {}),
@@ -281,9 +281,11 @@ fn bad_reset_bounds_and_actions_are_rejected() {
     }
     assert_eq!(
         ResetBounds::new(0.2, 0.1),
-        Err(Error::ReversedBounds {
+        Err(Error::ReversedRange {
+            name: "reset bound",
             low: 0.2,
-            high: 0.1
+            high: 0.1,
+            unit: "rad and rad/s"
         })
     );
     for (number, action) in (0..3).zip(Action::ALL) {

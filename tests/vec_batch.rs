@@ -1,6 +1,6 @@
 //! The batch that owns its memory: its results, and another batch in its place.
 
-use acrobot::batch::{Autoreset, Batch, Block, StepBuffers, StepResults, VecBatch};
+use acrobot::batch::{Autoreset, Batch, Block, StepBuffers, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Fast, ResetOptions};
 
@@ -25,14 +25,12 @@ fn check_beside_arrays<const N: usize>() {
             .with_observations(&mut observations)
             .with_final_observations(&mut final_observations);
         arrays.step(&[2_u8; 20], buffers).unwrap();
-        let expected = StepResults {
-            rewards: &rewards,
-            terminated: &terminated,
-            truncated: &truncated,
-            observations: &observations,
-            final_observations: &final_observations,
-        };
-        assert_eq!(owning.step(&[2_u8; 20]).unwrap(), expected);
+        let results = owning.step(&[2_u8; 20]).unwrap();
+        assert_eq!(results.rewards, rewards);
+        assert_eq!(results.terminated, terminated);
+        assert_eq!(results.truncated, truncated);
+        assert_eq!(results.observations, observations);
+        assert_eq!(results.final_observations, final_observations);
     }
 }
 

@@ -38,20 +38,16 @@ impl<'a> StepBuffers<'a> {
 
     /// The same buffers, and one for the observations.
     #[must_use]
-    pub fn with_observations(self, observations: &'a mut [[f32; 6]]) -> Self {
-        Self {
-            observations: Some(observations),
-            ..self
-        }
+    pub fn with_observations(mut self, observations: &'a mut [[f32; 6]]) -> Self {
+        self.observations = Some(observations);
+        self
     }
 
     /// The same buffers, and one for the last observations of episodes that end.
     #[must_use]
-    pub fn with_final_observations(self, final_observations: &'a mut [[f32; 6]]) -> Self {
-        Self {
-            final_observations: Some(final_observations),
-            ..self
-        }
+    pub fn with_final_observations(mut self, final_observations: &'a mut [[f32; 6]]) -> Self {
+        self.final_observations = Some(final_observations);
+        self
     }
 
     /// Splits off the buffers of the first `n` acrobots, or of all if there are fewer.

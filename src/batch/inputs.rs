@@ -53,19 +53,19 @@ impl<S: Real> Inputs<'_, S> {
 
     /// Rejects a wrong number of inputs, unknown actions, and torques that are not finite.
     pub(super) fn check(&self, expected: usize) -> Result<(), Error> {
-        let (name, len) = match self {
-            Self::Numbers(numbers) => ("actions", numbers.len()),
-            Self::Actions(actions) => ("actions", actions.len()),
-            Self::Torques(torques) => ("torques", torques.len()),
-        };
-        check_length(name, len, expected)?;
         match self {
-            Self::Numbers(numbers) => match numbers.iter().copied().fold(0, u8::max) {
-                0..=2 => Ok(()),
-                highest => Err(Error::UnknownAction(highest)),
-            },
-            Self::Actions(_) => Ok(()),
-            Self::Torques(torques) => torques.iter().try_for_each(|torque| check_torque(*torque)),
+            Self::Numbers(numbers) => {
+                check_length("actions", numbers.len(), expected)?;
+                match numbers.iter().copied().fold(0, u8::max) {
+                    0..=2 => Ok(()),
+                    highest => Err(Error::UnknownAction(highest)),
+                }
+            }
+            Self::Actions(actions) => check_length("actions", actions.len(), expected),
+            Self::Torques(torques) => {
+                check_length("torques", torques.len(), expected)?;
+                torques.iter().try_for_each(|torque| check_torque(*torque))
+            }
         }
     }
 

@@ -15,7 +15,6 @@ use super::vec_batch::VecBatch;
 use super::{Autoreset, Batch, Member, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
-#[cfg(feature = "alloc")]
 use crate::numpy::SeedSequence;
 use crate::physics::{Params, ParamsRange, ResetBounds};
 use crate::snapshot::{Header, Subject};
@@ -84,7 +83,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         D: Deserializer<'de>,
         A::Scalar: Deserialize<'de>,
     {
-        let mut batch = Self::new(0, storage).map_err(D::Error::custom)?;
+        let mut batch = Self::new(SeedSequence::new(0), storage).map_err(D::Error::custom)?;
         let mut index = 0;
         let settings = read(deserializer, |member| {
             index += 1;

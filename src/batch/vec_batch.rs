@@ -52,32 +52,24 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 #[derive(Clone, Debug)]
 pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
     batch: InVecs<A, N>,
-    results: Memory,
+    results: StepResults,
 }
 
-/// What a step of a [`VecBatch`] returns. Each slice has one element for each acrobot. The next step overwrites them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepResults<'a> {
+/// The results of a step of a [`VecBatch`], with one element for each acrobot. The next step overwrites them.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct StepResults {
     /// −1, or 0 if the acrobot terminated or was only reset.
-    pub rewards: &'a [f32],
+    pub rewards: Vec<f32>,
     /// Whether the new state is a goal state.
-    pub terminated: &'a [bool],
+    pub terminated: Vec<bool>,
     /// Whether the time limit is reached.
-    pub truncated: &'a [bool],
+    pub truncated: Vec<bool>,
     /// The observations of the new states.
-    pub observations: &'a [[f32; 6]],
+    pub observations: Vec<[f32; 6]>,
     /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the episodes that this step
     /// ended. Those of other acrobots are older, or 0.
-    pub final_observations: &'a [[f32; 6]],
-}
-
-#[derive(Clone, Debug, Default)]
-struct Memory {
-    rewards: Vec<f32>,
-    terminated: Vec<bool>,
-    truncated: Vec<bool>,
-    observations: Vec<[f32; 6]>,
-    final_observations: Vec<[f32; 6]>,
+    pub final_observations: Vec<[f32; 6]>,
 }
 
 impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
@@ -111,8 +103,8 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
             fill(Pcg64::UNSEEDED, len, len)?,
             fill(LaneParams::default(), lane_params, len)?,
         );
-        let batch = Batch::with_seed(seed, storage)?;
-        let results = Memory::default();
+        let batch = Batch::new(seed, storage)?;
+        let results = StepResults::default();
         let mut batch = Self { batch, results };
         batch.fit_results()?;
         Ok(batch)
@@ -152,8 +144,8 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     fn fit_results(&mut self) -> Result<(), Error> {
         let len = self.batch.len();
         if self.results.rewards.len() != len {
-            self.results = Memory::default();
-            self.results = Memory {
+            self.results = StepResults::default();
+            self.results = StepResults {
                 rewards: fill(0.0, len, len)?,
                 terminated: fill(false, len, len)?,
                 truncated: fill(false, len, len)?,
@@ -179,7 +171,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     /// # Errors
     ///
     /// Those of [`Batch::step`].
-    pub fn step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<StepResults<'_>, Error> {
+    pub fn step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.step(inputs, buffers))
     }
 
@@ -189,10 +181,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     ///
     /// Those of [`Batch::step`].
     #[cfg(feature = "rayon")]
-    pub fn par_step<I: Input<A::Scalar>>(
-        &mut self,
-        inputs: &[I],
-    ) -> Result<StepResults<'_>, Error> {
+    pub fn par_step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.par_step(inputs, buffers))
     }
 
@@ -200,7 +189,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     fn step_by(
         &mut self,
         step: impl FnOnce(&mut InVecs<A, N>, StepBuffers<'_>) -> Result<(), Error>,
-    ) -> Result<StepResults<'_>, Error> {
+    ) -> Result<&StepResults, Error> {
         self.fit_results()?;
         let Self { batch, results } = self;
         step(
@@ -213,13 +202,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
             .with_observations(&mut results.observations)
             .with_final_observations(&mut results.final_observations),
         )?;
-        Ok(StepResults {
-            rewards: &results.rewards,
-            terminated: &results.terminated,
-            truncated: &results.truncated,
-            observations: &results.observations,
-            final_observations: &results.final_observations,
-        })
+        Ok(results)
     }
 }
 

@@ -10,7 +10,6 @@ use std::thread::{self, ThreadId};
 use super::Error;
 use crate::acrobot::Acrobot;
 use crate::arithmetic::Arithmetic;
-use crate::physics::State;
 use crate::render::{self, Figure, Frame};
 
 /// A function that shows the frames of [`RenderMode::Human`], for example in a window.
@@ -104,12 +103,7 @@ impl RenderMode {
             Self::None => Err(Error::NoRenderMode),
             Self::RgbArray => Ok(Rendering::Frame(Frame::of(&Figure::new(acrobot)))),
             Self::Ansi => {
-                let State {
-                    theta1,
-                    theta2,
-                    dtheta1,
-                    dtheta2,
-                } = acrobot.state().cast::<f64>();
+                let [theta1, theta2, dtheta1, dtheta2] = acrobot.state().cast::<f64>().into();
                 let drawing = render::text(&Figure::new(acrobot));
                 Ok(Rendering::Text(format!(
                     "{drawing}\nθ1 {theta1:+.2}  θ2 {theta2:+.2} rad  θ̇1 {dtheta1:+.2}  θ̇2 {dtheta2:+.2} rad/s\n"

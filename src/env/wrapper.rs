@@ -59,7 +59,7 @@ impl<E: Env> Env for TimeLimit<E> {
     forward!(types E);
 
     fn reset_with(&mut self, options: ResetOptions) -> (E::Observation, Info) {
-        self.restart();
+        self.elapsed = 0;
         self.inner.reset_with(options)
     }
 

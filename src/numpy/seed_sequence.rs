@@ -33,8 +33,8 @@ pub struct SeedSequence {
 const SHIFT: u32 = 16;
 
 impl SeedSequence {
-    /// The sequence of `seed`. For longer seeds: [`from_words`](Self::from_words), `From<u128>` and, with `std`,
-    /// `parse` on a decimal text.
+    /// The sequence of `seed`. For longer seeds: [`from_words`](Self::from_words) and, with `std`, `parse` on a decimal
+    /// text.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self::from_words(&[seed as u32, (seed >> 32) as u32])
@@ -171,12 +171,6 @@ const fn mix(x: u32, y: u32) -> u32 {
 impl From<u64> for SeedSequence {
     fn from(seed: u64) -> Self {
         Self::new(seed)
-    }
-}
-
-impl From<u128> for SeedSequence {
-    fn from(seed: u128) -> Self {
-        Self::from_words(&[0, 32, 64, 96].map(|shift| (seed >> shift) as u32))
     }
 }
 

@@ -138,7 +138,7 @@ impl ResetBounds {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedBounds`] for a `low`
+    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedRange`] for a `low`
     /// above `high`.
     pub const fn new(low: f64, high: f64) -> Result<Self, Error> {
         if let Err(error) = Range::InF32.check("low", low, "rad and rad/s") {
@@ -148,7 +148,13 @@ impl ResetBounds {
             return Err(error);
         }
         if low > high {
-            return Err(Error::ReversedBounds { low, high });
+            let (name, unit) = ("reset bound", "rad and rad/s");
+            return Err(Error::ReversedRange {
+                name,
+                low,
+                high,
+                unit,
+            });
         }
         Ok(Self { low, high })
     }

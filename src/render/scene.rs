@@ -124,7 +124,10 @@ impl Scene {
                 Bar::new(center, elbow, thickness),
                 Bar::new(elbow, tip, thickness),
             ],
-            joints: [Disc::new(center, thickness), Disc::new(elbow, thickness)],
+            joints: [center, elbow].map(|center| Disc {
+                center,
+                radius: thickness,
+            }),
             arrow: room.then(|| arrow(elbow, 0.3 * metre, f32::from(figure.torque))),
         })
     }
@@ -258,10 +261,6 @@ struct Disc {
 }
 
 impl Disc {
-    fn new(center: Vector, radius: f32) -> Self {
-        Self { center, radius }
-    }
-
     fn covers(&self, point: Point) -> bool {
         let Vector { x, y } = self.center.to(point);
         x * x + y * y <= self.radius * self.radius

@@ -201,13 +201,13 @@ fn any_angle_steps_as_in_single_acrobots() {
 }
 
 /// Every bit of the results of a step.
-fn bits_of(results: StepResults<'_>) -> [Vec<u32>; 5] {
+fn bits_of(results: &StepResults) -> [Vec<u32>; 5] {
     let bits = |xs: &[f32]| xs.iter().map(|x| x.to_bits()).collect();
     let ends = |xs: &[bool]| xs.iter().map(|x| u32::from(*x)).collect();
     [
-        bits(results.rewards),
-        ends(results.terminated),
-        ends(results.truncated),
+        bits(&results.rewards),
+        ends(&results.terminated),
+        ends(&results.truncated),
         bits(results.observations.as_flattened()),
         bits(results.final_observations.as_flattened()),
     ]

@@ -42,7 +42,7 @@ swing_up --save no/weights => must be a file in an existing folder
 swing_up --pictures no => must be an existing folder
 trace --seed -5 => got '-' as character 1
 trace --seed 1 --low -inf => low must be from -3.4e38 to
-trace --seed 1 --low 0.2 => low must not be above high, got 0.2 and 0.1
+trace --seed 1 --low 0.2 => the lower reset bound must not be above the upper one, got 0.2 and 0.1
 trace --seed 1 --dt 0 => dt must be finite and above 0 s, got 0
 trace --seed 1 --dt 1e-60 --arithmetic fast => rounded to the arithmetic's f32, dt
 ";

@@ -89,10 +89,11 @@ impl From<Error> for Rejected {
                 unit: "kg m²",
                 rule: "(with the centre of mass on the joint) above 0",
             },
-            Error::ReversedBounds { low, .. } => Self::OutOfRange {
+            // Of reset bounds: a library for C draws no parameters.
+            Error::ReversedRange { low, unit, .. } => Self::OutOfRange {
                 name: "low",
                 value: low,
-                unit: "rad and rad/s",
+                unit,
                 rule: "at most high in",
             },
             Error::UnknownAction(_) => Self::Status(ACROBOT_ERROR_UNKNOWN_ACTION),

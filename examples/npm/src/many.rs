@@ -45,7 +45,7 @@ impl Many {
         let blocks = fill(Block::EMPTY, count.div_ceil(LANES))?;
         let generators = fill(Pcg64::UNSEEDED, count)?;
         Some(Self {
-            batch: Batch::with_seed(memory::seed(words), (blocks, generators)).ok()?,
+            batch: Batch::new(memory::seed(words), (blocks, generators)).ok()?,
             actions: fill(0, count)?,
             observations: fill([0.0; 6], count)?,
             rewards: fill(0.0, count)?,

@@ -126,7 +126,7 @@ impl<A: Arithmetic> Many<A> {
             let rule = "so few that they fit into memory";
             PyMemoryError::new_err(must_be("num_envs", rule, len))
         })?;
-        let mut batch = Batch::with_seed(seed, storage).map_err(rejected)?;
+        let mut batch = Batch::new(seed, storage).map_err(rejected)?;
         batch.set_limit(settings.limit);
         let (_, mode) = MODES.get(settings.mode).ok_or_else(|| {
             let (name, rule) = ("the snapshot's autoreset mode", MODES.len());
