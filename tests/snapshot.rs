@@ -4,16 +4,16 @@
 use std::fmt::Debug;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real};
-use acrobot::batch::{Member, VecBatch};
+use acrobot::batch::VecBatch;
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::Lean;
+use acrobot::physics::{Dynamics, Lean, ResetBounds};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use common::Digest;
 use common::formats::again;
 use crc::{CRC_32_ISCSI, Crc};
 use rand_core::Rng;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 type Limited = TimeLimit<Acrobot<Portable>>;
 
@@ -94,10 +94,6 @@ fn snapshots_that_are_not_valid_are_rejected() {
         .unwrap();
     bytes[at..at + 8].copy_from_slice(&f64::NAN.to_le_bytes());
     assert!(postcard::from_bytes::<Acrobot<Portable>>(&bytes).is_err());
-    let mut member = member();
-    member.state.theta2 = f32::INFINITY;
-    let bytes = postcard::to_stdvec(&member).unwrap();
-    assert!(postcard::from_bytes::<Member<Fast>>(&bytes).is_err());
 }
 
 /// Loading starts a generator and advances it to its position. A new one starts with its first draw.
@@ -112,21 +108,6 @@ fn a_loaded_generator_equals_one_that_drew() {
         assert_eq!(serde_json::from_str::<Pcg64>(&text).unwrap(), drawn);
     }
     assert_ne!(drawn, Pcg64::new(42));
-}
-
-/// A member of a batch, in the middle of an episode.
-fn member() -> Member<Fast> {
-    let mut batch = batch_of_one();
-    let mut member = batch.member(0).unwrap();
-    member.rng = Pcg64::new(7);
-    Action::sample(&mut member.rng);
-    (member.elapsed, member.ended) = (499, false);
-    batch.set_member(0, member).unwrap();
-    batch.member(0).unwrap()
-}
-
-fn batch_of_one() -> VecBatch<Fast> {
-    VecBatch::new(SeedSequence::new(42), 1).unwrap()
 }
 
 /// 100 steps of an acrobot, and its reset.
@@ -147,13 +128,40 @@ fn play<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
     digest.0
 }
 
-/// 100 steps of a member, through the end of its episode.
-fn play_member(member: Member<Fast>) -> u64 {
-    let mut batch = batch_of_one();
-    batch.set_member(0, member).unwrap();
+/// A batch whose resets draw parameters, with steps taken.
+fn batch() -> Saved {
+    let mut batch = VecBatch::with_own_params(SeedSequence::new(42), 2).unwrap();
+    let range = common::params_range(Dynamics::Book);
+    batch.set_params_range(Some(range)).unwrap();
+    batch.set_reset_bounds(ResetBounds::new(-0.5, 0.25).unwrap());
+    batch.set_limit(30.try_into().unwrap());
+    batch.reset();
+    batch.step(&[2_u8; 2]).unwrap();
+    Saved(batch)
+}
+
+/// A batch that can be compared.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(transparent)]
+struct Saved(VecBatch<Fast>);
+
+impl PartialEq for Saved {
+    fn eq(&self, other: &Self) -> bool {
+        let [this, other] = [self, other].map(|Self(batch)| {
+            let members: Vec<_> = (0..batch.len()).map(|i| batch.member(i)).collect();
+            let range = batch.params_range().copied();
+            let settings = (batch.limit(), batch.reset_bounds(), batch.autoreset());
+            (members, range, settings)
+        });
+        this == other
+    }
+}
+
+/// 100 steps of a batch, through ends of its episodes.
+fn play_batch(Saved(mut batch): Saved) -> u64 {
     let mut digest = Digest::default();
     for _ in 0..100 {
-        let results = batch.step(&[2_u8]).unwrap();
+        let results = batch.step(&[2_u8; 2]).unwrap();
         let rows = results.observations.as_flattened();
         rows.iter().for_each(|x| digest.add(x.to_bits().into()));
     }
@@ -203,7 +211,7 @@ fn snapshots_of_version_1_stay_readable() {
     let found = [
         stored(busy(), &mut lines, |limited| play(limited.inner().clone())),
         stored(Acrobot::<Fast>::new(3), &mut lines, play),
-        stored(member(), &mut lines, play_member),
+        stored(batch(), &mut lines, play_batch),
     ];
     common::assert_snapshot("snapshots_1.txt", &found.concat());
 }
@@ -234,18 +242,12 @@ fn snapshots_of_another_type_are_rejected_by_their_header() {
         first(rejected(header, "")),
         "missing field `snapshot`; the input must be a snapshot of version 1"
     );
-    assert!(rejected("\"acrobot\"", "\"batch member\"").contains("got \"batch member\""));
+    assert!(rejected("\"acrobot\"", "\"batch\"").contains("got \"batch\""));
     let unknown = "\"an environment of another kind\"";
     assert!(rejected("\"acrobot\"", unknown).contains("must be a snapshot of version 1"));
     // The header is checked before anything else is read.
     let newer = header.replace('1', "2") + "\"params\":{}";
     assert!(rejected(&(header.to_owned() + "\"params\":{"), &newer).contains("version 2"));
-    assert!(
-        rejection::<Member<Fast>>(&serde_json::to_string(&member()).unwrap(), "fast", "micro")
-            .contains(
-                r#"must be "batch member", version 1, arithmetic "fast", got "batch member", version 1, arithmetic "micro""#
-            )
-    );
 }
 
 /// Binary formats have no field names, so bytes could load as another type.
@@ -268,38 +270,31 @@ fn bytes_of_another_type_are_rejected() {
     let mut newer = acrobot::<Portable>();
     let version = newer.iter().position(|&byte| byte == 1).unwrap();
     newer[version] = 2;
-    fn other<A: Arithmetic>() -> Member<A> {
-        Member {
-            state: member().state.cast(),
-            elapsed: 0,
-            ended: false,
-            rng: Pcg64::new(0),
-        }
+    fn batch<A: Arithmetic<Scalar: Serialize>>() -> Vec<u8> {
+        postcard::to_stdvec(&VecBatch::<A>::new(SeedSequence::new(1), 1).unwrap()).unwrap()
     }
-    let wide = other::<Portable>();
     let all = [
         acrobot::<Portable>(),
         acrobot::<Fast>(),
-        postcard::to_stdvec(&member()).unwrap(),
-        postcard::to_stdvec(&wide).unwrap(),
         // The same scalar as `Fast`, but other bits.
         acrobot::<Micro>(),
-        postcard::to_stdvec(&other::<Micro>()).unwrap(),
+        batch::<Portable>(),
+        batch::<Fast>(),
+        batch::<Micro>(),
         newer,
         unversioned::<Portable>(),
         unversioned::<Fast>(),
-        postcard::to_stdvec(&(wide.state, 0, false, &wide.rng)).unwrap(),
     ];
     let only = |number: usize| (0..all.len()).map(|i| i == number).collect::<Vec<_>>();
     assert_eq!(reads::<Acrobot<Portable>>(&all), only(0));
     assert_eq!(reads::<Acrobot<Fast>>(&all), only(1));
-    assert_eq!(reads::<Member<Fast>>(&all), only(2));
-    assert_eq!(reads::<Member<Portable>>(&all), only(3));
-    assert_eq!(reads::<Acrobot<Micro>>(&all), only(4));
-    assert_eq!(reads::<Member<Micro>>(&all), only(5));
+    assert_eq!(reads::<Acrobot<Micro>>(&all), only(2));
+    assert_eq!(reads::<VecBatch<Portable>>(&all), only(3));
+    assert_eq!(reads::<VecBatch<Fast>>(&all), only(4));
+    assert_eq!(reads::<VecBatch<Micro>>(&all), only(5));
 
-    // Snapshots without a version began with the length of link 1 in m or with θ1 in rad, which are never so large.
-    for bytes in &all[..6] {
+    // Snapshots without a version began with the length of link 1 in m, which is never so large.
+    for bytes in &all[..3] {
         assert!(f64::from_le_bytes(bytes[..8].try_into().unwrap()) > 1e200);
         assert!(f32::from_le_bytes(bytes[..4].try_into().unwrap()) > 1e30);
     }

@@ -106,8 +106,10 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 
     fn apply(&mut self, settings: Settings<A>, members: usize) -> Result<(), Error> {
         check_length("members", members, self.len())?;
-        if let [low, high] = *settings.params_range {
-            self.set_params_range(Some(ParamsRange::new(low, high)?))?;
+        match *settings.params_range {
+            [] => {}
+            [low, high] => self.set_params_range(Some(ParamsRange::new(low, high)?))?,
+            ref ends => check_length("params_range", ends.len(), 2)?,
         }
         self.set_reset_bounds(ResetBounds::new(settings.low, settings.high)?);
         self.set_limit(settings.limit);
