@@ -3,8 +3,8 @@
 pub mod snapshots;
 
 use acrobot::arithmetic::Real;
-use acrobot::physics::Dynamics;
-use acrobot::{Observation, Params, State, Step};
+use acrobot::physics::{Dynamics, ParamsRange};
+use acrobot::{Error, Observation, Params, State, Step};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 
 /// Numbers at which range checks are likely to be wrong.
@@ -55,6 +55,27 @@ pub fn params(u: &mut Unstructured<'_>) -> Result<Params> {
         torque_noise: number(u, usual.torque_noise)?,
         dynamics: *u.choose(&[Dynamics::Book, Dynamics::Nips])?,
     })
+}
+
+/// A range of parameters, or why it is rejected. With any two ends most would be.
+pub fn params_range<S: Real>(
+    u: &mut Unstructured<'_>,
+) -> Result<std::result::Result<ParamsRange<S>, Error>> {
+    let low = params(u)?;
+    let mut high = low;
+    let fields = [
+        &mut high.length1,
+        &mut high.mass2,
+        &mut high.gravity,
+        &mut high.dt,
+        &mut high.max_velocity2,
+        &mut high.torques[2],
+        &mut high.torque_noise,
+    ];
+    for field in fields {
+        *field += number(u, 0.25)?;
+    }
+    Ok(ParamsRange::new(low.cast(), high.cast()))
 }
 
 /// A state, finite or not.

@@ -3,9 +3,9 @@
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Member, VecBatch};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::Dynamics;
+use acrobot::physics::{Dynamics, ParamsRange};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -28,7 +28,7 @@ const fn kind<T: Snapshot>() -> Kind {
     (load::<T>, save::<T>)
 }
 
-const KINDS: [Kind; 15] = [
+const KINDS: [Kind; 18] = [
     kind::<Acrobot<Reference>>(),
     kind::<Acrobot<Portable>>(),
     kind::<Acrobot<Fast>>(),
@@ -44,6 +44,9 @@ const KINDS: [Kind; 15] = [
     kind::<State<f64>>(),
     kind::<Action>(),
     kind::<Dynamics>(),
+    kind::<VecBatch<Fast>>(),
+    kind::<VecBatch<Fast, 1>>(),
+    kind::<VecBatch<Portable, 3>>(),
 ];
 
 /// The first byte chooses a type. Loads a snapshot of it from the other bytes, in each format.
@@ -142,28 +145,93 @@ where
 {
     fn sample() -> Self {
         Self {
+            params: Params::sample(),
             state: State::sample(),
             elapsed: 3,
-            ended: true,
+            reset_pending: true,
             rng: Pcg64::sample(),
         }
     }
 
     fn check(self) -> bool {
-        assert!(self.state.validate().is_ok());
+        let valid = self.state.validate().is_ok() && self.params.validate().is_ok();
         for autoreset in [
             Autoreset::NextStep,
             Autoreset::SameStep,
             Autoreset::Disabled,
         ] {
-            let mut batch =
-                VecBatch::<A>::new(SeedSequence::new(0), 1).expect("memory for one acrobot");
+            let seed = SeedSequence::new(0);
+            let mut batch = VecBatch::<A>::with_own_params(seed, 1).expect("memory for one");
             batch.set_autoreset(autoreset);
             batch.set_limit(NonZeroU32::MAX);
-            assert!(batch.set_member(0, self.clone()).is_ok());
-            assert!(batch.step(&[2_u8]).is_ok());
-            assert_settled(batch.state(0).expect("it has one acrobot"), batch.params());
+            assert_eq!(batch.set_member(0, self.clone()).is_ok(), valid);
+            assert_steps(&mut batch);
         }
+        valid
+    }
+}
+
+fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, N>) {
+    let pending: Vec<_> = (0..batch.len()).map(|i| batch.member(i)).collect();
+    assert!(batch.step(&vec![2_u8; batch.len()]).is_ok());
+    for (index, before) in pending.into_iter().enumerate() {
+        let member = batch.member(index).expect("it has as many");
+        assert!(member.state.validate().is_ok() && member.params.validate().is_ok());
+        if !before.is_some_and(|before| before.reset_pending) && member.elapsed > 0 {
+            assert_settled(member.state, &member.params);
+        }
+    }
+}
+
+/// With one or three lanes each acrobot has its own parameters.
+impl<A, const N: usize> Snapshot for VecBatch<A, N>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
+    fn sample() -> Self {
+        let seed = SeedSequence::new(42);
+        let low = Params::<A::Scalar>::default();
+        let mut high = low;
+        high.torque_noise = A::Scalar::from_f64(0.5);
+        let batch = if N < 4 {
+            let range = ParamsRange::new(low, high);
+            VecBatch::with_own_params(seed, 4).and_then(|mut batch: Self| {
+                batch.set_params_range(Some(range?))?;
+                batch.reset();
+                Ok(batch)
+            })
+        } else {
+            VecBatch::new(seed, 4)
+        };
+        let mut batch = batch.expect("memory for four");
+        batch.set_limit(NonZeroU32::MIN);
+        assert!(batch.step(&[2_u8; 4]).is_ok());
+        batch
+    }
+
+    fn check(mut self) -> bool {
+        let (len, bytes) = (self.len(), binary(&self));
+        let first = self.params_of(0);
+        let same = (0..len).all(|index| self.params_of(index) == first);
+        let fits = same && self.params_range().is_none();
+        let mut blocks = vec![Block::EMPTY; len];
+        let mut generators = vec![Pcg64::UNSEEDED; len];
+        let mut from = postcard::Deserializer::from_bytes(&bytes);
+        let memory = (&mut blocks[..], &mut generators[..]);
+        let shared = Batch::<A, _, 1>::from_snapshot(memory, &mut from);
+        assert_eq!(shared.is_ok(), fits);
+        let mut from = postcard::Deserializer::from_bytes(&bytes);
+        let memory = (blocks, generators, vec![LaneParams::default(); len]);
+        let own = Batch::<A, _, 1>::from_snapshot(memory, &mut from).expect("it was saved");
+        for index in 0..len {
+            assert_eq!(own.member(index), self.member(index));
+        }
+        self.reset_masked(&vec![false; len], 1.into())
+            .expect("the length");
+        assert!(binary(&self) == bytes);
+        assert_steps(&mut self);
+        self.reset();
+        assert_steps(&mut self);
         true
     }
 }

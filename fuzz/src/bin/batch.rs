@@ -5,13 +5,15 @@
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::batch::{Autoreset, Batch, Block, Member, Observations, SimdLevel, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::ResetBounds;
+use acrobot::physics::{ParamsRange, ResetBounds};
 use acrobot::{Acrobot, Error, Fast, Params, Portable, ResetOptions, State, Step};
-use acrobot_fuzz::{assert_settled, bits, number, params, state};
+use acrobot_fuzz::{assert_settled, bits, number, params, params_range, state};
 use libfuzzer_sys::arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut u = Unstructured::new(bytes);
@@ -23,54 +25,77 @@ fuzz_target!(|bytes: &[u8]| {
     };
 });
 
-type Many<A, const N: usize> = Batch<A, Vec<Block<A, N>>, Vec<Pcg64>, N>;
+type Memory<A, const N: usize> = (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>);
+type Many<A, const N: usize> = Batch<A, Memory<A, N>, N>;
+
+/// Memory for `len` acrobots, with or without parameters of their own.
+fn memory<A: Arithmetic, const N: usize>(len: usize, own_params: bool) -> Memory<A, N> {
+    let blocks = len.div_ceil(N);
+    let lane_params = if own_params { blocks } else { 0 };
+    (
+        vec![Block::EMPTY; blocks],
+        vec![Pcg64::UNSEEDED; len],
+        vec![LaneParams::default(); lane_params],
+    )
+}
 
 /// A single acrobot that follows the rules of a batch.
 struct Alone<A: Arithmetic> {
     acrobot: Acrobot<A>,
     elapsed: u32,
-    ended: bool,
+    reset_pending: bool,
 }
 
 /// What a step returns for one acrobot. The last is the final observation of an episode that the step reset.
 type Returned = ([f32; 6], f32, bool, bool, Option<[f32; 6]>);
 
 impl<A: Arithmetic> Alone<A> {
-    /// Stops waiting for a reset, except in mode `NextStep`.
-    fn settle(&mut self, settings: &Settings) {
+    /// Ends a pending reset, except in mode `NextStep`.
+    fn settle(&mut self, settings: &Settings<A>) {
         match settings.autoreset {
-            Autoreset::SameStep if self.ended => self.reset(settings.bounds),
-            Autoreset::Disabled => self.ended = false,
+            Autoreset::SameStep if self.reset_pending => {
+                self.reset(settings, ResetOptions::default());
+            }
+            Autoreset::Disabled => self.reset_pending = false,
             _ => {}
         }
     }
 
-    fn reset(&mut self, bounds: ResetBounds) {
+    /// The seed is the acrobot's own.
+    fn reset(&mut self, settings: &Settings<A>, ResetOptions { seed, bounds }: ResetOptions) {
+        if let Some(seed) = seed {
+            *self.acrobot.rng_mut() = seed.into();
+        }
+        if let Some(range) = &settings.range {
+            let params = range.draw(self.acrobot.rng_mut());
+            assert!(self.acrobot.set_params(params).is_ok());
+        }
+        let bounds = bounds.unwrap_or(settings.bounds);
         self.acrobot.reset_with(bounds.into());
         self.begin();
     }
 
     fn begin(&mut self) {
-        (self.elapsed, self.ended) = (0, false);
+        (self.elapsed, self.reset_pending) = (0, false);
     }
 
     fn step(
         &mut self,
-        settings: &Settings,
+        settings: &Settings<A>,
         step: impl FnOnce(&mut Acrobot<A>) -> std::result::Result<Step, Error>,
     ) -> std::result::Result<Returned, Error> {
-        if self.ended && settings.autoreset == Autoreset::NextStep {
+        if self.reset_pending && settings.autoreset == Autoreset::NextStep {
             // A reset ignores the action and draws no noise.
-            self.reset(settings.bounds);
+            self.reset(settings, ResetOptions::default());
             let first = self.acrobot.observation().to_array();
             return Ok((first, 0.0, false, false, None));
         }
         let step = step(&mut self.acrobot)?;
         self.elapsed = self.elapsed.saturating_add(1);
         let truncated = self.elapsed >= settings.limit.get();
-        self.ended = step.terminated || truncated;
+        self.reset_pending = step.terminated || truncated;
         let last = step.observation.to_array();
-        let resets = self.ended && settings.autoreset == Autoreset::SameStep;
+        let resets = self.reset_pending && settings.autoreset == Autoreset::SameStep;
         self.settle(settings);
         Ok((
             self.acrobot.observation().to_array(),
@@ -83,9 +108,10 @@ impl<A: Arithmetic> Alone<A> {
 
     fn member(&self) -> Member<A> {
         Member {
+            params: *self.acrobot.params(),
             state: self.acrobot.state(),
             elapsed: self.elapsed,
-            ended: self.ended,
+            reset_pending: self.reset_pending,
             rng: self.acrobot.rng().clone(),
         }
     }
@@ -93,37 +119,42 @@ impl<A: Arithmetic> Alone<A> {
 
 const MODES: [Autoreset; 2] = [Autoreset::NextStep, Autoreset::SameStep];
 
-struct Settings {
+struct Settings<A: Arithmetic> {
     autoreset: Autoreset,
     bounds: ResetBounds,
     limit: NonZeroU32,
+    range: Option<ParamsRange<A::Scalar>>,
 }
 
-fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<()> {
+fn sequence<A, const N: usize>(u: &mut Unstructured<'_>) -> Result<()>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
     let len: usize = u.int_in_range(1..=35)?;
     let seed = u.arbitrary::<u64>()?;
-    let blocks = vec![Block::EMPTY; len.div_ceil(N)];
-    let batch = Many::<A, N>::new(seed, blocks, vec![Pcg64::UNSEEDED; len]);
+    let own_params = u.arbitrary()?;
+    let batch = Many::<A, N>::new(seed, memory(len, own_params));
     let mut batch = batch.expect("it has a block for each N");
     let mut alone: Vec<_> = SeedSequence::new(seed)
         .spawn(len as u64)
         .map(|seed| Alone {
             acrobot: Acrobot::<A>::with_rng(seed.into()),
             elapsed: 0,
-            ended: false,
+            reset_pending: false,
         })
         .collect();
     let mut settings = Settings {
         autoreset: *u.choose(&MODES)?,
         bounds: ResetBounds::DEFAULT,
         limit: u.arbitrary()?,
+        range: None,
     };
     batch.set_autoreset(settings.autoreset);
     batch.set_limit(settings.limit);
     let levels = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
     batch.set_simd_level(*u.choose(&levels)?);
     while !u.is_empty() {
-        // 241 to 245 choose rare calls. The last digit of any other byte chooses the call.
+        // 238 to 245 choose rare calls. The last digit of any other byte chooses the call.
         match u.arbitrary::<u8>()? {
             241 => {
                 let index = u.int_in_range(0..=len + N)?;
@@ -138,31 +169,55 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                 let Ok(bounds) = ResetBounds::new(number(u, -0.1)?, number(u, 0.1)?) else {
                     continue;
                 };
-                let seed = u.arbitrary::<Option<u64>>()?.map(SeedSequence::new);
-                match seed.clone() {
-                    None => batch.reset_within(bounds),
-                    seed => batch.reset_with(ResetOptions {
-                        seed,
-                        bounds: Some(bounds),
-                    }),
-                }
+                let options = ResetOptions {
+                    seed: u.arbitrary::<Option<u64>>()?.map(SeedSequence::new),
+                    bounds: u.arbitrary::<bool>()?.then_some(bounds),
+                };
+                batch.reset_with(options.clone());
                 for (alone, index) in alone.iter_mut().zip(0..) {
-                    if let Some(seed) = &seed {
-                        *alone.acrobot.rng_mut() = seed.child(index).into();
-                    }
-                    alone.reset(bounds);
+                    alone.reset(&settings, of_child(&options, index));
                 }
             }
             243 => {
                 let bits: u64 = u.arbitrary()?;
                 let found = u.int_in_range(len - 1..=len + 1)?;
                 let mask: Vec<bool> = (0..found).map(|i| bits >> i & 1 == 1).collect();
-                let reset = batch.reset_masked(&mask, ResetOptions::default());
+                let options = ResetOptions {
+                    seed: u.arbitrary::<Option<u64>>()?.map(SeedSequence::new),
+                    bounds: None,
+                };
+                let reset = batch.reset_masked(&mask, options.clone());
                 assert_eq!(reset.is_ok(), found == len);
-                let each = alone.iter_mut().zip(mask).filter(|_| reset.is_ok());
-                for (alone, _) in each.filter(|(_, reset)| *reset) {
-                    alone.reset(settings.bounds);
+                let each = alone.iter_mut().zip(0..).zip(mask);
+                for ((alone, index), _) in each.filter(|(_, mask)| reset.is_ok() && *mask) {
+                    alone.reset(&settings, of_child(&options, index));
                 }
+            }
+            240 => {
+                let params: Params<A::Scalar> = params(u)?.cast();
+                let index = u.int_in_range(0..=len + N)?;
+                let set = batch.set_params_of(index, params);
+                let valid = params.validate().is_ok() && index < len;
+                assert_eq!(set.is_ok(), valid && own_params);
+                if let Some(alone) = alone.get_mut(index).filter(|_| set.is_ok()) {
+                    assert!(alone.acrobot.set_params(params).is_ok());
+                }
+            }
+            239 => {
+                let range = match u.arbitrary()? {
+                    true => params_range(u)?.ok(),
+                    false => None,
+                };
+                let set = batch.set_params_range(range);
+                assert_eq!(set.is_ok(), own_params || range.is_none());
+                if set.is_ok() {
+                    settings.range = range;
+                }
+            }
+            238 => {
+                let level = batch.simd_level();
+                batch = again(&batch, own_params, u.arbitrary()?);
+                batch.set_simd_level(level);
             }
             244 => {
                 settings.autoreset = Autoreset::Disabled;
@@ -203,7 +258,7 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                 2 => {
                     batch.reset();
                     for alone in &mut alone {
-                        alone.reset(settings.bounds);
+                        alone.reset(&settings, ResetOptions::default());
                     }
                 }
                 3 => {
@@ -221,19 +276,30 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
                     }
                 }
                 4 => {
+                    let given = match u.arbitrary()? {
+                        true => params(u)?.cast(),
+                        false => *alone[0].acrobot.params(),
+                    };
                     let member = Member {
+                        params: given,
                         state: state(u)?.cast(),
                         elapsed: u.arbitrary()?,
-                        ended: u.arbitrary()?,
+                        reset_pending: u.arbitrary()?,
                         rng: Pcg64::new(u.arbitrary::<u64>()?),
                     };
                     let index = u.int_in_range(0..=len + N)?;
                     let put = batch.set_member(index, member.clone());
-                    assert_eq!(put.is_ok(), member.state.validate().is_ok() && index < len);
+                    let valid = member.state.validate().is_ok() && given.validate().is_ok();
+                    let fits = own_params || given == *alone[0].acrobot.params();
+                    assert_eq!(put.is_ok(), valid && fits && index < len);
                     if let Some(alone) = alone.get_mut(index).filter(|_| put.is_ok()) {
+                        if own_params {
+                            assert!(alone.acrobot.set_params(given).is_ok());
+                        }
                         assert!(alone.acrobot.set_state(member.state).is_ok());
                         *alone.acrobot.rng_mut() = member.rng;
-                        (alone.elapsed, alone.ended) = (member.elapsed, member.ended);
+                        (alone.elapsed, alone.reset_pending) =
+                            (member.elapsed, member.reset_pending);
                         alone.settle(&settings);
                     }
                 }
@@ -267,12 +333,48 @@ fn sequence<A: Arithmetic, const N: usize>(u: &mut Unstructured<'_>) -> Result<(
             let state = batch.state(index).map(bits);
             assert_eq!(state, Some(bits(alone.acrobot.state())), "acrobot {index}");
             assert_eq!(batch.member(index), Some(alone.member()), "acrobot {index}");
+            let gravity = batch
+                .params_of(index)
+                .map(|params| params.gravity.to_f64().to_bits());
+            let expected = alone.acrobot.params().gravity.to_f64().to_bits();
+            assert_eq!(gravity, Some(expected), "acrobot {index}");
         }
         assert_eq!((batch.member(len), batch.state(len)), (None, None));
         assert_eq!(batch.autoreset(), settings.autoreset);
         assert_eq!(batch.reset_bounds(), settings.bounds);
+        assert_eq!(batch.limit(), settings.limit);
+        assert_eq!(batch.params_range(), settings.range.as_ref());
     }
     Ok(())
+}
+
+/// The options of acrobot `index` in a reset of the batch.
+fn of_child(options: &ResetOptions, index: u64) -> ResetOptions {
+    ResetOptions {
+        seed: options.seed.as_ref().map(|seed| seed.child(index)),
+        ..*options
+    }
+}
+
+/// Saves and loads a batch. A batch of another width is saved to the same bytes.
+fn again<A, const N: usize>(batch: &Many<A, N>, own_params: bool, as_text: bool) -> Many<A, N>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
+    let bytes = postcard::to_stdvec(batch).expect("there is memory");
+    let mut from = postcard::Deserializer::from_bytes(&bytes);
+    let other = Many::<A, 5>::from_snapshot(memory(batch.len(), own_params), &mut from);
+    let other = other.expect("it was saved");
+    assert!(postcard::to_stdvec(&other).expect("there is memory") == bytes);
+    let memory = memory(batch.len(), own_params);
+    if as_text {
+        let text = serde_json::to_string(&other).expect("there is memory");
+        let mut from = serde_json::Deserializer::from_str(&text);
+        Batch::from_snapshot(memory, &mut from).expect("it was saved")
+    } else {
+        let mut from = postcard::Deserializer::from_bytes(&bytes);
+        Batch::from_snapshot(memory, &mut from).expect("it was saved")
+    }
 }
 
 /// An input for each acrobot. Sometimes the last is missing.
@@ -288,7 +390,7 @@ fn inputs<'a, T>(
 fn step<A: Arithmetic, const N: usize>(
     batch: &mut Many<A, N>,
     alone: &mut [Alone<A>],
-    settings: &Settings,
+    settings: &Settings<A>,
     valid: bool,
     step: impl FnOnce(&mut Many<A, N>, StepBuffers<'_>) -> std::result::Result<(), Error>,
     step_one: impl Fn(&mut Acrobot<A>, usize) -> std::result::Result<Step, Error>,
@@ -299,8 +401,8 @@ fn step<A: Arithmetic, const N: usize>(
         (vec![UNTOUCHED; len], vec![false; len], vec![false; len]);
     let (mut rows, mut finals) = (vec![[UNTOUCHED; 6]; len], vec![[UNTOUCHED; 6]; len]);
     let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-        .with_observations(Observations::Rows(&mut rows))
-        .with_final_observations(Observations::Rows(&mut finals));
+        .with_observations(&mut rows)
+        .with_final_observations(&mut finals);
     let stepped = step(batch, buffers);
     assert_eq!(stepped.is_ok(), valid);
     if stepped.is_err() {
@@ -331,15 +433,8 @@ fn step<A: Arithmetic, const N: usize>(
             assert_settled(alone.acrobot.state(), alone.acrobot.params());
         }
     }
-    let mut columns = [(); 6].map(|()| vec![UNTOUCHED; len]);
-    let seen = batch.observe(Observations::Columns(
-        columns.each_mut().map(Vec::as_mut_slice),
-    ));
-    assert!(seen.is_ok());
-    for (index, row) in rows.iter().enumerate() {
-        assert_eq!(
-            columns.each_ref().map(|column| column[index].to_bits()),
-            row.map(f32::to_bits)
-        );
-    }
+    let mut seen = vec![[UNTOUCHED; 6]; len];
+    assert!(batch.observe(&mut seen).is_ok());
+    let bits = |rows: Vec<[f32; 6]>| rows.into_iter().map(|row| row.map(f32::to_bits));
+    assert!(bits(seen).eq(bits(rows)));
 }
