@@ -100,9 +100,7 @@ pub extern "C" fn batch_reset(number: usize, words: usize) {
 pub extern "C" fn batch_observe(number: usize) {
     memory::with_value(&BATCHES, number, |many| {
         // The lengths are equal, so this cannot fail.
-        let _ = many
-            .batch
-            .observe(&mut many.observations);
+        let _ = many.batch.observe(&mut many.observations);
     });
 }
 
