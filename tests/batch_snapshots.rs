@@ -310,7 +310,7 @@ fn invalid_snapshots_are_rejected() {
         (
             r#""low":-0.1"#,
             r#""low":0.5"#,
-            "low must not be above high, got 0.5 and 0.1 rad and rad/s",
+            "the lower reset bound must not be above the upper one, got 0.5 and 0.1 rad and rad/s",
         ),
         (
             r#""high":0.1"#,
