@@ -100,7 +100,8 @@ pub struct Batch<A: Arithmetic, S, const N: usize = 16> {
 
 impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet
-    /// spawned, and is in its initial state. The batch has the default parameters, a limit of 500 steps and [`Autoreset::NextStep`].
+    /// spawned, and is in its initial state. The batch has the default parameters, a limit of 500 steps and
+    /// [`Autoreset::NextStep`].
     ///
     /// # Errors
     ///

@@ -19,6 +19,7 @@ use super::buffers::set;
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct LaneParams<A: Arithmetic = Fast, const N: usize = 16> {
+    /// Its `params.dynamics` says nothing: `nips` among the constants tells the equations of each lane.
     pub(super) model: Model<A, Lanes<A::Scalar, N>>,
 }
 
