@@ -81,7 +81,6 @@ impl<A: Arithmetic> Model<A> {
 /// agree up to rounding. No other type can implement it.
 pub trait Form<S: Real>: Copy + fmt::Debug {
     /// The constants, which depend only on the parameters.
-    #[doc(hidden)]
     type Constants<V: Numbers<S>>: Copy + fmt::Debug + Send + Sync;
 
     /// The constants of [`Params::DEFAULT`], computed by the compiler.
