@@ -87,14 +87,14 @@ fn subnormal_in<A: Arithmetic>() -> u64 {
 
 /// Every bit that a batch of twenty in `Fast` with the same parameters returns. It is the same for any width `N`.
 pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
-    let memory = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
-    batch::<20, N, _>(memory, |_| {})
+    let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
+    batch::<20, N, _>((&mut blocks[..], &mut generators[..]), |_| {})
 }
 
 /// As [`shared_params`] with subnormal numbers.
 pub fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
-    let memory = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
-    batch::<20, N, _>(memory, |batch| {
+    let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
+    batch::<20, N, _>((&mut blocks[..], &mut generators[..]), |batch| {
         let mut params = Params::DEFAULT;
         subnormal_torques::<Fast>(&mut params);
         // Neither fails: a failure changes the digest.
