@@ -20,7 +20,6 @@ use crate::physics::{ResetBounds, State, sin_cos, step};
 ///
 /// let blocks = vec![Block::<Fast>::EMPTY; 1000_usize.div_ceil(Block::<Fast>::LANES)];
 /// assert_eq!(size_of_val(&blocks[..]), 63 * 640);
-/// assert_eq!(size_of::<Block<Fast, 1>>(), 64);
 /// ```
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]

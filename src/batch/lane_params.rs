@@ -1,10 +1,9 @@
 //! Parameters as a step reads them: a number for each lane.
 
+use super::buffers::set;
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real};
 use crate::physics::{Dynamics, Form, Model, Params};
-
-use super::buffers::set;
 
 /// The memory for the parameters of `N` acrobots, where each has its own. The default is [`Params::DEFAULT`] for all.
 ///
@@ -13,7 +12,6 @@ use super::buffers::set;
 /// use acrobot::batch::LaneParams;
 ///
 /// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 1728);
-/// assert_eq!(size_of::<LaneParams<Fast, 1>>(), 128);
 /// ```
 // Aligned, because an SSE instruction can read only aligned numbers from memory.
 #[derive(Clone, Copy, Debug)]

@@ -65,19 +65,18 @@ impl SimdLevel {
         unsafe_code,
         reason = "the one place that uses instructions which the machine has and the build does not assume"
     )]
-    // Inlined where there is one level: the compiler then omits the kernels of inputs and of own parameters that a program
-    // does not have, 18 KB of the page's module.
+    // Inlined where there is one level, so that kernels which a program does not use are omitted: 18 KB of the page.
     #[cfg_attr(not(all(feature = "std", target_arch = "x86_64")), inline(always))]
     pub(super) fn step<A: Arithmetic, const N: usize>(self, work: Work<'_, A, N>) {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {
             #[target_feature(enable = "avx2")]
             fn with_avx2<A: Arithmetic, const N: usize>(work: Work<'_, A, N>) {
-                work.step();
+                work.step::<false>();
             }
             #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
             fn with_avx512<A: Arithmetic, const N: usize>(work: Work<'_, A, N>) {
-                work.step();
+                work.step::<true>();
             }
             // SAFETY: the machine has the features that the function was compiled for.
             unsafe {
@@ -88,7 +87,7 @@ impl SimdLevel {
                 }
             }
         }
-        work.step();
+        work.step::<false>();
     }
 
     /// As [`step`](Self::step), on all cores: halves the blocks until a task is too small to share.

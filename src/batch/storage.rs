@@ -9,7 +9,7 @@ use crate::numpy::Pcg64;
 ///
 /// These are pairs and triples of arrays, slices or `Vec`s: `(blocks, generators)` where acrobots share their
 /// parameters, `(blocks, generators, lane_params)` where each has its own. States and generators are separate because
-/// most steps draw no random number. The slices must always have the same lengths. A `VecBatch` has `Vec`s.
+/// most steps draw no random number. The slices must always have the same lengths.
 ///
 /// ```
 /// use acrobot::batch::{Batch, Block, LaneParams};

@@ -7,8 +7,7 @@ use crate::math::{Numbers, Real, SinCos};
 
 /// The state \[θ1, θ2, θ̇1, θ̇2\] one dt after `y`, under a constant torque, N m. `sin_cos` are the sines and cosines of
 /// θ1 and θ2.
-// The derivative is not a closure, which cannot be marked for inlining: LLVM keeps a large one out of line, where it may
-// not use the SIMD instructions of its caller.
+// No closure for the derivative: LLVM keeps a large one out of line, without the SIMD instructions of its caller.
 #[inline(always)]
 pub(super) fn rk4<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<A, V>,
