@@ -367,8 +367,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     }
 }
 
-/// Each block with its generators, of which the last may have fewer than `N`, and with its own parameters if it has
-/// any.
+/// Each block with its generators and its own parameters, if there are any. The last block can have fewer than `N`
+/// generators.
 fn each_block<A: Arithmetic, const N: usize>(
     storage: &mut impl Storage<A, N>,
 ) -> impl Iterator<
