@@ -1,4 +1,4 @@
-//! Code that the benchmarks and the example `throughput` share: bare loops as yardsticks, and a random policy for
+//! Code that the benchmarks and the program `throughput` share: bare loops as yardsticks, and a random policy for
 //! batches.
 
 mod loops;

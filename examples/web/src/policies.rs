@@ -19,8 +19,7 @@ pub extern "C" fn bang_bang() -> u8 {
     })
 }
 
-/// Applies the torque of the example `energy_control`, −(E↑ − E) θ̇1, rounded to an action. E↑ is the energy of standing
-/// upright. The torque adds energy below E↑ and removes energy above it.
+/// Applies the torque −(E↑ − E) θ̇1, rounded to an action. E↑ is the energy of standing upright. The torque adds energy below E↑ and removes energy above it.
 #[unsafe(no_mangle)]
 pub extern "C" fn energy_law() -> u8 {
     let standing = standing();

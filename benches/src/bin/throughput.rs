@@ -1,0 +1,123 @@
+//! Steps per second on one core, and their ratio to a bare loop, one line each: `name steps_per_second ratio`.
+//!
+//! A batch plays a random policy, and draws actions and resets episodes in the loop. Its yardstick is a handwritten
+//! loop over eight lanes of AVX2 that does neither, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick
+//! of `scalar_fast` and `scalar_micro` has the same equations for one acrobot in f32. That of the other `scalar_…` has
+//! Gymnasium's order of operations in f64 and the platform's sines. Both play the same actions as the crate. Each
+//! figure is the best of several runs, interleaved with runs of the yardstick.
+//!
+//! ```text
+//! cargo run --release -p benches
+//! ```
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
+use acrobot::batch::{SimdLevel, VecBatch};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use benches::{Lanes, Play, bare_f32, bare_f64};
+
+fn main() {
+    scalar::<Host>("scalar_host", bare_f64);
+    scalar::<Reference>("scalar_reference", bare_f64);
+    scalar::<Portable>("scalar_portable", bare_f64);
+    scalar::<Fast>("scalar_fast", bare_f32);
+    scalar::<Micro>("scalar_micro", bare_f32);
+    for len in [1024, 1 << 20] {
+        batch::<Fast>("fast", len, SimdLevel::widest());
+    }
+    own_params(1024);
+    batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
+    batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
+    batch::<Portable>("portable", 1024, SimdLevel::widest());
+    threads(1 << 20);
+}
+
+const ROUNDS: usize = 7;
+
+/// The best rates of `ours` and `yardstick`, interleaved. Each returns how many steps it took.
+fn compare(mut ours: impl FnMut() -> usize, mut yardstick: impl FnMut() -> usize) -> (f64, f64) {
+    let rate = |run: &mut dyn FnMut() -> usize| {
+        let start = Instant::now();
+        let steps = run();
+        steps as f64 / start.elapsed().as_secs_f64()
+    };
+    (0..ROUNDS).fold((0.0, 0.0), |(best, bare), _| {
+        (
+            f64::max(best, rate(&mut ours)),
+            f64::max(bare, rate(&mut yardstick)),
+        )
+    })
+}
+
+fn report(name: &str, (rate, yardstick): (f64, f64)) {
+    println!("{name} {rate:.0} {:.2}", rate / yardstick);
+}
+
+fn scalar<A: Arithmetic>(name: &str, yardstick: fn(&[Action])) {
+    const STEPS: usize = 200_000;
+    let mut rng = Pcg64::new(0);
+    let actions: Vec<Action> = (0..STEPS).map(|_| Action::sample(&mut rng)).collect();
+    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
+    let ours = || {
+        for &action in &actions {
+            if black_box(acrobot.step(action)).done() {
+                acrobot.reset();
+            }
+        }
+        STEPS
+    };
+    let bare = || {
+        yardstick(&actions);
+        STEPS
+    };
+    report(name, compare(ours, bare));
+}
+
+fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) {
+    let steps = (2_000_000 / len).max(2);
+    let mut play = Play::<A>::new(len);
+    if !level.is_available() {
+        println!("batch_{arithmetic}_{len} needs {level:?}, which this machine does not have");
+        return;
+    }
+    play.batch.set_simd_level(level);
+    for (suffix, observe) in [("", false), ("_observations", true)] {
+        let mut ours = || {
+            for _ in 0..steps {
+                play.play(observe);
+            }
+            steps * len
+        };
+        let name = format!("batch_{arithmetic}_{len}{suffix}");
+        for (fma, flavour) in [(true, ""), (false, "_nofma")] {
+            let name = format!("{name}{flavour}");
+            match Lanes::new(fma) {
+                Some(mut bare) => report(&name, compare(&mut ours, || bare.run())),
+                None => println!("{name} has no yardstick, which needs AVX2 and FMA"),
+            }
+        }
+    }
+}
+
+/// Each acrobot has its own parameters; the ratio is to a batch that shares them.
+fn own_params(len: usize) {
+    let own = VecBatch::with_own_params(SeedSequence::new(0), len).expect("memory for the batch");
+    let (mut own, mut shared) = (Play::<Fast>::from(own), Play::<Fast>::new(len));
+    let rates = compare(
+        || (0..2000).map(|_| own.play(true)).sum(),
+        || (0..2000).map(|_| shared.play(true)).sum(),
+    );
+    report(&format!("batch_fast_{len}_own_params"), rates);
+}
+
+/// Steps on all cores; the ratio is to the same steps on one core. The actions stay the same, because only the step
+/// runs on all cores.
+fn threads(len: usize) {
+    let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
+    let rates = compare(|| many.step(false, true), || one.step(false, false));
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    report(&format!("batch_fast_{len}_threads_{threads}"), rates);
+}

@@ -1,0 +1,99 @@
+//! The mean returns of policies from the same initial states.
+
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
+use desktop::bang_bang;
+use desktop::search::Search;
+use indicatif::ProgressIterator;
+use learners::task::{QLambda, greedy, learn, q_lambda, training, view};
+use learners::{Budget, Transition};
+
+use crate::{SEEDS, bound, initial, mean_return};
+
+/// The seed of learning and of random actions.
+const SEED: u64 = 42;
+const STEPS: u32 = 1_000_000;
+
+/// Prints a row for each policy.
+pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
+    println!("| policy | mean return |\n|---|---|");
+    let row = |name: &str, mean: f64| println!("| {name} | {mean:.2} |");
+    let mut actions = Pcg64::new(SEED);
+    row("random", mean(|_| Action::sample(&mut actions)));
+    row("torque against θ̇1", mean(|state| bang_bang(state.dtheta1)));
+
+    // The sizes are those of `swing_up`.
+    let (mut weights, mut memory) = ([[0.0; 2]; 1408], [Transition::EMPTY; 160]);
+    let learner = learnt::<1408, 16>(&mut weights, &mut memory)?;
+    row("learnt, 16 KiB", mean(|state| greedy(&learner, state)));
+    let (mut weights, mut memory) = ([[0.0; 2]; 6144], [Transition::EMPTY; 600]);
+    let learner = learnt::<6144, 52>(&mut weights, &mut memory)?;
+    row("learnt, 64 KiB", mean(|state| greedy(&learner, state)));
+
+    let mut search = Search::default();
+    let planned = mean(|state| {
+        search.choose(*state, 60, |state| {
+            let [negative, positive] = learner.values(&view(state));
+            negative.max(positive)
+        })
+    });
+    row("planned, 64 KiB", planned);
+
+    let steps: usize = best.iter().map(Vec::len).sum();
+    row("best known", mean_return(steps as f64));
+    let least = (0..SEEDS)
+        .map(|seed| bound::least_steps(initial(seed.into())))
+        .sum();
+    row("bound", highest_mean(least));
+    Ok(())
+}
+
+/// As `mean_return`, rounded up to two decimals, so that an upper bound stays one.
+fn highest_mean(steps: u32) -> f64 {
+    const HUNDREDTH: u32 = SEEDS / 100;
+    mean_return(f64::from(steps / HUNDREDTH * HUNDREDTH))
+}
+
+/// A learner after its training.
+fn learnt<'w, const S: usize, const T: usize>(
+    weights: &'w mut [[f32; 2]; S],
+    memory: &'w mut [Transition<4>],
+) -> anyhow::Result<QLambda<'w, S, T>> {
+    let mut learner = q_lambda(Budget::Steps(STEPS), weights, memory)?;
+    let (mut env, mut choices) = training(SeedSequence::new(SEED));
+    let mut steps = 0;
+    while steps < STEPS {
+        learn(&mut learner, &mut env, &mut choices);
+        steps += env.elapsed();
+    }
+    Ok(learner)
+}
+
+/// The mean return of a policy in `Fast`, with at most 500 steps per episode.
+fn mean(mut policy: impl FnMut(&State<f32>) -> Action) -> f64 {
+    let mut env = TimeLimit::v1(Acrobot::<Fast>::new(0));
+    let mut sum = 0.0;
+    for seed in (0..SEEDS).progress() {
+        env.reset_with_seed(seed.into());
+        loop {
+            let step = env.step(policy(&env.state()));
+            sum += f64::from(step.reward);
+            if step.done() {
+                break;
+            }
+        }
+    }
+    sum / f64::from(SEEDS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_is_rounded_up() {
+        let shown = |steps| format!("{:.2}", highest_mean(steps));
+        assert_eq!(shown(38_816), "-37.81");
+        assert_eq!(shown(38_820), "-37.82");
+    }
+}

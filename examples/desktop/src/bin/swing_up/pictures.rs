@@ -1,0 +1,186 @@
+//! Pictures of the learning curve, the learnt values and an episode.
+
+use std::f32::consts::PI;
+use std::ops::Range;
+
+use acrobot::physics::Pendulum;
+use acrobot::{Fast, Params, REWARD_THRESHOLD, State};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use crate::curve::running_mean;
+
+const TITLE: (&str, i32) = ("sans-serif", 24);
+const NAME: (&str, i32) = ("sans-serif", 18);
+const LABEL: (&str, i32) = ("sans-serif", 15);
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// A picture of this size in pixels, as SVG.
+pub fn svg(
+    size: (u32, u32),
+    draw: impl FnOnce(&Area) -> anyhow::Result<()>,
+) -> anyhow::Result<String> {
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        area.fill(&WHITE)?;
+        draw(&area)?;
+        area.present()?;
+    }
+    Ok(text)
+}
+
+/// The return of each episode, and the running mean.
+pub fn draw_curve(area: &Area, returns: &[f32]) -> anyhow::Result<()> {
+    const MEAN: RGBColor = RGBColor(33, 145, 140);
+    const THRESHOLD: RGBColor = RGBColor(200, 60, 40);
+
+    let body = area.titled("Learning to swing up", TITLE)?;
+    // Both axes are logarithmic: most is learnt in few episodes, and the last steps are the hardest to save.
+    let threshold = f64::from(REWARD_THRESHOLD);
+    let (worst, best) = (-500_f64, -40_f64);
+    let last = (returns.len() as f64).max(2.0);
+    let doublings = |reward: f64| -(reward / threshold).log2();
+    let mut chart = ChartBuilder::on(&body)
+        .margin(10)
+        .margin_right(24)
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d((1.0..last).log_scale(), doublings(worst)..doublings(best))?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .label_style(LABEL)
+        .axis_desc_style(NAME)
+        .x_desc("episode")
+        .y_desc("return")
+        .x_label_formatter(&|episode| format!("{episode:.0}"))
+        .y_labels(4)
+        .y_label_formatter(&|y| format!("{:.0}", threshold * (-y).exp2()))
+        .draw()?;
+    let line = |value: &dyn Fn(usize) -> f32| -> Vec<(f64, f64)> {
+        let point = |n| (n as f64, doublings(f64::from(value(n)).clamp(worst, best)));
+        (1..=returns.len()).map(point).collect()
+    };
+    for (name, points, style) in [
+        (
+            "return of an episode",
+            line(&|n| returns[n - 1]),
+            RGBColor(185, 195, 205).stroke_width(1),
+        ),
+        (
+            "solved: -100",
+            [1.0, last].map(|n| (n, doublings(threshold))).to_vec(),
+            THRESHOLD.stroke_width(1),
+        ),
+        (
+            "mean of the latest 100",
+            line(&|n| running_mean(&returns[..n])),
+            MEAN.stroke_width(3),
+        ),
+    ] {
+        chart
+            .draw_series(LineSeries::new(points, style))?
+            .label(name)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], style));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .legend_area_size(30)
+        .margin(16)
+        .background_style(WHITE)
+        .border_style(RGBColor(200, 200, 200))
+        .label_font(LABEL)
+        .draw()?;
+    Ok(())
+}
+
+/// The values at rest over both angles, except where the tip is above the target height, which ends an episode.
+pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> anyhow::Result<()> {
+    /// The number of cells in each direction.
+    const SIDE: usize = 72;
+    let at = |i: usize| ((i as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0) * PI;
+    let cells = (0..SIDE * SIDE).map(|i| {
+        let (theta1, theta2) = (at(i / SIDE), at(i % SIDE));
+        let rest = State {
+            theta1,
+            theta2,
+            ..State::default()
+        };
+        let pendulum = Pendulum::<Fast>::new(Params::DEFAULT, rest).expect("the angles are finite");
+        let value = (pendulum.tip_height() <= 1.0).then(|| f64::from(value(&rest)));
+        (f64::from(theta1), f64::from(theta2), value)
+    });
+    let cells: Vec<_> = cells.collect();
+    let values = || cells.iter().filter_map(|&(.., value)| value);
+    let tens = |value: f64| value / 10.0;
+    let least = tens(values().fold(f64::INFINITY, f64::min)).floor() * 10.0;
+    let most = tens(values().fold(f64::NEG_INFINITY, f64::max)).ceil() * 10.0;
+    let range = least..most.max(least + 10.0);
+
+    let body = area
+        .titled("Learnt values of the acrobot at rest", TITLE)?
+        .titled(
+            "the higher action value; grey: the tip is above the target height",
+            NAME,
+        )?;
+    let (map, bar) = body.split_horizontally(660);
+    let pi = f64::from(PI);
+    let mut chart = ChartBuilder::on(&map)
+        .margin(10)
+        .x_label_area_size(44)
+        .y_label_area_size(52)
+        .build_cartesian_2d(-pi..pi, -pi..pi)?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .label_style(LABEL)
+        .axis_desc_style(NAME)
+        .x_desc("θ1 (rad, 0 = hanging)")
+        .y_desc("θ2 (rad, 0 = straight)")
+        .x_labels(7)
+        .y_labels(7)
+        .x_label_formatter(&|x| format!("{x:.0}"))
+        .y_label_formatter(&|y| format!("{y:.0}"))
+        .draw()?;
+    let half = pi / SIDE as f64;
+    chart.draw_series(cells.iter().map(|&(x, y, value)| {
+        let color = value.map_or(RGBColor(190, 190, 190), |value| color(value, &range));
+        Rectangle::new([(x - half, y - half), (x + half, y + half)], color.filled())
+    }))?;
+    draw_bar(&bar, &range, "value (minus the steps to the goal)")
+}
+
+/// Draws the colours of a range, with a name and labels.
+fn draw_bar(area: &Area, range: &Range<f64>, name: &str) -> anyhow::Result<()> {
+    const SHADES: u32 = 60;
+    let mut chart = ChartBuilder::on(area)
+        .margin(10)
+        .margin_bottom(54)
+        .y_label_area_size(60)
+        .build_cartesian_2d(0.0..1.0, range.clone())?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .disable_x_axis()
+        .label_style(LABEL)
+        .axis_desc_style(NAME)
+        .y_desc(name)
+        .y_label_formatter(&|value| format!("{value:.0}"))
+        .draw()?;
+    let height = (range.end - range.start) / f64::from(SHADES);
+    chart.draw_series((0..SHADES).map(|shade| {
+        let from = range.start + f64::from(shade) * height;
+        Rectangle::new(
+            [(0.0, from), (1.0, from + height)],
+            color(from, range).filled(),
+        )
+    }))?;
+    Ok(())
+}
+
+fn color(value: f64, range: &Range<f64>) -> RGBColor {
+    ViridisRGB.get_color_normalized(value, range.start, range.end)
+}

@@ -1,0 +1,141 @@
+//! The programs do what their documentation says.
+
+mod pictures;
+mod swing_up;
+
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::{env, fs};
+
+/// An empty folder in which programs run, removed when the test ends.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static NUMBER: AtomicU32 = AtomicU32::new(0);
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let folder = env::temp_dir().join(format!("acrobot-{}-{number}", std::process::id()));
+        // A killed test with the same process id may have left one.
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir(&folder).unwrap();
+        Self(folder)
+    }
+
+    /// A program and its arguments, separated by spaces.
+    fn command(&self, line: &str) -> Command {
+        let mut words = line.split(' ');
+        let program = match words.next().unwrap() {
+            "balance" => env!("CARGO_BIN_EXE_balance"),
+            "episode" => env!("CARGO_BIN_EXE_episode"),
+            "optimum" => env!("CARGO_BIN_EXE_optimum"),
+            "plan" => env!("CARGO_BIN_EXE_plan"),
+            "random_agent" => env!("CARGO_BIN_EXE_random_agent"),
+            "swing_up" => env!("CARGO_BIN_EXE_swing_up"),
+            name => panic!("no program is called {name}"),
+        };
+        let mut command = Command::new(program);
+        command.args(words).current_dir(&self.0);
+        command
+    }
+
+    /// What a program prints.
+    fn printed(&self, line: &str) -> String {
+        let output = self.command(line).output().unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{line}: {errors}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// The error message of a program that must fail, and print nothing else.
+    fn rejected(&self, line: &str) -> String {
+        let output = self.command(line).output().unwrap();
+        assert!(
+            !output.status.success() && output.stdout.is_empty(),
+            "{line}"
+        );
+        String::from_utf8(output.stderr).unwrap()
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap()
+    }
+
+    /// The text of a picture, which must be a complete SVG.
+    fn svg(&self, name: &str) -> String {
+        let text = String::from_utf8(self.read(name)).unwrap();
+        assert!(text.starts_with("<svg") && text.ends_with("</svg>\n"));
+        text
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The lengths and ends of the episodes are those that Gymnasium's random agent has.
+#[test]
+fn the_random_agent_plays_gymnasiums_episodes() {
+    if !common::is_recorded_library() {
+        return;
+    }
+    let folder = Folder::new();
+    let seeds = common::text_of("tests/data/seeds.txt");
+    let rows = seeds.lines().filter_map(|line| line.strip_prefix("agent "));
+    for row in rows.step_by(4) {
+        let (seed, episodes) = row.split_once(' ').unwrap();
+        let numbers: Vec<&str> = episodes.split(' ').collect();
+        let mut expected = String::new();
+        for (episode, number) in numbers.chunks(2).zip(1..) {
+            let end = if episode[1] == "1" {
+                "terminated"
+            } else {
+                "truncated"
+            };
+            expected += &format!("episode {number}: {} steps, {end}\n", episode[0]);
+        }
+        let output = folder.printed(&format!("random_agent --seed {seed} --steps 3000"));
+        assert!(output.starts_with(&expected), "seed {seed}: {output}");
+    }
+}
+
+#[test]
+fn planning_beats_the_learnt_policy_within_fixed_memory() {
+    let folder = Folder::new();
+    let text = folder.printed("plan --learn 300 --episodes 20 --depth 30");
+    let number = |name: &str| -> f64 {
+        let (_, rest) = text.split_once(name).unwrap();
+        rest.split_whitespace().next().unwrap().parse().unwrap()
+    };
+    // After 300 episodes the values are coarse.
+    assert!(number("30 steps ahead") > -72.0, "{text}");
+    assert!(number("30 steps ahead") > number("greedy") + 5.0, "{text}");
+    assert!(number("the search takes ") <= 4096.0, "{text}");
+}
+
+/// Commands, and a part of the error message of each.
+const REJECTED: [(&str, &str); 8] = [
+    ("optimum search --width 0", "0 is not in 1.."),
+    ("optimum table --file none.txt", "Error: none.txt"),
+    ("plan --depth 129", "129 is not in 1..=128"),
+    ("plan --load none.bin", "Error: none.bin"),
+    ("random_agent --seed 4x2", "got 'x' as character 2"),
+    ("episode --out no/a.svg", "Error: cannot write no/a.svg"),
+    ("swing_up --load /dev/zero", "weights must"),
+    ("swing_up --steps 1 --episodes 1", "cannot be used with"),
+];
+
+#[test]
+fn bad_arguments_are_rejected_with_a_reason() {
+    let folder = Folder::new();
+    for (line, reason) in REJECTED {
+        let errors = folder.rejected(line);
+        assert!(errors.contains(reason), "{line}: {errors}");
+    }
+}
