@@ -51,10 +51,13 @@ fn argument(family: &str, rng: &mut Pcg64) -> f64 {
     }
 }
 
+/// With optimization these are 21 million.
 #[test]
-fn twenty_one_million_sines_are_correctly_rounded() {
+fn millions_of_sines_are_correctly_rounded() {
+    const EVERY: usize = if cfg!(debug_assertions) { 5 } else { 1 };
+
     let mut count = 0;
-    for fields in recorded() {
+    for fields in recorded().step_by(EVERY) {
         let ["family", family, chunk, expected] = fields[..] else {
             continue;
         };
@@ -76,7 +79,7 @@ fn twenty_one_million_sines_are_correctly_rounded() {
         );
         count += CHUNK;
     }
-    assert_eq!(count, 21_000_000);
+    assert!(count > 3_000_000, "{count}");
 }
 
 /// Results next to half way between two `f64`, arguments next to multiples of π/2 of every size, and the ends of each

@@ -105,27 +105,20 @@ fn subnormal_numbers_are_stable() {
     assert!(found == episodes::SUBNORMAL, "{found:#018x?}");
 }
 
+/// `cargo test -p common` tries other widths.
 #[test]
-fn batches_are_stable_in_every_width() {
-    let check = |found: [u64; 3], expected| assert!(found == [expected; 3], "{found:#018x?}");
-    let shared = [
-        episodes::shared_params::<1, 20>(),
-        episodes::shared_params::<4, 5>(),
+fn batches_are_stable() {
+    let found = [
         episodes::shared_params::<16, 2>(),
-    ];
-    check(shared, episodes::SHARED_PARAMS);
-    let subnormal = [
-        episodes::subnormal_batch::<1, 20>(),
-        episodes::subnormal_batch::<4, 5>(),
         episodes::subnormal_batch::<16, 2>(),
-    ];
-    check(subnormal, episodes::SUBNORMAL_BATCH);
-    let own = [
-        episodes::own_params::<1, 8>(),
-        episodes::own_params::<4, 2>(),
         episodes::own_params::<16, 1>(),
     ];
-    check(own, episodes::OWN_PARAMS);
+    let expected = [
+        episodes::SHARED_PARAMS,
+        episodes::SUBNORMAL_BATCH,
+        episodes::OWN_PARAMS,
+    ];
+    assert!(found == expected, "{found:#018x?}");
 }
 
 /// The weights after 100 episodes. Any change in the learner or the task changes them.

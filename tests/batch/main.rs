@@ -1,7 +1,10 @@
 //! Promise 2 for batches: acrobot `i` is bit-identical to an `Acrobot` seeded with the seed's `i`-th child, with shared
-//! parameters and with its own.
+//! parameters and with its own. `cargo test -p common` tries more widths.
 
-mod bits;
+mod autoreset;
 mod params;
 mod resets;
-mod twins;
+mod slices;
+mod snapshots;
+mod steps;
+mod vec_batch;

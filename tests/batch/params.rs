@@ -7,7 +7,7 @@ use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Error, Fast, Params, Portable, ResetOptions};
 use common::params_range;
 
-use crate::twins::{LEVELS, MODES, Twins};
+use common::twins::{LEVELS, MODES, Twins};
 
 /// Every other acrobot has the equations of the 1996 paper, and a third has no noise.
 #[test]
@@ -49,7 +49,7 @@ fn every_arithmetic_and_mode_equals_single_acrobots() {
 fn resets_that_draw_parameters_equal_those_of_single_acrobots() {
     let bounds = Some(ResetBounds::new(0.5, 0.6).unwrap());
     for autoreset in MODES {
-        let mut twins = Twins::<Fast, 4>::with_own_params(37, autoreset);
+        let mut twins = Twins::<Fast, 3>::with_own_params(37, autoreset);
         let range = params_range(Dynamics::Nips);
         twins.batch.set_params_range(Some(range)).unwrap();
         for seed in [Some(SeedSequence::new(7)), None] {

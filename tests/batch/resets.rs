@@ -6,7 +6,7 @@ use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Fast, Portable, ResetOptions, State, TimeLimit};
 
-use crate::twins::{Twins, equal};
+use common::twins::{Twins, equal};
 
 #[test]
 fn given_initial_states_equal_single_acrobots() {

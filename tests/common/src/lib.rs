@@ -1,8 +1,8 @@
 //! Code that several tests share.
 
 pub mod canvas;
-pub mod formats;
 mod recording;
+pub mod twins;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,14 +1,17 @@
 //! Snapshots of any acrobot resume to the same bits, and are harmless when damaged.
 
 use acrobot::arithmetic::Arithmetic;
-use acrobot::batch::Member;
-use acrobot::numpy::Pcg64;
+use acrobot::batch::{Member, VecBatch};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::Dynamics;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
+use common::params_range;
 use proptest::prelude::*;
 use rand_core::Rng;
+use serde::{Deserialize, Serialize};
 
+use crate::formats::again;
 use crate::given::{Number, Range, acrobot, bits, holds, params, state};
-use common::formats::again;
 
 /// An acrobot after some steps and draws, with any time limit.
 fn running<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = TimeLimit<Acrobot<A>>> {
@@ -83,6 +86,27 @@ fn members_and_parts_load_as_stored() {
             assert_eq!(bits(loaded), bits(state));
         }
     });
+}
+
+/// A struct, which some formats need.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    batch: VecBatch<Fast>,
+}
+
+#[test]
+fn every_format_stores_batches() {
+    let mut batch = VecBatch::with_own_params(SeedSequence::new(42), 3).unwrap();
+    for range in [None, Some(params_range(Dynamics::Nips))] {
+        batch.set_params_range(range).unwrap();
+        batch.reset();
+        let batch = batch.clone();
+        let expected = serde_json::to_string(&batch).unwrap();
+        for (format, loaded) in again(&Saved { batch }) {
+            let found = serde_json::to_string(&loaded.batch).unwrap();
+            assert_eq!(found, expected, "{format}");
+        }
+    }
 }
 
 /// Changed or truncated bytes are rejected, or load as another valid acrobot.

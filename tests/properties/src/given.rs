@@ -29,9 +29,7 @@ fn hold<T: Debug>(cases: u32, given: BoxedStrategy<T>, property: &dyn Fn(T)) {
             fixed => fixed,
         },
         max_local_rejects: u32::MAX,
-        failure_persistence: Some(Box::new(FileFailurePersistence::Direct(
-            "tests/properties/regressions.txt",
-        ))),
+        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("regressions.txt"))),
         ..default
     };
     let outcome = TestRunner::new(config).run(&given, |value| {

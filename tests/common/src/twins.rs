@@ -224,6 +224,20 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         }
     }
 
+    /// Plays with every SIMD level. Initial states are far outside of the bounds, and there is noise.
+    pub fn at_every_level() {
+        for level in LEVELS {
+            let mut twins = Self::new(37, Autoreset::SameStep);
+            twins.batch.set_simd_level(level);
+            twins.swing(200);
+            twins.set_noise(0.5);
+            twins.set_bounds(-100.0, 100.0);
+            // After an episode's end the links turn over, which wraps angles.
+            twins.batch.set_autoreset(Autoreset::Disabled);
+            twins.swing(200);
+        }
+    }
+
     pub fn play_randomly(&mut self, steps: u32) {
         let mut rng = Pcg64::new(7);
         for _ in 0..steps {

@@ -1,5 +1,7 @@
 //! Promise 3, no panic, no hang and no NaN, for any input: properties of all public functions in every arithmetic.
-//! `PROPTEST_CASES=60000 PROPTEST_RNG_SEED=7 cargo test --release --test properties` tries more and other cases.
+//! `PROPTEST_CASES=60000 PROPTEST_RNG_SEED=7 cargo test --release -p properties` tries more and other cases.
+
+#![cfg(test)]
 
 #[macro_use]
 mod given;
@@ -7,6 +9,7 @@ mod given;
 mod control;
 mod draws;
 mod environments;
+mod formats;
 mod pictures;
 mod snapshots;
 mod steps;

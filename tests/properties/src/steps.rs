@@ -1,4 +1,4 @@
-//! Steps of any acrobot: bounds, mirror symmetry, time limits, and the lanes of a batch.
+//! Steps of any acrobot: bounds, mirror symmetry and time limits.
 
 use std::array;
 use std::cell::Cell;
@@ -6,8 +6,7 @@ use std::f64::consts::PI;
 use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
-use acrobot::batch::{Autoreset, VecBatch};
-use acrobot::numpy::{Pcg64, SeedSequence, integers};
+use acrobot::numpy::{Pcg64, integers};
 use acrobot::physics::Pendulum;
 use acrobot::{
     Acrobot, Action, Error, Fast, Observation, Params, Portable, State, Step, TimeLimit,
@@ -229,59 +228,4 @@ fn episodes_are_truncated_from_their_limit_on() {
             assert_eq!(acrobot.elapsed(), elapsed);
         }
     });
-}
-
-/// No lane affects another: with any state and any parameters, extreme or not, shared or its own, it is bit-identical
-/// to a single acrobot.
-#[test]
-fn lanes_of_a_batch_equal_single_acrobots() {
-    const LEN: usize = 18;
-
-    fn play<A: Arithmetic<Scalar: Number>>(
-        mut batch: VecBatch<A>,
-        params: &[Params<A::Scalar>],
-        states: &[State<A::Scalar>],
-        torques: &[A::Scalar],
-    ) {
-        batch.set_autoreset(Autoreset::Disabled);
-        batch.reset_to(states).unwrap();
-        let mut alone: Vec<_> = (0..LEN)
-            .map(|i| {
-                let member = batch.member(i).unwrap();
-                let pendulum = Pendulum::<A>::new(params[i], member.state).unwrap();
-                Acrobot::from_pendulum(pendulum, member.rng)
-            })
-            .collect();
-        for _ in 0..2 {
-            let results = batch.step(torques).unwrap();
-            let (rows, terminated) = (results.observations.to_vec(), results.terminated.to_vec());
-            for (i, alone) in alone.iter_mut().enumerate() {
-                let step = alone.step_torque(torques[i]).unwrap();
-                assert_eq!(bits(batch.state(i).unwrap()), bits(alone.state()), "{i}");
-                let observation = step.observation.to_array();
-                assert_eq!(rows[i].map(f32::to_bits), observation.map(f32::to_bits));
-                assert_eq!(terminated[i], step.terminated);
-            }
-        }
-    }
-    fn check<A: Arithmetic<Scalar: Number>>() {
-        let params = prop::collection::vec(params(Range::Any), LEN);
-        let states = prop::collection::vec(state::<A::Scalar>(Range::Any), LEN);
-        let torques = prop::collection::vec(number::<A::Scalar>(Range::Any), LEN);
-        holds(
-            1000,
-            (params, states, torques),
-            |(params, states, torques)| {
-                let mut shared = VecBatch::<A>::new(SeedSequence::new(0), LEN).unwrap();
-                shared.set_params(params[0]).unwrap();
-                play(shared, &[params[0]; LEN], &states, &torques);
-                let mut own = VecBatch::<A>::with_own_params(SeedSequence::new(0), LEN).unwrap();
-                for (i, params) in params.iter().enumerate() {
-                    own.set_params_of(i, *params).unwrap();
-                }
-                play(own, &params, &states, &torques);
-            },
-        );
-    }
-    in_every_arithmetic!(check);
 }

@@ -1,0 +1,326 @@
+//! A loaded batch continues to the same bits, with any memory and any width. An invalid snapshot is rejected with the
+//! reason.
+
+use std::fmt::Debug;
+
+use acrobot::arithmetic::Arithmetic;
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, VecBatch};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::Dynamics;
+use acrobot::{Acrobot, Action, Fast, Params, TimeLimit};
+use common::params_range;
+use common::twins::{MODES, Twins};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+const LEN: usize = 35;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    Shared,
+    Own,
+    Drawn,
+}
+
+/// A batch in the middle of episodes, of which some have ended.
+fn running(kind: Kind, autoreset: Autoreset, noise: f32) -> Twins<Fast> {
+    let mut rng = Pcg64::new(5);
+    let range = params_range(Dynamics::Nips);
+    let mut draw = || Params {
+        torque_noise: noise,
+        ..range.draw(&mut rng)
+    };
+    let mut twins = match kind {
+        Kind::Shared => Twins::new(LEN, autoreset),
+        Kind::Own | Kind::Drawn => Twins::with_own_params(LEN, autoreset),
+    };
+    let limit = 150.try_into().unwrap();
+    twins.batch.set_limit(limit);
+    for alone in &mut twins.alone {
+        *alone = TimeLimit::new(alone.inner().clone(), limit);
+    }
+    match kind {
+        Kind::Shared => twins.set_params(draw()),
+        Kind::Own => {
+            let mut params = [(); LEN].map(|()| draw());
+            params[0].gravity = -0.0;
+            twins.set_params_of_each(&params);
+        }
+        Kind::Drawn => twins.batch.set_params_range(Some(range)).unwrap(),
+    }
+    twins.set_bounds(-0.5, 0.25);
+    twins.swing(200);
+    if autoreset == Autoreset::NextStep {
+        twins.swing_until_pending();
+    }
+    // Half of a draw is left over.
+    Action::sample(&mut twins.batch.generators_mut()[0]);
+    Action::sample(twins.alone[0].inner_mut().rng_mut());
+    twins
+}
+
+/// Every kind of parameters in every mode, with and without noise.
+fn every_batch() -> impl Iterator<Item = Twins<Fast>> {
+    let kinds = [Kind::Shared, Kind::Own, Kind::Drawn].into_iter();
+    let settings = kinds.flat_map(|kind| MODES.map(|autoreset| (kind, autoreset)));
+    settings.flat_map(|(kind, autoreset)| [0.0, 0.5].map(|noise| running(kind, autoreset, noise)))
+}
+
+/// Continues beside the single acrobots that the stored batch was beside.
+fn assert_continues<const N: usize>(stored: &Twins<Fast>, loaded: VecBatch<Fast, N>) {
+    assert_eq!(loaded.params_range(), stored.batch.params_range());
+    assert_eq!(loaded.reset_bounds(), stored.batch.reset_bounds());
+    assert_eq!(loaded.limit(), stored.batch.limit());
+    assert_eq!(loaded.autoreset(), stored.batch.autoreset());
+    let mut twins = Twins {
+        batch: loaded,
+        alone: stored.alone.clone(),
+        pending: stored.pending.clone(),
+    };
+    twins.assert_equal();
+    twins.swing(300);
+}
+
+#[test]
+fn loaded_batches_continue_to_the_same_bits() {
+    for stored in every_batch() {
+        let json = serde_json::to_string(&stored.batch).unwrap();
+        assert_continues::<16>(&stored, serde_json::from_str(&json).unwrap());
+        let bytes = postcard::to_stdvec(&stored.batch).unwrap();
+        assert_continues::<3>(&stored, postcard::from_bytes(&bytes).unwrap());
+    }
+}
+
+/// The snapshot depends neither on the memory nor on the width.
+#[test]
+fn a_loaded_batch_is_saved_to_the_same_bytes() {
+    for Twins { batch, .. } in every_batch() {
+        let bytes = postcard::to_stdvec(&batch).unwrap();
+        let wide: VecBatch<Fast, 32> = postcard::from_bytes(&bytes).unwrap();
+        assert_eq!(postcard::to_stdvec(&wide).unwrap(), bytes);
+        let mut deserializer = postcard::Deserializer::from_bytes(&bytes);
+        let (blocks, generators) = ([Block::EMPTY; LEN], [Pcg64::UNSEEDED; LEN]);
+        let saved = if batch.params_of(0) == batch.params_of(1) {
+            let memory = (blocks, generators);
+            postcard::to_stdvec(
+                &Batch::<Fast, _, 1>::from_snapshot(memory, &mut deserializer).unwrap(),
+            )
+        } else {
+            let memory = (blocks, generators, [LaneParams::default(); LEN]);
+            postcard::to_stdvec(
+                &Batch::<Fast, _, 1>::from_snapshot(memory, &mut deserializer).unwrap(),
+            )
+        };
+        assert_eq!(saved.unwrap(), bytes);
+    }
+}
+
+/// Fields in another order and unknown ones change nothing, as in the snapshot of an acrobot.
+#[test]
+fn fields_have_any_order_and_unknown_ones_are_ignored() {
+    fn add(value: &mut Value) {
+        match value {
+            Value::Object(fields) => {
+                fields.values_mut().for_each(add);
+                fields.insert("an unknown field".into(), "new".into());
+            }
+            Value::Array(values) => values.iter_mut().for_each(add),
+            _ => {}
+        }
+    }
+    fn check<T: Serialize + DeserializeOwned>(saved: &T) {
+        let mut value = serde_json::to_value(saved).unwrap();
+        assert!(!value.to_string().contains("{\"snapshot\""), "not sorted");
+        add(&mut value);
+        let loaded: T = serde_json::from_str(&value.to_string()).unwrap();
+        let [loaded, saved] = [&loaded, saved].map(|x| serde_json::to_string(x).unwrap());
+        assert_eq!(loaded, saved);
+    }
+    check(&Acrobot::<Fast>::new(3));
+    for kind in [Kind::Shared, Kind::Own, Kind::Drawn] {
+        check(&running(kind, Autoreset::NextStep, 0.5).batch);
+    }
+}
+
+/// A binary format can hold NaN, JSON cannot.
+#[test]
+fn states_that_are_not_finite_are_rejected() {
+    let batch = three(false);
+    let mut bytes = postcard::to_stdvec(&batch).unwrap();
+    let theta1 = batch.state(1).unwrap().theta1.to_le_bytes();
+    let at = bytes
+        .windows(4)
+        .position(|window| window == theta1)
+        .unwrap();
+    bytes[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+    assert!(postcard::from_bytes::<VecBatch<Fast>>(&bytes).is_err());
+}
+
+fn three(own_params: bool) -> VecBatch<Fast> {
+    let seed = SeedSequence::new(1);
+    match own_params {
+        true => VecBatch::with_own_params(seed, 3).unwrap(),
+        false => VecBatch::new(seed, 3).unwrap(),
+    }
+}
+
+/// The error of loading JSON, without the position.
+fn error<T: Debug>(loaded: Result<T, serde_json::Error>) -> String {
+    let error = loaded.unwrap_err().to_string();
+    error.split(" at line").next().unwrap().to_owned()
+}
+
+fn load<A: Arithmetic<Scalar: DeserializeOwned>>(json: &str) -> String {
+    error(serde_json::from_str::<VecBatch<A>>(json))
+}
+
+/// Loads into memory for three acrobots that share their parameters.
+fn load_shared(json: &str) -> String {
+    let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 3]);
+    let json = &mut serde_json::Deserializer::from_str(json);
+    error(Batch::<Fast, _>::from_snapshot(memory, json))
+}
+
+#[test]
+fn invalid_snapshots_are_rejected() {
+    let text = serde_json::to_string(&three(false)).unwrap();
+    let replaced = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from} in {text}");
+        text.replacen(from, to, 1)
+    };
+    for (from, to, message) in [
+        (
+            r#""of":"batch""#,
+            r#""of":"acrobot""#,
+            r#"the snapshot must be "batch", version 1, arithmetic "fast", got "acrobot", version 1, arithmetic "fast""#,
+        ),
+        (
+            r#""version":1"#,
+            r#""version":2"#,
+            r#"the snapshot must be "batch", version 1, arithmetic "fast", got "batch", version 2, arithmetic "fast""#,
+        ),
+        (
+            r#""fast""#,
+            r#""micro""#,
+            r#"the snapshot must be "batch", version 1, arithmetic "fast", got "batch", version 1, arithmetic "micro""#,
+        ),
+        (
+            r#""limit":500"#,
+            r#""limit":0"#,
+            "invalid value: integer `0`, expected a nonzero u32",
+        ),
+        (
+            r#""low":-0.1"#,
+            r#""low":0.5"#,
+            "the lower reset bound must not be above the upper one, got 0.5 and 0.1 rad and rad/s",
+        ),
+        (
+            r#""high":0.1"#,
+            r#""high":1e39"#,
+            "high must be from -3.4e38 to 3.4e38 rad and rad/s, got 1000000000000000000000000000000000000000",
+        ),
+        (
+            r#""autoreset":"NextStep""#,
+            r#""autoreset":"Never""#,
+            "unknown variant `Never`, expected one of `NextStep`, `SameStep`, `Disabled`",
+        ),
+        (
+            r#""mass1":1.0"#,
+            r#""mass1":-1.0"#,
+            "mass1 must be finite and above 0 kg, got -1",
+        ),
+        // The first member has the parameters of all.
+        (
+            r#""mass1":1.0"#,
+            r#""mass1":2.0"#,
+            "a batch must have memory for the parameters of each acrobot",
+        ),
+        (r#""limit":500,"#, "", "missing field `limit`"),
+        (r#""elapsed":0,"#, "", "missing field `elapsed`"),
+        (r#""own_params":false,"#, "", "missing field `own_params`"),
+    ] {
+        let changed = replaced(from, to);
+        assert_eq!(load::<Fast>(&changed), message);
+        assert_eq!(load_shared(&changed), message);
+    }
+
+    let kind = |json: &str| load::<Fast>(json);
+    let expected = "expected the settings of a batch and its members";
+    assert_eq!(kind("[]"), format!("invalid length 0, {expected}"));
+    let acrobot = serde_json::to_string(&Acrobot::<Fast>::new(1)).unwrap();
+    assert_eq!(kind(&acrobot), format!("invalid type: map, {expected}"));
+    let settings = format!("{}]", text.split_once(",{\"params\"").unwrap().0);
+    let empty = "a batch must have at least 1 acrobot, got 0 generators";
+    assert_eq!(kind(&settings), empty);
+    let none = "members must have 3 elements, got 0";
+    assert_eq!(load_shared(&settings), none);
+}
+
+#[test]
+fn snapshots_that_do_not_fit_into_the_memory_are_rejected() {
+    fn load<const LEN: usize>(batch: &VecBatch<Fast>, own: usize) -> String {
+        let memory = (
+            [Block::EMPTY; 1],
+            [Pcg64::UNSEEDED; LEN],
+            vec![LaneParams::default(); own],
+        );
+        let text = serde_json::to_string(batch).unwrap();
+        let json = &mut serde_json::Deserializer::from_str(&text);
+        error(Batch::<Fast, _>::from_snapshot(memory, json))
+    }
+    for own in [0, 1] {
+        let batch = &three(own == 1);
+        let message = "members must have 4 elements, got 3";
+        assert_eq!(load::<4>(batch, own), message);
+        let message = "members must have 2 elements, got 3";
+        assert_eq!(load::<2>(batch, own), message);
+    }
+    let message = "a batch must have at least 1 acrobot, got 0 generators";
+    assert_eq!(load::<0>(&three(false), 0), message);
+    let message = "lane_params must have 1 elements, got 2";
+    assert_eq!(load::<3>(&three(true), 2), message);
+
+    let shared = "a batch must have memory for the parameters of each acrobot";
+    let mut different = three(true);
+    let heavy = Params {
+        mass1: 2.0,
+        ..Params::DEFAULT
+    };
+    different.set_params_of(2, heavy).unwrap();
+    assert_eq!(load::<3>(&different, 0), shared);
+    let mut drawn = three(true);
+    let range = params_range(Dynamics::Book);
+    drawn.set_params_range(Some(range)).unwrap();
+    assert_eq!(load::<3>(&drawn, 0), shared);
+}
+
+#[test]
+fn invalid_ranges_are_rejected() {
+    let mut drawn = three(true);
+    let range = params_range(Dynamics::Book);
+    drawn.set_params_range(Some(range)).unwrap();
+    let value = serde_json::to_value(&drawn).unwrap();
+    let changed = |change: fn(&mut Vec<Value>)| {
+        let mut value = value.clone();
+        change(value[0]["params_range"].as_array_mut().unwrap());
+        load::<Fast>(&value.to_string())
+    };
+    assert_eq!(
+        changed(|range| range.reverse()),
+        "the lower length1 must not be above the upper one, got 2 and 0.5 m"
+    );
+    assert_eq!(
+        changed(|range| range[1]["dynamics"] = "Nips".into()),
+        "dynamics must be the same in both bounds of a range"
+    );
+    assert_eq!(
+        changed(|range| range[0]["dt"] = 0.into()),
+        "dt must be finite and above 0 s, got 0"
+    );
+    assert_eq!(
+        changed(|range| range.truncate(1)),
+        "params_range must have 2 elements, got 1"
+    );
+    assert!(changed(|range| range.push(range[0].clone())).contains("invalid length 3"));
+}
