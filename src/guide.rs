@@ -16,6 +16,7 @@
 //! | why all machines compute the same bits, and where that ends | [`determinism`] |
 //! | the equations, and their sources | [`equations`] |
 //! | how fast it is | [`benchmarks`] |
+//! | what it costs on a microcontroller | [`embedded_figures`] |
 //! | how well it learns | [`learning`] |
 //! | how well any policy can do | [`optimum`] |
 //!
@@ -40,6 +41,10 @@ pub mod rust {}
     doc = include_str!("../docs/embedded.md")
 )]
 pub mod embedded {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/embedded-figures.md")]
+pub mod embedded_figures {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/c.md")]

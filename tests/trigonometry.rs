@@ -65,7 +65,7 @@ fn micro_is_within_its_error() {
     }
 }
 
-/// `Micro` has a table because the sine of `micromath`, which it could call, has an error of 1.1e-3, as docs/embedded.md says.
+/// `Micro` has a table because the sine of `micromath`, which it could call, has an error of 1.1e-3.
 #[test]
 fn micro_is_a_thousand_times_as_close_as_micromath() {
     let worst = (-3141..=3141)

@@ -1,6 +1,6 @@
 """Estimates the mean cycles per instruction on a Cortex-M4F, for `figures.py`.
 
-The mean is over every instruction that QEMU executes in the loop of a firmware such as `minimal_fast`. The timing of each is
+The mean is over every instruction that QEMU executes in the loop of the firmware `minimal`. The timing of each is
 that of ARM's Technical Reference Manual (ARM DDI 0439, 3.3.1 and 7.2.3). The estimate assumes memory without wait states, and
 two cycles to refill the pipeline after a taken branch.
 """

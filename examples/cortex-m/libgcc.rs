@@ -1,19 +1,12 @@
 //! Makes libgcc add, multiply and convert doubles, instead of Rust's own routines. The bits are the same.
 //!
-//! It is for a Cortex-M3, M4 or M33, which compute doubles in software. Copy this file beside your `build.rs` and call `link` there:
-//!
-//! ```text
-//! mod libgcc;
-//!
-//! fn main() -> Result<(), Box<dyn std::error::Error>> {
-//!     libgcc::link()
-//! }
-//! ```
+//! It is for a Cortex-M3, M4 or M33, which compute doubles in software. Copy this file beside your `build.rs`, and call
+//! `libgcc::link()?` there.
 
 use std::process::Command;
 use std::{env, error::Error, fs};
 
-/// The parts of libgcc that take fewer instructions than Rust's. Its division takes four times as many, and its comparisons
+/// The parts of libgcc that need fewer instructions than Rust's. Its division needs four times as many, and its comparisons
 /// slightly more.
 const PARTS: [&str; 3] = ["_arm_addsubdf3.o", "_arm_muldf3.o", "_arm_truncdfsf2.o"];
 

@@ -4,8 +4,6 @@
 
 pub mod counter;
 pub mod episode;
-pub mod micromath;
-pub mod minimal;
 pub mod panel;
 #[cfg(target_arch = "arm")]
 pub mod ram;

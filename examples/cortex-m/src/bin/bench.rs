@@ -15,7 +15,6 @@ use acrobot::physics::control::{
 use acrobot::render::{Figure, Theme};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
-use acrobot_cortex_m::micromath::Micromath;
 use bits::episodes;
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
@@ -30,7 +29,6 @@ fn main() -> ! {
     };
     measure::<Fast>("fast", &mut counter);
     measure::<Micro>("micro", &mut counter);
-    measure::<Micromath>("micromath", &mut counter);
     measure::<Reference>("reference", &mut counter);
     measure::<Portable>("portable", &mut counter);
     // The bits must also be the same with libgcc's routines.

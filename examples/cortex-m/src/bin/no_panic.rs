@@ -12,7 +12,7 @@ use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::control::{
     difference, discretize, inverse_dynamics, linearize, lqr, velocities,
@@ -43,27 +43,23 @@ fn panic(_: &PanicInfo) -> ! {
 #[entry]
 fn main() -> ! {
     loop {
-        pendulum::<Fast>();
-        pendulum::<Micro>();
-        pendulum::<Portable>();
-        pendulum::<Reference>();
-        control::<Fast>();
-        control::<Micro>();
-        control::<Portable>();
-        control::<Reference>();
-        environment::<Fast>();
-        environment::<Micro>();
-        environment::<Portable>();
-        environment::<Reference>();
-        batch::<Fast>();
-        own_params::<Fast>();
-        batch::<Micro>();
-        batch::<Portable>();
-        batch::<Reference>();
+        all_of::<Fast>();
+        all_of::<Micro>();
+        all_of::<Portable>();
+        all_of::<Reference>();
+        let own_params = [LaneParams::default(); 2];
+        batch::<Fast, 6, 4>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6], own_params));
         numbers();
         learners();
         controller();
     }
+}
+
+fn all_of<A: Arithmetic>() {
+    pendulum::<A>();
+    control::<A>();
+    environment::<A>();
+    batch::<A, 20, 16>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]));
 }
 
 /// A number that the compiler cannot know.
@@ -161,10 +157,8 @@ fn environment<A: Arithmetic>() {
 }
 
 /// A batch whose last block is not full.
-fn batch<A: Arithmetic>() {
-    const LEN: usize = 20;
-    let memory = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; LEN]);
-    let Ok(mut batch) = Batch::<A, _>::new(black_box(42), memory) else {
+fn batch<A: Arithmetic, const LEN: usize, const N: usize>(memory: impl Storage<A, N>) {
+    let Ok(mut batch) = Batch::new(black_box(42), memory) else {
         return;
     };
     let (mut rows, mut finals) = ([[0.0; 6]; LEN], [[0.0; 6]; LEN]);
@@ -172,6 +166,8 @@ fn batch<A: Arithmetic>() {
     for _ in 0..black_box(10) {
         batch.set_autoreset(black_box(Autoreset::Disabled));
         let _ = black_box(batch.set_params(params()));
+        let _ = black_box(batch.set_params_of(black_box(3), params()));
+        let _ = black_box(batch.set_params_range(ParamsRange::new(params(), params()).ok()));
         let actions = black_box([1_u8; LEN]);
         let torques = black_box([A::Scalar::ZERO; LEN]);
         let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
@@ -188,36 +184,14 @@ fn batch<A: Arithmetic>() {
         let _ = black_box(batch.reset_to(&black_box([State::default(); LEN])));
         let _ = black_box(batch.set_state(black_box(3), state()));
         black_box((&rows, batch.state(black_box(3))));
-        if let Some(member) = batch.member(black_box(3)) {
-            let _ = black_box(batch.set_member(black_box(4), member));
-        }
-        batch.reset_with(ResetOptions::default());
-        batch.reset_with_seed(black_box(7));
-    }
-}
-
-/// A batch whose acrobots have their own parameters.
-fn own_params<A: Arithmetic>() {
-    const LEN: usize = 6;
-    let generators = [Pcg64::UNSEEDED; LEN];
-    let memory = ([Block::EMPTY; 2], generators, [LaneParams::default(); 2]);
-    let batch = Batch::<A, _, 4>::new(black_box(42), memory);
-    let Ok(mut batch) = batch else {
-        return;
-    };
-    let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
-    for _ in 0..black_box(10) {
-        let _ = black_box(batch.set_params_of(black_box(3), params()));
-        let _ = black_box(batch.set_params_range(ParamsRange::new(params(), params()).ok()));
-        let _ = black_box(batch.set_params(params()));
+        black_box((batch.params_of(black_box(3)), batch.elapsed(black_box(3))));
         if let Some(member) = batch.member(black_box(3)) {
             let _ = black_box(batch.set_member(black_box(4), member));
         }
         batch.reset();
-        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
-        let _ = black_box(batch.step(&black_box([1_u8; LEN]), buffers));
-        black_box((batch.params_of(black_box(3)), batch.elapsed(black_box(3))));
-        black_box((&rewards, &terminated, &truncated, batch.generators_mut()));
+        batch.reset_with(ResetOptions::default());
+        batch.reset_with_seed(black_box(7));
+        black_box(batch.generators_mut());
     }
 }
 

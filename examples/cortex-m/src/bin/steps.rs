@@ -1,5 +1,5 @@
 //! Prints the instructions and the stack of an environment step and the size of an acrobot, with each arithmetic, one figure a
-//! line: `arithmetic figure value`. It builds for each target of the tables of cores in `docs/embedded.md`.
+//! line: `arithmetic figure value`. It builds for each target of the tables of cores in `docs/embedded-figures.md`.
 
 #![no_std]
 #![no_main]
@@ -11,11 +11,10 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, Step, TimeLimit};
 use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::entry;
-use acrobot_cortex_m::micromath::Micromath;
 use acrobot_cortex_m::stack;
 use semihosting::{println, process};
 
-// docs/embedded.md says that this is the same on each core.
+// docs/embedded-figures.md says that this is the same on each core.
 const _: () = assert!(size_of::<Acrobot<Fast>>() == 184 && size_of::<Acrobot<Micro>>() == 184);
 const _: () =
     assert!(size_of::<Acrobot<Reference>>() == 344 && size_of::<Acrobot<Portable>>() == 328);
@@ -27,7 +26,6 @@ fn main() -> ! {
     };
     measure::<Fast>("fast", &mut counter);
     measure::<Micro>("micro", &mut counter);
-    measure::<Micromath>("micromath", &mut counter);
     measure::<Reference>("reference", &mut counter);
     measure::<Portable>("portable", &mut counter);
     process::exit(0)
