@@ -16,38 +16,32 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/learning.md"
-# The learners were tuned with seeds from 1000 to 1999.
+# The learner was tuned with seeds from 1000 to 1999.
 FIRST_SEED = 4000
 EVALUATE = 5000
 GOALS = [-80, -75, -70]
 # The 97.5 % quantiles of Student's t distribution, by the number of seeds.
 STUDENT = {20: 2.093, 100: 1.984}
 RUNS = [
-    ("sarsa", "64k", 0, 20),
-    ("sarsa", "64k", 50_000, 20),
-    ("replay", "64k", 50_000, 20),
-    ("sarsa", "8k", 100_000, 20),
-    ("sarsa", "16k", 100_000, 20),
-    ("sarsa", "64k", 100_000, 20),
-    ("replay", "16k", 100_000, 20),
-    ("replay", "32k", 100_000, 20),
-    ("replay", "64k", 100_000, 100),
-    ("sarsa", "64k", 300_000, 20),
-    ("replay", "64k", 300_000, 20),
-    ("sarsa", "64k", 1_000_000, 20),
-    ("replay", "16k", 1_000_000, 20),
-    ("replay", "64k", 1_000_000, 20),
-    ("replay", "64k", 2_000_000, 20),
+    ("64k", 0, 20),
+    ("64k", 50_000, 20),
+    ("16k", 100_000, 20),
+    ("32k", 100_000, 20),
+    ("64k", 100_000, 100),
+    ("64k", 300_000, 20),
+    ("16k", 1_000_000, 20),
+    ("64k", 1_000_000, 20),
+    ("64k", 2_000_000, 20),
 ]
-RETURNS = "| learner | memory | steps | seeds | greedy return: mean ± sd of the seeds | 95 % interval of the mean | worst seed | misses |"
-TIMES = "| learner | memory | steps | steps to −80: median, worst seed | to −75 | to −70 |"
+RETURNS = "| memory | steps | seeds | greedy return: mean ± sd of the seeds | 95 % interval of the mean | worst seed | misses |"
+TIMES = "| memory | steps | steps to −80: median, worst seed | to −75 | to −70 |"
 
 
 def learn(run, seed):
     """The steps at which this seed's greedy policy reached each of the goals, its mean return in the end, and its misses."""
-    learner, memory, steps, _ = run
-    command = [ROOT / "target/release/examples/swing_up", "--quiet", "--learner", learner, "--memory", memory]
-    command += ["--steps", str(steps), "--seed", str(seed), "--evaluate", str(EVALUATE)]
+    memory, steps, _ = run
+    command = [ROOT / "target/release/swing_up", "--quiet", "--memory", memory, "--steps", str(steps)]
+    command += ["--seed", str(seed), "--evaluate", str(EVALUATE)]
     *curve, last = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
     points = [(int(line.split()[1]), float(line.split()[3])) for line in curve]
     reached = [min((at for at, mean in points if mean >= goal), default=float("inf")) for goal in GOALS]
@@ -58,25 +52,26 @@ def learn(run, seed):
 
 def measure():
     """The results of all seeds of each run."""
-    subprocess.run(["cargo", "build", "--quiet", "--release", "--locked", "--example", "swing_up"], check=True, cwd=ROOT)
+    build = ["cargo", "build", "--quiet", "--release", "--locked", "--package=desktop", "--bin=swing_up"]
+    subprocess.run(build, check=True, cwd=ROOT)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         futures = [[pool.submit(learn, run, seed) for seed in range(FIRST_SEED, FIRST_SEED + run[-1])] for run in RUNS]
         return [(run, [future.result() for future in of_seeds]) for run, of_seeds in zip(RUNS, futures)]
 
 
 def returns(run, results):
-    learner, memory, steps, seeds = run
+    memory, steps, seeds = run
     _, means, misses = zip(*results)
     mean, sd = statistics.mean(means), statistics.stdev(means)
     error = STUDENT[seeds] * sd / seeds**0.5
-    cells = [f"`{learner}`", f"{memory[:-1]} KiB", f"{steps:,}", f"{seeds}", f"{mean:.1f} ± {sd:.1f}"]
+    cells = [f"{memory[:-1]} KiB", f"{steps:,}", f"{seeds}", f"{mean:.1f} ± {sd:.1f}"]
     return cells + [f"{mean - error:.1f} to {mean + error:.1f}", f"{min(means):.1f}", f"{sum(misses)} of {1000 * seeds:,}"]
 
 
 def times(run, results):
-    learner, memory, steps, _ = run
+    memory, steps, _ = run
     reached, _, _ = zip(*results)
-    cells = [f"`{learner}`", f"{memory[:-1]} KiB", f"{steps:,}"]
+    cells = [f"{memory[:-1]} KiB", f"{steps:,}"]
     return cells + [f"{thousands(statistics.median_low(at))}, {thousands(max(at))}" for at in zip(*reached)]
 
 
@@ -89,7 +84,7 @@ def main():
     begin = time.monotonic()
     results = measure()
     print(f"{time.monotonic() - begin:.0f} s", file=sys.stderr)
-    largest = [(run, of_seeds) for run, of_seeds in results if run[1] == "64k" and run[2] > 0]
+    largest = [(run, of_seeds) for run, of_seeds in results if run[0] == "64k" and run[1] > 0]
     before = lines = PAGE.read_text().splitlines()
     for head, row, results in [(RETURNS, returns, results), (TIMES, times, largest)]:
         rows = [f"| {' | '.join(row(*result))} |" for result in results]

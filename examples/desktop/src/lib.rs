@@ -7,9 +7,10 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
-use acrobot::Action;
+use acrobot::numpy::SeedSequence;
+use acrobot::{Action, State};
 use anyhow::Context;
-use learners::task::Values;
+use learners::{QLambda, evaluation, play};
 
 /// The bang-bang policy: torque against θ̇1, in rad/s.
 pub fn bang_bang(dtheta1: impl Into<f64>) -> Action {
@@ -27,7 +28,7 @@ pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
 
 /// Loads a learner's weights from a file.
 pub fn load<const S: usize, const T: usize>(
-    values: &mut Values<S, T>,
+    learner: &mut QLambda<S, T>,
     path: &Path,
 ) -> anyhow::Result<()> {
     /// A file can be endless, and no weights have so many bytes.
@@ -37,5 +38,37 @@ pub fn load<const S: usize, const T: usize>(
     let file = File::open(path).with_context(named)?;
     let read = file.take(MOST).read_to_end(&mut bytes);
     read.with_context(named)?;
-    values.load(&bytes).with_context(named)
+    learner.load(&bytes).with_context(named)
+}
+
+/// The returns of a policy.
+pub struct Returns {
+    pub mean: f64,
+    /// The standard deviation.
+    pub sd: f64,
+    /// Episodes that were truncated before the goal.
+    pub misses: u32,
+}
+
+/// Plays a policy from the same initial states as every other policy with this seed.
+pub fn evaluate(
+    seed: &SeedSequence,
+    episodes: impl IntoIterator<Item = u32>,
+    mut policy: impl FnMut(&State<f32>) -> Action,
+) -> Returns {
+    let mut env = evaluation(seed);
+    let (mut n, mut sum, mut squares, mut misses) = (0.0, 0.0, 0.0, 0);
+    for _ in episodes {
+        let (gained, reached) = play(&mut env, &mut policy);
+        n += 1.0;
+        sum += f64::from(gained);
+        squares += f64::from(gained * gained);
+        misses += u32::from(!reached);
+    }
+    let mean = sum / n;
+    Returns {
+        mean,
+        sd: (squares / n - mean * mean).max(0.0).sqrt(),
+        misses,
+    }
 }

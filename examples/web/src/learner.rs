@@ -4,41 +4,33 @@
 use core::fmt::{self, Write};
 
 use acrobot::Action;
-use acrobot::numpy::Pcg64;
-use learners::task::{Env, QLambda, greedy, learn, q_lambda, training};
-use learners::{Budget, Transition};
+use learners::{Budget, Env, Memory64, QLambda, training};
 
 use crate::memory::{BUFFER, Shared};
 use crate::once::Once;
 use crate::simulation;
 
-const SLOTS: usize = 6144;
-const STEPS: usize = 600;
-type Memory = Once<([[f32; 2]; SLOTS], [Transition<4>; STEPS])>;
-type Learner = QLambda<'static, SLOTS, 52>;
-
-const fn memory() -> Memory {
-    Once::new(([[0.0; 2]; SLOTS], [Transition::EMPTY; STEPS]))
-}
+type Learner = QLambda<'static, 6144, 52>;
+type Memory = Once<Memory64>;
 
 /// An untrained learner, or `None` if its memory is already in use.
 fn untrained(episodes: u32, memory: &'static Memory) -> Option<Learner> {
-    let (weights, steps) = memory.take()?;
-    q_lambda(Budget::Episodes(episodes), weights, steps).ok()
+    let memory = memory.take()?;
+    Some(QLambda::new(Budget::Episodes(episodes), memory))
 }
 
-static TRAINING: Shared<Option<(Learner, Env, Pcg64)>> = Shared::new(None);
+static TRAINING: Shared<Option<(Learner, Env)>> = Shared::new(None);
 
 /// Begins a training like that of `swing_up`, with the seed in the buffer. Returns false if this instance has begun one
 /// before, because it has memory for only one.
 #[unsafe(no_mangle)]
 pub extern "C" fn begin_training(episodes: u32, words: usize) -> bool {
-    static MEMORY: Memory = memory();
+    static MEMORY: Memory = Once::new(Memory64::EMPTY);
     let Some(learner) = untrained(episodes, &MEMORY) else {
         return false;
     };
-    let (env, choices) = training(simulation::seed_in_buffer(words));
-    *TRAINING.borrow() = Some((learner, env, choices));
+    let env = training(simulation::seed_in_buffer(words));
+    *TRAINING.borrow() = Some((learner, env));
     true
 }
 
@@ -46,7 +38,7 @@ pub extern "C" fn begin_training(episodes: u32, words: usize) -> bool {
 #[unsafe(no_mangle)]
 pub extern "C" fn train() -> f32 {
     match &mut *TRAINING.borrow() {
-        Some((learner, env, choices)) => learn(learner, env, choices),
+        Some((learner, env)) => learner.learn(env),
         None => f32::NAN,
     }
 }
@@ -55,7 +47,7 @@ pub extern "C" fn train() -> f32 {
 /// 0 if no training has begun.
 #[unsafe(no_mangle)]
 pub extern "C" fn save() -> usize {
-    let Some((learner, ..)) = &*TRAINING.borrow() else {
+    let Some((learner, _)) = &*TRAINING.borrow() else {
         return 0;
     };
     for (to, byte) in BUFFER.borrow().iter_mut().zip(learner.save()) {
@@ -70,7 +62,7 @@ static POLICY: Shared<Option<Learner>> = Shared::new(None);
 /// the buffer. Then the policy does not change.
 #[unsafe(no_mangle)]
 pub extern "C" fn load(len: usize) -> usize {
-    static MEMORY: Memory = memory();
+    static MEMORY: Memory = Once::new(Memory64::EMPTY);
     let mut policy = POLICY.borrow();
     if policy.is_none() {
         *policy = untrained(0, &MEMORY);
@@ -95,7 +87,7 @@ pub extern "C" fn load(len: usize) -> usize {
 pub extern "C" fn learnt() -> u8 {
     let policy = POLICY.borrow();
     let action = policy.as_ref().map_or(Action::Zero, |learner| {
-        simulation::with(|simulation| greedy(learner, &simulation.env.state()))
+        simulation::with(|simulation| learner.greedy(&simulation.env.state()))
     });
     action.into()
 }

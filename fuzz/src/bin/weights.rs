@@ -2,16 +2,14 @@
 
 #![no_main]
 
-use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Fast, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 
-use learners::Budget;
-use learners::task::{Sarsa, greedy, learn, sarsa};
+use learners::{Budget, Memory, QLambda};
 
 /// Few, so that libFuzzer finds bytes of the right length.
 const SLOTS: usize = 16;
-type Small<'w> = Sarsa<'w, SLOTS, 28>;
+type Small<'w> = QLambda<'w, SLOTS, 28>;
 
 /// The checksum, FNV-1a. libFuzzer would not find it.
 fn checksum(bytes: &[u8]) -> u32 {
@@ -24,8 +22,8 @@ fuzz_target!(|bytes: &[u8]| {
     let Some((&kind, bytes)) = bytes.split_first() else {
         return;
     };
-    let mut memory = [[0.0; 2]; SLOTS];
-    let mut learner: Small = sarsa(Budget::Episodes(1), &mut memory).expect("valid settings");
+    let mut memory = Memory::<SLOTS, 28, 8>::EMPTY;
+    let mut learner: Small = QLambda::new(Budget::Episodes(1), &mut memory);
     let before: Vec<u8> = learner.save().collect();
     // The bytes are unchanged, or get a valid header, or a valid header and checksum.
     let mut bytes = bytes.to_vec();
@@ -50,7 +48,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
     let mut env = TimeLimit::new(Acrobot::<Fast>::new(0), 8.try_into().expect("not 0"));
     for _ in 0..2 {
-        greedy(&learner, &env.state());
-        learn(&mut learner, &mut env, &mut Pcg64::new(0));
+        let _ = learner.greedy(&env.state());
+        learner.learn(&mut env);
     }
 });

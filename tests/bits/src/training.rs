@@ -1,22 +1,33 @@
 //! A training from untrained weights (16 KiB), and a digest of all weights after 100 episodes.
 
 use acrobot::numpy::SeedSequence;
-use learners::Budget;
-use learners::task;
+use learners::{Budget, Env, Memory16, QLambda};
 
 use crate::Digest;
 
-/// 16 KiB.
-pub type Weights = [[f32; 2]; 2048];
-pub const UNTRAINED: Weights = [[0.0; 2]; 2048];
-pub type Learner<'w> = task::Sarsa<'w, 2048, 20>;
+pub type Learner<'w> = QLambda<'w, 1408, 16>;
 
-/// The seed of the acrobot and of the learner's choices.
-pub const SEED: u64 = 42;
-/// The episodes after which the learner's schedules end.
+/// The seed of the acrobot.
+const SEED: u64 = 42;
+/// The episodes over which the learner's step size falls.
 pub const EPISODES: u32 = 200;
 /// The episodes after which the weights are compared.
 pub const COMPARED: u32 = 100;
+
+/// An untrained learner.
+pub fn learner(memory: &mut Memory16) -> Learner<'_> {
+    QLambda::new(Budget::Episodes(EPISODES), memory)
+}
+
+/// The acrobot of the training.
+pub fn env() -> Env {
+    learners::training(SeedSequence::new(SEED))
+}
+
+/// The acrobot on which the policy is evaluated.
+pub fn evaluation() -> Env {
+    learners::evaluation(&SeedSequence::new(SEED))
+}
 
 /// A digest of every weight's bits.
 pub fn digest(learner: &Learner) -> u64 {
@@ -27,17 +38,14 @@ pub fn digest(learner: &Learner) -> u64 {
     digest.0
 }
 
-/// Trains and returns the digest; 0 if the learner is rejected.
+/// Trains and returns the digest.
 pub fn weights() -> u64 {
-    let mut weights = UNTRAINED;
-    let Ok(mut learner) = task::sarsa(Budget::Episodes(EPISODES), &mut weights) else {
-        return 0;
-    };
-    let (mut env, mut choices) = task::training(SeedSequence::new(SEED));
+    let mut memory = Memory16::EMPTY;
+    let (mut learner, mut env) = (learner(&mut memory), env());
     for _ in 0..COMPARED {
-        task::learn(&mut learner, &mut env, &mut choices);
+        learner.learn(&mut env);
     }
     digest(&learner)
 }
 
-pub const WEIGHTS: u64 = 0x2bfe_b0f3_c717_1ea7;
+pub const WEIGHTS: u64 = 0x196a_2cdc_caa6_d063;

@@ -1,5 +1,5 @@
-//! Learns to swing up on the microcontroller until the mean return of 100 episodes is at least −100. It takes 32 KiB of
-//! RAM, of which half are weights, and the weights are bit-identical to a desktop's. Then it plays an episode on an OLED.
+//! Learns to swing up on the microcontroller until the mean return of 100 episodes is at least −100. It needs 32 KiB of
+//! RAM, of which the learner takes half, and the weights are bit-identical to a desktop's. Then it plays an episode on an OLED.
 //!
 //! It prints figures in the format of `bench`: `fast figure value`.
 
@@ -8,17 +8,15 @@
 
 use core::cell::RefCell;
 
-use acrobot::numpy::SeedSequence;
 use acrobot::{Action, REWARD_THRESHOLD, State};
 use acrobot_cortex_m::counter::Counter;
 use acrobot_cortex_m::panel::{Bus, Panel};
 use acrobot_cortex_m::ram;
-use bits::training::{EPISODES, Learner, Weights};
+use bits::training::{EPISODES, Learner};
 use bits::{oled, training};
 use cortex_m_rt::entry;
 use heapless::HistoryBuf;
-use learners::Budget;
-use learners::task::{self, Env, evaluation, greedy, learn, play};
+use learners::{Env, Memory16, play};
 use semihosting::{println, process};
 use ssd1306::mode::DisplayConfig;
 use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
@@ -26,16 +24,14 @@ use ssd1306::{I2CDisplayInterface, Ssd1306};
 
 #[entry]
 fn main() -> ! {
-    static mut WEIGHTS: Weights = training::UNTRAINED;
-    let (Some(mut counter), Ok(mut learner)) = (
-        Counter::take(),
-        task::sarsa(Budget::Episodes(EPISODES), WEIGHTS),
-    ) else {
+    static mut MEMORY: Memory16 = Memory16::EMPTY;
+    let Some(mut counter) = Counter::take() else {
         process::exit(1)
     };
+    let mut learner = training::learner(MEMORY);
     let solved = train(&mut learner, &mut counter);
-    let mut env = evaluation(&SeedSequence::new(training::SEED));
-    let policy = |state: &State<f32>| greedy(&learner, state);
+    let mut env = training::evaluation();
+    let policy = |state: &State<f32>| learner.greedy(state);
     let sum: f32 = (0..100).map(|_| play(&mut env, policy).0).sum();
     println!("mean return of 100 greedy episodes: {}", sum as i32 / 100);
     env.reset();
@@ -46,7 +42,7 @@ fn main() -> ! {
 
 /// Returns whether the task was solved with the expected weights on the way.
 fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
-    let (mut env, mut choices) = task::training(SeedSequence::new(training::SEED));
+    let mut env = training::env();
     let mut returns = HistoryBuf::<f32, 100>::new();
     let (mut steps, mut instructions) = (0, 0);
     let mut equal = false;
@@ -55,7 +51,7 @@ fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
         cortex_m::asm::nop();
         let mut gained = 0.0;
         instructions += u64::from(counter.count(1, || {
-            gained = learn(learner, &mut env, &mut choices);
+            gained = learner.learn(&mut env);
         }));
         steps += env.elapsed();
         returns.write(gained);

@@ -27,8 +27,7 @@ use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
-use learners::task::{self, greedy, learn};
-use learners::{Budget, Transition};
+use learners::Memory16;
 use rand_core::{Rng as _, SeedableRng as _};
 
 unsafe extern "C" {
@@ -208,24 +207,12 @@ fn numbers() {
     black_box(SeedSequence::from_words(&black_box([7; 9])));
 }
 
-/// The learner of `learn`, and Q(λ) with replay.
+/// The learner of `learn`.
 fn learners() {
-    let budget = Budget::Episodes(training::EPISODES);
-    let (mut env, mut choices) = task::training(SeedSequence::new(black_box(42)));
-
-    let mut weights = black_box([[0.0; 2]; 64]);
-    let mut memory = black_box([Transition::EMPTY; 64]);
-    let Ok(mut learner) = task::q_lambda::<64, 16>(budget, &mut weights, &mut memory) else {
-        return;
-    };
-    black_box(learn(&mut learner, &mut env, &mut choices));
-
-    let mut weights = black_box(training::UNTRAINED);
-    let Ok(mut learner) = task::sarsa(budget, &mut weights) else {
-        return;
-    };
-    black_box(learn(&mut learner, &mut env, &mut choices));
-    black_box(greedy(&learner, &black_box(State::default())));
+    let mut memory = black_box(Memory16::EMPTY);
+    let (mut learner, mut env) = (training::learner(&mut memory), training::env());
+    black_box(learner.learn(&mut env));
+    black_box(learner.greedy(&black_box(State::default())));
     black_box(training::digest(&learner));
 }
 

@@ -20,12 +20,10 @@ use std::path::PathBuf;
 use acrobot::numpy::SeedSequence;
 use acrobot::{Action, State};
 use clap::Parser;
-use desktop::load;
 use desktop::search::Search;
+use desktop::{Returns, evaluate, load};
 use indicatif::ProgressIterator;
-
-use learners::task::{evaluation, greedy, learn, play, q_lambda, training, view};
-use learners::{Budget, Transition};
+use learners::{Budget, Memory64, QLambda, training};
 
 /// Compares the learner's greedy policy with a beam search over the learnt values.
 #[derive(Parser)]
@@ -47,23 +45,16 @@ struct Options {
     learn: u32,
 }
 
-/// Those of `swing_up` with 64 KiB.
-const SLOTS: usize = 6144;
-const TILINGS: usize = 52;
-const STEPS: usize = 600;
-
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
-    let mut weights = [[0.0; 2]; SLOTS];
-    let mut memory = [Transition::EMPTY; STEPS];
-    let budget = Budget::Episodes(options.learn);
-    let mut learner = q_lambda::<SLOTS, TILINGS>(budget, &mut weights, &mut memory)?;
+    let mut memory = Memory64::EMPTY;
+    let mut learner = QLambda::new(Budget::Episodes(options.learn), &mut memory);
     match &options.load {
         Some(path) => load(&mut learner, path)?,
         None => {
-            let (mut env, mut choices) = training(options.seed.clone());
+            let mut env = training(options.seed.clone());
             for _ in (0..options.learn).progress() {
-                learn(&mut learner, &mut env, &mut choices);
+                learner.learn(&mut env);
             }
         }
     }
@@ -73,14 +64,11 @@ fn main() -> anyhow::Result<()> {
         "policy          mean return of {} episodes  missed the goal",
         options.episodes
     );
-    let learnt = report("greedy", &options, |state| greedy(&learner, state));
+    let learnt = report("greedy", &options, |state| learner.greedy(state));
     println!("{learnt}");
     let name = format!("{} steps ahead", options.depth);
     let planned = report(&name, &options, |state| {
-        search.choose(*state, options.depth, |state| {
-            let [negative, positive] = learner.values(&view(state));
-            negative.max(positive)
-        })
+        search.choose(*state, options.depth, |state| learner.value(state))
     });
     println!("{planned}");
     println!(
@@ -91,17 +79,8 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn report(name: &str, options: &Options, mut policy: impl FnMut(&State<f32>) -> Action) -> String {
-    let mut env = evaluation(&options.seed);
-    let (mut sum, mut squares, mut misses) = (0.0, 0.0, 0);
-    for _ in (0..options.episodes).progress() {
-        let (gained, reached) = play(&mut env, &mut policy);
-        sum += f64::from(gained);
-        squares += f64::from(gained * gained);
-        misses += u32::from(!reached);
-    }
-    let n = f64::from(options.episodes);
-    let mean = sum / n;
-    let sd = (squares / n - mean * mean).max(0.0).sqrt();
+fn report(name: &str, options: &Options, policy: impl FnMut(&State<f32>) -> Action) -> String {
+    let returns = evaluate(&options.seed, (0..options.episodes).progress(), policy);
+    let Returns { mean, sd, misses } = returns;
     format!("{name:<14}  {mean:>16.2} ± {sd:<9.2}  {misses:>15}")
 }

@@ -5,8 +5,7 @@ use acrobot::{Acrobot, Action, Fast, State, TimeLimit};
 use desktop::bang_bang;
 use desktop::search::Search;
 use indicatif::ProgressIterator;
-use learners::task::{QLambda, greedy, learn, q_lambda, training, view};
-use learners::{Budget, Transition};
+use learners::{Budget, Memory, Memory16, Memory64, QLambda, training};
 
 use crate::{SEEDS, bound, initial, mean_return};
 
@@ -22,21 +21,15 @@ pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
     row("random", mean(|_| Action::sample(&mut actions)));
     row("torque against θ̇1", mean(|state| bang_bang(state.dtheta1)));
 
-    // The sizes are those of `swing_up`.
-    let (mut weights, mut memory) = ([[0.0; 2]; 1408], [Transition::EMPTY; 160]);
-    let learner = learnt::<1408, 16>(&mut weights, &mut memory)?;
-    row("learnt, 16 KiB", mean(|state| greedy(&learner, state)));
-    let (mut weights, mut memory) = ([[0.0; 2]; 6144], [Transition::EMPTY; 600]);
-    let learner = learnt::<6144, 52>(&mut weights, &mut memory)?;
-    row("learnt, 64 KiB", mean(|state| greedy(&learner, state)));
+    let mut memory = Memory16::EMPTY;
+    let learner = learnt(&mut memory);
+    row("learnt, 16 KiB", mean(|state| learner.greedy(state)));
+    let mut memory = Memory64::EMPTY;
+    let learner = learnt(&mut memory);
+    row("learnt, 64 KiB", mean(|state| learner.greedy(state)));
 
     let mut search = Search::default();
-    let planned = mean(|state| {
-        search.choose(*state, 60, |state| {
-            let [negative, positive] = learner.values(&view(state));
-            negative.max(positive)
-        })
-    });
+    let planned = mean(|state| search.choose(*state, 60, |state| learner.value(state)));
     row("planned, 64 KiB", planned);
 
     let steps: usize = best.iter().map(Vec::len).sum();
@@ -55,18 +48,17 @@ fn highest_mean(steps: u32) -> f64 {
 }
 
 /// A learner after its training.
-fn learnt<'w, const S: usize, const T: usize>(
-    weights: &'w mut [[f32; 2]; S],
-    memory: &'w mut [Transition<4>],
-) -> anyhow::Result<QLambda<'w, S, T>> {
-    let mut learner = q_lambda(Budget::Steps(STEPS), weights, memory)?;
-    let (mut env, mut choices) = training(SeedSequence::new(SEED));
+fn learnt<const S: usize, const T: usize, const N: usize>(
+    memory: &mut Memory<S, T, N>,
+) -> QLambda<'_, S, T> {
+    let mut learner = QLambda::new(Budget::Steps(STEPS), memory);
+    let mut env = training(SeedSequence::new(SEED));
     let mut steps = 0;
     while steps < STEPS {
-        learn(&mut learner, &mut env, &mut choices);
+        learner.learn(&mut env);
         steps += env.elapsed();
     }
-    Ok(learner)
+    learner
 }
 
 /// The mean return of a policy in `Fast`, with at most 500 steps per episode.

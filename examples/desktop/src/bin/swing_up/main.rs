@@ -1,5 +1,4 @@
-//! Q(λ) with replay, or Sutton's Sarsa(λ), learns to swing up within seconds. The greedy policy is then compared with two
-//! policies that do not learn.
+//! Q(λ) with replay learns to swing up within seconds. The greedy policy is then compared with two policies that do not learn.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin swing_up -- --steps 1000000 --save weights.bin
@@ -16,36 +15,28 @@
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
 //! This is the baseline.
 
-use std::ops::DerefMut;
 use std::path::PathBuf;
 
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, State};
-use anyhow::bail;
 use clap::{Parser, ValueEnum};
-use desktop::{animation, load, write};
+use desktop::{Returns, animation, bang_bang, evaluate, load, write};
 use indicatif::{ProgressBar, ProgressStyle};
 
 mod curve;
 mod pictures;
 
-use learners::task::{
-    self, QLambda, Values, evaluation, greedy, learn, play, torque, training, view,
-};
-use learners::{Budget, Learn, Transition};
+use learners::{Budget, Memory, Memory16, Memory32, Memory64, QLambda, evaluation, play, training};
 use pictures::svg;
 
 /// Learns to swing up, and compares the learnt policy with two simple ones.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
-    /// Learner: Q(λ) with replay, or Sarsa(λ), which needs less time per step and less memory.
-    #[arg(long, value_enum, default_value_t = Algorithm::Replay)]
-    learner: Algorithm,
-    /// Memory in KiB: with `replay` for all that the learner keeps, with `sarsa` for the weights.
-    #[arg(long, value_enum, default_value_t = Memory::K64)]
-    memory: Memory,
-    /// Episodes of learning. Step size and exploration fall until the last one.
+    /// Memory in KiB for all that the learner keeps.
+    #[arg(long, value_enum, default_value_t = Size::K64)]
+    memory: Size,
+    /// Episodes of learning. The step size falls until the last one.
     #[arg(long, default_value_t = 2000, conflicts_with = "steps")]
     episodes: u32,
     /// Steps of learning, instead of episodes. The last episode is finished.
@@ -72,15 +63,7 @@ struct Options {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Algorithm {
-    Replay,
-    Sarsa,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Memory {
-    #[value(name = "8k")]
-    K8,
+enum Size {
     #[value(name = "16k")]
     K16,
     #[value(name = "32k")]
@@ -96,56 +79,26 @@ impl Options {
     }
 }
 
+/// The episodes of an evaluation.
+const EVALUATION: u32 = 1000;
+
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
-    match (options.learner, options.memory) {
-        (Algorithm::Replay, Memory::K64) => replay::<64, 6144, 52, 600>(&options),
-        (Algorithm::Replay, Memory::K32) => replay::<32, 2944, 52, 300>(&options),
-        (Algorithm::Replay, Memory::K16) => replay::<16, 1408, 16, 160>(&options),
-        (Algorithm::Sarsa, Memory::K64) => sarsa::<8192, 28>(&options),
-        (Algorithm::Sarsa, Memory::K32) => sarsa::<4096, 20>(&options),
-        (Algorithm::Sarsa, Memory::K16) => sarsa::<2048, 20>(&options),
-        (Algorithm::Sarsa, Memory::K8) => sarsa::<1024, 16>(&options),
-        (Algorithm::Replay, Memory::K8) => {
-            bail!("--memory must be 16k, 32k or 64k for the learner replay, got 8k")
-        }
+    match options.memory {
+        Size::K16 => run(&options, Memory16::EMPTY),
+        Size::K32 => run(&options, Memory32::EMPTY),
+        Size::K64 => run(&options, Memory64::EMPTY),
     }
-}
-
-/// Learns by Sarsa(λ) with `T` tilings in `S` slots.
-fn sarsa<const S: usize, const T: usize>(options: &Options) -> anyhow::Result<()> {
-    let mut weights = [[0.0; 2]; S];
-    run(
-        options,
-        task::sarsa::<S, T>(options.budget(), &mut weights)?,
-    )
-}
-
-/// Learns by Q(λ), and replays the latest `N` steps. All that the learner keeps fits in `KIB`: features, weights and steps.
-fn replay<const KIB: usize, const S: usize, const T: usize, const N: usize>(
-    options: &Options,
-) -> anyhow::Result<()> {
-    const {
-        let weights = size_of::<[[f32; 2]; S]>();
-        let memory = size_of::<[Transition<4>; N]>();
-        assert!(size_of::<QLambda<S, T>>() + weights + memory <= KIB * 1024);
-    }
-    let mut weights = [[0.0; 2]; S];
-    let mut memory = [Transition::EMPTY; N];
-    let learner = task::q_lambda::<S, T>(options.budget(), &mut weights, &mut memory)?;
-    run(options, learner)
 }
 
 /// Learns, and prints the results.
-fn run<'w, L, const S: usize, const T: usize>(
+fn run<const S: usize, const T: usize, const N: usize>(
     options: &Options,
-    mut learner: L,
-) -> anyhow::Result<()>
-where
-    L: Learn<4> + DerefMut<Target = Values<'w, S, T>>,
-{
+    mut memory: Memory<S, T, N>,
+) -> anyhow::Result<()> {
+    let mut learner = QLambda::new(options.budget(), &mut memory);
     if let Some(path) = &options.load {
-        load(&mut *learner, path)?;
+        load(&mut learner, path)?;
     }
 
     let returns = train(&mut learner, options);
@@ -154,35 +107,36 @@ where
         write(path, bytes)?;
     }
 
-    let learnt = evaluate(options, |state| greedy(&learner, state));
+    let seed = &options.seed;
+    let learnt = evaluate(seed, 0..EVALUATION, |state| learner.greedy(state));
     let solved_at = curve::solved_at(&returns).map_or("never".into(), |n| n.to_string());
     if options.quiet {
-        let ([mean, sd], misses) = (learnt.moments(), learnt.misses);
+        let Returns { mean, sd, misses } = learnt;
         println!("solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}");
         return Ok(());
     }
-    let against = |state: &State<f32>| torque((state.dtheta1 < 0.0).into());
-    let mut actions = Pcg64::from(options.seed.child(2));
+    let against = |state: &State<f32>| bang_bang(state.dtheta1);
+    let mut actions = Pcg64::from(seed.child(2));
     println!("solved at episode: {solved_at}\n");
     println!("policy              mean return of {EVALUATION} episodes  missed the goal");
     for (name, returns) in [
         ("learnt", learnt),
-        ("torque against θ̇1", evaluate(options, against)),
+        ("torque against θ̇1", evaluate(seed, 0..EVALUATION, against)),
         (
             "random",
-            evaluate(options, |_| Action::sample(&mut actions)),
+            evaluate(seed, 0..EVALUATION, |_| Action::sample(&mut actions)),
         ),
     ] {
-        let ([mean, sd], misses) = (returns.moments(), returns.misses);
+        let Returns { mean, sd, misses } = returns;
         println!("{name:<18}  {mean:>19.2} ± {sd:<9.2}  {misses:>15}");
     }
     println!();
-    draw(&*learner, &returns, options)
+    draw(&learner, &returns, options)
 }
 
 /// Draws the pictures, and prints a line for each.
 fn draw<const S: usize, const T: usize>(
-    learner: &Values<S, T>,
+    learner: &QLambda<S, T>,
     returns: &[f32],
     options: &Options,
 ) -> anyhow::Result<()> {
@@ -197,11 +151,9 @@ fn draw<const S: usize, const T: usize>(
         let content = format!("the returns of {} episodes", returns.len());
         save("learning_curve.svg", curve, &content)?;
     }
-    let value = |state: &State<f32>| {
-        let values = learner.values(&view(state));
-        values.into_iter().fold(f32::MIN, f32::max)
-    };
-    let values = svg((780, 720), |area| pictures::draw_values(area, value))?;
+    let values = svg((780, 720), |area| {
+        pictures::draw_values(area, |state| learner.value(state))
+    })?;
     save("values.svg", values, "the learnt values of states at rest")?;
 
     let mut env = evaluation(&options.seed);
@@ -212,7 +164,7 @@ fn draw<const S: usize, const T: usize>(
     let mut states = Vec::new();
     play(&mut env, |state| {
         states.push(State::from(<[f32; 4]>::from(*state).map(f64::from)));
-        greedy(learner, state)
+        learner.greedy(state)
     });
     states.push(State::from(<[f32; 4]>::from(env.state()).map(f64::from)));
     let content = format!("the last greedy episode, {} steps", env.elapsed());
@@ -224,11 +176,11 @@ fn draw<const S: usize, const T: usize>(
 }
 
 /// Learns. Returns the return of each episode.
-fn train<'w, L, const S: usize, const T: usize>(learner: &mut L, options: &Options) -> Vec<f32>
-where
-    L: Learn<4> + DerefMut<Target = Values<'w, S, T>>,
-{
-    let (mut env, mut choices) = training(options.seed.clone());
+fn train<const S: usize, const T: usize>(
+    learner: &mut QLambda<S, T>,
+    options: &Options,
+) -> Vec<f32> {
+    let mut env = training(options.seed.clone());
     let (length, unit) = match options.budget() {
         Budget::Episodes(episodes) => (u64::from(episodes), "episodes"),
         Budget::Steps(steps) => (u64::from(steps), "steps"),
@@ -246,7 +198,7 @@ where
     let period = length.div_ceil(100).max(1);
     let (mut returns, mut steps, mut done, mut charted) = (Vec::new(), 0, 0, 0);
     while done < length {
-        returns.push(learn(learner, &mut env, &mut choices));
+        returns.push(learner.learn(&mut env));
         let before = steps;
         steps += env.elapsed();
         done = match options.budget() {
@@ -256,7 +208,8 @@ where
         if let Some(every) = options.evaluate
             && steps / every > before / every
         {
-            let [mean, _] = evaluate(options, |state| greedy(learner, state)).moments();
+            let Returns { mean, .. } =
+                evaluate(&options.seed, 0..EVALUATION, |state| learner.greedy(state));
             println!("steps {steps} greedy_mean {mean:.2}");
         }
         if !bar.is_hidden() && done / period > charted {
@@ -266,39 +219,5 @@ where
         bar.set_position(done.min(length));
     }
     bar.finish();
-    returns
-}
-
-/// The episodes of an evaluation.
-const EVALUATION: u32 = 1000;
-
-/// The returns of a policy.
-#[derive(Default)]
-struct Returns {
-    sum: f64,
-    squares: f64,
-    /// Episodes that were truncated before the goal.
-    misses: u32,
-}
-
-impl Returns {
-    /// Mean and standard deviation.
-    fn moments(&self) -> [f64; 2] {
-        let n = f64::from(EVALUATION);
-        let mean = self.sum / n;
-        [mean, (self.squares / n - mean * mean).max(0.0).sqrt()]
-    }
-}
-
-/// Plays a policy from the same initial states as every other policy.
-fn evaluate(options: &Options, mut policy: impl FnMut(&State<f32>) -> Action) -> Returns {
-    let mut env = evaluation(&options.seed);
-    let mut returns = Returns::default();
-    for _ in 0..EVALUATION {
-        let (gained, reached) = play(&mut env, &mut policy);
-        returns.sum += f64::from(gained);
-        returns.squares += f64::from(gained * gained);
-        returns.misses += u32::from(!reached);
-    }
     returns
 }

@@ -1,0 +1,148 @@
+//! Weights as little-endian bytes: magic, version, size, the tiles' fingerprint, the weights and a checksum.
+
+use core::fmt;
+
+use crate::QLambda;
+
+const MAGIC: [u8; 4] = *b"TILE";
+const VERSION: u32 = 1;
+/// The words before the weights.
+const HEADER: usize = 4;
+
+impl<const S: usize, const T: usize> QLambda<'_, S, T> {
+    /// The number of bytes that [`QLambda::save`] returns.
+    pub const BYTES: usize = 4 * (HEADER + 2 * S + 1);
+
+    /// The weights as [`QLambda::BYTES`] bytes, from the first to the last.
+    pub fn save(&self) -> impl Iterator<Item = u8> + '_ {
+        let header = [VERSION, Self::BYTES as u32, self.tiles.fingerprint()];
+        let words = MAGIC
+            .into_iter()
+            .chain(header.into_iter().flat_map(u32::to_le_bytes));
+        let weights = self
+            .weights
+            .as_flattened()
+            .iter()
+            .flat_map(|w| w.to_le_bytes());
+        let body = words.chain(weights);
+        let checksum = body.clone().fold(FNV, fnv);
+        body.chain(checksum.to_le_bytes())
+    }
+
+    /// Loads weights that [`QLambda::save`] returned. The step size stays as it is.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`] for bytes of another kind, version, size or learner, for damaged bytes, and for a weight that is
+    /// not finite. The weights are unchanged then.
+    pub fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
+        let (words, _) = bytes.as_chunks();
+        let word = |at: usize| words.get(at).copied().map_or(0, u32::from_le_bytes);
+        if words.first() != Some(&MAGIC) {
+            return Err(LoadError::Magic);
+        }
+        let differs = |found, expected| (found != expected).then_some((found, expected));
+        if words.len() > 1
+            && let Some((found, expected)) = differs(word(1), VERSION)
+        {
+            return Err(LoadError::Version { found, expected });
+        }
+        if bytes.len() != Self::BYTES {
+            return Err(LoadError::Size {
+                found: bytes.len(),
+                expected: Self::BYTES,
+            });
+        }
+        if let Some((found, expected)) = differs(word(3), self.tiles.fingerprint()) {
+            return Err(LoadError::Features { found, expected });
+        }
+        let body = bytes.iter().take(Self::BYTES - 4).copied();
+        if let Some((found, expected)) = differs(word(HEADER + 2 * S), body.fold(FNV, fnv)) {
+            return Err(LoadError::Checksum { found, expected });
+        }
+        let weights = words.iter().skip(HEADER).take(2 * S);
+        let weights = weights.map(|&bytes| f32::from_le_bytes(bytes));
+        if let Some(index) = weights.clone().position(|w| !w.is_finite()) {
+            return Err(LoadError::NotFinite { index });
+        }
+        for (w, number) in self.weights.as_flattened_mut().iter_mut().zip(weights) {
+            *w = number;
+        }
+        Ok(())
+    }
+}
+
+/// FNV-1a, 32 bits: <http://www.isthe.com/chongo/tech/comp/fnv/>.
+pub(crate) const FNV: u32 = 0x811c_9dc5;
+
+pub(crate) fn fnv(hash: u32, byte: u8) -> u32 {
+    (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+}
+
+/// Why bytes were rejected as weights. The learner is unchanged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The bytes do not begin as saved weights do.
+    Magic,
+    /// Another version of the format.
+    Version {
+        /// The version in the bytes.
+        found: u32,
+        /// The version that this code reads.
+        expected: u32,
+    },
+    /// Too few or too many bytes.
+    Size {
+        /// The bytes given.
+        found: usize,
+        /// The bytes that this learner's weights take, header included.
+        expected: usize,
+    },
+    /// The weights of a learner with other features, for which they mean something else.
+    Features {
+        /// The fingerprint in the bytes.
+        found: u32,
+        /// The fingerprint of this learner's features.
+        expected: u32,
+    },
+    /// The bytes changed since they were saved.
+    Checksum {
+        /// The checksum in the bytes.
+        found: u32,
+        /// The checksum computed from the bytes.
+        expected: u32,
+    },
+    /// A weight that is infinite or NaN.
+    NotFinite {
+        /// Its index among the weights, counted from 0.
+        index: usize,
+    },
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Magic => write!(f, "weights must begin with the bytes TILE"),
+            Self::Version { found, expected } => {
+                write!(f, "weights must have version {expected}, got {found}")
+            }
+            Self::Size { found, expected } => {
+                write!(f, "weights must have {expected} bytes, got {found}")
+            }
+            Self::Features { found, expected } => {
+                write!(
+                    f,
+                    "weights must be for features {expected:08x}, got {found:08x}"
+                )
+            }
+            Self::Checksum { found, expected } => write!(
+                f,
+                "damaged weights: the checksum must be {expected:08x}, got {found:08x}"
+            ),
+            Self::NotFinite { index } => write!(f, "weight {index} must be a finite number"),
+        }
+    }
+}
+
+impl core::error::Error for LoadError {}
