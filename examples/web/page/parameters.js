@@ -1,8 +1,7 @@
 // The panel "Physics": a choice of equations, and a slider and a field for each parameter. The field shows why a value is
 // rejected.
 
-import { parseNumber } from "./link.js";
-import { DEFAULTS, PARAMETERS } from "./module.js";
+import { DEFAULTS, PARAMETERS, parseNumber } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
