@@ -147,7 +147,7 @@ function start(game, module, learner) {
 
   const plots = () => {
     const end = Math.max(game.steps, 50);
-    const [first, second] = [color("--first"), color("--second")];
+    const [first, second] = [color("--accent"), color("--second")];
     const [theta1, theta2, dtheta1, dtheta2, energy, height] = game.numbers;
     const energies = game.column(4);
     const { standing } = game;
@@ -158,7 +158,7 @@ function start(game, module, learner) {
       end,
       unit: "steps",
     });
-    caption("energy-caption", [["Energy"], [`${number(energy)} J`, "first"], [`upright: ${number(standing)} J`, "mark"], [`tip height ${number(height)} m`]]);
+    caption("energy-caption", [["Energy"], [`${number(energy)} J`, "first"], [`upright: ${number(standing)} J`, "hint"], [`tip height ${number(height)} m`]]);
     plot($("angles"), {
       series: [{ values: game.column(0), color: first }, { values: game.column(1), color: second }],
       range: [-Math.PI, Math.PI],

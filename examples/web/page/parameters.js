@@ -26,7 +26,7 @@ export function parametersPanel(get, set) {
       <label for="${name}">${label}</label>
       <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-hint ${name}-reason">
       <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-hint ${name}-reason">
-      <span class="unit">${unit}</span>
+      <span class="hint">${unit}</span>
       <p id="${name}-reason" class="reason" role="alert"></p>
       <p id="${name}-hint" class="hint">${hint}</p>`;
     $("params").append(field);

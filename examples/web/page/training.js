@@ -85,6 +85,7 @@ export function trainingPanel(learner, module, { ready, drive }) {
   $("train").onclick = () => (worker ? stop("Stopped. The weights are kept.") : train());
   $("drive").onclick = drive;
   $("save").onclick = () => download("weights.bin", weights);
+  $("choose").onclick = () => $("load").click();
   $("load").onchange = async ({ target }) => {
     const [file] = target.files;
     // Otherwise choosing the same file again would cause no event.
