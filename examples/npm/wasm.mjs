@@ -2,7 +2,7 @@
 // ../web. The programs are those of the current folder, because each folder has its own `node_modules`.
 
 import { execFileSync } from "node:child_process";
-import { readFileSync, statSync, writeFileSync } from "node:fs";
+import { readFileSync, statSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { deflateRawSync } from "node:zlib";
 
@@ -26,8 +26,8 @@ export function compile(folder, library) {
   run("cargo", ["build", "--quiet", "--locked", "--release", ...args], { RUSTFLAGS: flags.join(" ") });
   const features = FEATURES.map((feature) => `--enable-${feature}`);
   const [text, out] = [`target/${library}.wat`, `target/${library}.wasm`];
+  // As text first, for the test that nothing panics: in the binary format, code that is never reached also ends in `unreachable`.
   run("node_modules/.bin/wasm-opt", [`target/wasm32-unknown-unknown/release/${library}.wasm`, "-S", "-o", text, ...features, ...PASSES]);
-  writeFileSync(text, withVectorsInGlobals(readFileSync(text, "utf8")));
   run("node_modules/.bin/wasm-as", [text, "-o", out, ...features]);
   console.log(`${library}.wasm: ${statSync(out).size} bytes`);
   return out;
@@ -43,24 +43,4 @@ export function bundle(outfile) {
   // Names stay, for messages and debuggers.
   const options = ["--bundle", "--format=esm", "--target=es2022", "--minify-whitespace", "--minify-syntax", "--log-level=warning"];
   run("node_modules/.bin/esbuild", [`${here}package/index.js`, `--outfile=${outfile}`, ...options, ...values]);
-}
-
-/**
- * Moves vector constants into globals. A vector constant takes 18 bytes wherever it occurs, and V8 compiles it to four
- * instructions. A global takes 2 bytes and a load, so it is better for a constant that occurs three times or more in a
- * function. The global is mutable, because V8 would replace an immutable one by the constant.
- */
-function withVectorsInGlobals(text) {
-  const vector = /\(v128\.const [^)]*\)/g;
-  const globals = [];
-  const functions = text.split(/^(?= \(func )/m).map((code) => {
-    const found = code.match(vector) ?? [];
-    return code.replace(vector, (constant) => {
-      if (found.filter((other) => other === constant).length < 3) return constant;
-      if (!globals.includes(constant)) globals.push(constant);
-      return `(global.get $vector${globals.indexOf(constant)})`;
-    });
-  });
-  const declared = globals.map((constant, number) => ` (global $vector${number} (mut v128) ${constant})\n`);
-  return functions.join("").replace(" (global ", `${declared.join("")} (global `);
 }

@@ -134,48 +134,30 @@ function start(game, module, learner) {
   });
 
   const number = (value, digits = 2) => value.toFixed(digits).replace("-", "−");
-  const caption = (id, parts) => {
-    $(id).replaceChildren(
-      ...parts.map(([text, kind]) => {
-        const span = document.createElement("span");
-        span.textContent = text;
-        span.className = kind ?? "";
-        return span;
-      }),
-    );
+  /** Draws a plot of columns, and a caption with their last values and further parts. */
+  const show = (id, title, names, unit, columns, options, ...more) => {
+    const series = columns.map((values, i) => ({ values, color: color(["--accent", "--second"][i]) }));
+    plot($(id), { series, end: Math.max(game.steps, 50), unit: "steps", ...options });
+    const values = columns.map((column, i) => [`${names[i]} ${number(column.at(-1))} ${unit}`, ["first", "second"][i]]);
+    const parts = [[title, ""], ...values, ...more].map(([text, kind]) => {
+      const span = document.createElement("span");
+      span.textContent = text;
+      span.className = kind;
+      return span;
+    });
+    $(`${id}-caption`).replaceChildren(...parts);
   };
 
   const plots = () => {
-    const end = Math.max(game.steps, 50);
-    const [first, second] = [color("--accent"), color("--second")];
-    const [theta1, theta2, dtheta1, dtheta2, energy, height] = game.numbers;
-    const energies = game.column(4);
+    const [theta1, theta2, dtheta1, dtheta2, energy, heights] = [0, 1, 2, 3, 4, 5].map((index) => game.column(index));
     const { standing } = game;
-    plot($("energy"), {
-      series: [{ values: energies, color: first }],
-      range: rangeOf([...energies, standing, -standing]),
-      marks: [standing],
-      end,
-      unit: "steps",
-    });
-    caption("energy-caption", [["Energy"], [`${number(energy)} J`, "first"], [`upright: ${number(standing)} J`, "hint"], [`tip height ${number(height)} m`]]);
-    plot($("angles"), {
-      series: [{ values: game.column(0), color: first }, { values: game.column(1), color: second }],
-      range: [-Math.PI, Math.PI],
-      period: 2 * Math.PI,
-      end,
-      unit: "steps",
-    });
-    caption("angles-caption", [["Angles"], [`θ1 ${number(theta1)} rad`, "first"], [`θ2 ${number(theta2)} rad`, "second"]]);
-    const velocities = [game.column(2), game.column(3)];
-    const fastest = Math.max(2, ...velocities.flat().map(Math.abs));
-    plot($("velocities"), {
-      series: [{ values: velocities[0], color: first }, { values: velocities[1], color: second }],
-      range: [-1.06 * fastest, 1.06 * fastest],
-      end,
-      unit: "steps",
-    });
-    caption("velocities-caption", [["Velocities"], [`θ1′ ${number(dtheta1)} rad/s`, "first"], [`θ2′ ${number(dtheta2)} rad/s`, "second"]]);
+    const upright = [`upright: ${number(standing)} J`, "hint"];
+    const height = [`tip height ${number(heights.at(-1))} m`, ""];
+    const range = rangeOf([...energy, standing, -standing]);
+    show("energy", "Energy", [""], "J", [energy], { range, marks: [standing] }, upright, height);
+    show("angles", "Angles", ["θ1", "θ2"], "rad", [theta1, theta2], { range: [-Math.PI, Math.PI], period: 2 * Math.PI });
+    const fastest = 1.06 * Math.max(2, ...dtheta1.concat(dtheta2).map(Math.abs));
+    show("velocities", "Velocities", ["θ1′", "θ2′"], "rad/s", [dtheta1, dtheta2], { range: [-fastest, fastest] });
   };
 
   let dirty = true;
