@@ -1,6 +1,7 @@
-// The page's functions, tested in Node: links, numbers as text, the interpolated picture.
+// The page's functions, tested in Node: links, numbers as text, the interpolated picture; and the size of the learner.
 
 import assert from "node:assert/strict";
+import { statSync } from "node:fs";
 import { test } from "node:test";
 
 import { Game, shortest } from "../dist/game.js";
@@ -11,6 +12,11 @@ import { ACTIONS } from "./native.mjs";
 
 /** A canvas's context that draws nothing. */
 const CONTEXT = new Proxy({ canvas: { width: 1, height: 1 } }, { get: (target, name) => target[name] ?? (() => {}) });
+
+test("the learner has at most 32 KiB", () => {
+  const { size } = statSync(new URL("../dist/learner.wasm", import.meta.url));
+  assert.ok(size <= 32 * 1024, `got ${size} bytes`);
+});
 
 test("numbers are written with the fewest digits that keep single precision", () => {
   for (const text of ["0", "0.1", "-0.054791212", "3.1415927", "1e-7", "16777216"]) {
@@ -41,6 +47,10 @@ test("the picture between two steps has the angles and velocities of both", () =
     assert.ok(Math.abs(game.between(1).theta2 - before[1] - 0.1 * (before[3] + game.numbers[3])) <= Math.PI);
   }
   assert.ok(turned > 0);
+  // A step with more turns than a picture can show.
+  game.begin(0n, { ...DEFAULTS, dt: 1e30 });
+  game.step(2);
+  assert.ok(Math.abs(game.between(0.5).theta1) < 1e6);
 });
 
 test("a link contains all actions", () => {
