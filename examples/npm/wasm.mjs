@@ -1,5 +1,5 @@
-// Compiles crates to small WebAssembly modules, and bundles one with the package's JavaScript: for the package and for the page of
-// ../web. The programs are those of the current folder, because each folder has its own `node_modules`.
+// Compiles crates to small WebAssembly modules, and bundles one with the package's JavaScript: for the package, and for the page of
+// ../web. Programs, Cargo configuration and `target/` are those of the current folder.
 
 import { execFileSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
