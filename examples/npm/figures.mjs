@@ -38,7 +38,7 @@ const [{ size, unpackedSize }] = JSON.parse(execFileSync("npm", ["pack", "--json
 console.log(`
 | on one core, in Node.js ${process.versions.node.split(".")[0]} | |
 |---|---|
-| WebAssembly module, with simd128 | ${kilobytes(statSync("target/acrobot.wasm").size)} |
+| WebAssembly module, with simd128 | ${kilobytes(statSync("target/acrobot_npm.wasm").size)} |
 | \`index.js\`, with the module inside | ${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)} |
 | package, with types and licences | ${kilobytes(unpackedSize)}, packed ${kilobytes(size)} |
 | \`Acrobot.step\` | ${single} |

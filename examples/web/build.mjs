@@ -1,16 +1,12 @@
-// Builds the page into dist/: copies its files and compiles three WebAssembly modules.
+// Builds the page into dist/: its files, the npm package, and the learner.
 
-import { cpSync, mkdirSync, rmSync } from "node:fs";
+import { cpSync, rmSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
-import { compile } from "./wasm.mjs";
-
-const build = (name, options) => compile("acrobot_web", `dist/${name}.wasm`, { folder: `target/${name}`, ...options });
+import { bundle, compile } from "../npm/wasm.mjs";
 
 process.chdir(fileURLToPath(new URL(".", import.meta.url)));
 rmSync("dist", { recursive: true, force: true });
-mkdirSync("dist");
 cpSync("page", "dist", { recursive: true });
-build("acrobot-simd128", { simd128: true });
-build("acrobot", {});
-build("simulation", { args: ["--no-default-features"] });
+bundle("dist/acrobot.js");
+cpSync(compile(".", "acrobot_web"), "dist/learner.wasm");

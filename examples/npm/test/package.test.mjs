@@ -8,30 +8,26 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { buildSync } from "esbuild";
+import { buildSync, context } from "esbuild";
 import { chromium } from "playwright-core";
 
-import { launch } from "../../web/browser.mjs";
-import { serve } from "../../web/serve.mjs";
+import { launch } from "../browser.mjs";
 
 const here = fileURLToPath(new URL("..", import.meta.url));
 const root = join(here, "../..");
 const [, version] = /^version = "(.*)"/m.exec(readFileSync(join(root, "Cargo.toml"), "utf8"));
 const folder = mkdtempSync(join(tmpdir(), "acrobot-npm-"));
 const run = (command, args, options) => execFileSync(command, args, { cwd: folder, encoding: "utf8", ...options });
-let server, browser, origin;
+let browser, origin, close;
 
 before(async () => {
   run("npm", ["init", "-y"]);
   run("npm", ["install", "--silent", join(here, `acrobot-rs-${version}.tgz`)]);
-  server = await serve(0, folder);
-  origin = `http://localhost:${server.address().port}/`;
-  browser = await launch(chromium);
+  ({ browser, origin, close } = await launch(chromium, context, folder));
 });
 
 after(async () => {
-  await browser?.close();
-  server?.close();
+  await close?.();
   rmSync(folder, { recursive: true });
 });
 
@@ -70,7 +66,7 @@ test("the package has 60 KB and these files", () => {
 });
 
 test("the module imports nothing and cannot panic", () => {
-  const text = readFileSync(join(here, "target/acrobot.wat"), "utf8");
+  const text = readFileSync(join(here, "target/acrobot_npm.wat"), "utf8");
   assert.match(text, /\(export "batch_step"/);
   assert.doesNotMatch(text, /\(import/);
   assert.doesNotMatch(text, /unreachable/);

@@ -1,9 +1,10 @@
 // One episode: its seed, parameters, actions and states.
 
-import { LIMIT } from "./module.js";
+import { Acrobot } from "./acrobot.js";
+import { LIMIT } from "./settings.js";
 
 export class Game {
-  #acrobot;
+  #acrobot = new Acrobot();
   seed;
   params;
   actions = [];
@@ -12,26 +13,30 @@ export class Game {
   /** `"goal"` or `"limit"` once the episode has ended. */
   end = null;
 
-  constructor(acrobot, seed, params) {
-    this.#acrobot = acrobot;
+  constructor(seed, params) {
     this.begin(seed, params);
   }
 
-  /** Begins an episode. Throws if the crate rejects the parameters. Then the current episode continues. */
+  /** Begins an episode. Throws if the package rejects the parameters. Then the current episode continues. */
   begin(seed, params = this.params) {
     this.#acrobot.setParams(params);
     this.#acrobot.reset(seed);
     Object.assign(this, { seed, params, actions: [], end: null });
-    this.#rows = [this.#acrobot.numbers()];
+    this.#rows = [this.#row()];
   }
 
   step(action) {
     if (this.end !== null) return;
     const { terminated, truncated } = this.#acrobot.step(action);
     this.actions.push(action);
-    this.#rows.push(this.#acrobot.numbers());
+    this.#rows.push(this.#row());
     if (terminated) this.end = "goal";
     else if (truncated) this.end = "limit";
+  }
+
+  #row() {
+    const { state, energy, tipHeight } = this.#acrobot;
+    return Float32Array.of(...Object.values(state), energy, tipHeight);
   }
 
   get steps() {
@@ -46,6 +51,32 @@ export class Game {
   /** The four numbers of the state, the energy and the height of the tip. */
   get numbers() {
     return this.#rows.at(-1);
+  }
+
+  get state() {
+    return this.#acrobot.state;
+  }
+
+  /** The energy of standing upright, J. */
+  get standing() {
+    const { gravity, mass1, mass2, length1, centerOfMass1, centerOfMass2 } = this.#acrobot.params;
+    return gravity * (mass1 * centerOfMass1 + mass2 * (length1 + centerOfMass2));
+  }
+
+  /** Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames than the physics takes steps. */
+  draw(context, part, colors) {
+    const { state } = this;
+    const { theta1, theta2 } = this.between(part);
+    this.#acrobot.state = { ...state, theta1, theta2 };
+    this.#acrobot.draw(context, { colors });
+    this.#acrobot.state = state;
+  }
+
+  /** The angles at a part of the last step. */
+  between(part) {
+    const [before, after] = [this.#rows.at(-2) ?? this.numbers, this.numbers];
+    const [theta1, theta2] = [0, 1].map((i) => angleBetween(before[i], after[i], before[i + 2], after[i + 2], this.params.dt, part));
+    return { theta1, theta2 };
   }
 
   /** One of the six numbers, of the initial state and after each step. */
@@ -75,4 +106,19 @@ export function shortest(number) {
     const text = String(Number(number.toPrecision(digits)));
     if (digits === 17 || Math.fround(Number(text)) === number) return text;
   }
+}
+
+/**
+ * Interpolates an angle by the cubic Hermite polynomial, which has the angles `a` and `b` and the velocities before and after a step
+ * of `dt`.
+ */
+function angleBetween(a, b, before, after, dt, part) {
+  const [start, end] = [before * dt, after * dt];
+  const mean = (start + end) / 2;
+  // Angles are modulo 2π. Of the possible rotations take the one closest to that at the mean velocity.
+  const turned = b - a + 2 * Math.PI * Math.round((mean - (b - a)) / (2 * Math.PI));
+  const [part2, part3] = [part ** 2, part ** 3];
+  const angle = a + turned * (3 * part2 - 2 * part3) + start * (part3 - 2 * part2 + part) + end * (part3 - part2);
+  // With a huge dt there are too many turns to show.
+  return Math.abs(angle) < 1e6 ? angle : b;
 }

@@ -1,6 +1,6 @@
 // A run in an address, after the #: seed, parameters that differ from Gymnasium's, and actions.
 
-import { DEFAULTS, LIMIT, PARAMETERS, parseSeed } from "./module.js";
+import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed } from "./settings.js";
 
 /** Fills the last byte, which has room for four actions. No action has this number. */
 const PADDING = 3;
@@ -37,7 +37,7 @@ export function encodeRun({ seed, params, actions }) {
   return `#${fields}`;
 }
 
-/** The run in an address. Throws an `Error` with the reason if there is none. The module checks the parameters later. */
+/** The run in an address. Throws an `Error` with the reason if there is none. The package checks the parameters later. */
 export function decodeRun(hash) {
   const fields = new URLSearchParams(hash.slice(1));
   const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];
@@ -52,9 +52,4 @@ export function decodeRun(hash) {
     throw new Error(`dynamics must be book or nips, got "${params.dynamics}"`);
   }
   return { seed: parseSeed(fields.get("seed") ?? "42"), params, actions: decodeActions(fields.get("actions") ?? "") };
-}
-
-/** The number in a text, or NaN if the text is not a number. */
-export function parseNumber(text) {
-  return text.trim() === "" ? NaN : Number(text);
 }

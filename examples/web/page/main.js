@@ -1,11 +1,12 @@
-// Loads the WebAssembly module that this browser can run, and connects the page to it.
+// Connects the page to an episode and to the panels.
 
 import { Game } from "./game.js";
+import { Learner } from "./learner.js";
 import { decodeRun, encodeRun } from "./link.js";
-import { Acrobot, DEFAULTS, LIMIT, hasSimd128, parseSeed } from "./module.js";
 import { attempt, parametersPanel } from "./parameters.js";
 import { color, plot, rangeOf } from "./plot.js";
-import { speedPanel } from "./speed.js";
+import { POLICIES } from "./policies.js";
+import { DEFAULTS, LIMIT, parseSeed } from "./settings.js";
 import { Stage } from "./stage.js";
 import { download, trainingPanel } from "./training.js";
 
@@ -16,26 +17,18 @@ const INTERVAL = 1500;
 const NO_ACTIONS = "The link has no actions.";
 
 async function load() {
-  const simd = hasSimd128();
-  const response = await fetch(simd ? "acrobot-simd128.wasm" : "acrobot.wasm");
+  const game = new Game(42n, { ...DEFAULTS });
+  const response = await fetch("learner.wasm");
   if (!response.ok) throw new Error(`${response.url} answered ${response.status}`);
-  const bytes = await response.arrayBuffer();
-  performance.mark("module");
-  const kilobytes = (bytes.byteLength / 1000).toFixed(1);
-  $("module").textContent = simd
-    ? `WebAssembly with simd128, ${kilobytes} KB.`
-    : `WebAssembly, ${kilobytes} KB. This browser has no simd128: results are bit-identical, but a batch is no faster than one acrobot.`;
-  $("vectors").textContent = simd ? ", with simd128" : ", without simd128";
-  const module = await WebAssembly.compile(bytes);
-  start(module, await Acrobot.load(module));
+  const module = await WebAssembly.compile(await response.arrayBuffer());
+  start(game, module, await Learner.make(module));
 }
 
-function start(module, acrobot) {
+function start(game, module, learner) {
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
-  const game = new Game(acrobot, 42n, { ...DEFAULTS });
   $("app").hidden = false;
   $("notice").hidden = true;
-  const stage = new Stage(acrobot);
+  const stage = new Stage();
 
   let playing = !calm.matches;
   /** How much of the last step has been shown, s; dt before the first step. */
@@ -52,7 +45,8 @@ function start(module, acrobot) {
   const action = () => {
     const policy = $("policy").value;
     if (policy === "keys") return 1 + Number(held.right) - Number(held.left);
-    return policy === "link" ? recorded[game.steps] : acrobot.act(policy);
+    if (policy === "link") return recorded[game.steps];
+    return policy === "learnt" ? learner.act(game.state) : POLICIES[policy](game);
   };
 
   const step = () => {
@@ -140,48 +134,30 @@ function start(module, acrobot) {
   });
 
   const number = (value, digits = 2) => value.toFixed(digits).replace("-", "−");
-  const caption = (id, parts) => {
-    $(id).replaceChildren(
-      ...parts.map(([text, kind]) => {
-        const span = document.createElement("span");
-        span.textContent = text;
-        span.className = kind ?? "";
-        return span;
-      }),
-    );
+  /** Draws a plot of columns, and a caption with their last values and further parts. */
+  const show = (id, title, names, unit, columns, options, ...more) => {
+    const series = columns.map((values, i) => ({ values, color: color(["--accent", "--second"][i]) }));
+    plot($(id), { series, end: Math.max(game.steps, 50), unit: "steps", ...options });
+    const values = columns.map((column, i) => [`${names[i]} ${number(column.at(-1))} ${unit}`, ["first", "second"][i]]);
+    const parts = [[title, ""], ...values, ...more].map(([text, kind]) => {
+      const span = document.createElement("span");
+      span.textContent = text;
+      span.className = kind;
+      return span;
+    });
+    $(`${id}-caption`).replaceChildren(...parts);
   };
 
   const plots = () => {
-    const end = Math.max(game.steps, 50);
-    const [first, second] = [color("--first"), color("--second")];
-    const [theta1, theta2, dtheta1, dtheta2, energy, height] = game.numbers;
-    const energies = game.column(4);
-    const standing = acrobot.standing();
-    plot($("energy"), {
-      series: [{ values: energies, color: first }],
-      range: rangeOf([...energies, standing, -standing]),
-      marks: [standing],
-      end,
-      unit: "steps",
-    });
-    caption("energy-caption", [["Energy"], [`${number(energy)} J`, "first"], [`upright: ${number(standing)} J`, "mark"], [`tip height ${number(height)} m`]]);
-    plot($("angles"), {
-      series: [{ values: game.column(0), color: first }, { values: game.column(1), color: second }],
-      range: [-Math.PI, Math.PI],
-      period: 2 * Math.PI,
-      end,
-      unit: "steps",
-    });
-    caption("angles-caption", [["Angles"], [`θ1 ${number(theta1)} rad`, "first"], [`θ2 ${number(theta2)} rad`, "second"]]);
-    const velocities = [game.column(2), game.column(3)];
-    const fastest = Math.max(2, ...velocities.flat().map(Math.abs));
-    plot($("velocities"), {
-      series: [{ values: velocities[0], color: first }, { values: velocities[1], color: second }],
-      range: [-1.06 * fastest, 1.06 * fastest],
-      end,
-      unit: "steps",
-    });
-    caption("velocities-caption", [["Velocities"], [`θ1′ ${number(dtheta1)} rad/s`, "first"], [`θ2′ ${number(dtheta2)} rad/s`, "second"]]);
+    const [theta1, theta2, dtheta1, dtheta2, energy, heights] = [0, 1, 2, 3, 4, 5].map((index) => game.column(index));
+    const { standing } = game;
+    const upright = [`upright: ${number(standing)} J`, "hint"];
+    const height = [`tip height ${number(heights.at(-1))} m`, ""];
+    const range = rangeOf([...energy, standing, -standing]);
+    show("energy", "Energy", [""], "J", [energy], { range, marks: [standing] }, upright, height);
+    show("angles", "Angles", ["θ1", "θ2"], "rad", [theta1, theta2], { range: [-Math.PI, Math.PI], period: 2 * Math.PI });
+    const fastest = 1.06 * Math.max(2, ...dtheta1.concat(dtheta2).map(Math.abs));
+    show("velocities", "Velocities", ["θ1′", "θ2′"], "rad/s", [dtheta1, dtheta2], { range: [-fastest, fastest] });
   };
 
   let dirty = true;
@@ -207,14 +183,12 @@ function start(module, acrobot) {
     plots();
   };
 
-  const cost = { frames: 0, physics: 0, drawing: 0 };
   let last = performance.now();
   const frame = (now) => {
     // A page in the background gets no frames. Afterwards it does not catch up.
     const elapsed = Math.min(Math.max(now - last, 0), 100) / 1000;
     last = now;
     const { dt } = game.params;
-    const before = performance.now();
     if (playing && game.end === null) {
       shown += elapsed * Number($("pace").value);
       // The limit of steps ends this loop even if dt is tiny.
@@ -227,18 +201,8 @@ function start(module, acrobot) {
     } else {
       shown = Math.min(shown + elapsed * Number($("pace").value), dt);
     }
-    const stepped = performance.now();
     if (now >= nextAt && playing) next();
-    const { length1, length2 } = game.params;
-    stage.draw(calm.matches ? 1 : Math.min(shown / dt, 1), length1 + length2, !calm.matches);
-    if (cost.frames++ === 0) performance.measure("first frame", "module");
-    cost.physics += stepped - before;
-    cost.drawing += performance.now() - stepped;
-    if (cost.frames % 60 === 0) {
-      $("physics").textContent = `${(cost.physics / 60).toFixed(3)} ms`;
-      $("drawing").textContent = `${(cost.drawing / 60).toFixed(1)} ms`;
-      cost.physics = cost.drawing = 0;
-    }
+    stage.draw(game, calm.matches ? 1 : Math.min(shown / dt, 1), !calm.matches);
     if (dirty) update();
     requestAnimationFrame(frame);
   };
@@ -326,7 +290,7 @@ function start(module, acrobot) {
   $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
 
   const learnt = document.querySelector("[value=learnt]");
-  const training = trainingPanel(acrobot, module, {
+  const training = trainingPanel(learner, module, {
     ready() {
       learnt.disabled = false;
       learnt.textContent = "Learnt";
@@ -336,11 +300,9 @@ function start(module, acrobot) {
       if (!playing) play();
     },
   });
-  speedPanel(module);
 
   for (const query of ["(prefers-color-scheme: dark)", "(prefers-reduced-motion: reduce)"]) {
     matchMedia(query).addEventListener("change", () => {
-      stage.repaint();
       training.draw();
       changed();
     });
@@ -355,13 +317,9 @@ function start(module, acrobot) {
 }
 
 const notice = $("notice");
-if (typeof WebAssembly === "object") {
-  notice.textContent = "Loading…";
-  load().catch((error) => {
-    $("app").hidden = true;
-    notice.hidden = false;
-    notice.textContent = `The page could not start: ${error.message}.`;
-  });
-} else {
-  notice.textContent = "This page needs WebAssembly. This browser lacks it or blocks it here.";
-}
+notice.textContent = "Loading…";
+load().catch((error) => {
+  $("app").hidden = true;
+  notice.hidden = false;
+  notice.textContent = `The page could not start: ${error.message}.`;
+});

@@ -1,8 +1,7 @@
 // The panel "Physics": a choice of equations, and a slider and a field for each parameter. The field shows why a value is
 // rejected.
 
-import { parseNumber } from "./link.js";
-import { DEFAULTS, PARAMETERS } from "./module.js";
+import { DEFAULTS, PARAMETERS, parseNumber } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -27,7 +26,7 @@ export function parametersPanel(get, set) {
       <label for="${name}">${label}</label>
       <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-hint ${name}-reason">
       <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-hint ${name}-reason">
-      <span class="unit">${unit}</span>
+      <span class="hint">${unit}</span>
       <p id="${name}-reason" class="reason" role="alert"></p>
       <p id="${name}-hint" class="hint">${hint}</p>`;
     $("params").append(field);

@@ -1,7 +1,7 @@
 // The panel "Train a policy": trains in a worker, draws the learning curve, loads and saves weights.
 
-import { parseSeed } from "./module.js";
 import { color, plot, rangeOf } from "./plot.js";
+import { parseSeed } from "./settings.js";
 
 /** Solved, as Gymnasium defines it: a mean return of −100 over 100 episodes. */
 const WINDOW = 100;
@@ -11,7 +11,7 @@ const EPISODES = 1_000_000;
 const $ = (id) => document.getElementById(id);
 
 /** Calls `ready` once there is a learnt policy, and `drive` when the user wants to watch it. */
-export function trainingPanel(acrobot, module, { ready, drive }) {
+export function trainingPanel(learner, module, { ready, drive }) {
   let worker = null;
   let weights = null;
   let means = [];
@@ -22,9 +22,9 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
     plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), unit: "episodes", marks: [SOLVED] });
   };
 
-  /** Loads weights into the page's module. Throws an `Error` with the reason if they are rejected. */
+  /** Loads weights for the learnt policy. Throws an `Error` with the reason if they are rejected. */
   const take = (bytes) => {
-    acrobot.load(bytes);
+    learner.load(bytes);
     weights = bytes;
     $("save").disabled = $("drive").disabled = false;
     ready();
@@ -77,7 +77,7 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
       $("training-status").textContent = text;
       if (returns.length === episodes) stop();
     };
-    worker.postMessage({ module, task: "train", seed, episodes });
+    worker.postMessage({ module, seed, episodes });
     $("train").textContent = "Stop";
     $("training-status").textContent = "Training…";
   };
@@ -85,6 +85,7 @@ export function trainingPanel(acrobot, module, { ready, drive }) {
   $("train").onclick = () => (worker ? stop("Stopped. The weights are kept.") : train());
   $("drive").onclick = drive;
   $("save").onclick = () => download("weights.bin", weights);
+  $("choose").onclick = () => $("load").click();
   $("load").onchange = async ({ target }) => {
     const [file] = target.files;
     // Otherwise choosing the same file again would cause no event.

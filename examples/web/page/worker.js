@@ -1,45 +1,23 @@
-// Trains or measures outside the page's thread, with its own instance of the module. It receives { module, task, … } and
-// posts reports. To stop a task, terminate the worker.
+// Trains outside the page's thread, with its own instance of the module. It receives { module, seed, episodes } and posts
+// reports. To stop the training, terminate the worker.
 
-import { Acrobot } from "./module.js";
+import { Learner } from "./learner.js";
 
-/** The time between two reports of a training, ms. */
+/** The time between two reports, ms. */
 const PERIOD = 150;
 
-const tasks = {
-  train(acrobot, { seed, episodes }) {
-    acrobot.beginTraining(episodes, seed);
-    let returns = [];
-    let reported = performance.now();
-    for (let episode = 1; episode <= episodes; episode++) {
-      returns.push(acrobot.train());
-      if (episode === episodes || performance.now() - reported >= PERIOD) {
-        postMessage({ returns, weights: acrobot.save() });
-        returns = [];
-        reported = performance.now();
-      }
+async function train({ module, seed, episodes }) {
+  const learner = await Learner.make(module, episodes, seed);
+  let returns = [];
+  let reported = performance.now();
+  for (let episode = 1; episode <= episodes; episode++) {
+    returns.push(learner.train());
+    if (episode === episodes || performance.now() - reported >= PERIOD) {
+      postMessage({ returns, weights: learner.save() });
+      returns = [];
+      reported = performance.now();
     }
-  },
-
-  speed(acrobot) {
-    const scalar = fastest(1_000_000, (steps) => acrobot.scalarSteps(steps));
-    const batch = fastest(4_000_000, (steps) => acrobot.batchSteps(steps / 1000)) * 1.024;
-    postMessage({ scalar, batch });
-  },
-};
-
-/** Steps per second in the best of ten runs. During the first the browser may still compile. */
-function fastest(steps, run) {
-  let best = Infinity;
-  for (let round = 0; round < 10; round++) {
-    const start = performance.now();
-    run(steps);
-    best = Math.min(best, performance.now() - start);
   }
-  return (steps / best) * 1000;
 }
 
-onmessage = ({ data }) => {
-  const done = Acrobot.load(data.module).then((acrobot) => tasks[data.task](acrobot, data));
-  done.catch((error) => postMessage({ failed: String(error) }));
-};
+onmessage = ({ data }) => train(data).catch((error) => postMessage({ failed: String(error) }));

@@ -1,25 +1,94 @@
-//! The page's WebAssembly module: exported functions with numbers as arguments and results, which JavaScript calls.
+//! The page's WebAssembly module: the learner of `swing_up` in 64 KiB. A worker's instance trains, and the page's instance
+//! plays the learnt policy.
 //!
-//! Longer data passes through the buffer in `memory`: JavaScript writes seeds, Rust writes error texts, both write weights.
-//! Without the `page` feature the module contains only `simulation`. Fuzz targets call the same functions natively.
+//! Longer data than numbers passes through a buffer: JavaScript writes seeds, Rust writes error texts, both write weights.
 
-#![cfg_attr(target_family = "wasm", no_std)]
+use std::cell::RefCell;
 
-#[cfg(feature = "page")]
-pub mod learner;
-pub mod memory;
-#[cfg(feature = "page")]
-pub mod once;
-#[cfg(feature = "page")]
-pub mod picture;
-#[cfg(feature = "page")]
-pub mod policies;
-pub mod simulation;
-#[cfg(feature = "page")]
-pub mod speed;
+use acrobot::State;
+use acrobot::numpy::{Pcg64, SeedSequence};
+use learners::task::{Env, QLambda, greedy, learn, q_lambda, training};
+use learners::{Budget, Transition};
 
-#[cfg(target_family = "wasm")]
-#[panic_handler]
-fn panic(_: &core::panic::PanicInfo) -> ! {
-    core::arch::wasm32::unreachable()
+const SLOTS: usize = 6144;
+const STEPS: usize = 600;
+type Learner = QLambda<'static, SLOTS, 52>;
+
+/// The longest data are the weights.
+const BUFFER_LEN: usize = 1 << 17;
+
+thread_local! {
+    static BUFFER: RefCell<[u8; BUFFER_LEN]> = const { RefCell::new([0; BUFFER_LEN]) };
+    static TRAINING: RefCell<Option<(Learner, Env, Pcg64)>> = const { RefCell::new(None) };
+}
+
+/// The address of the buffer, which JavaScript reads and writes between calls.
+#[unsafe(no_mangle)]
+pub extern "C" fn buffer() -> *const u8 {
+    BUFFER.with(RefCell::as_ptr).cast()
+}
+
+/// Writes bytes into the buffer and returns their count.
+fn write(bytes: impl IntoIterator<Item = u8>) -> usize {
+    BUFFER.with_borrow_mut(|buffer| {
+        let pairs = buffer.iter_mut().zip(bytes);
+        pairs.map(|(to, byte)| *to = byte).count()
+    })
+}
+
+/// Begins a training like that of `swing_up`. The seed is in the first `words` 32-bit words of the buffer, at most 64, the
+/// lowest word first. An instance calls this once, because a learner keeps its memory.
+#[unsafe(no_mangle)]
+pub extern "C" fn begin(episodes: u32, words: usize) {
+    let mut seed = [0; 64];
+    BUFFER.with_borrow(|buffer| {
+        for (word, bytes) in seed.iter_mut().zip(buffer.as_chunks().0).take(words) {
+            *word = u32::from_le_bytes(*bytes);
+        }
+    });
+    let weights = Box::leak(Box::new([[0.0; 2]; SLOTS]));
+    let memory = Box::leak(Box::new([Transition::EMPTY; STEPS]));
+    // Leading zeros of a seed do not count.
+    let (env, choices) = training(SeedSequence::from_words(&seed));
+    let learner = q_lambda(Budget::Episodes(episodes), weights, memory).ok();
+    TRAINING.set(learner.map(|learner| (learner, env, choices)));
+}
+
+/// Trains for one episode. Returns its return, or NaN if no training has begun.
+#[unsafe(no_mangle)]
+pub extern "C" fn train() -> f32 {
+    TRAINING.with_borrow_mut(|training| match training {
+        Some((learner, env, choices)) => learn(learner, env, choices),
+        None => f32::NAN,
+    })
+}
+
+/// Writes the weights into the buffer, in the format of `swing_up --save`. Returns the number of bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn save() -> usize {
+    TRAINING.with_borrow(|training| {
+        let learner = training.as_ref().map(|(learner, ..)| learner);
+        learner.map_or(0, |learner| write(learner.save()))
+    })
+}
+
+/// Loads weights from the first `len` bytes of the buffer. Returns 0, or, if they are rejected, the length of the reason in
+/// the buffer. Then the weights do not change.
+#[unsafe(no_mangle)]
+pub extern "C" fn load(len: usize) -> usize {
+    let loaded = TRAINING.with_borrow_mut(|training| {
+        let (learner, ..) = training.as_mut()?;
+        BUFFER.with_borrow(|buffer| learner.load(buffer.get(..len)?).err())
+    });
+    loaded.map_or(0, |error| write(error.to_string().into_bytes()))
+}
+
+/// The learnt policy's action in a state.
+#[unsafe(no_mangle)]
+pub extern "C" fn act(theta1: f32, theta2: f32, dtheta1: f32, dtheta2: f32) -> u8 {
+    let state = State::from([theta1, theta2, dtheta1, dtheta2]);
+    TRAINING.with_borrow(|training| {
+        let learner = training.as_ref().map(|(learner, ..)| learner);
+        learner.map_or(1, |learner| greedy(learner, &state).into())
+    })
 }

