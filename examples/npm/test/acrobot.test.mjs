@@ -50,7 +50,7 @@ test("seeds of any size, numbers or BigInts, give native states", () => {
 test("parameters act as natively", () => {
   const acrobot = new Acrobot({ seed: 7, params: { dt: 0.05, dynamics: "nips", torqueNoise: 0.25 } });
   const states = [bits(acrobot), ...ACTIONS.map((action) => (acrobot.step(action), bits(acrobot)))];
-  assert.deepEqual(states, trace("7", ACTIONS, "--dt", "0.05", "--dynamics", "nips", "--noise", "0.25"));
+  assert.deepEqual(states, trace("7", ACTIONS, "--dt", "0.05", "--nips", "--noise", "0.25"));
 
   const names = ["length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2", "gravity", "dt", "maxVelocity1", "maxVelocity2", "torqueNoise"];
   const numbers = Object.fromEntries(names.map((name, i) => [name, i + 0.5]));

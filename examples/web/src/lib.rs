@@ -6,20 +6,17 @@
 use std::cell::RefCell;
 
 use acrobot::State;
-use acrobot::numpy::{Pcg64, SeedSequence};
-use learners::task::{Env, QLambda, greedy, learn, q_lambda, training};
-use learners::{Budget, Transition};
+use acrobot::numpy::SeedSequence;
+use learners::{Budget, Env, Memory64, QLambda, training};
 
-const SLOTS: usize = 6144;
-const STEPS: usize = 600;
-type Learner = QLambda<'static, SLOTS, 52>;
+type Learner = QLambda<'static, 6144, 52>;
 
 /// The longest data are the weights.
 const BUFFER_LEN: usize = 1 << 17;
 
 thread_local! {
     static BUFFER: RefCell<[u8; BUFFER_LEN]> = const { RefCell::new([0; BUFFER_LEN]) };
-    static TRAINING: RefCell<Option<(Learner, Env, Pcg64)>> = const { RefCell::new(None) };
+    static TRAINING: RefCell<Option<(Learner, Env)>> = const { RefCell::new(None) };
 }
 
 /// The address of the buffer, which JavaScript reads and writes between calls.
@@ -46,19 +43,17 @@ pub extern "C" fn begin(episodes: u32, words: usize) {
             *word = u32::from_le_bytes(*bytes);
         }
     });
-    let weights = Box::leak(Box::new([[0.0; 2]; SLOTS]));
-    let memory = Box::leak(Box::new([Transition::EMPTY; STEPS]));
+    let memory = Box::leak(Box::new(Memory64::EMPTY));
+    let learner = QLambda::new(Budget::Episodes(episodes), memory);
     // Leading zeros of a seed do not count.
-    let (env, choices) = training(SeedSequence::from_words(&seed));
-    let learner = q_lambda(Budget::Episodes(episodes), weights, memory).ok();
-    TRAINING.set(learner.map(|learner| (learner, env, choices)));
+    TRAINING.set(Some((learner, training(SeedSequence::from_words(&seed)))));
 }
 
 /// Trains for one episode. Returns its return, or NaN if no training has begun.
 #[unsafe(no_mangle)]
 pub extern "C" fn train() -> f32 {
     TRAINING.with_borrow_mut(|training| match training {
-        Some((learner, env, choices)) => learn(learner, env, choices),
+        Some((learner, env)) => learner.learn(env),
         None => f32::NAN,
     })
 }
@@ -89,6 +84,6 @@ pub extern "C" fn act(theta1: f32, theta2: f32, dtheta1: f32, dtheta2: f32) -> u
     let state = State::from([theta1, theta2, dtheta1, dtheta2]);
     TRAINING.with_borrow(|training| {
         let learner = training.as_ref().map(|(learner, ..)| learner);
-        learner.map_or(1, |learner| greedy(learner, &state).into())
+        learner.map_or(1, |learner| learner.greedy(&state).into())
     })
 }

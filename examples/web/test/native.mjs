@@ -1,4 +1,4 @@
-// Native results, from the repository's examples.
+// Native results, from the programs of examples/desktop.
 
 import { spawnSync } from "node:child_process";
 
@@ -12,23 +12,22 @@ export const ACTIONS = [2, 2, 2, 0, 0, 1, 2, 2, 0, 0, 0, 1, 1, 2, 0, 2, 2, 2, 0,
 export const bits = (numbers) =>
   Array.from(new Uint32Array(Float32Array.from(numbers).buffer), (word) => word.toString(16).padStart(8, "0"));
 
-function example(name, args, input = "") {
-  const command = ["run", "--quiet", "--locked", "--example", name, "--", ...args];
-  const { status, stdout, stderr, error } = spawnSync("cargo", command, { cwd: root, input, encoding: "utf8" });
+function program(name, args) {
+  const command = ["run", "--quiet", "--locked", "-p", "desktop", "--bin", name, "--", ...args];
+  const { status, stdout, stderr, error } = spawnSync("cargo", command, { cwd: root, encoding: "utf8" });
   if (error) throw error;
   return { status, stdout, stderr };
 }
 
 /** The bits of θ1, θ2, θ̇1 and θ̇2 in single precision, of the initial state and after each action. */
 export function trace(seed, actions, ...args) {
-  const { status, stdout, stderr } = example("trace", ["--arithmetic", "fast", "--seed", seed, ...args], actions.join(""));
+  const { status, stdout, stderr } = program("trace", ["--seed", seed, ...args, actions.join("")]);
   if (status !== 0) throw new Error(stderr);
-  const number = (word) => Buffer.from(word, "hex").readDoubleBE();
-  return stdout.trim().split("\n").map((line) => bits(line.split(" ").slice(0, 4).map(number)));
+  return stdout.trim().split("\n").map((line) => line.split(" "));
 }
 
 /** Runs `swing_up` with `args`. Returns its standard error if it failed, otherwise null. */
 export function swingUp(...args) {
-  const { status, stderr } = example("swing_up", ["--quiet", ...args]);
+  const { status, stderr } = program("swing_up", ["--quiet", ...args]);
   return status === 0 ? null : stderr.trim();
 }

@@ -140,7 +140,7 @@ test("parameters change the physics as in the crate, and invalid ones are reject
     await page.selectOption("#dynamics", "nips");
     await press(page, ACTIONS);
     const state = await shownBits(page);
-    assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--dynamics", "nips").at(-1));
+    assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
 
     for (const [value, got] of [["-0.1", "-0.1"], ["0", "0"], ["abc", "NaN"], ["", "NaN"], ["1e999", "Infinity"]]) {
       await page.fill("#dt", value);
@@ -294,7 +294,7 @@ test("native weights reach the goal, and invalid ones are rejected with the lear
       await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
       const reason = await text(page, "#weights-reason");
       const error = swingUp("--episodes", "0", "--load", path);
-      assert.equal(error, `error: ${folder}/${reason}`);
+      assert.ok(error.endsWith(reason.slice(`${name}: `.length)), `${reason}; ${error}`);
     }
     const huge = join(folder, "huge.bin");
     writeFileSync(huge, Buffer.alloc(1e6));
