@@ -1,52 +1,178 @@
 """Measures this crate and other Acrobots from PyPI and crates.io, on one core of a Linux machine.
 
-    python3 compare.py             prints the table
-    python3 compare.py --update    also writes it into docs/benchmarks.md
-    python3 compare.py --quick     one short round, to try it
+    python3 compare.py                 prints the table
+    python3 compare.py --update        also writes it into docs/benchmarks.md
+    python3 compare.py --quick         one short round, to try it
+    python3 compare.py NAME SECONDS    plays one Python package, which is installed
 
-Each implementation runs once a round in its own process, from `peers.py` or `src/main.rs`, and reports
-steps and processor time. Results are medians. Python packages are installed into `.venv`, 2 GB.
+Each implementation plays a random policy once a round, in its own process: this file in the virtual environment of a
+Python package, or `src/main.rs`. It prints its name, versions, steps and processor time. The table has medians.
 """
 
 import argparse
+import importlib.metadata
 import os
 import pathlib
 import statistics
 import subprocess
 import sys
+import time
 
 PAGE = pathlib.Path("../../docs/benchmarks.md")
 HEAD = "| one core | version | M steps/s | times Gymnasium |"
-BASE = "make"
-# The package of each Python implementation, and the names of all implementations in the table.
-PACKAGES = {
-    "make": "gymnasium",
-    "unwrapped": "gymnasium",
-    "sync_vector_env": "gymnasium",
-    "acrobot_make": "acrobot_rs",
-    "acrobot_make_vec": "acrobot_rs",
-    "envpool": "envpool",
-    "gymnax": "gymnax",
-}
-PEERS = {
-    "make": "Gymnasium, `make`",
-    "unwrapped": "Gymnasium, `unwrapped`",
-    "sync_vector_env": "Gymnasium, `SyncVectorEnv` of 64",
-    "envpool": "EnvPool of 1,024",
-    "gymnax": "gymnax and jax on the CPU, 4,096 in `jit`, `vmap` and `scan`",
-    "acrobot_make": "acrobot_rs for Python, `make`",
-    "acrobot_make_vec": "acrobot_rs for Python, `make_vec` of 1,024",
-    "ogym": "ogym, f64",
-    "gmgn": "gmgn, f64",
-    "rlevo": "rlevo-environments, f32",
-    "host": "acrobot, `Host`",
-    "reference": "acrobot, `Reference`",
-    "portable": "acrobot, `Portable`",
-    "fast": "acrobot, `Fast`",
-    "batch": "acrobot, batch of 1,024 `Fast`, without observations",
-    "observations": "acrobot, the same with observations",
-}
 CARGO = ["--quiet", "--release", "--locked"]
+# Steps of an episode. Vector environments play a whole episode between two readings of the clock, because their
+# episodes are in phase and sines of larger angles can take longer: gymnax begins an episode at 3.8 M steps/s and ends
+# it at 2.3.
+LIMIT = 500
+
+
+def make(environment="Acrobot-v1"):
+    import gymnasium
+
+    return alone(gymnasium.make(environment))
+
+
+def unwrapped():
+    import gymnasium
+
+    return alone(gymnasium.make("Acrobot-v1").unwrapped)
+
+
+def sync_vector_env():
+    import gymnasium
+
+    return together(gymnasium.make_vec("Acrobot-v1", num_envs=64, vectorization_mode="sync"), 64)
+
+
+def acrobot_make():
+    import acrobot_rs  # noqa: F401 registers
+
+    return make("acrobot_rs/Acrobot-v1")
+
+
+def acrobot_make_vec():
+    import acrobot_rs  # noqa: F401 registers
+    import gymnasium
+
+    return together(gymnasium.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024), 1024)
+
+
+def envpool():
+    import envpool
+
+    return together(envpool.make_gymnasium("Acrobot-v1", num_envs=1024, num_threads=1), 1024)
+
+
+def gymnax():
+    """As in its documentation: vmap over environments and scan over steps, in one jit."""
+    import gymnax
+    import jax
+
+    environments = 4096
+    env, params = gymnax.make("Acrobot-v1")
+    reset = jax.vmap(env.reset, in_axes=(0, None))
+    step = jax.vmap(env.step, in_axes=(0, 0, 0, None))
+
+    def turn(carry, _):
+        key, _, state = carry
+        key, action_key, step_key = jax.random.split(key, 3)
+        actions = jax.random.randint(action_key, (environments,), 0, 3)
+        keys = jax.random.split(step_key, environments)
+        observation, state, *signals, _ = step(keys, state, actions, params)
+        # Whatever is carried or returned must be computed.
+        return (key, observation, state), signals
+
+    @jax.jit
+    def play(carry):
+        return jax.lax.scan(turn, carry, length=LIMIT)
+
+    key = jax.random.key(0)
+    carry = key, *reset(jax.random.split(key, environments), params)
+
+    def run():
+        nonlocal carry
+        carry, signals = jax.block_until_ready(play(carry))
+        return environments * LIMIT
+
+    return run
+
+
+def alone(env):
+    import numpy
+
+    actions = numpy.random.default_rng(0).integers(3, size=10_000).tolist()
+    env.reset(seed=0)
+    length = 0
+
+    def run():
+        nonlocal length
+        for action in actions:
+            _, _, terminated, _, _ = env.step(action)
+            length += 1
+            if terminated or length == LIMIT:  # `unwrapped` has no limit
+                env.reset()
+                length = 0
+        return len(actions)
+
+    return run
+
+
+def together(envs, count):
+    import numpy
+
+    # EnvPool takes no other integers.
+    actions = numpy.random.default_rng(0).integers(3, size=(LIMIT, count), dtype=numpy.int32)
+    envs.reset()
+
+    def run():
+        for each in actions:
+            envs.step(each)  # the step after an end resets
+        return actions.size
+
+    return run
+
+
+# For each implementation: its name in the table and, for one in Python, a function that makes it and returns a function
+# that plays some steps, and its packages. The first of these is the key of `REQUIREMENTS`.
+IMPLEMENTATIONS = {
+    "make": ("Gymnasium, `make`", make, ["gymnasium"]),
+    "unwrapped": ("Gymnasium, `unwrapped`", unwrapped, ["gymnasium"]),
+    "sync_vector_env": ("Gymnasium, `SyncVectorEnv` of 64", sync_vector_env, ["gymnasium"]),
+    "envpool": ("EnvPool of 1,024", envpool, ["envpool"]),
+    "gymnax": ("gymnax and jax on the CPU, 4,096 in `jit`, `vmap` and `scan`", gymnax, ["gymnax", "jax"]),
+    "acrobot_make": ("acrobot_rs for Python, `make`", acrobot_make, ["acrobot_rs"]),
+    "acrobot_make_vec": ("acrobot_rs for Python, `make_vec` of 1,024", acrobot_make_vec, ["acrobot_rs"]),
+    "ogym": ("ogym, f64",),
+    "gmgn": ("gmgn, f64",),
+    "rlevo": ("rlevo-environments, f32",),
+    "host": ("acrobot, `Host`",),
+    "reference": ("acrobot, `Reference`",),
+    "portable": ("acrobot, `Portable`",),
+    "fast": ("acrobot, `Fast`",),
+    "batch": ("acrobot, batch of 1,024 `Fast`, without observations",),
+    "observations": ("acrobot, the same with observations",),
+}
+
+
+# What each package needs, with versions.
+REQUIREMENTS = {
+    "gymnasium": ["gymnasium==1.4.0", "numpy==2.4.6"],
+    "envpool": ["envpool==1.2.7", "gymnasium==1.4.0", "numpy==2.4.6"],
+    # gymnax imports six, and does not ask for it.
+    "gymnax": ["gymnax==1.0.1", "jax==0.10.2", "jaxlib==0.10.2", "numpy==2.4.6", "six==1.17.0"],
+    "acrobot_rs": ["../../examples/python", "gymnasium==1.4.0", "numpy==2.4.6"],
+}
+
+
+def play(name, seconds):
+    _, new, packages = IMPLEMENTATIONS[name]
+    run = new()
+    run()  # compiles, and warms up
+    steps, start = 0, time.process_time()
+    while (elapsed := time.process_time() - start) < seconds:
+        steps += run()
+    print(name, *map(importlib.metadata.version, packages), steps, elapsed)
 
 
 def install(package):
@@ -54,32 +180,24 @@ def install(package):
     EnvPool needs Python 3.12."""
     folder = pathlib.Path(".venv", package)
     python = folder / "bin" / "python"
-    requirements = f"requirements/{package}.txt"
     subprocess.run(["uv", "venv", "--quiet", "--clear", "--python", "3.12", folder], check=True)
     # uv would not notice that the source of ours has changed.
     command = ["uv", "pip", "install", "--quiet", "--refresh-package", "acrobot-rs", "--python", python]
-    subprocess.run([*command, "--requirement", requirements], check=True)
+    subprocess.run([*command, *REQUIREMENTS[package]], check=True)
     return python
 
 
-def run(*command):
-    line = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
-    print(line, end="", file=sys.stderr)
-    return line.split()
-
-
 def measure(commands, rounds, seconds):
-    """The version and the median rate of each implementation, and how many times as long as `Fast` rlevo takes."""
-    versions, rates, ratios = {}, {name: [] for name in commands}, []
+    """The versions and the median rate of each implementation."""
+    versions, rates = {}, {name: [] for name in commands}
     for _ in range(rounds):
         for name, command in commands.items():
-            _, *version, steps, elapsed = run(*command, name, seconds)
+            line = subprocess.run([*command, name, seconds], check=True, stdout=subprocess.PIPE, text=True).stdout
+            print(line, end="", file=sys.stderr)
+            _, *version, steps, elapsed = line.split()
             versions[name] = ", ".join(version)
             rates[name].append(int(steps) / float(elapsed))
-        _, ratio = run("cargo", "run", *CARGO, "rlevo/fast", seconds)
-        ratios.append(float(ratio))
-    rates = {name: statistics.median(values) for name, values in rates.items()}
-    return versions, rates, statistics.median(ratios)
+    return versions, {name: statistics.median(values) for name, values in rates.items()}
 
 
 def digits(number):
@@ -90,8 +208,8 @@ def digits(number):
 def table(versions, rates):
     yield HEAD
     yield "|---|---|---|---|"
-    for name, words in PEERS.items():
-        yield f"| {words} | {versions[name]} | {digits(rates[name] / 1e6)} | {digits(rates[name] / rates[BASE])} |"
+    for name, (words, *_) in IMPLEMENTATIONS.items():
+        yield f"| {words} | {versions[name]} | {digits(rates[name] / 1e6)} | {digits(rates[name] / rates['make'])} |"
 
 
 def update(rows):
@@ -106,22 +224,26 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--update", action="store_true", help="write the table into docs/benchmarks.md")
     parser.add_argument("--quick", action="store_true", help="one short round")
+    parser.add_argument("name", nargs="?", help="play this Python package only", choices=IMPLEMENTATIONS)
+    parser.add_argument("seconds", nargs="?", type=float)
     options = parser.parse_args()
+    if options.name:
+        return play(options.name, options.seconds)
 
     subprocess.run(["cargo", "build", *CARGO], check=True)
-    pythons = {package: install(package) for package in sorted(set(PACKAGES.values()))}
-    commands = {
-        name: [pythons[PACKAGES[name]], "-W", "ignore", "peers.py"] if name in PACKAGES else ["cargo", "run", *CARGO]
-        for name in PEERS
-    }
+    commands = dict.fromkeys(IMPLEMENTATIONS, ["cargo", "run", *CARGO])
+    pythons = {}
+    for name, (_, *python) in IMPLEMENTATIONS.items():
+        if python:
+            package = python[1][0]
+            pythons[package] = pythons.get(package) or install(package)
+            commands[name] = [pythons[package], "-W", "ignore", __file__]
 
     # One core for everything below, also for XLA's threads.
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     rounds, seconds = (1, "0.1") if options.quick else (7, "1")
-    versions, rates, ratio = measure(commands, rounds, seconds)
-    rows = list(table(versions, rates))
+    rows = list(table(*measure(commands, rounds, seconds)))
     print("\n".join(rows))
-    print(f"interleaved in one process, `Fast` is {ratio:.2f} times as fast as rlevo-environments")
     if options.update:
         update(rows)
 

@@ -1,19 +1,27 @@
-// Prints: through the debugger on a microcontroller (semihosting.c), to standard output on a host (host/console.c).
+// Prints to standard output on a host, and through the debugger on a microcontroller (semihosting.c).
 
 #ifndef CONSOLE_H
 #define CONSOLE_H
 
 #include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+#if __STDC_HOSTED__
+#include <stdio.h>
 
+static inline void print(const char *text)
+{
+    fputs(text, stdout);
+}
+
+static inline void print_number(uint32_t number)
+{
+    printf("%lu", (unsigned long)number);
+}
+#else
 void print(const char *text);
 void print_number(uint32_t number);
-
-#ifdef __cplusplus
-}
+// Ends the program with this exit status.
+void end_program(int status);
 #endif
 
 #endif

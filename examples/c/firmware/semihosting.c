@@ -1,7 +1,6 @@
 // Semihosting: the debugger, here QEMU, prints and ends the program. On a board without a debugger, print by a UART.
 
 #include "console.h"
-#include "semihosting.h"
 
 // ARM's "Semihosting for AArch32 and AArch64" has these numbers.
 enum { SYS_WRITE0 = 0x04, SYS_EXIT_EXTENDED = 0x20, ADP_STOPPED_APPLICATION_EXIT = 0x20026 };

@@ -1,8 +1,6 @@
 // What runs before `main`: the vector table, the FPU and the sections of RAM. Your board's SDK has its own.
 
-#include <stdint.h>
-
-#include "semihosting.h"
+#include "console.h"
 
 // From memory.ld.
 extern uint32_t stack_top[], data_in_flash[], data_start[], data_end[], bss_start[], bss_end[];

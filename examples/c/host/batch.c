@@ -1,4 +1,4 @@
-// A batch in static memory: torque against the velocity of link 1, and how long the episodes are.
+// A batch in static memory: a rejected parameter, and how many episodes end under torque against link 1's velocity.
 
 #include <stdio.h>
 
@@ -22,6 +22,8 @@ int main(void)
 {
     const acrobot_batch_results_t results = {rewards, terminated, truncated, observations, NULL};
     acrobot_batch_t *batch;
+    acrobot_params_t params;
+    acrobot_error_t error;
     long episodes = 0;
 
     acrobot_status_t status = acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch);
@@ -31,8 +33,17 @@ int main(void)
     if (status == ACROBOT_OK) {
         status = acrobot_batch_observe(batch, observations, COUNT);
     }
+    if (status == ACROBOT_OK) {
+        status = acrobot_batch_params(batch, &params);
+    }
     if (status != ACROBOT_OK) {
         return failed(status);
+    }
+    params.dt = 0;
+    status = acrobot_batch_set_params(batch, &params, &error);
+    if (status == ACROBOT_ERROR_OUT_OF_RANGE) {
+        // dt must be finite and above 0 s, got 0
+        printf("%s must be %s %s, got %g\n", error.name, error.rule, error.unit, error.value);
     }
     for (int step = 0; step < 1000; step++) {
         for (int i = 0; i < COUNT; i++) {

@@ -28,16 +28,12 @@
 #endif
 #endif
 
-#if UINTPTR_MAX > 0xFFFFFFFF
-#define ACROBOT_64_BIT
-#else
-#define ACROBOT_32_BIT
-#endif
-
 // The bytes of memory that a batch of `count` acrobots takes, as a constant of type size_t.
-#define ACROBOT_BATCH_SIZE(count) \
-  (ACROBOT_BATCH_HEADER + (size_t)(count) * ACROBOT_BATCH_GENERATOR + \
-   ((size_t)(count) + ACROBOT_BATCH_LANES - 1) / ACROBOT_BATCH_LANES * ACROBOT_BATCH_BLOCK)
+#if UINTPTR_MAX > 0xFFFFFFFF
+#define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * 48 + ((size_t)(count) + 15) / 16 * 640)
+#else
+#define ACROBOT_BATCH_SIZE(count) (256 + (size_t)(count) * (48 + 64))
+#endif
 
 
 // Action 0: −1 N m by default.
@@ -66,32 +62,6 @@
 
 // The alignment of the memory for a batch, bytes.
 #define ACROBOT_BATCH_ALIGN 64
-
-// Part of ACROBOT_BATCH_SIZE.
-#define ACROBOT_BATCH_HEADER 256
-
-#if defined(ACROBOT_64_BIT)
-// Part of ACROBOT_BATCH_SIZE: acrobots that are stepped side by side, by SIMD if there is any.
-#define ACROBOT_BATCH_LANES 16
-#endif
-
-#if defined(ACROBOT_32_BIT)
-// Part of ACROBOT_BATCH_SIZE: a microcontroller has no SIMD for floats, so it steps one acrobot after the other.
-#define ACROBOT_BATCH_LANES 1
-#endif
-
-#if defined(ACROBOT_64_BIT)
-// Part of ACROBOT_BATCH_SIZE: the bytes of ACROBOT_BATCH_LANES acrobots.
-#define ACROBOT_BATCH_BLOCK 640
-#endif
-
-#if defined(ACROBOT_32_BIT)
-// Part of ACROBOT_BATCH_SIZE: the bytes of ACROBOT_BATCH_LANES acrobots.
-#define ACROBOT_BATCH_BLOCK 64
-#endif
-
-// Part of ACROBOT_BATCH_SIZE: the bytes of an acrobot's generator.
-#define ACROBOT_BATCH_GENERATOR 48
 
 // Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
 // observation and a reward of 0. The default, as in Gymnasium.
@@ -170,7 +140,6 @@ typedef struct acrobot_observation_t {
 
 // Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
 // with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
-// A misaligned pointer to it is rejected even if all numbers are valid.
 typedef struct acrobot_error_t {
   // The value that was rejected, in `unit`.
   double value;

@@ -1,9 +1,11 @@
 //! Random actions.
 
+use core::ptr;
+
 use acrobot::Action;
 use acrobot::numpy::Pcg64;
 
-use crate::memory::{Holder, Out, fits};
+use crate::memory::{Holder, change, check, fits};
 use crate::status::{acrobot_status_t, status};
 
 /// The bytes of an acrobot_action_space_t.
@@ -30,7 +32,7 @@ pub unsafe extern "C" fn acrobot_action_space_init(
     action_space: *mut acrobot_action_space_t,
     seed: u64,
 ) -> acrobot_status_t {
-    status(|| unsafe { Holder::init(action_space, Pcg64::new(seed)) })
+    status(|| Holder::init(action_space, Pcg64::new(seed)))
 }
 
 /// Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
@@ -39,9 +41,8 @@ pub unsafe extern "C" fn acrobot_action_space_sample(
     action_space: *mut acrobot_action_space_t,
     action: *mut u8,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let action = Out::new(action, action_space)?;
-        action.write(Action::sample(Holder::value_mut(action_space)?).into());
-        Ok(())
+    change(action_space, action, ptr::null_mut(), |action_space| {
+        check(action)?;
+        Ok(Action::sample(action_space).into())
     })
 }

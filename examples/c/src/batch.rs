@@ -1,42 +1,25 @@
 //! A batch in the caller's memory: its header, then its blocks, then its generators.
 
 use core::ffi::{c_int, c_void};
-use core::slice;
+use core::{ptr, slice};
 
 use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, Params, ResetOptions};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, unknown};
-use crate::memory::{Array, Holder, Out, Span, check, check_apart, fits, read};
-use crate::status::{
-    Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, explained, status,
-};
+use crate::memory::{Array, Holder, Span, change, check, check_apart, fits, get, read};
+use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The alignment of the memory for a batch, bytes.
 pub const ACROBOT_BATCH_ALIGN: usize = 64;
 
-/// Part of ACROBOT_BATCH_SIZE.
-pub const ACROBOT_BATCH_HEADER: usize = 256;
-
-/// Part of ACROBOT_BATCH_SIZE: acrobots that are stepped side by side, by SIMD if there is any.
-#[cfg(target_pointer_width = "64")]
-pub const ACROBOT_BATCH_LANES: usize = 16;
-
-/// Part of ACROBOT_BATCH_SIZE: a microcontroller has no SIMD for floats, so it steps one acrobot after the other.
-#[cfg(target_pointer_width = "32")]
-pub const ACROBOT_BATCH_LANES: usize = 1;
-
-/// Part of ACROBOT_BATCH_SIZE: the bytes of ACROBOT_BATCH_LANES acrobots.
-#[cfg(target_pointer_width = "64")]
-pub const ACROBOT_BATCH_BLOCK: usize = 640;
-
-/// Part of ACROBOT_BATCH_SIZE: the bytes of ACROBOT_BATCH_LANES acrobots.
-#[cfg(target_pointer_width = "32")]
-pub const ACROBOT_BATCH_BLOCK: usize = 64;
-
-/// Part of ACROBOT_BATCH_SIZE: the bytes of an acrobot's generator.
-pub const ACROBOT_BATCH_GENERATOR: usize = 48;
+// cbindgen.toml has these numbers, too: ACROBOT_BATCH_SIZE.
+const HEADER: usize = 256;
+const GENERATOR: usize = 48;
+/// Acrobots that are stepped side by side. A microcontroller has no SIMD for floats, so it steps one after the other.
+const LANES: usize = if usize::BITS == 64 { 16 } else { 1 };
+const BLOCK: usize = if usize::BITS == 64 { 640 } else { 64 };
 
 /// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
 /// observation and a reward of 0. The default, as in Gymnasium.
@@ -53,7 +36,7 @@ pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 /// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
 #[repr(align(64))]
 pub struct acrobot_batch_t {
-    _header: [u8; ACROBOT_BATCH_HEADER],
+    _header: [u8; HEADER],
 }
 
 /// Where acrobot_batch_step writes. Each array has one element for each acrobot.
@@ -73,12 +56,12 @@ pub struct acrobot_batch_results_t {
     pub final_observations: *mut acrobot_observation_t,
 }
 
-type LanesBlock = Block<Fast, ACROBOT_BATCH_LANES>;
+type LanesBlock = Block<Fast, LANES>;
 
 pub struct Placed {
     /// Where `acrobot_batch_init` put it.
     address: usize,
-    batch: Batch<Fast, (&'static mut [LanesBlock], &'static mut [Pcg64]), ACROBOT_BATCH_LANES>,
+    batch: Batch<Fast, (&'static mut [LanesBlock], &'static mut [Pcg64]), LANES>,
 }
 
 impl Holder for acrobot_batch_t {
@@ -87,9 +70,15 @@ impl Holder for acrobot_batch_t {
     const TAG: u32 = u32::from_le_bytes(*b"bats");
 
     unsafe fn span(this: *const Self) -> Result<Span, Rejected> {
-        // SAFETY: as in the caller.
-        let placed = unsafe { placed(this)? };
-        Ok(memory_of(this, placed.batch.len()))
+        Ok(memory_of(this, Self::value(this)?.batch.len()))
+    }
+
+    fn check_address(placed: &Placed, this: *const Self) -> Result<(), Rejected> {
+        if placed.address == this.addr() {
+            Ok(())
+        } else {
+            Err(ACROBOT_ERROR_MOVED.into())
+        }
     }
 }
 
@@ -97,31 +86,11 @@ const _: () = {
     fits::<acrobot_batch_t>();
     assert!(align_of::<acrobot_batch_t>() == ACROBOT_BATCH_ALIGN);
     assert!(align_of::<LanesBlock>() <= ACROBOT_BATCH_ALIGN);
-    assert!(size_of::<LanesBlock>() == ACROBOT_BATCH_BLOCK);
-    assert!(size_of::<Pcg64>() <= ACROBOT_BATCH_GENERATOR);
-    assert!(size_of::<[f32; 6]>() == size_of::<acrobot_observation_t>());
+    assert!(size_of::<LanesBlock>() == BLOCK);
+    assert!(size_of::<Pcg64>() <= GENERATOR);
+    // The batch writes an observation as six floats.
     assert!(align_of::<[f32; 6]>() == align_of::<acrobot_observation_t>());
 };
-
-/// The batch, if it is where it was initialized.
-unsafe fn placed<'a>(batch: *const acrobot_batch_t) -> Result<&'a Placed, Rejected> {
-    // SAFETY: as in the caller.
-    let placed = unsafe { Holder::value(batch)? };
-    if placed.address == batch.addr() {
-        Ok(placed)
-    } else {
-        Err(ACROBOT_ERROR_MOVED.into())
-    }
-}
-
-/// As [`placed`], to change it.
-unsafe fn placed_mut<'a>(batch: *mut acrobot_batch_t) -> Result<&'a mut Placed, Rejected> {
-    // SAFETY: as in the caller.
-    unsafe {
-        placed(batch)?;
-        Holder::value_mut(batch)
-    }
-}
 
 /// Rejects an array that does not have one element for each acrobot.
 fn check_count(placed: &Placed, count: usize) -> Result<(), Rejected> {
@@ -139,11 +108,11 @@ fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
 /// The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if that is larger.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
-    let blocks = count.div_ceil(ACROBOT_BATCH_LANES);
+    let blocks = count.div_ceil(LANES);
     blocks
-        .saturating_mul(ACROBOT_BATCH_BLOCK)
-        .saturating_add(count.saturating_mul(ACROBOT_BATCH_GENERATOR))
-        .saturating_add(ACROBOT_BATCH_HEADER)
+        .saturating_mul(BLOCK)
+        .saturating_add(count.saturating_mul(GENERATOR))
+        .saturating_add(HEADER)
 }
 
 /// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
@@ -157,7 +126,7 @@ pub unsafe extern "C" fn acrobot_batch_init(
     seed: u64,
     batch: *mut *mut acrobot_batch_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
+    status(|| {
         let to: *mut acrobot_batch_t = memory.cast();
         check(to)?;
         check(batch)?;
@@ -169,7 +138,7 @@ pub unsafe extern "C" fn acrobot_batch_init(
         }
         check_apart(&[memory_of(to, count), Span::new(batch, 1)])?;
         let blocks: *mut LanesBlock = to.add(1).cast();
-        let block_count = count.div_ceil(ACROBOT_BATCH_LANES);
+        let block_count = count.div_ceil(LANES);
         let generators: *mut Pcg64 = blocks.add(block_count).cast();
         for index in 0..block_count {
             blocks.add(index).write(Block::EMPTY);
@@ -199,8 +168,8 @@ pub unsafe extern "C" fn acrobot_batch_step(
     results: *const acrobot_batch_results_t,
     count: usize,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let placed = placed_mut(batch)?;
+    status(|| {
+        let placed = Holder::value_mut(batch)?;
         check_count(placed, count)?;
         let pointers = Span::new(results, 1);
         let results = read(results)?;
@@ -208,8 +177,8 @@ pub unsafe extern "C" fn acrobot_batch_step(
         let rewards = Array::new(results.rewards, count)?;
         let terminated = Array::new(results.terminated, count)?;
         let truncated = Array::new(results.truncated, count)?;
-        let observations = Array::optional(rows(results.observations), count)?;
-        let finals = Array::optional(rows(results.final_observations), count)?;
+        let observations = Array::optional(results.observations.cast(), count)?;
+        let finals = Array::optional(results.final_observations.cast(), count)?;
         check_apart(&[
             memory_of(batch, count),
             pointers,
@@ -217,21 +186,16 @@ pub unsafe extern "C" fn acrobot_batch_step(
             rewards.span(),
             terminated.span(),
             truncated.span(),
-            Array::span_of(&observations),
-            Array::span_of(&finals),
+            observations.span(),
+            finals.span(),
         ])?;
         let mut buffers =
             StepBuffers::new(rewards.get_mut(), terminated.cleared(), truncated.cleared());
-        buffers.observations = observations.map(|array| array.get_mut());
-        buffers.final_observations = finals.map(|array| array.get_mut());
+        buffers.observations = (!observations.is_omitted()).then(|| observations.get_mut());
+        buffers.final_observations = (!finals.is_omitted()).then(|| finals.get_mut());
         placed.batch.step(actions.get(), buffers)?;
         Ok(())
     })
-}
-
-/// An observation is six floats, as the batch writes them.
-fn rows(observations: *mut acrobot_observation_t) -> *mut [f32; 6] {
-    observations.cast()
 }
 
 /// Writes the observations of the states. The array has `count` elements, one for each acrobot.
@@ -241,10 +205,10 @@ pub unsafe extern "C" fn acrobot_batch_observe(
     observations: *mut acrobot_observation_t,
     count: usize,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let placed = placed(batch)?;
+    status(|| {
+        let placed = Holder::value(batch)?;
         check_count(placed, count)?;
-        let observations = Array::new(rows(observations), count)?;
+        let observations = Array::new(observations.cast(), count)?;
         check_apart(&[memory_of(batch, count), observations.span()])?;
         Ok(placed.batch.observe(observations.get_mut())?)
     })
@@ -256,18 +220,14 @@ pub unsafe extern "C" fn acrobot_batch_count(
     batch: *const acrobot_batch_t,
     count: *mut usize,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let count = Out::new(count, batch)?;
-        count.write(placed(batch)?.batch.len());
-        Ok(())
-    })
+    get(batch, count, |placed| Ok(placed.batch.len()))
 }
 
 /// Draws the next initial state of each acrobot and begins their episodes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset(batch: *mut acrobot_batch_t) -> acrobot_status_t {
-    status(|| unsafe {
-        placed_mut(batch)?.batch.reset();
+    status(|| {
+        Holder::value_mut(batch)?.batch.reset();
         Ok(())
     })
 }
@@ -278,8 +238,8 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     batch: *mut acrobot_batch_t,
     seed: u64,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        placed_mut(batch)?.batch.reset_with_seed(seed);
+    status(|| {
+        Holder::value_mut(batch)?.batch.reset_with_seed(seed);
         Ok(())
     })
 }
@@ -292,18 +252,13 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
     mask: *const bool,
     count: usize,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let placed = placed_mut(batch)?;
+    status(|| {
+        let placed = Holder::value_mut(batch)?;
         check_count(placed, count)?;
         let mask = Array::new(mask.cast_mut(), count)?;
         check_apart(&[memory_of(batch, count), mask.span()])?;
-        let bytes = slice::from_raw_parts(mask.start().cast::<u8>(), count);
-        if bytes.iter().any(|byte| *byte > 1) {
-            return Err(ACROBOT_ERROR_OUT_OF_RANGE.into());
-        }
-        Ok(placed
-            .batch
-            .reset_masked(mask.get(), ResetOptions::default())?)
+        let options = ResetOptions::default();
+        Ok(placed.batch.reset_masked(mask.checked()?, options)?)
     })
 }
 
@@ -315,17 +270,15 @@ pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     autoreset: c_int,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let set = || unsafe {
-        let autoreset = match autoreset {
+    change(batch, ptr::null_mut(), error, |placed| {
+        placed.batch.set_autoreset(match autoreset {
             ACROBOT_AUTORESET_NEXT_STEP => Autoreset::NextStep,
             ACROBOT_AUTORESET_SAME_STEP => Autoreset::SameStep,
             ACROBOT_AUTORESET_DISABLED => Autoreset::Disabled,
             other => return Err(unknown("autoreset", other, "0, 1 or 2")),
-        };
-        placed_mut(batch)?.batch.set_autoreset(autoreset);
+        });
         Ok(())
-    };
-    unsafe { explained(error, batch, set) }
+    })
 }
 
 /// The state of acrobot `index`, counted from 0.
@@ -335,11 +288,9 @@ pub unsafe extern "C" fn acrobot_batch_state(
     index: usize,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let state = Out::new(state, batch)?;
-        let found = placed(batch)?.batch.state(index);
-        state.write(found.ok_or(ACROBOT_ERROR_NO_SUCH_INDEX)?.into());
-        Ok(())
+    get(batch, state, |placed| {
+        let state = placed.batch.state(index);
+        Ok(state.ok_or(ACROBOT_ERROR_NO_SUCH_INDEX)?.into())
     })
 }
 
@@ -351,12 +302,9 @@ pub unsafe extern "C" fn acrobot_batch_set_state(
     state: *const acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let set = || unsafe {
-        let state = read(state)?;
-        let placed = placed_mut(batch)?;
-        Ok(placed.batch.set_state(index, state.into())?)
-    };
-    unsafe { explained(error, batch, set) }
+    change(batch, ptr::null_mut(), error, |placed| {
+        Ok(placed.batch.set_state(index, read(state)?.into())?)
+    })
 }
 
 /// The parameters of all acrobots.
@@ -365,11 +313,9 @@ pub unsafe extern "C" fn acrobot_batch_params(
     batch: *const acrobot_batch_t,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let params = Out::new(params, batch)?;
-        let found = placed(batch)?.batch.params_of(0).unwrap_or(Params::DEFAULT);
-        params.write((&found).into());
-        Ok(())
+    get(batch, params, |placed| {
+        let params = placed.batch.params_of(0).unwrap_or(Params::DEFAULT);
+        Ok((&params).into())
     })
 }
 
@@ -380,10 +326,7 @@ pub unsafe extern "C" fn acrobot_batch_set_params(
     params: *const acrobot_params_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let set = || unsafe {
-        let params = read(params)?;
-        let placed = placed_mut(batch)?;
-        Ok(placed.batch.set_params(params.try_into()?)?)
-    };
-    unsafe { explained(error, batch, set) }
+    change(batch, ptr::null_mut(), error, |placed| {
+        Ok(placed.batch.set_params(read(params)?.try_into()?)?)
+    })
 }

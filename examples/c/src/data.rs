@@ -1,6 +1,7 @@
 //! The structs that pass data.
 
 use core::ffi::c_int;
+use core::mem::transmute;
 
 use acrobot::physics::Dynamics;
 use acrobot::{Observation, Params, State, Step};
@@ -42,22 +43,8 @@ pub struct acrobot_observation_t {
 
 impl From<Observation> for acrobot_observation_t {
     fn from(observation: Observation) -> Self {
-        let [
-            cos_theta1,
-            sin_theta1,
-            cos_theta2,
-            sin_theta2,
-            dtheta1,
-            dtheta2,
-        ] = observation.to_array();
-        Self {
-            cos_theta1,
-            sin_theta1,
-            cos_theta2,
-            sin_theta2,
-            dtheta1,
-            dtheta2,
-        }
+        // SAFETY: both are six floats without padding.
+        unsafe { transmute::<[f32; 6], Self>(observation.to_array()) }
     }
 }
 
@@ -102,18 +89,8 @@ pub struct acrobot_state_t {
 
 impl From<State<f32>> for acrobot_state_t {
     fn from(state: State<f32>) -> Self {
-        let State {
-            theta1,
-            theta2,
-            dtheta1,
-            dtheta2,
-        } = state;
-        Self {
-            theta1,
-            theta2,
-            dtheta1,
-            dtheta2,
-        }
+        // SAFETY: both are four floats without padding.
+        unsafe { transmute::<[f32; 4], Self>(state.into()) }
     }
 }
 
@@ -210,10 +187,5 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
 
 /// Rejects a number that none of the constants has.
 pub fn unknown(name: &'static str, number: c_int, rule: &'static str) -> Rejected {
-    Rejected::OutOfRange {
-        name,
-        value: number.into(),
-        unit: "",
-        rule,
-    }
+    Rejected::number(name, number.into(), "", rule)
 }

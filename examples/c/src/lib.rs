@@ -8,6 +8,10 @@
     clippy::missing_safety_doc,
     reason = "the header states it once, in cbindgen.toml"
 )]
+#![expect(
+    unsafe_op_in_unsafe_fn,
+    reason = "each function of the header is unsafe as a whole: it gets pointers"
+)]
 
 // The header has the same order. Without the empty lines rustfmt would sort them.
 pub mod status;

@@ -1,8 +1,8 @@
-//! The caller's memory: what is checked before a reference into it is made.
+//! The caller's memory: what is checked before a reference into it is made. The header demands that pointers are valid.
 
 use core::{ptr, slice};
 
-use crate::status::{Rejected, acrobot_status_t::*};
+use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// Rejects a pointer that cannot point to a `T`.
 pub fn check<T>(pointer: *const T) -> Result<(), Rejected> {
@@ -18,37 +18,7 @@ pub fn check<T>(pointer: *const T) -> Result<(), Rejected> {
 /// Reads an argument.
 pub unsafe fn read<T: Copy>(from: *const T) -> Result<T, Rejected> {
     check(from)?;
-    // SAFETY: the header demands that the pointer is valid.
-    Ok(unsafe { from.read() })
-}
-
-/// Where a result goes. No reference, because it may contain anything.
-pub struct Out<T>(*mut T);
-
-impl<T> Out<T> {
-    /// Rejects a result that would overwrite the holder.
-    pub unsafe fn new<H: Holder>(to: *mut T, holder: *const H) -> Result<Self, Rejected> {
-        check(to)?;
-        // SAFETY: as in the caller.
-        check_apart(&[Span::new(to, 1), unsafe { H::span(holder)? }])?;
-        Ok(Self(to))
-    }
-
-    /// For a result that the caller may not want.
-    pub unsafe fn optional<H: Holder>(to: *mut T, holder: *const H) -> Result<Self, Rejected> {
-        if to.is_null() {
-            return Ok(Self(to));
-        }
-        // SAFETY: as in the caller.
-        unsafe { Self::new(to, holder) }
-    }
-
-    pub fn write(self, value: T) {
-        if !self.0.is_null() {
-            // SAFETY: the header demands that the pointer is valid.
-            unsafe { self.0.write(value) }
-        }
-    }
+    Ok(from.read())
 }
 
 /// A type of the header whose memory holds a Rust value.
@@ -63,6 +33,11 @@ pub trait Holder: Sized {
         Ok(Span::new(this, 1))
     }
 
+    /// Rejects a value that must not be at this address.
+    fn check_address(_: &Self::Value, _: *const Self) -> Result<(), Rejected> {
+        Ok(())
+    }
+
     /// Writes the value.
     unsafe fn init(this: *mut Self, value: Self::Value) -> Result<(), Rejected> {
         check(this)?;
@@ -70,8 +45,8 @@ pub trait Holder: Sized {
             tag: Self::TAG,
             value,
         };
-        // SAFETY: a holder is at least as large and as aligned as the tagged value, and belongs to the caller.
-        unsafe { this.cast::<Tagged<Self>>().write(tagged) }
+        // A holder is at least as large and as aligned as the tagged value.
+        this.cast::<Tagged<Self>>().write(tagged);
         Ok(())
     }
 
@@ -79,21 +54,19 @@ pub trait Holder: Sized {
     unsafe fn value<'a>(this: *const Self) -> Result<&'a Self::Value, Rejected> {
         check(this)?;
         let tagged: *const Tagged<Self> = this.cast();
-        // SAFETY: the tag says that `init` has written the value.
-        unsafe {
-            if (*tagged).tag != Self::TAG {
-                return Err(ACROBOT_ERROR_NOT_INITIALIZED.into());
-            }
-            Ok(&(*tagged).value)
+        if (*tagged).tag != Self::TAG {
+            return Err(ACROBOT_ERROR_NOT_INITIALIZED.into());
         }
+        // The tag says that `init` has written the value.
+        let value = &(*tagged).value;
+        Self::check_address(value, this)?;
+        Ok(value)
     }
 
     /// As [`value`](Self::value), to change it.
     unsafe fn value_mut<'a>(this: *mut Self) -> Result<&'a mut Self::Value, Rejected> {
-        // SAFETY: as in the caller.
-        unsafe { Self::value(this)? };
-        // SAFETY: checked in the line above.
-        Ok(unsafe { &mut (*this.cast::<Tagged<Self>>()).value })
+        Self::value(this)?;
+        Ok(&mut (*this.cast::<Tagged<Self>>()).value)
     }
 }
 
@@ -110,6 +83,38 @@ pub const fn fits<T: Holder>() {
     assert!(align_of::<Tagged<T>>() <= align_of::<T>());
 }
 
+/// Changes a holder's value. Writes the call's result, and why a number was rejected, unless these pointers are null.
+pub unsafe fn change<H: Holder, T>(
+    holder: *mut H,
+    result: *mut T,
+    error: *mut acrobot_error_t,
+    call: impl FnOnce(&mut H::Value) -> Result<T, Rejected>,
+) -> acrobot_status_t {
+    status(|| {
+        let error = Array::result(error, holder)?;
+        let result = Array::result(result, holder)?;
+        let value = H::value_mut(holder)
+            .and_then(call)
+            .inspect_err(|rejected| rejected.explain(error))?;
+        result.write(value);
+        Ok(())
+    })
+}
+
+/// Writes something about a holder's value.
+pub unsafe fn get<H: Holder, T>(
+    holder: *const H,
+    result: *mut T,
+    call: impl FnOnce(&H::Value) -> Result<T, Rejected>,
+) -> acrobot_status_t {
+    status(|| {
+        check(result)?;
+        let result = Array::result(result, holder)?;
+        result.write(call(H::value(holder)?)?);
+        Ok(())
+    })
+}
+
 /// The addresses of an argument, to find out whether arguments overlap.
 #[derive(Clone, Copy)]
 pub struct Span {
@@ -118,9 +123,6 @@ pub struct Span {
 }
 
 impl Span {
-    /// No address: what an array that is not there overlaps.
-    const NONE: Self = Self { start: 0, bytes: 0 };
-
     pub fn new<T>(start: *const T, count: usize) -> Self {
         Self {
             start: start.addr(),
@@ -145,7 +147,7 @@ pub fn check_apart(spans: &[Span]) -> Result<(), Rejected> {
     Ok(())
 }
 
-/// An array of the caller.
+/// An array of the caller. No reference, because it may contain anything.
 #[derive(Clone, Copy)]
 pub struct Array<T> {
     start: *mut T,
@@ -158,45 +160,61 @@ impl<T> Array<T> {
         Ok(Self { start, count })
     }
 
-    /// An array that the caller may omit.
-    pub fn optional(start: *mut T, count: usize) -> Result<Option<Self>, Rejected> {
+    /// An array that the caller may omit: without elements then.
+    pub fn optional(start: *mut T, count: usize) -> Result<Self, Rejected> {
         if start.is_null() {
-            return Ok(None);
+            return Ok(Self { start, count: 0 });
         }
-        Self::new(start, count).map(Some)
+        Self::new(start, count)
     }
 
-    pub fn start(&self) -> *const T {
-        self.start
+    /// A single result, which the caller may omit. Rejected if it would overwrite the holder.
+    pub unsafe fn result<H: Holder>(to: *mut T, holder: *const H) -> Result<Self, Rejected> {
+        let result = Self::optional(to, 1)?;
+        if !result.is_omitted() {
+            check_apart(&[result.span(), H::span(holder)?])?;
+        }
+        Ok(result)
+    }
+
+    pub fn is_omitted(&self) -> bool {
+        self.count == 0
+    }
+
+    /// Writes a single result, unless the caller omits it.
+    pub unsafe fn write(self, value: T) {
+        if !self.is_omitted() {
+            self.start.write(value);
+        }
     }
 
     pub fn span(&self) -> Span {
         Span::new(self.start, self.count)
     }
 
-    pub fn span_of(array: &Option<Self>) -> Span {
-        array.as_ref().map_or(Span::NONE, Self::span)
-    }
-
     pub unsafe fn get<'a>(&self) -> &'a [T] {
-        // SAFETY: the header demands that the array is valid.
-        unsafe { slice::from_raw_parts(self.start, self.count) }
+        slice::from_raw_parts(self.start, self.count)
     }
 
-    /// The caller has checked that no other array overlaps it.
+    /// The caller has checked that no other array overlaps it, and that it has elements.
     pub unsafe fn get_mut<'a>(&self) -> &'a mut [T] {
-        // SAFETY: as above.
-        unsafe { slice::from_raw_parts_mut(self.start, self.count) }
+        slice::from_raw_parts_mut(self.start, self.count)
     }
 }
 
 impl Array<bool> {
     /// As [`get_mut`](Self::get_mut). All elements become false, because memory may contain bytes that no `bool` has.
     pub unsafe fn cleared<'a>(&self) -> &'a mut [bool] {
-        // SAFETY: as above.
-        unsafe {
-            ptr::write_bytes(self.start, 0, self.count);
-            self.get_mut()
+        ptr::write_bytes(self.start, 0, self.count);
+        self.get_mut()
+    }
+
+    /// Rejects memory that contains a byte that no `bool` has.
+    pub unsafe fn checked<'a>(&self) -> Result<&'a [bool], Rejected> {
+        let bytes = slice::from_raw_parts(self.start.cast::<u8>(), self.count);
+        if bytes.iter().any(|byte| *byte > 1) {
+            return Err(ACROBOT_ERROR_OUT_OF_RANGE.into());
         }
+        Ok(self.get())
     }
 }

@@ -1,13 +1,14 @@
 //! One acrobot in arithmetic `Fast`, with Gymnasium's limit of 500 steps.
 
 use core::ffi::c_int;
+use core::ptr;
 
 use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t};
-use crate::memory::{Holder, Out, fits, read};
-use crate::status::{acrobot_error_t, acrobot_status_t, acrobot_status_t::*, explained, status};
+use crate::memory::{Holder, change, check, fits, get, read};
+use crate::status::{acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The bytes of an acrobot_t: the most that any target needs.
 pub const ACROBOT_SIZE: usize = 224;
@@ -38,7 +39,7 @@ const _: () = {
 /// starts from scratch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
-    status(|| unsafe { Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))) })
+    status(|| Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))))
 }
 
 /// Draws the next initial state and begins an episode. `observation` may be null.
@@ -47,10 +48,8 @@ pub unsafe extern "C" fn acrobot_reset(
     acrobot: *mut acrobot_t,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let observation = Out::optional(observation, acrobot)?;
-        observation.write(Holder::value_mut(acrobot)?.reset().into());
-        Ok(())
+    change(acrobot, observation, ptr::null_mut(), |acrobot| {
+        Ok(acrobot.reset().into())
     })
 }
 
@@ -61,10 +60,8 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
     seed: u64,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let observation = Out::optional(observation, acrobot)?;
-        observation.write(Holder::value_mut(acrobot)?.reset_with_seed(seed).into());
-        Ok(())
+    change(acrobot, observation, ptr::null_mut(), |acrobot| {
+        Ok(acrobot.reset_with_seed(seed).into())
     })
 }
 
@@ -78,14 +75,10 @@ pub unsafe extern "C" fn acrobot_reset_within(
     observation: *mut acrobot_observation_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let reset = || unsafe {
-        let observation = Out::optional(observation, acrobot)?;
-        let acrobot = Holder::value_mut(acrobot)?;
+    change(acrobot, observation, error, |acrobot| {
         let bounds = ResetBounds::new(low, high)?;
-        observation.write(acrobot.reset_with(bounds.into()).into());
-        Ok(())
-    };
-    unsafe { explained(error, acrobot, reset) }
+        Ok(acrobot.reset_with(bounds.into()).into())
+    })
 }
 
 /// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
@@ -96,13 +89,10 @@ pub unsafe extern "C" fn acrobot_step(
     action: c_int,
     step: *mut acrobot_step_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let step = Out::new(step, acrobot)?;
-        let acrobot = Holder::value_mut(acrobot)?;
+    change(acrobot, step, ptr::null_mut(), |acrobot| {
+        check(step)?;
         let action = u8::try_from(action).map_err(|_| ACROBOT_ERROR_UNKNOWN_ACTION)?;
-        let action = Action::try_from(action)?;
-        step.write(acrobot.step(action).into());
-        Ok(())
+        Ok(acrobot.step(Action::try_from(action)?).into())
     })
 }
 
@@ -114,12 +104,10 @@ pub unsafe extern "C" fn acrobot_step_torque(
     step: *mut acrobot_step_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let apply = || unsafe {
-        let step = Out::new(step, acrobot)?;
-        step.write(Holder::value_mut(acrobot)?.step_torque(torque)?.into());
-        Ok(())
-    };
-    unsafe { explained(error, acrobot, apply) }
+    change(acrobot, step, error, |acrobot| {
+        check(step)?;
+        Ok(acrobot.step_torque(torque)?.into())
+    })
 }
 
 /// The observation of the state.
@@ -128,10 +116,8 @@ pub unsafe extern "C" fn acrobot_observe(
     acrobot: *const acrobot_t,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let observation = Out::new(observation, acrobot)?;
-        observation.write(Holder::value(acrobot)?.inner().observation().into());
-        Ok(())
+    get(acrobot, observation, |acrobot| {
+        Ok(acrobot.inner().observation().into())
     })
 }
 
@@ -141,11 +127,7 @@ pub unsafe extern "C" fn acrobot_elapsed(
     acrobot: *const acrobot_t,
     steps: *mut u32,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let steps = Out::new(steps, acrobot)?;
-        steps.write(Holder::value(acrobot)?.elapsed());
-        Ok(())
-    })
+    get(acrobot, steps, |acrobot| Ok(acrobot.elapsed()))
 }
 
 /// The state.
@@ -154,11 +136,7 @@ pub unsafe extern "C" fn acrobot_state(
     acrobot: *const acrobot_t,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let state = Out::new(state, acrobot)?;
-        state.write(Holder::value(acrobot)?.state().into());
-        Ok(())
-    })
+    get(acrobot, state, |acrobot| Ok(acrobot.state().into()))
 }
 
 /// Sets the state. The number of steps does not change. `error` may be null.
@@ -168,12 +146,9 @@ pub unsafe extern "C" fn acrobot_set_state(
     state: *const acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let set = || unsafe {
-        let state = read(state)?;
-        let acrobot = Holder::value_mut(acrobot)?;
-        Ok(acrobot.set_state(state.into())?)
-    };
-    unsafe { explained(error, acrobot, set) }
+    change(acrobot, ptr::null_mut(), error, |acrobot| {
+        Ok(acrobot.set_state(read(state)?.into())?)
+    })
 }
 
 /// The parameters.
@@ -182,11 +157,7 @@ pub unsafe extern "C" fn acrobot_params(
     acrobot: *const acrobot_t,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let params = Out::new(params, acrobot)?;
-        params.write(Holder::value(acrobot)?.params().into());
-        Ok(())
-    })
+    get(acrobot, params, |acrobot| Ok(acrobot.params().into()))
 }
 
 /// Sets the parameters for the next steps. The state does not change. `error` may be null.
@@ -196,12 +167,9 @@ pub unsafe extern "C" fn acrobot_set_params(
     params: *const acrobot_params_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    let set = || unsafe {
-        let params = read(params)?;
-        let acrobot = Holder::value_mut(acrobot)?;
-        Ok(acrobot.set_params(params.try_into()?)?)
-    };
-    unsafe { explained(error, acrobot, set) }
+    change(acrobot, ptr::null_mut(), error, |acrobot| {
+        Ok(acrobot.set_params(read(params)?.try_into()?)?)
+    })
 }
 
 /// The total energy of the state, J.
@@ -210,10 +178,8 @@ pub unsafe extern "C" fn acrobot_energy(
     acrobot: *const acrobot_t,
     energy: *mut f32,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let energy = Out::new(energy, acrobot)?;
-        energy.write(Holder::value(acrobot)?.inner().pendulum().energy());
-        Ok(())
+    get(acrobot, energy, |acrobot| {
+        Ok(acrobot.inner().pendulum().energy())
     })
 }
 
@@ -223,9 +189,7 @@ pub unsafe extern "C" fn acrobot_tip_height(
     acrobot: *const acrobot_t,
     height: *mut f32,
 ) -> acrobot_status_t {
-    status(|| unsafe {
-        let height = Out::new(height, acrobot)?;
-        height.write(Holder::value(acrobot)?.inner().pendulum().tip_height());
-        Ok(())
+    get(acrobot, height, |acrobot| {
+        Ok(acrobot.inner().pendulum().tip_height())
     })
 }

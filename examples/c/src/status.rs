@@ -4,7 +4,7 @@ use core::ffi::{CStr, c_char, c_int};
 
 use acrobot::Error;
 
-use crate::memory::{Holder, Out};
+use crate::memory::Array;
 
 /// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 #[repr(u8)]
@@ -38,7 +38,6 @@ use acrobot_status_t::*;
 
 /// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
 /// with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
-/// A misaligned pointer to it is rejected even if all numbers are valid.
 #[repr(C)]
 pub struct acrobot_error_t {
     /// The value that was rejected, in `unit`.
@@ -51,21 +50,48 @@ pub struct acrobot_error_t {
     pub rule: [c_char; 48],
 }
 
-/// Why a call was rejected.
-pub enum Rejected {
-    Status(acrobot_status_t),
-    /// `name must be rule unit, got value`.
-    OutOfRange {
-        name: &'static str,
-        value: f64,
-        unit: &'static str,
-        rule: &'static str,
-    },
+/// Why a call was rejected. The other fields belong to ACROBOT_ERROR_OUT_OF_RANGE: `name must be rule unit, got value`.
+pub struct Rejected {
+    status: acrobot_status_t,
+    name: &'static str,
+    value: f64,
+    unit: &'static str,
+    rule: &'static str,
+}
+
+impl Rejected {
+    pub fn number(name: &'static str, value: f64, unit: &'static str, rule: &'static str) -> Self {
+        Self {
+            status: ACROBOT_ERROR_OUT_OF_RANGE,
+            name,
+            value,
+            unit,
+            rule,
+        }
+    }
+
+    /// Fills the caller's error if a number is out of range. Inlined, because a function without an error should not
+    /// contain it.
+    #[inline(always)]
+    pub unsafe fn explain(&self, error: Array<acrobot_error_t>) {
+        if !error.is_omitted() && matches!(self.status, ACROBOT_ERROR_OUT_OF_RANGE) {
+            let explained = acrobot_error_t {
+                value: self.value,
+                name: text(self.name),
+                unit: text(self.unit),
+                rule: text(self.rule),
+            };
+            error.write(explained);
+        }
+    }
 }
 
 impl From<acrobot_status_t> for Rejected {
     fn from(status: acrobot_status_t) -> Self {
-        Self::Status(status)
+        Self {
+            status,
+            ..Self::number("", 0.0, "", "")
+        }
     }
 }
 
@@ -77,68 +103,26 @@ impl From<Error> for Rejected {
                 value,
                 unit,
                 rule,
-            } => Self::OutOfRange {
-                name,
-                value,
-                unit,
-                rule,
-            },
-            Error::NoInertia { name, value } => Self::OutOfRange {
-                name,
-                value,
-                unit: "kg m²",
-                rule: "(with the centre of mass on the joint) above 0",
-            },
+            } => Self::number(name, value, unit, rule),
+            Error::NoInertia { name, value } => {
+                let rule = "(with the centre of mass on the joint) above 0";
+                Self::number(name, value, "kg m²", rule)
+            }
             // Of reset bounds: a library for C draws no parameters.
-            Error::ReversedRange { low, unit, .. } => Self::OutOfRange {
-                name: "low",
-                value: low,
-                unit,
-                rule: "at most high in",
-            },
-            Error::UnknownAction(_) => Self::Status(ACROBOT_ERROR_UNKNOWN_ACTION),
-            Error::NoSuchIndex { .. } => Self::Status(ACROBOT_ERROR_NO_SUCH_INDEX),
+            Error::ReversedRange { low, unit, .. } => {
+                Self::number("low", low, unit, "at most high in")
+            }
+            Error::UnknownAction(_) => ACROBOT_ERROR_UNKNOWN_ACTION.into(),
+            Error::NoSuchIndex { .. } => ACROBOT_ERROR_NO_SUCH_INDEX.into(),
             // EmptyBatch and WrongLength. No function here can cause the others.
-            _ => Self::Status(ACROBOT_ERROR_WRONG_COUNT),
+            _ => ACROBOT_ERROR_WRONG_COUNT.into(),
         }
     }
 }
 
 /// The status of a call.
 pub fn status(call: impl FnOnce() -> Result<(), Rejected>) -> acrobot_status_t {
-    match call() {
-        Ok(()) => ACROBOT_OK,
-        Err(Rejected::Status(status)) => status,
-        Err(Rejected::OutOfRange { .. }) => ACROBOT_ERROR_OUT_OF_RANGE,
-    }
-}
-
-/// As [`status`]. Fills `error`, unless it is null, if a number is out of range.
-pub unsafe fn explained<H: Holder>(
-    error: *mut acrobot_error_t,
-    holder: *const H,
-    call: impl FnOnce() -> Result<(), Rejected>,
-) -> acrobot_status_t {
-    status(|| {
-        // SAFETY: as in the caller.
-        let error = unsafe { Out::optional(error, holder)? };
-        let result = call();
-        if let Err(Rejected::OutOfRange {
-            name,
-            value,
-            unit,
-            rule,
-        }) = result
-        {
-            error.write(acrobot_error_t {
-                value,
-                name: text(name),
-                unit: text(unit),
-                rule: text(rule),
-            });
-        }
-        result
-    })
+    call().map_or_else(|rejected| rejected.status, |()| ACROBOT_OK)
 }
 
 /// A text that ends with a zero byte.

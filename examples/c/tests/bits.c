@@ -12,51 +12,27 @@ static void add(uint64_t *digest, uint64_t word)
     *digest = (*digest ^ word) * UINT64_C(0x100000001b3);
 }
 
-static uint32_t bits_of_float(float number)
+static void add_floats(uint64_t *digest, const void *floats, int count)
 {
-    union {
-        float number;
+    for (int i = 0; i < count; i++) {
         uint32_t bits;
-    } same;
-    same.number = number;
-    return same.bits;
-}
-
-static void add_float(uint64_t *digest, float number)
-{
-    add(digest, bits_of_float(number));
+        copy(&bits, (const float *)floats + i, sizeof bits);
+        add(digest, bits);
+    }
 }
 
 // The states of Rust's digests are doubles. Only numbers that are neither infinite nor NaN come here.
-static void add_as_double(uint64_t *digest, float number)
-{
-    union {
-        double number;
-        uint64_t bits;
-    } same;
-    same.number = number;
-    add(digest, same.bits);
-}
-
-static void add_observation(uint64_t *digest, const acrobot_observation_t *observation)
-{
-    add_float(digest, observation->cos_theta1);
-    add_float(digest, observation->sin_theta1);
-    add_float(digest, observation->cos_theta2);
-    add_float(digest, observation->sin_theta2);
-    add_float(digest, observation->dtheta1);
-    add_float(digest, observation->dtheta2);
-}
-
 static void add_seen(uint64_t *digest, const acrobot_t *acrobot, const acrobot_observation_t *observation)
 {
     acrobot_state_t state;
     CHECK(acrobot_state(acrobot, &state) == ACROBOT_OK);
-    add_as_double(digest, state.theta1);
-    add_as_double(digest, state.theta2);
-    add_as_double(digest, state.dtheta1);
-    add_as_double(digest, state.dtheta2);
-    add_observation(digest, observation);
+    const double numbers[4] = {state.theta1, state.theta2, state.dtheta1, state.dtheta2};
+    for (int i = 0; i < 4; i++) {
+        uint64_t bits;
+        copy(&bits, &numbers[i], sizeof bits);
+        add(digest, bits);
+    }
+    add_floats(digest, observation, 6);
 }
 
 static uint8_t against(float dtheta1)
@@ -82,7 +58,7 @@ static uint64_t episode(unsigned seed)
         }
         CHECK(acrobot_step(&acrobot, action, &step) == ACROBOT_OK);
         add_seen(&digest, &acrobot, &step.observation);
-        add_float(&digest, step.reward);
+        add_floats(&digest, &step.reward, 1);
         add(&digest, (uint64_t)step.terminated << 1 | step.truncated);
     } while (!step.terminated && !step.truncated);
     CHECK(acrobot_reset(&acrobot, &step.observation) == ACROBOT_OK);
@@ -108,15 +84,9 @@ static uint64_t batch_of_twenty(void)
             actions[i] = against(rows[i].dtheta1);
         }
         CHECK(acrobot_batch_step(batch, actions, &results, COUNT) == ACROBOT_OK);
-        for (int i = 0; i < COUNT; i++) {
-            add_observation(&digest, &rows[i]);
-        }
-        for (int i = 0; i < COUNT; i++) {
-            add_observation(&digest, &finals[i]);
-        }
-        for (int i = 0; i < COUNT; i++) {
-            add_float(&digest, rewards[i]);
-        }
+        add_floats(&digest, rows, 6 * COUNT);
+        add_floats(&digest, finals, 6 * COUNT);
+        add_floats(&digest, rewards, COUNT);
         for (int i = 0; i < COUNT; i++) {
             add(&digest, terminated[i]);
         }

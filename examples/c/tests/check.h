@@ -25,4 +25,32 @@ static inline int report(const char *name)
     return failures == 0 ? 0 : 1;
 }
 
+static inline void copy(void *to, const void *from, size_t size)
+{
+    for (size_t i = 0; i < size; i++) {
+        ((uint8_t *)to)[i] = ((const uint8_t *)from)[i];
+    }
+}
+
+// Also compares the bytes between fields, which nothing writes; valgrind.supp excuses that in this function alone.
+__attribute__((noinline, unused)) static bool same(const void *left, const void *right, size_t size)
+{
+    const uint8_t *a = (const uint8_t *)left, *b = (const uint8_t *)right;
+    for (size_t i = 0; i < size; i++) {
+        if (a[i] != b[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static inline bool same_text(const char *left, const char *right)
+{
+    while (*left != 0 && *left == *right) {
+        left++;
+        right++;
+    }
+    return *left == *right;
+}
+
 #endif

@@ -1,8 +1,247 @@
-//! Any bytes in place of a snapshot: rejected, or loaded as a valid one.
+//! Any bytes in place of a snapshot of each type: rejected, or loaded as a valid one.
 
 #![no_main]
 
-use acrobot_fuzz::snapshots;
-use libfuzzer_sys::fuzz_target;
+use std::fs;
+use std::num::NonZeroU32;
+use std::path::Path;
 
-fuzz_target!(|bytes: &[u8]| snapshots::check(bytes));
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::{Dynamics, ParamsRange};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
+use acrobot_fuzz::assert_settled;
+use libfuzzer_sys::fuzz_target;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+/// A type that can be saved.
+trait Snapshot: Serialize + DeserializeOwned {
+    /// A value that a user might save.
+    fn sample() -> Self;
+
+    /// Uses the loaded value. Returns whether it is valid. Plain data can be invalid.
+    fn check(self) -> bool;
+}
+
+/// Loads a type from bytes, and saves its sample in every format.
+type Kind = (fn(&[u8]), fn() -> [Vec<u8>; 2]);
+
+const fn kind<T: Snapshot>() -> Kind {
+    (load::<T>, save::<T>)
+}
+
+const KINDS: [Kind; 12] = [
+    kind::<Acrobot<Reference>>(),
+    kind::<Acrobot<Portable>>(),
+    kind::<Acrobot<Fast>>(),
+    kind::<Acrobot<Micro>>(),
+    kind::<Acrobot<Host>>(),
+    kind::<TimeLimit<Acrobot<Portable>>>(),
+    kind::<TimeLimit<Acrobot<Fast>>>(),
+    kind::<Member<Fast>>(),
+    kind::<Member<Portable>>(),
+    kind::<VecBatch<Fast>>(),
+    kind::<VecBatch<Fast, 1>>(),
+    kind::<VecBatch<Portable, 3>>(),
+];
+
+// The first byte chooses a type. Loads a snapshot of it from the other bytes, in each format.
+fuzz_target!(init: write_seeds(), |bytes: &[u8]| {
+    if let Some((kind, bytes)) = bytes.split_first() {
+        let (load, _) = KINDS[usize::from(*kind) % KINDS.len()];
+        load(bytes);
+    }
+});
+
+/// Writes a snapshot of every type in every format, from which libFuzzer begins.
+fn write_seeds() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/seeds");
+    fs::create_dir_all(&folder).expect("a folder");
+    for (kind, (_, save)) in (0_u8..).zip(KINDS) {
+        for (format, bytes) in ["postcard", "json"].into_iter().zip(save()) {
+            let seed = [&[kind], &bytes[..]].concat();
+            fs::write(folder.join(format!("{kind}.{format}")), seed).expect("a file");
+        }
+    }
+}
+
+fn save<T: Snapshot>() -> [Vec<u8>; 2] {
+    [binary(&T::sample()), json(&T::sample())]
+}
+
+fn binary(value: &impl Serialize) -> Vec<u8> {
+    postcard::to_stdvec(value).expect("there is memory")
+}
+
+fn json(value: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(value).expect("there is memory")
+}
+
+fn load<T: Snapshot>(bytes: &[u8]) {
+    let binaries = postcard::from_bytes::<T>(bytes).ok();
+    let texts = serde_json::from_slice::<T>(bytes).ok();
+    for loaded in binaries.into_iter().chain(texts) {
+        // Compared as bytes, because plain data may be NaN.
+        let (saved, text) = (binary(&loaded), json(&loaded));
+        let again: T = postcard::from_bytes(&saved).expect("it was saved");
+        assert_eq!(binary(&again), saved);
+        // JSON has neither NaN nor infinity.
+        if loaded.check() {
+            let again: T = serde_json::from_slice(&text).expect("it was saved");
+            assert_eq!(binary(&again), saved);
+        }
+    }
+}
+
+impl<A> Snapshot for Acrobot<A>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
+    fn sample() -> Self {
+        let mut acrobot = Acrobot::new(42);
+        let noisy = Params {
+            torque_noise: A::Scalar::from_f64(0.1),
+            ..Params::default()
+        };
+        assert!(acrobot.set_params(noisy).is_ok());
+        Action::sample(acrobot.rng_mut()); // leaves half of a draw over
+        acrobot.step(Action::Positive);
+        acrobot
+    }
+
+    fn check(mut self) -> bool {
+        assert!(self == self.clone());
+        assert!(self.params().validate().is_ok() && self.state().validate().is_ok());
+        for action in Action::ALL {
+            let step = self.step(action);
+            assert_settled(self.state(), self.params());
+            let [sines @ .., dtheta1, dtheta2] = step.observation.to_array();
+            assert!(sines.iter().all(|x| x.abs() <= 1.0), "{step:?}");
+            assert!(!dtheta1.is_nan() && !dtheta2.is_nan(), "{step:?}");
+            assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
+        }
+        self.reset();
+        assert!(self.state().validate().is_ok());
+        true
+    }
+}
+
+impl<A> Snapshot for TimeLimit<Acrobot<A>>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
+    fn sample() -> Self {
+        let mut limited = TimeLimit::v1(Acrobot::sample());
+        limited.step(Action::Zero);
+        limited
+    }
+
+    fn check(mut self) -> bool {
+        let elapsed = self.elapsed();
+        let step = self.step(Action::Negative);
+        assert_eq!(self.elapsed(), elapsed.saturating_add(1));
+        assert_eq!(step.truncated, self.elapsed() >= self.limit().get());
+        self.inner().clone().check()
+    }
+}
+
+impl<A> Snapshot for Member<A>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
+    fn sample() -> Self {
+        let acrobot = Acrobot::<A>::sample();
+        Self {
+            params: Params {
+                dynamics: Dynamics::Nips,
+                ..*acrobot.params()
+            },
+            state: acrobot.state(),
+            elapsed: 3,
+            reset_pending: true,
+            rng: acrobot.rng().clone(),
+        }
+    }
+
+    fn check(self) -> bool {
+        use Autoreset::{Disabled, NextStep, SameStep};
+
+        let valid = self.state.validate().is_ok() && self.params.validate().is_ok();
+        for autoreset in [NextStep, SameStep, Disabled] {
+            let seed = SeedSequence::new(0);
+            let mut batch = VecBatch::<A>::with_own_params(seed, 1).expect("memory for one");
+            batch.set_autoreset(autoreset);
+            batch.set_limit(NonZeroU32::MAX);
+            assert_eq!(batch.set_member(0, self.clone()).is_ok(), valid);
+            assert_steps(&mut batch);
+        }
+        valid
+    }
+}
+
+fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, N>) {
+    let pending: Vec<_> = (0..batch.len()).map(|i| batch.member(i)).collect();
+    assert!(batch.step(&vec![2_u8; batch.len()]).is_ok());
+    for (index, before) in pending.into_iter().enumerate() {
+        let member = batch.member(index).expect("it has as many");
+        assert!(member.state.validate().is_ok() && member.params.validate().is_ok());
+        if !before.is_some_and(|before| before.reset_pending) && member.elapsed > 0 {
+            assert_settled(member.state, &member.params);
+        }
+    }
+}
+
+/// With one or three lanes each acrobot has its own parameters.
+impl<A, const N: usize> Snapshot for VecBatch<A, N>
+where
+    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
+{
+    fn sample() -> Self {
+        let seed = SeedSequence::new(42);
+        let low = Params::<A::Scalar>::default();
+        let mut high = low;
+        high.torque_noise = A::Scalar::from_f64(0.5);
+        let batch = if N < 4 {
+            let range = ParamsRange::new(low, high);
+            VecBatch::with_own_params(seed, 4).and_then(|mut batch: Self| {
+                batch.set_params_range(Some(range?))?;
+                batch.reset();
+                Ok(batch)
+            })
+        } else {
+            VecBatch::new(seed, 4)
+        };
+        let mut batch = batch.expect("memory for four");
+        batch.set_limit(NonZeroU32::MIN);
+        assert!(batch.step(&[2_u8; 4]).is_ok());
+        batch
+    }
+
+    fn check(mut self) -> bool {
+        let (len, bytes) = (self.len(), binary(&self));
+        let first = self.params_of(0);
+        let same = (0..len).all(|index| self.params_of(index) == first);
+        let fits = same && self.params_range().is_none();
+        let mut blocks = vec![Block::EMPTY; len];
+        let mut generators = vec![Pcg64::UNSEEDED; len];
+        let mut from = postcard::Deserializer::from_bytes(&bytes);
+        let memory = (&mut blocks[..], &mut generators[..]);
+        let shared = Batch::<A, _, 1>::from_snapshot(memory, &mut from);
+        assert_eq!(shared.is_ok(), fits);
+        let mut from = postcard::Deserializer::from_bytes(&bytes);
+        let memory = (blocks, generators, vec![LaneParams::default(); len]);
+        let own = Batch::<A, _, 1>::from_snapshot(memory, &mut from).expect("it was saved");
+        for index in 0..len {
+            assert_eq!(own.member(index), self.member(index));
+        }
+        self.reset_masked(&vec![false; len], 1.into())
+            .expect("the length");
+        assert!(binary(&self) == bytes);
+        assert_steps(&mut self);
+        self.reset();
+        assert_steps(&mut self);
+        true
+    }
+}

@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use acrobot::env::{BoxSpace, DiscreteSpace, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::ResetBounds;
-use acrobot::{Acrobot, Portable};
+use acrobot::{Acrobot, Error, Portable};
 use proptest::prelude::*;
 use rand_core::{Rng, SeedableRng, TryRng};
 
@@ -109,9 +109,16 @@ fn words_decimals_bytes_and_integers_are_the_same_seed() {
     });
     let letter = prop_oneof![4 => prop::char::range('0', '9'), 1 => any::<char>()];
     holds(1000, prop::collection::vec(letter, 0..5), |letters| {
-        let text = String::from_iter(letters);
-        let is_decimal = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-        assert_eq!(text.parse::<SeedSequence>().is_ok(), is_decimal, "{text:?}");
+        let text = String::from_iter(&letters);
+        let other = letters.iter().position(|letter| !letter.is_ascii_digit());
+        let parsed = text.parse::<SeedSequence>();
+        if other.is_none() && !text.is_empty() {
+            assert!(parsed.is_ok(), "{text:?}");
+        } else {
+            let position = other.unwrap_or(0);
+            let (found, position) = (letters.get(position).copied(), position + 1);
+            assert_eq!(parsed, Err(Error::MalformedSeed { found, position }));
+        }
     });
 }
 
