@@ -160,7 +160,7 @@ def measure_m4f():
         figures[arithmetic, "tuned"] = round(counted[arithmetic, "step"] * cycles.per_instruction(path))
     figures["fast", "physics"] = minimal(["physics"])[1]["physics"]
     figures |= printed("learn")
-    # The first hundred steps of training. From step 58 on there are as many traces as there will be.
+    # The first three episodes. Nothing is printed before the tenth.
     each = cycles.per_instruction(images("learn")["learn"], most=3_000_000)
     figures["fast", "milliseconds"] = round(figures["fast", "training"] * each / 168 * 1000)
     return figures
