@@ -150,7 +150,7 @@ def measure_m4f():
         figures[arithmetic, "rate"] = int(float(f"{64e6 / each:.3g}"))
     [(_, _, figures["fast", "physics"])] = minimal(["physics"])
     figures |= printed("learn")
-    # The first hundred steps of training. From step 58 on there are as many traces as there will be.
+    # The first three episodes. Nothing is printed before the tenth.
     each = cycles.per_instruction(image("learn"), most=3_000_000)
     figures["fast", "milliseconds"] = round(figures["fast", "training"] * each / 168 * 1000)
     return figures

@@ -1,4 +1,6 @@
-//! Q(λ) with replay equals its definition, and treats mirror images alike.
+//! Q(λ) with replay equals its definition, and treats mirror images and whole turns alike.
+
+use std::f32::consts::TAU;
 
 use acrobot::{Acrobot, Action, State, TimeLimit};
 use learners::{Budget, Memory, QLambda, TileCoder};
@@ -117,7 +119,7 @@ fn the_weights_equal_those_of_the_definition() {
 
 /// After a training that met both sides.
 #[test]
-fn mirror_images_have_equal_values_and_opposite_actions() {
+fn mirror_images_and_whole_turns_have_equal_values() {
     let mut memory = Memory::<1408, 16, 150>::EMPTY;
     let mut learner = QLambda::new(Budget::Episodes(9), &mut memory);
     let mut env = TimeLimit::v1(Acrobot::new(6));
@@ -130,6 +132,12 @@ fn mirror_images_have_equal_values_and_opposite_actions() {
         let state = env.state();
         let mirrored = <[f32; 4]>::from(state).map(|x| -x).into();
         assert_eq!(learner.value(&state), learner.value(&mirrored));
+        let turned = State {
+            theta1: state.theta1 + TAU,
+            theta2: state.theta2 - TAU,
+            ..state
+        };
+        assert_eq!(learner.value(&state), learner.value(&turned));
         let action = learner.greedy(&state);
         let opposite = learner.greedy(&mirrored);
         assert_ne!(action, opposite);
