@@ -6,12 +6,12 @@ use acrobot::arithmetic::{Arithmetic, Host, Real};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::ParamsRange;
-use acrobot::{Error, Fast, Params, ResetOptions, State};
+use acrobot::{Error, Fast, Params};
 use numpy::{
     PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyMemoryError, PyValueError};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -20,28 +20,18 @@ use crate::{ACTIONS, InvalidAction, must_be, rejected};
 /// The lower and the upper bounds of all parameters. Those that are equal are not drawn.
 pub type Range = [Params; 2];
 
-/// What a batch is made of. All but `own` is fixed.
+/// What a batch is made of.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Settings {
     pub num_envs: usize,
     pub limit: NonZeroU32,
-    /// The index in [`MODES`].
-    pub mode: usize,
+    pub mode: Autoreset,
     /// Whether to compute as Gymnasium does, with [`Host`].
     pub gymnasium: bool,
     /// Whether the actions are torques.
     pub continuous: bool,
     pub threads: NonZeroU32,
-    /// Whether each acrobot has its own parameters, which takes more memory.
-    pub own: bool,
 }
-
-/// All autoreset modes, with Gymnasium's names.
-pub const MODES: [(&str, Autoreset); 3] = [
-    ("NextStep", Autoreset::NextStep),
-    ("SameStep", Autoreset::SameStep),
-    ("Disabled", Autoreset::Disabled),
-];
 
 /// Actions (0, 1 or 2), or torques, N m.
 #[derive(FromPyObject)]
@@ -69,35 +59,41 @@ fn is_slice<T, D>(array: &Bound<'_, PyArray<T, D>>) -> bool {
     array.is_c_contiguous() && array.data().is_aligned()
 }
 
-/// A batch of any arithmetic, and memory for its inputs. Numbers are `f64` here: conversions from `f32` and back are exact.
-pub trait Engine: Send + Sync {
-    /// Rejects what `set_params` and `set_range` reject.
-    fn check(&self, range: Range) -> Result<(), Error>;
-    /// Sets the parameters of an acrobot, or of all if they share them.
-    fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error>;
-    /// The range from which resets draw parameters.
-    fn range(&self) -> Option<Range>;
-    /// Rejects a range if the acrobots share their parameters.
-    fn set_range(&mut self, range: Option<Range>) -> Result<(), Error>;
-    fn generators_mut(&mut self) -> &mut [Pcg64];
-    fn state(&self, index: usize) -> Option<State>;
-    fn set_state(&mut self, index: usize, state: State) -> Result<(), Error>;
-    fn member(&self, index: usize) -> Option<Member<Host>>;
-    fn set_member(&mut self, index: usize, member: Member<Host>) -> Result<(), Error>;
-    fn reset(&mut self, options: ResetOptions, mask: Option<&[bool]>) -> Result<(), Error>;
-    fn observe(&self, rows: &mut [[f32; 6]]) -> Result<(), Error>;
-    /// Checks the inputs of the next step and copies them.
-    fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()>;
-    /// Steps on this thread, or on all threads of rayon's current pool.
-    fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error>;
+/// A batch of one of the two arithmetics.
+pub enum Engine {
+    Fast(Many<Fast>),
+    Host(Many<Host>),
 }
+
+impl Engine {
+    /// With `own`, each acrobot has its own parameters, which takes more memory.
+    pub fn new(settings: &Settings, own: bool, seed: SeedSequence) -> PyResult<Self> {
+        Ok(if settings.gymnasium {
+            Self::Host(Many::new(settings, own, seed)?)
+        } else {
+            Self::Fast(Many::new(settings, own, seed)?)
+        })
+    }
+}
+
+/// Does something with the batch in an engine, whatever its arithmetic.
+macro_rules! with_batch {
+    ($engine:expr, $many:ident => $result:expr) => {
+        match $engine {
+            $crate::engine::Engine::Fast($many) => $result,
+            $crate::engine::Engine::Host($many) => $result,
+        }
+    };
+}
+pub(crate) use with_batch;
 
 type Memory<A> = (Vec<Block<A>>, Vec<Pcg64>, Vec<LaneParams<A>>);
 
-struct Many<A: Arithmetic> {
-    batch: Batch<A, Memory<A>>,
+/// A batch, and memory for its inputs. Numbers are `f64` outside: conversions from `f32` and back are exact.
+pub struct Many<A: Arithmetic> {
+    pub batch: Batch<A, Memory<A>>,
     /// Whether each acrobot has its own parameters.
-    own: bool,
+    pub own: bool,
     /// Empty if the actions are torques.
     actions: Vec<u8>,
     /// Empty if they are not.
@@ -105,8 +101,8 @@ struct Many<A: Arithmetic> {
 }
 
 impl<A: Arithmetic> Many<A> {
-    fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Box<dyn Engine>> {
-        let (len, own) = (settings.num_envs, settings.own);
+    fn new(settings: &Settings, own: bool, seed: SeedSequence) -> PyResult<Self> {
+        let len = settings.num_envs;
         let blocks = len.div_ceil(Block::<A>::LANES);
         let (actions, torques) = if settings.continuous {
             (0, len)
@@ -128,26 +124,22 @@ impl<A: Arithmetic> Many<A> {
         })?;
         let mut batch = Batch::new(seed, storage).map_err(rejected)?;
         batch.set_limit(settings.limit);
-        let (_, mode) = MODES.get(settings.mode).ok_or_else(|| {
-            let (name, rule) = ("the snapshot's autoreset mode", MODES.len());
-            PyValueError::new_err(must_be(name, format_args!("below {rule}"), settings.mode))
-        })?;
-        batch.set_autoreset(*mode);
-        Ok(Box::new(Self {
+        batch.set_autoreset(settings.mode);
+        Ok(Self {
             batch,
             own,
             actions,
             torques,
-        }))
+        })
     }
-}
 
-impl<A: Arithmetic> Engine for Many<A> {
-    fn check(&self, [low, high]: Range) -> Result<(), Error> {
+    /// Rejects what `set_params` and `set_range` reject.
+    pub fn check(&self, [low, high]: Range) -> Result<(), Error> {
         ParamsRange::<A::Scalar>::new(low.cast(), high.cast()).map(drop)
     }
 
-    fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error> {
+    /// Sets the parameters of an acrobot, or of all if they share them.
+    pub fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error> {
         if self.own {
             self.batch.set_params_of(index, params.cast())
         } else {
@@ -155,51 +147,28 @@ impl<A: Arithmetic> Engine for Many<A> {
         }
     }
 
-    fn range(&self) -> Option<Range> {
+    /// The range from which resets draw parameters.
+    pub fn range(&self) -> Option<Range> {
         let range = self.batch.params_range()?;
         Some([range.low().cast(), range.high().cast()])
     }
 
-    fn set_range(&mut self, range: Option<Range>) -> Result<(), Error> {
+    /// Rejects a range if the acrobots share their parameters.
+    pub fn set_range(&mut self, range: Option<Range>) -> Result<(), Error> {
         let cast = |[low, high]: Range| ParamsRange::new(low.cast(), high.cast());
         self.batch.set_params_range(range.map(cast).transpose()?)
     }
 
-    fn generators_mut(&mut self) -> &mut [Pcg64] {
-        self.batch.generators_mut()
-    }
-
-    fn state(&self, index: usize) -> Option<State> {
-        self.batch.state(index).map(State::cast)
-    }
-
-    fn set_state(&mut self, index: usize, state: State) -> Result<(), Error> {
-        self.batch.set_state(index, state.cast())
-    }
-
-    fn member(&self, index: usize) -> Option<Member<Host>> {
+    pub fn member(&self, index: usize) -> Option<Member<Host>> {
         self.batch.member(index).map(converted)
     }
 
-    fn set_member(&mut self, index: usize, member: Member<Host>) -> Result<(), Error> {
+    pub fn set_member(&mut self, index: usize, member: Member<Host>) -> Result<(), Error> {
         self.batch.set_member(index, converted(member))
     }
 
-    fn reset(&mut self, options: ResetOptions, mask: Option<&[bool]>) -> Result<(), Error> {
-        match mask {
-            Some(mask) => self.batch.reset_masked(mask, options),
-            None => {
-                self.batch.reset_with(options);
-                Ok(())
-            }
-        }
-    }
-
-    fn observe(&self, rows: &mut [[f32; 6]]) -> Result<(), Error> {
-        self.batch.observe(rows)
-    }
-
-    fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()> {
+    /// Checks the inputs of the next step and copies them.
+    pub fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()> {
         match inputs {
             Inputs::Actions(from) => read(
                 from.as_slice()?,
@@ -229,7 +198,8 @@ impl<A: Arithmetic> Engine for Many<A> {
         }
     }
 
-    fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
+    /// Steps on this thread, or on all threads of rayon's current pool.
+    pub fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
         let (batch, actions, torques) = (&mut self.batch, &self.actions, &self.torques);
         match (torques.is_empty(), parallel) {
             (true, false) => batch.step(actions, buffers),
@@ -277,15 +247,6 @@ fn converted<A: Arithmetic, B: Arithmetic>(member: Member<A>) -> Member<B> {
         elapsed: member.elapsed,
         reset_pending: member.reset_pending,
         rng: member.rng,
-    }
-}
-
-/// An engine with these settings.
-pub fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Box<dyn Engine>> {
-    if settings.gymnasium {
-        Many::<Host>::assemble(settings, seed)
-    } else {
-        Many::<Fast>::assemble(settings, seed)
     }
 }
 

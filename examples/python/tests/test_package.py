@@ -20,7 +20,7 @@ def test_metadata():
 
 def test_files():
     files = {path.name: path for path in distribution("acrobot-rs").files}
-    assert "py.typed" in files and "_native.pyi" in files
+    assert "py.typed" in files
     for name, words in [("LICENSE-MIT", "Permission is hereby granted"), ("LICENSE-APACHE", "Version 2.0, January 2004")]:
         assert files[name].parent.name == "licenses"
         assert words in files[name].read_text()

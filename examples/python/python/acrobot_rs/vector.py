@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import os
 from typing import Any
 
@@ -311,24 +310,19 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
         self._ready = False
 
-    def __copy__(self) -> AcrobotVectorEnv:
-        """As ``copy.deepcopy``: two objects with the same states would be no copies."""
-        return copy.deepcopy(self)
-
     @property
     def _action_space(self) -> spaces.Space[Any]:
         return spaces.Discrete(3)
 
-    def _check(self, name: str, value: Any) -> None:
-        ranged = isinstance(value, Uniform)
-        for other in _NAMES if ranged or _each(name, value) is not None else ():
-            if other != name and isinstance(getattr(self, other), np.ndarray if ranged else Uniform):
-                found = "a Uniform" if ranged else "different values"
-                rule = "one value for all environments" if ranged else "a value or an array, not a Uniform"
-                raise ValueError(f"{other} must be {rule}, if {name} has {found}")
-
     def _pass(self, name: str, value: Any) -> Any:
-        self._check(name, value)
+        each = _each(name, value)
+        drawn = isinstance(value, Uniform)
+        for other in _NAMES if drawn or each is not None else ():
+            # A reset that draws would replace different values.
+            if other != name and isinstance(getattr(self, other), np.ndarray if drawn else Uniform):
+                found = "a Uniform" if drawn else "different values"
+                rule = "one value for all environments" if drawn else "a value or an array, not a Uniform"
+                raise ValueError(f"{other} must be {rule}, if {name} has {found}")
         each = _each(name, value)
         if each is None:
             self._native.set(name, value)
