@@ -73,8 +73,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     _native: Acrobot
     #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
-    #: Whether actions are torques.
-    _CONTINUOUS = False
 
     def __init__(self, render_mode: str | None = None) -> None:
         """Make an environment. Reset it before its first step.
@@ -96,10 +94,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     def __getstate__(self) -> dict[str, Any]:
         """All but the window, which a copy opens itself."""
         return {**vars(self), "screen": None, "clock": None}
-
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Discrete(len(self.AVAIL_TORQUE))
 
     @property
     def state(self) -> NDArray[np.floating[Any]] | None:
@@ -223,10 +217,6 @@ class AcrobotContinuousEnv(AcrobotEnv):
     """
 
     _CONTINUOUS = True
-
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Box(min(self.AVAIL_TORQUE), max(self.AVAIL_TORQUE), (1,), np.float32)
 
     def _torque(self, action: ArrayLike) -> float:
         """The torque, N m. The native part calls this for all but arrays of ``float32``."""

@@ -133,6 +133,8 @@ class Parameters:
     spec: Any
     render_mode: str | None
     _native: Acrobot | Batch
+    #: Whether actions are torques.
+    _CONTINUOUS = False
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
@@ -191,6 +193,14 @@ class Parameters:
     def _highest_velocities(self) -> tuple[float, float]:
         """The largest velocities after a step, or after a reset with the default bounds of 0.1, rad/s."""
         return max(_highest(self.MAX_VEL_1), 0.1), max(_highest(self.MAX_VEL_2), 0.1)
+
+    @property
+    def _action_space(self) -> spaces.Space[Any]:
+        """That of a single environment."""
+        if self._CONTINUOUS:
+            low, high = min(_lowest(self.AVAIL_TORQUE)), max(_highest(self.AVAIL_TORQUE))
+            return spaces.Box(low, high, (1,), np.float32)
+        return spaces.Discrete(len(_lowest(self.AVAIL_TORQUE)))
 
     @property
     def _observation_space(self) -> spaces.Box[np.float32]:

@@ -13,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, _highest, _lowest, numbers, reset_bounds
+from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, numbers, reset_bounds
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 Floats = NDArray[np.float32]
@@ -58,8 +58,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     }
 
     _native: Batch
-    #: Whether actions are torques.
-    _CONTINUOUS = False
 
     def __init__(
         self,
@@ -310,10 +308,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
         self._ready = False
 
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Discrete(3)
-
     def _pass(self, name: str, value: Any) -> Any:
         each = _each(name, value)
         drawn = isinstance(value, Uniform)
@@ -337,10 +331,11 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
         """The actions, checked and converted to an array that the native part reads. It calls this where necessary."""
-        shape = (self.num_envs,)
-        actions = numbers("actions", f"integers of shape {shape}", actions, shape, "iu", InvalidAction)
+        what, kinds, dtype = ("numbers", "fiu", np.float32) if self._CONTINUOUS else ("integers", "iu", np.int64)
+        shape = self.action_space.shape
+        actions = numbers("actions", f"{what} of shape {shape}", actions, shape, kinds, InvalidAction)
         # An array over packed bytes is not aligned, which Rust requires.
-        return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.int64)
+        return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), dtype)
 
     def _check_open(self) -> None:
         if self.closed:
@@ -391,15 +386,6 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
     """
 
     _CONTINUOUS = True
-
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Box(min(_lowest(self.AVAIL_TORQUE)), max(_highest(self.AVAIL_TORQUE)), (1,), np.float32)
-
-    def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
-        shape = (self.num_envs, 1)
-        actions = numbers("actions", f"numbers of shape {shape}", actions, shape, error=InvalidAction)
-        return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.float32)
 
 
 def _each(name: str, value: Any) -> list[Any] | None:
