@@ -1,24 +1,28 @@
 //! The vector environment: steps many acrobots at once.
 
-use acrobot::arithmetic::Host;
-use acrobot::batch::{Autoreset, Member, StepBuffers};
+use std::num::NonZeroU32;
+use std::ops::DerefMut;
+
+use acrobot::batch::{Autoreset, StepBuffers};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::ResetBounds;
-use acrobot::{Params, ResetOptions, State};
+use acrobot::{ResetOptions, State};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2};
-use pyo3::exceptions::{PyIndexError, PyMemoryError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyType};
 
-use crate::engine::{Engine, Inputs, Range, Settings, memory, with_batch};
+use crate::engine::{Engine, Inputs, Many, Range, memory, with_batch};
 use crate::pool::Pool;
 use crate::{Reduced, fields, load, must_be, positive, rejected, render, save, unknown, with};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
-    settings: Settings,
     engine: Engine,
+    /// Whether the actions are torques.
+    continuous: bool,
+    threads: NonZeroU32,
     pool: Option<Pool>,
 }
 
@@ -35,31 +39,37 @@ impl Batch {
         continuous: bool,
         threads: i64,
     ) -> PyResult<Self> {
-        let settings = Settings {
-            num_envs: positive("num_envs", num_envs)?.get() as usize,
-            limit: positive("max_episode_steps", max_episode_steps)?,
-            mode: match mode {
-                "NextStep" => Autoreset::NextStep,
-                "SameStep" => Autoreset::SameStep,
-                "Disabled" => Autoreset::Disabled,
-                other => {
-                    let rule = r#""NextStep", "SameStep" or "Disabled""#;
-                    return Err(unknown("autoreset_mode", rule, other));
-                }
-            },
-            gymnasium,
-            continuous,
-            threads: positive("threads", threads)?,
+        let len = positive("num_envs", num_envs)?.get() as usize;
+        let limit = positive("max_episode_steps", max_episode_steps)?;
+        let threads = positive("threads", threads)?;
+        let mode = match mode {
+            "NextStep" => Autoreset::NextStep,
+            "SameStep" => Autoreset::SameStep,
+            "Disabled" => Autoreset::Disabled,
+            other => {
+                let rule = r#""NextStep", "SameStep" or "Disabled""#;
+                return Err(unknown("autoreset_mode", rule, other));
+            }
         };
+        let mut engine = if gymnasium {
+            Engine::Host(Many::new(len, parse(seed)?)?)
+        } else {
+            Engine::Fast(Many::new(len, parse(seed)?)?)
+        };
+        with_batch!(&mut engine, many => {
+            many.batch.set_limit(limit);
+            many.batch.set_autoreset(mode);
+        });
         Ok(Self {
-            settings,
-            engine: Engine::new(&settings, false, parse(seed)?)?,
+            engine,
+            continuous,
+            threads,
             pool: None,
         })
     }
 
     fn __len__(&self) -> usize {
-        self.settings.num_envs
+        with_batch!(&self.engine, many => many.batch.len())
     }
 
     /// Sets a parameter of all acrobots: a value, or a `Uniform` between whose bounds each reset draws it.
@@ -68,38 +78,41 @@ impl Batch {
         if let Some([low, high]) = bounds(value)? {
             return this.draw(name, &low, &high);
         }
-        let both =
-            |[low, high]: Range| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]);
-        let range = this.range().map(both).transpose()?;
-        let own = with_batch!(&this.engine, many => many.own);
-        let count = if own { this.settings.num_envs } else { 1 };
-        let each = (0..count).map(|index| this.changed(index, name, value));
-        let each = each.collect::<PyResult<_>>()?;
-        this.change(each, range)
+        with_batch!(&mut this.engine, many => {
+            let both =
+                |[low, high]: Range| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]);
+            let range = many.range().map(both).transpose()?;
+            let count = if many.own { many.batch.len() } else { 1 };
+            let each = (0..count).map(|index| many.changed(index, name, value));
+            let each: Vec<_> = each.collect::<PyResult<_>>()?;
+            many.change(&each, range)
+        })
     }
 
     /// Sets a parameter of each acrobot. No parameter is drawn then.
     fn set_each(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
-        let mut this = alone(slf)?;
-        let num_envs = this.settings.num_envs;
+        let this = &mut *alone(slf)?;
+        let num_envs = this.__len__();
         if values.len() != num_envs {
             let rule = format_args!("one value, or one for each of {num_envs} environments");
             let got = format_args!("{} values", values.len());
             return Err(PyValueError::new_err(must_be(name, rule, got)));
         }
-        let each = values.iter().enumerate().map(|(index, value)| {
-            let changed = this.changed(index, name, value);
-            changed.map_err(|error| indexed(value.py(), error, index))
-        });
-        let each = each.collect::<PyResult<_>>()?;
-        this.change(each, None)
+        with_batch!(&mut this.engine, many => {
+            let each = values.iter().enumerate().map(|(index, value)| {
+                let changed = many.changed(index, name, value);
+                changed.map_err(|error| indexed(value.py(), error, index))
+            });
+            let each: Vec<_> = each.collect::<PyResult<_>>()?;
+            many.change(&each, None)
+        })
     }
 
     /// A parameter of each acrobot.
     fn get<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let (py, this) = (slf.py(), alone(slf)?);
-        let each = (0..this.settings.num_envs).map(|index| {
-            let mut params = this.member(index)?.params;
+        let each = (0..this.__len__()).map(|index| {
+            let mut params = with_batch!(&this.engine, many => many.params(index));
             Ok(match fields(name).next() {
                 Some(field) => field(&mut params).into_pyobject(py)?.into_any(),
                 None => params.torques.into_pyobject(py)?.into_any(),
@@ -137,9 +150,9 @@ impl Batch {
         let engine = &mut alone(slf)?.engine;
         slf.py().detach(|| {
             with_batch!(engine, many => match mask {
-                Some(mask) => many.batch.reset_masked(mask, options).map_err(rejected),
+                Some(mask) => many.batch.deref_mut().reset_masked(mask, options).map_err(rejected),
                 None => {
-                    many.batch.reset_with(options);
+                    many.batch.deref_mut().reset_with(options);
                     Ok(())
                 }
             })
@@ -166,21 +179,19 @@ impl Batch {
         mut finals: Option<PyReadwriteArray2<'py, f32>>,
     ) -> PyResult<Results<'py>> {
         let py = slf.py();
-        let Settings {
-            num_envs: len,
-            continuous,
-            ..
-        } = alone(slf)?.settings;
+        let (len, continuous) = {
+            let this = alone(slf)?;
+            (this.__len__(), this.continuous)
+        };
         let inputs = match Inputs::of(actions, len, continuous) {
             Some(inputs) => inputs,
             None => env.call_method1("_inputs", (actions,))?.extract()?,
         };
         let this = &mut *alone(slf)?;
         with_batch!(&mut this.engine, many => many.read(inputs))?;
-        let no_memory = || PyMemoryError::new_err("the results do not fit into memory");
-        let mut rewards = memory(0.0, len).ok_or_else(no_memory)?;
-        let mut terminated = memory(false, len).ok_or_else(no_memory)?;
-        let mut truncated = memory(false, len).ok_or_else(no_memory)?;
+        let mut rewards = memory(0.0, len)?;
+        let mut terminated = memory(false, len)?;
+        let mut truncated = memory(false, len)?;
         let rows = observations.as_slice_mut()?.as_chunks_mut().0;
         let mut buffers =
             StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(rows);
@@ -189,13 +200,12 @@ impl Batch {
         }
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
-        let task = if this.settings.gymnasium {
-            1024
-        } else {
-            16_384
+        let task = match engine {
+            Engine::Host(_) => 1024,
+            Engine::Fast(_) => 16_384,
         };
         let tasks = len.div_ceil(task);
-        match tasks.min(this.settings.threads.get() as usize) {
+        match tasks.min(this.threads.get() as usize) {
             1 => py.detach(|| with_batch!(engine, many => many.step(buffers, false))),
             threads => {
                 let pool = Pool::of_this_process(&mut this.pool, threads)?;
@@ -238,7 +248,8 @@ impl Batch {
     fn elapsed(slf: &Bound<'_, Self>, mut elapsed: PyReadwriteArray1<'_, i64>) -> PyResult<()> {
         let this = alone(slf)?;
         for (index, elapsed) in elapsed.as_slice_mut()?.iter_mut().enumerate() {
-            *elapsed = this.member(index)?.elapsed.into();
+            let steps = with_batch!(&this.engine, many => many.batch.elapsed(index));
+            *elapsed = steps.ok_or_else(no_such(index))?.into();
         }
         Ok(())
     }
@@ -248,8 +259,11 @@ impl Batch {
         index: usize,
         mode: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let Member { params, state, .. } = alone(slf)?.member(index)?;
-        render(slf.py(), params, state, mode)
+        let this = alone(slf)?;
+        let (params, state) = with_batch!(&this.engine, many => {
+            (many.params(index), many.batch.state(index).map(State::cast))
+        });
+        render(slf.py(), params, state.ok_or_else(no_such(index))?, mode)
     }
 
     /// Every protocol of pickle calls this, and `copy.deepcopy`. `__setstate__` replaces the smallest batch.
@@ -259,13 +273,13 @@ impl Batch {
 
     fn __getstate__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
         let this = alone(slf)?;
-        save(slf.py(), &(this.settings, this.range(), this.members()?))
+        save(slf.py(), &(this.continuous, this.threads, &this.engine))
     }
 
     fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
         let mut this = alone(slf)?;
-        let (settings, range, members) = load(bytes)?;
-        *this = Self::of_members(settings, range, members)?;
+        (this.continuous, this.threads, this.engine) = load(bytes)?;
+        this.pool = None;
         Ok(())
     }
 }
@@ -278,33 +292,6 @@ type Results<'py> = (
 );
 
 impl Batch {
-    /// A batch with these acrobots. They share their parameters if these are the same.
-    fn of_members(
-        settings: Settings,
-        range: Option<Range>,
-        members: Vec<Member<Host>>,
-    ) -> PyResult<Self> {
-        if members.is_empty() || members.len() != settings.num_envs {
-            let (rule, got) = (settings.num_envs, members.len());
-            let message = must_be("the snapshot's number of acrobots", rule, got);
-            return Err(PyValueError::new_err(message));
-        }
-        let shared = members[0].params;
-        let own = range.is_some() || members.iter().any(|member| member.params != shared);
-        Ok(Self {
-            settings,
-            engine: filled(&settings, own, range, members)?,
-            pool: None,
-        })
-    }
-
-    /// The parameters of an acrobot with one of them changed.
-    fn changed(&self, index: usize, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
-        let params = with(self.member(index)?.params, name, value)?;
-        with_batch!(&self.engine, many => many.check([params; 2])).map_err(rejected)?;
-        Ok(params)
-    }
-
     /// Sets the bounds between which each reset draws a parameter.
     fn draw(
         &mut self,
@@ -317,68 +304,12 @@ impl Batch {
             let message = format!("{name} must be a value or an array, not a Uniform");
             return Err(PyValueError::new_err(message));
         }
-        let [lows, highs] = match self.range() {
-            Some(range) => range,
-            None => [self.member(0)?.params; 2],
-        };
-        let range = [with(lows, name, low)?, with(highs, name, high)?];
-        self.change(Vec::new(), Some(range))
-    }
-
-    /// Sets the range, and the parameters of each acrobot, one for all if they share them, or none if they stay. The
-    /// parameters are checked. Gives each acrobot its own parameters if necessary.
-    fn change(&mut self, params: Vec<Params>, range: Option<Range>) -> PyResult<()> {
-        let owns = with_batch!(&self.engine, many => {
-            if let Some(range) = range {
-                many.check(range).map_err(rejected)?;
-            }
-            many.own
-        });
-        if !owns && (range.is_some() || params.iter().any(|each| *each != params[0])) {
-            self.engine = filled(&self.settings, true, None, self.members()?)?;
-        }
         with_batch!(&mut self.engine, many => {
-            many.set_range(range).map_err(rejected)?;
-            for (index, params) in params.into_iter().enumerate() {
-                many.set_params(index, params).map_err(rejected)?;
-            }
-        });
-        Ok(())
+            let [lows, highs] = many.range().unwrap_or([many.params(0); 2]);
+            let range = [with(lows, name, low)?, with(highs, name, high)?];
+            many.change(&[], Some(range))
+        })
     }
-
-    fn range(&self) -> Option<Range> {
-        with_batch!(&self.engine, many => many.range())
-    }
-
-    fn member(&self, index: usize) -> PyResult<Member<Host>> {
-        with_batch!(&self.engine, many => many.member(index)).ok_or_else(no_such(index))
-    }
-
-    fn members(&self) -> PyResult<Vec<Member<Host>>> {
-        let each = (0..self.settings.num_envs).map(|index| self.member(index));
-        each.collect()
-    }
-}
-
-/// An engine with these settings, this range of parameters and these acrobots.
-fn filled(
-    settings: &Settings,
-    own: bool,
-    range: Option<Range>,
-    members: Vec<Member<Host>>,
-) -> PyResult<Engine> {
-    let mut engine = Engine::new(settings, own, SeedSequence::new(0))?;
-    with_batch!(&mut engine, many => {
-        many.set_range(range).map_err(rejected)?;
-        for (index, member) in members.into_iter().enumerate() {
-            // The first has the parameters that all share.
-            if index == 0 {
-                many.set_params(0, member.params).map_err(rejected)?;
-            }
-            many.set_member(index, member).map_err(rejected)?;
-        }
-    });
-    Ok(engine)
 }
 
 /// The only access to a batch. Only its steps and resets let other threads run.

@@ -1,10 +1,10 @@
-//! A batch of any arithmetic, behind one trait.
+//! A batch of one of two arithmetics.
 
-use std::num::NonZeroU32;
+use std::ops::DerefMut;
 
 use acrobot::arithmetic::{Arithmetic, Host, Real};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::batch::{StepBuffers, VecBatch};
+use acrobot::numpy::SeedSequence;
 use acrobot::physics::ParamsRange;
 use acrobot::{Error, Fast, Params};
 use numpy::{
@@ -15,23 +15,10 @@ use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{ACTIONS, InvalidAction, must_be, rejected};
+use crate::{ACTIONS, InvalidAction, must_be, rejected, with};
 
 /// The lower and the upper bounds of all parameters. Those that are equal are not drawn.
 pub type Range = [Params; 2];
-
-/// What a batch is made of.
-#[derive(Clone, Copy, Serialize, Deserialize)]
-pub struct Settings {
-    pub num_envs: usize,
-    pub limit: NonZeroU32,
-    pub mode: Autoreset,
-    /// Whether to compute as Gymnasium does, with [`Host`].
-    pub gymnasium: bool,
-    /// Whether the actions are torques.
-    pub continuous: bool,
-    pub threads: NonZeroU32,
-}
 
 /// Actions (0, 1 or 2), or torques, N m.
 #[derive(FromPyObject)]
@@ -59,21 +46,11 @@ fn is_slice<T, D>(array: &Bound<'_, PyArray<T, D>>) -> bool {
     array.is_c_contiguous() && array.data().is_aligned()
 }
 
-/// A batch of one of the two arithmetics.
+#[derive(Serialize, Deserialize)]
 pub enum Engine {
     Fast(Many<Fast>),
+    /// Computes as Gymnasium does.
     Host(Many<Host>),
-}
-
-impl Engine {
-    /// With `own`, each acrobot has its own parameters, which takes more memory.
-    pub fn new(settings: &Settings, own: bool, seed: SeedSequence) -> PyResult<Self> {
-        Ok(if settings.gymnasium {
-            Self::Host(Many::new(settings, own, seed)?)
-        } else {
-            Self::Fast(Many::new(settings, own, seed)?)
-        })
-    }
 }
 
 /// Does something with the batch in an engine, whatever its arithmetic.
@@ -87,64 +64,35 @@ macro_rules! with_batch {
 }
 pub(crate) use with_batch;
 
-type Memory<A> = (Vec<Block<A>>, Vec<Pcg64>, Vec<LaneParams<A>>);
-
 /// A batch, and memory for its inputs. Numbers are `f64` outside: conversions from `f32` and back are exact.
+#[derive(Serialize, Deserialize)]
+#[serde(bound(
+    serialize = "A::Scalar: Serialize",
+    deserialize = "A::Scalar: Deserialize<'de>"
+))]
 pub struct Many<A: Arithmetic> {
-    pub batch: Batch<A, Memory<A>>,
-    /// Whether each acrobot has its own parameters.
+    pub batch: VecBatch<A>,
+    /// Whether each acrobot has its own parameters, which takes more memory.
     pub own: bool,
-    /// Empty if the actions are torques.
+    #[serde(skip)]
     actions: Vec<u8>,
-    /// Empty if they are not.
+    /// Empty if the inputs of the next step are actions.
+    #[serde(skip)]
     torques: Vec<A::Scalar>,
 }
 
 impl<A: Arithmetic> Many<A> {
-    fn new(settings: &Settings, own: bool, seed: SeedSequence) -> PyResult<Self> {
-        let len = settings.num_envs;
-        let blocks = len.div_ceil(Block::<A>::LANES);
-        let (actions, torques) = if settings.continuous {
-            (0, len)
-        } else {
-            (len, 0)
-        };
-        let allocate = || {
-            let storage = (
-                memory(Block::EMPTY, blocks)?,
-                memory(Pcg64::UNSEEDED, len)?,
-                memory(LaneParams::default(), if own { blocks } else { 0 })?,
-            );
-            let inputs = (memory(0, actions)?, memory(A::Scalar::ZERO, torques)?);
-            Some((storage, inputs))
-        };
-        let (storage, (actions, torques)) = allocate().ok_or_else(|| {
-            let rule = "so few that they fit into memory";
-            PyMemoryError::new_err(must_be("num_envs", rule, len))
-        })?;
-        let mut batch = Batch::new(seed, storage).map_err(rejected)?;
-        batch.set_limit(settings.limit);
-        batch.set_autoreset(settings.mode);
+    pub fn new(len: usize, seed: SeedSequence) -> PyResult<Self> {
         Ok(Self {
-            batch,
-            own,
-            actions,
-            torques,
+            batch: VecBatch::new(seed, len).map_err(out_of_memory)?,
+            own: false,
+            actions: Vec::new(),
+            torques: Vec::new(),
         })
     }
 
-    /// Rejects what `set_params` and `set_range` reject.
-    pub fn check(&self, [low, high]: Range) -> Result<(), Error> {
-        ParamsRange::<A::Scalar>::new(low.cast(), high.cast()).map(drop)
-    }
-
-    /// Sets the parameters of an acrobot, or of all if they share them.
-    pub fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error> {
-        if self.own {
-            self.batch.set_params_of(index, params.cast())
-        } else {
-            self.batch.set_params(params.cast())
-        }
+    pub fn params(&self, index: usize) -> Params {
+        self.batch.params_of(index).unwrap_or_default().cast()
     }
 
     /// The range from which resets draw parameters.
@@ -153,30 +101,65 @@ impl<A: Arithmetic> Many<A> {
         Some([range.low().cast(), range.high().cast()])
     }
 
-    /// Rejects a range if the acrobots share their parameters.
-    pub fn set_range(&mut self, range: Option<Range>) -> Result<(), Error> {
-        let cast = |[low, high]: Range| ParamsRange::new(low.cast(), high.cast());
-        self.batch.set_params_range(range.map(cast).transpose()?)
+    /// The parameters of an acrobot with one of them changed.
+    pub fn changed(&self, index: usize, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+        let params = with(self.params(index), name, value)?;
+        Self::checked([params; 2])?;
+        Ok(params)
     }
 
-    pub fn member(&self, index: usize) -> Option<Member<Host>> {
-        self.batch.member(index).map(converted)
+    fn checked([low, high]: Range) -> PyResult<ParamsRange<A::Scalar>> {
+        ParamsRange::new(low.cast(), high.cast()).map_err(rejected)
     }
 
-    pub fn set_member(&mut self, index: usize, member: Member<Host>) -> Result<(), Error> {
-        self.batch.set_member(index, converted(member))
+    /// Sets the range, and the parameters of each acrobot, which `changed` checked: one for all if they share them, or
+    /// none if they stay. Gives each acrobot its own parameters if necessary.
+    pub fn change(&mut self, params: &[Params], range: Option<Range>) -> PyResult<()> {
+        let own = range.is_some() || params.iter().any(|each| *each != params[0]);
+        let range = range.map(Self::checked).transpose()?;
+        if own && !self.own {
+            self.batch = self.owning()?;
+            self.own = true;
+        }
+        self.batch.set_params_range(range).map_err(rejected)?;
+        for (index, params) in params.iter().enumerate() {
+            if self.own {
+                self.batch.set_params_of(index, params.cast())
+            } else {
+                self.batch.set_params(params.cast())
+            }
+            .map_err(rejected)?;
+        }
+        Ok(())
+    }
+
+    /// The same batch with memory for the parameters of each acrobot.
+    fn owning(&self) -> PyResult<VecBatch<A>> {
+        let seed = SeedSequence::new(0);
+        let mut batch = VecBatch::with_own_params(seed, self.batch.len()).map_err(out_of_memory)?;
+        batch.set_limit(self.batch.limit());
+        batch.set_autoreset(self.batch.autoreset());
+        for index in 0..batch.len() {
+            if let Some(member) = self.batch.member(index) {
+                batch.set_member(index, member).map_err(rejected)?;
+            }
+        }
+        Ok(batch)
     }
 
     /// Checks the inputs of the next step and copies them.
     pub fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()> {
         match inputs {
-            Inputs::Actions(from) => read(
-                from.as_slice()?,
-                &mut self.actions,
-                |action| (0..3).contains(action),
-                |_, action| action as u8,
-                ACTIONS,
-            ),
+            Inputs::Actions(from) => {
+                self.torques.clear();
+                read(
+                    from.as_slice()?,
+                    &mut self.actions,
+                    |action| (0..3).contains(action),
+                    |_, action| action as u8,
+                    ACTIONS,
+                )
+            }
             Inputs::Torques(from) => {
                 let bounds = |index| {
                     let params = self.batch.params_of(index).unwrap_or_default();
@@ -198,9 +181,11 @@ impl<A: Arithmetic> Many<A> {
         }
     }
 
-    /// Steps on this thread, or on all threads of rayon's current pool.
+    /// Steps on this thread, or on all threads of rayon's current pool. The results go into the buffers, not into the
+    /// `VecBatch`.
     pub fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
-        let (batch, actions, torques) = (&mut self.batch, &self.actions, &self.torques);
+        let (actions, torques) = (&self.actions, &self.torques);
+        let batch = self.batch.deref_mut();
         match (torques.is_empty(), parallel) {
             (true, false) => batch.step(actions, buffers),
             (true, true) => batch.par_step(actions, buffers),
@@ -213,19 +198,11 @@ impl<A: Arithmetic> Many<A> {
 /// Checks all inputs, then converts them.
 fn read<T: Copy + std::fmt::Display, U>(
     from: &[T],
-    to: &mut [U],
+    to: &mut Vec<U>,
     valid: impl Fn(&T) -> bool,
     convert: impl Fn(usize, T) -> U,
     rule: &str,
 ) -> PyResult<()> {
-    if from.len() != to.len() {
-        let message = format!(
-            "actions must have {} elements, got {}",
-            to.len(),
-            from.len()
-        );
-        return Err(InvalidAction::new_err(message));
-    }
     // No early exit, so that the compiler vectorizes the loop.
     if !from.iter().fold(true, |all, input| all & valid(input))
         && let Some((index, input)) = from.iter().enumerate().find(|(_, input)| !valid(input))
@@ -233,27 +210,35 @@ fn read<T: Copy + std::fmt::Display, U>(
         let name = format!("actions[{index}]");
         return Err(InvalidAction::new_err(must_be(&name, rule, input)));
     }
-    for (index, (to, &input)) in to.iter_mut().zip(from).enumerate() {
-        *to = convert(index, input);
-    }
+    to.clear();
+    reserve(to, from.len())?;
+    to.extend(
+        from.iter()
+            .enumerate()
+            .map(|(index, &input)| convert(index, input)),
+    );
     Ok(())
 }
 
-/// The same member in another arithmetic. Exact from `f32` to `f64` and back.
-fn converted<A: Arithmetic, B: Arithmetic>(member: Member<A>) -> Member<B> {
-    Member {
-        params: member.params.cast(),
-        state: member.state.cast(),
-        elapsed: member.elapsed,
-        reset_pending: member.reset_pending,
-        rng: member.rng,
-    }
+/// `len` copies of a value.
+pub fn memory<T: Clone>(value: T, len: usize) -> PyResult<Vec<T>> {
+    let mut memory = Vec::new();
+    reserve(&mut memory, len)?;
+    memory.resize(len, value);
+    Ok(memory)
 }
 
-/// `len` copies of a value, if they fit into memory.
-pub fn memory<T: Clone>(value: T, len: usize) -> Option<Vec<T>> {
-    let mut memory = Vec::new();
-    memory.try_reserve_exact(len).ok()?;
-    memory.resize(len, value);
-    Some(memory)
+fn reserve<T>(memory: &mut Vec<T>, len: usize) -> PyResult<()> {
+    let no_memory = |_| PyMemoryError::new_err("a step does not fit into memory");
+    memory.try_reserve_exact(len).map_err(no_memory)
+}
+
+fn out_of_memory(error: Error) -> PyErr {
+    match error {
+        Error::OutOfMemory { len } => {
+            let rule = "so few that they fit into memory";
+            PyMemoryError::new_err(must_be("num_envs", rule, len))
+        }
+        error => rejected(error),
+    }
 }

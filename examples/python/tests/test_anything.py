@@ -181,7 +181,9 @@ SINGLES = played(acrobot_rs.AcrobotEnv())._native.__getstate__()
 BATCHES = played(acrobot_rs.AcrobotVectorEnv(2, autoreset_mode="SameStep"))._native.__getstate__()
 
 
-@given(st.tuples(st.just(acrobot_rs.AcrobotEnv), damaged(SINGLES)) | st.tuples(st.just(acrobot_rs.AcrobotVectorEnv), damaged(BATCHES)))
+@given(
+    st.tuples(st.just(acrobot_rs.AcrobotEnv), damaged(SINGLES)) | st.tuples(st.just(acrobot_rs.AcrobotVectorEnv), damaged(BATCHES))
+)
 def test_damaged_snapshots(kind_and_snapshot):
     kind, snapshot = kind_and_snapshot
     env = played(kind())

@@ -1,4 +1,4 @@
-"""The installed package has what a registry shows, and plays a recorded episode. CI runs this on each Python, without the repository."""
+"""The installed package has what a registry shows, and plays recorded episodes. CI runs this on each Python."""
 
 from importlib.metadata import distribution
 

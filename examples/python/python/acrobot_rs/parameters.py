@@ -48,10 +48,7 @@ class Uniform:
 
 def _checked(name: str, value: Any) -> Any:
     """The value of a parameter, for a class."""
-    if isinstance(value, Uniform):
-        Batch().set(name, value)
-    else:
-        Acrobot().set(name, value)
+    (Batch() if isinstance(value, Uniform) else Acrobot()).set(name, value)
     return _fixed(name, value)
 
 
@@ -62,16 +59,6 @@ def _fixed(name: str, value: Any) -> Any:
     if name == "book_or_nips":
         return value
     return tuple(map(float, value)) if name == "AVAIL_TORQUE" else float(value)
-
-
-def _lowest(value: Any) -> Any:
-    """The lower bound, if the value of a parameter is drawn."""
-    return value.low if isinstance(value, Uniform) else value
-
-
-def _highest(value: Any) -> Any:
-    """The upper bound, if the value of a parameter is drawn."""
-    return value.high if isinstance(value, Uniform) else value
 
 
 def _reject_ignored(cls: type, name: str) -> None:
@@ -190,17 +177,17 @@ class Parameters:
         )
 
     @property
-    def _highest_velocities(self) -> tuple[float, float]:
+    def _highest_velocities(self) -> list[float]:
         """The largest velocities after a step, or after a reset with the default bounds of 0.1, rad/s."""
-        return max(_highest(self.MAX_VEL_1), 0.1), max(_highest(self.MAX_VEL_2), 0.1)
+        return [max(getattr(bound, "high", bound), 0.1) for bound in (self.MAX_VEL_1, self.MAX_VEL_2)]
 
     @property
     def _action_space(self) -> spaces.Space[Any]:
         """That of a single environment."""
+        lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
         if self._CONTINUOUS:
-            low, high = min(_lowest(self.AVAIL_TORQUE)), max(_highest(self.AVAIL_TORQUE))
-            return spaces.Box(low, high, (1,), np.float32)
-        return spaces.Discrete(len(_lowest(self.AVAIL_TORQUE)))
+            return spaces.Box(min(lows), max(highs), (1,), np.float32)
+        return spaces.Discrete(len(lows))
 
     @property
     def _observation_space(self) -> spaces.Box[np.float32]:
