@@ -10,7 +10,7 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::Host;
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::physics::{Dynamics, ResetBounds};
+use acrobot::physics::Dynamics;
 use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyAttributeError, PyRuntimeError, PyTypeError, PyValueError};
@@ -26,16 +26,7 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::check_reset_bounds;
-    #[pymodule_export]
     use super::single::Acrobot;
-}
-
-/// Raises a `ValueError` if a bound is beyond the range of `f32` or if `low` is above `high`.
-#[pyfunction]
-fn check_reset_bounds(low: f64, high: f64) -> PyResult<()> {
-    ResetBounds::new(low, high).map_err(rejected)?;
-    Ok(())
 }
 
 /// A parameter that is one number: Gymnasium's name, the crate's, and its field.

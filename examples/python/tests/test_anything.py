@@ -182,7 +182,8 @@ BATCHES = played(acrobot_rs.AcrobotVectorEnv(2, autoreset_mode="SameStep"))._nat
 
 
 @given(
-    st.tuples(st.just(acrobot_rs.AcrobotEnv), damaged(SINGLES)) | st.tuples(st.just(acrobot_rs.AcrobotVectorEnv), damaged(BATCHES))
+    st.tuples(st.just(acrobot_rs.AcrobotEnv), damaged(SINGLES))
+    | st.tuples(st.just(acrobot_rs.AcrobotVectorEnv), damaged(BATCHES))
 )
 def test_damaged_snapshots(kind_and_snapshot):
     kind, snapshot = kind_and_snapshot

@@ -46,22 +46,17 @@ def test_the_observation_space_contains_initial_states_above_the_bounds_of_veloc
     check_env(type("Slow", (base,), {"MAX_VEL_1": 1e-30, "MAX_VEL_2": 0.05})(), skip_render_check=True)
 
 
-@pytest.mark.parametrize(("name", "limit"), [(V1, 500), (V0, 200), (CONTINUOUS, 500)])
-def test_episodes_are_truncated(name, limit):
-    env = make(name)
-    env.reset(seed=1)
-    steps = 1
-    while not env.step([0.0] if name == CONTINUOUS else 1)[3]:
-        steps += 1
-    assert steps == limit
-
-
-def test_spaces_and_registration_are_those_of_gymnasium():
+def test_registration_and_spaces_are_those_of_gymnasium():
     ours, theirs = gymnasium.make(V1), gymnasium.make("Acrobot-v1")
     assert ours.observation_space == theirs.observation_space
     assert ours.action_space == theirs.action_space
-    assert ours.spec.reward_threshold == theirs.spec.reward_threshold
     assert ours.metadata["render_fps"] == theirs.metadata["render_fps"]
+    for name, limit in [(V1, 500), (V0, 200), (CONTINUOUS, 500)]:
+        env = make(name)
+        assert env.spec.reward_threshold == theirs.spec.reward_threshold
+        env.reset(seed=1)
+        ends = [env.step([0.0] if name == CONTINUOUS else 1)[3] for _ in range(limit)]
+        assert ends == [False] * (limit - 1) + [True]
     assert make(V0).observation_space.contains(np.float32([np.pi, np.pi, 4 * np.pi, 9 * np.pi]))
 
 
@@ -133,9 +128,9 @@ TORQUE = r"action must be a torque in N m, as an array of shape \(1,\), got "
         3, -1, 256, 2**70, np.array([1]), np.array([1, 2]), [1], np.True_, np.array(True), np.timedelta64(1), iter([1]))),
      *((acrobot_rs.AcrobotContinuousEnv, TORQUE, action) for action in (
         1, np.float32(1.0), ["1"], [], [1.0, 1.0], [[1.0]], [None], [np.nan], np.float32([np.nan]), np.zeros((1, 1), np.float32),
-        np.zeros(2, np.float32), np.zeros(0, np.float32), np.zeros((), np.float32), {0: 0.5}, collections.UserDict({0: 0.5}), [True],
-        np.array([True]), [1j], np.array([1j]), np.array(["0.5"]), np.array([0.5], object), np.array([1], "m8[s]"), [10**400],
-        [[1], [2, 3]])),
+        np.zeros(2, np.float32), np.zeros(0, np.float32), np.zeros((), np.float32), {0: 0.5}, collections.UserDict({0: 0.5}),
+        [True], np.array([True]), [1j], np.array([1j]), np.array(["0.5"]), np.array([0.5], object), np.array([1], "m8[s]"),
+        [10**400], [[1], [2, 3]])),
      *((kind, message, action) for kind, message in (
         (acrobot_rs.AcrobotEnv, DISCRETE), (acrobot_rs.AcrobotContinuousEnv, TORQUE)) for action in (
         1.0, "1", None, b"\1", bytearray(b"\1"), {1}, {1: 1}, 1j, iter([0.5])))],
@@ -317,9 +312,7 @@ def test_values_cannot_change_in_place(env):
     changed = type("Changed", (acrobot_rs.AcrobotEnv,), {"LINK_MASS_1": mass, "AVAIL_TORQUE": torques})
     mass[...], torques[0] = 3.0, 0.0
     for each in (env, changed, changed()):
-        assert each.LINK_MASS_1 == 2.0 and list(each.AVAIL_TORQUE) == [-2.0, 0.0, 2.0]
-        with pytest.raises(TypeError):
-            each.AVAIL_TORQUE[0] = 0.0
+        assert each.LINK_MASS_1 == 2.0 and each.AVAIL_TORQUE == (-2.0, 0.0, 2.0)
 
 
 @pytest.mark.parametrize("count", [1, 2, 5, 300])
@@ -336,10 +329,6 @@ def test_any_number_of_torques(count):
     assert ours.state.tobytes() == theirs.state.tobytes()
     with pytest.raises(InvalidAction, match=f"action must be an integer from 0 to {count - 1}, got {count}"):
         ours.step(count)
-    twin = pickle.loads(pickle.dumps(ours._native))
-    twin.step(ours, count - 1)
-    ours.step(count - 1)
-    assert (twin.state == ours.state).all()
 
 
 @pytest.mark.parametrize("torques", [[-1.0, 0.0, 1.0], [0.5, -3.0, 2.0]])
@@ -369,5 +358,3 @@ def test_continuous_torques_are_those_of_the_discrete_environment(torques):
     ours.AVAIL_TORQUE = [-0.1, 0.1]
     discrete.AVAIL_TORQUE = [0.1]
     assert (ours.step([1.0])[0] == discrete.step(0)[0]).all()
-
-

@@ -19,7 +19,7 @@ from acrobot_rs import Uniform
 from acrobot_rs.parameters import _NAMES as NAMES
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
-from gymnasium.vector import AutoresetMode, SyncVectorEnv
+from gymnasium.vector import AutoresetMode
 
 V1 = "acrobot_rs/Acrobot-v1"
 CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
@@ -50,8 +50,7 @@ def assert_equal(one, other):
 def reset_ended(envs, ended):
     """Resets environments whose episode has ended, if they have no autoreset."""
     if ended.any() and envs.metadata["autoreset_mode"] is AutoresetMode.DISABLED:
-        return envs.reset(options={"reset_mask": ended.copy()})
-    return None
+        envs.reset(options={"reset_mask": ended.copy()})
 
 
 def test_attributes_and_types_are_those_of_sync_vector_env():
@@ -98,9 +97,7 @@ def test_streams_are_the_seed_s_children_whatever_the_number_of_environments():
     small, large = make_vec(5), make_vec(100)
     for seed in [0, 42, 2**100 + 3]:
         small.reset(seed=seed), large.reset(seed=seed)
-        states = [
-            np.random.default_rng(child).uniform(-0.1, 0.1, 4) for child in np.random.SeedSequence(seed).spawn(100)
-        ]
+        states = [np.random.default_rng(child).uniform(-0.1, 0.1, 4) for child in np.random.SeedSequence(seed).spawn(100)]
         assert (large.state == np.float32(states)).all()
         assert large.np_random_seed == seed
         for actions in np.random.default_rng(0).integers(3, size=(700, 100)):
@@ -138,14 +135,17 @@ def test_invalid_actions_are_rejected(kind, actions):
     envs = kind(4)
     envs.reset(seed=1)
     before = envs._native.__getstate__()
-    with pytest.raises(InvalidAction, match=r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number, N m)"):
+    with pytest.raises(
+        InvalidAction, match=r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number)"
+    ):
         envs.step(actions)
     assert envs._native.__getstate__() == before
 
 
 @pytest.mark.parametrize(
     "convert",
-    [np.uint8, np.int8, np.int32, np.uint64, lambda actions: actions.astype(">i8"), list, lambda actions: np.repeat(actions, 2)[::2],
+    [np.uint8, np.int8, np.int32, np.uint64, lambda actions: actions.astype(">i8"), list,
+     lambda actions: np.repeat(actions, 2)[::2],
      # Numbers after a header of one byte are not aligned. Gymnasium accepts them.
      lambda actions: np.frombuffer(b"h" + actions.tobytes(), np.int64, offset=1)],
 )  # fmt: skip
@@ -395,9 +395,9 @@ def test_attributes_of_each_environment():
     with pytest.raises(AttributeError, match="no attribute 'length'; they have .*elapsed_steps.*LINK_LENGTH_1"):
         ours.call("length")
     before = ours._native.__getstate__()
-    for name, values, error in [("state", [1.0] * 3, ValueError), ("length", 1, AttributeError), ("elapsed_steps", 1, AttributeError)]:
+    for name, error in [("state", ValueError), ("length", AttributeError), ("elapsed_steps", AttributeError)]:
         with pytest.raises(error, match=name):
-            ours.set_attr(name, values)
+            ours.set_attr(name, [1.0] * 3)
         assert ours._native.__getstate__() == before
 
 
@@ -428,11 +428,10 @@ def test_states_can_be_set(gymnasium_episodes):
 def test_after_close_nothing_works():
     envs = make_vec(2, render_mode="ansi")
     envs.reset()
-    envs.close()
-    envs.close()
+    for _ in range(2):
+        envs.close()
     assert envs.closed
-    calls = (lambda: envs.step([0, 1]), lambda: envs.call("dt"), lambda: envs.set_attr("dt", 0.1))
-    for call in (envs.reset, envs.render, *calls):
+    for call in (envs.reset, envs.render, lambda: envs.step([0, 1]), lambda: envs.call("dt"), lambda: envs.set_attr("dt", 0.1)):
         with pytest.raises(ClosedEnvironmentError, match="closed"):
             call()
 
@@ -447,8 +446,7 @@ def test_threads_change_no_bit(kind, count, gymnasium_episodes):
         envs.torque_noise_max = 0.5
         envs.action_space.seed(1)
         plays.append([[*envs.step(envs.action_space.sample())[:4], envs.state] for _ in range(12)])
-    np.testing.assert_equal(plays[0], plays[1])
-    np.testing.assert_equal(plays[0], plays[2])
+    np.testing.assert_equal(plays, [plays[0]] * 3)
 
 
 def test_only_large_steps_start_threads():

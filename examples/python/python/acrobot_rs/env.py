@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from acrobot_rs._native import Acrobot
 from acrobot_rs.parameters import Parameters, numbers, reset_bounds
 
+
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between the links must swing them up.
 

@@ -16,7 +16,7 @@ from gymnasium import logger, spaces
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 from numpy.typing import NDArray
 
-from acrobot_rs._native import Acrobot, Batch, check_reset_bounds
+from acrobot_rs._native import Acrobot, Batch
 
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()
@@ -44,12 +44,6 @@ class Uniform:
 
     low: Any
     high: Any
-
-
-def _checked(name: str, value: Any) -> Any:
-    """The value of a parameter, for a class."""
-    (Batch() if isinstance(value, Uniform) else Acrobot()).set(name, value)
-    return _fixed(name, value)
 
 
 def _fixed(name: str, value: Any) -> Any:
@@ -127,7 +121,8 @@ class Parameters:
         super().__init_subclass__(**kwargs)
         for name, value in list(vars(cls).items()):
             if name in _NAMES:
-                setattr(cls, name, _checked(name, value))
+                (Batch() if isinstance(value, Uniform) else Acrobot()).set(name, value)
+                setattr(cls, name, _fixed(name, value))
         # Also what a class inherits from one without parameters.
         for base in cls.__mro__:
             for name, value in vars(base).items() if base is cls or not issubclass(base, Parameters) else ():
@@ -210,7 +205,9 @@ def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset
         if key not in keys:
             raise ValueError(f"the keys of options must be among {keys}, got {key!r}")
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
-    check_reset_bounds(low, high)
+    largest = np.finfo(np.float32).max
+    if not (abs(low) <= largest and abs(high) <= largest):
+        raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
     return low, high
 
 
