@@ -265,13 +265,15 @@ def test_an_environment_takes_over_the_values_that_its_class_has_when_it_is_made
     class Heavy(acrobot_rs.AcrobotEnv, abc.ABC):
         LINK_MASS_1 = 3.0
 
-    heavy, plain = Heavy(), acrobot_rs.AcrobotEnv()
+    heavy, plain, restored = Heavy(), acrobot_rs.AcrobotEnv(), Heavy()
+    restored.LINK_MASS_1 = 4.0
+    del restored.LINK_MASS_1
     with unittest.mock.patch.object(Heavy, "LINK_MASS_1", 2.0):
         later = Heavy()
     plain.LINK_MASS_1 = 4.0
     with unittest.mock.patch.object(plain, "LINK_MASS_1", 5.0):
         patched = copy.copy(plain)
-    for env, mass in [(heavy, 3.0), (later, 2.0), (plain, 4.0), (patched, 5.0)]:
+    for env, mass in [(heavy, 3.0), (later, 2.0), (plain, 4.0), (patched, 5.0), (restored, 3.0)]:
         other = acrobot_rs.AcrobotEnv()
         other.LINK_MASS_1 = mass
         assert env.LINK_MASS_1 == mass
@@ -279,8 +281,6 @@ def test_an_environment_takes_over_the_values_that_its_class_has_when_it_is_made
             each.state = [1.0, 1.0, 0.0, 0.0]
             each.step(2)
         assert (env.state == other.state).all()
-    del plain.LINK_MASS_1
-    assert plain.LINK_MASS_1 == 1.0
     with unittest.mock.patch.object(Heavy, "LINK_MASS_1", 0.0), pytest.raises(ValueError, match="LINK_MASS_1 must be "):
         Heavy()
 

@@ -175,7 +175,7 @@ def test_invalid_arguments_are_rejected(name, value):
 @pytest.mark.parametrize(
     ("call", "message"),
     [("acrobot_rs.AcrobotVectorEnv(2**32 - 1)", "num_envs must be so few that they fit into memory, got 4294967295"),
-     ("envs.step(actions)", "a step does not fit into memory"), ("envs.state", "Unable to allocate 15.3 MiB")],
+     ("batch.step(None, actions, observations)", "a step does not fit into memory")],
 )  # fmt: skip
 def test_a_call_that_does_not_fit_into_memory_raises(call, message):
     """In a process that may use 2 MB more than it has when the call begins."""
@@ -183,9 +183,8 @@ def test_a_call_that_does_not_fit_into_memory_raises(call, message):
         import resource
         import acrobot_rs
         import numpy as np
-        envs = acrobot_rs.AcrobotVectorEnv(500_000, copy=False)
-        observations = envs.reset()  # kept, because the call could use memory that was freed
-        actions = np.zeros(envs.num_envs, np.int64)
+        batch = acrobot_rs._native.Batch(2_000_000)
+        actions, observations = np.zeros(2_000_000, np.int64), np.empty((2_000_000, 6), np.float32)
         pages = int(open("/proc/self/statm").read().split()[0])
         resource.setrlimit(resource.RLIMIT_AS, (pages * resource.getpagesize() + 2**21,) * 2)
         try:
