@@ -80,7 +80,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 episode has ended before the next step.
             copy: Whether each call returns observations in a new array. Otherwise all calls return the same array.
             gymnasium_episodes: Whether to play Gymnasium's own episodes: computed in ``float64``, environment ``i`` seeded
-                with ``seed + i``, and rewards as ``float64``. Steps then take 25 times as long.
+                with ``seed + i``, and rewards as ``float64``. Steps then take about 30 times as long.
             threads: The threads that compute a step; ``None``: as many as the process has cores. They change no bit. More
                 than one is faster only for more than 16,384 environments, or 1,024 with ``gymnasium_episodes``.
 
