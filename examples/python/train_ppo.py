@@ -7,7 +7,7 @@
 Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in Gymnasium's own environment.
 Draws the learning curves. Fails if a seed has not learnt after a million steps.
 
-Step counts differ between CPUs, because XLA rounds differently on them. docs/python.md has the ranges that were measured.
+Step counts differ between CPUs, because XLA rounds differently on them.
 """
 
 import argparse

@@ -1,42 +1,35 @@
 //! The vector environment: steps many acrobots at once.
 
-use acrobot::arithmetic::Host;
-use acrobot::batch::{Member, StepBuffers};
+use std::num::NonZeroU32;
+use std::ops::DerefMut;
+
+use acrobot::batch::{Autoreset, StepBuffers};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::ResetBounds;
-use acrobot::{Params, ResetOptions, State};
+use acrobot::{ResetOptions, State};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2};
-use postcard::experimental::serialized_size;
-use pyo3::exceptions::{PyIndexError, PyMemoryError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyType};
-use serde::Serialize;
 
-use crate::engine::{Engine, Inputs, MODES, Range, Settings, assemble, memory};
+use crate::engine::{Engine, Inputs, Many, Range, memory, with_batch};
 use crate::pool::Pool;
-use crate::{
-    VERSION, alone, failed, load, must_be, number, positive, rejected, render, take, unknown, with,
-};
+use crate::{Reduced, fields, load, must_be, positive, rejected, render, save, unknown, with};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
-    settings: Settings,
-    engine: Box<dyn Engine>,
+    engine: Engine,
+    /// Whether the actions are torques.
+    continuous: bool,
+    threads: NonZeroU32,
     pool: Option<Pool>,
 }
-
-/// What `__reduce__` returns: the type, the arguments of `new` and the argument of `__setstate__`.
-type Reduced<'py> = (
-    Bound<'py, PyType>,
-    (i64, &'static str, i64, &'static str),
-    Bound<'py, PyBytes>,
-);
 
 #[pymethods]
 impl Batch {
     #[new]
-    #[pyo3(signature = (num_envs, seed, max_episode_steps, mode, gymnasium=false, continuous=false, threads=1))]
+    #[pyo3(signature = (num_envs=1, seed="0", max_episode_steps=500, mode="NextStep", gymnasium=false, continuous=false, threads=1))]
     fn new(
         num_envs: i64,
         seed: &str,
@@ -46,62 +39,82 @@ impl Batch {
         continuous: bool,
         threads: i64,
     ) -> PyResult<Self> {
-        let settings = Settings {
-            num_envs: positive("num_envs", num_envs)?.get() as usize,
-            limit: positive("max_episode_steps", max_episode_steps)?,
-            mode: MODES
-                .iter()
-                .position(|(name, _)| *name == mode)
-                .ok_or_else(|| {
-                    let rule = r#""NextStep", "SameStep" or "Disabled""#;
-                    unknown("autoreset_mode", rule, mode)
-                })?,
-            gymnasium,
-            continuous,
-            threads: positive("threads", threads)?,
-            own: false,
+        let len = positive("num_envs", num_envs)?.get() as usize;
+        let limit = positive("max_episode_steps", max_episode_steps)?;
+        let threads = positive("threads", threads)?;
+        let mode = match mode {
+            "NextStep" => Autoreset::NextStep,
+            "SameStep" => Autoreset::SameStep,
+            "Disabled" => Autoreset::Disabled,
+            other => {
+                let rule = r#""NextStep", "SameStep" or "Disabled""#;
+                return Err(unknown("autoreset_mode", rule, other));
+            }
         };
+        let mut engine = if gymnasium {
+            Engine::Host(Many::new(len, parse(seed)?)?)
+        } else {
+            Engine::Fast(Many::new(len, parse(seed)?)?)
+        };
+        with_batch!(&mut engine, many => {
+            many.batch.set_limit(limit);
+            many.batch.set_autoreset(mode);
+        });
         Ok(Self {
-            settings,
-            engine: assemble(&settings, parse(seed)?)?,
+            engine,
+            continuous,
+            threads,
             pool: None,
         })
     }
 
     fn __len__(&self) -> usize {
-        self.settings.num_envs
+        with_batch!(&self.engine, many => many.batch.len())
     }
 
     /// Sets a parameter of all acrobots: a value, or a `Uniform` between whose bounds each reset draws it.
     fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        Self::change(slf, name, value)?()
+        let this = &mut *alone(slf)?;
+        if let Some([low, high]) = bounds(value)? {
+            return this.draw(name, &low, &high);
+        }
+        with_batch!(&mut this.engine, many => {
+            let both =
+                |[low, high]: Range| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]);
+            let range = many.range().map(both).transpose()?;
+            let count = if many.own { many.batch.len() } else { 1 };
+            let each = (0..count).map(|index| many.changed(index, name, value));
+            let each: Vec<_> = each.collect::<PyResult<_>>()?;
+            many.change(&each, range)
+        })
     }
 
     /// Sets a parameter of each acrobot. No parameter is drawn then.
     fn set_each(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
-        let mut this = alone(slf)?;
-        let num_envs = this.settings.num_envs;
+        let this = &mut *alone(slf)?;
+        let num_envs = this.__len__();
         if values.len() != num_envs {
             let rule = format_args!("one value, or one for each of {num_envs} environments");
             let got = format_args!("{} values", values.len());
             return Err(PyValueError::new_err(must_be(name, rule, got)));
         }
-        let each = values.iter().enumerate().map(|(index, value)| {
-            let changed = this.changed(index, name, value);
-            changed.map_err(|error| indexed(value.py(), error, index))
-        });
-        let each = each.collect::<PyResult<_>>()?;
-        let plan = this.plan(each, None)?;
-        this.apply(plan)
+        with_batch!(&mut this.engine, many => {
+            let each = values.iter().enumerate().map(|(index, value)| {
+                let changed = many.changed(index, name, value);
+                changed.map_err(|error| indexed(value.py(), error, index))
+            });
+            let each: Vec<_> = each.collect::<PyResult<_>>()?;
+            many.change(&each, None)
+        })
     }
 
     /// A parameter of each acrobot.
     fn get<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let (py, this) = (slf.py(), alone(slf)?);
-        let each = (0..this.settings.num_envs).map(|index| {
-            let mut params = this.params(index)?;
-            Ok(match number(&mut params, name) {
-                Some(number) => number.into_pyobject(py)?.into_any(),
+        let each = (0..this.__len__()).map(|index| {
+            let mut params = with_batch!(&this.engine, many => many.params(index));
+            Ok(match fields(name).next() {
+                Some(field) => field(&mut params).into_pyobject(py)?.into_any(),
                 None => params.torques.into_pyobject(py)?.into_any(),
             })
         });
@@ -110,7 +123,9 @@ impl Batch {
 
     /// Gives acrobots streams of their own: those of `default_rng(seed)`, for each seed that is not `None`.
     fn seed(slf: &Bound<'_, Self>, seeds: Vec<Option<String>>) -> PyResult<()> {
-        for (rng, seed) in alone(slf)?.engine.generators_mut().iter_mut().zip(seeds) {
+        let this = &mut *alone(slf)?;
+        let generators = with_batch!(&mut this.engine, many => many.batch.generators_mut());
+        for (rng, seed) in generators.iter_mut().zip(seeds) {
             if let Some(seed) = seed {
                 *rng = parse(&seed)?.into();
             }
@@ -133,9 +148,15 @@ impl Batch {
         };
         let mask = mask.as_ref().map(|mask| mask.as_slice()).transpose()?;
         let engine = &mut alone(slf)?.engine;
-        slf.py()
-            .detach(|| engine.reset(options, mask))
-            .map_err(rejected)
+        slf.py().detach(|| {
+            with_batch!(engine, many => match mask {
+                Some(mask) => many.batch.deref_mut().reset_masked(mask, options).map_err(rejected),
+                None => {
+                    many.batch.deref_mut().reset_with(options);
+                    Ok(())
+                }
+            })
+        })
     }
 
     fn observe(
@@ -143,7 +164,8 @@ impl Batch {
         mut observations: PyReadwriteArray2<'_, f32>,
     ) -> PyResult<()> {
         let rows = observations.as_slice_mut()?.as_chunks_mut().0;
-        alone(slf)?.engine.observe(rows).map_err(rejected)
+        let this = alone(slf)?;
+        with_batch!(&this.engine, many => many.batch.observe(rows)).map_err(rejected)
     }
 
     /// Steps, and writes the observations into an array. Releases Python's lock meanwhile. The environment converts the
@@ -157,21 +179,19 @@ impl Batch {
         mut finals: Option<PyReadwriteArray2<'py, f32>>,
     ) -> PyResult<Results<'py>> {
         let py = slf.py();
-        let Settings {
-            num_envs: len,
-            continuous,
-            ..
-        } = alone(slf)?.settings;
+        let (len, continuous) = {
+            let this = alone(slf)?;
+            (this.__len__(), this.continuous)
+        };
         let inputs = match Inputs::of(actions, len, continuous) {
             Some(inputs) => inputs,
             None => env.call_method1("_inputs", (actions,))?.extract()?,
         };
         let this = &mut *alone(slf)?;
-        this.engine.read(inputs)?;
-        let no_memory = || PyMemoryError::new_err("the results do not fit into memory");
-        let mut rewards = memory(0.0, len).ok_or_else(no_memory)?;
-        let mut terminated = memory(false, len).ok_or_else(no_memory)?;
-        let mut truncated = memory(false, len).ok_or_else(no_memory)?;
+        with_batch!(&mut this.engine, many => many.read(inputs))?;
+        let mut rewards = memory(0.0, len)?;
+        let mut terminated = memory(false, len)?;
+        let mut truncated = memory(false, len)?;
         let rows = observations.as_slice_mut()?.as_chunks_mut().0;
         let mut buffers =
             StepBuffers::new(&mut rewards, &mut terminated, &mut truncated).with_observations(rows);
@@ -180,17 +200,17 @@ impl Batch {
         }
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
-        let task = if this.settings.gymnasium {
-            1024
-        } else {
-            16_384
+        let task = match engine {
+            Engine::Host(_) => 1024,
+            Engine::Fast(_) => 16_384,
         };
         let tasks = len.div_ceil(task);
-        match tasks.min(this.settings.threads.get() as usize) {
-            1 => py.detach(|| engine.step(buffers, false)),
+        match tasks.min(this.threads.get() as usize) {
+            1 => py.detach(|| with_batch!(engine, many => many.step(buffers, false))),
             threads => {
                 let pool = Pool::of_this_process(&mut this.pool, threads)?;
-                py.detach(|| pool.install(|| engine.step(buffers, true)))
+                let step = || with_batch!(engine, many => many.step(buffers, true));
+                py.detach(|| pool.install(step))
             }
         }
         .map_err(rejected)?;
@@ -206,7 +226,8 @@ impl Batch {
         let this = alone(slf)?;
         let rows = states.as_slice_mut()?.as_chunks_mut().0;
         for (index, row) in rows.iter_mut().enumerate() {
-            *row = this.engine.state(index).ok_or_else(no_such(index))?.into();
+            let state = with_batch!(&this.engine, many => many.batch.state(index).map(State::cast));
+            *row = state.ok_or_else(no_such(index))?.into();
         }
         Ok(())
     }
@@ -217,7 +238,8 @@ impl Batch {
         let rows = states.as_slice()?.as_chunks::<4>().0;
         for (index, row) in rows.iter().enumerate() {
             let state = State::from(*row);
-            this.engine.set_state(index, state).map_err(rejected)?;
+            with_batch!(&mut this.engine, many => many.batch.set_state(index, state.cast()))
+                .map_err(rejected)?;
         }
         Ok(())
     }
@@ -226,7 +248,8 @@ impl Batch {
     fn elapsed(slf: &Bound<'_, Self>, mut elapsed: PyReadwriteArray1<'_, i64>) -> PyResult<()> {
         let this = alone(slf)?;
         for (index, elapsed) in elapsed.as_slice_mut()?.iter_mut().enumerate() {
-            *elapsed = this.member(index)?.elapsed.into();
+            let steps = with_batch!(&this.engine, many => many.batch.elapsed(index));
+            *elapsed = steps.ok_or_else(no_such(index))?.into();
         }
         Ok(())
     }
@@ -236,61 +259,27 @@ impl Batch {
         index: usize,
         mode: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let Member { params, state, .. } = alone(slf)?.member(index)?;
-        render(slf.py(), params, state, mode)
-    }
-
-    /// Not a clone of the memory, which would abort the process where it does not fit.
-    fn __deepcopy__(slf: &Bound<'_, Self>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
         let this = alone(slf)?;
-        Ok(Self {
-            settings: this.settings,
-            engine: this.copied(&this.settings)?,
-            pool: None,
-        })
+        let (params, state) = with_batch!(&this.engine, many => {
+            (many.params(index), many.batch.state(index).map(State::cast))
+        });
+        render(slf.py(), params, state.ok_or_else(no_such(index))?, mode)
     }
 
-    /// With arguments that make the smallest batch, which `__setstate__` then replaces. Every protocol of pickle calls this;
-    /// `__getnewargs__` would serve those from 2 only.
+    /// Every protocol of pickle calls this, and `copy.deepcopy`. `__setstate__` replaces the smallest batch.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let state = Self::__getstate__(slf)?;
-        Ok((slf.get_type(), (1, "0", 1, "NextStep"), state))
+        Ok((slf.get_type(), (), Self::__getstate__(slf)?))
     }
 
-    /// A header, and the members one after the other. They are serialized twice, first to learn their size: a buffer
-    /// that grows would need twice the memory, and abort the process where there is none.
     fn __getstate__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
         let this = alone(slf)?;
-        let header = (VERSION, this.settings, this.engine.range());
-        let mut size = serialized_size(&header).map_err(failed)?;
-        for index in 0..this.settings.num_envs {
-            size += serialized_size(&this.member(index)?).map_err(failed)?;
-        }
-        PyBytes::new_with(slf.py(), size, |mut bytes| {
-            bytes = put(&header, bytes)?;
-            for index in 0..this.settings.num_envs {
-                bytes = put(&this.member(index)?, bytes)?;
-            }
-            Ok(())
-        })
+        save(slf.py(), &(this.continuous, this.threads, &this.engine))
     }
 
     fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
         let mut this = alone(slf)?;
-        *this = load(bytes, |bytes| {
-            let (settings, range): (Settings, _) = take(bytes)?;
-            // A member takes at least a byte, so a damaged number cannot ask for more memory than this.
-            if settings.num_envs > bytes.len() {
-                let rule = format_args!("at most {}", bytes.len());
-                let message = must_be("the snapshot's num_envs", rule, settings.num_envs);
-                return Err(PyValueError::new_err(message));
-            }
-            Ok(Self {
-                settings,
-                engine: filled(&settings, range, |_| take(bytes))?,
-                pool: None,
-            })
-        })?;
+        (this.continuous, this.threads, this.engine) = load(bytes)?;
+        this.pool = None;
         Ok(())
     }
 }
@@ -302,128 +291,35 @@ type Results<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
-/// A change of parameters that was checked.
-struct Plan {
-    /// An engine with own parameters, if there was none.
-    engine: Option<Box<dyn Engine>>,
-    /// The parameters of each acrobot, one for all if they share them, or none if they stay.
-    params: Vec<Params>,
-    range: Option<Range>,
-}
-
 impl Batch {
-    fn params(&self, index: usize) -> PyResult<Params> {
-        Ok(self.member(index)?.params)
-    }
-
-    /// The parameters of an acrobot with one of them changed.
-    fn changed(&self, index: usize, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
-        let params = with(self.params(index)?, name, value)?;
-        self.engine.check([params; 2]).map_err(rejected)?;
-        Ok(params)
-    }
-
-    /// Checks a parameter. Returns what sets it.
-    pub fn change<'py>(
-        slf: &Bound<'py, Self>,
+    /// Sets the bounds between which each reset draws a parameter.
+    fn draw(
+        &mut self,
         name: &str,
-        value: &Bound<'py, PyAny>,
-    ) -> PyResult<impl FnOnce() -> PyResult<()> + use<'py>> {
-        let mut this = alone(slf)?;
-        let plan = match bounds(value)? {
-            Some([low, high]) => this.drawn(name, &low, &high)?,
-            None => this.fixed(name, value)?,
-        };
-        Ok(move || this.apply(plan))
-    }
-
-    /// What sets a parameter of all acrobots.
-    fn fixed(&self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Plan> {
-        let both =
-            |[low, high]: Range| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]);
-        let range = self.engine.range().map(both).transpose()?;
-        let count = if self.settings.own {
-            self.settings.num_envs
-        } else {
-            1
-        };
-        let each = (0..count).map(|index| self.changed(index, name, value));
-        self.plan(each.collect::<PyResult<_>>()?, range)
-    }
-
-    /// What sets the bounds between which each reset draws a parameter.
-    fn drawn(&self, name: &str, low: &Bound<'_, PyAny>, high: &Bound<'_, PyAny>) -> PyResult<Plan> {
+        low: &Bound<'_, PyAny>,
+        high: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
         // The crate would draw another LINK_MOI for each link, and knows no range of equations.
         if matches!(name, "LINK_MOI" | "book_or_nips") {
             let message = format!("{name} must be a value or an array, not a Uniform");
             return Err(PyValueError::new_err(message));
         }
-        let [lows, highs] = match self.engine.range() {
-            Some(range) => range,
-            None => [self.params(0)?; 2],
-        };
-        let range = [with(lows, name, low)?, with(highs, name, high)?];
-        self.plan(Vec::new(), Some(range))
-    }
-
-    /// Checks a range, and gives each acrobot its own parameters if necessary.
-    fn plan(&self, params: Vec<Params>, range: Option<Range>) -> PyResult<Plan> {
-        if let Some(range) = range {
-            self.engine.check(range).map_err(rejected)?;
-        }
-        let own = range.is_some() || params.iter().any(|each| *each != params[0]);
-        let settings = Settings {
-            own,
-            ..self.settings
-        };
-        let engine = (own && !self.settings.own).then(|| self.copied(&settings));
-        Ok(Plan {
-            engine: engine.transpose()?,
-            params,
-            range,
+        with_batch!(&mut self.engine, many => {
+            let [lows, highs] = many.range().unwrap_or([many.params(0); 2]);
+            let range = [with(lows, name, low)?, with(highs, name, high)?];
+            many.change(&[], Some(range))
         })
-    }
-
-    /// Carries out a plan, which cannot fail: everything was checked.
-    fn apply(&mut self, plan: Plan) -> PyResult<()> {
-        if let Some(engine) = plan.engine {
-            self.engine = engine;
-            self.settings.own = true;
-        }
-        self.engine.set_range(plan.range).map_err(rejected)?;
-        for (index, params) in plan.params.into_iter().enumerate() {
-            self.engine.set_params(index, params).map_err(rejected)?;
-        }
-        Ok(())
-    }
-
-    /// A copy of the acrobots, with these settings.
-    fn copied(&self, settings: &Settings) -> PyResult<Box<dyn Engine>> {
-        filled(settings, self.engine.range(), |index| self.member(index))
-    }
-
-    fn member(&self, index: usize) -> PyResult<Member<Host>> {
-        self.engine.member(index).ok_or_else(no_such(index))
     }
 }
 
-/// An engine with these settings, this range of parameters and these members.
-fn filled(
-    settings: &Settings,
-    range: Option<Range>,
-    mut member: impl FnMut(usize) -> PyResult<Member<Host>>,
-) -> PyResult<Box<dyn Engine>> {
-    let mut engine = assemble(settings, SeedSequence::new(0))?;
-    engine.set_range(range).map_err(rejected)?;
-    for index in 0..settings.num_envs {
-        let member = member(index)?;
-        // The first has the parameters that all share.
-        if index == 0 && !settings.own {
-            engine.set_params(index, member.params).map_err(rejected)?;
-        }
-        engine.set_member(index, member).map_err(rejected)?;
-    }
-    Ok(engine)
+/// The only access to a batch. Only its steps and resets let other threads run.
+fn alone<'py>(batch: &Bound<'py, Batch>) -> PyResult<PyRefMut<'py, Batch>> {
+    batch.try_borrow_mut().map_err(|_| {
+        PyRuntimeError::new_err(
+            "another thread is stepping or resetting an environment; \
+             change parameters and call methods between its steps",
+        )
+    })
 }
 
 /// The bounds of a `Uniform`.
@@ -449,10 +345,4 @@ fn parse(seed: &str) -> PyResult<SeedSequence> {
 
 fn no_such(index: usize) -> impl Fn() -> PyErr {
     move || PyIndexError::new_err(index)
-}
-
-/// Serializes a value into the first bytes, and returns the others.
-fn put<'a>(value: &impl Serialize, bytes: &'a mut [u8]) -> PyResult<&'a mut [u8]> {
-    let size = postcard::to_slice(value, bytes).map_err(failed)?.len();
-    Ok(&mut bytes[size..])
 }

@@ -1,47 +1,24 @@
-//! A batch of any arithmetic, behind one trait.
+//! A batch of one of two arithmetics.
 
-use std::num::NonZeroU32;
+use std::ops::DerefMut;
 
 use acrobot::arithmetic::{Arithmetic, Host, Real};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::batch::{StepBuffers, VecBatch};
+use acrobot::numpy::SeedSequence;
 use acrobot::physics::ParamsRange;
-use acrobot::{Error, Fast, Params, ResetOptions, State};
+use acrobot::{Error, Fast, Params};
 use numpy::{
     PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyMemoryError, PyValueError};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{ACTIONS, InvalidAction, must_be, rejected};
+use crate::{ACTIONS, InvalidAction, must_be, rejected, with};
 
 /// The lower and the upper bounds of all parameters. Those that are equal are not drawn.
 pub type Range = [Params; 2];
-
-/// What a batch is made of. All but `own` is fixed.
-#[derive(Clone, Copy, Serialize, Deserialize)]
-pub struct Settings {
-    pub num_envs: usize,
-    pub limit: NonZeroU32,
-    /// The index in [`MODES`].
-    pub mode: usize,
-    /// Whether to compute as Gymnasium does, with [`Host`].
-    pub gymnasium: bool,
-    /// Whether the actions are torques.
-    pub continuous: bool,
-    pub threads: NonZeroU32,
-    /// Whether each acrobot has its own parameters, which takes more memory.
-    pub own: bool,
-}
-
-/// All autoreset modes, with Gymnasium's names.
-pub const MODES: [(&str, Autoreset); 3] = [
-    ("NextStep", Autoreset::NextStep),
-    ("SameStep", Autoreset::SameStep),
-    ("Disabled", Autoreset::Disabled),
-];
 
 /// Actions (0, 1 or 2), or torques, N m.
 #[derive(FromPyObject)]
@@ -69,145 +46,120 @@ fn is_slice<T, D>(array: &Bound<'_, PyArray<T, D>>) -> bool {
     array.is_c_contiguous() && array.data().is_aligned()
 }
 
-/// A batch of any arithmetic, and memory for its inputs. Numbers are `f64` here: conversions from `f32` and back are exact.
-pub trait Engine: Send + Sync {
-    /// Rejects what `set_params` and `set_range` reject.
-    fn check(&self, range: Range) -> Result<(), Error>;
-    /// Sets the parameters of an acrobot, or of all if they share them.
-    fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error>;
-    /// The range from which resets draw parameters.
-    fn range(&self) -> Option<Range>;
-    /// Rejects a range if the acrobots share their parameters.
-    fn set_range(&mut self, range: Option<Range>) -> Result<(), Error>;
-    fn generators_mut(&mut self) -> &mut [Pcg64];
-    fn state(&self, index: usize) -> Option<State>;
-    fn set_state(&mut self, index: usize, state: State) -> Result<(), Error>;
-    fn member(&self, index: usize) -> Option<Member<Host>>;
-    fn set_member(&mut self, index: usize, member: Member<Host>) -> Result<(), Error>;
-    fn reset(&mut self, options: ResetOptions, mask: Option<&[bool]>) -> Result<(), Error>;
-    fn observe(&self, rows: &mut [[f32; 6]]) -> Result<(), Error>;
-    /// Checks the inputs of the next step and copies them.
-    fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()>;
-    /// Steps on this thread, or on all threads of rayon's current pool.
-    fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error>;
+#[derive(Serialize, Deserialize)]
+pub enum Engine {
+    Fast(Many<Fast>),
+    /// Computes as Gymnasium does.
+    Host(Many<Host>),
 }
 
-type Memory<A> = (Vec<Block<A>>, Vec<Pcg64>, Vec<LaneParams<A>>);
+/// Does something with the batch in an engine, whatever its arithmetic.
+macro_rules! with_batch {
+    ($engine:expr, $many:ident => $result:expr) => {
+        match $engine {
+            $crate::engine::Engine::Fast($many) => $result,
+            $crate::engine::Engine::Host($many) => $result,
+        }
+    };
+}
+pub(crate) use with_batch;
 
-struct Many<A: Arithmetic> {
-    batch: Batch<A, Memory<A>>,
-    /// Whether each acrobot has its own parameters.
-    own: bool,
-    /// Empty if the actions are torques.
+/// A batch, and memory for its inputs. Numbers are `f64` outside: conversions from `f32` and back are exact.
+#[derive(Serialize, Deserialize)]
+#[serde(bound(
+    serialize = "A::Scalar: Serialize",
+    deserialize = "A::Scalar: Deserialize<'de>"
+))]
+pub struct Many<A: Arithmetic> {
+    pub batch: VecBatch<A>,
+    /// Whether each acrobot has its own parameters, which takes more memory.
+    pub own: bool,
+    #[serde(skip)]
     actions: Vec<u8>,
-    /// Empty if they are not.
+    /// Empty if the inputs of the next step are actions.
+    #[serde(skip)]
     torques: Vec<A::Scalar>,
 }
 
 impl<A: Arithmetic> Many<A> {
-    fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Box<dyn Engine>> {
-        let (len, own) = (settings.num_envs, settings.own);
-        let blocks = len.div_ceil(Block::<A>::LANES);
-        let (actions, torques) = if settings.continuous {
-            (0, len)
-        } else {
-            (len, 0)
-        };
-        let allocate = || {
-            let storage = (
-                memory(Block::EMPTY, blocks)?,
-                memory(Pcg64::UNSEEDED, len)?,
-                memory(LaneParams::default(), if own { blocks } else { 0 })?,
-            );
-            let inputs = (memory(0, actions)?, memory(A::Scalar::ZERO, torques)?);
-            Some((storage, inputs))
-        };
-        let (storage, (actions, torques)) = allocate().ok_or_else(|| {
-            let rule = "so few that they fit into memory";
-            PyMemoryError::new_err(must_be("num_envs", rule, len))
-        })?;
-        let mut batch = Batch::new(seed, storage).map_err(rejected)?;
-        batch.set_limit(settings.limit);
-        let (_, mode) = MODES.get(settings.mode).ok_or_else(|| {
-            let (name, rule) = ("the snapshot's autoreset mode", MODES.len());
-            PyValueError::new_err(must_be(name, format_args!("below {rule}"), settings.mode))
-        })?;
-        batch.set_autoreset(*mode);
-        Ok(Box::new(Self {
-            batch,
-            own,
-            actions,
-            torques,
-        }))
-    }
-}
-
-impl<A: Arithmetic> Engine for Many<A> {
-    fn check(&self, [low, high]: Range) -> Result<(), Error> {
-        ParamsRange::<A::Scalar>::new(low.cast(), high.cast()).map(drop)
+    pub fn new(len: usize, seed: SeedSequence) -> PyResult<Self> {
+        Ok(Self {
+            batch: VecBatch::new(seed, len).map_err(out_of_memory)?,
+            own: false,
+            actions: Vec::new(),
+            torques: Vec::new(),
+        })
     }
 
-    fn set_params(&mut self, index: usize, params: Params) -> Result<(), Error> {
-        if self.own {
-            self.batch.set_params_of(index, params.cast())
-        } else {
-            self.batch.set_params(params.cast())
-        }
+    pub fn params(&self, index: usize) -> Params {
+        self.batch.params_of(index).unwrap_or_default().cast()
     }
 
-    fn range(&self) -> Option<Range> {
+    /// The range from which resets draw parameters.
+    pub fn range(&self) -> Option<Range> {
         let range = self.batch.params_range()?;
         Some([range.low().cast(), range.high().cast()])
     }
 
-    fn set_range(&mut self, range: Option<Range>) -> Result<(), Error> {
-        let cast = |[low, high]: Range| ParamsRange::new(low.cast(), high.cast());
-        self.batch.set_params_range(range.map(cast).transpose()?)
+    /// The parameters of an acrobot with one of them changed.
+    pub fn changed(&self, index: usize, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+        let params = with(self.params(index), name, value)?;
+        Self::checked([params; 2])?;
+        Ok(params)
     }
 
-    fn generators_mut(&mut self) -> &mut [Pcg64] {
-        self.batch.generators_mut()
+    fn checked([low, high]: Range) -> PyResult<ParamsRange<A::Scalar>> {
+        ParamsRange::new(low.cast(), high.cast()).map_err(rejected)
     }
 
-    fn state(&self, index: usize) -> Option<State> {
-        self.batch.state(index).map(State::cast)
+    /// Sets the range, and the parameters of each acrobot, which `changed` checked: one for all if they share them, or
+    /// none if they stay. Gives each acrobot its own parameters if necessary.
+    pub fn change(&mut self, params: &[Params], range: Option<Range>) -> PyResult<()> {
+        let own = range.is_some() || params.iter().any(|each| *each != params[0]);
+        let range = range.map(Self::checked).transpose()?;
+        if own && !self.own {
+            self.batch = self.owning()?;
+            self.own = true;
+        }
+        self.batch.set_params_range(range).map_err(rejected)?;
+        for (index, params) in params.iter().enumerate() {
+            if self.own {
+                self.batch.set_params_of(index, params.cast())
+            } else {
+                self.batch.set_params(params.cast())
+            }
+            .map_err(rejected)?;
+        }
+        Ok(())
     }
 
-    fn set_state(&mut self, index: usize, state: State) -> Result<(), Error> {
-        self.batch.set_state(index, state.cast())
-    }
-
-    fn member(&self, index: usize) -> Option<Member<Host>> {
-        self.batch.member(index).map(converted)
-    }
-
-    fn set_member(&mut self, index: usize, member: Member<Host>) -> Result<(), Error> {
-        self.batch.set_member(index, converted(member))
-    }
-
-    fn reset(&mut self, options: ResetOptions, mask: Option<&[bool]>) -> Result<(), Error> {
-        match mask {
-            Some(mask) => self.batch.reset_masked(mask, options),
-            None => {
-                self.batch.reset_with(options);
-                Ok(())
+    /// The same batch with memory for the parameters of each acrobot.
+    fn owning(&self) -> PyResult<VecBatch<A>> {
+        let seed = SeedSequence::new(0);
+        let mut batch = VecBatch::with_own_params(seed, self.batch.len()).map_err(out_of_memory)?;
+        batch.set_limit(self.batch.limit());
+        batch.set_autoreset(self.batch.autoreset());
+        for index in 0..batch.len() {
+            if let Some(member) = self.batch.member(index) {
+                batch.set_member(index, member).map_err(rejected)?;
             }
         }
+        Ok(batch)
     }
 
-    fn observe(&self, rows: &mut [[f32; 6]]) -> Result<(), Error> {
-        self.batch.observe(rows)
-    }
-
-    fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()> {
+    /// Checks the inputs of the next step and copies them.
+    pub fn read(&mut self, inputs: Inputs<'_>) -> PyResult<()> {
         match inputs {
-            Inputs::Actions(from) => read(
-                from.as_slice()?,
-                &mut self.actions,
-                |action| (0..3).contains(action),
-                |_, action| action as u8,
-                ACTIONS,
-            ),
+            Inputs::Actions(from) => {
+                self.torques.clear();
+                read(
+                    from.as_slice()?,
+                    &mut self.actions,
+                    |action| (0..3).contains(action),
+                    |_, action| action as u8,
+                    ACTIONS,
+                )
+            }
             Inputs::Torques(from) => {
                 let bounds = |index| {
                     let params = self.batch.params_of(index).unwrap_or_default();
@@ -229,8 +181,11 @@ impl<A: Arithmetic> Engine for Many<A> {
         }
     }
 
-    fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
-        let (batch, actions, torques) = (&mut self.batch, &self.actions, &self.torques);
+    /// Steps on this thread, or on all threads of rayon's current pool. The results go into the buffers, not into the
+    /// `VecBatch`.
+    pub fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
+        let (actions, torques) = (&self.actions, &self.torques);
+        let batch = self.batch.deref_mut();
         match (torques.is_empty(), parallel) {
             (true, false) => batch.step(actions, buffers),
             (true, true) => batch.par_step(actions, buffers),
@@ -243,19 +198,11 @@ impl<A: Arithmetic> Engine for Many<A> {
 /// Checks all inputs, then converts them.
 fn read<T: Copy + std::fmt::Display, U>(
     from: &[T],
-    to: &mut [U],
+    to: &mut Vec<U>,
     valid: impl Fn(&T) -> bool,
     convert: impl Fn(usize, T) -> U,
     rule: &str,
 ) -> PyResult<()> {
-    if from.len() != to.len() {
-        let message = format!(
-            "actions must have {} elements, got {}",
-            to.len(),
-            from.len()
-        );
-        return Err(InvalidAction::new_err(message));
-    }
     // No early exit, so that the compiler vectorizes the loop.
     if !from.iter().fold(true, |all, input| all & valid(input))
         && let Some((index, input)) = from.iter().enumerate().find(|(_, input)| !valid(input))
@@ -263,36 +210,35 @@ fn read<T: Copy + std::fmt::Display, U>(
         let name = format!("actions[{index}]");
         return Err(InvalidAction::new_err(must_be(&name, rule, input)));
     }
-    for (index, (to, &input)) in to.iter_mut().zip(from).enumerate() {
-        *to = convert(index, input);
-    }
+    to.clear();
+    reserve(to, from.len())?;
+    to.extend(
+        from.iter()
+            .enumerate()
+            .map(|(index, &input)| convert(index, input)),
+    );
     Ok(())
 }
 
-/// The same member in another arithmetic. Exact from `f32` to `f64` and back.
-fn converted<A: Arithmetic, B: Arithmetic>(member: Member<A>) -> Member<B> {
-    Member {
-        params: member.params.cast(),
-        state: member.state.cast(),
-        elapsed: member.elapsed,
-        reset_pending: member.reset_pending,
-        rng: member.rng,
-    }
-}
-
-/// An engine with these settings.
-pub fn assemble(settings: &Settings, seed: SeedSequence) -> PyResult<Box<dyn Engine>> {
-    if settings.gymnasium {
-        Many::<Host>::assemble(settings, seed)
-    } else {
-        Many::<Fast>::assemble(settings, seed)
-    }
-}
-
-/// `len` copies of a value, if they fit into memory.
-pub fn memory<T: Clone>(value: T, len: usize) -> Option<Vec<T>> {
+/// `len` copies of a value.
+pub fn memory<T: Clone>(value: T, len: usize) -> PyResult<Vec<T>> {
     let mut memory = Vec::new();
-    memory.try_reserve_exact(len).ok()?;
+    reserve(&mut memory, len)?;
     memory.resize(len, value);
-    Some(memory)
+    Ok(memory)
+}
+
+fn reserve<T>(memory: &mut Vec<T>, len: usize) -> PyResult<()> {
+    let no_memory = |_| PyMemoryError::new_err("a step does not fit into memory");
+    memory.try_reserve_exact(len).map_err(no_memory)
+}
+
+fn out_of_memory(error: Error) -> PyErr {
+    match error {
+        Error::OutOfMemory { len } => {
+            let rule = "so few that they fit into memory";
+            PyMemoryError::new_err(must_be("num_envs", rule, len))
+        }
+        error => rejected(error),
+    }
 }

@@ -10,18 +10,14 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::Host;
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::physics::{Dynamics, ResetBounds};
+use acrobot::physics::Dynamics;
 use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::PyClass;
 use pyo3::exceptions::{PyAttributeError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::pyclass::boolean_struct::False;
+use pyo3::types::{PyBytes, PyType};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-
-use crate::batch::Batch;
-use crate::single::Acrobot;
 
 pyo3::import_exception!(gymnasium.error, InvalidAction);
 
@@ -30,70 +26,37 @@ mod _native {
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
-    use super::check_reset_bounds;
-    #[pymodule_export]
-    use super::set_all;
-    #[pymodule_export]
     use super::single::Acrobot;
 }
 
-/// Raises a `ValueError` if a bound is beyond the range of `f32` or if `low` is above `high`.
-#[pyfunction]
-fn check_reset_bounds(low: f64, high: f64) -> PyResult<()> {
-    ResetBounds::new(low, high).map_err(rejected)?;
-    Ok(())
-}
+/// A parameter that is one number: Gymnasium's name, the crate's, and its field.
+type Number = (&'static str, &'static str, fn(&mut Params) -> &mut f64);
 
-#[derive(FromPyObject)]
-enum Native<'py> {
-    Acrobot(Bound<'py, Acrobot>),
-    Batch(Bound<'py, Batch>),
-}
-
-/// Sets a parameter of these environments, each to its value, and calls `then`. If anything fails, nothing changes: all
-/// environments are locked and all values checked before the first one is set.
-#[pyfunction]
-fn set_all(
-    name: &str,
-    values: Vec<(Native<'_>, Bound<'_, PyAny>)>,
-    then: &Bound<'_, PyAny>,
-) -> PyResult<()> {
-    let mut changes: Vec<Box<dyn FnOnce() -> PyResult<()> + '_>> = Vec::new();
-    for (native, value) in &values {
-        changes.push(match native {
-            Native::Acrobot(acrobot) => Box::new(Acrobot::change(acrobot, name, value)?),
-            Native::Batch(batch) => Box::new(Batch::change(batch, name, value)?),
-        });
-    }
-    then.call0()?;
-    changes.into_iter().try_for_each(|change| change())
-}
-
-/// The only access to a native part. Only a step and a reset of a batch let other threads run.
-fn alone<'py, T: PyClass<Frozen = False>>(slf: &Bound<'py, T>) -> PyResult<PyRefMut<'py, T>> {
-    slf.try_borrow_mut().map_err(|_| {
-        PyRuntimeError::new_err(
-            "another thread is stepping or resetting an environment; \
-             change parameters and call methods between its steps",
-        )
-    })
-}
-
-/// The crate's names of parameters, with Gymnasium's where they differ.
-const NAMES: [(&str, &str); 12] = [
-    ("length1", "LINK_LENGTH_1"),
-    ("length2", "LINK_LENGTH_2"),
-    ("mass1", "LINK_MASS_1"),
-    ("mass2", "LINK_MASS_2"),
-    ("center_of_mass1", "LINK_COM_POS_1"),
-    ("center_of_mass2", "LINK_COM_POS_2"),
-    ("inertia1", "LINK_MOI"),
-    ("inertia2", "LINK_MOI"),
-    ("max_velocity1", "MAX_VEL_1"),
-    ("max_velocity2", "MAX_VEL_2"),
-    ("torques", "AVAIL_TORQUE"),
-    ("torque_noise", "torque_noise_max"),
+/// Gymnasium has one moment of inertia for both links.
+const NUMBERS: [Number; 12] = [
+    ("LINK_LENGTH_1", "length1", |p| &mut p.length1),
+    ("LINK_LENGTH_2", "length2", |p| &mut p.length2),
+    ("LINK_MASS_1", "mass1", |p| &mut p.mass1),
+    ("LINK_MASS_2", "mass2", |p| &mut p.mass2),
+    ("LINK_COM_POS_1", "center_of_mass1", |p| {
+        &mut p.center_of_mass1
+    }),
+    ("LINK_COM_POS_2", "center_of_mass2", |p| {
+        &mut p.center_of_mass2
+    }),
+    ("LINK_MOI", "inertia1", |p| &mut p.inertia1),
+    ("LINK_MOI", "inertia2", |p| &mut p.inertia2),
+    ("dt", "dt", |p| &mut p.dt),
+    ("MAX_VEL_1", "max_velocity1", |p| &mut p.max_velocity1),
+    ("MAX_VEL_2", "max_velocity2", |p| &mut p.max_velocity2),
+    ("torque_noise_max", "torque_noise", |p| &mut p.torque_noise),
 ];
+
+/// The fields of a parameter by Gymnasium's name.
+fn fields(name: &str) -> impl Iterator<Item = fn(&mut Params) -> &mut f64> {
+    let named = NUMBERS.iter().filter(move |(known, ..)| *known == name);
+    named.map(|(.., field)| *field)
+}
 
 /// What precedes the name of a parameter in the error for a reversed range.
 const LOWER: &str = "the lower ";
@@ -106,7 +69,11 @@ fn rejected(error: impl std::error::Error) -> PyErr {
     } else {
         ""
     };
-    let renamed = NAMES.iter().find_map(|(name, gymnasiums)| {
+    let names = NUMBERS
+        .iter()
+        .map(|(gymnasiums, name, _)| (*gymnasiums, *name));
+    let mut names = names.chain([("AVAIL_TORQUE", "torques")]);
+    let renamed = names.find_map(|(gymnasiums, name)| {
         let rest = message[start.len()..].strip_prefix(name)?;
         rest.starts_with([' ', '['])
             .then(|| format!("{start}{gymnasiums}{rest}"))
@@ -152,30 +119,9 @@ fn positive(name: &str, value: i64) -> PyResult<NonZeroU32> {
     })
 }
 
-/// A parameter that is one number. `name` is Gymnasium's name of it.
-fn number<'a>(params: &'a mut Params, name: &str) -> Option<&'a mut f64> {
-    Some(match name {
-        "dt" => &mut params.dt,
-        "LINK_LENGTH_1" => &mut params.length1,
-        "LINK_LENGTH_2" => &mut params.length2,
-        "LINK_MASS_1" => &mut params.mass1,
-        "LINK_MASS_2" => &mut params.mass2,
-        "LINK_COM_POS_1" => &mut params.center_of_mass1,
-        "LINK_COM_POS_2" => &mut params.center_of_mass2,
-        "MAX_VEL_1" => &mut params.max_velocity1,
-        "MAX_VEL_2" => &mut params.max_velocity2,
-        "torque_noise_max" => &mut params.torque_noise,
-        _ => return None,
-    })
-}
-
 /// The parameters with one of them changed.
 fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     match name {
-        "LINK_MOI" => {
-            params.inertia1 = convert(name, "a number", value)?;
-            params.inertia2 = params.inertia1;
-        }
         "AVAIL_TORQUE" => {
             if let Ok(count) = value.len()
                 && count != 3
@@ -193,9 +139,12 @@ fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Pa
             }
         }
         _ => {
-            let number = number(&mut params, name);
-            let unknown = || PyAttributeError::new_err(format!("no parameter {name}"));
-            *number.ok_or_else(unknown)? = convert(name, "a number", value)?;
+            let mut fields = fields(name).peekable();
+            if fields.peek().is_none() {
+                return Err(PyAttributeError::new_err(format!("no parameter {name}")));
+            }
+            let number = convert(name, "a number", value)?;
+            fields.for_each(|field| *field(&mut params) = number);
         }
     }
     params.validate().map_err(rejected)?;
@@ -231,35 +180,29 @@ fn render<'py>(
 /// The version of this package's snapshots. The crate's snapshots, which they contain, have their own version.
 const VERSION: u32 = 1;
 
-/// Serializes a snapshot, for pickle.
-fn save(snapshot: &impl Serialize) -> PyResult<Vec<u8>> {
-    postcard::to_stdvec(&(VERSION, snapshot)).map_err(failed)
-}
+/// What `__reduce__` returns: the type, no arguments of `new`, and the argument of `__setstate__`.
+type Reduced<'py> = (Bound<'py, PyType>, (), Bound<'py, PyBytes>);
 
-fn failed(error: postcard::Error) -> PyErr {
-    PyRuntimeError::new_err(error.to_string())
+/// Serializes a snapshot, for pickle.
+fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
+    let bytes = postcard::to_stdvec(&(VERSION, snapshot));
+    let bytes = bytes.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    Ok(PyBytes::new(py, &bytes))
 }
 
 /// Deserializes a snapshot. Rejects other versions, and bytes after the end.
-fn load<T>(mut bytes: &[u8], read: impl FnOnce(&mut &[u8]) -> PyResult<T>) -> PyResult<T> {
-    let version: u32 = take(&mut bytes)?;
+fn load<T: DeserializeOwned>(bytes: &[u8]) -> PyResult<T> {
+    let damaged = |error| PyValueError::new_err(format!("the snapshot is damaged: {error}"));
+    let (version, rest): (u32, _) = postcard::take_from_bytes(bytes).map_err(damaged)?;
     if version != VERSION {
         let message = must_be("the snapshot's version", VERSION, version);
         return Err(PyValueError::new_err(message));
     }
-    let snapshot = read(&mut bytes)?;
-    if !bytes.is_empty() {
-        let count = bytes.len();
+    let (snapshot, rest) = postcard::take_from_bytes(rest).map_err(damaged)?;
+    if !rest.is_empty() {
+        let count = rest.len();
         let message = format!("the snapshot must have no bytes after its end, got {count}");
         return Err(PyValueError::new_err(message));
     }
     Ok(snapshot)
-}
-
-/// Deserializes a value from the first bytes, and removes them.
-fn take<T: DeserializeOwned>(bytes: &mut &[u8]) -> PyResult<T> {
-    let (value, rest) = postcard::take_from_bytes(bytes)
-        .map_err(|error| PyValueError::new_err(format!("the snapshot is damaged: {error}")))?;
-    *bytes = rest;
-    Ok(value)
 }

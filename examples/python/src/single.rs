@@ -7,12 +7,10 @@ use acrobot::{Observation, Params, State};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyType};
+use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    InvalidAction, alone, convert, load, must_be, rejected, render, save, shown, take, with,
-};
+use crate::{InvalidAction, Reduced, convert, load, must_be, rejected, render, save, shown, with};
 
 /// What `Env.step` returns: observation, reward, terminated, truncated and info.
 type Step<'py> = (
@@ -23,35 +21,21 @@ type Step<'py> = (
     Bound<'py, PyDict>,
 );
 
-/// What `__reduce__` returns: the type, the arguments of `new` and the argument of `__setstate__`.
-type Reduced<'py> = (Bound<'py, PyType>, (bool, bool, bool), Bound<'py, PyBytes>);
-
-/// The largest number of torques.
-const MAX_TORQUES: usize = 65_536;
-
 /// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Acrobot {
-    kind: Kind,
     inner: Inner,
     /// The array that Python has as the state, since the last step. Its elements can be assigned.
     lent: Option<Py<PyAny>>,
 }
 
-/// What an environment chooses when it is made.
-#[derive(Clone, Copy)]
-struct Kind {
+/// What a snapshot contains.
+#[derive(Clone, Serialize, Deserialize)]
+struct Inner {
     /// Whether observations are those of `Acrobot-v0`.
     angles: bool,
     /// Whether actions are torques.
     continuous: bool,
-    /// Whether each step calls the environment's `render`.
-    human: bool,
-}
-
-/// What a snapshot contains.
-#[derive(Clone, Serialize, Deserialize)]
-struct Inner {
     /// Without noise and with the default torques: the crate has three.
     acrobot: acrobot::Acrobot<Host>,
     torques: Vec<f64>,
@@ -66,10 +50,6 @@ impl Inner {
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         match name {
             "AVAIL_TORQUE" => {
-                if value.len().is_ok_and(|count| count > MAX_TORQUES) {
-                    let rule = format_args!("at most {MAX_TORQUES} numbers");
-                    return Err(PyValueError::new_err(must_be(name, rule, value.len()?)));
-                }
                 let torques = convert(name, "a sequence of numbers", value)?;
                 self.set_torques(torques)
             }
@@ -108,15 +88,12 @@ impl Inner {
 #[pymethods]
 impl Acrobot {
     #[new]
-    #[pyo3(signature = (angles = false, continuous = false, human = false))]
-    fn new(angles: bool, continuous: bool, human: bool) -> Self {
+    #[pyo3(signature = (angles = false, continuous = false))]
+    fn new(angles: bool, continuous: bool) -> Self {
         Self {
-            kind: Kind {
+            inner: Inner {
                 angles,
                 continuous,
-                human,
-            },
-            inner: Inner {
                 acrobot: acrobot::Acrobot::new(0),
                 torques: Params::<f64>::DEFAULT.torques.into(),
                 noise: 0.0,
@@ -127,8 +104,8 @@ impl Acrobot {
         }
     }
 
-    fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        Self::change(slf, name, value)?()
+    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.inner.set(name, value)
     }
 
     /// The state, as an array whose elements can be assigned until the next step.
@@ -160,16 +137,6 @@ impl Acrobot {
         Ok(())
     }
 
-    #[getter]
-    fn human(&self) -> bool {
-        self.kind.human
-    }
-
-    #[setter]
-    fn set_human(&mut self, human: bool) {
-        self.kind.human = human;
-    }
-
     /// Steps by an action of the environment, whose generator draws the noise.
     fn step<'py>(
         slf: &Bound<'py, Self>,
@@ -177,7 +144,7 @@ impl Acrobot {
         action: &Bound<'py, PyAny>,
     ) -> PyResult<Step<'py>> {
         let py = slf.py();
-        let continuous = slf.try_borrow()?.kind.continuous;
+        let continuous = slf.try_borrow()?.inner.continuous;
         // The conversion can be Python code.
         let number = continuous.then(|| number(env, action)).transpose()?;
         let mut this = slf.try_borrow_mut()?;
@@ -201,17 +168,12 @@ impl Acrobot {
         let step = this.inner.acrobot.step_torque(torque).map_err(rejected)?;
         this.lent = None;
         this.inner.single = false;
-        let observation = if this.kind.angles {
+        let observation = if this.inner.angles {
             let state = this.inner.acrobot.state();
             PyArray1::from_slice(py, Observation::<4>::from(state).as_ref())
         } else {
             PyArray1::from_slice(py, step.observation.as_ref())
         };
-        let human = this.kind.human;
-        drop(this);
-        if human {
-            env.call_method0("render")?;
-        }
         Ok((
             observation,
             step.reward.into(),
@@ -227,24 +189,19 @@ impl Acrobot {
         render(py, *acrobot.params(), acrobot.state(), mode)
     }
 
-    /// Every protocol of pickle calls this; `__getnewargs__` would serve those from 2 only.
+    /// Every protocol of pickle calls this.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let Kind {
-            angles,
-            continuous,
-            human,
-        } = slf.try_borrow()?.kind;
         let state = slf.try_borrow_mut()?.__getstate__(slf.py())?;
-        Ok((slf.get_type(), (angles, continuous, human), state))
+        Ok((slf.get_type(), (), state))
     }
 
     fn __getstate__<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         self.read_lent(py)?;
-        Ok(PyBytes::new(py, &save(&self.inner)?))
+        save(py, &self.inner)
     }
 
     fn __setstate__(&mut self, bytes: &[u8]) -> PyResult<()> {
-        let mut inner: Inner = load(bytes, take)?;
+        let mut inner: Inner = load(bytes)?;
         inner.set_noise(inner.noise)?;
         let torques = mem::take(&mut inner.torques);
         inner.set_torques(torques)?;
@@ -258,21 +215,6 @@ impl Acrobot {
 }
 
 impl Acrobot {
-    /// Checks a parameter. Returns what sets it.
-    pub fn change<'py>(
-        slf: &Bound<'py, Self>,
-        name: &str,
-        value: &Bound<'py, PyAny>,
-    ) -> PyResult<impl FnOnce() -> PyResult<()> + use<'py>> {
-        let mut this = alone(slf)?;
-        let mut inner = this.inner.clone();
-        inner.set(name, value)?;
-        Ok(move || {
-            this.inner = inner;
-            Ok(())
-        })
-    }
-
     /// Takes over what Python assigned to elements of the state.
     fn read_lent(&mut self, py: Python<'_>) -> PyResult<()> {
         if let Some(lent) = &self.lent {

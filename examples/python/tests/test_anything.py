@@ -8,8 +8,7 @@ import contextlib
 import acrobot_rs
 import gymnasium
 import numpy as np
-import pytest
-from acrobot_rs import Uniform, _native
+from acrobot_rs import Uniform
 from acrobot_rs.parameters import _NAMES
 from hypothesis import given
 from hypothesis import strategies as st
@@ -171,52 +170,35 @@ def damaged(good):
     return st.builds(apply, st.lists(change, max_size=4), ends, st.just(b"") | st.binary(max_size=4)) | st.binary()
 
 
-SNAPSHOT = acrobot_rs.AcrobotEnv()
-SNAPSHOT.reset(seed=1)
+def played(env):
+    """An environment after a step."""
+    env.reset(seed=1)
+    env.step(env.action_space.sample())
+    return env
 
 
-@given(damaged(SNAPSHOT._native.__getstate__()))
-def test_damaged_snapshots_of_a_single_environment(snapshot):
-    env = acrobot_rs.AcrobotEnv("ansi")
-    env.reset(seed=2)
+SINGLES = played(acrobot_rs.AcrobotEnv())._native.__getstate__()
+BATCHES = played(acrobot_rs.AcrobotVectorEnv(2, autoreset_mode="SameStep"))._native.__getstate__()
+
+
+@given(
+    st.tuples(st.just(acrobot_rs.AcrobotEnv), damaged(SINGLES))
+    | st.tuples(st.just(acrobot_rs.AcrobotVectorEnv), damaged(BATCHES))
+)
+def test_damaged_snapshots(kind_and_snapshot):
+    kind, snapshot = kind_and_snapshot
+    env = played(kind())
     before = env._native.__getstate__()
     try:
         env._native.__setstate__(snapshot)
     except ValueError:
         assert env._native.__getstate__() == before
-    if env.state is not None:
+    if kind is acrobot_rs.AcrobotEnv and env.state is not None:
         assert_numbers(env.step(1)[0])
-    env.render()
-
-
-@given(damaged(acrobot_rs.AcrobotVectorEnv(2, autoreset_mode="SameStep")._native.__getstate__()))
-def test_damaged_snapshots_of_a_batch(snapshot):
-    batch = _native.Batch(2, "2", 5, "SameStep")
-    before = batch.__getstate__()
-    try:
-        batch.__setstate__(snapshot)
-    except ValueError:
-        assert batch.__getstate__() == before
-    count = len(batch)
-    observations, finals = np.zeros((2, count, 6), np.float32)
-    batch.step(None, np.ones(count, np.int64), observations, finals)
-    assert_numbers(observations)
-    states = np.empty((count, 4))
-    batch.states(states)
-    assert np.isfinite(states).all()
-
-
-@given(st.lists(ANYTHING | ARRAYS, min_size=4, max_size=4), MODES, st.booleans())
-def test_arrays_of_a_batch(arguments, mode, alias):
-    batch = _native.Batch(2, "0", 5, mode)
-    attempt(batch.step, *arguments)
-    attempt(batch.observe, arguments[0])
-    with contextlib.suppress(IndexError):
-        attempt(batch.render, arguments[0], "ansi")
-    attempt(batch.reset, *arguments)
-    # Arrays for results must be writable, and none may be passed twice.
-    rows = np.zeros((2, 6), np.float32)
-    if not alias:
-        rows.flags.writeable = False
-    with pytest.raises(REJECTIONS):
-        batch.step(None, np.ones(2, np.int64), rows, rows)
+    elif kind is acrobot_rs.AcrobotVectorEnv:
+        env.num_envs = len(env._native)
+        observations, finals = np.zeros((2, env.num_envs, 6), np.float32)
+        attempt(env._native.step, env, np.ones(env.num_envs, np.int64), observations, finals)
+        assert_numbers(observations)
+        assert np.isfinite(env.state).all()
+    env._native.render(*([] if kind is acrobot_rs.AcrobotEnv else [0]), "ansi")

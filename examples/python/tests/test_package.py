@@ -1,4 +1,4 @@
-"""The installed package has what a registry shows, and plays recorded episodes. CI runs this on each Python, without the repository."""
+"""The installed package has what a registry shows, and plays recorded episodes. CI runs this on each Python."""
 
 from importlib.metadata import distribution
 
@@ -20,28 +20,10 @@ def test_metadata():
 
 def test_files():
     files = {path.name: path for path in distribution("acrobot-rs").files}
-    assert "py.typed" in files and "_native.pyi" in files
+    assert "py.typed" in files
     for name, words in [("LICENSE-MIT", "Permission is hereby granted"), ("LICENSE-APACHE", "Version 2.0, January 2004")]:
         assert files[name].parent.name == "licenses"
         assert words in files[name].read_text()
-
-
-def against_velocity(observations):
-    """Torque against the velocity of link 1."""
-    return np.where(observations[..., 4] > 0, 0, 2)
-
-
-def test_recorded_returns():
-    """Those of Gymnasium 1.4.0 with NumPy 2.4.6."""
-    env = gymnasium.make("acrobot_rs/Acrobot-v1")
-    for seed, recorded in enumerate([-76, -71, -139, -118, -99, -75, -77, -75, -110, -95]):
-        observation, _ = env.reset(seed=seed)
-        episode_return, done = 0.0, False
-        while not done:
-            observation, reward, terminated, truncated, _ = env.step(int(against_velocity(observation)))
-            episode_return += reward
-            done = terminated or truncated
-        assert episode_return == recorded
 
 
 def test_recorded_velocities():
@@ -49,6 +31,6 @@ def test_recorded_velocities():
     envs = gymnasium.make_vec("acrobot_rs/Acrobot-v1", num_envs=8)
     observations, _ = envs.reset(seed=42)
     for _ in range(1000):
-        observations, *_ = envs.step(against_velocity(observations))
+        observations, *_ = envs.step(np.where(observations[:, 4] > 0, 0, 2))
     recorded = [-1.2072487, 2.8623645, -0.43208173, 4.013114, -0.08323621, -2.5330896, -0.25388432, 1.6371081]
     assert (observations[:, 5] == np.float32(recorded)).all()

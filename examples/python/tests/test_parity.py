@@ -6,57 +6,9 @@ With 2,000 random configurations instead of 200: ``python -m pytest --hypothesis
 import acrobot_rs
 import gymnasium
 import numpy as np
-import pytest
 from hypothesis import settings
 
 STEPS = 500
-
-
-def side_by_side(seed, book_or_nips="book", noise=0.0, dt=0.2, options=None):
-    """Plays the same actions in both. A reset in the middle continues their streams."""
-    theirs, ours = gymnasium.make("Acrobot-v1").unwrapped, gymnasium.make("acrobot_rs/Acrobot-v1").unwrapped
-    for env in (theirs, ours):
-        env.book_or_nips, env.torque_noise_max, env.dt = book_or_nips, noise, dt
-        env.action_space.seed(seed)
-    initial = [env.reset(seed=seed, options=options) for env in (theirs, ours)]
-    for step in range(STEPS):
-        if step == 300:
-            initial = [env.reset(options=options) for env in (theirs, ours)]
-        if initial:
-            (first, _), (our_first, info) = initial
-            assert (ours.state == theirs.state).all()
-            assert our_first.tobytes() == first.tobytes() and our_first.dtype == first.dtype and info == {}
-            initial = None
-        action = theirs.action_space.sample()
-        assert ours.action_space.sample() == action
-        observation, *signals = theirs.step(action)
-        our_observation, *our_signals = ours.step(action)
-        assert ours.state.tobytes() == theirs.state.tobytes(), f"step {step}"
-        assert our_observation.tobytes() == observation.tobytes(), f"step {step}"
-        assert our_signals == signals and list(map(type, our_signals)) == list(map(type, signals))
-    assert ours.np_random.bit_generator.state == theirs.np_random.bit_generator.state
-
-
-@pytest.mark.parametrize("seed", range(50))
-def test_seeds(seed):
-    side_by_side(seed)
-
-
-@pytest.mark.parametrize("book_or_nips", ["book", "nips"])
-@pytest.mark.parametrize("noise", [0.0, 0.3])
-@pytest.mark.parametrize("dt", [0.2, 0.05])
-def test_parameters_and_reset_bounds(book_or_nips, noise, dt):
-    side_by_side(2**70 + 1, book_or_nips, noise, dt, {"low": -1.5, "high": 2.0})
-
-
-def test_first_observations():
-    """NumPy's float32 sines differ from the C library's in 1 of 500 initial states."""
-    theirs, ours = gymnasium.make("Acrobot-v1").unwrapped, acrobot_rs.AcrobotEnv()
-    for env in (theirs, ours):
-        env.reset(seed=0)
-    for width in np.linspace(0.1, 30, 5000):
-        options = {"low": -width, "high": width}
-        assert ours.reset(options=options)[0].tobytes() == theirs.reset(options=options)[0].tobytes()
 
 
 class TooManyTurns(Exception):
@@ -100,9 +52,10 @@ def set_state(rng, envs):
 
 
 def compare(seed):
-    """Plays a random configuration in both and returns how many steps had too many turns."""
+    """Plays a configuration in both, every tenth time with the default parameters. Returns how many steps had too many turns."""
     rng = np.random.default_rng(seed)
     envs = theirs, ours = gymnasium.make("Acrobot-v1").unwrapped, acrobot_rs.AcrobotEnv()
+    default = seed % 10 == 0
 
     def reset(seed=None):
         width = 10 ** rng.uniform(-2, 1.5)
@@ -112,11 +65,14 @@ def compare(seed):
         assert ours.state.tobytes() == theirs.state.tobytes() and ours.state.dtype == theirs.state.dtype
 
     skipped = 0
-    change(rng, envs)
+    if not default:
+        change(rng, envs)
     reset(seed=int(rng.integers(2**63)) << int(rng.integers(64)))
+    for env in envs:
+        env.action_space.seed(seed)
     for step in range(STEPS):
         event = rng.random()
-        if event < 0.01:
+        if event < 0.01 and not default:
             change(rng, envs)
         elif event < 0.02:
             reset()
@@ -125,7 +81,10 @@ def compare(seed):
         elif event < 0.04:
             for env in envs:
                 env.state[step % 4] = event
-        action = int(rng.integers(len(ours.AVAIL_TORQUE)))
+        action = theirs.action_space.sample()
+        assert ours.action_space.sample() == action
+        if rng.random() < 0.5:
+            action = int(rng.integers(len(ours.AVAIL_TORQUE)))
         try:
             observation, *signals = theirs.step(action)
         except TooManyTurns:
@@ -141,12 +100,11 @@ def compare(seed):
     return skipped
 
 
-def test_random_configurations(monkeypatch):
+def test_configurations(monkeypatch):
     """All parameters, changed during episodes too, resets with and without bounds, and states set by hand."""
     monkeypatch.setattr(gymnasium.envs.classic_control.acrobot, "wrap", wrap)
     count = 2000 if settings.get_current_profile_name() == "long" else 300
     skipped = sum(compare(seed) for seed in range(count))
-    print(f"{count * STEPS - skipped:,} steps are bit-identical, {skipped:,} have more than 64 turns")
     assert skipped < 0.1 * count * STEPS
 
 

@@ -28,23 +28,15 @@ __all__ = [
 ]
 __version__ = version("acrobot-rs")
 
-register(
-    id="acrobot_rs/Acrobot-v1",
-    entry_point="acrobot_rs.env:AcrobotEnv",
-    vector_entry_point="acrobot_rs.vector:AcrobotVectorEnv",
-    reward_threshold=-100.0,
-    max_episode_steps=500,
-)
-register(
-    id="acrobot_rs/AcrobotContinuous-v0",
-    entry_point="acrobot_rs.env:AcrobotContinuousEnv",
-    vector_entry_point="acrobot_rs.vector:AcrobotContinuousVectorEnv",
-    reward_threshold=-100.0,
-    max_episode_steps=500,
-)
-register(
-    id="acrobot_rs/Acrobot-v0",
-    entry_point="acrobot_rs.env:AcrobotV0Env",
-    reward_threshold=-100.0,
-    max_episode_steps=200,
-)
+for _name, _kind, _vector_kind, _steps in (
+    ("Acrobot-v1", "AcrobotEnv", "AcrobotVectorEnv", 500),
+    ("AcrobotContinuous-v0", "AcrobotContinuousEnv", "AcrobotContinuousVectorEnv", 500),
+    ("Acrobot-v0", "AcrobotV0Env", None, 200),
+):
+    register(
+        id=f"acrobot_rs/{_name}",
+        entry_point=f"acrobot_rs.env:{_kind}",
+        vector_entry_point=_vector_kind and f"acrobot_rs.vector:{_vector_kind}",
+        reward_threshold=-100.0,
+        max_episode_steps=_steps,
+    )

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from acrobot_rs._native import Acrobot
 from acrobot_rs.parameters import Parameters, numbers, reset_bounds
 
+
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between the links must swing them up.
 
@@ -73,8 +74,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     _native: Acrobot
     #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
-    #: Whether actions are torques.
-    _CONTINUOUS = False
 
     def __init__(self, render_mode: str | None = None) -> None:
         """Make an environment. Reset it before its first step.
@@ -93,19 +92,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         self.action_space = self._action_space
         self.observation_space = self._observation_space
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        super().__setattr__(name, value)
-        if name == "render_mode":
-            # Then each step calls `render`.
-            self._native.human = value == "human"
-
     def __getstate__(self) -> dict[str, Any]:
         """All but the window, which a copy opens itself."""
         return {**vars(self), "screen": None, "clock": None}
-
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Discrete(len(self.AVAIL_TORQUE))
 
     @property
     def state(self) -> NDArray[np.floating[Any]] | None:
@@ -151,7 +140,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         """The observation of an initial state, by Gymnasium's calls of NumPy, whose float32 sines are its own."""
         return np.array([np.cos(s[0]), np.sin(s[0]), np.cos(s[1]), np.sin(s[1]), s[2], s[3]], dtype=np.float32)
 
-    def step(self, action: int | np.integer[Any]) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+    def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
 
         Args:
@@ -166,7 +155,10 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             ValueError: If a number that is not finite was assigned to an element of ``state``.
             AssertionError: If the environment was never reset.
         """
-        return self._native.step(self, action)
+        result = self._native.step(self, action)
+        if self.render_mode == "human":
+            self.render()
+        return result
 
     def render(self) -> NDArray[np.uint8] | str | None:
         """An array of shape ``(500, 500, 3)`` or a text, depending on the render mode; ``"human"`` shows it in a window.
@@ -214,7 +206,8 @@ class AcrobotContinuousEnv(AcrobotEnv):
     """:class:`AcrobotEnv` with any torque between two bounds as its action.
 
     The action space is a ``Box`` of shape ``(1,)``, ``float32``: a torque in N m. Its bounds are the smallest and the largest
-    number in ``AVAIL_TORQUE``, by default -1 and 1. A torque outside is clipped. NaN and another shape are invalid.
+    number in ``AVAIL_TORQUE``, by default -1 and 1. A torque outside is clipped. ``step`` takes an array or a list of one
+    number, and rejects NaN and other shapes.
     Observations, rewards and the end of an episode are those of :class:`AcrobotEnv`.
 
     >>> import gymnasium as gym
@@ -225,26 +218,6 @@ class AcrobotContinuousEnv(AcrobotEnv):
     """
 
     _CONTINUOUS = True
-
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Box(min(self.AVAIL_TORQUE), max(self.AVAIL_TORQUE), (1,), np.float32)
-
-    def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Apply a torque for ``dt``.
-
-        Args:
-            action: An array or a list of one number, the torque in N m. It is clipped to the bounds.
-
-        Returns:
-            As :meth:`AcrobotEnv.step`.
-
-        Raises:
-            gymnasium.error.InvalidAction: If the action is NaN or of another shape. Nothing changes then.
-            ValueError: If a number that is not finite was assigned to an element of ``state``.
-            AssertionError: If the environment was never reset.
-        """
-        return self._native.step(self, action)
 
     def _torque(self, action: ArrayLike) -> float:
         """The torque, N m. The native part calls this for all but arrays of ``float32``."""

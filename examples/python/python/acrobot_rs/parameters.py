@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-import abc
 import copy
 import dataclasses
 import difflib
 import functools
 import math
-import os
 import reprlib
-import threading
-import weakref
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Literal, NoReturn
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Literal
 
 import numpy as np
 from gymnasium import logger, spaces
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 from numpy.typing import NDArray
 
-from acrobot_rs._native import Acrobot, Batch, check_reset_bounds, set_all
+from acrobot_rs._native import Acrobot, Batch
 
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()
@@ -35,20 +31,6 @@ _IGNORED = {
     "_terminal": "change the end of episodes with a wrapper",
     "SCREEN_DIM": "pictures have 500 x 500 pixels: resize what render returns",
 }
-#: All environments, for changes of class attributes.
-_LIVE: weakref.WeakSet[Parameters] = weakref.WeakSet()
-#: Held while a parameter changes or an environment takes over those of its class.
-_LOCK = threading.RLock()
-if hasattr(os, "register_at_fork"):
-    # A child has no other threads, so one that holds the lock would never release it.
-    os.register_at_fork(before=_LOCK.acquire, after_in_parent=_LOCK.release, after_in_child=_LOCK.release)
-
-
-class Torques(tuple[float, ...]):
-    """Torques in N m. A tuple, because a changed element of a list would have no effect."""
-
-    def __setitem__(self, index: Any, value: Any) -> NoReturn:
-        raise TypeError("set AVAIL_TORQUE as a whole, as in env.unwrapped.AVAIL_TORQUE = [-2.0, 0.0, 2.0]")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,32 +46,13 @@ class Uniform:
     high: Any
 
 
-def _checked(name: str, value: Any) -> Any:
-    """The value of a parameter, for a class."""
-    if isinstance(value, Uniform):
-        Batch(1, "0", 1, "NextStep").set(name, value)
-    else:
-        Acrobot().set(name, value)
-    return _fixed(name, value)
-
-
 def _fixed(name: str, value: Any) -> Any:
     """A valid value, as an object that cannot change: a change of an array would have no effect."""
     if isinstance(value, Uniform):
         return Uniform(_fixed(name, value.low), _fixed(name, value.high))
     if name == "book_or_nips":
         return value
-    return Torques(map(float, value)) if name == "AVAIL_TORQUE" else float(value)
-
-
-def _lowest(value: Any) -> Any:
-    """The lower bound, if the value of a parameter is drawn."""
-    return value.low if isinstance(value, Uniform) else value
-
-
-def _highest(value: Any) -> Any:
-    """The upper bound, if the value of a parameter is drawn."""
-    return value.high if isinstance(value, Uniform) else value
+    return tuple(map(float, value)) if name == "AVAIL_TORQUE" else float(value)
 
 
 def _reject_ignored(cls: type, name: str) -> None:
@@ -109,53 +72,12 @@ def _meant(name: str) -> str | None:
     return names[close[0]] if close else None
 
 
-class Live(abc.ABCMeta):
-    """The type of classes with parameters. What is set on a class acts on its environments from the next step."""
-
-    def __init__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **kwargs: Any) -> None:
-        super().__init__(name, bases, namespace, **kwargs)
-        for each, value in namespace.items() if bases else ():
-            if each in _NAMES:
-                super().__setattr__(each, _checked(each, value))
-        # Also what a class inherits from one without parameters.
-        for base in cls.__mro__ if bases else ():
-            for each, value in vars(base).items() if base is cls or not isinstance(base, Live) else ():
-                if each in _IGNORED or not callable(value):
-                    _reject_ignored(cls, each)
-
-    def __setattr__(cls, name: str, value: Any) -> None:
-        if name not in _NAMES:
-            _reject_ignored(cls, name)
-            super().__setattr__(name, value)
-            return
-        value = _checked(name, value)
-        cls._change(name, lambda env: value, functools.partial(super().__setattr__, name, value))
-
-    def __delattr__(cls, name: str) -> None:
-        change = functools.partial(super().__delattr__, name)
-        if name in _NAMES and name in vars(cls):
-            cls._change(name, lambda env: getattr(super(cls, env), name), change)
-        else:
-            change()
-
-    def _change(cls, name: str, value: Callable[[Parameters], Any], change: Callable[[], None]) -> None:
-        """Change a parameter of the class and of all environments that have it from the class, or of none."""
-        with _LOCK:
-            values = []
-            for env in _LIVE:
-                classes = type(env).__mro__
-                if cls in classes and not any(name in vars(each) for each in (env, *classes[: classes.index(cls)])):
-                    env._check(name, value(env))
-                    values.append((env._native, value(env)))
-            # In one call, so that no other thread, error or interrupt comes between.
-            set_all(name, values, change)
-
-
-class Parameters(metaclass=Live):
-    """The parameters of the physics, with Gymnasium's names. Set them on an environment, on a class or in a subclass.
+class Parameters:
+    """The parameters of the physics, with Gymnasium's names. Set them on an environment or in a subclass.
 
     A value is checked immediately and acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError``
-    that says what is valid, and a misspelt name an ``AttributeError``.
+    that says what is valid, and a misspelt name an ``AttributeError``. An environment takes over the values that its class
+    has when it is made.
     """
 
     #: Duration of one step, s; above 0.
@@ -179,7 +101,7 @@ class Parameters(metaclass=Live):
     #: Bound of link 2's velocity, relative to link 1, after a step, rad/s; above 0.
     MAX_VEL_2: float = 9 * math.pi
     #: Torques of the actions 0, 1 and 2, N m. A single environment may have another number of actions.
-    AVAIL_TORQUE: Sequence[float] = Torques((-1.0, 0.0, 1.0))
+    AVAIL_TORQUE: Sequence[float] = (-1.0, 0.0, 1.0)
     #: Each step adds a uniform draw from [-torque_noise_max, torque_noise_max) to the torque, N m; 0 or more. 0 draws nothing.
     torque_noise_max: float = 0.0
     #: The equations of motion: those of Sutton and Barto's book, or those printed in the 1996 paper.
@@ -192,6 +114,20 @@ class Parameters(metaclass=Live):
     spec: Any
     render_mode: str | None
     _native: Acrobot | Batch
+    #: Whether actions are torques.
+    _CONTINUOUS = False
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        for name, value in list(vars(cls).items()):
+            if name in _NAMES:
+                (Batch() if isinstance(value, Uniform) else Acrobot()).set(name, value)
+                setattr(cls, name, _fixed(name, value))
+        # Also what a class inherits from one without parameters.
+        for base in cls.__mro__:
+            for name, value in vars(base).items() if base is cls or not issubclass(base, Parameters) else ():
+                if name in _IGNORED or not callable(value):
+                    _reject_ignored(cls, name)
 
     def __init__(self, native: Acrobot | Batch, render_mode: str | None) -> None:
         """Pass the class's parameters, which a subclass may have changed, to the native part."""
@@ -201,19 +137,9 @@ class Parameters(metaclass=Live):
             raise ValueError(f"render_mode must be None or one of {modes}, got {render_mode!r}")
         self._native = native
         self.render_mode = render_mode
-        self._set_all()
-
-    def _set_all(self) -> None:
-        """Pass all parameters to the native part: class attributes may have changed since a pickle."""
-        with _LOCK:
-            # Any centre of mass is valid with an inertia. LINK_MOI comes last.
-            self._native.set("LINK_MOI", 1.0)
-            for name in _NAMES:
-                self._pass(name, getattr(self, name))
-            _LIVE.add(self)
-
-    def _check(self, name: str, value: Any) -> None:
-        """Reject a value that the value of another parameter excludes, except what the native part rejects."""
+        # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
+        for name in _NAMES:
+            setattr(self, name, getattr(self, name))
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
@@ -223,28 +149,21 @@ class Parameters(metaclass=Live):
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a parameter and set it."""
         if name in _NAMES:
-            with _LOCK:
-                super().__setattr__(name, self._pass(name, value))
+            value = self._pass(name, value)
         else:
             _reject_ignored(type(self), name)
-            super().__setattr__(name, value)
+        super().__setattr__(name, value)
 
     def __delattr__(self, name: str) -> None:
-        """Set a parameter back to the value of its class. ``unittest.mock.patch.object`` does this when it ends."""
-        with _LOCK:
-            if name in _NAMES and name in vars(self):
-                self._pass(name, getattr(type(self), name))
+        """Set a parameter back to the value of its class."""
+        if name in _NAMES:
+            setattr(self, name, getattr(type(self), name))
+        else:
             super().__delattr__(name)
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        vars(self).update(state)
-        self._set_all()
-
     def __copy__(self) -> Parameters:
-        """A copy with its own state. It shares the generator and the spaces, as a copy of Gymnasium's environment does."""
-        twin = type(self).__new__(type(self))
-        twin.__setstate__({**vars(self), "_native": copy.deepcopy(self._native)})
-        return twin
+        """As ``copy.deepcopy``: two objects with the same states would be no copies."""
+        return copy.deepcopy(self)
 
     def _warn_of_no_render_mode(self) -> None:
         logger.warn(
@@ -253,9 +172,17 @@ class Parameters(metaclass=Live):
         )
 
     @property
-    def _highest_velocities(self) -> tuple[float, float]:
+    def _highest_velocities(self) -> list[float]:
         """The largest velocities after a step, or after a reset with the default bounds of 0.1, rad/s."""
-        return max(_highest(self.MAX_VEL_1), 0.1), max(_highest(self.MAX_VEL_2), 0.1)
+        return [max(getattr(bound, "high", bound), 0.1) for bound in (self.MAX_VEL_1, self.MAX_VEL_2)]
+
+    @property
+    def _action_space(self) -> spaces.Space[Any]:
+        """That of a single environment."""
+        lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
+        if self._CONTINUOUS:
+            return spaces.Box(min(lows), max(highs), (1,), np.float32)
+        return spaces.Discrete(len(lows))
 
     @property
     def _observation_space(self) -> spaces.Box[np.float32]:
@@ -278,7 +205,9 @@ def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset
         if key not in keys:
             raise ValueError(f"the keys of options must be among {keys}, got {key!r}")
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
-    check_reset_bounds(low, high)
+    largest = np.finfo(np.float32).max
+    if not (abs(low) <= largest and abs(high) <= largest):
+        raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
     return low, high
 
 

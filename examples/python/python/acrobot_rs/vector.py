@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import copy
 import os
 from typing import Any
 
 import numpy as np
-from gymnasium import spaces
 from gymnasium.error import ClosedEnvironmentError, Error, InvalidAction, ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, _highest, _lowest, numbers, reset_bounds
+from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, numbers, reset_bounds
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 Floats = NDArray[np.float32]
@@ -59,8 +57,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     }
 
     _native: Batch
-    #: Whether actions are torques.
-    _CONTINUOUS = False
 
     def __init__(
         self,
@@ -84,7 +80,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 episode has ended before the next step.
             copy: Whether each call returns observations in a new array. Otherwise all calls return the same array.
             gymnasium_episodes: Whether to play Gymnasium's own episodes: computed in ``float64``, environment ``i`` seeded
-                with ``seed + i``, and rewards as ``float64``. Steps then take 25 times as long.
+                with ``seed + i``, and rewards as ``float64``. Steps then take about 30 times as long.
             threads: The threads that compute a step; ``None``: as many as the process has cores. They change no bit. More
                 than one is faster only for more than 16,384 environments, or 1,024 with ``gymnasium_episodes``.
 
@@ -311,24 +307,15 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
         self._ready = False
 
-    def __copy__(self) -> AcrobotVectorEnv:
-        """As ``copy.deepcopy``: two objects with the same states would be no copies."""
-        return copy.deepcopy(self)
-
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Discrete(3)
-
-    def _check(self, name: str, value: Any) -> None:
-        ranged = isinstance(value, Uniform)
-        for other in _NAMES if ranged or _each(name, value) is not None else ():
-            if other != name and isinstance(getattr(self, other), np.ndarray if ranged else Uniform):
-                found = "a Uniform" if ranged else "different values"
-                rule = "one value for all environments" if ranged else "a value or an array, not a Uniform"
-                raise ValueError(f"{other} must be {rule}, if {name} has {found}")
-
     def _pass(self, name: str, value: Any) -> Any:
-        self._check(name, value)
+        each = _each(name, value)
+        drawn = isinstance(value, Uniform)
+        for other in _NAMES if drawn or each is not None else ():
+            # A reset that draws would replace different values.
+            if other != name and isinstance(getattr(self, other), np.ndarray if drawn else Uniform):
+                found = "a Uniform" if drawn else "different values"
+                rule = "one value for all environments" if drawn else "a value or an array, not a Uniform"
+                raise ValueError(f"{other} must be {rule}, if {name} has {found}")
         each = _each(name, value)
         if each is None:
             self._native.set(name, value)
@@ -343,10 +330,11 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
         """The actions, checked and converted to an array that the native part reads. It calls this where necessary."""
-        shape = (self.num_envs,)
-        actions = numbers("actions", f"integers of shape {shape}", actions, shape, "iu", InvalidAction)
+        what, kinds, dtype = ("numbers", "fiu", np.float32) if self._CONTINUOUS else ("integers", "iu", np.int64)
+        shape = self.action_space.shape
+        actions = numbers("actions", f"{what} of shape {shape}", actions, shape, kinds, InvalidAction)
         # An array over packed bytes is not aligned, which Rust requires.
-        return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.int64)
+        return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), dtype)
 
     def _check_open(self) -> None:
         if self.closed:
@@ -397,15 +385,6 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
     """
 
     _CONTINUOUS = True
-
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        return spaces.Box(min(_lowest(self.AVAIL_TORQUE)), max(_highest(self.AVAIL_TORQUE)), (1,), np.float32)
-
-    def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
-        shape = (self.num_envs, 1)
-        actions = numbers("actions", f"numbers of shape {shape}", actions, shape, error=InvalidAction)
-        return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), np.float32)
 
 
 def _each(name: str, value: Any) -> list[Any] | None:
