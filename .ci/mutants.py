@@ -23,19 +23,19 @@ ROOT = Path(__file__).resolve().parents[1]
 SURVIVORS = ROOT / ".ci/mutants.txt"
 SHARDS = os.cpu_count() if len(sys.argv) == 1 else 1
 
-# Without `examples`, which does not test the library, `sines`, which tests one file, and `batch`, which takes half a
-# minute without optimization.
-OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines"} | {"properties"})
+# Without `sines`, which tests one file, and `batch`, which takes minutes without optimization.
+OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines"})
 ROUNDS = [
     (["src/physics/control*"], ["control"]),
     (["src/arithmetic*", "src/math*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
     (["src/math/sines/correctly_rounded*"], ["sines"]),
     (["src/trajectory.rs"], ["trajectory"]),
-    (["src/batch*", "src/math/lanes.rs"], ["autoreset", "batch_slices", "batch_snapshots", "stability", "vec_batch"]),
+    (["src/batch*", "src/math/lanes.rs"], ["stability"]),
     (["src/env*", "src/render*"], ["check_env", "env", "render"]),
     (["src/*"], ["acrobot", "validation", "seeding", "snapshot", "trajectory"]),
     (["src/*"], OTHERS),
     (["src/batch*", "src/math/lanes.rs"], ["batch"]),
+    (["src/*"], ["properties"]),
 ]
 # Without optimization the crate and a test compile in a fifth of the time; dependencies stay as they are.
 CARGO = ["--config=profile.dev.package.acrobot.opt-level=0", "--config=profile.dev.package.acrobot.debug=false"]
@@ -60,7 +60,8 @@ def play(folder, shard, files, tests, done):
     for name in ("caught", "missed", "timeout", "unviable"):
         (output / f"{name}.txt").write_text("".join(f"{mutant}\n" for mutant in done) if name == "caught" else "")
     options = ["--in-place", "--iterate", f"--shard={shard}/{SHARDS}", "--no-times", "--colors=never", "--timeout=300"]
-    options += [f"--file={file}" for file in files] + [f"--cargo-arg=--test={test}" for test in tests]
+    options += [f"--file={file}" for file in files]
+    options += ["--test-package=properties"] if tests == ["properties"] else [f"--cargo-arg=--test={test}" for test in tests]
     options += [f"--cargo-arg={option}" for option in CARGO]
     # A single shard uses the dependencies that are built in target/.
     environment = {**os.environ, "CARGO_TARGET_DIR": str(ROOT / "target" if SHARDS == 1 else folder / "target")}
