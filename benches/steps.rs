@@ -1,5 +1,5 @@
 //! Steps per second: `cargo bench -p benches --bench steps`. The table includes the yardsticks, `bare` and
-//! `batch_bare`. The example `throughput` prints ratios to them.
+//! `batch_bare`. The program `throughput` prints ratios to them.
 
 use std::time::Duration;
 
