@@ -52,7 +52,7 @@ ROWS = {
 RAM_OF_AN500 = "-C link-arg=--defsym=RAM_ORIGIN=0x60000000"
 CORE_COLUMNS = ARITHMETICS | {"fast_soft_floats": "`Fast`, soft-floats", "micro_soft_floats": "`Micro`, soft-floats"}
 Core = collections.namedtuple("Core", "words target has_fpu rustflags machine", defaults=[False, "", ""])
-# The Cortex-M4F has a table of its own.
+# These rows exclude the first table, which has more figures of the Cortex-M4F.
 CORES = {
     "m0": Core("Cortex-M0", "thumbv6m-none-eabi"),
     "m3": Core("Cortex-M3", "thumbv7m-none-eabi"),

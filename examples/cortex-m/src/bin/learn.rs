@@ -1,5 +1,5 @@
 //! Learns to swing up on the microcontroller until the mean return of 100 episodes is at least −100. It needs 32 KiB of
-//! RAM, of which the learner takes half, and the weights are bit-identical to a desktop's. Then it plays an episode on an OLED.
+//! RAM. The learner uses half of it, and its weights are bit-identical to those of a desktop. Then it plays an episode on an OLED.
 //!
 //! It prints figures in the format of `bench`: `fast figure value`.
 
