@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo:rustc-link-arg=--defsym=RAM_ORIGIN=0x80100000");
     }
     println!("cargo:rustc-link-arg-bin=logger=-Tdefmt.x");
-    // Its weights alone take 16 KiB.
+    // The learner alone needs 16 KiB.
     println!("cargo:rustc-link-arg-bin=learn=--defsym=RAM_SIZE=32K");
     // It has batches in all arithmetics and is never flashed.
     println!("cargo:rustc-link-arg-bin=no_panic=--defsym=FLASH_SIZE=1M");

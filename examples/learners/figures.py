@@ -87,7 +87,7 @@ def main():
     largest = [(run, of_seeds) for run, of_seeds in results if run[0] == "64k" and run[1] > 0]
     before = lines = PAGE.read_text().splitlines()
     for head, row, results in [(RETURNS, returns, results), (TIMES, times, largest)]:
-        rows = [f"| {' | '.join(row(*result))} |" for result in results]
+        rows = [f"| {' | '.join(row(*result))} |".replace("-", "−") for result in results]
         table = [head, "|---" * (head.count("|") - 1) + "|", *rows]
         print("\n".join(table))
         start = lines.index(head)

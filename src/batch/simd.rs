@@ -65,7 +65,7 @@ impl SimdLevel {
         unsafe_code,
         reason = "the one place that uses instructions which the machine has and the build does not assume"
     )]
-    // Inlined where there is one level, so that kernels which a program does not use are omitted: 18 KB of the page.
+    // Inlined where there is one level, so that kernels which a program does not use are omitted.
     #[cfg_attr(not(all(feature = "std", target_arch = "x86_64")), inline(always))]
     pub(super) fn step<A: Arithmetic, const N: usize>(self, work: Work<'_, A, N>) {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]

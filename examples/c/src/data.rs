@@ -1,7 +1,6 @@
 //! The structs that pass data.
 
 use core::ffi::c_int;
-use core::mem::transmute;
 
 use acrobot::physics::Dynamics;
 use acrobot::{Observation, Params, State, Step};
@@ -43,8 +42,16 @@ pub struct acrobot_observation_t {
 
 impl From<Observation> for acrobot_observation_t {
     fn from(observation: Observation) -> Self {
-        // SAFETY: both are six floats without padding.
-        unsafe { transmute::<[f32; 6], Self>(observation.to_array()) }
+        let [cos_theta1, sin_theta1, cos_theta2, sin_theta2, dtheta1, dtheta2] =
+            observation.to_array();
+        Self {
+            cos_theta1,
+            sin_theta1,
+            cos_theta2,
+            sin_theta2,
+            dtheta1,
+            dtheta2,
+        }
     }
 }
 
@@ -89,8 +96,13 @@ pub struct acrobot_state_t {
 
 impl From<State<f32>> for acrobot_state_t {
     fn from(state: State<f32>) -> Self {
-        // SAFETY: both are four floats without padding.
-        unsafe { transmute::<[f32; 4], Self>(state.into()) }
+        let [theta1, theta2, dtheta1, dtheta2] = state.into();
+        Self {
+            theta1,
+            theta2,
+            dtheta1,
+            dtheta2,
+        }
     }
 }
 

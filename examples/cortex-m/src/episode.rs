@@ -1,6 +1,6 @@
 //! The policy of the programs that play one episode, and the episode as a plain loop plays it.
 //!
-//! `#[inline]` compiles them in these programs alone. Otherwise the flash of `minimal_fast` changes by 8 bytes.
+//! `#[inline]` compiles them in these programs alone. Otherwise the flash of `minimal` changes by 8 bytes.
 
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Observation, Step, TimeLimit};

@@ -2,7 +2,7 @@
 
 import { inflate } from "./inflate.js";
 
-/* global LENGTH, MODULE: build.mjs defines the module's length in bytes, and the module in DEFLATE and base64. */
+/* global LENGTH, MODULE: wasm.mjs defines the module's length in bytes, and the module in DEFLATE and base64. */
 
 let exports;
 

@@ -1,6 +1,6 @@
 """The single environment is bit-identical to Gymnasium's, which runs beside it.
 
-With 2,000 random configurations instead of 200: ``python -m pytest --hypothesis-profile=long tests/test_parity.py``.
+With 2,000 configurations instead of 300: ``python -m pytest --hypothesis-profile=long tests/test_parity.py``.
 """
 
 import acrobot_rs

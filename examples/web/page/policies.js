@@ -7,7 +7,7 @@ export const POLICIES = {
   bang_bang: ({ state }) => (state.dtheta1 > 0 ? 0 : 2),
 
   /**
-   * The torque of the example `energy_control`, −(E↑ − E) θ̇1, rounded to an action. E↑ is the energy of standing upright. The torque
+   * The torque −(E↑ − E) θ̇1, rounded to an action. E↑ is the energy of standing upright. The torque
    * adds energy below E↑ and removes energy above it.
    */
   energy_law({ state, numbers, standing }) {

@@ -52,7 +52,7 @@ fn main() -> ! {
             "batch of 4 lanes with own parameters",
             episodes::own_params::<4, 2>() == episodes::OWN_PARAMS,
         ),
-        // The weights do not fit into 16 KiB of RAM. The firmware `learn` compares them.
+        // The learner and the stack do not fit into 16 KiB of RAM. The firmware `learn` compares them.
         cfg!(target_os = "none") || report("training", training::weights() == training::WEIGHTS),
     ];
     process::exit(if equal == [true; 11] { 0 } else { 1 })

@@ -16,7 +16,7 @@ const STEPS: u32 = 1_000_000;
 /// Prints a row for each policy.
 pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
     println!("| policy | mean return |\n|---|---|");
-    let row = |name: &str, mean: f64| println!("| {name} | {mean:.2} |");
+    let row = |name: &str, mean: f64| println!("| {name} | −{:.2} |", -mean);
     let mut actions = Pcg64::new(SEED);
     row("random", mean(|_| Action::sample(&mut actions)));
     row("torque against θ̇1", mean(|state| bang_bang(state.dtheta1)));

@@ -8,7 +8,7 @@
 //! The learner is `examples/learners`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
 //! `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for which the mean return of episodes
 //! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
-//! states that it was not trained on, and K of these missed the goal. With `--evaluate N` a line `steps M greedy_mean R`
+//! states that it was not trained on, and K of these missed the goal. The time of learning goes to stderr. With `--evaluate N` a line `steps M greedy_mean R`
 //! for every N steps comes before. Without `--quiet` it draws the learning curve, the values and the last greedy
 //! episode.
 //!
@@ -16,6 +16,7 @@
 //! This is the baseline.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, State};
@@ -101,7 +102,9 @@ fn run<const S: usize, const T: usize, const N: usize>(
         load(&mut learner, path)?;
     }
 
+    let start = Instant::now();
     let returns = train(&mut learner, options);
+    let seconds = start.elapsed().as_secs_f32();
     if let Some(path) = &options.save {
         let bytes: Vec<u8> = learner.save().collect();
         write(path, bytes)?;
@@ -112,6 +115,7 @@ fn run<const S: usize, const T: usize, const N: usize>(
     let solved_at = curve::solved_at(&returns).map_or("never".into(), |n| n.to_string());
     if options.quiet {
         let Returns { mean, sd, misses } = learnt;
+        eprintln!("learnt in {seconds:.2} s");
         println!("solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}");
         return Ok(());
     }
