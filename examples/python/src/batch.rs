@@ -18,7 +18,7 @@ use pyo3::types::PyBytes;
 use crate::draws::Distribution;
 use crate::engine::{Engine, Inputs, Many, memory, with_batch};
 use crate::pool::Pool;
-use crate::{Reduced, fields, load, must_be, positive, rejected, render, save, shown, unknown};
+use crate::{Reduced, fields, load, must_be, positive, rejected, render, save, unknown, with};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -81,30 +81,18 @@ impl Batch {
         with_batch!(&mut this.engine, many => {
             let mut draws = many.draws.clone();
             draws.distributions.remove(name);
-            let count = if many.own { many.batch.len() } else { 1 };
-            let each = (0..count).map(|index| many.changed(index, name, value, &draws));
-            let each: Vec<_> = each.collect::<PyResult<_>>()?;
-            many.change(&each, draws)
+            let each = many.all_params().into_iter().map(|params| with(params, name, value));
+            many.change(&each.collect::<PyResult<Vec<_>>>()?, draws)
         })
     }
 
-    /// Sets a parameter that each reset draws, from an object of a Python class for this.
+    /// Sets a parameter that each reset draws.
     fn set_drawn(slf: &Bound<'_, Self>, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
         let this = &mut *alone(slf)?;
         let distribution = Distribution::of(drawn)?;
-        let rule = match (name, distribution) {
-            ("book_or_nips", _) => "a value or an array",
-            ("AVAIL_TORQUE", Distribution::LogUniform | Distribution::Normal { .. }) => {
-                "a value, an array or a Uniform"
-            }
-            _ => "",
-        };
-        if !rule.is_empty() {
-            return Err(PyValueError::new_err(must_be(name, rule, shown(drawn))));
-        }
         let bounds = [drawn.getattr("low")?, drawn.getattr("high")?];
         with_batch!(&mut this.engine, many => {
-            let draws = many.drawing(name, distribution, &bounds)?;
+            let draws = many.drawing(name, distribution, bounds)?;
             many.change(&many.all_params(), draws)
         })
     }
@@ -122,7 +110,7 @@ impl Batch {
             let mut draws = many.draws.clone();
             draws.distributions.remove(name);
             let each = values.iter().enumerate().map(|(index, value)| {
-                let changed = many.changed(index, name, value, &draws);
+                let changed = with(many.params(index), name, value);
                 changed.map_err(|error| indexed(value.py(), error, index))
             });
             let each: Vec<_> = each.collect::<PyResult<_>>()?;
@@ -310,7 +298,7 @@ impl Batch {
     fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
         let mut this = alone(slf)?;
         let (continuous, threads, mut engine) = load(bytes)?;
-        with_batch!(&mut engine, many => many.check()?);
+        with_batch!(&mut engine, many => many.change(&many.all_params(), many.draws.clone())?);
         (this.continuous, this.threads, this.engine) = (continuous, threads, engine);
         this.pool = None;
         Ok(())

@@ -101,63 +101,41 @@ impl<A: Arithmetic> Many<A> {
         (0..count).map(|index| self.params(index)).collect()
     }
 
-    /// The parameters of an acrobot with one of them changed. Checks all that these draws can make of them.
-    pub fn changed(
-        &self,
-        index: usize,
-        name: &str,
-        value: &Bound<'_, PyAny>,
-        draws: &Draws,
-    ) -> PyResult<Params> {
-        let params = with(self.params(index), name, value)?;
-        Self::checked(draws.ends(params))?;
-        Ok(params)
-    }
-
-    /// These draws and that of one more parameter.
+    /// The draws of resets with one more parameter.
     pub fn drawing(
         &self,
         name: &str,
         distribution: Distribution,
-        [low, high]: &[Bound<'_, PyAny>; 2],
+        [low, high]: [Bound<'_, PyAny>; 2],
     ) -> PyResult<Draws> {
-        let [lows, highs] = self.draws.ends(self.params(0));
-        let mut draws = Draws {
-            distributions: self.draws.distributions.clone(),
-            low: with(lows, name, low)?.cast::<A::Scalar>().cast(),
-            high: with(highs, name, high)?.cast::<A::Scalar>().cast(),
-        };
+        let mut draws = self.draws.clone();
+        let [lows, highs] = draws.ends(self.params(0));
+        let bounds = [with(lows, name, &low)?, with(highs, name, &high)?];
+        draws.bounds = bounds.map(|bound| bound.cast::<A::Scalar>().cast());
         draws.distributions.insert(name.to_owned(), distribution);
-        let all = self.all_params();
-        all.iter()
-            .try_for_each(|params| Self::checked(draws.ends(*params)).map(drop))?;
         Ok(draws)
-    }
-
-    /// Checks what a snapshot contains.
-    pub fn check(&mut self) -> PyResult<()> {
-        let (all, draws) = (self.all_params(), self.draws.clone());
-        all.iter()
-            .try_for_each(|params| Self::checked(draws.ends(*params)).map(drop))?;
-        self.change(&all, draws)
     }
 
     fn checked([low, high]: [Params; 2]) -> PyResult<ParamsRange<A::Scalar>> {
         ParamsRange::new(low.cast(), high.cast()).map_err(rejected)
     }
 
-    /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of the next resets. All are
-    /// checked. Gives each acrobot its own parameters if necessary.
+    /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of resets. Gives each acrobot
+    /// its own parameters if necessary.
     pub fn change(&mut self, params: &[Params], draws: Draws) -> PyResult<()> {
-        let differ = |each: &Params| *each != params[0];
-        if !self.own && (!draws.distributions.is_empty() || params.iter().any(differ)) {
+        for each in params {
+            Self::checked(draws.ends(*each))?;
+        }
+        let draws_any = !draws.distributions.is_empty();
+        if !self.own && (draws_any || params.iter().any(|each| *each != params[0])) {
             self.batch = self.owning()?;
             self.own = true;
         }
-        // Resets of the crate draw before the initial state, and replace all parameters.
+        // The crate draws before the initial state, uniformly, another LINK_MOI for each link, and replaces all parameters.
         let ends = draws.ends(params[0]);
-        let is_range = !draws.distributions.is_empty()
-            && draws.are_uniform()
+        let mut distributions = draws.distributions.iter();
+        let is_range = draws_any
+            && distributions.all(|(name, how)| *how == Distribution::Uniform && name != "LINK_MOI")
             && params.iter().all(|each| draws.ends(*each) == ends);
         let range = is_range.then(|| Self::checked(ends)).transpose()?;
         self.batch.set_params_range(range).map_err(rejected)?;

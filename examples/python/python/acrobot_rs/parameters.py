@@ -37,27 +37,28 @@ class Drawn:
 
     low: Any
     high: Any
-    #: Rust's name of the distribution.
     _KIND: ClassVar[str]
-    _RULE: ClassVar[str] = "a finite number"
 
     def __post_init__(self) -> None:
         """Check the numbers, and keep them as Python's."""
         for name, value in list(vars(self).items()):
-            is_sequence = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0)
-            array = numbers(name, self._RULE, value, (3,) if is_sequence and self._KIND == "Uniform" else (), error=TypeError)
+            is_row = self._KIND == "Uniform" and (isinstance(value, list | tuple) or np.ndim(value) > 0)
+            rule = "three finite numbers" if is_row else "a finite number"
+            array = numbers(name, rule, value, (3,) if is_row else (), error=TypeError)
             if not np.isfinite(array).all():
-                raise ValueError(f"{name} must be {self._RULE}, got {value!r}")
-            object.__setattr__(self, name, tuple(map(float, array)) if array.ndim else float(array))
-        if np.shape(self.low) != np.shape(self.high):
-            raise ValueError(f"low and high must have the same length, got {self}")
-        if np.greater(self.low, self.high).any():
-            raise ValueError(f"low must not be above high, got {self}")
+                raise ValueError(f"{name} must be {rule}, got {value!r}")
+            object.__setattr__(self, name, tuple(map(float, array)) if is_row else float(array))
+        if np.shape(self.low) != np.shape(self.high) or np.greater(self.low, self.high).any():
+            raise ValueError(f"low must be at most high, and of the same length, got {self}")
+        if self._KIND == "LogUniform" and self.low <= 0:
+            raise ValueError(f"low must be above 0, got {self}")
+        if self._KIND == "Normal" and not (self.std > 0 and self.low <= self.mean <= self.high):
+            raise ValueError(f"std must be above 0, and mean from low to high, got {self}")
 
 
 @dataclasses.dataclass(frozen=True)
 class Uniform(Drawn):
-    """A parameter that each reset draws uniformly. ``AVAIL_TORQUE`` takes bounds of three numbers.
+    """A parameter that each reset draws uniformly. The bounds of ``AVAIL_TORQUE`` are three numbers each.
 
     >>> import acrobot_rs
     >>> envs = acrobot_rs.AcrobotVectorEnv(1024, LINK_MASS_1=acrobot_rs.Uniform(0.8, 1.2))
@@ -66,36 +67,22 @@ class Uniform(Drawn):
     low: Any
     high: Any
     _KIND = "Uniform"
-    _RULE = "a finite number, or three of them for AVAIL_TORQUE"
 
 
 @dataclasses.dataclass(frozen=True)
 class LogUniform(Drawn):
-    """A parameter whose logarithm each reset draws uniformly. ``low`` must be above 0.
-
-    >>> import acrobot_rs
-    >>> envs = acrobot_rs.AcrobotVectorEnv(1024, LINK_MOI=acrobot_rs.LogUniform(0.5, 2.0))
-    """
+    """A parameter whose logarithm each reset draws uniformly. ``low`` is above 0."""
 
     low: float
     high: float
     _KIND = "LogUniform"
 
-    def __post_init__(self) -> None:
-        """Check the numbers."""
-        super().__post_init__()
-        if self.low <= 0:
-            raise ValueError(f"low must be above 0, got {self}")
-
 
 @dataclasses.dataclass(frozen=True)
 class Normal(Drawn):
-    """A parameter that each reset draws from a normal distribution, truncated to the bounds. ``mean`` must be between them.
+    """A parameter that each reset draws from a normal distribution, truncated at the bounds.
 
-    ``mean`` and ``std`` are those before the truncation.
-
-    >>> import acrobot_rs
-    >>> envs = acrobot_rs.AcrobotVectorEnv(1024, LINK_MASS_1=acrobot_rs.Normal(1.0, 0.1, low=0.7, high=1.3))
+    ``mean`` and ``std`` are those before the truncation. ``mean`` is between the bounds.
     """
 
     mean: float
@@ -103,14 +90,6 @@ class Normal(Drawn):
     low: float
     high: float
     _KIND = "Normal"
-
-    def __post_init__(self) -> None:
-        """Check the numbers."""
-        super().__post_init__()
-        if self.std <= 0:
-            raise ValueError(f"std must be above 0, got {self}")
-        if not self.low <= self.mean <= self.high:
-            raise ValueError(f"mean must be from low to high, got {self}")
 
 
 def _fixed(name: str, value: Any) -> Any:
@@ -235,26 +214,24 @@ class Parameters:
             self._check_name(name)
             super().__setattr__(name, value)
             return
-        follow = self._made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2")
-        before = self._spaces() if follow else {}
+        before = self._spaces() if self._made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2") else {}
         super().__setattr__(name, self._pass(name, value))
-        after = self._spaces() if follow else {}
-        for space, old in before.items():
+        for space, new in self._spaces().items() if before else ():
             current = getattr(self, space)
             # Another space is a user's.
-            if current == old != after[space]:
-                after[space].seed(int(current.np_random.integers(2**32)))
-                super().__setattr__(space, after[space])
+            if current == before[space] != new:
+                new.seed(int(current.np_random.integers(2**32)))
+                super().__setattr__(space, new)
 
     def _check_name(self, name: str) -> None:
         """Reject the assignment of an attribute that would have no effect. A subclass may have attributes of its own."""
         cls = type(self)
         if self._made and name in self._CHOSEN:
-            raise AttributeError(f"{name} is chosen when the environments are made, and cannot be changed later")
-        is_ours = cls.__module__.startswith("acrobot_rs.") and self._made
-        if is_ours and not (name.startswith("_") or name in _IGNORED or name in vars(self) or hasattr(cls, name)):
-            raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name)}")
+            raise AttributeError(f"{name} cannot change after {cls.__name__} was made")
         _reject_ignored(cls, name)
+        is_ours = cls.__module__.startswith("acrobot_rs.") and self._made
+        if is_ours and not (name.startswith("_") or name in vars(self) or hasattr(cls, name)):
+            raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name)}")
 
     def __delattr__(self, name: str) -> None:
         """Set a parameter back to the value of its class."""
