@@ -9,16 +9,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::{NUMBERS, fields};
 
-/// How a parameter is drawn between its bounds.
+/// How a parameter is drawn between its bounds, between which the mean must be.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Distribution {
     Uniform,
     LogUniform,
-    /// Its mean must be between the bounds.
-    Normal {
-        mean: f64,
-        std: f64,
-    },
+    Normal { mean: f64, std: f64 },
 }
 
 impl Distribution {

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from acrobot_rs import LogUniform, Normal, Uniform
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
-from vectors import CONTINUOUS, MODES, assert_equal, make_vec, reset_ended
+from vectors import CONTINUOUS, make_vec
 
 
 #: All parameters that can be drawn, in the order of their draws.
@@ -192,33 +192,6 @@ def test_invalid_draws_are_rejected_when_they_are_made(kind, numbers, error, mes
         kind(*numbers)
 
 
-class Telling(acrobot_rs.AcrobotEnv):
-    """Has a parameter in its infos."""
-
-    def reset(self, **kwargs):
-        return super().reset(**kwargs)[0], {"AVAIL_TORQUE": np.array(self.AVAIL_TORQUE)}
-
-    def step(self, action):
-        return *super().step(action)[:4], {"AVAIL_TORQUE": np.array(self.AVAIL_TORQUE)}
-
-
-@MODES
-def test_infos_have_parameters_as_those_of_sync_vector_env(mode):
-    torques = np.arange(12.0).reshape(4, 3)
-    theirs = gymnasium.vector.SyncVectorEnv(
-        [lambda each=each: gymnasium.wrappers.TimeLimit(Telling(AVAIL_TORQUE=each), 3) for each in torques], autoreset_mode=mode
-    )
-    options = {"autoreset_mode": mode, "gymnasium_episodes": True, "info_parameters": ["AVAIL_TORQUE"]}
-    ours = make_vec(4, max_episode_steps=3, AVAIL_TORQUE=torques, **options)
-    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
-    for _ in range(8):
-        expected, found = theirs.step(np.ones(4, int)), ours.step(np.ones(4, int))
-        np.testing.assert_equal(found[-1].pop("final_info", {}), expected[-1].pop("final_info", {}))
-        assert_equal(expected, found)
-        for envs in (theirs, ours):
-            reset_ended(envs, expected[2] | expected[3])
-
-
 def test_drawn_parameters_in_infos_and_arrays():
     draws = {"dt": LogUniform(0.1, 0.3), "AVAIL_TORQUE": Uniform([-2, 0, 1], [-1, 0, 2])}
     envs = make_vec(3, max_episode_steps=1, autoreset_mode="SameStep", info_parameters=tuple(draws), **draws)
@@ -226,6 +199,7 @@ def test_drawn_parameters_in_infos_and_arrays():
     after = envs.step([1] * 3)[-1]
     for name, shape in [("dt", (3,)), ("AVAIL_TORQUE", (3, 3))]:
         assert (after["final_info"][name] == before[name]).all() and (after[name] != before[name]).any()
+        assert before[f"_{name}"].all() and after[f"_{name}"].all() and after["final_info"][f"_{name}"].all()
         array = envs.get_parameter(name)
         assert array.shape == shape and (after[name] == array).all() and (array == envs.get_attr(name)).all()
     for names, wrong in [(["LINK_MAS_1"], "'LINK_MAS_1'; did you mean LINK_MASS_1"), ("dt", "'dt'")]:

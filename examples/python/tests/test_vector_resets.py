@@ -7,7 +7,7 @@ import pickle
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs.inputs import reset_mask
+from acrobot_rs.arrays import reset_mask
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode
 from vectors import MODES, assert_equal, different, make_vec, pair

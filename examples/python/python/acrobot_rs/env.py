@@ -11,7 +11,7 @@ from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.inputs import numbers, reset_bounds
+from acrobot_rs.arrays import numbers, reset_bounds
 from acrobot_rs.parameters import Parameters
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from gymnasium import logger, spaces
 
 from acrobot_rs._native import Acrobot, Batch
-from acrobot_rs.inputs import numbers
+from acrobot_rs.arrays import numbers
 
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()

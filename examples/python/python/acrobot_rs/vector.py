@@ -14,9 +14,8 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.inputs import Seed, numbers, reset_bounds, reset_mask, seeds_of, values_of_each
+from acrobot_rs.arrays import Seed, final_infos, numbers, read_only, reset_bounds, reset_mask, seeds_of, values_of_each
 from acrobot_rs.parameters import _NAMES, Drawn, Parameters, _fixed, _hint
-from acrobot_rs.results import final_infos, read_only
 
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
@@ -289,11 +288,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         return self.call(name)
 
     def get_parameter(self, name: str) -> NDArray[Any]:
-        """A parameter of each environment: a new array of shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``.
-
-        Raises:
-            AttributeError: If there is no such parameter.
-        """
+        """A parameter of each environment: a new array of shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``."""
         self._check_open()
         if name not in _NAMES:
             raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name)}")

@@ -1,4 +1,4 @@
-"""What users pass: bounds, masks, actions, states, seeds, and values of each environment. All are checked here."""
+"""Checks of what users pass: bounds, masks, arrays and seeds. Arrays and infos that they get."""
 
 from __future__ import annotations
 
@@ -33,12 +33,7 @@ def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset
 
 
 def reset_mask(options: dict[str, Any] | None, num_envs: int) -> NDArray[np.bool_] | None:
-    """The environments to reset: ``options["reset_mask"]``.
-
-    Raises:
-        TypeError: If it is not an array of bool.
-        ValueError: If it has another shape or no true element.
-    """
+    """The environments to reset: ``options["reset_mask"]``."""
     if options is None or "reset_mask" not in options:
         return None
     mask = np.asarray(options["reset_mask"])
@@ -102,3 +97,23 @@ def _digits(seed: Any) -> str:
     if not isinstance(seed, int) or seed < 0:
         raise Error(f"seed must be an integer of at least 0, got {seed!r}")
     return str(int(seed))
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """An assignment to its elements, which would have no effect, raises."""
+    array.flags.writeable = False
+    return array
+
+
+def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dict[str, Any]) -> dict[str, Any]:
+    """Infos as in ``SyncVectorEnv``: last observations and infos, and which episodes ended.
+
+    An observation is ``None`` where no episode ended.
+    """
+    if not ended.any():
+        return {}
+    final_obs = np.full(len(ended), None, dtype=object)
+    for index in np.flatnonzero(ended):
+        final_obs[index] = finals[index].copy()
+    final_info = {name: ended.copy() if name.startswith("_") else value for name, value in last.items()}
+    return {"final_obs": final_obs, "_final_obs": ended, "final_info": final_info, "_final_info": ended.copy()}
