@@ -49,10 +49,9 @@ def drawn(kind, args):
     return attempt(kind, *args)
 
 
-BOUNDS = st.lists(NUMBERS | TORQUES, min_size=2, max_size=4) | st.lists(st.floats(0.1, 10.0), min_size=2, max_size=4).map(sorted)
-MANY = st.one_of(
-    VALUES, st.lists(VALUES, max_size=4), st.builds(drawn, st.sampled_from([Uniform, LogUniform, Normal]), BOUNDS)
-)
+#: Also valid ones.
+BOUNDS = st.lists(NUMBERS | TORQUES, min_size=2, max_size=4) | st.just([0.5, 1.5]) | st.just([1.0, 0.1, 0.5, 1.5])
+MANY = st.one_of(VALUES, st.lists(VALUES, max_size=4), st.builds(drawn, st.sampled_from([Uniform, LogUniform, Normal]), BOUNDS))
 MASKS = st.lists(st.booleans(), max_size=4) | ARRAYS
 OPTIONS = st.none() | st.dictionaries(st.sampled_from(["low", "high", "reset_mask"]), MASKS | NUMBERS | ANYTHING)
 MODES = st.sampled_from(["NextStep", "SameStep", "Disabled"])

@@ -269,12 +269,10 @@ def test_an_unknown_name_is_rejected(kind):
     for name, hint in [("mass_1", "did you mean LINK_MASS_1?"), ("damping", "it has dt, LINK_"), ("tau", "it has dt, LINK_")]:
         with pytest.raises(AttributeError, match=re.escape(f"{kind.__name__} has no parameter {name}; {hint}")):
             setattr(env, name, 2.0)
-    for name, hint in [("mass_1", "LINK_MASS_1"), ("rendermode", "render_mode")]:
-        with pytest.raises(TypeError, match=re.escape(f"{kind.__name__} has no argument {name}; did you mean {hint}?")):
-            kind(**{name: 2.0})
+    with pytest.raises(TypeError, match=f"{kind.__name__} has no argument rendermode; did you mean render_mode?"):
+        kind(rendermode="ansi")
     # What Gymnasium and users set.
     env.np_random, env.render_mode, env.metadata, env.spec = np.random.default_rng(1), "ansi", {**env.metadata}, None
-    env.action_space = env.action_space
 
 
 def test_parameters_are_arguments():
@@ -282,7 +280,7 @@ def test_parameters_are_arguments():
         LINK_MASS_1 = 3.0
 
     assert Heavy().LINK_MASS_1 == 3.0 and Heavy(LINK_MASS_1=4.0).LINK_MASS_1 == 4.0
-    for name in (V1, CONTINUOUS, V0):
+    for name in (V0, CONTINUOUS, V1):
         env = make(name, LINK_MASS_1=2, AVAIL_TORQUE=[-2, 0, 3], MAX_VEL_1=9.0)
         for each in (env, copy.deepcopy(env), *([] if name == V0 else [env.spec.make()])):
             assert each.unwrapped.LINK_MASS_1 == 2.0 and each.unwrapped.AVAIL_TORQUE == (-2.0, 0.0, 3.0)

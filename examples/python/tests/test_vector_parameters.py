@@ -11,7 +11,6 @@ from acrobot_rs import LogUniform, Normal, Uniform
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from vectors import CONTINUOUS, make_vec
 
-
 #: All parameters that can be drawn, in the order of their draws.
 DRAWN = (
     *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"),
@@ -157,7 +156,7 @@ def test_distributions(draw):
     envs = make_vec(20_000, LINK_MASS_1=draw)
     envs.reset(seed=1)
     cdf = math.log if isinstance(draw, LogUniform) else statistics.NormalDist(draw.mean, draw.std).cdf
-    drawn = np.array([(cdf(x) - cdf(draw.low)) / (cdf(draw.high) - cdf(draw.low)) for x in sorted(envs.get_parameter("LINK_MASS_1"))])
+    drawn = [cdf(x) - cdf(draw.low) for x in sorted(envs.get_parameter("LINK_MASS_1"))] / np.array(cdf(draw.high) - cdf(draw.low))
     assert drawn.min() >= 0 and drawn.max() <= 1
     assert np.abs(drawn - (np.arange(20_000) + 0.5) / 20_000).max() < 1.95 / 20_000**0.5
 
@@ -175,7 +174,7 @@ def test_extreme_draws_end_within_their_bounds(draw):
 @pytest.mark.parametrize(
     ("kind", "numbers", "error", "message"),
     [
-        (Uniform, (1.2, 0.8), ValueError, r"low must be at most high, and of the same length, got Uniform\(low=1.2, high=0.8\)"),
+        (Uniform, (1.2, 0.8), ValueError, r"low must be at most high, .*, got Uniform\(low=1.2, high=0.8\)"),
         (Uniform, ([-1, 0, 1], [-2, 0, 2]), ValueError, "low must be at most high"),
         (Uniform, ([-1, 0, 1], 2), ValueError, "low must be at most high, and of the same length"),
         (Uniform, ([-1, 1], [-1, 2]), TypeError, r"low must be three finite numbers, got int64 of shape \(2,\)"),

@@ -187,8 +187,9 @@ class Parameters:
     def __init__(self, native: Acrobot | Batch, render_mode: str | None, parameters: dict[str, Any]) -> None:
         """Pass the parameters to the native part: these, and those of the class, which a subclass may have changed."""
         for name in parameters.keys() - set(_NAMES):
-            arguments = tuple(each for each in inspect.signature(type(self)).parameters if each != "parameters")
-            raise TypeError(f"{type(self).__name__} has no argument {name}; {_hint(name, arguments)}")
+            arguments = inspect.signature(type(self)).parameters.values()
+            others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)
+            raise TypeError(f"{type(self).__name__} has no argument {name}; {_hint(name, others)}")
         modes = self.metadata["render_modes"]
         # A comparison with an array is no bool.
         if render_mode is not None and not (isinstance(render_mode, str) and render_mode in modes):
