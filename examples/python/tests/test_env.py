@@ -179,7 +179,7 @@ def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error
 @pytest.mark.parametrize(
     ("options", "message"),
     [({"low": 1, "high": 0}, "low"), ({"low": "x"}, "An option"), ({"high": None}, "An option"),
-     ({"high": np.inf}, "high"), ({"low": np.nan}, "low"),
+     ({"high": np.inf}, "high"), ({"low": np.nan}, "low"), ({"low": -1e300}, "low"),
      *(({key: -0.2}, rf"the keys of options must be among \['low', 'high'\], got '{key}'") for key in ("lo", "reset_mask"))],
 )  # fmt: skip
 def test_invalid_options_are_rejected(env, options, message):

@@ -26,7 +26,7 @@ def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset
         if key not in keys:
             raise ValueError(f"the keys of options must be among {keys}, got {key!r}")
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
-    largest = np.finfo(np.float32).max
+    largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
     if not (abs(low) <= largest and abs(high) <= largest):
         raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
     return low, high
