@@ -156,7 +156,8 @@ def test_distributions(draw):
     envs = make_vec(20_000, LINK_MASS_1=draw)
     envs.reset(seed=1)
     cdf = math.log if isinstance(draw, LogUniform) else statistics.NormalDist(draw.mean, draw.std).cdf
-    drawn = [cdf(x) - cdf(draw.low) for x in sorted(envs.get_parameter("LINK_MASS_1"))] / np.array(cdf(draw.high) - cdf(draw.low))
+    start, end = cdf(draw.low), cdf(draw.high)
+    drawn = np.array([(cdf(x) - start) / (end - start) for x in sorted(envs.get_parameter("LINK_MASS_1"))])
     assert drawn.min() >= 0 and drawn.max() <= 1
     assert np.abs(drawn - (np.arange(20_000) + 0.5) / 20_000).max() < 1.95 / 20_000**0.5
 
