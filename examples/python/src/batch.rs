@@ -126,9 +126,10 @@ impl Batch {
     ) -> PyResult<()> {
         let this = alone(slf)?;
         let width = rows.shape()[1].max(1);
+        let fields: Vec<_> = fields(name).collect();
         for (index, row) in rows.as_slice_mut()?.chunks_mut(width).enumerate() {
             let mut params = with_batch!(&this.engine, many => many.params(index));
-            for (number, field) in row.iter_mut().zip(fields(name)) {
+            for (number, field) in row.iter_mut().zip(&fields) {
                 *number = *field(&mut params);
             }
         }

@@ -243,7 +243,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             )
         observations = self._empty() if self._observations is None else self._observations
         finals = self._empty() if self._same_step else None
-        last = {} if finals is None else self._parameter_infos()
+        last = self._parameter_infos() if self._same_step else {}
         rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
         if self._ended is not None:
             np.logical_or(terminated, truncated, out=self._ended)
@@ -301,6 +301,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     def _parameter_infos(self) -> dict[str, Any]:
         """The parameters that infos have, as SyncVectorEnv collects the infos of environments."""
+        if not self.info_parameters:
+            return {}
         infos = {name: self.get_parameter(name) for name in self.info_parameters}
         return infos | {f"_{name}": np.ones(self.num_envs, np.bool_) for name in infos}
 
