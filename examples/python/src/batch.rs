@@ -7,13 +7,16 @@ use acrobot::batch::{Autoreset, StepBuffers};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::ResetBounds;
 use acrobot::{ResetOptions, State};
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2};
+use numpy::{
+    PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyBytes, PyType};
+use pyo3::types::PyBytes;
 
-use crate::engine::{Engine, Inputs, Many, Range, memory, with_batch};
+use crate::draws::Distribution;
+use crate::engine::{Engine, Inputs, Many, memory, with_batch};
 use crate::pool::Pool;
 use crate::{Reduced, fields, load, must_be, positive, rejected, render, save, unknown, with};
 
@@ -72,24 +75,29 @@ impl Batch {
         with_batch!(&self.engine, many => many.batch.len())
     }
 
-    /// Sets a parameter of all acrobots: a value, or a `Uniform` between whose bounds each reset draws it.
+    /// Sets a parameter of all acrobots.
     fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let this = &mut *alone(slf)?;
-        if let Some([low, high]) = bounds(value)? {
-            return this.draw(name, &low, &high);
-        }
         with_batch!(&mut this.engine, many => {
-            let both =
-                |[low, high]: Range| PyResult::Ok([with(low, name, value)?, with(high, name, value)?]);
-            let range = many.range().map(both).transpose()?;
-            let count = if many.own { many.batch.len() } else { 1 };
-            let each = (0..count).map(|index| many.changed(index, name, value));
-            let each: Vec<_> = each.collect::<PyResult<_>>()?;
-            many.change(&each, range)
+            let mut draws = many.draws.clone();
+            draws.distributions.remove(name);
+            let each = many.all_params().into_iter().map(|params| with(params, name, value));
+            many.change(&each.collect::<PyResult<Vec<_>>>()?, draws)
         })
     }
 
-    /// Sets a parameter of each acrobot. No parameter is drawn then.
+    /// Sets a parameter that each reset draws.
+    fn set_drawn(slf: &Bound<'_, Self>, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
+        let this = &mut *alone(slf)?;
+        let distribution = Distribution::of(drawn)?;
+        let bounds = [drawn.getattr("low")?, drawn.getattr("high")?];
+        with_batch!(&mut this.engine, many => {
+            let draws = many.drawing(name, distribution, bounds)?;
+            many.change(&many.all_params(), draws)
+        })
+    }
+
+    /// Sets a parameter of each acrobot.
     fn set_each(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
         let this = &mut *alone(slf)?;
         let num_envs = this.__len__();
@@ -99,26 +107,33 @@ impl Batch {
             return Err(PyValueError::new_err(must_be(name, rule, got)));
         }
         with_batch!(&mut this.engine, many => {
+            let mut draws = many.draws.clone();
+            draws.distributions.remove(name);
             let each = values.iter().enumerate().map(|(index, value)| {
-                let changed = many.changed(index, name, value);
+                let changed = with(many.params(index), name, value);
                 changed.map_err(|error| indexed(value.py(), error, index))
             });
             let each: Vec<_> = each.collect::<PyResult<_>>()?;
-            many.change(&each, None)
+            many.change(&each, draws)
         })
     }
 
-    /// A parameter of each acrobot.
-    fn get<'py>(slf: &Bound<'py, Self>, name: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let (py, this) = (slf.py(), alone(slf)?);
-        let each = (0..this.__len__()).map(|index| {
+    /// Writes the numbers of a parameter: a row for each acrobot, of three numbers if the parameter is `AVAIL_TORQUE`.
+    fn get(
+        slf: &Bound<'_, Self>,
+        name: &str,
+        mut rows: PyReadwriteArray2<'_, f64>,
+    ) -> PyResult<()> {
+        let this = alone(slf)?;
+        let width = rows.shape()[1].max(1);
+        let fields: Vec<_> = fields(name).collect();
+        for (index, row) in rows.as_slice_mut()?.chunks_mut(width).enumerate() {
             let mut params = with_batch!(&this.engine, many => many.params(index));
-            Ok(match fields(name).next() {
-                Some(field) => field(&mut params).into_pyobject(py)?.into_any(),
-                None => params.torques.into_pyobject(py)?.into_any(),
-            })
-        });
-        each.collect()
+            for (number, field) in row.iter_mut().zip(&fields) {
+                *number = *field(&mut params);
+            }
+        }
+        Ok(())
     }
 
     /// Gives acrobots streams of their own: those of `default_rng(seed)`, for each seed that is not `None`.
@@ -148,15 +163,20 @@ impl Batch {
         };
         let mask = mask.as_ref().map(|mask| mask.as_slice()).transpose()?;
         let engine = &mut alone(slf)?.engine;
-        slf.py().detach(|| {
-            with_batch!(engine, many => match mask {
-                Some(mask) => many.batch.deref_mut().reset_masked(mask, options).map_err(rejected),
-                None => {
-                    many.batch.deref_mut().reset_with(options);
-                    Ok(())
-                }
+        slf.py()
+            .detach(|| {
+                with_batch!(engine, many => match mask {
+                    Some(mask) => {
+                        many.batch.deref_mut().reset_masked(mask, options)?;
+                        many.draw(|_, index| mask[index])
+                    }
+                    None => {
+                        many.batch.deref_mut().reset_with(options);
+                        many.draw(|_, _| true)
+                    }
+                })
             })
-        })
+            .map_err(rejected)
     }
 
     fn observe(
@@ -278,7 +298,9 @@ impl Batch {
 
     fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
         let mut this = alone(slf)?;
-        (this.continuous, this.threads, this.engine) = load(bytes)?;
+        let (continuous, threads, mut engine) = load(bytes)?;
+        with_batch!(&mut engine, many => many.change(&many.all_params(), many.draws.clone())?);
+        (this.continuous, this.threads, this.engine) = (continuous, threads, engine);
         this.pool = None;
         Ok(())
     }
@@ -291,27 +313,6 @@ type Results<'py> = (
     Bound<'py, PyArray1<bool>>,
 );
 
-impl Batch {
-    /// Sets the bounds between which each reset draws a parameter.
-    fn draw(
-        &mut self,
-        name: &str,
-        low: &Bound<'_, PyAny>,
-        high: &Bound<'_, PyAny>,
-    ) -> PyResult<()> {
-        // The crate would draw another LINK_MOI for each link, and knows no range of equations.
-        if matches!(name, "LINK_MOI" | "book_or_nips") {
-            let message = format!("{name} must be a value or an array, not a Uniform");
-            return Err(PyValueError::new_err(message));
-        }
-        with_batch!(&mut self.engine, many => {
-            let [lows, highs] = many.range().unwrap_or([many.params(0); 2]);
-            let range = [with(lows, name, low)?, with(highs, name, high)?];
-            many.change(&[], Some(range))
-        })
-    }
-}
-
 /// The only access to a batch. Only its steps and resets let other threads run.
 fn alone<'py>(batch: &Bound<'py, Batch>) -> PyResult<PyRefMut<'py, Batch>> {
     batch.try_borrow_mut().map_err(|_| {
@@ -320,14 +321,6 @@ fn alone<'py>(batch: &Bound<'py, Batch>) -> PyResult<PyRefMut<'py, Batch>> {
              change parameters and call methods between its steps",
         )
     })
-}
-
-/// The bounds of a `Uniform`.
-fn bounds<'py>(value: &Bound<'py, PyAny>) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
-    static UNIFORM: PyOnceLock<Py<PyType>> = PyOnceLock::new();
-    let uniform = UNIFORM.import(value.py(), "acrobot_rs.parameters", "Uniform")?;
-    let bounds = || Ok([value.getattr("low")?, value.getattr("high")?]);
-    value.is_instance(uniform)?.then(bounds).transpose()
 }
 
 /// The same error with an index after the parameter's name, with which its message begins.

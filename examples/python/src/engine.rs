@@ -15,10 +15,8 @@ use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::draws::{Distribution, Draws};
 use crate::{ACTIONS, InvalidAction, must_be, rejected, with};
-
-/// The lower and the upper bounds of all parameters. Those that are equal are not drawn.
-pub type Range = [Params; 2];
 
 /// Actions (0, 1 or 2), or torques, N m.
 #[derive(FromPyObject)]
@@ -74,6 +72,7 @@ pub struct Many<A: Arithmetic> {
     pub batch: VecBatch<A>,
     /// Whether each acrobot has its own parameters, which takes more memory.
     pub own: bool,
+    pub draws: Draws,
     #[serde(skip)]
     actions: Vec<u8>,
     /// Empty if the inputs of the next step are actions.
@@ -86,6 +85,7 @@ impl<A: Arithmetic> Many<A> {
         Ok(Self {
             batch: VecBatch::new(seed, len).map_err(out_of_memory)?,
             own: false,
+            draws: Draws::default(),
             actions: Vec::new(),
             torques: Vec::new(),
         })
@@ -95,40 +95,75 @@ impl<A: Arithmetic> Many<A> {
         self.batch.params_of(index).unwrap_or_default().cast()
     }
 
-    /// The range from which resets draw parameters.
-    pub fn range(&self) -> Option<Range> {
-        let range = self.batch.params_range()?;
-        Some([range.low().cast(), range.high().cast()])
+    /// The parameters of all acrobots, or one for all if they share them.
+    pub fn all_params(&self) -> Vec<Params> {
+        let count = if self.own { self.batch.len() } else { 1 };
+        (0..count).map(|index| self.params(index)).collect()
     }
 
-    /// The parameters of an acrobot with one of them changed.
-    pub fn changed(&self, index: usize, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
-        let params = with(self.params(index), name, value)?;
-        Self::checked([params; 2])?;
-        Ok(params)
+    /// The draws of resets with one more parameter.
+    pub fn drawing(
+        &self,
+        name: &str,
+        distribution: Distribution,
+        [low, high]: [Bound<'_, PyAny>; 2],
+    ) -> PyResult<Draws> {
+        let mut draws = self.draws.clone();
+        let [lows, highs] = draws.ends(self.params(0));
+        let bounds = [with(lows, name, &low)?, with(highs, name, &high)?];
+        draws.bounds = bounds.map(|bound| bound.cast::<A::Scalar>().cast());
+        draws.distributions.insert(name.to_owned(), distribution);
+        Ok(draws)
     }
 
-    fn checked([low, high]: Range) -> PyResult<ParamsRange<A::Scalar>> {
+    fn checked([low, high]: [Params; 2]) -> PyResult<ParamsRange<A::Scalar>> {
         ParamsRange::new(low.cast(), high.cast()).map_err(rejected)
     }
 
-    /// Sets the range, and the parameters of each acrobot, which `changed` checked: one for all if they share them, or
-    /// none if they stay. Gives each acrobot its own parameters if necessary.
-    pub fn change(&mut self, params: &[Params], range: Option<Range>) -> PyResult<()> {
-        let own = range.is_some() || params.iter().any(|each| *each != params[0]);
-        let range = range.map(Self::checked).transpose()?;
-        if own && !self.own {
+    /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of resets. Gives each acrobot
+    /// its own parameters if necessary.
+    pub fn change(&mut self, params: &[Params], draws: Draws) -> PyResult<()> {
+        for each in params {
+            Self::checked(draws.ends(*each))?;
+        }
+        let draws_any = !draws.distributions.is_empty();
+        if !self.own && (draws_any || params.iter().any(|each| *each != params[0])) {
             self.batch = self.owning()?;
             self.own = true;
         }
+        // The crate draws before the initial state, uniformly, another LINK_MOI for each link, and replaces all parameters.
+        let ends = draws.ends(params[0]);
+        let mut distributions = draws.distributions.iter();
+        let is_range = draws_any
+            && distributions.all(|(name, how)| *how == Distribution::Uniform && name != "LINK_MOI")
+            && params.iter().all(|each| draws.ends(*each) == ends);
+        let range = is_range.then(|| Self::checked(ends)).transpose()?;
         self.batch.set_params_range(range).map_err(rejected)?;
-        for (index, params) in params.iter().enumerate() {
+        for index in 0..if self.own { self.batch.len() } else { 1 } {
+            let params = params.get(index).unwrap_or(&params[0]).cast();
             if self.own {
-                self.batch.set_params_of(index, params.cast())
+                self.batch.set_params_of(index, params)
             } else {
-                self.batch.set_params(params.cast())
+                self.batch.set_params(params)
             }
             .map_err(rejected)?;
+        }
+        self.draws = draws;
+        Ok(())
+    }
+
+    /// Draws the parameters of acrobots that were reset, if the crate has not drawn them.
+    pub fn draw(&mut self, were_reset: impl Fn(&VecBatch<A>, usize) -> bool) -> Result<(), Error> {
+        if self.draws.distributions.is_empty() || self.batch.params_range().is_some() {
+            return Ok(());
+        }
+        for index in 0..self.batch.len() {
+            if were_reset(&self.batch, index) {
+                let params = self.params(index);
+                let rng = &mut self.batch.generators_mut()[index];
+                let drawn = self.draws.draw(params, rng);
+                self.batch.set_params_of(index, drawn.cast())?;
+            }
         }
         Ok(())
     }
@@ -191,7 +226,8 @@ impl<A: Arithmetic> Many<A> {
             (true, true) => batch.par_step(actions, buffers),
             (false, false) => batch.step(torques, buffers),
             (false, true) => batch.par_step(torques, buffers),
-        }
+        }?;
+        self.draw(|batch, index| batch.elapsed(index) == Some(0))
     }
 }
 

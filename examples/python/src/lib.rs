@@ -1,6 +1,7 @@
 //! The native part of `acrobot_rs`, which calls the crate. Gymnasium's interface is written in Python, in `python/`.
 
 mod batch;
+mod draws;
 mod engine;
 mod pool;
 mod single;
@@ -29,11 +30,11 @@ mod _native {
     use super::single::Acrobot;
 }
 
-/// A parameter that is one number: Gymnasium's name, the crate's, and its field.
+/// A number among the parameters: Gymnasium's name, the crate's, and its field.
 type Number = (&'static str, &'static str, fn(&mut Params) -> &mut f64);
 
-/// Gymnasium has one moment of inertia for both links.
-const NUMBERS: [Number; 12] = [
+/// In the order of the crate's draws. Gymnasium has one moment of inertia for both links.
+const NUMBERS: [Number; 16] = [
     ("LINK_LENGTH_1", "length1", |p| &mut p.length1),
     ("LINK_LENGTH_2", "length2", |p| &mut p.length2),
     ("LINK_MASS_1", "mass1", |p| &mut p.mass1),
@@ -46,9 +47,13 @@ const NUMBERS: [Number; 12] = [
     }),
     ("LINK_MOI", "inertia1", |p| &mut p.inertia1),
     ("LINK_MOI", "inertia2", |p| &mut p.inertia2),
+    ("gravity", "gravity", |p| &mut p.gravity),
     ("dt", "dt", |p| &mut p.dt),
     ("MAX_VEL_1", "max_velocity1", |p| &mut p.max_velocity1),
     ("MAX_VEL_2", "max_velocity2", |p| &mut p.max_velocity2),
+    ("AVAIL_TORQUE", "torques", |p| &mut p.torques[0]),
+    ("AVAIL_TORQUE", "torques", |p| &mut p.torques[1]),
+    ("AVAIL_TORQUE", "torques", |p| &mut p.torques[2]),
     ("torque_noise_max", "torque_noise", |p| &mut p.torque_noise),
 ];
 
@@ -58,25 +63,13 @@ fn fields(name: &str) -> impl Iterator<Item = fn(&mut Params) -> &mut f64> {
     named.map(|(.., field)| *field)
 }
 
-/// What precedes the name of a parameter in the error for a reversed range.
-const LOWER: &str = "the lower ";
-
 /// Turns an error of the crate into a `ValueError` with its message, which begins with Gymnasium's name of a parameter.
 fn rejected(error: impl std::error::Error) -> PyErr {
     let message = error.to_string();
-    let start = if message.starts_with(LOWER) {
-        LOWER
-    } else {
-        ""
-    };
-    let names = NUMBERS
-        .iter()
-        .map(|(gymnasiums, name, _)| (*gymnasiums, *name));
-    let mut names = names.chain([("AVAIL_TORQUE", "torques")]);
-    let renamed = names.find_map(|(gymnasiums, name)| {
-        let rest = message[start.len()..].strip_prefix(name)?;
-        rest.starts_with([' ', '['])
-            .then(|| format!("{start}{gymnasiums}{rest}"))
+    let renamed = NUMBERS.iter().find_map(|(gymnasiums, name, _)| {
+        let rest = message.strip_prefix(name)?;
+        let whole = rest.starts_with([' ', '[']);
+        whole.then(|| format!("{gymnasiums}{rest}"))
     });
     PyValueError::new_err(renamed.unwrap_or(message))
 }

@@ -179,7 +179,7 @@ def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error
 @pytest.mark.parametrize(
     ("options", "message"),
     [({"low": 1, "high": 0}, "low"), ({"low": "x"}, "An option"), ({"high": None}, "An option"),
-     ({"high": np.inf}, "high"), ({"low": np.nan}, "low"),
+     ({"high": np.inf}, "high"), ({"low": np.nan}, "low"), ({"low": -1e300}, "low"),
      *(({key: -0.2}, rf"the keys of options must be among \['low', 'high'\], got '{key}'") for key in ("lo", "reset_mask"))],
 )  # fmt: skip
 def test_invalid_options_are_rejected(env, options, message):
@@ -248,17 +248,65 @@ def test_the_state_can_be_set_from_any_four_numbers(env):
 )  # fmt: skip
 def test_what_would_have_no_effect_is_rejected(env, name, value, error, message):
     """Misspelt parameters, and methods that are not called."""
+    own = type("Own", (acrobot_rs.AcrobotEnv,), {})()
     changes = (
         lambda: setattr(env, name, value),
+        lambda: setattr(own, name, value),
+        lambda: make(V1).set_wrapper_attr(name, value),
         lambda: type("Changed", (acrobot_rs.AcrobotEnv,), {name: value}),
         lambda: type("Changed", (type("Mixin", (), {name: value}), acrobot_rs.AcrobotEnv), {}),
     )
     for change in changes:
         with pytest.raises(error, match=re.escape(message)):
             change()
-    # Wrappers and users may keep their own attributes.
-    env.curriculum_level = 3
+    own.curriculum_level = 3
     env._LINK_MAS_1 = 2.0
+
+
+@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotContinuousEnv, acrobot_rs.AcrobotVectorEnv])
+def test_an_unknown_name_is_rejected(kind):
+    env = kind()
+    for name, hint in [("mass_1", "did you mean LINK_MASS_1?"), ("damping", "it has dt, LINK_"), ("tau", "it has dt, LINK_")]:
+        with pytest.raises(AttributeError, match=re.escape(f"{kind.__name__} has no parameter {name}; {hint}")):
+            setattr(env, name, 2.0)
+    with pytest.raises(TypeError, match=f"{kind.__name__} has no argument rendermode; did you mean render_mode?"):
+        kind(rendermode="ansi")
+    # What Gymnasium and users set.
+    env.np_random, env.render_mode, env.metadata, env.spec = np.random.default_rng(1), "ansi", {**env.metadata}, None
+
+
+def test_parameters_are_arguments():
+    class Heavy(acrobot_rs.AcrobotEnv):
+        LINK_MASS_1 = 3.0
+
+    assert Heavy().LINK_MASS_1 == 3.0 and Heavy(LINK_MASS_1=4.0).LINK_MASS_1 == 4.0
+    for name in (V0, CONTINUOUS, V1):
+        env = make(name, LINK_MASS_1=2, AVAIL_TORQUE=[-2, 0, 3], MAX_VEL_1=9.0)
+        for each in (env, copy.deepcopy(env), *([] if name == V0 else [env.spec.make()])):
+            assert each.unwrapped.LINK_MASS_1 == 2.0 and each.unwrapped.AVAIL_TORQUE == (-2.0, 0.0, 3.0)
+            assert each.observation_space.high[-2] == 9.0
+    for change in (lambda: make(V1, LINK_MASS_1=-1), lambda: env.set_wrapper_attr("LINK_MASS_1", -1)):
+        with pytest.raises(ValueError, match="^LINK_MASS_1 must be finite and above 0 kg, got -1"):
+            change()
+    env.set_wrapper_attr("LINK_MASS_1", 5.0)
+    assert env.unwrapped.LINK_MASS_1 == 5.0
+
+
+def test_spaces_follow_the_parameters():
+    env, samples = acrobot_rs.AcrobotContinuousEnv(), []
+    for _ in range(2):
+        env.action_space = before = acrobot_rs.AcrobotContinuousEnv().action_space
+        env.action_space.seed(1)
+        env.AVAIL_TORQUE, env.LINK_MASS_1 = [1.0, 0.0, -1.0], 2.0
+        assert env.action_space is before, "and its generator"
+        env.AVAIL_TORQUE = [-3.0, 2.0]
+        assert env.action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
+        samples.append(env.action_space.sample())
+        del env.AVAIL_TORQUE
+    assert samples[0] == samples[1], "a seeded space is followed by a seeded one"
+    env.observation_space = mine = gymnasium.spaces.Box(-1.0, 1.0, (6,))
+    env.MAX_VEL_2 = 4.0
+    assert env.observation_space is mine
 
 
 def test_an_environment_takes_over_the_values_that_its_class_has_when_it_is_made():
@@ -294,14 +342,6 @@ def test_a_vector_environment_has_three_torques():
         with pytest.raises(ValueError, match="AVAIL_TORQUE must be 3 numbers, got 2"):
             change()
     assert envs.AVAIL_TORQUE == (-1.0, 0.0, 1.0)
-
-
-def test_parameters_can_be_set_through_wrappers():
-    env = make(V1)
-    env.set_wrapper_attr("LINK_MASS_1", 2.0)
-    with pytest.raises(ValueError, match="LINK_MASS_1 must"):
-        env.set_wrapper_attr("LINK_MASS_1", -2.0)
-    assert env.unwrapped.LINK_MASS_1 == 2.0
 
 
 def test_values_cannot_change_in_place(env):

@@ -173,16 +173,32 @@ def test_a_range_is_for_all_environments(sb3):
         assert envs.envs.dt == drawn and len(set(envs.get_attr("dt"))) == 3
         before = envs.envs._native.__getstate__()
         for value, some in [(0.3, [0]), (0.3, 1), (drawn, [0]), (drawn, [0, 2])]:
-            with pytest.raises(ValueError, match="dt must be set in all environments, if it is or becomes a Uniform, got"):
+            with pytest.raises(ValueError, match="dt must be set in all environments, if it is or will be drawn, got"):
                 envs.set_attr("dt", value, indices=some)
         envs.set_attr("dt", 0.3, indices=[])
         assert envs.envs.dt == drawn and envs.envs._native.__getstate__() == before
         envs.set_attr("dt", 0.2, indices=indices)
         assert envs.envs.dt == 0.2 and envs.get_attr("dt") == [0.2] * 3
-    with pytest.raises(ValueError, match="dt must be set in all environments, if it is or becomes a Uniform"):
+    with pytest.raises(ValueError, match="dt must be set in all environments, if it is or will be drawn"):
         envs.set_attr("dt", drawn, indices=[0])
     with pytest.raises(IndexError):
         envs.set_attr("dt", 0.1, indices=[3])
+
+
+def test_infos_have_the_parameters_of_the_episode(sb3):
+    envs = make(sb3, 3, max_episode_steps=2, dt=acrobot_rs.LogUniform(0.1, 0.3), info_parameters=["dt"])
+    envs.reset()
+    for ended in (False, True):
+        before = envs.get_attr("dt")
+        infos = envs.step(np.ones(3, int))[3]
+        assert [info["dt"] for info in infos] == before
+        assert (envs.get_attr("dt") != before) == ended
+
+
+def test_spaces_follow_the_parameters(sb3):
+    envs = make(sb3, 2)
+    envs.set_attr("MAX_VEL_1", 5.0)
+    assert envs.observation_space.high[4] == 5.0
 
 
 def test_misuse_is_rejected(sb3):

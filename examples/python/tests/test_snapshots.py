@@ -5,7 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env, AcrobotVectorEnv, Uniform
+from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env, AcrobotVectorEnv, LogUniform, Normal, Uniform
 from acrobot_rs.parameters import _NAMES
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 
@@ -17,6 +17,8 @@ VECTOR = (
     (AcrobotVectorEnv, "Disabled", Uniform(0.0, 0.3)),
     (AcrobotContinuousVectorEnv, "NextStep", Uniform(0.0, 0.3)),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gymnasium_episodes": True, "copy": False}),
+    (AcrobotVectorEnv, "SameStep", LogUniform(0.1, 0.3), {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}),
+    (AcrobotVectorEnv, "NextStep", 0.0, {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]}),
 )
 
 

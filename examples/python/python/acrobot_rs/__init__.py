@@ -15,7 +15,7 @@ from importlib.metadata import version
 from gymnasium.envs.registration import register
 
 from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env
-from acrobot_rs.parameters import Uniform
+from acrobot_rs.parameters import LogUniform, Normal, Uniform
 from acrobot_rs.vector import AcrobotContinuousVectorEnv, AcrobotVectorEnv
 
 __all__ = [
@@ -24,6 +24,8 @@ __all__ = [
     "AcrobotEnv",
     "AcrobotV0Env",
     "AcrobotVectorEnv",
+    "LogUniform",
+    "Normal",
     "Uniform",
 ]
 __version__ = version("acrobot-rs")

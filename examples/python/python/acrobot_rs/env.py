@@ -11,7 +11,8 @@ from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.parameters import Parameters, numbers, reset_bounds
+from acrobot_rs.arrays import numbers, reset_bounds
+from acrobot_rs.parameters import Parameters
 
 
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
@@ -24,8 +25,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     ## Action Space
 
-    ``Discrete(3)``: a torque of -1 (action 0), 0 (1) or 1 N m (2) between the links. A subclass with ``n`` numbers in
-    ``AVAIL_TORQUE`` has ``Discrete(n)``.
+    ``Discrete(3)``: a torque of -1 (action 0), 0 (1) or 1 N m (2) between the links. With ``n`` numbers in ``AVAIL_TORQUE``
+    it is ``Discrete(n)``.
 
     ## Observation Space
 
@@ -61,9 +62,11 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     ``render_mode``: ``None``, ``"human"`` (a window, by pygame, which each reset and step updates), ``"rgb_array"`` (an array
     of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines of braille characters and a line of numbers).
 
+    Parameters, for example ``LINK_MASS_1=2.0``.
+
     >>> import gymnasium as gym
     >>> import acrobot_rs
-    >>> env = gym.make("acrobot_rs/Acrobot-v1")
+    >>> env = gym.make("acrobot_rs/Acrobot-v1", LINK_MASS_1=2.0)
     >>> env.unwrapped.book_or_nips = "nips"
     >>> env.reset(seed=123, options={"low": -0.2, "high": 0.2})[0].shape
     (6,)
@@ -75,22 +78,29 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
 
-    def __init__(self, render_mode: str | None = None) -> None:
+    def __init__(self, render_mode: str | None = None, **parameters: Any) -> None:
         """Make an environment. Reset it before its first step.
 
         An unknown render mode is rejected by ``render``, because ``gymnasium.make`` only warns of it.
 
         Raises:
-            ValueError: If parameters that a subclass sets are invalid.
+            TypeError: If a parameter is unknown or of a wrong type.
+            ValueError: If a parameter is invalid.
         """
-        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS), None)
+        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS), None, parameters)
         self.render_mode = render_mode
         # The window, by the names of Gymnasium's environment.
         self.screen: Any = None
         self.clock: Any = None
         self.isopen = True
-        self.action_space = self._action_space
-        self.observation_space = self._observation_space
+        for name, space in self._spaces().items():
+            setattr(self, name, space)
+        self._made = True
+
+    def set_wrapper_attr(self, name: str, value: Any, **kwargs: Any) -> bool:
+        """As in Gymnasium, but an unknown name is rejected: a wrapper would keep it, without an effect."""
+        self._check_name(name)
+        return super().set_wrapper_attr(name, value, **kwargs)
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the window, which a copy opens itself."""

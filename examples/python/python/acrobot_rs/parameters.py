@@ -1,4 +1,4 @@
-"""What the single and the vector environment share: parameters, the observation space and reset bounds."""
+"""What the single and the vector environment share: parameters, their draws, and the spaces."""
 
 from __future__ import annotations
 
@@ -6,17 +6,16 @@ import copy
 import dataclasses
 import difflib
 import functools
+import inspect
 import math
-import reprlib
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Literal
+from collections.abc import Sequence
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from gymnasium import logger, spaces
-from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
-from numpy.typing import NDArray
 
 from acrobot_rs._native import Acrobot, Batch
+from acrobot_rs.arrays import numbers
 
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()
@@ -33,24 +32,69 @@ _IGNORED = {
 }
 
 
+class Drawn:
+    """A parameter of a vector environment that each reset draws between two bounds, in each environment that it resets."""
+
+    low: Any
+    high: Any
+    _KIND: ClassVar[str]
+
+    def __post_init__(self) -> None:
+        """Check the numbers, and keep them as Python's."""
+        for name, value in list(vars(self).items()):
+            is_row = self._KIND == "Uniform" and (isinstance(value, list | tuple) or np.ndim(value) > 0)
+            rule = "three finite numbers" if is_row else "a finite number"
+            array = numbers(name, rule, value, (3,) if is_row else (), error=TypeError)
+            if not np.isfinite(array).all():
+                raise ValueError(f"{name} must be {rule}, got {value!r}")
+            object.__setattr__(self, name, tuple(map(float, array)) if is_row else float(array))
+        if np.shape(self.low) != np.shape(self.high) or np.greater(self.low, self.high).any():
+            raise ValueError(f"low must be at most high, and of the same length, got {self}")
+        if self._KIND == "LogUniform" and self.low <= 0:
+            raise ValueError(f"low must be above 0, got {self}")
+        if self._KIND == "Normal" and not (self.std > 0 and self.low <= self.mean <= self.high):
+            raise ValueError(f"std must be above 0, and mean from low to high, got {self}")
+
+
 @dataclasses.dataclass(frozen=True)
-class Uniform:
-    """A parameter of a vector environment that each reset draws uniformly between two bounds, in each environment.
+class Uniform(Drawn):
+    """A parameter that each reset draws uniformly. The bounds of ``AVAIL_TORQUE`` are three numbers each.
 
     >>> import acrobot_rs
-    >>> envs = acrobot_rs.AcrobotVectorEnv(1024)
-    >>> envs.LINK_MASS_1 = acrobot_rs.Uniform(0.8, 1.2)
+    >>> envs = acrobot_rs.AcrobotVectorEnv(1024, LINK_MASS_1=acrobot_rs.Uniform(0.8, 1.2))
     """
 
     low: Any
     high: Any
+    _KIND = "Uniform"
+
+
+@dataclasses.dataclass(frozen=True)
+class LogUniform(Drawn):
+    """A parameter whose logarithm each reset draws uniformly. ``low`` is above 0."""
+
+    low: float
+    high: float
+    _KIND = "LogUniform"
+
+
+@dataclasses.dataclass(frozen=True)
+class Normal(Drawn):
+    """A parameter that each reset draws from a normal distribution, truncated at the bounds.
+
+    ``mean`` and ``std`` are those before the truncation. ``mean`` is between the bounds.
+    """
+
+    mean: float
+    std: float
+    low: float
+    high: float
+    _KIND = "Normal"
 
 
 def _fixed(name: str, value: Any) -> Any:
     """A valid value, as an object that cannot change: a change of an array would have no effect."""
-    if isinstance(value, Uniform):
-        return Uniform(_fixed(name, value.low), _fixed(name, value.high))
-    if name == "book_or_nips":
+    if name == "book_or_nips" or isinstance(value, Drawn):
         return value
     return tuple(map(float, value)) if name == "AVAIL_TORQUE" else float(value)
 
@@ -58,26 +102,31 @@ def _fixed(name: str, value: Any) -> Any:
 def _reject_ignored(cls: type, name: str) -> None:
     if name in _IGNORED:
         raise TypeError(f"{name} would have no effect on {cls.__name__}; {_IGNORED[name]}")
-    if meant := _meant(name):
-        raise AttributeError(f"{cls.__name__} has no parameter {name}; did you mean {meant}?")
+    if name not in _NAMES and not name.startswith("_") and _near(name, _NAMES, 0.8):
+        raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name)}")
 
 
 @functools.cache
-def _meant(name: str) -> str | None:
-    """The parameter that a name resembles."""
-    if name.startswith("_") or name in _NAMES:
-        return None
-    names = {each.lower(): each for each in _NAMES}
-    close = difflib.get_close_matches(name.lower(), names, n=1, cutoff=0.8)
-    return names[close[0]] if close else None
+def _near(name: str, names: tuple[str, ...], cutoff: float) -> str | None:
+    """The name that this one resembles."""
+    lower = {each.lower(): each for each in names}
+    close = difflib.get_close_matches(name.lower(), lower, n=1, cutoff=cutoff)
+    return lower[close[0]] if close else None
+
+
+def _hint(name: str, others: tuple[str, ...] = ()) -> str:
+    """What an unknown name may mean: a parameter, or one of other names."""
+    names = (*others, *_NAMES)
+    meant = _near(name, names, 0.5)
+    return f"did you mean {meant}?" if meant else f"it has {', '.join(names)}"
 
 
 class Parameters:
-    """The parameters of the physics, with Gymnasium's names. Set them on an environment or in a subclass.
+    """The parameters of the physics, with Gymnasium's names. Set them as arguments, on an environment or in a subclass.
 
     A value is checked immediately and acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError``
-    that says what is valid, and a misspelt name an ``AttributeError``. An environment takes over the values that its class
-    has when it is made.
+    that says what is valid, and an unknown name an ``AttributeError``. An environment takes over the values that its class
+    has when it is made. The spaces follow the parameters.
     """
 
     #: Duration of one step, s; above 0.
@@ -96,6 +145,8 @@ class Parameters:
     LINK_COM_POS_2: float = 0.5
     #: Moment of inertia of each link about its centre of mass, kg m²; 0 or more.
     LINK_MOI: float = 1.0
+    #: Acceleration of gravity, m/s², downwards; finite. Gymnasium's environment has no name for it.
+    gravity: float = 9.8
     #: Bound of link 1's velocity after a step, rad/s; above 0.
     MAX_VEL_1: float = 4 * math.pi
     #: Bound of link 2's velocity, relative to link 1, after a step, rad/s; above 0.
@@ -116,12 +167,16 @@ class Parameters:
     _native: Acrobot | Batch
     #: Whether actions are torques.
     _CONTINUOUS = False
+    #: What cannot change after the construction.
+    _CHOSEN = ()
+    #: Whether the construction has ended.
+    _made = False
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         for name, value in list(vars(cls).items()):
             if name in _NAMES:
-                (Batch() if isinstance(value, Uniform) else Acrobot()).set(name, value)
+                Batch().set_drawn(name, value) if isinstance(value, Drawn) else Acrobot().set(name, value)
                 setattr(cls, name, _fixed(name, value))
         # Also what a class inherits from one without parameters.
         for base in cls.__mro__:
@@ -129,8 +184,12 @@ class Parameters:
                 if name in _IGNORED or not callable(value):
                     _reject_ignored(cls, name)
 
-    def __init__(self, native: Acrobot | Batch, render_mode: str | None) -> None:
-        """Pass the class's parameters, which a subclass may have changed, to the native part."""
+    def __init__(self, native: Acrobot | Batch, render_mode: str | None, parameters: dict[str, Any]) -> None:
+        """Pass the parameters to the native part: these, and those of the class, which a subclass may have changed."""
+        for name in parameters.keys() - set(_NAMES):
+            arguments = inspect.signature(type(self)).parameters.values()
+            others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)
+            raise TypeError(f"{type(self).__name__} has no argument {name}; {_hint(name, others)}")
         modes = self.metadata["render_modes"]
         # A comparison with an array is no bool.
         if render_mode is not None and not (isinstance(render_mode, str) and render_mode in modes):
@@ -139,20 +198,41 @@ class Parameters:
         self.render_mode = render_mode
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
         for name in _NAMES:
-            setattr(self, name, getattr(self, name))
+            setattr(self, name, parameters.get(name, getattr(self, name)))
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
         self._native.set(name, value)
         return _fixed(name, value)
 
+    def _spaces(self) -> dict[str, spaces.Space[Any]]:
+        """All spaces, by the names of their attributes."""
+        return {"action_space": self._action_space, "observation_space": self._observation_space}
+
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a parameter and set it."""
-        if name in _NAMES:
-            value = self._pass(name, value)
-        else:
-            _reject_ignored(type(self), name)
-        super().__setattr__(name, value)
+        if name not in _NAMES:
+            self._check_name(name)
+            super().__setattr__(name, value)
+            return
+        before = self._spaces() if self._made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2") else {}
+        super().__setattr__(name, self._pass(name, value))
+        for space, new in self._spaces().items() if before else ():
+            current = getattr(self, space)
+            # Another space is a user's.
+            if current == before[space] != new:
+                new.seed(int(current.np_random.integers(2**32)))
+                super().__setattr__(space, new)
+
+    def _check_name(self, name: str) -> None:
+        """Reject the assignment of an attribute that would have no effect. A subclass may have attributes of its own."""
+        cls = type(self)
+        if self._made and name in self._CHOSEN:
+            raise AttributeError(f"{name} cannot change after {cls.__name__} was made")
+        _reject_ignored(cls, name)
+        is_ours = cls.__module__.startswith("acrobot_rs.") and self._made
+        if is_ours and not (name.startswith("_") or name in vars(self) or hasattr(cls, name)):
+            raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name)}")
 
     def __delattr__(self, name: str) -> None:
         """Set a parameter back to the value of its class."""
@@ -174,15 +254,16 @@ class Parameters:
     @property
     def _highest_velocities(self) -> list[float]:
         """The largest velocities after a step, or after a reset with the default bounds of 0.1, rad/s."""
-        return [max(getattr(bound, "high", bound), 0.1) for bound in (self.MAX_VEL_1, self.MAX_VEL_2)]
+        bounds = (getattr(bound, "high", bound) for bound in (self.MAX_VEL_1, self.MAX_VEL_2))
+        return [max(float(np.max(bound)), 0.1) for bound in bounds]
 
     @property
     def _action_space(self) -> spaces.Space[Any]:
         """That of a single environment."""
         lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
         if self._CONTINUOUS:
-            return spaces.Box(min(lows), max(highs), (1,), np.float32)
-        return spaces.Discrete(len(lows))
+            return spaces.Box(float(np.min(lows)), float(np.max(highs)), (1,), np.float32)
+        return spaces.Discrete(np.shape(lows)[-1])
 
     @property
     def _observation_space(self) -> spaces.Box[np.float32]:
@@ -191,43 +272,3 @@ class Parameters:
 
 
 _NAMES = tuple(name for name in Parameters.__annotations__ if hasattr(Parameters, name))
-
-
-def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset_mask",)) -> tuple[float, float]:
-    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1.
-
-    Raises:
-        ValueError: If a bound is not a finite number in the range of float32, if low is above high, or if the options have
-            another key, except ``others``.
-    """
-    keys = ["low", "high", *others]
-    for key in options or ():
-        if key not in keys:
-            raise ValueError(f"the keys of options must be among {keys}, got {key!r}")
-    low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
-    largest = np.finfo(np.float32).max
-    if not (abs(low) <= largest and abs(high) <= largest):
-        raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
-    return low, high
-
-
-def numbers(
-    name: str, rule: str, value: Any, shape: tuple[int, ...], kinds: str = "fiu", error: type[Exception] = ValueError
-) -> NDArray[Any]:
-    """Actions or states as an array.
-
-    They may be an array, or a list or another sequence that NumPy converts to one, of this shape, and of integers (``iu``) or
-    floats (``f``). Texts, bytes, bools, complex numbers, other objects, sets, mappings and iterators are rejected.
-    """
-    array = None
-    # NumPy takes the bytes of a bytearray, and the keys of some mappings.
-    if not isinstance(value, bytearray | Mapping):
-        try:
-            array = np.asarray(value)
-        except (TypeError, ValueError):  # rows of different lengths
-            pass
-    if array is not None and array.dtype.kind in kinds and array.shape == shape:
-        return array
-    is_numeric = array is not None and array.dtype.kind in "biufc"
-    found = f"{array.dtype} of shape {array.shape}" if is_numeric else reprlib.repr(value)
-    raise error(f"{name} must be {rule}, got {found}")

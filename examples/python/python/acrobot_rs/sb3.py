@@ -15,7 +15,7 @@ from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
-from acrobot_rs.parameters import Uniform
+from acrobot_rs.parameters import Drawn
 from acrobot_rs.vector import AcrobotVectorEnv
 
 Indices = int | Iterable[int] | None
@@ -78,14 +78,17 @@ class AcrobotVecEnv(VecEnv):
         if self._actions is None:
             raise NoAsyncCallError("call step_async with the actions before each step_wait", "step")
         actions, self._actions = self._actions, None
+        # Those of the ended episode, if one ends, as in DummyVecEnv.
+        parameters = {name: self.envs.get_parameter(name).tolist() for name in self.envs.info_parameters}
         observations, rewards, terminated, truncated, infos = self.envs.step(actions)
         ended = terminated | truncated
         each: list[dict[str, Any]] = [{"TimeLimit.truncated": False} for _ in range(self.num_envs)]
+        for name, values in parameters.items():
+            for info, value in zip(each, values, strict=True):
+                info[name] = value
         for index in np.flatnonzero(ended):
-            each[index] = {
-                "TimeLimit.truncated": bool(truncated[index] and not terminated[index]),
-                "terminal_observation": infos["final_obs"][index],
-            }
+            each[index]["TimeLimit.truncated"] = bool(truncated[index] and not terminated[index])
+            each[index]["terminal_observation"] = infos["final_obs"][index]
         return observations, rewards.astype(np.float32, copy=False), ended, each
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
@@ -97,20 +100,20 @@ class AcrobotVecEnv(VecEnv):
         """Set a parameter or the state of these environments. See :meth:`AcrobotVectorEnv.set_attr`.
 
         Raises:
-            ValueError: If a parameter is or becomes an :class:`acrobot_rs.Uniform`, and these are not all environments. Nothing
-                changes then.
+            ValueError: If a parameter is or will be drawn, and these are not all environments. Nothing changes then.
         """
         values = self.envs.get_attr(attr_name)
         indices = list(self._get_indices(indices))
         chosen = np.zeros(self.num_envs, np.bool_)
         chosen[indices] = True
-        if isinstance(value, Uniform) and chosen.all():
+        if isinstance(value, Drawn) and chosen.all():
             self.envs.set_attr(attr_name, value)
         elif chosen.any():
-            if not chosen.all() and (isinstance(value, Uniform) or isinstance(getattr(self.envs, attr_name), Uniform)):
-                rule = "set in all environments, if it is or becomes a Uniform"
+            if not chosen.all() and (isinstance(value, Drawn) or isinstance(getattr(self.envs, attr_name), Drawn)):
+                rule = "set in all environments, if it is or will be drawn"
                 raise ValueError(f"{attr_name} must be {rule}, got indices {indices}")
             self.envs.set_attr(attr_name, [value if new else old for new, old in zip(chosen, values, strict=True)])
+        self.observation_space, self.action_space = self.envs.single_observation_space, self.envs.single_action_space
 
     def env_method(self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any) -> list[Any]:
         """The results of a method, which can only be ``render``, for each of these environments."""

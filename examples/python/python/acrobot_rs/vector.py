@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from gymnasium.error import ClosedEnvironmentError, Error, InvalidAction, ResetNeeded
+from gymnasium import spaces
+from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Batch
-from acrobot_rs.parameters import _NAMES, Parameters, Uniform, _fixed, numbers, reset_bounds
+from acrobot_rs.arrays import Seed, final_infos, numbers, read_only, reset_bounds, reset_mask, seeds_of, values_of_each
+from acrobot_rs.parameters import _NAMES, Drawn, Parameters, _fixed, _hint
 
-Seed = int | list[int | None] | tuple[int | None, ...] | None
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
@@ -36,9 +38,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     ``i`` with ``seed + i``.
 
     A parameter has one value for all environments, a list or an array with one for each, or an :class:`acrobot_rs.Uniform`,
-    from which each reset draws. Reading it gives what was set, different values as an array, and :meth:`get_attr` what each
-    environment has. ``LINK_MOI`` and ``book_or_nips`` cannot be a ``Uniform``, and no parameter can while another one has
-    different values.
+    :class:`acrobot_rs.LogUniform` or :class:`acrobot_rs.Normal`, from which each reset draws. Reading it gives what was set,
+    different values as an array, and :meth:`get_parameter` what each environment has. ``book_or_nips`` cannot be drawn.
 
     With ``gymnasium_episodes=True`` environments are computed and seeded as in ``SyncVectorEnv`` of Gymnasium's
     ``Acrobot-v1``. All results are bit-identical to its results where those of :class:`acrobot_rs.AcrobotEnv` are.
@@ -57,6 +58,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     }
 
     _native: Batch
+    _CHOSEN = ("autoreset_mode", "copy", "info_parameters", "num_envs")
 
     def __init__(
         self,
@@ -67,6 +69,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         copy: bool = True,
         gymnasium_episodes: bool = False,
         threads: int | None = 1,
+        info_parameters: Sequence[str] = (),
+        **parameters: Any,
     ) -> None:
         """Make environments. Reset them before their first step.
 
@@ -80,17 +84,24 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 episode has ended before the next step.
             copy: Whether each call returns observations in a new array. Otherwise all calls return the same array.
             gymnasium_episodes: Whether to play Gymnasium's own episodes: computed in ``float64``, environment ``i`` seeded
-                with ``seed + i``, and rewards as ``float64``. Steps then take about 30 times as long.
+                with ``seed + i``, and rewards as ``float64``. Steps then take longer.
             threads: The threads that compute a step; ``None``: as many as the process has cores. They change no bit. More
                 than one is faster only for more than 16,384 environments, or 1,024 with ``gymnasium_episodes``.
+            info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
+            **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
 
         Raises:
-            ValueError: If a number is out of its range or a mode is unknown.
+            TypeError: If a parameter is unknown or of a wrong type.
+            ValueError: If a number is out of its range, or if a mode or a name in ``info_parameters`` is unknown.
             MemoryError: If the environments do not fit into memory.
         """
         modes = [mode.value for mode in AutoresetMode]
         if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
             raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
+        for name in [info_parameters] if isinstance(info_parameters, str) else info_parameters:
+            if name not in _NAMES or name is info_parameters:
+                raise ValueError(f"info_parameters must be a sequence of names of parameters, got {name!r}; {_hint(str(name))}")
+        self.info_parameters = tuple(info_parameters)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self._same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
         if threads is None:
@@ -104,21 +115,25 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             self._CONTINUOUS,
             threads,
         )
-        super().__init__(native, render_mode)
+        super().__init__(native, render_mode, parameters)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self.num_envs = num_envs
         self._max_episode_steps = max_episode_steps
         self._gymnasium_episodes = gymnasium_episodes
         self.copy = copy
-        self.single_action_space = self._action_space
-        self.single_observation_space = self._observation_space
-        self.action_space = batch_space(self.single_action_space, num_envs)
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        for name, space in self._spaces().items():
+            setattr(self, name, space)
         self._observations = None if copy else self._empty()
         # Without autoreset: the environments that must be reset before the next step.
         self._ended = np.zeros(num_envs, np.bool_) if self.autoreset_mode is AutoresetMode.DISABLED else None
         #: Whether it was reset and not closed.
         self._ready = False
+        self._made = True
+
+    def _spaces(self) -> dict[str, spaces.Space[Any]]:
+        single = super()._spaces()
+        batched = {name: batch_space(space, self.num_envs) for name, space in single.items()}
+        return {f"single_{name}": space for name, space in single.items()} | batched
 
     @property
     def max_episode_steps(self) -> int:
@@ -127,17 +142,17 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     @property
     def state(self) -> NDArray[np.floating[Any]]:
-        """theta1, theta2 (rad) and their velocities (rad/s) of each environment: a copy, of shape ``(num_envs, 4)``.
+        """theta1, theta2 (rad) and their velocities (rad/s) of each environment, of shape ``(num_envs, 4)``: a read-only copy.
 
-        To set the states, assign an array of this shape. To set some, change rows of a copy and assign it. Episodes continue.
-        Their numbers of steps do not change.
+        To set the states, assign an array of this shape. To set some, change rows of ``state.copy()`` and assign it. Episodes
+        continue. Their numbers of steps do not change.
 
         Raises:
             ValueError: If the shape is another one, or if a number is not finite. No state changes then.
         """
         states = np.empty((self.num_envs, 4), np.float64)
         self._native.states(states)
-        return states if self._gymnasium_episodes else states.astype(np.float32)
+        return read_only(states if self._gymnasium_episodes else states.astype(np.float32))
 
     @state.setter
     def state(self, states: ArrayLike) -> None:
@@ -155,7 +170,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
         elapsed = np.empty(self.num_envs, np.int64)
         self._native.elapsed(elapsed)
-        return elapsed
+        return read_only(elapsed)
 
     def reset(self, *, seed: Seed = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment.
@@ -171,7 +186,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 ``options``.
 
         Returns:
-            The observations of all environments, of shape ``(num_envs, 6)``, and empty infos.
+            The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty without ``info_parameters``.
 
         Raises:
             TypeError: If the mask is not an array of ``bool``. Nothing changes then.
@@ -181,8 +196,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """
         self._check_open()
         low, high = reset_bounds(options)
-        mask = self._mask(options)
-        child_of, seeds = self._seeds(seed)
+        mask = reset_mask(options, self.num_envs)
+        child_of, seeds = seeds_of(seed, self.num_envs, self._gymnasium_episodes)
         if seeds is not None:
             every = np.ones(self.num_envs, np.bool_) if mask is None else mask
             self._native.seed([each if some else None for each, some in zip(seeds, every, strict=True)])
@@ -198,7 +213,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         self._native.observe(observations)
         if self._gymnasium_episodes:
             self._observe_initial_states(observations, self.elapsed_steps == 0)
-        return observations, {}
+        return observations, self._parameter_infos()
 
     def step(self, actions: ArrayLike) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
         """Step each environment. Other Python threads can run meanwhile.
@@ -209,7 +224,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         Returns:
             Observations, of shape ``(num_envs, 6)``; rewards, -1, or 0 where the step reaches the goal; where the goal was
             reached; where the limit of steps was reached; and infos. In mode ``SameStep``, if an episode ended, they have
-            ``"final_obs"`` and ``"final_info"`` as in ``SyncVectorEnv``. Otherwise they are empty.
+            ``"final_obs"`` and ``"final_info"`` as in ``SyncVectorEnv``. They have the ``info_parameters`` of the new states.
 
         Raises:
             gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the array. No environment steps
@@ -228,10 +243,13 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             )
         observations = self._empty() if self._observations is None else self._observations
         finals = self._empty() if self._same_step else None
+        last = self._parameter_infos() if self._same_step else {}
         rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
         if self._ended is not None:
             np.logical_or(terminated, truncated, out=self._ended)
-        infos = {} if finals is None else _final_infos(finals, terminated | truncated)
+        infos = self._parameter_infos()
+        if finals is not None:
+            infos |= final_infos(finals, terminated | truncated, last)
         if not self._gymnasium_episodes:
             return observations, rewards, terminated, truncated, infos
         if self._same_step:
@@ -257,10 +275,9 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         if name in ("action_space", "observation_space"):
             name = f"single_{name}"
         value = getattr(self, name)
-        if isinstance(value, Uniform):
-            return tuple(_fixed(name, each) for each in self._native.get(name))
-        if isinstance(value, np.ndarray) and name in _NAMES:
-            return tuple(_fixed(name, each) for each in value.tolist())
+        if name in _NAMES and isinstance(value, Drawn | np.ndarray):
+            values = self.get_parameter(name).tolist()
+            return tuple(map(tuple, values) if name == "AVAIL_TORQUE" else values)
         if name == "render":
             frames = self.render(*args, **kwargs)
             return (None,) * self.num_envs if frames is None else frames
@@ -270,13 +287,32 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """The value of an attribute for each environment. As :meth:`call`."""
         return self.call(name)
 
+    def get_parameter(self, name: str) -> NDArray[Any]:
+        """A parameter of each environment: a new array of shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``."""
+        self._check_open()
+        if name not in _NAMES:
+            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name)}")
+        value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
+        if not isinstance(value, Drawn):
+            return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
+        rows = np.empty((self.num_envs, 3 if is_row else 1))
+        self._native.get(name, rows)
+        return rows if is_row else rows[:, 0]
+
+    def _parameter_infos(self) -> dict[str, Any]:
+        """The parameters that infos have, as SyncVectorEnv collects the infos of environments."""
+        if not self.info_parameters:
+            return {}
+        infos = {name: self.get_parameter(name) for name in self.info_parameters}
+        return infos | {f"_{name}": np.ones(self.num_envs, np.bool_) for name in infos}
+
     def set_attr(self, name: str, values: Any) -> None:
         """Set a parameter or the state.
 
         Args:
             name: A parameter or ``"state"``.
             values: One value for all environments, or a list, tuple or array with a value for each. A parameter can also
-                be an :class:`acrobot_rs.Uniform`.
+                be drawn, for example an :class:`acrobot_rs.Uniform`.
 
         Raises:
             AttributeError: If the name is neither a parameter nor ``"state"``.
@@ -308,23 +344,17 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         self._ready = False
 
     def _pass(self, name: str, value: Any) -> Any:
-        each = _each(name, value)
-        drawn = isinstance(value, Uniform)
-        for other in _NAMES if drawn or each is not None else ():
-            # A reset that draws would replace different values.
-            if other != name and isinstance(getattr(self, other), np.ndarray if drawn else Uniform):
-                found = "a Uniform" if drawn else "different values"
-                rule = "one value for all environments" if drawn else "a value or an array, not a Uniform"
-                raise ValueError(f"{other} must be {rule}, if {name} has {found}")
-        each = _each(name, value)
+        if isinstance(value, Drawn):
+            self._native.set_drawn(name, value)
+            return value
+        each = values_of_each(name, value)
         if each is None:
             self._native.set(name, value)
         else:
             self._native.set_each(name, each)
             value = np.array([_fixed(name, one) for one in each])
             if (value != value[0]).any():
-                value.flags.writeable = False
-                return value
+                return read_only(value)
             value = each[0]
         return _fixed(name, value)
 
@@ -339,27 +369,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     def _check_open(self) -> None:
         if self.closed:
             raise ClosedEnvironmentError("the environments were closed; make new ones")
-
-    def _mask(self, options: dict[str, Any] | None) -> Bools | None:
-        if options is None or "reset_mask" not in options:
-            return None
-        mask = np.asarray(options["reset_mask"])
-        if mask.dtype != np.bool_:
-            raise TypeError(f"reset_mask must be an array of bool, got {mask!r}")
-        if mask.shape != (self.num_envs,) or not mask.any():
-            raise ValueError(f"reset_mask must have shape ({self.num_envs},) and a true element, got {mask!r}")
-        return mask.view(np.uint8) != 0  # a NumPy bool can be any byte, but Rust's only 0 or 1
-
-    def _seeds(self, seed: Seed) -> tuple[str | None, list[str | None] | None]:
-        """The digits of the seed whose children seed all environments, or of a seed for each environment."""
-        if isinstance(seed, list | tuple):
-            if len(seed) != self.num_envs:
-                raise ValueError(f"seed must have one element for each of {self.num_envs} environments, got {len(seed)}")
-            return None, [None if each is None else _digits(each) for each in seed]
-        digits = None if seed is None else _digits(seed)
-        if seed is None or not self._gymnasium_episodes:
-            return digits, None
-        return None, [_digits(seed + i) for i in range(self.num_envs)]
 
     def _observe_initial_states(self, observations: Floats, which: Bools) -> None:
         """Write the observations of initial states. Gymnasium computes their sines with NumPy in ``float32``."""
@@ -385,32 +394,3 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
     """
 
     _CONTINUOUS = True
-
-
-def _each(name: str, value: Any) -> list[Any] | None:
-    """The values of a parameter, if there is one for each environment."""
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    if not isinstance(value, list | tuple):
-        return None
-    if name == "AVAIL_TORQUE" and not any(isinstance(one, list | tuple | np.ndarray) for one in value):
-        return None
-    return list(value)
-
-
-def _digits(seed: Any) -> str:
-    """The digits of a seed. `str` rejects more than 4,300."""
-    # Gymnasium accepts True as 1.
-    if not isinstance(seed, int) or seed < 0:
-        raise Error(f"seed must be an integer of at least 0, got {seed!r}")
-    return str(int(seed))
-
-
-def _final_infos(finals: Floats, ended: Bools) -> dict[str, Any]:
-    """Infos as in ``SyncVectorEnv``: last observations, or ``None`` where no episode ended, and which episodes ended."""
-    if not ended.any():
-        return {}
-    final_obs = np.full(len(ended), None, dtype=object)
-    for index in np.flatnonzero(ended):
-        final_obs[index] = finals[index].copy()
-    return {"final_obs": final_obs, "_final_obs": ended, "final_info": {}, "_final_info": ended.copy()}

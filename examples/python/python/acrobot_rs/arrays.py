@@ -1,0 +1,119 @@
+"""Checks of what users pass: bounds, masks, arrays and seeds. Arrays and infos that they get."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
+from gymnasium.error import Error
+from numpy.typing import NDArray
+
+Seed = int | list[int | None] | tuple[int | None, ...] | None
+
+
+def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset_mask",)) -> tuple[float, float]:
+    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1.
+
+    Raises:
+        ValueError: If a bound is not a finite number in the range of float32, if low is above high, or if the options have
+            another key, except ``others``.
+    """
+    keys = ["low", "high", *others]
+    for key in options or ():
+        if key not in keys:
+            raise ValueError(f"the keys of options must be among {keys}, got {key!r}")
+    low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
+    largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
+    if not (abs(low) <= largest and abs(high) <= largest):
+        raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
+    return low, high
+
+
+def reset_mask(options: dict[str, Any] | None, num_envs: int) -> NDArray[np.bool_] | None:
+    """The environments to reset: ``options["reset_mask"]``."""
+    if options is None or "reset_mask" not in options:
+        return None
+    mask = np.asarray(options["reset_mask"])
+    if mask.dtype != np.bool_:
+        raise TypeError(f"reset_mask must be an array of bool, got {mask!r}")
+    if mask.shape != (num_envs,):
+        raise ValueError(f"reset_mask must have shape ({num_envs},), got shape {mask.shape}")
+    if not mask.any():
+        raise ValueError("reset_mask must have a true element, got none")
+    return mask.view(np.uint8) != 0  # a NumPy bool can be any byte, but Rust's only 0 or 1
+
+
+def numbers(
+    name: str, rule: str, value: Any, shape: tuple[int, ...], kinds: str = "fiu", error: type[Exception] = ValueError
+) -> NDArray[Any]:
+    """Actions or states as an array.
+
+    They may be an array, or a list or another sequence that NumPy converts to one, of this shape, and of integers (``iu``) or
+    floats (``f``). Texts, bytes, bools, complex numbers, other objects, sets, mappings and iterators are rejected.
+    """
+    array = None
+    # NumPy takes the bytes of a bytearray, and the keys of some mappings.
+    if not isinstance(value, bytearray | Mapping):
+        try:
+            array = np.asarray(value)
+        except (TypeError, ValueError):  # rows of different lengths
+            pass
+    if array is not None and array.dtype.kind in kinds and array.shape == shape:
+        return array
+    is_numeric = array is not None and array.dtype.kind in "biufc"
+    found = f"{array.dtype} of shape {array.shape}" if is_numeric else reprlib.repr(value)
+    raise error(f"{name} must be {rule}, got {found}")
+
+
+def values_of_each(name: str, value: Any) -> list[Any] | None:
+    """The values of a parameter, if there is one for each environment."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, list | tuple):
+        return None
+    if name == "AVAIL_TORQUE" and not any(isinstance(one, list | tuple | np.ndarray) for one in value):
+        return None
+    return list(value)
+
+
+def seeds_of(seed: Seed, num_envs: int, gymnasium_episodes: bool) -> tuple[str | None, list[str | None] | None]:
+    """The digits of the seed whose children seed all environments, or of a seed for each environment."""
+    if isinstance(seed, list | tuple):
+        if len(seed) != num_envs:
+            raise ValueError(f"seed must have one element for each of {num_envs} environments, got {len(seed)}")
+        return None, [None if each is None else _digits(each) for each in seed]
+    digits = None if seed is None else _digits(seed)
+    if seed is None or not gymnasium_episodes:
+        return digits, None
+    return None, [_digits(seed + i) for i in range(num_envs)]
+
+
+def _digits(seed: Any) -> str:
+    """The digits of a seed. `str` rejects more than 4,300."""
+    # Gymnasium accepts True as 1.
+    if not isinstance(seed, int) or seed < 0:
+        raise Error(f"seed must be an integer of at least 0, got {seed!r}")
+    return str(int(seed))
+
+
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """An assignment to its elements, which would have no effect, raises."""
+    array.flags.writeable = False
+    return array
+
+
+def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dict[str, Any]) -> dict[str, Any]:
+    """Infos as in ``SyncVectorEnv``: last observations and infos, and which episodes ended.
+
+    An observation is ``None`` where no episode ended.
+    """
+    if not ended.any():
+        return {}
+    final_obs = np.full(len(ended), None, dtype=object)
+    for index in np.flatnonzero(ended):
+        final_obs[index] = finals[index].copy()
+    final_info = {name: ended.copy() if name.startswith("_") else value for name, value in last.items()}
+    return {"final_obs": final_obs, "_final_obs": ended, "final_info": final_info, "_final_info": ended.copy()}

@@ -1,0 +1,233 @@
+"""Parameters of each environment: values, draws, and what reads them."""
+
+import math
+import statistics
+
+import acrobot_rs
+import gymnasium
+import numpy as np
+import pytest
+from acrobot_rs import LogUniform, Normal, Uniform
+from acrobot_rs.vector import AcrobotContinuousVectorEnv
+from vectors import CONTINUOUS, make_vec
+
+#: All parameters that can be drawn, in the order of their draws.
+DRAWN = (
+    *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"),
+    *("gravity", "dt", "MAX_VEL_1", "MAX_VEL_2", "AVAIL_TORQUE", "torque_noise_max"),
+)
+
+
+@pytest.mark.parametrize("names", [DRAWN, ("LINK_MASS_1",), ("dt", "AVAIL_TORQUE")])
+@pytest.mark.parametrize("gymnasium_episodes", [False, True])
+def test_resets_draw_parameters_as_numpy_does(names, gymnasium_episodes):
+    """Those of all environments, those with a mask, and those within steps."""
+    count, rounded = 20, np.float64 if gymnasium_episodes else np.float32
+    envs = make_vec(count, max_episode_steps=2, gymnasium_episodes=gymnasium_episodes)
+    envs.reset(seed=3)
+    ranges = {}
+    for name in names[::-1]:  # the order of draws is not that of the assignments
+        low, high = ((-1.5, 0.0, 0.5), (-0.5, 0.0, 1.5)) if name == "AVAIL_TORQUE" else (0.3, 1.7)
+        setattr(envs, name, Uniform(low, high))
+        assert getattr(envs, name) == Uniform(low, high)
+        ranges[name] = rounded(low).astype(float), rounded(high).astype(float)
+        assert len(set(envs.get_attr(name))) == 1, "the next reset draws"
+    if gymnasium_episodes:
+        streams = [np.random.default_rng(42 + i) for i in range(count)]
+    else:
+        streams = [np.random.default_rng(child) for child in np.random.SeedSequence(42).spawn(count)]
+
+    def check(which):
+        for i in np.flatnonzero(which):
+            for name in names:
+                low, high = ranges[name]
+                # What has equal bounds, here a torque, is not drawn.
+                bounds = np.transpose([np.ravel(low), np.ravel(high)])
+                drawn = [rounded(streams[i].uniform(*both)) if both[0] < both[1] else both[0] for both in bounds]
+                assert (np.ravel(envs.get_attr(name)[i]) == drawn).all(), name
+            assert (envs.state[i] == np.float32(streams[i].uniform(-0.1, 0.1, 4))).all()
+
+    every = np.ones(count, bool)
+    envs.reset(seed=42)
+    check(every)
+    envs.reset(options={"reset_mask": every & (np.arange(count) % 3 == 0)})
+    check(np.arange(count) % 3 == 0)
+    for _ in range(6):
+        before = envs.elapsed_steps
+        envs.step(np.ones(count, int))
+        for i in np.flatnonzero(before < 2):
+            streams[i].uniform(size=int("torque_noise_max" in names))
+        check(before == 2)
+    first = names[0]
+    setattr(envs, first, 1.0)
+    envs.reset()
+    assert getattr(envs, first) == 1.0 and (envs.get_parameter(first) == 1.0).all()
+
+
+@pytest.mark.parametrize("gymnasium_episodes", [False, True])
+@pytest.mark.parametrize(
+    ("name", "value", "error", "message"),
+    [
+        ("LINK_MASS_1", [1.0, 0.0, 2.0], ValueError, r"LINK_MASS_1\[1\] must be finite and above 0 kg, got 0"),
+        ("LINK_MASS_1", [1.0, 2.0, None], TypeError, r"LINK_MASS_1\[2\] must be a number, got None"),
+        ("LINK_MASS_1", [1.0, 2.0], ValueError, "LINK_MASS_1 must be one value, or one for each of 3 environments, got 2 values"),
+        ("LINK_COM_POS_1", [0.1, 0.0, 0.0], ValueError, r"LINK_MOI\[1\] must be above 0 kg m² if the centre of mass"),
+        ("AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, np.inf, 3]], ValueError, r"AVAIL_TORQUE\[2\]\[1\] must be a finite number"),
+        ("AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], ValueError, r"AVAIL_TORQUE\[1\] must be 3 numbers, got 2"),
+        ("book_or_nips", ["book", "nips", "bok"], ValueError, r'book_or_nips\[2\] must be "book" or "nips", got "bok"'),
+        ("dt", Uniform(0.0, 1.0), ValueError, "dt must be finite and above 0 s, got 0"),
+        ("MAX_VEL_2", LogUniform(1.0, 1e300), ValueError, "MAX_VEL_2 must be "),
+        ("LINK_COM_POS_2", Uniform(0.0, 1.0), ValueError, "LINK_MOI must be above 0 kg m² if the centre of mass"),
+        ("AVAIL_TORQUE", Uniform(0.0, 1.0), TypeError, r"AVAIL_TORQUE must be a sequence of 3 numbers, got 0\.0"),
+        ("AVAIL_TORQUE", Normal(0.0, 1.0, -1.0, 1.0), TypeError, "AVAIL_TORQUE must be a sequence of 3 numbers, got -1"),
+        ("book_or_nips", Uniform(0.0, 1.0), TypeError, 'book_or_nips must be "book" or "nips", got 0'),
+    ],
+)  # fmt: skip
+def test_a_rejected_parameter_changes_nothing(name, value, error, message, gymnasium_episodes):
+    envs = make_vec(3, gymnasium_episodes=gymnasium_episodes)
+    envs.LINK_MOI = 0.0
+    for mass in (1.0, [1.0, 1.5, 2.0], Uniform(1.0, 2.0), LogUniform(1.0, 2.0)):
+        envs.LINK_MASS_1 = mass
+        envs.reset(seed=1)
+        before = envs._native.__getstate__(), envs.get_attr(name)
+        for attempt in (setattr, acrobot_rs.AcrobotVectorEnv.set_attr):
+            with pytest.raises(error, match=f"^{message}"):
+                attempt(envs, name, value)
+            assert (envs._native.__getstate__(), envs.get_attr(name)) == before
+
+
+def expected_draw(rng, draw):
+    """As Rust draws."""
+    if isinstance(draw, LogUniform):
+        return math.exp(rng.uniform(math.log(draw.low), math.log(draw.high)))
+    if isinstance(draw, Uniform):
+        return rng.uniform(draw.low, draw.high)
+    while True:
+        drawn = rng.uniform(max(draw.low, draw.mean - 8 * draw.std), min(draw.high, draw.mean + 8 * draw.std))
+        if rng.uniform() < math.exp(-0.5 * ((drawn - draw.mean) / draw.std) ** 2):
+            return drawn
+
+
+@pytest.mark.parametrize(
+    ("draws", "different"),
+    [
+        ({"LINK_MASS_2": LogUniform(0.5, 2.0)}, {}),
+        ({"LINK_MASS_2": Normal(1.0, 0.125, 0.5, 2.0), "gravity": Normal(9.5, 4.0, 9.0, 12.0), "dt": Uniform(0.125, 0.25)}, {}),
+        ({"LINK_MOI": Uniform(0.5, 2.0)}, {}),
+        ({"LINK_MASS_2": Uniform(0.5, 2.0)}, {"LINK_MASS_1": 1.0 + np.arange(20), "book_or_nips": ["book", "nips"] * 10}),
+    ],
+)
+@pytest.mark.parametrize("gymnasium_episodes", [False, True])
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
+def test_other_draws_follow_the_initial_state(draws, different, gymnasium_episodes, mode):
+    """Of all environments, of those with a mask, and within steps. What is not drawn stays."""
+    envs = make_vec(
+        *(20,), max_episode_steps=2, autoreset_mode=mode, gymnasium_episodes=gymnasium_episodes, **dict(reversed(draws.items())),
+        **different,
+    )  # fmt: skip
+    streams, mask = [np.random.default_rng(seed) for seed in range(50, 70)], np.arange(20) % 3 == 0
+    expected = {name: envs.get_parameter(name) for name in (*draws, *different)}
+
+    def check(which):
+        for i in np.flatnonzero(which):
+            assert (envs.state[i] == np.float32(streams[i].uniform(-0.1, 0.1, 4))).all()
+            for name, draw in draws.items():
+                expected[name][i] = expected_draw(streams[i], draw)
+        for name, values in expected.items():
+            found = envs.get_parameter(name)
+            # The platform's logarithms may round differently.
+            assert (found == values).all() or (np.abs(found / values - 1) < (1e-15 if gymnasium_episodes else 1e-7)).all()
+
+    envs.reset(seed=[*range(50, 70)])
+    check(np.ones(20, bool))
+    envs.reset(options={"reset_mask": mask.copy()})
+    check(mask)
+    for _ in range(6):
+        before = envs.elapsed_steps
+        envs.step(np.ones(20, int))
+        check(before == (2 if mode == "NextStep" else 1))
+
+
+@pytest.mark.parametrize(
+    "draw", [LogUniform(0.5, 8.0), Normal(1.0, 0.2, 0.1, 9.0), Normal(1.0, 0.2, 1.0, 1.5), Normal(1.0, 50.0, 0.5, 2.0)]
+)
+def test_distributions(draw):
+    """By Kolmogorov's and Smirnov's test."""
+    envs = make_vec(20_000, LINK_MASS_1=draw)
+    envs.reset(seed=1)
+    cdf = math.log if isinstance(draw, LogUniform) else statistics.NormalDist(draw.mean, draw.std).cdf
+    start, end = cdf(draw.low), cdf(draw.high)
+    drawn = np.array([(cdf(x) - start) / (end - start) for x in sorted(envs.get_parameter("LINK_MASS_1"))])
+    assert drawn.min() >= 0 and drawn.max() <= 1
+    assert np.abs(drawn - (np.arange(20_000) + 0.5) / 20_000).max() < 1.95 / 20_000**0.5
+
+
+@pytest.mark.parametrize(
+    "draw", [Normal(0.1, 1e-300, 0.1, 0.1 + 1e-12), Normal(1.0, 1e300, 1e-30, 1e30), LogUniform(1e-30, 1e30), Uniform(2.0, 2.0)]
+)
+def test_extreme_draws_end_within_their_bounds(draw):
+    envs = make_vec(50, LINK_LENGTH_1=LogUniform(1.0, 2.0), LINK_MASS_1=draw)
+    envs.reset(seed=1)
+    drawn = envs.get_parameter("LINK_MASS_1")
+    assert (np.float32(draw.low) <= drawn).all() and (drawn <= np.float32(draw.high)).all()
+
+
+@pytest.mark.parametrize(
+    ("kind", "numbers", "error", "message"),
+    [
+        (Uniform, (1.2, 0.8), ValueError, r"low must be at most high, .*, got Uniform\(low=1.2, high=0.8\)"),
+        (Uniform, ([-1, 0, 1], [-2, 0, 2]), ValueError, "low must be at most high"),
+        (Uniform, ([-1, 0, 1], 2), ValueError, "low must be at most high, and of the same length"),
+        (Uniform, ([-1, 1], [-1, 2]), TypeError, r"low must be three finite numbers, got int64 of shape \(2,\)"),
+        (Uniform, (0.2, None), TypeError, "high must be a finite number, got None"),
+        (Uniform, (0.0, np.inf), ValueError, "high must be a finite number, got inf"),
+        (LogUniform, (0.0, 1.0), ValueError, "low must be above 0, got LogUniform"),
+        (LogUniform, ([1, 2, 3], 4.0), TypeError, "low must be a finite number, got"),
+        (Normal, (1.0, 0.0, 0.5, 2.0), ValueError, "std must be above 0, and mean from low to high, got Normal"),
+        (Normal, (3.0, 0.1, 0.5, 2.0), ValueError, "std must be above 0, and mean from low to high, got Normal"),
+    ],
+)
+def test_invalid_draws_are_rejected_when_they_are_made(kind, numbers, error, message):
+    with pytest.raises(error, match=f"^{message}"):
+        kind(*numbers)
+
+
+def test_drawn_parameters_in_infos_and_arrays():
+    draws = {"dt": LogUniform(0.1, 0.3), "AVAIL_TORQUE": Uniform([-2, 0, 1], [-1, 0, 2])}
+    envs = make_vec(3, max_episode_steps=1, autoreset_mode="SameStep", info_parameters=tuple(draws), **draws)
+    _, before = envs.reset(seed=1)
+    after = envs.step([1] * 3)[-1]
+    for name, shape in [("dt", (3,)), ("AVAIL_TORQUE", (3, 3))]:
+        assert (after["final_info"][name] == before[name]).all() and (after[name] != before[name]).any()
+        assert before[f"_{name}"].all() and after[f"_{name}"].all() and after["final_info"][f"_{name}"].all()
+        array = envs.get_parameter(name)
+        assert array.shape == shape and (after[name] == array).all() and (array == envs.get_attr(name)).all()
+    for names, wrong in [(["LINK_MAS_1"], "'LINK_MAS_1'; did you mean LINK_MASS_1"), ("dt", "'dt'")]:
+        with pytest.raises(ValueError, match=f"info_parameters must be a sequence of names of parameters, got {wrong}"):
+            make_vec(2, info_parameters=names)
+    with pytest.raises(AttributeError, match="no parameter 'mass_1'; did you mean LINK_MASS_1"):
+        envs.get_parameter("mass_1")
+
+
+def test_spaces_follow_the_parameters():
+    envs = gymnasium.make_vec(CONTINUOUS, num_envs=3, AVAIL_TORQUE=[-3.0, 0.0, 2.0])
+    assert envs.single_action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
+    envs.AVAIL_TORQUE = [[-1, 0, 1], [-5, 0, 1], [-1, 0, 4]]
+    assert envs.single_action_space == gymnasium.spaces.Box(-5.0, 4.0, (1,), np.float32)
+    assert envs.action_space == gymnasium.spaces.Box(-5.0, 4.0, (3, 1), np.float32)
+
+
+def test_subclasses_can_draw_parameters():
+    class Random(AcrobotContinuousVectorEnv):
+        MAX_VEL_1 = Uniform(20.0, 30.0)
+        AVAIL_TORQUE = Uniform([-3.0, 0.0, 1.0], [-2.0, 0.0, 2.0])
+
+    envs = Random(50)
+    assert envs.single_observation_space.high[4] == 30
+    assert envs.single_action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
+    envs.reset(seed=1)
+    assert len(set(envs.get_attr("MAX_VEL_1"))) == 50
+    with pytest.raises(ValueError, match="MAX_VEL_1 must "):
+        type("Wrong", (Random,), {"MAX_VEL_1": Uniform(-1.0, 2.0)})
+    with pytest.raises(TypeError, match="LINK_MASS_1 must be a number, got Uniform"):
+        acrobot_rs.AcrobotEnv().LINK_MASS_1 = Uniform(1.0, 2.0)

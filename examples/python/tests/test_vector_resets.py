@@ -1,0 +1,174 @@
+"""Streams, seeds, masks and autoresets are the documented ones, and with Gymnasium's episodes those of SyncVectorEnv."""
+
+import copy
+import itertools
+import pickle
+
+import gymnasium
+import numpy as np
+import pytest
+from acrobot_rs.arrays import reset_mask
+from gymnasium.error import ResetNeeded
+from gymnasium.vector import AutoresetMode
+from vectors import MODES, assert_equal, different, make_vec, pair
+
+
+def test_streams_are_the_seed_s_children_whatever_the_number_of_environments():
+    small, large = make_vec(5), make_vec(100)
+    for seed in [0, 42, 2**100 + 3]:
+        small.reset(seed=seed), large.reset(seed=seed)
+        states = [np.random.default_rng(child).uniform(-0.1, 0.1, 4) for child in np.random.SeedSequence(seed).spawn(100)]
+        assert (large.state == np.float32(states)).all()
+        assert large.np_random_seed == seed
+        for actions in np.random.default_rng(0).integers(3, size=(700, 100)):
+            small.step(actions[:5])
+            large.step(actions)
+            assert (small.state == large.state[:5]).all()
+    assert (make_vec(5).reset()[0] != make_vec(5).reset()[0]).any(), "without a seed initial states are random"
+
+
+def test_rejected_seeds_and_bounds_change_nothing():
+    envs = make_vec(2)
+    envs.reset(seed=True)  # Gymnasium accepts it as 1
+    assert envs.np_random_seed == 1
+    before = envs._native.__getstate__(), envs.np_random_seed, envs.np_random.bit_generator.state
+    bad_seeds = (-1, "4", 4.0, np.int64(4), 10**5000)
+    bad_options = ({"low": 1, "high": 0}, {"high": np.inf}, {"lo": 1}, {"low": 1, "reset_mask": [True, False]})
+    for seed in (*bad_seeds, [1], (1,) * 3, *([1, bad] for bad in bad_seeds), None):
+        for options in bad_options if seed is None else ({},):
+            with pytest.raises((ValueError, gymnasium.error.Error)):
+                envs.reset(seed=seed or 1, options=options)
+            assert (envs._native.__getstate__(), envs.np_random_seed, envs.np_random.bit_generator.state) == before
+
+
+@pytest.mark.parametrize(
+    ("mask", "error"),
+    [(None, TypeError), ([1, 0], TypeError), (True, ValueError), ([False, False], ValueError), ([True], ValueError),
+     ([True, False, True], ValueError), ([[True, False]], ValueError)],
+)  # fmt: skip
+def test_invalid_masks_are_rejected_with_the_errors_of_sync_vector_env(mask, error):
+    theirs, ours = pair(2)
+    with pytest.raises((error, AssertionError)):  # the latter with Gymnasium 1.1
+        theirs.reset(seed=1, options={"reset_mask": mask and np.array(mask)})
+    before, options = ours._native.__getstate__(), {"reset_mask": mask}
+    with pytest.raises(error, match=r"reset_mask must (be an array of bool|have shape \(2,\)|have a true element), got"):
+        ours.reset(seed=1, options=options)
+    assert ours._native.__getstate__() == before and options == {"reset_mask": mask}
+
+
+def test_a_mask_selects_the_environments_to_seed_and_reset():
+    """In float32. With Gymnasium's episodes another test compares with SyncVectorEnv."""
+    envs = make_vec(40)
+    envs.reset(seed=1)
+    envs.step([2] * 40)
+    mask = np.arange(80) % 3 == 0
+    seeds = [None if i == 3 else 2**70 + i for i in range(40)]
+    children = np.random.SeedSequence(5).spawn(40)
+    for seed, streams in [(5, children), (seeds, seeds)]:
+        before, twin = envs.state, copy.deepcopy(envs)
+        observations, infos = envs.reset(seed=seed, options={"reset_mask": mask[::2], "low": -0.5})
+        twin.reset(options={"low": -0.5})
+        seeded = np.float32([np.random.default_rng(stream).uniform(-0.5, 0.1, 4) for stream in streams])
+        if streams is seeds:
+            seeded[3] = twin.state[3]  # continues its stream
+        assert infos == {} and envs.np_random_seed == 5
+        assert (envs.state == np.where(mask[::2, None], seeded, before)).all()
+        assert (observations[:, 4:] == envs.state[:, 2:]).all()
+
+
+def test_other_bytes_than_0_and_1_in_a_mask_become_1():
+    """A NumPy bool can be any byte. In Rust a bool that is not 0 or 1 is undefined behaviour."""
+    mask = reset_mask({"reset_mask": np.array([2, 0, 255, 0], np.uint8).view(np.bool_)}, 4)
+    assert mask.tobytes() == b"\1\0\1\0"
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.5])
+@MODES
+def test_gymnasium_s_episodes_bit_identically(mode, noise):
+    """Resets with seeds, bounds and masks, parameters of each environment, and thousands of steps of each."""
+    theirs, ours = pair(6, mode, max_episode_steps=150)
+    for envs in (theirs, ours):
+        envs.set_attr("torque_noise_max", noise)
+    assert_equal(expected := theirs.reset(seed=2**70), ours.reset(seed=2**70))
+    rng = np.random.default_rng(0)
+    ends = np.zeros(2, int)
+    for step in range(3000):
+        actions = np.where(rng.random(6) < 0.3, rng.integers(3, size=6), np.where(expected[0][:, 4] > 0, 0, 2))
+        expected, found = theirs.step(actions), ours.step(actions)
+        assert_equal(expected, found)
+        np.testing.assert_array_equal(np.array(theirs.get_attr("state"), np.float64), ours.state)
+        np.testing.assert_array_equal(theirs.get_attr("_elapsed_steps"), ours.elapsed_steps)
+        ended = expected[2] | expected[3]
+        ends += expected[2].sum(), expected[3].sum()
+        if step in (2400, 2550, 2700, 2850):
+            for name, values in different(6, step).items():
+                theirs.set_attr(name, list(values))
+                ours.set_attr(name, values) if step == 2400 else setattr(ours, name, values)
+                np.testing.assert_array_equal(getattr(ours, name), values)
+                np.testing.assert_array_equal(ours.get_attr(name), theirs.get_attr(name))
+            assert not ours.LINK_MASS_1.flags.writeable
+        options = {"low": -0.4, "high": 0.7}
+        if step == 1000:
+            assert_equal(theirs.reset(options=options), ours.reset(options=options))
+        elif step == 1200:
+            for envs in (theirs, ours):
+                envs.set_attr("LINK_MASS_2", 1.5)
+                envs.set_attr("book_or_nips", "nips")
+        elif step == 1400:
+            seeds = [5, None, 7, 2**80, None, 5]
+            assert_equal(theirs.reset(seed=seeds), ours.reset(seed=seeds))
+        elif step in (1600, 1601) or (mode is AutoresetMode.DISABLED and ended.any()):
+            mask = ended | (np.arange(6) % 3 == step % 3)
+            options, twins = options | {"reset_mask": mask}, options | {"reset_mask": mask}
+            assert_equal(theirs.reset(seed=step, options=options), ours.reset(seed=step, options=twins))
+            assert options == twins, "the mask is removed"
+    assert (ends > 20).all()
+    ours.dt = 0.1
+    assert ours.dt == 0.1 and ours.get_attr("dt") == (0.1,) * 6
+
+
+@MODES
+def test_observations_of_initial_states_bit_identically(mode):
+    """Gymnasium computes them in float32. One in 500 differs from the rounded sines of float64, so this takes thousands."""
+    theirs, ours = pair(500, mode, max_episode_steps=1)
+    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
+    mask = np.arange(500) % 2 == 0
+    for bounds in ({"low": -0.4, "high": 0.7}, {"low": -9.0, "high": 9.0}):
+        assert_equal(theirs.reset(options={**bounds}), ours.reset(options={**bounds}))
+        for some in (mask, ~mask):
+            one, other = ({**bounds, "reset_mask": some.copy()} for _ in range(2))
+            assert_equal(theirs.reset(options=one), ours.reset(options=other))
+    for actions in np.random.default_rng(0).integers(3, size=(20, 500)):
+        assert_equal(theirs.step(actions), ours.step(actions))
+        if mode is AutoresetMode.DISABLED:
+            one, other = ({"reset_mask": np.ones(500, bool)} for _ in range(2))
+            assert_equal(theirs.reset(options=one), ours.reset(options=other))
+
+
+def test_a_step_before_the_first_reset_is_rejected():
+    for envs in pair(2, render_mode="rgb_array"):
+        for call in (lambda: envs.step(np.array([0, 1])), envs.render):  # noqa: B023
+            with pytest.raises(ResetNeeded):
+                call()
+        envs.reset()
+        envs.step(np.array([0, 1]))
+
+
+def test_without_autoreset_an_ended_episode_must_be_reset():
+    theirs, ours = pair(3, "Disabled", max_episode_steps=5)
+    for envs in (theirs, ours, pickle.loads(pickle.dumps(ours))):
+        envs.reset(seed=1)
+        for _ in range(5):
+            envs.step(np.array([0, 1, 2]))
+        both = (envs,) if envs is theirs else (envs, copy.deepcopy(envs))
+        for each, mask in itertools.product(both, ([True, True, False], [False, False, True])):
+            with pytest.raises((AssertionError, ResetNeeded)):
+                each.step(np.array([0, 1, 2]))
+            each.reset(options={"reset_mask": np.array(mask)})
+        assert not envs.step(np.array([0, 1, 2]))[3].any()
+    for _ in range(4):
+        ours.step([0, 1, 2])
+    before = ours._native.__getstate__()
+    with pytest.raises(ResetNeeded, match="the episode of environment 0 has ended; reset it before the next step"):
+        ours.step([0, 1, 2])
+    assert ours._native.__getstate__() == before

@@ -1,0 +1,52 @@
+"""What the tests of vector environments share."""
+
+import gymnasium
+import numpy as np
+import pytest
+from acrobot_rs.parameters import _NAMES as NAMES
+from gymnasium.vector import AutoresetMode
+
+V1 = "acrobot_rs/Acrobot-v1"
+CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
+MODES = pytest.mark.parametrize("mode", AutoresetMode)
+
+
+def make_vec(num_envs, **kwargs):
+    return gymnasium.make_vec(V1, num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
+
+
+def pair(num_envs, mode="NextStep", **kwargs):
+    """Gymnasium's SyncVectorEnv of Gymnasium's Acrobot, and ours with the same episodes."""
+    theirs = gymnasium.make_vec(
+        "Acrobot-v1", num_envs=num_envs, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **kwargs
+    )
+    return theirs, make_vec(num_envs, autoreset_mode=mode, gymnasium_episodes=True, **kwargs)
+
+
+def assert_equal(one, other):
+    """Compares what `reset` or `step` returned: values, types and infos."""
+    for a, b in zip(one[:-1], other[:-1], strict=True):
+        assert a.dtype == b.dtype
+        np.testing.assert_array_equal(a, b)
+    # Lists, because NumPy does not compare arrays of arrays.
+    np.testing.assert_equal(*({key: list(value) for key, value in each[-1].items()} for each in (one, other)))
+
+
+def reset_ended(envs, ended):
+    """Resets environments whose episode has ended, if they have no autoreset."""
+    if ended.any() and envs.metadata["autoreset_mode"] is AutoresetMode.DISABLED:
+        envs.reset(options={"reset_mask": ended.copy()})
+
+
+def different(count, seed):
+    """A value of each parameter for each of these environments."""
+    rng = np.random.default_rng(seed)
+    values = {name: list(rng.uniform(0.8, 1.2, count)) for name in NAMES if name.startswith("LINK")}
+    values["dt"] = tuple(rng.uniform(0.05, 0.25, count).tolist())
+    values["MAX_VEL_1"] = rng.uniform(2, 12, count)
+    values["MAX_VEL_2"] = rng.uniform(2, 28, count).astype(np.float32)
+    values["AVAIL_TORQUE"] = rng.uniform(-2, 2, (count, 3))
+    values["torque_noise_max"] = rng.choice([0.0, 0.5], count)
+    values["book_or_nips"] = rng.choice(["book", "nips"], count).tolist()
+    assert values.keys() == set(NAMES) - {"gravity"}, "Gymnasium's environment has no name for gravity"
+    return values
