@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::num::NonZeroU32;
 
-use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, ResetOptions};
 
@@ -13,16 +13,27 @@ use crate::table::Table;
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
 
-/// A batch with its memory. A `VecBatch` would take 12 KB more code, because its blocks have 16 lanes.
+/// Without own parameters the last is empty.
+type Memory = (
+    Vec<Block<Fast, LANES>>,
+    Vec<Pcg64>,
+    Vec<LaneParams<Fast, LANES>>,
+);
+
+/// A batch with its memory, and what JavaScript reads and writes.
 struct Many {
-    batch: Batch<Fast, (Vec<Block<Fast, LANES>>, Vec<Pcg64>), LANES>,
+    batch: Batch<Fast, Memory, LANES>,
     /// JavaScript writes here before a step.
     actions: Vec<u8>,
+    /// JavaScript writes here before a reset.
+    mask: Vec<bool>,
     observations: Vec<[f32; 6]>,
     rewards: Vec<f32>,
     terminated: Vec<bool>,
     truncated: Vec<bool>,
     final_observations: Vec<[f32; 6]>,
+    /// With `Autoreset::Disabled`, whose episodes have ended since their last reset.
+    ended: Vec<bool>,
 }
 
 thread_local! {
@@ -41,26 +52,38 @@ fn fill<T: Clone>(value: T, count: usize) -> Option<Vec<T>> {
 }
 
 impl Many {
-    fn new(words: usize, count: usize) -> Option<Self> {
-        let blocks = fill(Block::EMPTY, count.div_ceil(LANES))?;
-        let generators = fill(Pcg64::UNSEEDED, count)?;
+    fn new(words: usize, count: usize, own_params: bool) -> Option<Self> {
+        let blocks = count.div_ceil(LANES);
+        let storage = (
+            fill(Block::EMPTY, blocks)?,
+            fill(Pcg64::UNSEEDED, count)?,
+            fill(LaneParams::default(), if own_params { blocks } else { 0 })?,
+        );
         Some(Self {
-            batch: Batch::new(memory::seed(words), (blocks, generators)).ok()?,
+            batch: Batch::new(memory::seed(words), storage).ok()?,
             actions: fill(0, count)?,
+            mask: fill(false, count)?,
             observations: fill([0.0; 6], count)?,
             rewards: fill(0.0, count)?,
             terminated: fill(false, count)?,
             truncated: fill(false, count)?,
             final_observations: fill([0.0; 6], count)?,
+            ended: fill(false, count)?,
         })
     }
 }
 
-/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of its actions and results.
-/// Returns its number, or −1 if there is no memory for it.
+/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of what JavaScript reads and
+/// writes. Returns its number, or −1 if there is no memory for it.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_new(count: usize, words: usize, max_steps: u32, autoreset: u32) -> i32 {
-    let Some(mut many) = Many::new(words, count) else {
+pub extern "C" fn batch_new(
+    count: usize,
+    words: usize,
+    max_steps: u32,
+    autoreset: u32,
+    own_params: bool,
+) -> i32 {
+    let Some(mut many) = Many::new(words, count, own_params) else {
         return -1;
     };
     many.batch
@@ -77,6 +100,8 @@ pub extern "C" fn batch_new(count: usize, words: usize, max_steps: u32, autorese
         many.terminated.as_ptr().addr(),
         many.truncated.as_ptr().addr(),
         many.final_observations.as_ptr().addr(),
+        many.ended.as_ptr().addr(),
+        many.mask.as_ptr().addr(),
     ];
     set_bytes(addresses.into_iter().flat_map(usize::to_le_bytes));
     memory::insert(&BATCHES, many)
@@ -87,12 +112,17 @@ pub extern "C" fn batch_free(number: usize) {
     memory::with(&BATCHES, |table| table.remove(number));
 }
 
-/// Resets, with a seed of this many 32-bit words, or with the next draws if there are none.
+/// Resets the acrobots in the mask, with a seed of this many 32-bit words, or with the next draws if there are none.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_reset(number: usize, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
     memory::with_value(&BATCHES, number, |many| {
-        many.batch.reset_with(ResetOptions { seed, bounds: None });
+        let options = ResetOptions { seed, bounds: None };
+        // The lengths are equal, so this cannot fail.
+        let _ = many.batch.reset_masked(&many.mask, options);
+        for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
+            *ended &= !reset;
+        }
     });
 }
 
@@ -112,7 +142,14 @@ pub extern "C" fn batch_step(number: usize) -> bool {
             StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
                 .with_observations(&mut many.observations)
                 .with_final_observations(&mut many.final_observations);
-        many.batch.step(&many.actions, buffers).is_ok()
+        let stepped = many.batch.step(&many.actions, buffers).is_ok();
+        if stepped && many.batch.autoreset() == Autoreset::Disabled {
+            let flags = many.terminated.iter().zip(&many.truncated);
+            for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
+                *ended |= terminated | truncated;
+            }
+        }
+        stepped
     })
 }
 
@@ -126,19 +163,64 @@ pub extern "C" fn batch_state(number: usize, index: usize) {
     });
 }
 
+/// Sets the state of acrobot `index`. Returns 0, or the length of the reason for which it is rejected.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_params(number: usize) {
+pub extern "C" fn batch_set_state(number: usize, index: usize) -> usize {
+    let state = memory::get_state();
     memory::with_value(&BATCHES, number, |many| {
-        if let Some(params) = many.batch.params_of(0) {
+        memory::reason(many.batch.set_state(index, state))
+    })
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_elapsed(number: usize, index: usize) -> u32 {
+    memory::with_value(&BATCHES, number, |many| many.batch.elapsed(index)).unwrap_or_default()
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_params(number: usize, index: usize) {
+    memory::with_value(&BATCHES, number, |many| {
+        if let Some(params) = many.batch.params_of(index) {
             memory::set_params(&params);
         }
     });
 }
 
-/// Sets the parameters. Returns 0, or the length of the reason for which they are rejected.
+/// Sets the parameters of acrobot `index`, or of all if it is −1. Returns 0, or the length of the reason for which they are
+/// rejected.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params(number: usize) -> usize {
+pub extern "C" fn batch_set_params(number: usize, index: usize) -> usize {
+    let params = memory::get_params();
     memory::with_value(&BATCHES, number, |many| {
-        memory::reason(many.batch.set_params(memory::get_params()))
+        memory::reason(match index {
+            usize::MAX => many.batch.set_params(params),
+            _ => many.batch.set_params_of(index, params),
+        })
+    })
+}
+
+/// Writes acrobot `index` in the format of postcard, and returns its length.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_save(number: usize, index: usize) -> usize {
+    let member = memory::with_value(&BATCHES, number, |many| many.batch.member(index));
+    member.map_or(0, |member| memory::save(&member))
+}
+
+/// Loads acrobot `index` from the first of `len` bytes. Returns how many these are, or 0 if they are invalid.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_load(number: usize, index: usize, len: usize) -> usize {
+    let bytes = memory::get_bytes();
+    let bytes = bytes.get(..len).unwrap_or_default();
+    let Ok((member, rest)) = postcard::take_from_bytes::<Member<Fast>>(bytes) else {
+        return 0;
+    };
+    memory::with_value(&BATCHES, number, |many| {
+        // The first brings the parameters that all acrobots share.
+        let shared = index > 0 || many.batch.set_params(member.params).is_ok();
+        if shared && many.batch.set_member(index, member).is_ok() {
+            bytes.len() - rest.len()
+        } else {
+            0
+        }
     })
 }

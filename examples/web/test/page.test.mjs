@@ -5,8 +5,9 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { ACTIONS, bits, swingUp, trace } from "./native.mjs";
-import { dist, downloaded, folder, linkedActions, open, paused, press, shownBits, text } from "./player.mjs";
+import { Learner } from "../dist/acrobot-rs/policies.js";
+import { ACTIONS, bits, trace } from "./native.mjs";
+import { dist, downloaded, folder, linkedActions, open, paused, press, shownBits, steps, text } from "./player.mjs";
 
 test("the page loads, plays a policy, and has a strict content security policy", () =>
   open(async (page) => {
@@ -14,7 +15,7 @@ test("the page loads, plays a policy, and has a strict content security policy",
     assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
     assert.match(policy, /default-src 'none'/);
     await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 2);
-    assert.equal(await text(page, "#status"), "Bang-bang plays. Press ← or → to take over.");
+    assert.equal(await text(page, "#status"), "Bang-bang plays. To take over, press ← or →.");
     const drawn = await page.evaluate(() => {
       const { data } = document.querySelector("#picture").getContext("2d").getImageData(0, 0, 900, 900);
       return [...new Set(new Uint32Array(data.buffer))].map((pixel) => pixel.toString(16));
@@ -239,68 +240,61 @@ test("the random policy has all actions, and two other policies reach the goal",
     await paused(page, 42);
     await page.selectOption("#policy", "random");
     await page.focus("#stage");
-    for (let step = 0; step < 50; step++) await page.keyboard.press("s");
+    await steps(page, 50);
     assert.deepEqual([...new Set(await linkedActions(page))].sort(), [0, 1, 2]);
     for (const policy of ["bang_bang", "energy_law"]) {
       await page.selectOption("#policy", policy);
       await page.click("#reset");
-      for (let step = 0; step < 200; step++) await page.keyboard.press("s");
+      await steps(page, 200);
       assert.match(await text(page, "#verdict"), /^\d+ steps$/, policy);
       assert.equal(await text(page, "#status"), "The episode has ended. Press Restart or Next seed.");
       assert.ok(Number(await text(page, "#best")) < 200);
     }
   }));
 
-test("trained weights are bit-identical to native ones, and `swing_up` loads them", () =>
+/** Weights that the learner learns without a page. */
+function learnt(episodes, seed) {
+  const learner = new Learner({ episodes, seed });
+  for (let episode = 0; episode < episodes; episode++) learner.train();
+  return Buffer.from(learner.save());
+}
+
+test("the worker trains the weights of the learner, whose test compares them with native ones", () =>
   open(async (page) => {
     for (const seed of ["42", "123456789012345678901"]) {
-      await page.fill("#episodes", "100");
+      await page.fill("#episodes", "20");
       await page.fill("#training-seed", seed);
       await page.click("#train");
       await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
-      assert.match(await text(page, "#training-status"), /^100 of 100 episodes/);
-      const native = join(folder, `${seed}.bin`);
-      assert.equal(swingUp("--episodes", "100", "--seed", seed, "--save", native), null);
-      const weights = await downloaded(page, "#save");
-      assert.ok(weights.equals(readFileSync(native)), `seed ${seed}: the weights differ from native ones`);
-
-      const own = join(folder, "page.bin");
-      writeFileSync(own, weights);
-      assert.equal(swingUp("--episodes", "0", "--load", own), null);
+      assert.match(await text(page, "#training-status"), /^20 of 20 episodes/);
+      assert.ok((await downloaded(page, "#save")).equals(learnt(20, BigInt(seed))), `seed ${seed}`);
     }
   }));
 
-test("native weights reach the goal, and invalid ones are rejected with the learner's message", () =>
+test("loaded weights reach the goal, and invalid ones are rejected with the learner's message", () =>
   open(async (page) => {
-    const native = join(folder, "native.bin");
-    assert.equal(swingUp("--episodes", "300", "--save", native), null);
+    const path = join(folder, "weights.bin");
+    const good = learnt(200, 42);
+    writeFileSync(path, good);
     await paused(page, 42);
-    await page.setInputFiles("#load", native);
+    await page.setInputFiles("#load", path);
     await page.waitForFunction(() => document.querySelector("#training-status").textContent.endsWith("is loaded."));
-    assert.ok((await downloaded(page, "#save")).equals(readFileSync(native)));
+    assert.ok((await downloaded(page, "#save")).equals(good));
     await page.click("#drive");
     await page.click("#pause");
-    for (let step = 0; step < 200; step++) await page.keyboard.press("s");
+    await steps(page, 200);
     assert.match(await text(page, "#verdict"), /^\d+ steps$/);
 
-    const good = readFileSync(native);
-    for (const [name, bytes] of Object.entries({
-      "short.bin": good.subarray(0, 1000),
-      "damaged.bin": Buffer.from(good).fill(1, 500, 504),
-    })) {
-      const path = join(folder, name);
-      writeFileSync(path, bytes);
-      await page.setInputFiles("#load", path);
+    for (const [name, bytes, message] of [
+      ["short.bin", good.subarray(0, 1000), /^short\.bin: .* 1000 /],
+      ["damaged.bin", Buffer.from(good).fill(1, 500, 504), /^damaged\.bin: .*checksum/],
+      ["huge.bin", Buffer.alloc(1e6), /^huge\.bin: weights must have at most 131072 bytes, got 1000000$/],
+    ]) {
+      writeFileSync(join(folder, name), bytes);
+      await page.setInputFiles("#load", join(folder, name));
       await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
-      const reason = await text(page, "#weights-reason");
-      const error = swingUp("--episodes", "0", "--load", path);
-      assert.ok(error.endsWith(reason.slice(`${name}: `.length)), `${reason}; ${error}`);
+      assert.match(await text(page, "#weights-reason"), message);
     }
-    const huge = join(folder, "huge.bin");
-    writeFileSync(huge, Buffer.alloc(1e6));
-    await page.setInputFiles("#load", huge);
-    await page.waitForFunction(() => document.querySelector("#weights-reason").textContent.startsWith("huge"));
-    assert.equal(await text(page, "#weights-reason"), "huge.bin: weights must have at most 131072 bytes, got 1000000");
     // The weights that were loaded before are kept.
     assert.ok((await downloaded(page, "#save")).equals(good));
     for (const [id, value] of [["episodes", "0"], ["episodes", "1.5"], ["episodes", "1e9"], ["training-seed", "x"]]) {
@@ -356,25 +350,130 @@ test("a touched button applies torque until it is released", () =>
     { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true },
   ));
 
-test("nothing is wider than the screen (leaves screenshots)", async () => {
-  mkdirSync(join(dist, "screenshots"), { recursive: true });
-  for (const [size, options] of Object.entries({
-    phone: { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
-    desktop: { viewport: { width: 1280, height: 900 } },
-  })) {
-    for (const colorScheme of ["light", "dark"]) {
-      await open(
-        async (page) => {
-          await page.fill("#episodes", "300");
-          await page.click("#train");
-          await page.selectOption("#pace", "4");
-          await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 60);
-          await page.click("#pause");
-          await page.screenshot({ path: join(dist, "screenshots", `${size}-${colorScheme}.png`), fullPage: true });
-          assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), options.viewport.width);
-        },
-        { ...options, colorScheme },
-      );
+const touched = { hasTouch: true, isMobile: true };
+const SCREENS = {
+  phone: { viewport: { width: 390, height: 844 }, ...touched },
+  landscape: { viewport: { width: 844, height: 390 }, ...touched },
+  desktop: { viewport: { width: 1280, height: 900 } },
+};
+
+test("a half of the picture applies torque while it is touched", () =>
+  open(
+    async (page) => {
+      await paused(page, 42);
+      const { x, y, width, height } = await page.locator("#stage").boundingBox();
+      const finger = await page.context().newCDPSession(page);
+      const at = (part) => ({ x: x + part * width, y: y + height / 2, id: part * 10 });
+      const touch = (type, ...parts) => finger.send("Input.dispatchTouchEvent", { type, touchPoints: parts.map(at) });
+      const step = () => page.evaluate(() => document.querySelector("#single").click());
+      for (const [type, ...parts] of [["touchStart", 0.2], ["touchEnd"], ["touchStart", 0.9], ["touchStart", 0.9, 0.2], ["touchEnd", 0.2], ["touchEnd"]]) {
+        await touch(type, ...parts);
+        await step();
+      }
+      assert.deepEqual(await linkedActions(page), [0, 1, 2, 1, 0, 1]);
+    },
+    SCREENS.landscape,
+  ));
+
+test("the fewest steps are those of who played, with these parameters", () =>
+  open(async (page) => {
+    await paused(page, 42);
+    await page.selectOption("#policy", "bang_bang");
+    await steps(page, 200);
+    const best = await text(page, "#best");
+    assert.equal(await text(page, "#verdict"), `${best} steps`);
+    assert.equal(await text(page, "#best-label"), "Fewest steps of Bang-bang");
+    await page.selectOption("#policy", "keys");
+    assert.deepEqual([await text(page, "#best"), await text(page, "#best-label")], ["–", "Your fewest steps"]);
+    await page.selectOption("#policy", "bang_bang");
+    await page.fill("#gravity", "9");
+    assert.equal(await text(page, "#best"), "–");
+    await page.click("#defaults");
+    assert.equal(await text(page, "#best"), best);
+    // An episode that two have played counts for nobody.
+    await page.selectOption("#policy", "keys");
+    await press(page, [2]);
+    await page.selectOption("#policy", "energy_law");
+    await steps(page, 200);
+    assert.match(await text(page, "#verdict"), /steps$/);
+    assert.equal(await text(page, "#best"), "–");
+  }));
+
+/** Records the boxes of the labels that each plot shows. */
+function recordLabels() {
+  const { fillText } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    const { canvas } = this;
+    if (!canvas.drawing) {
+      canvas.labels = [];
+      canvas.drawing = true;
+      queueMicrotask(() => (canvas.drawing = false));
     }
+    const box = this.measureText(text);
+    const [left, right] = [x - box.actualBoundingBoxLeft, x + box.actualBoundingBoxRight];
+    canvas.labels.push({ name: text, left, right, top: y - box.actualBoundingBoxAscent, bottom: y + box.actualBoundingBoxDescent });
+    fillText.call(this, text, x, y);
+  };
+}
+
+/** What overlaps on the page: pairs of controls and texts, and of a plot's labels. What is outside of a plot, too. */
+const overlaps = (page) =>
+  page.evaluate(() => {
+    const pairs = (boxes, room) => {
+      const apart = (a, b) => a.right + room <= b.left || b.right + room <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+      return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => !apart(a, b)).map((b) => `${a.name} and ${b.name}`));
+    };
+    const shown = [...document.querySelectorAll("button, input, select, label, p, figcaption, figure canvas, #stage, h1, h2, summary")].filter(
+      (element) => element.checkVisibility() && element.getBoundingClientRect().height > 0 && element.parentElement.id !== "stage",
+    );
+    const boxes = shown.map((element) => {
+      const { left, right, top, bottom } = element.getBoundingClientRect();
+      return { name: element.id || element.textContent.slice(0, 30), left, right, top: top + 0.5, bottom: bottom - 0.5 };
+    });
+    const plots = [...document.querySelectorAll("figure canvas")].flatMap((canvas) => {
+      const outside = canvas.labels.filter(({ left, right }) => left < 0 || right > canvas.clientWidth).map(({ name }) => `${name} outside`);
+      return [...pairs(canvas.labels, 4), ...outside].map((pair) => `${canvas.id}: ${pair}`);
+    });
+    return [...pairs(boxes, 0), ...plots];
+  });
+
+test("each screen shows what its player needs, and nothing overlaps or is wider than it (leaves screenshots)", async () => {
+  mkdirSync(join(dist, "screenshots"), { recursive: true });
+  for (const [name, options] of Object.entries(SCREENS)) {
+    const { width, height } = options.viewport;
+    await open(
+      async (page) => {
+        const hint = options.hasTouch ? "#touch" : "#keys";
+        assert.deepEqual(await page.evaluate(() => ["#keys", "#touch"].filter((id) => document.querySelector(id).checkVisibility())), [hint]);
+        assert.equal(/←|→/.test(await text(page, "#status")), !options.hasTouch);
+        for (const id of ["stage", "left", "right", "pause", "reset", "step", "best"]) {
+          const box = await page.locator(`#${id}`).boundingBox();
+          assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height, `${name}: ${id}`);
+        }
+        const stage = await page.locator("#stage").boundingBox();
+        assert.ok(stage.width > 0.8 * Math.min(width, height, 500), `${stage.width}`);
+        const train = await page.locator("#train").boundingBox();
+        assert.ok(train.y < 1100, `Train is at ${train.y}`);
+
+        await page.fill("#episodes", "30");
+        await page.click("#train");
+        await page.selectOption("#pace", "4");
+        await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 40);
+        await page.click("#pause");
+        await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
+        for (const colorScheme of ["light", "dark"]) {
+          await page.emulateMedia({ colorScheme });
+          await text(page, "#step");
+          await page.screenshot({ path: join(dist, "screenshots", `${name}-${colorScheme}.png`), fullPage: true });
+        }
+        for (const other of name === "desktop" ? [width, 832, 1000, 1920] : [width, 320, 568, 667, 932]) {
+          await page.setViewportSize({ width: other, height });
+          await text(page, "#step");
+          assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), other);
+          assert.deepEqual(await overlaps(page), [], `${other}×${height}`);
+        }
+      },
+      { ...options, prepare: recordLabels },
+    );
   }
 });
