@@ -158,8 +158,6 @@ export interface BatchOptions extends Options {
   count: number;
   /** When an acrobot is reset whose episode has ended: Gymnasium's `AutoresetMode`. The default is "NextStep". */
   autoreset?: "NextStep" | "SameStep" | "Disabled";
-  /** Whether each acrobot can have its own parameters, by `setParamsOf`. All begin with `params`. The default is false. */
-  ownParams?: boolean;
 }
 
 /**
@@ -189,11 +187,7 @@ export class Batch extends Kept {
   /** A new batch that continues from a snapshot with the same bits. */
   static restore(snapshot: Uint8Array): Batch;
   get count(): number;
-  get settings(): Readonly<Required<Pick<BatchOptions, "count" | "maxSteps" | "autoreset" | "ownParams">>>;
-  /** The parameters of an acrobot: a frozen copy. With `ownParams`, `params` and `setParams` throw. */
-  paramsOf(index: number): Readonly<Params>;
-  /** Changes some parameters of an acrobot. Throws without `ownParams`. */
-  setParamsOf(index: number, changes: Readonly<Partial<Params>>): void;
+  get settings(): Readonly<Required<Pick<BatchOptions, "count" | "maxSteps" | "autoreset">>>;
   /** The array of observations, which steps and resets overwrite. After `setState`, reading this property does. */
   get observations(): Float32Array;
   /** Begins an episode of each acrobot. Returns `observations`. */
@@ -212,7 +206,7 @@ export class Batch extends Kept {
   elapsed(index: number): number;
   /**
    * Settings, parameters, states, steps and random numbers, in about 130 bytes for each acrobot: Rust's `VecBatch<Fast>` in postcard
-   * with CRC-32. With "Disabled", `ended` follows before the CRC-32.
+   * with CRC-32, before which with "Disabled" `ended` stands. A batch whose acrobots have different parameters cannot be restored.
    */
   snapshot(): Uint8Array;
   /** Draws an acrobot, without an arrow. */

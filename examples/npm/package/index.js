@@ -46,7 +46,7 @@ function elements(what, array, count, isValid, rule) {
 const registry = new FinalizationRegistry(({ kind, number }) => wasm()[`${kind}_free`](number));
 
 /** Properties that only this file can read. */
-const [NUMBER, PARAMS, SET_PARAMS, SHOWN] = ["number", "params", "setParams", "shown"].map((name) => Symbol(name));
+const [NUMBER, SHOWN] = [Symbol("number"), Symbol("shown")];
 
 /** What the module keeps under a number: an acrobot or a batch. */
 class Kept {
@@ -67,31 +67,21 @@ class Kept {
   }
 
   get params() {
-    return this[PARAMS](0);
-  }
-
-  setParams(changes) {
-    this[SET_PARAMS](changes, 0, -1);
-  }
-
-  /** The parameters of one acrobot of a batch. An acrobot alone ignores the index. */
-  [PARAMS](index) {
-    wasm()[`${this.#kind}_params`](this[NUMBER], index);
+    wasm()[`${this.#kind}_params`](this[NUMBER]);
     const values = [...numbers()];
     const torques = Object.freeze(values.splice(12, 3));
     const params = Object.fromEntries(NUMBERS.filter((name) => name !== "torques").map((name, i) => [name, values[i]]));
     return Object.freeze({ ...params, torques, dynamics: values.at(-1) === 1 ? "nips" : "book" });
   }
 
-  /** Changes the parameters of acrobot `from`, for acrobot `to`, or for all if that is −1. */
-  [SET_PARAMS](changes, from, to) {
+  setParams(changes) {
     const given = checked("params", changes, [...NUMBERS, "dynamics"]);
     if ("torques" in given) {
       const { torques } = given;
       if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques);
       given.torques = [0, 1, 2].map((i) => torques[i]);
     }
-    const params = { ...this[PARAMS](from), ...given };
+    const params = { ...this.params, ...given };
     const { torques, dynamics } = params;
     if (dynamics !== "book" && dynamics !== "nips") throw invalid('dynamics must be "book" or "nips"', dynamics);
     const values = NUMBERS.flatMap((name) => {
@@ -100,7 +90,7 @@ class Kept {
       return of;
     });
     numbers().set([...values, Number(dynamics === "nips")]);
-    const length = wasm()[`${this.#kind}_set_params`](this[NUMBER], to);
+    const length = wasm()[`${this.#kind}_set_params`](this[NUMBER]);
     accept(length, (name) => (name.startsWith("torques") ? torques[name.at(-2)] : params[name]));
   }
 
@@ -298,22 +288,20 @@ export class Batch extends Kept {
   #stale = false;
 
   constructor(options) {
-    const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams"];
-    const given = checked("options", options, names);
-    const { count, seed, params = {}, maxSteps = 500, autoreset = "NextStep", ownParams = false } = given;
+    const names = ["count", "seed", "params", "maxSteps", "autoreset"];
+    const { count, seed, params = {}, maxSteps = 500, autoreset = "NextStep" } = checked("options", options, names);
     positive("count", count);
     positive("maxSteps", maxSteps);
     if (!AUTORESETS.includes(autoreset)) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset);
-    if (typeof ownParams !== "boolean") throw invalid("ownParams must be true or false", ownParams);
-    const number = wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset), ownParams);
+    const number = wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset));
     const addresses = new Uint32Array(bytes().slice(0, 32).buffer);
     super("batch", number, count);
     this.#count = count;
-    this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams });
+    this.#settings = Object.freeze({ count, maxSteps, autoreset });
     this.#addresses = addresses;
     this.#names = [...RESULTS, ...(RESULT[autoreset] ?? [])];
     try {
-      super.setParams(params);
+      this.setParams(params);
       this.#copy(...this.#names);
     } catch (error) {
       this.free();
@@ -369,33 +357,6 @@ export class Batch extends Kept {
 
   get settings() {
     return this.#settings;
-  }
-
-  get params() {
-    this.#shares("params");
-    return super.params;
-  }
-
-  setParams(changes) {
-    this.#shares("setParams");
-    super.setParams(changes);
-  }
-
-  /** Rejects what concerns all acrobots if each has its own parameters. */
-  #shares(name) {
-    this[NUMBER];
-    if (this.#settings.ownParams) throw new TypeError(`${name} needs shared parameters: with ownParams use ${name}Of(index)`);
-  }
-
-  paramsOf(index) {
-    this.#numberFor(index);
-    return this[PARAMS](index);
-  }
-
-  setParamsOf(index, changes) {
-    this.#numberFor(index);
-    if (!this.#settings.ownParams) throw new TypeError("setParamsOf needs a batch with the option ownParams: true");
-    this[SET_PARAMS](changes, index, index);
   }
 
   get observations() {
@@ -463,8 +424,9 @@ export class Batch extends Kept {
   }
 
   #header() {
-    const { count, maxSteps, autoreset, ownParams } = this.#settings;
-    return [...varint(count + 1), ...BATCH, ...varint(maxSteps), AUTORESETS.indexOf(autoreset), Number(ownParams), 0];
+    const { count, maxSteps, autoreset } = this.#settings;
+    // No own parameters, and no range of them.
+    return [...varint(count + 1), ...BATCH, ...varint(maxSteps), AUTORESETS.indexOf(autoreset), 0, 0];
   }
 
   snapshot() {
@@ -489,10 +451,10 @@ export class Batch extends Kept {
     };
     const count = read() - 1;
     at += BATCH.length;
-    const [maxSteps, mode, ownParams] = [read(), read(), read() === 1];
+    const [maxSteps, mode] = [read(), read()];
     // An acrobot has at least 94 bytes.
     if (!(count >= 1 && count < content.length / 94 && maxSteps >= 1 && maxSteps < 2 ** 32 && mode in AUTORESETS)) throw wrong;
-    const batch = new this({ count, maxSteps, autoreset: AUTORESETS[mode], ownParams });
+    const batch = new this({ count, maxSteps, autoreset: AUTORESETS[mode] });
     if (batch.#load(content)) return batch;
     batch.free();
     throw wrong;
@@ -520,7 +482,7 @@ export class Batch extends Kept {
   draw(context, index, options) {
     const signature = "draw(context, index, options)";
     this.#numberFor(index, `${signature}: `);
-    draw(signature, context, this.state(index), this[PARAMS](index), 0, options);
+    draw(signature, context, this.state(index), this.params, 0, options);
   }
 
   get [SHOWN]() {

@@ -1,6 +1,6 @@
 // Policies, and a learner in a module of its own. policies.d.ts describes the interface.
 
-import { checked, compile, invalid, positive, seedWords } from "./wasm.js";
+import { checked, instantiate, invalid, positive, seedWords } from "./wasm.js";
 
 export const bangBang = ({ state }) => (state.dtheta1 > 0 ? 0 : 2);
 
@@ -22,7 +22,7 @@ export class Learner {
     const { episodes = 2000, seed } = checked("options", options, ["episodes", "seed"]);
     positive("episodes", episodes);
     const words = seedWords(seed);
-    this.#exports = new WebAssembly.Instance(compile()).exports;
+    this.#exports = instantiate();
     this.#bytes(4 * words.length).set(new Uint8Array(Uint32Array.from(words).buffer));
     this.#exports.begin(episodes, words.length);
   }

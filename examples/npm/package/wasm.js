@@ -7,7 +7,7 @@ import { inflate } from "./inflate.js";
 let compiled;
 
 /** The module. The first call compiles it, so that an import alone costs nothing and cannot fail. */
-export function compile() {
+function compile() {
   if (compiled) return compiled;
   const bytes = inflate(Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0)), LENGTH);
   try {
@@ -19,11 +19,17 @@ export function compile() {
   return compiled;
 }
 
+/** The functions of a new instance. */
+export function instantiate() {
+  const module = compile();
+  return new WebAssembly.Instance(module).exports;
+}
+
 let exports;
 
 /** The functions of the one instance that all acrobots share. */
 export function wasm() {
-  return (exports ??= new WebAssembly.Instance(compile()).exports);
+  return (exports ??= instantiate());
 }
 
 let numbersView = new Float32Array();

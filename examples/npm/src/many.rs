@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::num::NonZeroU32;
 
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, Member, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, ResetOptions};
 
@@ -13,16 +13,10 @@ use crate::table::Table;
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
 
-/// Without own parameters the last is empty.
-type Memory = (
-    Vec<Block<Fast, LANES>>,
-    Vec<Pcg64>,
-    Vec<LaneParams<Fast, LANES>>,
-);
-
-/// A batch with its memory, and what JavaScript reads and writes.
+/// A batch with its memory, and what JavaScript reads and writes. Own parameters for each acrobot would add 13 KB: the step is
+/// compiled again for them.
 struct Many {
-    batch: Batch<Fast, Memory, LANES>,
+    batch: Batch<Fast, (Vec<Block<Fast, LANES>>, Vec<Pcg64>), LANES>,
     /// JavaScript writes here before a step.
     actions: Vec<u8>,
     /// JavaScript writes here before a reset.
@@ -52,15 +46,11 @@ fn fill<T: Clone>(value: T, count: usize) -> Option<Vec<T>> {
 }
 
 impl Many {
-    fn new(words: usize, count: usize, own_params: bool) -> Option<Self> {
-        let blocks = count.div_ceil(LANES);
-        let storage = (
-            fill(Block::EMPTY, blocks)?,
-            fill(Pcg64::UNSEEDED, count)?,
-            fill(LaneParams::default(), if own_params { blocks } else { 0 })?,
-        );
+    fn new(words: usize, count: usize) -> Option<Self> {
+        let blocks = fill(Block::EMPTY, count.div_ceil(LANES))?;
+        let generators = fill(Pcg64::UNSEEDED, count)?;
         Some(Self {
-            batch: Batch::new(memory::seed(words), storage).ok()?,
+            batch: Batch::new(memory::seed(words), (blocks, generators)).ok()?,
             actions: fill(0, count)?,
             mask: fill(false, count)?,
             observations: fill([0.0; 6], count)?,
@@ -76,14 +66,8 @@ impl Many {
 /// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of what JavaScript reads and
 /// writes. Returns its number, or −1 if there is no memory for it.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_new(
-    count: usize,
-    words: usize,
-    max_steps: u32,
-    autoreset: u32,
-    own_params: bool,
-) -> i32 {
-    let Some(mut many) = Many::new(words, count, own_params) else {
+pub extern "C" fn batch_new(count: usize, words: usize, max_steps: u32, autoreset: u32) -> i32 {
+    let Some(mut many) = Many::new(words, count) else {
         return -1;
     };
     many.batch
@@ -178,24 +162,19 @@ pub extern "C" fn batch_elapsed(number: usize, index: usize) -> u32 {
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_params(number: usize, index: usize) {
+pub extern "C" fn batch_params(number: usize) {
     memory::with_value(&BATCHES, number, |many| {
-        if let Some(params) = many.batch.params_of(index) {
+        if let Some(params) = many.batch.params_of(0) {
             memory::set_params(&params);
         }
     });
 }
 
-/// Sets the parameters of acrobot `index`, or of all if it is −1. Returns 0, or the length of the reason for which they are
-/// rejected.
+/// Sets the parameters. Returns 0, or the length of the reason for which they are rejected.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params(number: usize, index: usize) -> usize {
-    let params = memory::get_params();
+pub extern "C" fn batch_set_params(number: usize) -> usize {
     memory::with_value(&BATCHES, number, |many| {
-        memory::reason(match index {
-            usize::MAX => many.batch.set_params(params),
-            _ => many.batch.set_params_of(index, params),
-        })
+        memory::reason(many.batch.set_params(memory::get_params()))
     })
 }
 

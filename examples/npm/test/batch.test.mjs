@@ -101,8 +101,8 @@ test("with Disabled, an ended row says so until a mask resets it", () => {
   assert.ok(resets > 50);
 });
 
-test("acrobots of a batch can have their own states and parameters", () => {
-  const batch = new Batch({ ...OPTIONS, ownParams: true });
+test("acrobots of a batch can have other states", () => {
+  const batch = new Batch(OPTIONS);
   const others = alone(OPTIONS);
   const state = { theta1: 1, theta2: -2, dtheta1: 3, dtheta2: -4 };
   batch.step(new Uint8Array(COUNT));
@@ -111,29 +111,20 @@ test("acrobots of a batch can have their own states and parameters", () => {
   others[5].state = state;
   assert.deepEqual(row(batch.observations, 5), others[5].observation);
   assert.equal(batch.elapsed(5), 1);
-  for (const [i, changes] of [[3, { mass1: 2 }], [20, { dt: 0.05, torques: [-2, 1, 2], dynamics: "nips" }]]) {
-    batch.setParamsOf(i, changes);
-    others[i].setParams(changes);
-  }
-  for (let i = 1; i < COUNT; i++) assert.deepEqual(batch.paramsOf(i), others[i].params);
-  for (let steps = 0; steps < 20; steps++) {
-    const actions = Uint8Array.from({ length: COUNT }, action);
-    const { observations } = batch.step(actions);
-    for (let i = 1; i < COUNT; i++) assert.deepEqual(row(observations, i), others[i].step(actions[i]).observation);
-  }
+  const { observations } = batch.step(new Uint8Array(COUNT).fill(2));
+  for (let i = 1; i < COUNT; i++) assert.deepEqual(row(observations, i), others[i].step(2).observation);
   assert.deepEqual([...new Set(batch.sample())].sort(), [0, 1, 2]);
 });
 
 test("a batch's snapshot continues with the same bits", () => {
   for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
-    const batch = new Batch({ ...OPTIONS, autoreset, ownParams: autoreset === "SameStep" });
-    if (autoreset === "SameStep") batch.setParamsOf(7, { mass2: 3 });
+    const batch = new Batch({ ...OPTIONS, autoreset });
     // The last step ends all episodes that have not ended before.
     for (let steps = 0; steps < OPTIONS.maxSteps; steps++) batch.step(Uint8Array.from({ length: COUNT }, action));
     const resumed = Batch.restore(batch.snapshot());
     assert.deepEqual(resumed.settings, batch.settings);
     assert.deepEqual(resumed.observations, batch.observations);
-    assert.deepEqual(resumed.paramsOf(7), batch.paramsOf(7));
+    assert.deepEqual(resumed.params, batch.params);
     for (let steps = 0; steps < 40; steps++) {
       const actions = Uint8Array.from({ length: COUNT }, action);
       const { finalObservations: finals, ...results } = resumed.step(actions);
@@ -149,15 +140,16 @@ test("a batch's snapshot continues with the same bits", () => {
 const sealed = (bytes) => Buffer.concat([bytes, gzipSync(bytes).subarray(-8, -4)]);
 
 test("a batch's snapshot has the bytes of Rust's postcard, and any other is rejected", () => {
-  // What version 1 stored for two acrobots with other reset bounds and a range of parameters, whose 16 and 130 bytes differ here.
+  // What version 1 stored for two acrobots with own parameters from a range: here both have those of the first.
   const stored = readFileSync(new URL("../../../tests/data/snapshots_1.txt", import.meta.url), "utf8");
   const rust = Buffer.from(/^03056261746368.*$/m.exec(stored)[0], "hex");
   const bounds = Buffer.from(Float64Array.of(-0.1, 0.1).buffer);
-  const snapshot = sealed(Buffer.concat([rust.subarray(0, 13), bounds, rust.subarray(29, 32), Buffer.of(0), rust.subarray(33 + 130)]));
+  const parts = [rust.subarray(0, 13), bounds, rust.subarray(29, 31), Buffer.of(0, 0), rust.subarray(163, 289), rust.subarray(163, 228), rust.subarray(354)];
+  const snapshot = sealed(Buffer.concat(parts));
   const batch = Batch.restore(snapshot);
-  assert.deepEqual(batch.settings, { count: 2, maxSteps: 30, autoreset: "NextStep", ownParams: true });
+  assert.deepEqual(batch.settings, { count: 2, maxSteps: 30, autoreset: "NextStep" });
   assert.deepEqual(Buffer.from(batch.snapshot()), snapshot);
-  assert.notDeepEqual(batch.paramsOf(0), batch.paramsOf(1));
+  assert.notDeepEqual(batch.state(0), batch.state(1));
 
   const restores = (bytes) => {
     try {
@@ -190,9 +182,7 @@ const ELEMENT = "must be 0 (negative torque), 1 (none) or 2 (positive), got ";
 
 test("invalid arguments are rejected, and nothing changes", () => {
   const batch = new Batch({ seed: 1, count: 3 });
-  const own = new Batch({ seed: 1, count: 3, ownParams: true });
   const before = batch.observations.slice();
-  const saved = own.snapshot();
   const FIT = "acrobots must fit into WebAssembly's memory of at most 4 GiB, got ";
   for (const [call, name, message] of [
     [() => batch.step(new Uint8Array(2)), "RangeError", "actions must have 3 elements, got 2"],
@@ -212,13 +202,6 @@ test("invalid arguments are rejected, and nothing changes", () => {
     [() => batch.setState(0, { theta1: 0, theta2: NaN, dtheta1: 0, dtheta2: 0 }), "RangeError", "theta2 must be a finite number of rad, got NaN"],
     [() => batch.setState(3, {}), "RangeError", "index must be an integer from 0 to 2, got 3"],
     [() => batch.elapsed(-1), "RangeError", "index must be an integer from 0 to 2, got -1"],
-    [() => batch.paramsOf(0.5), "RangeError", "index must be an integer from 0 to 2, got 0.5"],
-    [() => batch.setParamsOf(3, {}), "RangeError", "index must be an integer from 0 to 2, got 3"],
-    [() => batch.setParamsOf(0, { dt: 1 }), "TypeError", "setParamsOf needs a batch with the option ownParams: true"],
-    [() => own.setParams({ dt: 1 }), "TypeError", "setParams needs shared parameters: with ownParams use setParamsOf(index)"],
-    [() => own.params, "TypeError", "params needs shared parameters: with ownParams use paramsOf(index)"],
-    [() => own.setParamsOf(0, { dt: 0 }), "RangeError", "dt must be finite and above 0 s, got 0"],
-    [() => new Batch({ count: 1, ownParams: 1 }), "RangeError", "ownParams must be true or false, got 1"],
     [() => batch.state(3), "RangeError", "index must be an integer from 0 to 2, got 3"],
     [() => batch.state("0"), "TypeError", 'index must be an integer from 0 to 2, got "0"'],
     [() => batch.setParams({ dt: NaN }), "RangeError", "dt must be finite and above 0 s, got NaN"],
@@ -233,7 +216,6 @@ test("invalid arguments are rejected, and nothing changes", () => {
     assert.throws(call, { name, message });
     assert.deepEqual(batch.observations, before);
     assert.deepEqual(batch.reset(1), before);
-    assert.deepEqual(own.snapshot(), saved);
   }
   batch.free();
   for (const use of [() => batch.step([0, 0, 0]), () => batch.reset(), () => batch.state(0), () => batch.observations, () => batch.params, () => batch.elapsed(0), () => batch.snapshot(), () => batch.resetMasked([1, 1, 1])]) {

@@ -31,9 +31,8 @@ numbers.push(learner.train(), uprightEnergy(acrobot.params), batch.elapsed(1));
 batch.resetMasked(results.ended ?? [true, false, true], 7);
 batch.step(batch.sample());
 batch.setState(0, acrobot.state);
-const varied: Batch = Batch.restore(new Batch({ count: 2, ownParams: true }).snapshot());
-varied.setParamsOf(1, { ...varied.paramsOf(0), mass1: 2 });
-const mode: "NextStep" | "SameStep" | "Disabled" = varied.settings.autoreset;
+const copied: Batch = Batch.restore(batch.snapshot());
+const mode: "NextStep" | "SameStep" | "Disabled" = copied.settings.autoreset;
 
 export function draw(onPage: CanvasRenderingContext2D, offscreen: OffscreenCanvasRenderingContext2D, other: Context) {
   acrobot.draw(onPage);
@@ -50,7 +49,7 @@ acrobot.state.theta1 = 1;
 // @ts-expect-error
 acrobot.params.torques[0] = 1;
 // @ts-expect-error
-varied.settings.count = 1;
+copied.settings.count = 1;
 // @ts-expect-error
 new Acrobot({ sed: 1 });
 // @ts-expect-error
