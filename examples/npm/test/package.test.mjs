@@ -74,7 +74,7 @@ test("the module imports nothing and cannot panic", () => {
 });
 
 test("the programs of the documentation run in Node.js and print what they say", () => {
-  assert.equal(PROGRAMS.length, 5);
+  assert.equal(PROGRAMS.length, 7);
   PROGRAMS.forEach((program, i) => {
     writeFileSync(join(folder, `program${i}.mjs`), program);
     assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));
