@@ -172,10 +172,10 @@ export interface BatchStep {
   terminated: Uint8Array;
   /** 1 if the episode has reached `maxSteps`, otherwise 0. */
   truncated: Uint8Array;
+  /** 1 if one of these two is, and with "Disabled" until the acrobot is reset: a mask for `resetMasked`. */
+  ended: Uint8Array;
   /** Only with "SameStep": the last observations of the episodes that this step ended. Other rows are older, or 0. */
   finalObservations?: Float32Array;
-  /** Only with "Disabled": 1 from the step that ends an episode to the next reset, otherwise 0. A mask for `resetMasked`. */
-  ended?: Uint8Array;
 }
 
 /**

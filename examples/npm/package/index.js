@@ -9,10 +9,8 @@ const NUMBERS = [
   "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2", "gravity", "dt",
   "maxVelocity1", "maxVelocity2", "torques", "torqueNoise",
 ];
-const RESULTS = ["observations", "rewards", "terminated", "truncated"];
+const RESULTS = ["observations", "rewards", "terminated", "truncated", "ended", "finalObservations"];
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
-/** The result that only one mode has. */
-const RESULT = { SameStep: ["finalObservations"], Disabled: ["ended"] };
 const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
 const isAction = (action) => action === 0 || action === 1 || action === 2;
@@ -299,7 +297,7 @@ export class Batch extends Kept {
     this.#count = count;
     this.#settings = Object.freeze({ count, maxSteps, autoreset });
     this.#addresses = addresses;
-    this.#names = [...RESULTS, ...(RESULT[autoreset] ?? [])];
+    this.#names = autoreset === "SameStep" ? RESULTS : RESULTS.slice(0, -1);
     try {
       this.setParams(params);
       this.#copy(...this.#names);

@@ -26,7 +26,7 @@ struct Many {
     terminated: Vec<bool>,
     truncated: Vec<bool>,
     final_observations: Vec<[f32; 6]>,
-    /// With `Autoreset::Disabled`, whose episodes have ended since their last reset.
+    /// Whose episodes have ended: in this step, or with `Autoreset::Disabled` since their last reset.
     ended: Vec<bool>,
 }
 
@@ -127,10 +127,11 @@ pub extern "C" fn batch_step(number: usize) -> bool {
                 .with_observations(&mut many.observations)
                 .with_final_observations(&mut many.final_observations);
         let stepped = many.batch.step(&many.actions, buffers).is_ok();
-        if stepped && many.batch.autoreset() == Autoreset::Disabled {
+        if stepped {
+            let lasting = many.batch.autoreset() == Autoreset::Disabled;
             let flags = many.terminated.iter().zip(&many.truncated);
             for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
-                *ended |= terminated | truncated;
+                *ended = (*ended & lasting) | terminated | truncated;
             }
         }
         stepped
