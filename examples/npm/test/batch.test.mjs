@@ -104,6 +104,7 @@ test("a batch's snapshot continues with the same bits", () => {
     for (let steps = 0; steps < OPTIONS.maxSteps; steps++) batch.step(Uint8Array.from({ length: COUNT }, action));
     const resumed = Batch.restore(batch.snapshot());
     assert.deepEqual(resumed.settings, batch.settings);
+    assert.deepEqual(resumed.snapshot(), batch.snapshot());
     assert.deepEqual(resumed.observations, batch.observations);
     assert.deepEqual(resumed.params, batch.params);
     for (let steps = 0; steps < 40; steps++) {
@@ -113,7 +114,6 @@ test("a batch's snapshot continues with the same bits", () => {
       assert.deepEqual(results, others);
       assert.deepEqual(resumed.elapsed(9), batch.elapsed(9));
     }
-    assert.deepEqual(resumed.snapshot(), batch.snapshot());
   }
 });
 
@@ -151,7 +151,9 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
     for (const value of [0, 127, 128, 255]) {
       const changed = Buffer.from(content);
       changed[byte] = value;
-      restores(sealed(changed));
+      const restored = restores(sealed(changed));
+      // The settings before the limit of steps have only one value.
+      if (byte < 29) assert.equal(restored, value === content[byte]);
     }
   }
   // A NaN in the state of acrobot 0.
