@@ -206,7 +206,7 @@ export class Batch extends Kept {
   elapsed(index: number): number;
   /**
    * Settings, parameters, states, steps and random numbers, in about 130 bytes for each acrobot: Rust's `VecBatch<Fast>` in postcard
-   * with CRC-32, before which with "Disabled" `ended` stands. A batch whose acrobots have different parameters cannot be restored.
+   * with CRC-32, before which with "Disabled" `ended` stands. One of Rust with own parameters or other reset bounds cannot be restored.
    */
   snapshot(): Uint8Array;
   /** Draws an acrobot, without an arrow. */
