@@ -1,6 +1,6 @@
 // Draws line plots at the display's resolution: over the steps of an episode, or over the episodes of a training.
 
-const MARGIN = { left: 40, right: 8, top: 6, bottom: 18 };
+const MARGIN = { left: 40, right: 8, top: 8, bottom: 22 };
 
 /** The labelled angles, rad. */
 const RIGHT_ANGLES = [[-Math.PI, "−π"], [-Math.PI / 2, "−π/2"], [0, "0"], [Math.PI / 2, "π/2"], [Math.PI, "π"]];

@@ -74,7 +74,7 @@ function recordLabels() {
 const overlaps = (page) =>
   page.evaluate(() => {
     const pairs = (boxes, room) => {
-      const apart = (a, b) => a.right + room <= b.left || b.right + room <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+      const apart = (a, b) => a.right + room <= b.left || b.right + room <= a.left || a.bottom + room <= b.top || b.bottom + room <= a.top;
       return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => !apart(a, b)).map((b) => `${a.name} and ${b.name}`));
     };
     const shown = [...document.querySelectorAll("button, input, select, label, p, figcaption, figure canvas, #stage, h1, h2, summary")].filter(
