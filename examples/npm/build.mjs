@@ -12,8 +12,14 @@ rmSync("dist", { recursive: true, force: true });
 mkdirSync("dist");
 // npm shows what users need to know.
 writeFileSync("dist/README.md", readFileSync("README.md", "utf8").split("\n## Build and test")[0]);
-for (const file of ["package/package.json", "package/index.d.ts", "../../LICENSE-APACHE", "../../LICENSE-MIT"]) {
+for (const file of ["package/package.json", "../../LICENSE-APACHE", "../../LICENSE-MIT"]) {
   cpSync(file, `dist/${basename(file)}`, { dereference: true });
 }
-bundle("dist/index.js");
+for (const entry of ["index", "policies"]) {
+  const types = readFileSync(`package/${entry}.d.ts`, "utf8");
+  writeFileSync(`dist/${entry}.d.ts`, types);
+  // For TypeScript's CommonJS: `require` loads the same module, but the compiler wants types with another name.
+  writeFileSync(`dist/${entry}.d.cts`, types.replace('"./index.js"', '"./index.cjs"'));
+}
+bundle("dist");
 execFileSync("npm", ["pack", "--silent", "./dist"], { stdio: "inherit" });

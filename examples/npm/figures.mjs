@@ -33,13 +33,17 @@ const many = fastest(1024 * 2000, () => {
   for (let i = 0; i < 2000; i++) batch.step(actions);
 });
 
-const code = readFileSync("dist/index.js");
-const [{ size, unpackedSize }] = JSON.parse(execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"], { encoding: "utf8" }));
+const size = (path) => {
+  const code = readFileSync(path);
+  return `${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)}`;
+};
+const [{ size: packed, unpackedSize }] = JSON.parse(execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"], { encoding: "utf8" }));
 console.log(`
 | on one core, in Node.js ${process.versions.node.split(".")[0]} | |
 |---|---|
 | WebAssembly module, with simd128 | ${kilobytes(statSync("target/acrobot_npm.wasm").size)} |
-| \`index.js\`, with the module inside | ${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)} |
-| package, with types and licences | ${kilobytes(unpackedSize)}, packed ${kilobytes(size)} |
+| \`index.js\`, with the module inside | ${size("dist/index.js")} |
+| \`policies.js\`, with the learner's inside | ${size("dist/policies.js")} |
+| package, with types and licences | ${kilobytes(unpackedSize)}, packed ${kilobytes(packed)} |
 | \`Acrobot.step\` | ${single} |
 | \`Batch.step\` of 1,024, with observations | ${many} |`);

@@ -1,5 +1,5 @@
-// Compiles crates to small WebAssembly modules, and bundles one with the package's JavaScript: for the package, and for the page of
-// ../web. Programs, Cargo configuration and `target/` are those of the current folder.
+// Compiles crates to small WebAssembly modules, and bundles each with its JavaScript: for the package, and for the page of ../web.
+// Programs, Cargo configuration and `target/` are those of the current folder.
 
 import { execFileSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
@@ -19,10 +19,12 @@ const PASSES = ["--low-memory-unused", "-Os", "--const-hoisting", "-Os", "--stri
 /** simd128, and what rustc assumes. Every browser with modules in workers has the others. */
 const FEATURES = ["simd", "bulk-memory", "multivalue", "mutable-globals", "nontrapping-float-to-int", "reference-types", "sign-ext"];
 
-/** Compiles the crate in `folder`, whose library is `library`, to target/`library`.wasm, and returns that path. */
-export function compile(folder, library) {
+const here = fileURLToPath(new URL(".", import.meta.url));
+
+/** Compiles a crate of this workspace to target/`library`.wasm, and returns that path. */
+function compile(library) {
   const flags = [...SMALL.map((option) => `-Cllvm-args=${option}`), "-Ctarget-feature=+simd128"];
-  const args = ["--manifest-path", `${folder}/Cargo.toml`, "--target-dir", "target"];
+  const args = ["--package", library.replace("_", "-"), "--manifest-path", `${here}Cargo.toml`, "--target-dir", "target"];
   run("cargo", ["build", "--quiet", "--locked", "--release", ...args], { RUSTFLAGS: flags.join(" ") });
   const features = FEATURES.map((feature) => `--enable-${feature}`);
   const [text, out] = [`target/${library}.wat`, `target/${library}.wasm`];
@@ -33,14 +35,18 @@ export function compile(folder, library) {
   return out;
 }
 
-/** Bundles the package's JavaScript and its module: one file, which a browser loads with one request. */
-export function bundle(outfile) {
-  const here = fileURLToPath(new URL(".", import.meta.url));
-  const module = readFileSync(compile(here, "acrobot_npm"));
-  // A string, because all bundlers and servers pass strings on unchanged, and a constructor can decode it without waiting.
-  const deflated = deflateRawSync(module, { level: 9, memLevel: 9 }).toString("base64");
-  const values = [`--define:LENGTH=${module.length}`, `--define:MODULE=${JSON.stringify(deflated)}`];
-  // Names stay, for messages and debuggers.
-  const options = ["--bundle", "--format=esm", "--target=es2022", "--minify-whitespace", "--minify-syntax", "--log-level=warning"];
-  run("node_modules/.bin/esbuild", [`${here}package/index.js`, `--outfile=${outfile}`, ...options, ...values]);
+/** The files of the package, and the library of the module that each has inside. */
+const ENTRIES = { "index.js": "acrobot_npm", "policies.js": "acrobot_learner" };
+
+/** Writes each file with its module into a folder: a browser loads it with one request. */
+export function bundle(folder) {
+  for (const [file, library] of Object.entries(ENTRIES)) {
+    const module = readFileSync(compile(library));
+    // A string, because all bundlers and servers pass strings on unchanged, and a constructor can decode it without waiting.
+    const deflated = deflateRawSync(module, { level: 9, memLevel: 9 }).toString("base64");
+    const values = [`--define:LENGTH=${module.length}`, `--define:MODULE=${JSON.stringify(deflated)}`];
+    // Names stay, for messages and debuggers.
+    const options = ["--bundle", "--format=esm", "--target=es2022", "--minify-whitespace", "--minify-syntax", "--log-level=warning"];
+    run("node_modules/.bin/esbuild", [`${here}package/${file}`, `--outfile=${folder}/${file}`, ...options, ...values]);
+  }
 }

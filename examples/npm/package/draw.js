@@ -5,13 +5,17 @@ import { checked, invalid } from "./wasm.js";
 /** Gymnasium's colours. Its pictures have no torque. */
 const COLORS = { background: "white", target: "black", link: "rgb(0, 204, 204)", joint: "rgb(204, 204, 0)", torque: "rgb(204, 0, 0)" };
 
-/** Draws into the square from (0, 0) to (size, size) of the context's coordinates. */
-export function draw(context, { theta1, theta2 }, { length1, length2 }, torque, options = {}) {
-  if (typeof context?.arc !== "function") throw invalid("context must be a canvas's 2D context", context);
-  const { size = Math.min(context.canvas?.width, context.canvas?.height), colors: given = {} } = checked("options", options, ["size", "colors"]);
-  if (!Number.isFinite(size) || size < 0) throw invalid("size must be finite and at least 0 pixels", size);
-  const colors = { ...COLORS, ...checked("colors", given, Object.keys(COLORS)) };
-  for (const [name, color] of Object.entries(colors)) if (typeof color !== "string") throw invalid(`colors.${name} must be a string`, color);
+/** Draws into the square from (0, 0) to (size, size) of the context's coordinates. Errors begin with the signature of the method. */
+export function draw(signature, context, { theta1, theta2 }, { length1, length2 }, torque, options = {}) {
+  const fail = (rule, value) => {
+    throw invalid(`${signature}: ${rule}`, value);
+  };
+  if (typeof context?.arc !== "function") fail("context must be a canvas's 2D context", context);
+  const { canvas } = context;
+  const { size = Math.min(canvas?.width, canvas?.height), colors: given = {} } = checked(`${signature}: options`, options, ["size", "colors"]);
+  if (!Number.isFinite(size) || size < 0) fail("options.size must be finite and at least 0 pixels", size);
+  const colors = { ...COLORS, ...checked(`${signature}: options.colors`, given, Object.keys(COLORS)) };
+  for (const [name, color] of Object.entries(colors)) if (typeof color !== "string") fail(`options.colors.${name} must be a string`, color);
   const reach = length1 + length2 + 0.2;
   const metre = size / 2 / reach;
   const elbow = [length1 * Math.sin(theta1), -length1 * Math.cos(theta1)];
@@ -47,9 +51,13 @@ export function draw(context, { theta1, theta2 }, { length1, length2 }, torque, 
     // Three quarters of a turn around the elbow, open below, with a head at the end.
     context.translate(...elbow);
     context.scale(torque > 0 ? 0.3 : -0.3, 0.3);
-    const arc = Array.from({ length: 7 }, (_, i) => ((i - 1) * Math.PI) / 4).map((angle) => [Math.cos(angle), Math.sin(angle)]);
-    const [x, y] = arc.at(-1);
-    stroke(colors.torque, 1 / 6, arc);
+    const [start, end] = [-Math.PI / 4, (5 * Math.PI) / 4];
+    context.strokeStyle = colors.torque;
+    context.lineWidth = 1 / 6;
+    context.beginPath();
+    context.arc(0, 0, 1, start, end);
+    context.stroke();
+    const [x, y] = [Math.cos(end), Math.sin(end)];
     stroke(colors.torque, 1 / 6, [[x - 0.49, y + 0.25], [x, y], [x + 0.17, y + 0.52]]);
   }
   context.restore();

@@ -1,4 +1,14 @@
-/// <reference lib="esnext.disposable" />
+/// <reference lib="es2015.symbol" />
+
+// What `using` needs. TypeScript's own esnext.disposable does not compile with old targets.
+declare global {
+  interface SymbolConstructor {
+    readonly dispose: unique symbol;
+  }
+  interface Disposable {
+    [Symbol.dispose](): void;
+  }
+}
 
 // Without this line, everything here would be exported.
 export {};
@@ -48,7 +58,7 @@ export interface Params {
   /** Bound of |dtheta2| after a step, rad/s; from 1.2e-38 to 3.4e38. The default is 9π. */
   maxVelocity2: number;
   /** Torques of the three actions, N m; finite. The default is [-1, 0, 1]. */
-  torques: [number, number, number];
+  torques: readonly [number, number, number];
   /** Each step adds a uniform draw from [−torqueNoise, torqueNoise) to the torque, N m; 0 or more. The default is 0. */
   torqueNoise: number;
   /** The equations of the book (the default) or of the NIPS paper: Gymnasium's `book_or_nips`. */
@@ -59,7 +69,7 @@ export interface Options {
   /** The seed of the first initial state and of all later random numbers. The default is random. */
   seed?: Seed;
   /** Parameters that differ from the default. */
-  params?: Partial<Params>;
+  params?: Readonly<Partial<Params>>;
   /** The number of steps after which episodes are truncated, from 1 to 2^32 − 1. The default is 500, as in Acrobot-v1. */
   maxSteps?: number;
 }
@@ -103,10 +113,10 @@ export interface DrawOptions {
 
 /** What acrobots and batches share. Each method throws after `free()`. */
 declare abstract class Kept {
-  /** The parameters: a copy. */
-  get params(): Params;
+  /** The parameters: a frozen copy. */
+  get params(): Readonly<Params>;
   /** Changes some parameters for the next steps. Throws if one is outside its range, and changes nothing then. */
-  setParams(changes: Partial<Params>): void;
+  setParams(changes: Readonly<Partial<Params>>): void;
   /** Frees the memory in WebAssembly. Without a call, the garbage collector frees it at some time. */
   free(): void;
   /** Calls `free()`: for `using`. */
@@ -122,10 +132,12 @@ export class Acrobot extends Kept {
   reset(seed?: Seed): Float32Array;
   /** Applies an action for one dt. Steps after the end of an episode continue it. */
   step(action: Action): Step;
+  /** A random action for `step`, from `Math.random`. As in Gymnasium, the acrobot's seed does not determine it. */
+  sample(): Action;
   get observation(): Float32Array;
-  /** The state: a copy. Setting it continues the episode. All four numbers must be finite. */
-  get state(): State;
-  set state(state: State);
+  /** The state: a frozen copy. Setting it continues the episode. All four numbers must be finite. */
+  get state(): Readonly<State>;
+  set state(state: Readonly<State>);
   /** The total energy, J. The potential energy is 0 at the height of the fixed joint. */
   get energy(): number;
   /** The height of the tip above the fixed joint, m. */
@@ -160,6 +172,8 @@ export interface BatchStep {
   terminated: Uint8Array;
   /** 1 if the episode has reached `maxSteps`, otherwise 0. */
   truncated: Uint8Array;
+  /** 1 if one of these two is, and with "Disabled" until the acrobot is reset: a mask for `resetMasked`. */
+  ended: Uint8Array;
   /** Only with "SameStep": the last observations of the episodes that this step ended. Other rows are older, or 0. */
   finalObservations?: Float32Array;
 }
@@ -170,15 +184,31 @@ export interface BatchStep {
  */
 export class Batch extends Kept {
   constructor(options: BatchOptions);
+  /** A new batch that continues from a snapshot with the same bits. */
+  static restore(snapshot: Uint8Array): Batch;
   get count(): number;
-  /** The array of observations, which steps and resets overwrite. */
+  get settings(): Readonly<Required<Pick<BatchOptions, "count" | "maxSteps" | "autoreset">>>;
+  /** The array of observations, which steps and resets overwrite. After `setState`, reading this property does. */
   get observations(): Float32Array;
   /** Begins an episode of each acrobot. Returns `observations`. */
   reset(seed?: Seed): Float32Array;
+  /** As `reset`, for the acrobots whose element of the mask is true or 1. The others do not change. */
+  resetMasked(mask: ArrayLike<number | boolean>, seed?: Seed): Float32Array;
   /** Applies an action to each acrobot. A `Uint8Array` is the fastest. */
   step(actions: ArrayLike<number>): BatchStep;
-  /** The state of an acrobot: a copy. */
-  state(index: number): State;
+  /** A random action for each acrobot, from `Math.random`: a new array. */
+  sample(): Uint8Array;
+  /** The state of an acrobot: a frozen copy. */
+  state(index: number): Readonly<State>;
+  /** Sets the state of an acrobot, whose episode continues. All four numbers must be finite. */
+  setState(index: number, state: Readonly<State>): void;
+  /** The number of steps of an acrobot since its last reset. */
+  elapsed(index: number): number;
+  /**
+   * Settings, parameters, states, steps and random numbers, in about 130 bytes for each acrobot: Rust's `VecBatch<Fast>` in postcard
+   * with CRC-32, before which with "Disabled" `ended` stands. One of Rust with own parameters or other reset bounds cannot be restored.
+   */
+  snapshot(): Uint8Array;
   /** Draws an acrobot, without an arrow. */
   draw(context: Context, index: number, options?: DrawOptions): void;
 }

@@ -1,22 +1,35 @@
-// The module and its memory: what the classes of index.js share.
+// The module and its memory, and the checks of arguments: what the classes share.
 
 import { inflate } from "./inflate.js";
 
 /* global LENGTH, MODULE: wasm.mjs defines the module's length in bytes, and the module in DEFLATE and base64. */
 
-let exports;
+let compiled;
 
-/** The module's functions. The first call compiles the module, so that an import alone costs nothing and cannot fail. */
-export function wasm() {
-  if (exports) return exports;
+/** The module. The first call compiles it, so that an import alone costs nothing and cannot fail. */
+function compile() {
+  if (compiled) return compiled;
   const bytes = inflate(Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0)), LENGTH);
   try {
-    ({ exports } = new WebAssembly.Instance(new WebAssembly.Module(bytes)));
+    compiled = new WebAssembly.Module(bytes);
   } catch (cause) {
     const needs = "WebAssembly with simd128, and 'wasm-unsafe-eval' in a content security policy";
     throw new Error(`acrobot-rs needs ${needs}: ${cause.message}`, { cause });
   }
-  return exports;
+  return compiled;
+}
+
+/** The functions of a new instance. */
+export function instantiate() {
+  const module = compile();
+  return new WebAssembly.Instance(module).exports;
+}
+
+let exports;
+
+/** The functions of the one instance that all acrobots share. */
+export function wasm() {
+  return (exports ??= instantiate());
 }
 
 let numbersView = new Float32Array();
@@ -58,18 +71,24 @@ export function positive(name, value) {
   return value;
 }
 
-/** Writes a seed into the module's memory, lowest word first. Returns the number of words. Without a seed takes a random one. */
-export function writeSeed(seed = Math.floor(Math.random() * 2 ** 53)) {
+/** The 32-bit words of a seed, the lowest first. Without a seed takes a random one. */
+export function seedWords(seed = Math.floor(Math.random() * 2 ** 53)) {
   const valid = typeof seed === "bigint" ? seed >= 0n && seed < 1n << 2048n : Number.isSafeInteger(seed) && seed >= 0;
   if (!valid) throw invalid("seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1", seed);
-  const words = new DataView(bytes().buffer, bytes().byteOffset);
-  let count = 0;
+  const words = [];
   let rest = BigInt(seed);
   do {
-    words.setUint32(4 * count++, Number(rest & 0xffff_ffffn), true);
+    words.push(Number(rest & 0xffff_ffffn));
     rest >>= 32n;
   } while (rest > 0n);
-  return count;
+  return words;
+}
+
+/** Writes a seed into the module's memory. Returns the number of words. */
+export function writeSeed(seed) {
+  const words = seedWords(seed);
+  bytes().set(new Uint8Array(Uint32Array.from(words).buffer));
+  return words.length;
 }
 
 /** Throws if the module has rejected numbers: then `length` is that of the reason. `valueOf` returns the number with a name. */

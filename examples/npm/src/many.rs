@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::num::NonZeroU32;
 
-use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, Member, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, ResetOptions};
 
@@ -13,16 +13,21 @@ use crate::table::Table;
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
 
-/// A batch with its memory. A `VecBatch` would take 12 KB more code, because its blocks have 16 lanes.
+/// A batch with its memory, and what JavaScript reads and writes. Own parameters for each acrobot would add 13 KB: the step is
+/// compiled again for them.
 struct Many {
     batch: Batch<Fast, (Vec<Block<Fast, LANES>>, Vec<Pcg64>), LANES>,
     /// JavaScript writes here before a step.
     actions: Vec<u8>,
+    /// JavaScript writes here before a reset.
+    mask: Vec<bool>,
     observations: Vec<[f32; 6]>,
     rewards: Vec<f32>,
     terminated: Vec<bool>,
     truncated: Vec<bool>,
     final_observations: Vec<[f32; 6]>,
+    /// Whose episodes have ended: in this step, or with `Autoreset::Disabled` since their last reset.
+    ended: Vec<bool>,
 }
 
 thread_local! {
@@ -47,17 +52,19 @@ impl Many {
         Some(Self {
             batch: Batch::new(memory::seed(words), (blocks, generators)).ok()?,
             actions: fill(0, count)?,
+            mask: fill(false, count)?,
             observations: fill([0.0; 6], count)?,
             rewards: fill(0.0, count)?,
             terminated: fill(false, count)?,
             truncated: fill(false, count)?,
             final_observations: fill([0.0; 6], count)?,
+            ended: fill(false, count)?,
         })
     }
 }
 
-/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of its actions and results.
-/// Returns its number, or −1 if there is no memory for it.
+/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of what JavaScript reads and
+/// writes. Returns its number, or −1 if there is no memory for it.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_new(count: usize, words: usize, max_steps: u32, autoreset: u32) -> i32 {
     let Some(mut many) = Many::new(words, count) else {
@@ -77,6 +84,8 @@ pub extern "C" fn batch_new(count: usize, words: usize, max_steps: u32, autorese
         many.terminated.as_ptr().addr(),
         many.truncated.as_ptr().addr(),
         many.final_observations.as_ptr().addr(),
+        many.ended.as_ptr().addr(),
+        many.mask.as_ptr().addr(),
     ];
     set_bytes(addresses.into_iter().flat_map(usize::to_le_bytes));
     memory::insert(&BATCHES, many)
@@ -87,12 +96,17 @@ pub extern "C" fn batch_free(number: usize) {
     memory::with(&BATCHES, |table| table.remove(number));
 }
 
-/// Resets, with a seed of this many 32-bit words, or with the next draws if there are none.
+/// Resets the acrobots in the mask, with a seed of this many 32-bit words, or with the next draws if there are none.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_reset(number: usize, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
     memory::with_value(&BATCHES, number, |many| {
-        many.batch.reset_with(ResetOptions { seed, bounds: None });
+        let options = ResetOptions { seed, bounds: None };
+        // The lengths are equal, so this cannot fail.
+        let _ = many.batch.reset_masked(&many.mask, options);
+        for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
+            *ended &= !reset;
+        }
     });
 }
 
@@ -112,7 +126,15 @@ pub extern "C" fn batch_step(number: usize) -> bool {
             StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
                 .with_observations(&mut many.observations)
                 .with_final_observations(&mut many.final_observations);
-        many.batch.step(&many.actions, buffers).is_ok()
+        let stepped = many.batch.step(&many.actions, buffers).is_ok();
+        if stepped {
+            let lasting = many.batch.autoreset() == Autoreset::Disabled;
+            let flags = many.terminated.iter().zip(&many.truncated);
+            for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
+                *ended = (*ended & lasting) | terminated | truncated;
+            }
+        }
+        stepped
     })
 }
 
@@ -124,6 +146,20 @@ pub extern "C" fn batch_state(number: usize, index: usize) {
             set_numbers(state.into());
         }
     });
+}
+
+/// Sets the state of acrobot `index`. Returns 0, or the length of the reason for which it is rejected.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_set_state(number: usize, index: usize) -> usize {
+    let state = memory::get_state();
+    memory::with_value(&BATCHES, number, |many| {
+        memory::reason(many.batch.set_state(index, state))
+    })
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_elapsed(number: usize, index: usize) -> u32 {
+    memory::with_value(&BATCHES, number, |many| many.batch.elapsed(index)).unwrap_or_default()
 }
 
 #[unsafe(no_mangle)]
@@ -140,5 +176,31 @@ pub extern "C" fn batch_params(number: usize) {
 pub extern "C" fn batch_set_params(number: usize) -> usize {
     memory::with_value(&BATCHES, number, |many| {
         memory::reason(many.batch.set_params(memory::get_params()))
+    })
+}
+
+/// Writes acrobot `index` in the format of postcard, and returns its length.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_save(number: usize, index: usize) -> usize {
+    let member = memory::with_value(&BATCHES, number, |many| many.batch.member(index));
+    member.map_or(0, |member| memory::save(&member))
+}
+
+/// Loads acrobot `index` from the first of `len` bytes. Returns how many these are, or 0 if they are invalid.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_load(number: usize, index: usize, len: usize) -> usize {
+    let bytes = memory::get_bytes();
+    let bytes = bytes.get(..len).unwrap_or_default();
+    let Ok((member, rest)) = postcard::take_from_bytes::<Member<Fast>>(bytes) else {
+        return 0;
+    };
+    memory::with_value(&BATCHES, number, |many| {
+        // The first brings the parameters that all acrobots share.
+        let shared = index > 0 || many.batch.set_params(member.params).is_ok();
+        if shared && many.batch.set_member(index, member).is_ok() {
+            bytes.len() - rest.len()
+        } else {
+            0
+        }
     })
 }

@@ -5,7 +5,7 @@ use std::thread::LocalKey;
 
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::Dynamics;
-use acrobot::{Error, Params};
+use acrobot::{Error, Params, State};
 
 use crate::table::Table;
 
@@ -59,8 +59,9 @@ pub extern "C" fn bytes() -> *const u8 {
     BYTES.with(Cell::as_ptr).cast()
 }
 
-pub fn get_numbers() -> [f32; NUMBERS_LEN] {
-    NUMBERS.get()
+pub fn get_state() -> State<f32> {
+    let [theta1, theta2, dtheta1, dtheta2, ..] = NUMBERS.get();
+    State::from([theta1, theta2, dtheta1, dtheta2])
 }
 
 pub fn get_bytes() -> [u8; BYTES_LEN] {
@@ -79,6 +80,13 @@ pub fn set_numbers<const N: usize>(values: [f32; N]) {
 /// Writes bytes and returns their count.
 pub fn set_bytes(values: impl IntoIterator<Item = u8>) -> usize {
     BYTES.with(|cells| set(cells, values))
+}
+
+/// Writes a snapshot in the format of postcard, and returns its length.
+pub fn save(value: &impl serde::Serialize) -> usize {
+    let mut bytes = [0; BYTES_LEN];
+    let saved = postcard::to_slice(value, &mut bytes);
+    saved.map_or(0, |saved| set_bytes(saved.iter().copied()))
 }
 
 /// The seed in the first `words` 32-bit words. The lowest word is first.

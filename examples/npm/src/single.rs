@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::num::NonZeroU32;
 
-use acrobot::{Acrobot, Action, Fast, ResetOptions, State, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, ResetOptions, TimeLimit};
 
 use crate::memory::{self, set_numbers};
 use crate::table::Table;
@@ -68,8 +68,7 @@ pub extern "C" fn acrobot_read(number: usize) {
 /// Sets the state. Returns 0, or the length of the reason for which it is rejected.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_set_state(number: usize) -> usize {
-    let [theta1, theta2, dtheta1, dtheta2, ..] = memory::get_numbers();
-    let state = State::from([theta1, theta2, dtheta1, dtheta2]);
+    let state = memory::get_state();
     memory::with_value(&ENVS, number, |env| memory::reason(env.set_state(state)))
 }
 
@@ -99,11 +98,7 @@ pub extern "C" fn acrobot_elapsed(number: usize) -> u32 {
 /// Writes a snapshot in the format of postcard, and returns its length.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_save(number: usize) -> usize {
-    let mut bytes = memory::get_bytes();
-    memory::with_value(&ENVS, number, |env| {
-        let saved = postcard::to_slice(env, &mut bytes);
-        saved.map_or(0, |saved| memory::set_bytes(saved.iter().copied()))
-    })
+    memory::with_value(&ENVS, number, |env| memory::save(env))
 }
 
 /// Loads the snapshot in the first `len` bytes. Returns false and changes nothing if it is invalid.

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import { inspect } from "node:util";
 import { gzipSync } from "node:zlib";
 
 import { ACTIONS, bits as bitsOf, trace } from "../../web/test/native.mjs";
@@ -99,7 +100,8 @@ test("a picture fills the canvas or a square of the given size, and undefined op
 });
 
 const CONTEXT = "context must be a canvas's 2D context, got ";
-const SIZE = "size must be finite and at least 0 pixels, got ";
+const SIZE = "options.size must be finite and at least 0 pixels, got ";
+const COLORS = "options.colors must be";
 
 test("invalid arguments of draw are rejected with the value and the rule, and nothing is drawn", () => {
   const [batch, acrobot, context] = [new Batch({ count: 1 }), new Acrobot(), canvas()];
@@ -117,16 +119,36 @@ test("invalid arguments of draw are rejected with the value and the rule, and no
     [[context, { size: "100" }], "TypeError", `${SIZE}"100"`],
     [[context, { size: null }], "TypeError", `${SIZE}null`],
     [[{ ...context, canvas: undefined }], "RangeError", `${SIZE}NaN`],
-    [[context, { colors: null }], "TypeError", "colors must be an object, got null"],
-    [[context, { colors: "red" }], "TypeError", 'colors must be an object, got "red"'],
-    [[context, { colors: { lnik: "red" } }], "TypeError", "colors must be among background, target, link, joint, torque, got lnik"],
-    [[context, { colors: { link: 5 } }], "RangeError", "colors.link must be a string, got 5"],
-    [[context, { colors: { torque: undefined } }], "TypeError", "colors.torque must be a string, got undefined"],
+    [[context, { colors: null }], "TypeError", `${COLORS} an object, got null`],
+    [[context, { colors: "red" }], "TypeError", `${COLORS} an object, got "red"`],
+    [[context, { colors: { lnik: "red" } }], "TypeError", `${COLORS} among background, target, link, joint, torque, got lnik`],
+    [[context, { colors: { link: 5 } }], "RangeError", "options.colors.link must be a string, got 5"],
+    [[context, { colors: { torque: undefined } }], "TypeError", "options.colors.torque must be a string, got undefined"],
   ]) {
-    assert.throws(() => acrobot.draw(...args), { name, message });
-    assert.throws(() => batch.draw(args[0], 0, ...args.slice(1)), { name, message });
+    assert.throws(() => acrobot.draw(...args), { name, message: `draw(context, options): ${message}` });
+    assert.throws(() => batch.draw(args[0], 0, ...args.slice(1)), { name, message: `draw(context, index, options): ${message}` });
   }
+  const message = "draw(context, index, options): index must be an integer from 0 to 0, got [object Object]";
+  assert.throws(() => batch.draw(context, {}), { name: "TypeError", message });
   assert.deepEqual(context.calls, []);
+});
+
+test("states and parameters are frozen copies, and a random action is any", () => {
+  const acrobot = new Acrobot();
+  for (const copy of [acrobot.state, acrobot.params, acrobot.params.torques]) assert.ok(Object.isFrozen(copy));
+  assert.throws(() => (acrobot.state.theta1 = 1), TypeError);
+  assert.throws(() => (acrobot.params.torques[0] = 1), TypeError);
+  const actions = Array.from({ length: 100 }, () => acrobot.sample());
+  assert.deepEqual([...new Set(actions)].sort(), [0, 1, 2]);
+});
+
+test("the console shows what an acrobot and a batch are", () => {
+  const [acrobot, batch] = [new Acrobot({ maxSteps: 7 }), new Batch({ count: 3 })];
+  acrobot.state = { theta1: 0.5, theta2: 0, dtheta1: 0, dtheta2: 0 };
+  assert.match(inspect(acrobot), /^Acrobot \{\n  state: \{ theta1: 0\.5, theta2: 0, .*elapsed: 0,\n  maxSteps: 7,\n  params: \{\n    length1: 1,/s);
+  assert.match(inspect(batch), /^Batch \{\s+count: 3,\s+maxSteps: 500,\s+autoreset: 'NextStep'\s+\}$/);
+  acrobot.free();
+  assert.equal(inspect([acrobot]), "[ Acrobot freed ]");
 });
 
 const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1, got ";

@@ -41,6 +41,8 @@ const USES = [
   { given: Float64Array.of(2, 2, 2), kind: "batch", use: (batch, actions) => batch.step(actions) },
   { given: PARAMS, kind: "batch", use: (batch, params) => batch.setParams(params) },
   { given: PARAMS, kind: "acrobot", use: (acrobot, params) => acrobot.setParams(params) },
+  { given: [true, 0, 1], kind: "batch", use: (batch, mask) => batch.resetMasked(mask) },
+  { given: STATE, kind: "batch", use: (batch, state) => batch.setState(1, state) },
   { given: PARAMS.torques, kind: "acrobot", use: (acrobot, torques) => acrobot.setParams({ torques }) },
   { given: STATE, kind: "acrobot", use: (acrobot, state) => (acrobot.state = state) },
   { given: SNAPSHOT, kind: "acrobot", use: (acrobot, snapshot) => acrobot.restore(snapshot) },

@@ -1,9 +1,11 @@
 // Acrobots of a batch have the bits of acrobots alone. Memory is used again.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { setFlagsFromString } from "node:v8";
 import { runInNewContext } from "node:vm";
+import { gzipSync } from "node:zlib";
 
 import { Acrobot, Batch } from "../dist/index.js";
 import { instance } from "./instance.mjs";
@@ -40,7 +42,8 @@ for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
           continue;
         }
         const step = others[i].step(actions[i]);
-        ended[i] = step.terminated || step.truncated;
+        ended[i] = (autoreset === "Disabled" && ended[i]) || step.terminated || step.truncated;
+        assert.equal(results.ended[i], Number(ended[i]));
         assert.equal(results.rewards[i], step.reward);
         assert.deepEqual([results.terminated[i], results.truncated[i]], [step.terminated, step.truncated].map(Number));
         if (autoreset === "SameStep" && ended[i]) {
@@ -53,8 +56,18 @@ for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
         assert.deepEqual(batch.state(i), others[i].state);
       }
       assert.equal("finalObservations" in results, autoreset === "SameStep");
+      if (autoreset !== "Disabled") continue;
+      ended[0] = results.ended[0] === 1; // acrobot 0 has no other
+      if (steps % 10 !== 9) continue;
+      const seed = steps > 60 ? 7n : undefined;
+      const observations = batch.resetMasked(steps % 20 < 10 ? results.ended : ended, seed);
+      for (let i = 1; i < COUNT; i++) {
+        if (ended[i]) resets += others[i].reset(seed && seed + (BigInt(i) << 128n)).length > 0;
+        assert.deepEqual([row(observations, i), batch.elapsed(i)], [others[i].observation, others[i].elapsed]);
+      }
+      ended.fill(false);
     }
-    assert.equal(resets > 0, autoreset === "SameStep");
+    assert.equal(resets > 0, autoreset !== "NextStep");
   });
 }
 
@@ -67,6 +80,85 @@ test("a reset draws the next initial states, or those of a seed", () => {
   for (let i = 1; i < COUNT; i++) assert.deepEqual(row(observations, i), alone({ ...OPTIONS, seed: 7n })[i].observation);
   assert.deepEqual(batch.reset(42), new Batch(OPTIONS).observations);
   assert.deepEqual(batch.params, others[0].params);
+});
+
+test("acrobots of a batch can have other states", () => {
+  const batch = new Batch(OPTIONS);
+  const others = alone(OPTIONS);
+  const state = { theta1: 1, theta2: -2, dtheta1: 3, dtheta2: -4 };
+  batch.step(new Uint8Array(COUNT));
+  others.forEach((other) => other.step(0));
+  batch.setState(5, state);
+  others[5].state = state;
+  assert.deepEqual(row(batch.observations, 5), others[5].observation);
+  assert.equal(batch.elapsed(5), 1);
+  const { observations } = batch.step(new Uint8Array(COUNT).fill(2));
+  for (let i = 1; i < COUNT; i++) assert.deepEqual(row(observations, i), others[i].step(2).observation);
+  assert.deepEqual([...new Set(batch.sample())].sort(), [0, 1, 2]);
+});
+
+test("a batch's snapshot continues with the same bits", () => {
+  for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
+    const batch = new Batch({ ...OPTIONS, autoreset });
+    // The last step ends all episodes that have not ended before.
+    for (let steps = 0; steps < OPTIONS.maxSteps; steps++) batch.step(Uint8Array.from({ length: COUNT }, action));
+    const resumed = Batch.restore(batch.snapshot());
+    assert.deepEqual(resumed.settings, batch.settings);
+    assert.deepEqual(resumed.snapshot(), batch.snapshot());
+    assert.deepEqual(resumed.observations, batch.observations);
+    assert.deepEqual(resumed.params, batch.params);
+    for (let steps = 0; steps < 40; steps++) {
+      const actions = Uint8Array.from({ length: COUNT }, action);
+      const { finalObservations: finals, ...results } = resumed.step(actions);
+      const { finalObservations: expected, ...others } = batch.step(actions);
+      assert.deepEqual(results, others);
+      assert.deepEqual(resumed.elapsed(9), batch.elapsed(9));
+    }
+  }
+});
+
+/** CRC-32 as zlib computes it: the end of a gzip file has it, before four bytes of length. */
+const sealed = (bytes) => Buffer.concat([bytes, gzipSync(bytes).subarray(-8, -4)]);
+
+test("a batch's snapshot has the bytes of Rust's postcard, and any other is rejected", () => {
+  // What version 1 stored for two acrobots with own parameters from a range: here both have those of the first.
+  const stored = readFileSync(new URL("../../../tests/data/snapshots_1.txt", import.meta.url), "utf8");
+  const rust = Buffer.from(/^03056261746368.*$/m.exec(stored)[0], "hex");
+  const bounds = Buffer.from(Float64Array.of(-0.1, 0.1).buffer);
+  const parts = [rust.subarray(0, 13), bounds, rust.subarray(29, 31), Buffer.of(0, 0), rust.subarray(163, 289), rust.subarray(163, 228), rust.subarray(354)];
+  const snapshot = sealed(Buffer.concat(parts));
+  const batch = Batch.restore(snapshot);
+  assert.deepEqual(batch.settings, { count: 2, maxSteps: 30, autoreset: "NextStep" });
+  assert.deepEqual(Buffer.from(batch.snapshot()), snapshot);
+  assert.notDeepEqual(batch.state(0), batch.state(1));
+
+  const restores = (bytes) => {
+    try {
+      const batch = Batch.restore(bytes);
+      batch.step(Uint8Array.of(2, 2));
+      return true;
+    } catch ({ name, message }) {
+      assert.match(`${name}: ${message}`, /^(RangeError|TypeError): the snapshot must /);
+      return false;
+    }
+  };
+  const content = snapshot.subarray(0, -4);
+  for (let length = 0; length < content.length; length++) assert.ok(!restores(sealed(content.subarray(0, length))));
+  for (const other of [sealed(Buffer.concat([content, Buffer.of(0)])), content, new Acrobot().snapshot(), new Uint8Array(1000), "x", null]) {
+    assert.ok(!restores(other));
+  }
+  for (let byte = 0; byte < content.length; byte++) {
+    for (const value of [0, 127, 128, 255]) {
+      const changed = Buffer.from(content);
+      changed[byte] = value;
+      const restored = restores(sealed(changed));
+      // The settings before the limit of steps have only one value.
+      if (byte < 29) assert.equal(restored, value === content[byte]);
+    }
+  }
+  // A NaN in the state of acrobot 0.
+  assert.ok(!restores(sealed(Buffer.concat([content.subarray(0, 98), Buffer.of(0, 0, 0xc0, 0x7f), content.subarray(102)]))));
+  assert.throws(() => new Acrobot().restore(sealed(Buffer.alloc(300))), { message: /^the snapshot must be a valid one of "acrobot", .*, got 300 bytes$/ });
 });
 
 const ELEMENT = "must be 0 (negative torque), 1 (none) or 2 (positive), got ";
@@ -85,6 +177,14 @@ test("invalid arguments are rejected, and nothing changes", () => {
     [() => batch.step([0, 1, NaN]), "RangeError", `actions[2] ${ELEMENT}NaN`],
     [() => batch.step([0, , 1]), "TypeError", `actions[1] ${ELEMENT}undefined`],
     [() => batch.step(Int32Array.of(0, -1, 1)), "RangeError", `actions[1] ${ELEMENT}-1`],
+    [() => batch.resetMasked([1, 1]), "RangeError", "mask must have 3 elements, got 2"],
+    [() => batch.resetMasked(), "TypeError", "mask must have 3 elements, got undefined"],
+    [() => batch.resetMasked([1, 2, 1]), "RangeError", "mask[1] must be true, false, 1 or 0, got 2"],
+    [() => batch.resetMasked([1, 1, 1], -1), "RangeError", /^seed must be .*, got -1$/],
+    [() => batch.setState(0, { theta1: 0 }), "TypeError", "theta2 must be a number, got undefined"],
+    [() => batch.setState(0, { theta1: 0, theta2: NaN, dtheta1: 0, dtheta2: 0 }), "RangeError", "theta2 must be a finite number of rad, got NaN"],
+    [() => batch.setState(3, {}), "RangeError", "index must be an integer from 0 to 2, got 3"],
+    [() => batch.elapsed(-1), "RangeError", "index must be an integer from 0 to 2, got -1"],
     [() => batch.state(3), "RangeError", "index must be an integer from 0 to 2, got 3"],
     [() => batch.state("0"), "TypeError", 'index must be an integer from 0 to 2, got "0"'],
     [() => batch.setParams({ dt: NaN }), "RangeError", "dt must be finite and above 0 s, got NaN"],
@@ -101,7 +201,7 @@ test("invalid arguments are rejected, and nothing changes", () => {
     assert.deepEqual(batch.reset(1), before);
   }
   batch.free();
-  for (const use of [() => batch.step([0, 0, 0]), () => batch.reset(), () => batch.state(0), () => batch.observations, () => batch.params]) {
+  for (const use of [() => batch.step([0, 0, 0]), () => batch.reset(), () => batch.state(0), () => batch.observations, () => batch.params, () => batch.elapsed(0), () => batch.snapshot(), () => batch.resetMasked([1, 1, 1])]) {
     assert.throws(use, { name: "Error", message: "the batch has been freed" });
   }
 });

@@ -57,41 +57,51 @@ async function open(html, play = () => {}) {
   }
 }
 
-test("the package has 60 KB and these files", () => {
+test("the package has 120 KB and these files", () => {
   const [{ name, files, unpackedSize }] = JSON.parse(run("npm", ["pack", "--json", "--dry-run", join(here, "dist")]));
   const paths = files.map(({ path }) => path).sort();
-  assert.deepEqual(paths, ["LICENSE-APACHE", "LICENSE-MIT", "README.md", "index.d.ts", "index.js", "package.json"]);
-  assert.ok(unpackedSize <= 60_000, `the package must have at most 60,000 bytes, got ${unpackedSize}`);
+  const entries = ["index", "policies"].flatMap((entry) => [`${entry}.d.cts`, `${entry}.d.ts`, `${entry}.js`]);
+  assert.deepEqual(paths, ["LICENSE-APACHE", "LICENSE-MIT", "README.md", ...entries.slice(0, 3), "package.json", ...entries.slice(3)]);
+  assert.ok(unpackedSize <= 120_000, `the package must have at most 120,000 bytes, got ${unpackedSize}`);
   assert.equal(name, "acrobot-rs");
 });
 
 test("the module imports nothing and cannot panic", () => {
-  const text = readFileSync(join(here, "target/acrobot_npm.wat"), "utf8");
+  const [text, learner] = ["npm", "learner"].map((name) => readFileSync(join(here, `target/acrobot_${name}.wat`), "utf8"));
   assert.match(text, /\(export "batch_step"/);
-  assert.doesNotMatch(text, /\(import/);
+  assert.doesNotMatch(text + learner, /\(import/);
   assert.doesNotMatch(text, /unreachable/);
 });
 
 test("the programs of the documentation run in Node.js and print what they say", () => {
-  assert.equal(PROGRAMS.length, 5);
+  assert.equal(PROGRAMS.length, 7);
   PROGRAMS.forEach((program, i) => {
     writeFileSync(join(folder, `program${i}.mjs`), program);
     assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));
   });
 });
 
-test("types pass tsc --strict", () => {
+test("types pass tsc --strict, with the newest TypeScript and with 5.2", () => {
   PROGRAMS.forEach((program, i) => writeFileSync(join(folder, `program${i}.mts`), program));
-  cpSync(join(here, "test/typed.ts"), join(folder, "typed.mts"));
+  for (const extension of ["ts", "mts", "cts"]) cpSync(join(here, "test/typed.ts"), join(folder, `typed.${extension}`));
   const programs = PROGRAMS.map((_, i) => `program${i}.mts`);
-  for (const module of [["--module", "nodenext"], ["--module", "esnext", "--moduleResolution", "bundler"]]) {
-    const args = ["--strict", "--noEmit", "--target", "es2022", ...module, "--types", "", "typed.mts", ...programs];
-    assert.equal(run(join(here, "node_modules/.bin/tsc"), args), "");
+  const [newest, oldest] = ["typescript", "oldest-typescript"].map((name) => join(here, "node_modules", name, "bin/tsc"));
+  for (const [tsc, module, ...files] of [
+    [newest, ["nodenext"], "typed.mts", "typed.cts", ...programs],
+    [newest, ["esnext", "--moduleResolution", "bundler"], "typed.mts", ...programs],
+    [oldest, ["node16"], "typed.mts", "typed.cts"],
+    [oldest, ["esnext", "--moduleResolution", "bundler"], "typed.ts"],
+    [oldest, ["commonjs"], "typed.ts"],
+  ]) {
+    assert.equal(run("node", [tsc, "--strict", "--noEmit", "--target", "es2022", "--module", ...module, ...files]), "");
   }
+  // Without any option, which means ES5.
+  writeFileSync(join(folder, "plain.ts"), 'import { Acrobot } from "acrobot-rs";\nimport { bangBang } from "acrobot-rs/policies";\nbangBang(new Acrobot());\n');
+  assert.equal(run("node", [oldest, "plain.ts"]), "");
   // Without the types of a browser.
   writeFileSync(join(folder, "server.mts"), 'import { Acrobot } from "acrobot-rs";\nnew Acrobot().step(1);\n');
-  const server = ["--strict", "--noEmit", "--lib", "es2022", "--module", "nodenext", "--types", "", "server.mts"];
-  assert.equal(run(join(here, "node_modules/.bin/tsc"), server), "");
+  const server = ["--strict", "--noEmit", "--lib", "es2022", "--module", "nodenext", "server.mts"];
+  for (const tsc of [newest, oldest]) assert.equal(run("node", [tsc, ...server]), "");
 });
 
 test("bundles of every format run in Node.js and in Chromium", async () => {

@@ -1,6 +1,7 @@
 // Compiles with `tsc --strict`: valid uses have types, and others are errors.
 
 import { Acrobot, Batch, type Action, type BatchStep, type Context, type Options, type Params, type State, type Step } from "acrobot-rs";
+import { Learner, bangBang, energyLaw, uprightEnergy } from "acrobot-rs/policies";
 
 const options: Options = { seed: 42n, maxSteps: 200, params: { dt: 0.05, torques: [-2, 0, 2], dynamics: "nips" } };
 using acrobot = new Acrobot(options);
@@ -11,6 +12,7 @@ const state: State = acrobot.state;
 acrobot.state = { ...state, theta1: Math.PI };
 const params: Readonly<Params> = acrobot.params;
 acrobot.setParams({ gravity: params.gravity / 2 });
+acrobot.setParams(params);
 const bytes: Uint8Array = acrobot.snapshot();
 const resumed: Acrobot = Acrobot.restore(bytes);
 resumed.restore(bytes);
@@ -22,6 +24,17 @@ batch.step([0, 1, 2]);
 const finals: Float32Array | undefined = results.finalObservations;
 const second: State = batch.state(1);
 
+const learner = new Learner({ episodes: 100, seed: 42n });
+learner.load(learner.save());
+const actions: Action[] = [acrobot.sample(), bangBang(acrobot), energyLaw(acrobot), learner.act(acrobot)];
+numbers.push(learner.train(), uprightEnergy(acrobot.params), batch.elapsed(1));
+batch.resetMasked(results.ended);
+batch.resetMasked([true, false, true], 7);
+batch.step(batch.sample());
+batch.setState(0, acrobot.state);
+const copied: Batch = Batch.restore(batch.snapshot());
+const mode: "NextStep" | "SameStep" | "Disabled" = copied.settings.autoreset;
+
 export function draw(onPage: CanvasRenderingContext2D, offscreen: OffscreenCanvasRenderingContext2D, other: Context) {
   acrobot.draw(onPage);
   acrobot.draw(offscreen, { size: 100, colors: { link: "#08c" } });
@@ -32,6 +45,12 @@ export function draw(onPage: CanvasRenderingContext2D, offscreen: OffscreenCanva
 acrobot.step(3);
 // @ts-expect-error
 acrobot.step("1");
+// @ts-expect-error
+acrobot.state.theta1 = 1;
+// @ts-expect-error
+acrobot.params.torques[0] = 1;
+// @ts-expect-error
+copied.settings.count = 1;
 // @ts-expect-error
 new Acrobot({ sed: 1 });
 // @ts-expect-error
@@ -47,4 +66,4 @@ new Batch({ count: 1, autoreset: "nextStep" });
 // @ts-expect-error
 batch.draw(document.createElement("canvas"), 0);
 
-export { done, finals, numbers, second };
+export { actions, done, finals, mode, numbers, second };

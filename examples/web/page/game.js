@@ -1,10 +1,11 @@
 // One episode: its seed, parameters, actions and states.
 
-import { Acrobot } from "./acrobot.js";
+import { Acrobot } from "./acrobot-rs/index.js";
+import { uprightEnergy } from "./acrobot-rs/policies.js";
 import { LIMIT } from "./settings.js";
 
 export class Game {
-  #acrobot = new Acrobot();
+  acrobot = new Acrobot();
   seed;
   params;
   actions = [];
@@ -19,15 +20,15 @@ export class Game {
 
   /** Begins an episode. Throws if the package rejects the parameters. Then the current episode continues. */
   begin(seed, params = this.params) {
-    this.#acrobot.setParams(params);
-    this.#acrobot.reset(seed);
+    this.acrobot.setParams(params);
+    this.acrobot.reset(seed);
     Object.assign(this, { seed, params, actions: [], end: null });
     this.#rows = [this.#row()];
   }
 
   step(action) {
     if (this.end !== null) return;
-    const { terminated, truncated } = this.#acrobot.step(action);
+    const { terminated, truncated } = this.acrobot.step(action);
     this.actions.push(action);
     this.#rows.push(this.#row());
     if (terminated) this.end = "goal";
@@ -35,7 +36,7 @@ export class Game {
   }
 
   #row() {
-    const { state, energy, tipHeight } = this.#acrobot;
+    const { state, energy, tipHeight } = this.acrobot;
     return Float32Array.of(...Object.values(state), energy, tipHeight);
   }
 
@@ -53,30 +54,43 @@ export class Game {
     return this.#rows.at(-1);
   }
 
-  get state() {
-    return this.#acrobot.state;
-  }
-
   /** The energy of standing upright, J. */
   get standing() {
-    const { gravity, mass1, mass2, length1, centerOfMass1, centerOfMass2 } = this.#acrobot.params;
-    return gravity * (mass1 * centerOfMass1 + mass2 * (length1 + centerOfMass2));
+    return uprightEnergy(this.acrobot.params);
   }
 
   /** Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames than the physics takes steps. */
   draw(context, part, colors) {
-    const { state } = this;
+    const { state } = this.acrobot;
     const { theta1, theta2 } = this.between(part);
-    this.#acrobot.state = { ...state, theta1, theta2 };
-    this.#acrobot.draw(context, { colors });
-    this.#acrobot.state = state;
+    this.acrobot.state = { ...state, theta1, theta2 };
+    this.acrobot.draw(context, { colors });
+    this.acrobot.state = state;
   }
 
-  /** The angles at a part of the last step. */
-  between(part) {
-    const [before, after] = [this.#rows.at(-2) ?? this.numbers, this.numbers];
+  /** The angles at a part of a step, by default of the last one. */
+  between(part, step = this.steps) {
+    const [before, after] = [this.#rows[Math.max(step - 1, 0)], this.#rows[step]];
     const [theta1, theta2] = [0, 1].map((i) => angleBetween(before[i], after[i], before[i + 2], after[i + 2], this.params.dt, part));
     return { theta1, theta2 };
+  }
+
+  /**
+   * Where the tip was in the last `seconds` before a part of the last step, at equal intervals of time, so that a trail does not
+   * depend on the frames: up to `count` points [x, y] in m, the newest first.
+   */
+  trail(part, seconds, count) {
+    const { dt, length1, length2 } = this.params;
+    const points = [];
+    for (let i = 0; i < count; i++) {
+      const time = this.steps - 1 + part - (i / count) * (seconds / dt);
+      if (time < 0) break;
+      const step = Math.min(Math.floor(time), this.steps - 1);
+      const { theta1, theta2 } = this.between(time - step, step + 1);
+      const angle = theta1 + theta2;
+      points.push([length1 * Math.sin(theta1) + length2 * Math.sin(angle), -length1 * Math.cos(theta1) - length2 * Math.cos(angle)]);
+    }
+    return points;
   }
 
   /** One of the six numbers, of the initial state and after each step. */

@@ -1,13 +1,12 @@
 // Connects the page to an episode and to the panels.
 
+import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
 import { Game } from "./game.js";
-import { Learner } from "./learner.js";
 import { decodeRun, encodeRun } from "./link.js";
 import { attempt, parametersPanel } from "./parameters.js";
-import { color, plot, rangeOf } from "./plot.js";
-import { POLICIES } from "./policies.js";
+import { color, minus, plot, rangeOf } from "./plot.js";
 import { DEFAULTS, LIMIT, parseSeed } from "./settings.js";
-import { Stage } from "./stage.js";
+import { drawStage } from "./stage.js";
 import { download, trainingPanel } from "./training.js";
 
 const $ = (id) => document.getElementById(id);
@@ -16,19 +15,13 @@ const $ = (id) => document.getElementById(id);
 const INTERVAL = 1500;
 const NO_ACTIONS = "The link has no actions.";
 
-async function load() {
-  const game = new Game(42n, { ...DEFAULTS });
-  const response = await fetch("learner.wasm");
-  if (!response.ok) throw new Error(`${response.url} answered ${response.status}`);
-  const module = await WebAssembly.compile(await response.arrayBuffer());
-  start(game, module, await Learner.make(module));
-}
-
-function start(game, module, learner) {
+function start() {
+  const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
+  const POLICIES = { bang_bang: bangBang, energy_law: energyLaw, learnt: (acrobot) => learner.act(acrobot), random: (acrobot) => acrobot.sample() };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
+  const takeOver = matchMedia("(hover: none)").matches ? "touch a half of the picture" : "press ← or →";
   $("app").hidden = false;
   $("notice").hidden = true;
-  const stage = new Stage();
 
   let playing = !calm.matches;
   /** How much of the last step has been shown, s; dt before the first step. */
@@ -37,7 +30,11 @@ function start(game, module, learner) {
   let nextAt = Infinity;
   /** The actions of a link. */
   let recorded = [];
-  let best = null;
+  /** The policies that have played this episode. */
+  const players = new Set();
+  /** The fewest steps to the goal, for each policy that played a whole episode, and for each set of parameters. */
+  const best = new Map();
+  const record = () => JSON.stringify([$("policy").value, game.params]);
   const held = { left: false, right: false };
 
   // ---- the episode
@@ -46,16 +43,17 @@ function start(game, module, learner) {
     const policy = $("policy").value;
     if (policy === "keys") return 1 + Number(held.right) - Number(held.left);
     if (policy === "link") return recorded[game.steps];
-    return policy === "learnt" ? learner.act(game.state) : POLICIES[policy](game);
+    return POLICIES[policy](game.acrobot);
   };
 
   const step = () => {
     const next = action();
     if (next === undefined) return pause(recorded.length > 0 ? "The replay has ended." : NO_ACTIONS);
     game.step(next);
+    players.add($("policy").value);
     shown = 0;
     if (game.end === null) return;
-    if (game.end === "goal" && (best === null || game.steps < best)) best = game.steps;
+    if (game.end === "goal" && players.size === 1) best.set(record(), Math.min(game.steps, best.get(record()) ?? Infinity));
     const result = game.end === "goal" ? `Goal after ${game.steps} steps.` : `Out of time after ${LIMIT} steps.`;
     const continues = playing && !["keys", "link"].includes($("policy").value);
     if (continues) nextAt = performance.now() + INTERVAL;
@@ -66,7 +64,7 @@ function start(game, module, learner) {
     game.begin(seed, params);
     shown = params.dt;
     nextAt = Infinity;
-    stage.clearTrail();
+    players.clear();
     $("seed").value = seed;
     $("seed").removeAttribute("aria-invalid");
     $("seed-reason").textContent = "";
@@ -113,7 +111,7 @@ function start(game, module, learner) {
   /** Who applies the torque, as a sentence. */
   const player = () => {
     const { value, selectedOptions: [{ textContent: policy }] } = $("policy");
-    return { keys: "You play.", link: "The replay runs." }[value] ?? `${policy} plays. Press ← or → to take over.`;
+    return { keys: "You play.", link: "The replay runs." }[value] ?? `${policy} plays. To take over, ${takeOver}.`;
   };
 
   const choose = (policy) => {
@@ -133,7 +131,7 @@ function start(game, module, learner) {
     return { unit, value: row.cells[1], bits: row.querySelector("code") };
   });
 
-  const number = (value, digits = 2) => value.toFixed(digits).replace("-", "−");
+  const number = (value, digits = 2) => minus(value.toFixed(digits));
   /** Draws a plot of columns, and a caption with their last values and further parts. */
   const show = (id, title, names, unit, columns, options, ...more) => {
     const series = columns.map((values, i) => ({ values, color: color(["--accent", "--second"][i]) }));
@@ -167,8 +165,9 @@ function start(game, module, learner) {
   const update = () => {
     dirty = false;
     $("step").textContent = game.steps;
-    $("return").textContent = String(game.return).replace("-", "−");
-    $("best").textContent = best ?? "–";
+    $("return").textContent = minus(String(game.return));
+    $("best").textContent = best.get(record()) ?? "–";
+    $("best-label").textContent = $("policy").value === "keys" ? "Your fewest steps" : `Fewest steps of ${$("policy").selectedOptions[0].label}`;
     $("pause").textContent = playing ? "Pause" : "Play";
     $("verdict").textContent = { goal: `${game.steps} steps`, limit: "Out of time" }[game.end] ?? "";
     $("drive").disabled = document.querySelector("[value=learnt]").disabled;
@@ -202,7 +201,7 @@ function start(game, module, learner) {
       shown = Math.min(shown + elapsed * Number($("pace").value), dt);
     }
     if (now >= nextAt && playing) next();
-    stage.draw(game, calm.matches ? 1 : Math.min(shown / dt, 1), !calm.matches);
+    drawStage(game, calm.matches ? 1 : Math.min(shown / dt, 1), !calm.matches);
     if (dirty) update();
     requestAnimationFrame(frame);
   };
@@ -228,15 +227,30 @@ function start(game, module, learner) {
   document.addEventListener("keyup", ({ key }) => key in sides && hold(sides[key], false));
   // If the key is released in another window, this one gets no event.
   addEventListener("blur", () => ["left", "right"].forEach((side) => hold(side, false)));
-  for (const side of ["left", "right"]) {
-    const button = $(side);
-    button.addEventListener("pointerdown", ({ pointerId }) => {
-      button.setPointerCapture(pointerId);
+  /** Holds the side that a pointer's event chooses while that pointer is down. */
+  const holdBy = (element, sideOf) => {
+    const pointers = new Map();
+    element.addEventListener("pointerdown", (event) => {
+      const side = sideOf(event);
+      if (side === null) return;
+      element.setPointerCapture(event.pointerId);
+      pointers.set(event.pointerId, side);
       hold(side, true);
     });
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
-      button.addEventListener(end, () => hold(side, false));
+      element.addEventListener(end, ({ pointerId }) => {
+        const side = pointers.get(pointerId);
+        pointers.delete(pointerId);
+        if (side && ![...pointers.values()].includes(side)) hold(side, false);
+      });
     }
+  };
+  // A mouse's click only focuses the picture.
+  holdBy($("stage"), ({ pointerType, offsetX }) => (pointerType === "mouse" ? null : offsetX < $("stage").clientWidth / 2 ? "left" : "right"));
+  $("stage").addEventListener("contextmenu", (event) => event.preventDefault());
+  for (const side of ["left", "right"]) {
+    const button = $(side);
+    holdBy(button, () => side);
     button.addEventListener("keydown", ({ key }) => [" ", "Enter"].includes(key) && hold(side, true));
     button.addEventListener("keyup", ({ key }) => [" ", "Enter"].includes(key) && hold(side, false));
     button.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -290,7 +304,7 @@ function start(game, module, learner) {
   $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
 
   const learnt = document.querySelector("[value=learnt]");
-  const training = trainingPanel(learner, module, {
+  const training = trainingPanel(learner, {
     ready() {
       learnt.disabled = false;
       learnt.textContent = "Learnt";
@@ -311,15 +325,15 @@ function start(game, module, learner) {
 
   showParams();
   choose("bang_bang");
-  if (!playing) say("Press Play to watch Bang-bang, or ← or → to take over.");
+  if (!playing) say(`Press Play to watch Bang-bang. To take over, ${takeOver}.`);
   open();
   requestAnimationFrame(frame);
 }
 
-const notice = $("notice");
-notice.textContent = "Loading…";
-load().catch((error) => {
+try {
+  start();
+} catch (error) {
   $("app").hidden = true;
-  notice.hidden = false;
-  notice.textContent = `The page could not start: ${error.message}.`;
-});
+  $("notice").hidden = false;
+  $("notice").textContent = `The page could not start: ${error.message}.`;
+}

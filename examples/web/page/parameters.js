@@ -1,6 +1,7 @@
 // The panel "Physics": a choice of equations, and a slider and a field for each parameter. The field shows why a value is
 // rejected.
 
+import { minus } from "./plot.js";
 import { DEFAULTS, PARAMETERS, parseNumber } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
@@ -13,7 +14,7 @@ export function attempt(field, reason, set) {
     reason.textContent = "";
   } catch (error) {
     field.setAttribute("aria-invalid", "true");
-    reason.textContent = error.message;
+    reason.textContent = minus(error.message);
   }
 }
 

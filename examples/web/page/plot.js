@@ -1,9 +1,12 @@
 // Draws line plots at the display's resolution: over the steps of an episode, or over the episodes of a training.
 
-const MARGIN = { left: 40, right: 8, top: 6, bottom: 18 };
+const MARGIN = { left: 40, right: 8, top: 8, bottom: 22 };
 
 /** The labelled angles, rad. */
 const RIGHT_ANGLES = [[-Math.PI, "−π"], [-Math.PI / 2, "−π/2"], [0, "0"], [Math.PI / 2, "π/2"], [Math.PI, "π"]];
+
+/** A text whose negative numbers have the minus sign. */
+export const minus = (text) => text.replace(/-(?=[\dI])/g, "−");
 
 /** A colour of the style sheet, by the name of its custom property. */
 export function color(name) {
@@ -43,12 +46,12 @@ export function plot(canvas, { series, range, start = 0, end, unit, marks = [], 
     line([[MARGIN.left, y(tick)], [width - MARGIN.right, y(tick)]], color("--grid"));
   }
   context.textBaseline = "alphabetic";
-  context.textAlign = "left";
-  context.fillText(unit, 2, height - 4);
-  for (const tick of ticks(start, end, 5)) {
-    context.textAlign = tick === start ? "left" : x(tick) > width - 20 ? "right" : "center";
-    context.fillText(label(tick), x(tick), height - 4);
-  }
+  context.textAlign = "center";
+  // The last label has the unit. Fewer labels fit on a narrow screen.
+  ticks(start, end, Math.min(Math.floor(width / 110), 5)).forEach((tick, i, { length }) => {
+    const text = i + 1 < length ? label(tick) : `${label(tick)} ${unit}`;
+    context.fillText(text, Math.min(x(tick), width - context.measureText(text).width / 2), height - 4);
+  });
   for (const mark of marks) line([[MARGIN.left, y(mark)], [width - MARGIN.right, y(mark)]], color("--muted"), [4, 4]);
 
   context.beginPath();
@@ -77,7 +80,7 @@ function ticks(low, high, count) {
   return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, i) => (first + i) * step);
 }
 
-const label = (value) => String(Number(value.toPrecision(3))).replace("-", "−");
+const label = (value) => minus(String(Number(value.toPrecision(3))));
 
 /** The range of some values, made a little wider, so that it is never empty. */
 export function rangeOf(values) {

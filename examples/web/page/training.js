@@ -1,6 +1,6 @@
 // The panel "Train a policy": trains in a worker, draws the learning curve, loads and saves weights.
 
-import { color, plot, rangeOf } from "./plot.js";
+import { color, minus, plot, rangeOf } from "./plot.js";
 import { parseSeed } from "./settings.js";
 
 /** Solved, as Gymnasium defines it: a mean return of −100 over 100 episodes. */
@@ -11,7 +11,7 @@ const EPISODES = 1_000_000;
 const $ = (id) => document.getElementById(id);
 
 /** Calls `ready` once there is a learnt policy, and `drive` when the user wants to watch it. */
-export function trainingPanel(learner, module, { ready, drive }) {
+export function trainingPanel(learner, { ready, drive }) {
   let worker = null;
   let weights = null;
   let means = [];
@@ -48,7 +48,7 @@ export function trainingPanel(learner, module, { ready, drive }) {
       }
       seed = parseSeed($("training-seed").value);
     } catch (error) {
-      reason.textContent = error.message;
+      reason.textContent = minus(error.message);
       return;
     }
     const returns = [];
@@ -70,14 +70,14 @@ export function trainingPanel(learner, module, { ready, drive }) {
       const solved = means.findIndex((mean, i) => i + 1 >= WINDOW && mean >= SOLVED);
       const text = [
         `${returns.length.toLocaleString("en")} of ${episodes.toLocaleString("en")} episodes`,
-        `mean return ${means.at(-1).toFixed(1).replace("-", "−")}`,
+        `mean return ${minus(means.at(-1).toFixed(1))}`,
         solved < 0 ? "not solved yet" : `solved at episode ${solved + 1}`,
         `${rate.toLocaleString("en")} episodes per minute`,
       ].join(" · ");
       $("training-status").textContent = text;
       if (returns.length === episodes) stop();
     };
-    worker.postMessage({ module, seed, episodes });
+    worker.postMessage({ seed, episodes });
     $("train").textContent = "Stop";
     $("training-status").textContent = "Training…";
   };

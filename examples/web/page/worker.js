@@ -1,13 +1,12 @@
-// Trains outside the page's thread, with its own instance of the module. It receives { module, seed, episodes } and posts
-// reports. To stop the training, terminate the worker.
+// Trains outside the page's thread. It receives { seed, episodes } and posts reports. To stop the training, terminate the worker.
 
-import { Learner } from "./learner.js";
+import { Learner } from "./acrobot-rs/policies.js";
 
 /** The time between two reports, ms. */
 const PERIOD = 150;
 
-async function train({ module, seed, episodes }) {
-  const learner = await Learner.make(module, episodes, seed);
+function train({ seed, episodes }) {
+  const learner = new Learner({ episodes, seed });
   let returns = [];
   let reported = performance.now();
   for (let episode = 1; episode <= episodes; episode++) {
@@ -20,4 +19,10 @@ async function train({ module, seed, episodes }) {
   }
 }
 
-onmessage = ({ data }) => train(data).catch((error) => postMessage({ failed: String(error) }));
+onmessage = ({ data }) => {
+  try {
+    train(data);
+  } catch (error) {
+    postMessage({ failed: String(error) });
+  }
+};

@@ -1,7 +1,6 @@
-// The page's functions, tested in Node: links, numbers as text, the interpolated picture; and the size of the learner.
+// The page's functions, tested in Node: links, numbers as text, the interpolated picture, the trail.
 
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
 import { test } from "node:test";
 
 import { Game, shortest } from "../dist/game.js";
@@ -12,11 +11,6 @@ import { ACTIONS } from "./native.mjs";
 
 /** A canvas's context that draws nothing. */
 const CONTEXT = new Proxy({ canvas: { width: 1, height: 1 } }, { get: (target, name) => target[name] ?? (() => {}) });
-
-test("the learner has at most 32 KiB", () => {
-  const { size } = statSync(new URL("../dist/learner.wasm", import.meta.url));
-  assert.ok(size <= 32 * 1024, `got ${size} bytes`);
-});
 
 test("numbers are written with the fewest digits that keep single precision", () => {
   for (const text of ["0", "0.1", "-0.054791212", "3.1415927", "1e-7", "16777216"]) {
@@ -51,6 +45,22 @@ test("the picture between two steps has the angles and velocities of both", () =
   game.begin(0n, { ...DEFAULTS, dt: 1e30 });
   game.step(2);
   assert.ok(Math.abs(game.between(0.5).theta1) < 1e6);
+});
+
+test("the trail is where the tip was at equal times, whatever the frames are", () => {
+  const tip = ({ theta1, theta2 }) => [Math.sin(theta1) + Math.sin(theta1 + theta2), -Math.cos(theta1) - Math.cos(theta1 + theta2)];
+  const close = ([x, y], [x2, y2]) => assert.ok(Math.hypot(x - x2, y - y2) < 1e-6);
+  for (const [dt, length] of [[0.2, 90], [0.01, 36], [1e-9, 1], [1e30, 90]]) {
+    const game = new Game(42n, { ...DEFAULTS, dt });
+    assert.equal(game.trail(1, 1.5, 90).length, 1);
+    while (game.steps < 60) game.step(game.numbers[2] > 0 ? 0 : 2);
+    const trail = game.trail(0.3, 1.5, 90);
+    assert.equal(trail.length, length);
+    close(trail[0], tip(game.between(0.3)));
+    // 12 points are 0.2 s.
+    if (dt === 0.2) trail.forEach((point, i) => i % 12 === 0 && close(point, tip(game.between(0.3, 60 - i / 12))));
+    if (dt === 0.2) close(trail[3], tip(game.between(0.05)));
+  }
 });
 
 test("a link contains all actions", () => {

@@ -1,12 +1,13 @@
 // Tests the page in Chromium, and compares its results with native ones.
 
 import assert from "node:assert/strict";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { ACTIONS, bits, swingUp, trace } from "./native.mjs";
-import { dist, downloaded, folder, linkedActions, open, paused, press, shownBits, text } from "./player.mjs";
+import { Learner } from "../dist/acrobot-rs/policies.js";
+import { ACTIONS, bits, trace } from "./native.mjs";
+import { downloaded, folder, linkedActions, open, paused, press, shownBits, steps, text } from "./player.mjs";
 
 test("the page loads, plays a policy, and has a strict content security policy", () =>
   open(async (page) => {
@@ -14,7 +15,7 @@ test("the page loads, plays a policy, and has a strict content security policy",
     assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
     assert.match(policy, /default-src 'none'/);
     await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 2);
-    assert.equal(await text(page, "#status"), "Bang-bang plays. Press ← or → to take over.");
+    assert.equal(await text(page, "#status"), "Bang-bang plays. To take over, press ← or →.");
     const drawn = await page.evaluate(() => {
       const { data } = document.querySelector("#picture").getContext("2d").getImageData(0, 0, 900, 900);
       return [...new Set(new Uint32Array(data.buffer))].map((pixel) => pixel.toString(16));
@@ -142,7 +143,7 @@ test("parameters change the physics as in the crate, and invalid ones are reject
     const state = await shownBits(page);
     assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
 
-    for (const [value, got] of [["-0.1", "-0.1"], ["0", "0"], ["abc", "NaN"], ["", "NaN"], ["1e999", "Infinity"]]) {
+    for (const [value, got] of [["-0.1", "−0.1"], ["0", "0"], ["abc", "NaN"], ["", "NaN"], ["1e999", "Infinity"]]) {
       await page.fill("#dt", value);
       assert.equal(await text(page, "#dt-reason"), `dt must be finite and above 0 s, got ${got}`);
     }
@@ -239,68 +240,61 @@ test("the random policy has all actions, and two other policies reach the goal",
     await paused(page, 42);
     await page.selectOption("#policy", "random");
     await page.focus("#stage");
-    for (let step = 0; step < 50; step++) await page.keyboard.press("s");
+    await steps(page, 50);
     assert.deepEqual([...new Set(await linkedActions(page))].sort(), [0, 1, 2]);
     for (const policy of ["bang_bang", "energy_law"]) {
       await page.selectOption("#policy", policy);
       await page.click("#reset");
-      for (let step = 0; step < 200; step++) await page.keyboard.press("s");
+      await steps(page, 200);
       assert.match(await text(page, "#verdict"), /^\d+ steps$/, policy);
       assert.equal(await text(page, "#status"), "The episode has ended. Press Restart or Next seed.");
       assert.ok(Number(await text(page, "#best")) < 200);
     }
   }));
 
-test("trained weights are bit-identical to native ones, and `swing_up` loads them", () =>
+/** Weights that the learner learns without a page. */
+function learnt(episodes, seed) {
+  const learner = new Learner({ episodes, seed });
+  for (let episode = 0; episode < episodes; episode++) learner.train();
+  return Buffer.from(learner.save());
+}
+
+test("the worker trains the weights of the learner, whose test compares them with native ones", () =>
   open(async (page) => {
     for (const seed of ["42", "123456789012345678901"]) {
-      await page.fill("#episodes", "100");
+      await page.fill("#episodes", "20");
       await page.fill("#training-seed", seed);
       await page.click("#train");
       await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
-      assert.match(await text(page, "#training-status"), /^100 of 100 episodes/);
-      const native = join(folder, `${seed}.bin`);
-      assert.equal(swingUp("--episodes", "100", "--seed", seed, "--save", native), null);
-      const weights = await downloaded(page, "#save");
-      assert.ok(weights.equals(readFileSync(native)), `seed ${seed}: the weights differ from native ones`);
-
-      const own = join(folder, "page.bin");
-      writeFileSync(own, weights);
-      assert.equal(swingUp("--episodes", "0", "--load", own), null);
+      assert.match(await text(page, "#training-status"), /^20 of 20 episodes/);
+      assert.ok((await downloaded(page, "#save")).equals(learnt(20, BigInt(seed))), `seed ${seed}`);
     }
   }));
 
-test("native weights reach the goal, and invalid ones are rejected with the learner's message", () =>
+test("loaded weights reach the goal, and invalid ones are rejected with the learner's message", () =>
   open(async (page) => {
-    const native = join(folder, "native.bin");
-    assert.equal(swingUp("--episodes", "300", "--save", native), null);
+    const path = join(folder, "weights.bin");
+    const good = learnt(200, 42);
+    writeFileSync(path, good);
     await paused(page, 42);
-    await page.setInputFiles("#load", native);
+    await page.setInputFiles("#load", path);
     await page.waitForFunction(() => document.querySelector("#training-status").textContent.endsWith("is loaded."));
-    assert.ok((await downloaded(page, "#save")).equals(readFileSync(native)));
+    assert.ok((await downloaded(page, "#save")).equals(good));
     await page.click("#drive");
     await page.click("#pause");
-    for (let step = 0; step < 200; step++) await page.keyboard.press("s");
+    await steps(page, 200);
     assert.match(await text(page, "#verdict"), /^\d+ steps$/);
 
-    const good = readFileSync(native);
-    for (const [name, bytes] of Object.entries({
-      "short.bin": good.subarray(0, 1000),
-      "damaged.bin": Buffer.from(good).fill(1, 500, 504),
-    })) {
-      const path = join(folder, name);
-      writeFileSync(path, bytes);
-      await page.setInputFiles("#load", path);
+    for (const [name, bytes, message] of [
+      ["short.bin", good.subarray(0, 1000), /^short\.bin: weights must have 49172 bytes, got 1000$/],
+      ["damaged.bin", Buffer.from(good).fill(1, 500, 504), /^damaged\.bin: .*checksum/],
+      ["huge.bin", Buffer.alloc(1e6), /^huge\.bin: weights must have at most 131072 bytes, got 1000000$/],
+    ]) {
+      writeFileSync(join(folder, name), bytes);
+      await page.setInputFiles("#load", join(folder, name));
       await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
-      const reason = await text(page, "#weights-reason");
-      const error = swingUp("--episodes", "0", "--load", path);
-      assert.ok(error.endsWith(reason.slice(`${name}: `.length)), `${reason}; ${error}`);
+      assert.match(await text(page, "#weights-reason"), message);
     }
-    const huge = join(folder, "huge.bin");
-    writeFileSync(huge, Buffer.alloc(1e6));
-    await page.setInputFiles("#load", huge);
-    await page.waitForFunction(() => document.querySelector("#weights-reason").textContent.startsWith("huge"));
-    assert.equal(await text(page, "#weights-reason"), "huge.bin: weights must have at most 131072 bytes, got 1000000");
     // The weights that were loaded before are kept.
     assert.ok((await downloaded(page, "#save")).equals(good));
     for (const [id, value] of [["episodes", "0"], ["episodes", "1.5"], ["episodes", "1e9"], ["training-seed", "x"]]) {
@@ -338,43 +332,26 @@ test("with reduced motion the page begins paused and moves step by step", () =>
     { reducedMotion: "reduce" },
   ));
 
-test("a touched button applies torque until it is released", () =>
-  open(
-    async (page) => {
-      await paused(page, 42);
-      await page.focus("#stage");
-      await page.locator("#right").scrollIntoViewIfNeeded();
-      const { x, y, width, height } = await page.locator("#right").boundingBox();
-      const finger = await page.context().newCDPSession(page);
-      const touch = (type, touchPoints) => finger.send("Input.dispatchTouchEvent", { type, touchPoints });
-      await touch("touchStart", [{ x: x + width / 2, y: y + height / 2 }]);
-      await page.keyboard.press("s");
-      await touch("touchEnd", []);
-      await page.keyboard.press("s");
-      assert.deepEqual(await linkedActions(page), [2, 1]);
-    },
-    { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true },
-  ));
-
-test("nothing is wider than the screen (leaves screenshots)", async () => {
-  mkdirSync(join(dist, "screenshots"), { recursive: true });
-  for (const [size, options] of Object.entries({
-    phone: { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
-    desktop: { viewport: { width: 1280, height: 900 } },
-  })) {
-    for (const colorScheme of ["light", "dark"]) {
-      await open(
-        async (page) => {
-          await page.fill("#episodes", "300");
-          await page.click("#train");
-          await page.selectOption("#pace", "4");
-          await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 60);
-          await page.click("#pause");
-          await page.screenshot({ path: join(dist, "screenshots", `${size}-${colorScheme}.png`), fullPage: true });
-          assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), options.viewport.width);
-        },
-        { ...options, colorScheme },
-      );
-    }
-  }
-});
+test("the fewest steps are those of who played, with these parameters", () =>
+  open(async (page) => {
+    await paused(page, 42);
+    await page.selectOption("#policy", "bang_bang");
+    await steps(page, 200);
+    const best = await text(page, "#best");
+    assert.equal(await text(page, "#verdict"), `${best} steps`);
+    assert.equal(await text(page, "#best-label"), "Fewest steps of Bang-bang");
+    await page.selectOption("#policy", "keys");
+    assert.deepEqual([await text(page, "#best"), await text(page, "#best-label")], ["–", "Your fewest steps"]);
+    await page.selectOption("#policy", "bang_bang");
+    await page.fill("#gravity", "9");
+    assert.equal(await text(page, "#best"), "–");
+    await page.click("#defaults");
+    assert.equal(await text(page, "#best"), best);
+    // An episode that two have played counts for nobody.
+    await page.selectOption("#policy", "keys");
+    await press(page, [2]);
+    await page.selectOption("#policy", "energy_law");
+    await steps(page, 200);
+    assert.match(await text(page, "#verdict"), /steps$/);
+    assert.equal(await text(page, "#best"), "–");
+  }));

@@ -80,6 +80,13 @@ export async function press(page, actions) {
   }
 }
 
+/** Lets the policy step, without a wait for each. */
+export async function steps(page, count) {
+  await page.focus("#stage");
+  const key = () => document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "s", bubbles: true }));
+  await page.evaluate(`for (let i = 0; i < ${count}; i++) (${key})()`);
+}
+
 /** The actions in the page's link to its run. */
 export async function linkedActions(page) {
   await page.click("#share");

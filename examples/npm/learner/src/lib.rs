@@ -1,5 +1,5 @@
-//! The page's WebAssembly module: the learner of `swing_up` in 64 KiB. A worker's instance trains, and the page's instance
-//! plays the learnt policy.
+//! The WebAssembly module of `acrobot-rs/policies`: the learner of `swing_up` in 64 KiB. Each `Learner` of JavaScript has
+//! its own instance.
 //!
 //! Longer data than numbers passes through a buffer: JavaScript writes seeds, Rust writes error texts, both write weights.
 

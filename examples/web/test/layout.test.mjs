@@ -1,0 +1,142 @@
+// The page on a phone, on its side too, and on a desktop: what is touched, and the layout. Leaves screenshots.
+
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+
+import { dist, linkedActions, open, paused, text } from "./player.mjs";
+
+const touched = { hasTouch: true, isMobile: true };
+const SCREENS = {
+  phone: { viewport: { width: 390, height: 844 }, ...touched },
+  landscape: { viewport: { width: 844, height: 390 }, ...touched },
+  desktop: { viewport: { width: 1280, height: 900 } },
+};
+
+test("a touched button applies torque until it is released", () =>
+  open(
+    async (page) => {
+      await paused(page, 42);
+      await page.focus("#stage");
+      await page.locator("#right").scrollIntoViewIfNeeded();
+      const { x, y, width, height } = await page.locator("#right").boundingBox();
+      const finger = await page.context().newCDPSession(page);
+      const touch = (type, touchPoints) => finger.send("Input.dispatchTouchEvent", { type, touchPoints });
+      await touch("touchStart", [{ x: x + width / 2, y: y + height / 2 }]);
+      await page.keyboard.press("s");
+      await touch("touchEnd", []);
+      await page.keyboard.press("s");
+      assert.deepEqual(await linkedActions(page), [2, 1]);
+    },
+    SCREENS.phone,
+  ));
+
+test("a half of the picture applies torque while it is touched", () =>
+  open(
+    async (page) => {
+      await paused(page, 42);
+      await page.evaluate(() => scrollTo(0, 0));
+      const { x, y, width, height } = await page.locator("#stage").boundingBox();
+      const finger = await page.context().newCDPSession(page);
+      const at = (part) => ({ x: x + part * width, y: y + height / 2, id: part * 10 });
+      const touch = (type, ...parts) => finger.send("Input.dispatchTouchEvent", { type, touchPoints: parts.map(at) });
+      const step = () => page.evaluate(() => document.querySelector("#single").click());
+      for (const [type, ...parts] of [["touchStart", 0.2], ["touchEnd"], ["touchStart", 0.9], ["touchStart", 0.9, 0.2], ["touchEnd", 0.2], ["touchEnd"]]) {
+        await touch(type, ...parts);
+        await text(page, "#step");
+        await step();
+      }
+      // The first end names the finger that leaves.
+      assert.deepEqual(await linkedActions(page), [0, 1, 2, 1, 2, 1]);
+    },
+    SCREENS.landscape,
+  ));
+
+/** Records the boxes of the labels that each plot shows. */
+function recordLabels() {
+  const { fillText } = CanvasRenderingContext2D.prototype;
+  CanvasRenderingContext2D.prototype.fillText = function (text, x, y) {
+    const { canvas } = this;
+    if (!canvas.drawing) {
+      canvas.labels = [];
+      canvas.drawing = true;
+      queueMicrotask(() => (canvas.drawing = false));
+    }
+    const box = this.measureText(text);
+    const [left, right] = [x - box.actualBoundingBoxLeft, x + box.actualBoundingBoxRight];
+    canvas.labels.push({ name: text, left, right, top: y - box.actualBoundingBoxAscent, bottom: y + box.actualBoundingBoxDescent });
+    fillText.call(this, text, x, y);
+  };
+}
+
+/** What overlaps on the page: pairs of controls and texts, and of a plot's labels. What is outside of a plot, too. */
+const overlaps = (page) =>
+  page.evaluate(() => {
+    const pairs = (boxes, room) => {
+      const apart = (a, b) => a.right + room <= b.left || b.right + room <= a.left || a.bottom + room <= b.top || b.bottom + room <= a.top;
+      return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => !apart(a, b)).map((b) => `${a.name} and ${b.name}`));
+    };
+    const shown = [...document.querySelectorAll("button, input, select, label, p, figcaption, figure canvas, #stage, h1, h2, summary")].filter(
+      (element) => element.checkVisibility() && element.getBoundingClientRect().height > 0 && element.parentElement.id !== "stage",
+    );
+    const boxes = shown.map((element) => {
+      const { left, right, top, bottom } = element.getBoundingClientRect();
+      return { name: element.id || element.textContent.slice(0, 30), left, right, top: top + 0.5, bottom: bottom - 0.5 };
+    });
+    const plots = [...document.querySelectorAll("figure canvas")].flatMap((canvas) => {
+      const outside = canvas.labels.filter(({ left, right }) => left < 0 || right > canvas.clientWidth + 1).map(({ name }) => `${name} outside`);
+      return [...pairs(canvas.labels, 4), ...outside].map((pair) => `${canvas.id}: ${pair}`);
+    });
+    return [...pairs(boxes, 0), ...plots];
+  });
+
+test("each screen shows what its player needs, and nothing overlaps or is wider than it", async () => {
+  mkdirSync(join(dist, "screenshots"), { recursive: true });
+  for (const [name, options] of Object.entries(SCREENS)) {
+    const { width, height } = options.viewport;
+    await open(
+      async (page) => {
+        const hint = options.hasTouch ? "#touch" : "#keys";
+        assert.deepEqual(await page.evaluate(() => ["#keys", "#touch"].filter((id) => document.querySelector(id).checkVisibility())), [hint]);
+        assert.equal(/←|→/.test(await text(page, "#status")), !options.hasTouch);
+        for (const id of ["stage", "left", "right", "pause", "reset", "step", "best"]) {
+          const box = await page.locator(`#${id}`).boundingBox();
+          assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height, `${name}: ${id}`);
+        }
+        const stage = await page.locator("#stage").boundingBox();
+        assert.ok(stage.width > 0.8 * Math.min(width, height, 500), `${stage.width}`);
+        const train = await page.locator("#train").boundingBox();
+        assert.ok(train.y < 1120, `Train is at ${train.y}`);
+
+        await page.fill("#episodes", "30");
+        await page.click("#train");
+        await page.selectOption("#pace", "4");
+        await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 40);
+        await page.click("#pause");
+        await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
+        await page.evaluate(() => scrollTo(0, 0));
+        for (const colorScheme of ["light", "dark"]) {
+          await page.emulateMedia({ colorScheme });
+          await text(page, "#step");
+          // A picture of a full page would end the emulation of touch.
+          await page.screenshot({ path: join(dist, "screenshots", `${name}-${colorScheme}.png`), fullPage: !options.hasTouch });
+        }
+        const filled = await page.evaluate(() =>
+          [...document.querySelectorAll("section")].map((section) => {
+            const { top, height } = section.getBoundingClientRect();
+            return (Math.max(...Array.from(section.children, (child) => child.getBoundingClientRect().bottom)) - top) / height;
+          }),
+        );
+        assert.ok(Math.min(...filled) > 0.6, `${name}: parts of the panels with content: ${filled}`);
+        for (const other of name === "desktop" ? [width, 832, 1000, 1920] : [width, 320, 568, 667, 932]) {
+          await page.setViewportSize({ width: other, height });
+          await text(page, "#step");
+          assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), other);
+          assert.deepEqual(await overlaps(page), [], `${other}×${height}`);
+        }
+      },
+      { ...options, prepare: recordLabels },
+    );
+  }
+});
