@@ -3,6 +3,7 @@
 use core::ffi::{CStr, c_char, c_int};
 
 use acrobot::Error;
+use acrobot::physics::control::ControlError;
 
 use crate::memory::Array;
 
@@ -32,6 +33,8 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,
     /// Two arguments overlap: arrays, or a result and the acrobot or batch.
     ACROBOT_ERROR_OVERLAP = 10,
+    /// These weights have no regulator, or none that can be computed precisely.
+    ACROBOT_ERROR_NO_REGULATOR = 11,
 }
 
 use acrobot_status_t::*;
@@ -120,6 +123,22 @@ impl From<Error> for Rejected {
     }
 }
 
+impl From<ControlError> for Rejected {
+    fn from(error: ControlError) -> Self {
+        match error {
+            ControlError::Invalid(error) => error.into(),
+            ControlError::NotFinite { name, value } => {
+                Self::number(name, value, "", "finite in each element")
+            }
+            // Of weights on a diagonal, where only a negative one remains.
+            ControlError::NotSemidefinite { value, .. } => {
+                Self::number("weight", -value, "", "at least 0")
+            }
+            _ => ACROBOT_ERROR_NO_REGULATOR.into(),
+        }
+    }
+}
+
 /// The status of a call.
 pub fn status(call: impl FnOnce() -> Result<(), Rejected>) -> acrobot_status_t {
     call().map_or_else(|rejected| rejected.status, |()| ACROBOT_OK)
@@ -137,7 +156,7 @@ fn text<const N: usize>(text: &str) -> [c_char; N] {
 /// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
-    const TEXTS: [&CStr; 11] = [
+    const TEXTS: [&CStr; 12] = [
         c"no error",
         c"a pointer is null",
         c"a pointer is not aligned",
@@ -149,6 +168,7 @@ pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
         c"the count is not that of the batch",
         c"there is no acrobot with this index",
         c"two arguments overlap",
+        c"the weights have no regulator",
     ];
     let index = usize::try_from(status).unwrap_or(usize::MAX);
     let text = TEXTS.get(index).copied();
