@@ -54,7 +54,8 @@ pub unsafe extern "C" fn acrobot_deviation(
 }
 
 /// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at `target` if it decides once
-/// each dt. Call it once. `target` must be in equilibrium without a torque, such as upright. `error` may be null.
+/// each dt. Call it once. `target` must be in equilibrium without a torque, such as upright. ACROBOT_ERROR_OUT_OF_RANGE
+/// also means that these weights have no regulator. `error` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_lqr(
     acrobot: *const acrobot_t,

@@ -8,7 +8,7 @@ use acrobot::physics::control::ControlError;
 use crate::memory::Array;
 
 /// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
-#[repr(u8)]
+#[repr(C)]
 #[derive(Clone, Copy)]
 pub enum acrobot_status_t {
     /// The function has done its work.
@@ -33,8 +33,6 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,
     /// Two arguments overlap: arrays, or a result and the acrobot or batch.
     ACROBOT_ERROR_OVERLAP = 10,
-    /// These weights have no regulator, or none that can be computed precisely.
-    ACROBOT_ERROR_NO_REGULATOR = 11,
 }
 
 use acrobot_status_t::*;
@@ -134,7 +132,13 @@ impl From<ControlError> for Rejected {
             ControlError::NotSemidefinite { value, .. } => {
                 Self::number("weight", -value, "", "at least 0")
             }
-            _ => ACROBOT_ERROR_NO_REGULATOR.into(),
+            // The others need no status of their own, whose text would be in each firmware.
+            _ => Self::number(
+                "gain",
+                f64::NAN,
+                "",
+                "finite; these weights have no regulator",
+            ),
         }
     }
 }
@@ -156,7 +160,7 @@ fn text<const N: usize>(text: &str) -> [c_char; N] {
 /// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
-    const TEXTS: [&CStr; 12] = [
+    const TEXTS: [&CStr; 11] = [
         c"no error",
         c"a pointer is null",
         c"a pointer is not aligned",
@@ -168,7 +172,6 @@ pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
         c"the count is not that of the batch",
         c"there is no acrobot with this index",
         c"two arguments overlap",
-        c"the weights have no regulator",
     ];
     let index = usize::try_from(status).unwrap_or(usize::MAX);
     let text = TEXTS.get(index).copied();
