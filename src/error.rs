@@ -96,8 +96,8 @@ pub enum Error {
 }
 
 impl Error {
-    /// What is wrong, without names and numbers: for firmware, where formatting them by `Display` needs [more flash than
-    /// the crate](crate::guide::embedded_figures#what-adds-flash).
+    /// What is wrong, without numbers, whose formatting by `Display` needs [more flash than the
+    /// crate](crate::guide::embedded_figures#what-adds-flash).
     #[must_use]
     pub const fn message(&self) -> &'static str {
         match self {

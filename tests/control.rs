@@ -9,7 +9,7 @@ use acrobot::physics::control::{
     lqr, velocities,
 };
 use acrobot::physics::{Dynamics, Pendulum, bound};
-use acrobot::{Error, Fast, Params, Portable, State};
+use acrobot::{Fast, Params, Portable, State};
 use common::{assert_says, text_of};
 
 /// The rest of each line of the recording that starts with this word.
@@ -510,30 +510,6 @@ fn wrong_weights_are_rejected() {
     // Of rank 1, and so up to rounding.
     let row = [0.1, 0.7, -0.3, 0.9];
     assert!(lqr(&upright(), &row.map(|x| row.map(|y| x * y)), 1.0).is_ok());
-}
-
-#[test]
-fn errors_have_a_message_without_numbers() {
-    let (name, value, upper, lower) = ("q", 1.0, 1.0, 2.0);
-    let errors = [
-        ControlError::NotFinite { name, value },
-        ControlError::NotSymmetric { name, upper, lower },
-        ControlError::NotSemidefinite { name, value },
-        ControlError::NotStabilizable,
-        ControlError::NotDetectable,
-        ControlError::IllConditioned { error: 1.0 },
-        Error::EmptyBatch.into(),
-    ];
-    let messages = [
-        "a matrix or a vector must be finite in each element",
-        "a matrix of weights must be symmetric",
-        "a matrix of weights must be positive semidefinite",
-        "the torque must reach each motion that grows or persists, but does not reach one",
-        "q must weight each motion that persists, but does not weight one",
-        "the gain cannot be computed precisely enough",
-        "a batch must have at least 1 acrobot",
-    ];
-    assert_eq!(errors.map(|error| error.message()), messages);
 }
 
 #[test]

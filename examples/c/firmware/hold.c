@@ -3,16 +3,16 @@
 #include "acrobot.h"
 #include "console.h"
 
-static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1f, 0, 0, 0};
-static const acrobot_weights_t WEIGHTS = {1, 1, 1, 1, 1};
+static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1f, 0, 0, 0}, WEIGHTS = {1, 1, 1, 1};
 static const float LIMIT = 10;
 
 static acrobot_t acrobot; // stands for the machine
 
-// Computes the gain for 100 decisions a second.
-static acrobot_status_t prepare(acrobot_gain_t *gain)
+int main(void)
 {
     acrobot_params_t params;
+    acrobot_state_t gain, x = LEANING;
+    acrobot_step_t step;
     acrobot_status_t status = acrobot_init(&acrobot, 0);
 
     if (status == ACROBOT_OK) {
@@ -23,30 +23,18 @@ static acrobot_status_t prepare(acrobot_gain_t *gain)
         status = acrobot_set_params(&acrobot, &params, NULL);
     }
     if (status == ACROBOT_OK) {
-        status = acrobot_lqr(&acrobot, &UPRIGHT, &WEIGHTS, gain, NULL);
+        status = acrobot_lqr(&acrobot, &UPRIGHT, &WEIGHTS, 1, &gain, NULL);
     }
-    return status == ACROBOT_OK ? acrobot_set_state(&acrobot, &LEANING, NULL) : status;
-}
-
-static acrobot_status_t regulate(const acrobot_gain_t *gain, acrobot_state_t *x)
-{
-    acrobot_step_t step;
-    acrobot_status_t status = acrobot_deviation(&acrobot, &UPRIGHT, x);
-    float torque = -(gain->theta1 * x->theta1 + gain->theta2 * x->theta2 +
-                     gain->dtheta1 * x->dtheta1 + gain->dtheta2 * x->dtheta2);
-
-    torque = torque > LIMIT ? LIMIT : torque < -LIMIT ? -LIMIT : torque;
-    return status == ACROBOT_OK ? acrobot_step_torque(&acrobot, torque, &step, NULL) : status;
-}
-
-int main(void)
-{
-    acrobot_gain_t gain;
-    acrobot_state_t x = LEANING;
-    acrobot_status_t status = prepare(&gain);
-
+    if (status == ACROBOT_OK) {
+        status = acrobot_set_state(&acrobot, &LEANING, NULL);
+    }
     for (int tick = 0; tick < 1000 && status == ACROBOT_OK; tick++) {
-        status = regulate(&gain, &x);
+        status = acrobot_deviation(&acrobot, &UPRIGHT, &x);
+        float torque = -(gain.theta1 * x.theta1 + gain.theta2 * x.theta2 + gain.dtheta1 * x.dtheta1 + gain.dtheta2 * x.dtheta2);
+        torque = torque > LIMIT ? LIMIT : torque < -LIMIT ? -LIMIT : torque;
+        if (status == ACROBOT_OK) {
+            status = acrobot_step_torque(&acrobot, torque, &step, NULL);
+        }
     }
     if (status != ACROBOT_OK || x.theta1 > .001f || x.theta1 < -.001f) {
         print(status == ACROBOT_OK ? "the acrobot fell" : acrobot_status_text(status));

@@ -200,33 +200,6 @@ typedef struct acrobot_params_t {
   int dynamics;
 } acrobot_params_t;
 
-// The weights of a regulator: on the squares of the deviations and of the torque. Only their ratios matter.
-typedef struct acrobot_weights_t {
-  // Of the angle of link 1, 1/rad²; 0 or more.
-  float theta1;
-  // Of the angle of link 2, 1/rad²; 0 or more.
-  float theta2;
-  // Of the velocity of link 1, s²/rad²; 0 or more.
-  float dtheta1;
-  // Of the velocity of link 2, s²/rad²; 0 or more.
-  float dtheta2;
-  // R, of the torque, 1/(N m)²; above 0.
-  float torque;
-} acrobot_weights_t;
-
-// The gain of a regulator. Its torque is −(gain.theta1 · x.theta1 + gain.theta2 · x.theta2 + gain.dtheta1 · x.dtheta1 +
-// gain.dtheta2 · x.dtheta2) for a deviation x. Clamp it to that of your motor.
-typedef struct acrobot_gain_t {
-  // For the angle of link 1, N m/rad.
-  float theta1;
-  // For the angle of link 2, N m/rad.
-  float theta2;
-  // For the velocity of link 1, N m s/rad.
-  float dtheta1;
-  // For the velocity of link 2, N m s/rad.
-  float dtheta2;
-} acrobot_gain_t;
-
 // Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
 // nothing to free.
 typedef struct ACROBOT_ALIGNED(16) acrobot_action_space_t {
@@ -325,13 +298,18 @@ enum acrobot_status_t acrobot_deviation(const struct acrobot_t *acrobot,
                                         const struct acrobot_state_t *target,
                                         struct acrobot_state_t *deviation);
 
-// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at `target` if it decides once
-// each dt. Call it once. `target` must be in equilibrium without a torque, such as upright. ACROBOT_ERROR_OUT_OF_RANGE
-// also means that these weights have no regulator. `error` may be null.
-enum acrobot_status_t acrobot_lqr(const struct acrobot_t *acrobot,
+// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at `target`, once for all. The
+// torque in each dt is −(gain.theta1 · x.theta1 + gain.theta2 · x.theta2 + gain.dtheta1 · x.dtheta1 + gain.dtheta2 ·
+// x.dtheta2) for a deviation x; clamp it to that of your motor.
+//
+// `target` must be in equilibrium without a torque, such as upright. `q` has the weights of the four squared deviations,
+// 0 or more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². Without a regulator
+// for these the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
+enum acrobot_status_t acrobot_lqr(struct acrobot_t *acrobot,
                                   const struct acrobot_state_t *target,
-                                  const struct acrobot_weights_t *weights,
-                                  struct acrobot_gain_t *gain,
+                                  const struct acrobot_state_t *q,
+                                  float r,
+                                  struct acrobot_state_t *gain,
                                   struct acrobot_error_t *error);
 
 // Gymnasium's `action_space.seed(seed)`.

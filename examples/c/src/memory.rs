@@ -107,24 +107,10 @@ pub unsafe fn get<H: Holder, T>(
     result: *mut T,
     call: impl FnOnce(&H::Value) -> Result<T, Rejected>,
 ) -> acrobot_status_t {
-    get_or_explain(holder, result, ptr::null_mut(), call)
-}
-
-/// As [`get`]. Also writes why a number was rejected, unless this pointer is null.
-pub unsafe fn get_or_explain<H: Holder, T>(
-    holder: *const H,
-    result: *mut T,
-    error: *mut acrobot_error_t,
-    call: impl FnOnce(&H::Value) -> Result<T, Rejected>,
-) -> acrobot_status_t {
     status(|| {
         check(result)?;
-        let error = Array::result(error, holder)?;
         let result = Array::result(result, holder)?;
-        let value = H::value(holder)
-            .and_then(call)
-            .inspect_err(|rejected| rejected.explain(error))?;
-        result.write(value);
+        result.write(call(H::value(holder)?)?);
         Ok(())
     })
 }

@@ -125,14 +125,7 @@ impl From<ControlError> for Rejected {
     fn from(error: ControlError) -> Self {
         match error {
             ControlError::Invalid(error) => error.into(),
-            ControlError::NotFinite { name, value } => {
-                Self::number(name, value, "", "finite in each element")
-            }
-            // Of weights on a diagonal, where only a negative one remains.
-            ControlError::NotSemidefinite { value, .. } => {
-                Self::number("weight", -value, "", "at least 0")
-            }
-            // The others need no status of their own, whose text would be in each firmware.
+            // A status of its own would have a text in each firmware.
             _ => Self::number(
                 "gain",
                 f64::NAN,

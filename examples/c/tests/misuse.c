@@ -12,7 +12,7 @@ static const acrobot_params_t PARAMS = {
 static const acrobot_params_t NO_MASS = {
     1, 1, 0, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK,
 };
-static const acrobot_weights_t WEIGHTS = {1, 1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1, 1}, FREE = {1, 1, 1, 1, 0};
+static const acrobot_state_t WEIGHTS = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
 static const bool MASK[COUNT] = {true, false, true};
 
 typedef acrobot_observation_t observations_t[COUNT];
@@ -54,8 +54,8 @@ enum { OK = ACROBOT_OK, OUT_OF_RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     CALL(ALONE, float, NEEDED, OK, acrobot_energy(acrobot, out)) \
     CALL(ALONE, float, NEEDED, OK, acrobot_tip_height(acrobot, out)) \
     CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_deviation(acrobot, &REST, out)) \
-    CALL(ALONE, acrobot_gain_t, NEEDED, OK, acrobot_lqr(acrobot, &REST, &WEIGHTS, out, NULL)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_lqr(acrobot, &FAR, &WEIGHTS, &gain, out)) \
+    CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_lqr(acrobot, &REST, &WEIGHTS, 1, out, NULL)) \
+    CALL(ALONE, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_lqr(acrobot, &FAR, &WEIGHTS, 1, &gain, out)) \
     CALL(ACTIONS, uint8_t, NEEDED, OK, acrobot_action_space_sample(action_space, out)) \
     CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset(batch)) \
     CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset_with_seed(batch, 42)) \
@@ -91,7 +91,7 @@ static acrobot_status_t call(int index, void *holder, void *pointer)
     acrobot_action_space_t *action_space = (acrobot_action_space_t *)holder;
     acrobot_batch_t *batch = (acrobot_batch_t *)holder;
     acrobot_step_t step;
-    acrobot_gain_t gain;
+    acrobot_state_t gain;
 #define CALL(holder, type, optional, status, ...) \
     if (index-- == 0) { \
         type *out = (type *)pointer; \
@@ -186,8 +186,7 @@ static void arguments_of_an_acrobot(void)
     acrobot_action_space_t action_space;
     acrobot_error_t error;
     acrobot_step_t step, twin_step;
-    acrobot_state_t state;
-    acrobot_gain_t gain;
+    acrobot_state_t x;
     acrobot_params_t params = PARAMS;
     CHECK(sizeof twin == ACROBOT_SIZE && sizeof action_space == ACROBOT_ACTION_SPACE_SIZE);
     CHECK(acrobot_init(NULL, 42) == ACROBOT_ERROR_NULL);
@@ -215,12 +214,12 @@ static void arguments_of_an_acrobot(void)
     params.inertia2 = params.center_of_mass2 = 0;
     CHECK(acrobot_set_params(acrobot, &params, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(names(&error, "inertia2", 0, "kg m²", "(with the centre of mass on the joint) above 0"));
-    CHECK(acrobot_deviation(acrobot, NULL, &state) == ACROBOT_ERROR_NULL);
-    CHECK(acrobot_lqr(acrobot, NULL, &WEIGHTS, &gain, &error) == ACROBOT_ERROR_NULL);
-    CHECK(acrobot_lqr(acrobot, &REST, NULL, &gain, &error) == ACROBOT_ERROR_NULL);
-    CHECK(acrobot_lqr(acrobot, &REST, &NEGATIVE, &gain, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(names(&error, "weight", -2, "", "at least 0"));
-    CHECK(acrobot_lqr(acrobot, &REST, &FREE, &gain, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+    CHECK(acrobot_deviation(acrobot, NULL, &x) == ACROBOT_ERROR_NULL);
+    CHECK(acrobot_lqr(acrobot, NULL, &WEIGHTS, 1, &x, &error) == ACROBOT_ERROR_NULL);
+    CHECK(acrobot_lqr(acrobot, &REST, NULL, 1, &x, &error) == ACROBOT_ERROR_NULL);
+    CHECK(acrobot_lqr(acrobot, &REST, &NEGATIVE, 1, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+    CHECK(same_text(error.name, "gain") && same_text(error.rule, "finite; these weights have no regulator"));
+    CHECK(acrobot_lqr(acrobot, &REST, &WEIGHTS, 0, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(names(&error, "r", 0, "per (N m)²", "finite and above 0"));
     CHECK(same(acrobot, saved, ACROBOT_SIZE));
 
@@ -228,13 +227,6 @@ static void arguments_of_an_acrobot(void)
     CHECK(acrobot_step(acrobot, 0, &step) == ACROBOT_OK && acrobot_step(&twin, 0, &twin_step) == ACROBOT_OK);
     CHECK(same(&step.observation, &twin_step.observation, sizeof step.observation));
     CHECK(!same(acrobot, saved, ACROBOT_SIZE));
-
-    // Without gravity the motor cannot change the angular momentum.
-    params = PARAMS;
-    params.gravity = 0;
-    CHECK(acrobot_set_params(&twin, &params, NULL) == ACROBOT_OK);
-    CHECK(acrobot_lqr(&twin, &REST, &WEIGHTS, &gain, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(same_text(error.name, "gain") && same_text(error.rule, "finite; these weights have no regulator"));
 }
 
 static void a_new_batch(void)

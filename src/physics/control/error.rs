@@ -53,26 +53,6 @@ pub enum ControlError {
     },
 }
 
-impl ControlError {
-    /// As [`Error::message`].
-    #[must_use]
-    pub const fn message(&self) -> &'static str {
-        match self {
-            Self::Invalid(error) => error.message(),
-            Self::NotFinite { .. } => "a matrix or a vector must be finite in each element",
-            Self::NotSymmetric { .. } => "a matrix of weights must be symmetric",
-            Self::NotSemidefinite { .. } => "a matrix of weights must be positive semidefinite",
-            Self::NotStabilizable => {
-                "the torque must reach each motion that grows or persists, but does not reach one"
-            }
-            Self::NotDetectable => {
-                "q must weight each motion that persists, but does not weight one"
-            }
-            Self::IllConditioned { .. } => "the gain cannot be computed precisely enough",
-        }
-    }
-}
-
 impl fmt::Display for ControlError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -88,7 +68,14 @@ impl fmt::Display for ControlError {
                 f,
                 "{name} must be positive semidefinite, got {value} after the elimination of its positive pivots"
             ),
-            Self::NotStabilizable | Self::NotDetectable => f.write_str(self.message()),
+            Self::NotStabilizable => write!(
+                f,
+                "the torque must reach each motion that grows or persists, but does not reach one"
+            ),
+            Self::NotDetectable => write!(
+                f,
+                "q must weight each motion that persists, but does not weight one"
+            ),
             Self::IllConditioned { error } => write!(
                 f,
                 "the relative error of the gain must be at most 1e-9, got {error:e}"

@@ -58,14 +58,7 @@ pub fn difference<A: Arithmetic>(
 }
 
 impl<A: Arithmetic> Pendulum<A> {
-    /// The deviation of the state from `target`, rad and rad/s, as [`difference`] computes it.
-    ///
-    /// ```
-    /// use acrobot::physics::Pendulum;
-    /// use acrobot::{Fast, State};
-    ///
-    /// assert!(Pendulum::<Fast>::hanging().deviation(State::UPRIGHT)[0].abs() > 3.1);
-    /// ```
+    /// The [`difference`] of the state from `target`, rad and rad/s.
     #[must_use]
     pub fn deviation(&self, target: State<A::Scalar>) -> [A::Scalar; 4] {
         difference::<A>(self.state(), target)
