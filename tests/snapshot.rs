@@ -304,11 +304,10 @@ fn an_arithmetics_name_has_up_to_16_bytes() {
 fn no_snapshot_is_larger_than_its_constant() {
     fn check<A: Arithmetic<Scalar: Serialize + DeserializeOwned>>() {
         let mut largest = serde_json::to_value(TimeLimit::v1(Acrobot::<A>::new(0))).unwrap();
-        let rng = &mut largest["inner"]["rng"];
-        rng["seed"] = [u32::MAX; 8].as_slice().into();
-        rng["position"] = u64::MAX.into();
-        rng["has_half"] = true.into();
-        rng["half"] = u32::MAX.into();
+        let (seed, half) = ([u32::MAX; 8], u32::MAX);
+        largest["inner"]["rng"] = serde_json::json!(
+            { "seed": seed, "position": u64::MAX, "has_half": true, "half": half }
+        );
         largest["limit"] = u32::MAX.into();
         largest["elapsed"] = u32::MAX.into();
         let largest: TimeLimit<Acrobot<A>> = serde_json::from_value(largest).unwrap();
