@@ -152,7 +152,8 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         self.advance(self.params().torque(action))
     }
 
-    /// Applies any finite torque, N m, for one dt: for controllers.
+    /// Applies any finite torque, N m, for one dt: for controllers. [`Params::torques`] does not limit it; `bound` in
+    /// [`physics`](crate::physics::bound) limits it to that of a motor.
     ///
     /// # Errors
     ///
@@ -300,7 +301,7 @@ mod snapshot {
     use serde::de::{Deserialize, Deserializer, Error};
     use serde::ser::{Serialize, Serializer};
 
-    use super::{Acrobot, Arithmetic, Params, Pendulum, State};
+    use super::{Acrobot, Arithmetic, Params, Pcg64, Pendulum, State};
     use crate::snapshot::{Header, Subject};
 
     impl<A: Arithmetic, R> Subject for Acrobot<A, R> {
@@ -315,6 +316,15 @@ mod snapshot {
         params: Params<S>,
         state: State<S>,
         rng: R,
+    }
+
+    impl<A: Arithmetic> Acrobot<A> {
+        /// The largest size of a snapshot in postcard's format, bytes, without a checksum: of a buffer in firmware.
+        pub const MAX_SNAPSHOT_SIZE: usize = Header::<Self>::SIZE
+            + 16 * size_of::<A::Scalar>() // the parameters, and their dynamics
+            + 1
+            + 4 * size_of::<A::Scalar>() // the state
+            + Pcg64::MAX_SNAPSHOT_SIZE;
     }
 
     impl<A: Arithmetic<Scalar: Serialize>, R: Serialize> Serialize for Acrobot<A, R> {

@@ -95,6 +95,31 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// What is wrong, without numbers, whose formatting by `Display` needs [more flash than the
+    /// crate](crate::guide::embedded_figures#what-adds-flash).
+    #[must_use]
+    pub const fn message(&self) -> &'static str {
+        match self {
+            Self::OutOfRange { .. } => "a number is out of range",
+            Self::NoInertia { .. } => "a link has no moment of inertia",
+            Self::ReversedRange { .. } => "a lower bound is above the upper one",
+            Self::DifferentDynamics => "dynamics must be the same in both bounds of a range",
+            Self::SharedParams => "a batch must have memory for the parameters of each acrobot",
+            Self::EmptyBatch => "a batch must have at least 1 acrobot",
+            #[cfg(feature = "alloc")]
+            Self::OutOfMemory { .. } => "a batch must fit into memory",
+            Self::WrongLength { .. } => "an argument has the wrong length",
+            Self::NoSuchIndex { .. } => "a batch has no acrobot with this index",
+            Self::UnknownAction(_) => "an action must be 0, 1 or 2",
+            #[cfg(feature = "std")]
+            Self::MalformedSeed { .. } => "a seed must be a decimal integer of at least 0",
+            #[cfg(feature = "std")]
+            Self::SeedTooLong { .. } => "a seed has too many digits",
+        }
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -117,15 +142,7 @@ impl fmt::Display for Error {
                 f,
                 "the lower {name} must not be above the upper one, got {low} and {high} {unit}"
             ),
-            Self::DifferentDynamics => {
-                write!(f, "dynamics must be the same in both bounds of a range")
-            }
-            Self::SharedParams => {
-                write!(
-                    f,
-                    "a batch must have memory for the parameters of each acrobot"
-                )
-            }
+            Self::DifferentDynamics | Self::SharedParams => f.write_str(self.message()),
             Self::EmptyBatch => {
                 write!(f, "a batch must have at least 1 acrobot, got 0 generators")
             }

@@ -11,6 +11,7 @@
 //! | you want to know | read |
 //! |---|---|
 //! | which arithmetic to choose; units, ranges and errors | [`numbers`] |
+//! | how to hold it upright, and with which motor | [`control`] |
 //! | how close it is to Gymnasium | [`parity`] |
 //! | how close it is to the solution of the equations | [`accuracy`] |
 //! | why all machines compute the same bits, and where that ends | [`determinism`] |
@@ -61,6 +62,10 @@ pub mod python {}
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/numbers.md")]
 pub mod numbers {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/control.md")]
+pub mod control {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/parity.md")]

@@ -70,6 +70,9 @@ impl<T> Header<T> {
 }
 
 impl<T: Subject> Header<T> {
+    /// The size in postcard's format, bytes: two texts after their lengths, and the version. Each is below 128, so one byte.
+    pub(crate) const SIZE: usize = 3 + T::NAME.len() + T::Arithmetic::NAME.len();
+
     const FIELDS: Fields<&'static str> = {
         let arithmetic = T::Arithmetic::NAME;
         assert!(

@@ -107,6 +107,10 @@ impl<E> TimeLimit<E> {
 }
 
 impl<A: Arithmetic> TimeLimit<Acrobot<A>> {
+    /// As [`Acrobot::MAX_SNAPSHOT_SIZE`], with limit and count.
+    #[cfg(feature = "serde")]
+    pub const MAX_SNAPSHOT_SIZE: usize = Acrobot::<A>::MAX_SNAPSHOT_SIZE + 2 * 5;
+
     /// Calls [`Acrobot::reset_with_seed`] and sets the count of steps to 0.
     pub fn reset_with_seed(&mut self, seed: u64) -> Observation {
         self.elapsed = 0;

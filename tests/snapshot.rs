@@ -3,7 +3,7 @@
 
 use std::fmt::Debug;
 
-use acrobot::arithmetic::{Arithmetic, Micro};
+use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, Lean, ResetBounds};
@@ -297,6 +297,29 @@ fn an_arithmetics_name_has_up_to_16_bytes() {
     let acrobot = Acrobot::<Named>::new(1);
     let bytes = postcard::to_stdvec(&acrobot).unwrap();
     assert_eq!(postcard::from_bytes(&bytes), Ok(acrobot));
+}
+
+/// The largest snapshot: all integers of the generator and of the limit have their largest value.
+#[test]
+fn no_snapshot_is_larger_than_its_constant() {
+    fn check<A: Arithmetic<Scalar: Serialize + DeserializeOwned>>() {
+        let mut largest = serde_json::to_value(TimeLimit::v1(Acrobot::<A>::new(0))).unwrap();
+        let (seed, half) = ([u32::MAX; 8], u32::MAX);
+        largest["inner"]["rng"] = serde_json::json!(
+            { "seed": seed, "position": u64::MAX, "has_half": true, "half": half }
+        );
+        largest["limit"] = u32::MAX.into();
+        largest["elapsed"] = u32::MAX.into();
+        let largest: TimeLimit<Acrobot<A>> = serde_json::from_value(largest).unwrap();
+        let bytes = postcard::to_stdvec(&largest).unwrap();
+        assert_eq!(bytes.len(), TimeLimit::<Acrobot<A>>::MAX_SNAPSHOT_SIZE);
+        let bytes = postcard::to_stdvec(largest.inner()).unwrap();
+        assert_eq!(bytes.len(), Acrobot::<A>::MAX_SNAPSHOT_SIZE);
+    }
+    check::<Fast>();
+    check::<Micro>();
+    check::<Portable>();
+    check::<Reference>();
 }
 
 /// The figures of `docs/embedded.md`: without a checksum most snapshots with a flipped bit load as another acrobot.

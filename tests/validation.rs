@@ -34,6 +34,7 @@ fn errors_name_the_value_and_the_rule() {
         text.parse::<SeedSequence>().map(drop)
     }
     let mut members = batch::<35>().unwrap();
+    let mut messages = Vec::new();
     for (result, message) in [
         (
             params(|params| params.gravity = f64::NAN),
@@ -112,8 +113,33 @@ fn errors_name_the_value_and_the_rule() {
             "seed must be a decimal integer of at least 0, got an empty text",
         ),
     ] {
-        assert_eq!(result.unwrap_err().to_string(), message);
+        let error = result.unwrap_err();
+        assert_eq!(error.to_string(), message);
+        messages.push(error.message());
     }
+    messages.push(Error::SharedParams.message());
+    messages.push(Error::OutOfMemory { len: 3 }.message());
+    messages.push(Error::SeedTooLong { len: 3, limit: 2 }.message());
+    messages.dedup();
+    // The texts without numbers, in the same order.
+    assert_eq!(
+        messages,
+        [
+            "a number is out of range",
+            "a lower bound is above the upper one",
+            "a number is out of range",
+            "dynamics must be the same in both bounds of a range",
+            "a link has no moment of inertia",
+            "a batch must have at least 1 acrobot",
+            "an argument has the wrong length",
+            "a batch has no acrobot with this index",
+            "an action must be 0, 1 or 2",
+            "a seed must be a decimal integer of at least 0",
+            "a batch must have memory for the parameters of each acrobot",
+            "a batch must fit into memory",
+            "a seed has too many digits",
+        ]
+    );
 }
 
 /// Every field of the parameters: its name, how to set it, and whether 0 and −1 are valid.

@@ -2,10 +2,10 @@
 
     python3 figures.py             prints every figure, and fails if one differs from the page
     python3 figures.py --update    writes the tables
-    python3 figures.py cores       only the tables that are named: m4f, balance, control, cores, stacks, sizes, levels
+    python3 figures.py cores       only the tables that are named: m4f, additions, balance, control, cores, stacks, sizes, levels
 
 `steps` counts instructions, stack and RAM, `bench`, `learn` and `balance` count instructions. Flash is that of `minimal` minus that of the same firmware
-without an acrobot. `cycles.py` estimates the cycles per instruction. Each figure is the same in every run, the estimates too.
+without an acrobot, or that of `additions`. `cycles.py` estimates the cycles per instruction. Each figure is the same in every run, the estimates too.
 """
 
 import argparse
@@ -88,11 +88,19 @@ CONTROL = {
     "inverse_dynamics": "`inverse_dynamics`",
     "velocities": "`velocities`",
 }
+ADDITIONS = {
+    "message": "flash of `set_params`, and `message` of its error",
+    "display": "flash of `set_params`, and `Display` of its error",
+    "cell": "flash of a `RefCell`, with a panic handler that prints",
+    "serde": "flash of saving and loading with serde, postcard and a CRC",
+    "lqr": "flash of `discretize`, `lqr`, `deviation` and the regulator's torque",
+    "lqr_stack": "stack of `lqr`",
+}
 LEVELS = ["2", '"s"', '"z"']
 
 
-def run(*command, rustflags="", machine="", minimal=""):
-    environment = os.environ | {"RUSTFLAGS": rustflags, "MINIMAL": minimal}
+def run(*command, rustflags="", machine="", minimal="", addition=""):
+    environment = os.environ | {"RUSTFLAGS": rustflags, "MINIMAL": minimal, "ADDITION": addition}
     if machine:
         environment["CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUNNER"] = f"../../.cargo/qemu arm {machine}"
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
@@ -195,9 +203,19 @@ def measure_balance():
     return printed("balance", rustflags=rustflags) | {("10_Nm", "flash_bytes"): flash(image("balance", rustflags=rustflags))}
 
 
+def measure_additions():
+    def size(name):
+        return flash(image("additions", addition=name, features="serde" if name == "serde" else ""))
+
+    alone = size("none")
+    figures = printed("additions")
+    return figures | {("fast", name): size(name) - alone for name in ADDITIONS if ("fast", name) not in figures}
+
+
 Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
+    "additions": Table("what a firmware adds to an acrobot", {"fast": "bytes"}, ADDITIONS, measure_additions),
     "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
     "control": Table("instructions at 100 Hz, upright", ARITHMETICS, CONTROL, lambda: printed("bench", features="")),
     "cores": Table("instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: measure_cores(counted, "step")),

@@ -230,6 +230,11 @@ mod snapshot {
         half: u32,
     }
 
+    impl Pcg64 {
+        /// The largest size of a snapshot in postcard's format, bytes: 7 bits of an integer in a byte.
+        pub(crate) const MAX_SNAPSHOT_SIZE: usize = 8 * 5 + 10 + 1 + 5;
+    }
+
     impl Serialize for Pcg64 {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
             let Running { half, origin, .. } = self.running();

@@ -10,30 +10,9 @@
 //! | [`lqr`] | the gain of the linear-quadratic regulator for such a step |
 //! | [`inverse_dynamics`] | torques and joint forces that given accelerations need |
 //! | [`velocities`] | velocities of elbow and tip; [`Pendulum::positions`](super::Pendulum::positions) has the positions |
-//! | [`difference`] | the state's deviation from a target, across ±π |
+//! | [`Pendulum::deviation`](super::Pendulum::deviation), [`difference`] | the state's deviation from a target, across ±π |
 //!
-//! A regulator that holds the acrobot upright:
-//!
-//! ```
-//! use acrobot::physics::Pendulum;
-//! use acrobot::physics::control::{difference, discretize, lqr};
-//! use acrobot::{Fast, Params, State};
-//!
-//! let params = Params { dt: 0.01, ..Params::DEFAULT };
-//! let mut pendulum = Pendulum::<Fast>::new(params, State::UPRIGHT)?;
-//! let model = discretize(&pendulum, 0.0)?;
-//! let q = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
-//! let regulator = lqr(&model, &q, 1.0)?;
-//!
-//! pendulum.set_state(State { theta1: 3.2, ..State::UPRIGHT })?; // 0.06 rad from upright
-//! for _ in 0..1000 {
-//!     let error = difference::<Fast>(pendulum.state(), State::UPRIGHT);
-//!     pendulum.step(regulator.torque(error))?;
-//! }
-//! let error = difference::<Fast>(pendulum.state(), State::UPRIGHT);
-//! assert!(error.iter().all(|x| x.abs() < 1e-3));
-//! # Ok::<(), acrobot::physics::control::ControlError>(())
-//! ```
+//! The guide holds the acrobot upright with [a regulator](crate::guide::control).
 
 mod discretize;
 mod error;

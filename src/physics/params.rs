@@ -61,7 +61,7 @@ pub struct Params<S = f64> {
     pub max_velocity1: S,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
-    /// Torques of the three actions, N m, in the order of their numbers; finite.
+    /// Torques of the three actions, N m, in the order of their numbers; finite. They do not limit `step_torque`.
     pub torques: [S; 3],
     /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise), rounded to the scalar, to the
     /// torque. 0 draws nothing.

@@ -79,8 +79,8 @@ impl<A: Arithmetic> Pendulum<A> {
         }
     }
 
-    /// Applies a torque, N m, for one dt. Returns whether the new state is a goal state:
-    /// −cos θ1 − cos(θ1 + θ2) > 1.
+    /// Applies a torque, N m, for one dt. [`bound`](super::bound) limits it to that of a motor. Returns whether the new
+    /// state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
     ///
     /// # Errors
     ///

@@ -75,11 +75,7 @@
 #define ACROBOT_AUTORESET_DISABLED 2
 
 // What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
-enum acrobot_status_t
-#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
-  : uint8_t
-#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
- {
+typedef enum acrobot_status_t {
   // The function has done its work.
   ACROBOT_OK = 0,
   // A pointer is null that must not be null.
@@ -102,14 +98,7 @@ enum acrobot_status_t
   ACROBOT_ERROR_NO_SUCH_INDEX = 9,
   // Two arguments overlap: arrays, or a result and the acrobot or batch.
   ACROBOT_ERROR_OVERLAP = 10,
-};
-#ifndef __cplusplus
-#if __STDC_VERSION__ >= 202311L
-typedef enum acrobot_status_t acrobot_status_t;
-#else
-typedef uint8_t acrobot_status_t;
-#endif // __STDC_VERSION__ >= 202311L
-#endif // __cplusplus
+} acrobot_status_t;
 
 // A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
 // not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
@@ -241,74 +230,95 @@ const char *acrobot_status_text(int status);
 
 // Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
 // starts from scratch.
-acrobot_status_t acrobot_init(struct acrobot_t *acrobot,
-                              uint64_t seed);
+enum acrobot_status_t acrobot_init(struct acrobot_t *acrobot,
+                                   uint64_t seed);
 
 // Draws the next initial state and begins an episode. `observation` may be null.
-acrobot_status_t acrobot_reset(struct acrobot_t *acrobot,
-                               struct acrobot_observation_t *observation);
+enum acrobot_status_t acrobot_reset(struct acrobot_t *acrobot,
+                                    struct acrobot_observation_t *observation);
 
 // Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode. `observation` may be null.
-acrobot_status_t acrobot_reset_with_seed(struct acrobot_t *acrobot,
-                                         uint64_t seed,
-                                         struct acrobot_observation_t *observation);
+enum acrobot_status_t acrobot_reset_with_seed(struct acrobot_t *acrobot,
+                                              uint64_t seed,
+                                              struct acrobot_observation_t *observation);
 
 // As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and rad/s. The default
 // is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`. `observation` and `error` may be null.
-acrobot_status_t acrobot_reset_within(struct acrobot_t *acrobot,
-                                      double low,
-                                      double high,
-                                      struct acrobot_observation_t *observation,
-                                      struct acrobot_error_t *error);
+enum acrobot_status_t acrobot_reset_within(struct acrobot_t *acrobot,
+                                           double low,
+                                           double high,
+                                           struct acrobot_observation_t *observation,
+                                           struct acrobot_error_t *error);
 
 // Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
 // When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
-acrobot_status_t acrobot_step(struct acrobot_t *acrobot,
-                              int action,
-                              struct acrobot_step_t *step);
+enum acrobot_status_t acrobot_step(struct acrobot_t *acrobot,
+                                   int action,
+                                   struct acrobot_step_t *step);
 
-// Applies any finite torque, N m, for one dt: for controllers. `error` may be null.
-acrobot_status_t acrobot_step_torque(struct acrobot_t *acrobot,
-                                     float torque,
-                                     struct acrobot_step_t *step,
-                                     struct acrobot_error_t *error);
+// Applies any finite torque, N m, for one dt: for controllers. The `torques` of the parameters do not limit it. `error`
+// may be null.
+enum acrobot_status_t acrobot_step_torque(struct acrobot_t *acrobot,
+                                          float torque,
+                                          struct acrobot_step_t *step,
+                                          struct acrobot_error_t *error);
 
 // The observation of the state.
-acrobot_status_t acrobot_observe(const struct acrobot_t *acrobot,
-                                 struct acrobot_observation_t *observation);
+enum acrobot_status_t acrobot_observe(const struct acrobot_t *acrobot,
+                                      struct acrobot_observation_t *observation);
 
 // The number of steps since the last reset.
-acrobot_status_t acrobot_elapsed(const struct acrobot_t *acrobot, uint32_t *steps);
+enum acrobot_status_t acrobot_elapsed(const struct acrobot_t *acrobot, uint32_t *steps);
 
 // The state.
-acrobot_status_t acrobot_state(const struct acrobot_t *acrobot, struct acrobot_state_t *state);
+enum acrobot_status_t acrobot_state(const struct acrobot_t *acrobot, struct acrobot_state_t *state);
 
 // Sets the state. The number of steps does not change. `error` may be null.
-acrobot_status_t acrobot_set_state(struct acrobot_t *acrobot,
-                                   const struct acrobot_state_t *state,
-                                   struct acrobot_error_t *error);
+enum acrobot_status_t acrobot_set_state(struct acrobot_t *acrobot,
+                                        const struct acrobot_state_t *state,
+                                        struct acrobot_error_t *error);
 
 // The parameters.
-acrobot_status_t acrobot_params(const struct acrobot_t *acrobot, struct acrobot_params_t *params);
+enum acrobot_status_t acrobot_params(const struct acrobot_t *acrobot,
+                                     struct acrobot_params_t *params);
 
 // Sets the parameters for the next steps. The state does not change. `error` may be null.
-acrobot_status_t acrobot_set_params(struct acrobot_t *acrobot,
-                                    const struct acrobot_params_t *params,
-                                    struct acrobot_error_t *error);
+enum acrobot_status_t acrobot_set_params(struct acrobot_t *acrobot,
+                                         const struct acrobot_params_t *params,
+                                         struct acrobot_error_t *error);
 
 // The total energy of the state, J.
-acrobot_status_t acrobot_energy(const struct acrobot_t *acrobot, float *energy);
+enum acrobot_status_t acrobot_energy(const struct acrobot_t *acrobot, float *energy);
 
 // The height of the tip above the fixed joint, m.
-acrobot_status_t acrobot_tip_height(const struct acrobot_t *acrobot, float *height);
+enum acrobot_status_t acrobot_tip_height(const struct acrobot_t *acrobot, float *height);
+
+// The deviation of the state from `target`. Angles are wrapped to ±π, so it is continuous upright.
+enum acrobot_status_t acrobot_deviation(const struct acrobot_t *acrobot,
+                                        const struct acrobot_state_t *target,
+                                        struct acrobot_state_t *deviation);
+
+// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at `target`, once for all. The
+// torque in each dt is −(gain.theta1 · x.theta1 + gain.theta2 · x.theta2 + gain.dtheta1 · x.dtheta1 + gain.dtheta2 ·
+// x.dtheta2) for a deviation x; clamp it to that of your motor.
+//
+// `target` must be in equilibrium without a torque, such as upright. `q` has the weights of the four squared deviations,
+// 0 or more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². Without a regulator
+// for these the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
+enum acrobot_status_t acrobot_lqr(struct acrobot_t *acrobot,
+                                  const struct acrobot_state_t *target,
+                                  const struct acrobot_state_t *q,
+                                  float r,
+                                  struct acrobot_state_t *gain,
+                                  struct acrobot_error_t *error);
 
 // Gymnasium's `action_space.seed(seed)`.
-acrobot_status_t acrobot_action_space_init(struct acrobot_action_space_t *action_space,
-                                           uint64_t seed);
+enum acrobot_status_t acrobot_action_space_init(struct acrobot_action_space_t *action_space,
+                                                uint64_t seed);
 
 // Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
-acrobot_status_t acrobot_action_space_sample(struct acrobot_action_space_t *action_space,
-                                             uint8_t *action);
+enum acrobot_status_t acrobot_action_space_sample(struct acrobot_action_space_t *action_space,
+                                                  uint8_t *action);
 
 // The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if that is larger.
 size_t acrobot_batch_size(size_t count);
@@ -316,65 +326,65 @@ size_t acrobot_batch_size(size_t count);
 // Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
 // initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
 // `batch` receives the address of the batch, and must not point into the batch's own bytes.
-acrobot_status_t acrobot_batch_init(void *memory,
-                                    size_t size,
-                                    size_t count,
-                                    uint64_t seed,
-                                    struct acrobot_batch_t **batch);
+enum acrobot_status_t acrobot_batch_init(void *memory,
+                                         size_t size,
+                                         size_t count,
+                                         uint64_t seed,
+                                         struct acrobot_batch_t **batch);
 
 // Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
 // elements, one for each acrobot. No array may overlap another one, the batch or `results`. If one action is rejected,
 // no acrobot steps, but `terminated` and `truncated` become false.
-acrobot_status_t acrobot_batch_step(struct acrobot_batch_t *batch,
-                                    const uint8_t *actions,
-                                    const struct acrobot_batch_results_t *results,
-                                    size_t count);
+enum acrobot_status_t acrobot_batch_step(struct acrobot_batch_t *batch,
+                                         const uint8_t *actions,
+                                         const struct acrobot_batch_results_t *results,
+                                         size_t count);
 
 // Writes the observations of the states. The array has `count` elements, one for each acrobot.
-acrobot_status_t acrobot_batch_observe(const struct acrobot_batch_t *batch,
-                                       struct acrobot_observation_t *observations,
-                                       size_t count);
+enum acrobot_status_t acrobot_batch_observe(const struct acrobot_batch_t *batch,
+                                            struct acrobot_observation_t *observations,
+                                            size_t count);
 
 // The number of acrobots.
-acrobot_status_t acrobot_batch_count(const struct acrobot_batch_t *batch, size_t *count);
+enum acrobot_status_t acrobot_batch_count(const struct acrobot_batch_t *batch, size_t *count);
 
 // Draws the next initial state of each acrobot and begins their episodes.
-acrobot_status_t acrobot_batch_reset(struct acrobot_batch_t *batch);
+enum acrobot_status_t acrobot_batch_reset(struct acrobot_batch_t *batch);
 
 // As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
-acrobot_status_t acrobot_batch_reset_with_seed(struct acrobot_batch_t *batch, uint64_t seed);
+enum acrobot_status_t acrobot_batch_reset_with_seed(struct acrobot_batch_t *batch, uint64_t seed);
 
 // As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count` elements, one for each
 // acrobot. If a byte is neither true nor false, the function returns ACROBOT_ERROR_OUT_OF_RANGE.
-acrobot_status_t acrobot_batch_reset_masked(struct acrobot_batch_t *batch,
-                                            const bool *mask,
-                                            size_t count);
+enum acrobot_status_t acrobot_batch_reset_masked(struct acrobot_batch_t *batch,
+                                                 const bool *mask,
+                                                 size_t count);
 
 // Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP, ACROBOT_AUTORESET_SAME_STEP or
 // ACROBOT_AUTORESET_DISABLED. `error` may be null.
-acrobot_status_t acrobot_batch_set_autoreset(struct acrobot_batch_t *batch,
-                                             int autoreset,
-                                             struct acrobot_error_t *error);
+enum acrobot_status_t acrobot_batch_set_autoreset(struct acrobot_batch_t *batch,
+                                                  int autoreset,
+                                                  struct acrobot_error_t *error);
 
 // The state of acrobot `index`, counted from 0.
-acrobot_status_t acrobot_batch_state(const struct acrobot_batch_t *batch,
-                                     size_t index,
-                                     struct acrobot_state_t *state);
+enum acrobot_status_t acrobot_batch_state(const struct acrobot_batch_t *batch,
+                                          size_t index,
+                                          struct acrobot_state_t *state);
 
 // Sets the state of acrobot `index`, counted from 0. Its number of steps does not change. `error` may be null.
-acrobot_status_t acrobot_batch_set_state(struct acrobot_batch_t *batch,
-                                         size_t index,
-                                         const struct acrobot_state_t *state,
-                                         struct acrobot_error_t *error);
+enum acrobot_status_t acrobot_batch_set_state(struct acrobot_batch_t *batch,
+                                              size_t index,
+                                              const struct acrobot_state_t *state,
+                                              struct acrobot_error_t *error);
 
 // The parameters of all acrobots.
-acrobot_status_t acrobot_batch_params(const struct acrobot_batch_t *batch,
-                                      struct acrobot_params_t *params);
+enum acrobot_status_t acrobot_batch_params(const struct acrobot_batch_t *batch,
+                                           struct acrobot_params_t *params);
 
 // Sets the parameters of all acrobots for the next steps. `error` may be null.
-acrobot_status_t acrobot_batch_set_params(struct acrobot_batch_t *batch,
-                                          const struct acrobot_params_t *params,
-                                          struct acrobot_error_t *error);
+enum acrobot_status_t acrobot_batch_set_params(struct acrobot_batch_t *batch,
+                                               const struct acrobot_params_t *params,
+                                               struct acrobot_error_t *error);
 
 #ifdef __cplusplus
 }  // extern "C"

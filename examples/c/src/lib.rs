@@ -20,6 +20,8 @@ pub mod data;
 
 pub mod single;
 
+pub mod control;
+
 pub mod action_space;
 
 pub mod batch;

@@ -96,7 +96,8 @@ pub unsafe extern "C" fn acrobot_step(
     })
 }
 
-/// Applies any finite torque, N m, for one dt: for controllers. `error` may be null.
+/// Applies any finite torque, N m, for one dt: for controllers. The `torques` of the parameters do not limit it. `error`
+/// may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step_torque(
     acrobot: *mut acrobot_t,

@@ -3,11 +3,12 @@
 use core::ffi::{CStr, c_char, c_int};
 
 use acrobot::Error;
+use acrobot::physics::control::ControlError;
 
 use crate::memory::Array;
 
 /// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
-#[repr(u8)]
+#[repr(C)]
 #[derive(Clone, Copy)]
 pub enum acrobot_status_t {
     /// The function has done its work.
@@ -116,6 +117,21 @@ impl From<Error> for Rejected {
             Error::NoSuchIndex { .. } => ACROBOT_ERROR_NO_SUCH_INDEX.into(),
             // EmptyBatch and WrongLength. No function here can cause the others.
             _ => ACROBOT_ERROR_WRONG_COUNT.into(),
+        }
+    }
+}
+
+impl From<ControlError> for Rejected {
+    fn from(error: ControlError) -> Self {
+        match error {
+            ControlError::Invalid(error) => error.into(),
+            // A status of its own would have a text in each firmware.
+            _ => Self::number(
+                "gain",
+                f64::NAN,
+                "",
+                "finite; these weights have no regulator",
+            ),
         }
     }
 }

@@ -12,6 +12,7 @@ static const acrobot_params_t PARAMS = {
 static const acrobot_params_t NO_MASS = {
     1, 1, 0, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK,
 };
+static const acrobot_state_t WEIGHTS = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
 static const bool MASK[COUNT] = {true, false, true};
 
 typedef acrobot_observation_t observations_t[COUNT];
@@ -52,6 +53,9 @@ enum { OK = ACROBOT_OK, OUT_OF_RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     CALL(ALONE, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_set_params(acrobot, &NO_MASS, out)) \
     CALL(ALONE, float, NEEDED, OK, acrobot_energy(acrobot, out)) \
     CALL(ALONE, float, NEEDED, OK, acrobot_tip_height(acrobot, out)) \
+    CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_deviation(acrobot, &REST, out)) \
+    CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_lqr(acrobot, &REST, &WEIGHTS, 1, out, NULL)) \
+    CALL(ALONE, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_lqr(acrobot, &FAR, &WEIGHTS, 1, &gain, out)) \
     CALL(ACTIONS, uint8_t, NEEDED, OK, acrobot_action_space_sample(action_space, out)) \
     CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset(batch)) \
     CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset_with_seed(batch, 42)) \
@@ -87,6 +91,7 @@ static acrobot_status_t call(int index, void *holder, void *pointer)
     acrobot_action_space_t *action_space = (acrobot_action_space_t *)holder;
     acrobot_batch_t *batch = (acrobot_batch_t *)holder;
     acrobot_step_t step;
+    acrobot_state_t gain;
 #define CALL(holder, type, optional, status, ...) \
     if (index-- == 0) { \
         type *out = (type *)pointer; \
@@ -99,7 +104,7 @@ static acrobot_status_t call(int index, void *holder, void *pointer)
 
 static void expect(int index, void *holder, void *out, int status)
 {
-    if (call(index, holder, out) != status) {
+    if ((int)call(index, holder, out) != status) {
         print(TABLE[index].text);
         print(" must return ");
         print(acrobot_status_text(status));
@@ -181,6 +186,7 @@ static void arguments_of_an_acrobot(void)
     acrobot_action_space_t action_space;
     acrobot_error_t error;
     acrobot_step_t step, twin_step;
+    acrobot_state_t x;
     acrobot_params_t params = PARAMS;
     CHECK(sizeof twin == ACROBOT_SIZE && sizeof action_space == ACROBOT_ACTION_SPACE_SIZE);
     CHECK(acrobot_init(NULL, 42) == ACROBOT_ERROR_NULL);
@@ -208,6 +214,13 @@ static void arguments_of_an_acrobot(void)
     params.inertia2 = params.center_of_mass2 = 0;
     CHECK(acrobot_set_params(acrobot, &params, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(names(&error, "inertia2", 0, "kg m²", "(with the centre of mass on the joint) above 0"));
+    CHECK(acrobot_deviation(acrobot, NULL, &x) == ACROBOT_ERROR_NULL);
+    CHECK(acrobot_lqr(acrobot, NULL, &WEIGHTS, 1, &x, &error) == ACROBOT_ERROR_NULL);
+    CHECK(acrobot_lqr(acrobot, &REST, NULL, 1, &x, &error) == ACROBOT_ERROR_NULL);
+    CHECK(acrobot_lqr(acrobot, &REST, &NEGATIVE, 1, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+    CHECK(same_text(error.name, "gain") && same_text(error.rule, "finite; these weights have no regulator"));
+    CHECK(acrobot_lqr(acrobot, &REST, &WEIGHTS, 0, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+    CHECK(names(&error, "r", 0, "per (N m)²", "finite and above 0"));
     CHECK(same(acrobot, saved, ACROBOT_SIZE));
 
     // A copy steps as the original does. What was rejected would have been noticed.

@@ -7,7 +7,7 @@ use super::matrix::{
 use super::{ControlError, DiscreteModel};
 use crate::error::Range;
 use crate::math::Real;
-use crate::physics::{Arithmetic, State, wrap};
+use crate::physics::{Arithmetic, Pendulum, State, wrap};
 
 /// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one with the least sum of
 /// xᵀ Q x + R u² over all steps.
@@ -22,8 +22,9 @@ pub struct Lqr<S = f64> {
 }
 
 impl<S: Real> Lqr<S> {
-    /// The torque −K x, N m, for a deviation x from the state of the linearization, rad and rad/s: see [`difference`].
-    /// Add the torque of the linearization if it is not 0. The torque of the motor is not bounded here.
+    /// The torque −K x, N m, for a deviation x from the state of the linearization, rad and rad/s: see
+    /// [`Pendulum::deviation`]. Add the torque of the linearization if it is not 0. [`bound`](crate::physics::bound) limits
+    /// it to that of a motor.
     #[must_use]
     pub fn torque(&self, x: [S; 4]) -> S {
         -dot(self.gain, x)
@@ -54,6 +55,14 @@ pub fn difference<A: Arithmetic>(
         state.dtheta1 - target.dtheta1,
         state.dtheta2 - target.dtheta2,
     ]
+}
+
+impl<A: Arithmetic> Pendulum<A> {
+    /// The [`difference`] of the state from `target`, rad and rad/s.
+    #[must_use]
+    pub fn deviation(&self, target: State<A::Scalar>) -> [A::Scalar; 4] {
+        difference::<A>(self.state(), target)
+    }
 }
 
 /// The linear-quadratic regulator of a discrete model: of all state feedbacks that make every deviation vanish, the one

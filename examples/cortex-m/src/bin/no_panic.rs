@@ -93,7 +93,9 @@ fn pendulum<A: Arithmetic>() {
             pendulum.mass_matrix(),
             pendulum.tip_height(),
         ));
-        let _ = black_box(pendulum.set_params(params()));
+        if let Err(error) = pendulum.set_params(params()) {
+            black_box(error.message());
+        }
         let _ = black_box(pendulum.set_state(state()));
     }
     black_box(wrap::<A>(number()));
@@ -112,8 +114,8 @@ fn control<A: Arithmetic>() {
     };
     let weights = [(); 4].map(|()| [(); 4].map(|()| number()));
     if let Ok(regulator) = black_box(lqr(&model, &weights, number())) {
-        let x = difference::<A>(pendulum.state(), state());
-        black_box(regulator.torque(x));
+        black_box(difference::<A>(pendulum.state(), state()));
+        black_box(regulator.torque(pendulum.deviation(state())));
     }
 }
 

@@ -1,0 +1,57 @@
+//! What a controller needs: the deviation from a state, and a regulator.
+
+use acrobot::physics::Pendulum;
+use acrobot::physics::control::{discretize, lqr};
+use acrobot::{Fast, State};
+
+use crate::data::acrobot_state_t;
+use crate::memory::{change, check, get, read};
+use crate::single::acrobot_t;
+use crate::status::{acrobot_error_t, acrobot_status_t};
+
+/// The deviation of the state from `target`. Angles are wrapped to ±π, so it is continuous upright.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_deviation(
+    acrobot: *const acrobot_t,
+    target: *const acrobot_state_t,
+    deviation: *mut acrobot_state_t,
+) -> acrobot_status_t {
+    get(acrobot, deviation, |acrobot| {
+        let target = read(target)?.into();
+        Ok(State::from(acrobot.inner().pendulum().deviation(target)).into())
+    })
+}
+
+/// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at `target`, once for all. The
+/// torque in each dt is −(gain.theta1 · x.theta1 + gain.theta2 · x.theta2 + gain.dtheta1 · x.dtheta1 + gain.dtheta2 ·
+/// x.dtheta2) for a deviation x; clamp it to that of your motor.
+///
+/// `target` must be in equilibrium without a torque, such as upright. `q` has the weights of the four squared deviations,
+/// 0 or more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². Without a regulator
+/// for these the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_lqr(
+    acrobot: *mut acrobot_t,
+    target: *const acrobot_state_t,
+    q: *const acrobot_state_t,
+    r: f32,
+    gain: *mut acrobot_state_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    change(acrobot, gain, error, |acrobot| {
+        check(gain)?;
+        let pendulum = Pendulum::<Fast>::new(*acrobot.params(), read(target)?.into())?;
+        let mut weights = [[0.0; 4]; 4];
+        let diagonal: [f32; 4] = State::from(read(q)?).into();
+        for (to, weight) in weights
+            .as_flattened_mut()
+            .iter_mut()
+            .step_by(5)
+            .zip(diagonal)
+        {
+            *to = weight;
+        }
+        let regulator = lqr(&discretize(&pendulum, 0.0)?, &weights, r)?;
+        Ok(State::from(regulator.gain).into())
+    })
+}
