@@ -1,6 +1,8 @@
 //! What the README and the pages repeat from elsewhere is what stands there.
 
-use common::text_of;
+use std::fs;
+
+use common::{absolute, text_of};
 
 /// Each number of the README's table stands in the page that its row links to.
 #[test]
@@ -41,6 +43,28 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
         word.trim_start_matches(['-', '−'])
             .trim_end_matches(['.', ',', ';', ':', ')', '`'])
     })
+}
+
+/// The pages name the repository's files by their paths, without links, because rustdoc shows the pages without the files.
+#[test]
+fn the_files_that_the_pages_name_exist() {
+    const FOLDERS: [&str; 5] = ["benches/", "docs/", "examples/", "fuzz/", "tests/"];
+
+    let mut count = 0;
+    for page in fs::read_dir(absolute("docs")).unwrap() {
+        let page = page.unwrap().path();
+        if page.extension().is_some_and(|extension| extension == "md") {
+            let text = fs::read_to_string(&page).unwrap();
+            // Every second piece is code.
+            for code in text.split('`').skip(1).step_by(2) {
+                if FOLDERS.iter().any(|folder| code.starts_with(folder)) {
+                    assert!(absolute(code).exists(), "{}: {code}", page.display());
+                    count += 1;
+                }
+            }
+        }
+    }
+    assert!(count > 40, "{count}");
 }
 
 /// A block that is not compiled with the crate names the file that it is from: "```rust,ignore (path)" or "```c (path)".

@@ -30,7 +30,10 @@ fn the_best_sequences_reach_the_goal() {
     let returns = returns::<Reference>();
     assert_eq!(returns.len(), 1000);
     let mean = returns.iter().sum::<f32>() / 1000.0;
-    assert_says("docs/optimum.md", &format!("| best known | −{:.2} |", -mean));
+    assert_says(
+        "docs/optimum.md",
+        &format!("| best known | −{:.2} |", -mean),
+    );
 }
 
 /// `Host` has Gymnasium's own bits where the C library is the recorded one.

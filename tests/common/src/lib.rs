@@ -88,7 +88,8 @@ pub fn assert_snapshot(name: &str, found: &str) {
     }
 }
 
-fn absolute(path: &str) -> PathBuf {
+/// Where a file of the repository is.
+pub fn absolute(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../..")
         .join(path)
