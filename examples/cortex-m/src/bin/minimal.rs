@@ -16,12 +16,12 @@ use panic_halt as _;
 #[acrobot_cortex_m::entry]
 fn main() -> ! {
     match option_env!("MINIMAL") {
-        Some("fast") => acrobot::<Fast>(),
         Some("micro") => acrobot::<Micro>(),
         Some("reference") => acrobot::<Reference>(),
         Some("portable") => acrobot::<Portable>(),
         Some("physics") => pendulum(),
-        _ => without(),
+        Some("without") => without(),
+        _ => acrobot::<Fast>(),
     }
 }
 
