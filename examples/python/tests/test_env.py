@@ -304,6 +304,8 @@ def test_spaces_follow_the_parameters():
         samples.append(env.action_space.sample())
         del env.AVAIL_TORQUE
     assert samples[0] == samples[1], "a seeded space is followed by a seeded one"
+    env.AVAIL_TORQUE = [-1e300, 0.0, 3.402823466385289e38]  # beyond float32, also by rounding
+    assert -env.action_space.low == env.action_space.high == np.finfo(np.float32).max
     env.observation_space = mine = gymnasium.spaces.Box(-1.0, 1.0, (6,))
     env.MAX_VEL_2 = 4.0
     assert env.observation_space is mine

@@ -262,7 +262,9 @@ class Parameters:
         """That of a single environment."""
         lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
         if self._CONTINUOUS:
-            return spaces.Box(float(np.min(lows)), float(np.max(highs)), (1,), np.float32)
+            largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
+            low, high = np.clip([np.min(lows), np.max(highs)], -largest, largest).tolist()
+            return spaces.Box(low, high, (1,), np.float32)
         return spaces.Discrete(np.shape(lows)[-1])
 
     @property
