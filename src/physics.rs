@@ -27,7 +27,7 @@ macro_rules! for_f32_and_f64 {
             type S = f32;
             $($item)*
         };
-        #[allow(clippy::unnecessary_cast, reason = "not in `f32`")]
+        #[allow(clippy::unnecessary_cast, reason = "the casts are necessary where S is `f32`")]
         const _: () = {
             type S = f64;
             $($item)*

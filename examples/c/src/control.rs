@@ -7,7 +7,7 @@ use acrobot::{Fast, State};
 use crate::data::acrobot_state_t;
 use crate::memory::{change, check, get, read};
 use crate::single::acrobot_t;
-use crate::status::{acrobot_error_t, acrobot_status_t};
+use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
 /// The deviation of the state from `target`. Angles are wrapped to ±π, so it is continuous upright.
 #[unsafe(no_mangle)]
@@ -38,6 +38,8 @@ pub unsafe extern "C" fn acrobot_lqr(
     gain: *mut acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
+    const RULE: &str = "finite and at least 0";
+
     change(acrobot, gain, error, |acrobot| {
         check(gain)?;
         let pendulum = Pendulum::<Fast>::new(*acrobot.params(), read(target)?.into())?;
@@ -49,6 +51,9 @@ pub unsafe extern "C" fn acrobot_lqr(
             .step_by(5)
             .zip(diagonal)
         {
+            if !(0.0..f32::INFINITY).contains(&weight) {
+                return Err(Rejected::number("q", weight.into(), "", RULE));
+            }
             *to = weight;
         }
         let regulator = lqr(&discretize(&pendulum, 0.0)?, &weights, r)?;

@@ -125,13 +125,11 @@ impl From<ControlError> for Rejected {
     fn from(error: ControlError) -> Self {
         match error {
             ControlError::Invalid(error) => error.into(),
-            // A status of its own would have a text in each firmware.
-            _ => Self::number(
-                "gain",
-                f64::NAN,
-                "",
-                "finite; these weights have no regulator",
-            ),
+            // Not another status: each firmware would contain its text.
+            _ => {
+                let rule = "finite; these weights have no regulator";
+                Self::number("gain", f64::NAN, "", rule)
+            }
         }
     }
 }

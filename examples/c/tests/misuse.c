@@ -12,7 +12,7 @@ static const acrobot_params_t PARAMS = {
 static const acrobot_params_t NO_MASS = {
     1, 1, 0, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK,
 };
-static const acrobot_state_t WEIGHTS = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
+static const acrobot_state_t WEIGHTS = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1}, ZERO = {0, 0, 0, 0};
 static const bool MASK[COUNT] = {true, false, true};
 
 typedef acrobot_observation_t observations_t[COUNT];
@@ -182,7 +182,7 @@ static bool names(const acrobot_error_t *error, const char *name, double value, 
 // Each of these calls is rejected and leaves all bytes of the acrobot as they were.
 static void arguments_of_an_acrobot(void)
 {
-    acrobot_t *acrobot = (acrobot_t *)hold(ALONE), twin = *acrobot;
+    acrobot_t *acrobot = (acrobot_t *)hold(ALONE), twin = *acrobot, floating = *acrobot;
     acrobot_action_space_t action_space;
     acrobot_error_t error;
     acrobot_step_t step, twin_step;
@@ -218,6 +218,12 @@ static void arguments_of_an_acrobot(void)
     CHECK(acrobot_lqr(acrobot, NULL, &WEIGHTS, 1, &x, &error) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_lqr(acrobot, &REST, NULL, 1, &x, &error) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_lqr(acrobot, &REST, &NEGATIVE, 1, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+    CHECK(names(&error, "q", -2, "", "finite and at least 0"));
+    // Without gravity and weights nothing brings the acrobot back.
+    params = PARAMS;
+    params.gravity = 0;
+    CHECK(acrobot_set_params(&floating, &params, NULL) == ACROBOT_OK);
+    CHECK(acrobot_lqr(&floating, &REST, &ZERO, 1, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(same_text(error.name, "gain") && same_text(error.rule, "finite; these weights have no regulator"));
     CHECK(acrobot_lqr(acrobot, &REST, &WEIGHTS, 0, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(names(&error, "r", 0, "per (N m)²", "finite and above 0"));

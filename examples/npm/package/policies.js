@@ -1,4 +1,4 @@
-// Policies, and a learner in a module of its own. policies.d.ts describes the interface.
+// Policies, and a learner in a separate module. policies.d.ts describes the interface.
 
 import { checked, instantiate, invalid, positive, seedWords } from "./wasm.js";
 

@@ -110,8 +110,9 @@ impl Batch {
             let mut draws = many.draws.clone();
             draws.distributions.remove(name);
             let each = values.iter().enumerate().map(|(index, value)| {
-                let changed = with(many.params(index), name, value);
-                changed.map_err(|error| indexed(value.py(), error, index))
+                let params = with(many.params(index), name, value);
+                let checked = params.and_then(|params| many.check(params, &draws).map(|()| params));
+                checked.map_err(|error| indexed(value.py(), error, index))
             });
             let each: Vec<_> = each.collect::<PyResult<_>>()?;
             many.change(&each, draws)

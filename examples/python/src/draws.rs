@@ -1,4 +1,4 @@
-//! The parameters that each reset draws, and the draws that the crate does not have.
+//! The parameters that each reset draws.
 
 use std::collections::BTreeMap;
 
@@ -77,7 +77,7 @@ impl Draws {
         })
     }
 
-    /// Draws in the order of the crate.
+    /// Draws in the order of Gymnasium's names in `NUMBERS`.
     pub fn draw(&self, mut params: Params, rng: &mut Pcg64) -> Params {
         let [mut low, mut high] = self.bounds;
         for (name, own, field) in &NUMBERS {

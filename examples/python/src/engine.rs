@@ -116,29 +116,23 @@ impl<A: Arithmetic> Many<A> {
         Ok(draws)
     }
 
-    fn checked([low, high]: [Params; 2]) -> PyResult<ParamsRange<A::Scalar>> {
-        ParamsRange::new(low.cast(), high.cast()).map_err(rejected)
+    /// Checks the parameters of an acrobot, with all that these draws can make of them.
+    pub fn check(&self, params: Params, draws: &Draws) -> PyResult<()> {
+        let [low, high] = draws.ends(params).map(|end| end.cast::<A::Scalar>());
+        ParamsRange::new(low, high).map(drop).map_err(rejected)
     }
 
     /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of resets. Gives each acrobot
     /// its own parameters if necessary.
     pub fn change(&mut self, params: &[Params], draws: Draws) -> PyResult<()> {
         for each in params {
-            Self::checked(draws.ends(*each))?;
+            self.check(*each, &draws)?;
         }
-        let draws_any = !draws.distributions.is_empty();
-        if !self.own && (draws_any || params.iter().any(|each| *each != params[0])) {
+        let own = !draws.distributions.is_empty() || params.iter().any(|each| *each != params[0]);
+        if own && !self.own {
             self.batch = self.owning()?;
             self.own = true;
         }
-        // The crate draws before the initial state, uniformly, another LINK_MOI for each link, and replaces all parameters.
-        let ends = draws.ends(params[0]);
-        let mut distributions = draws.distributions.iter();
-        let is_range = draws_any
-            && distributions.all(|(name, how)| *how == Distribution::Uniform && name != "LINK_MOI")
-            && params.iter().all(|each| draws.ends(*each) == ends);
-        let range = is_range.then(|| Self::checked(ends)).transpose()?;
-        self.batch.set_params_range(range).map_err(rejected)?;
         for index in 0..if self.own { self.batch.len() } else { 1 } {
             let params = params.get(index).unwrap_or(&params[0]).cast();
             if self.own {
@@ -152,9 +146,10 @@ impl<A: Arithmetic> Many<A> {
         Ok(())
     }
 
-    /// Draws the parameters of acrobots that were reset, if the crate has not drawn them.
+    /// Draws the parameters of acrobots that were reset. A range of the crate would have one distribution, another LINK_MOI
+    /// for each link, and no different values.
     pub fn draw(&mut self, were_reset: impl Fn(&VecBatch<A>, usize) -> bool) -> Result<(), Error> {
-        if self.draws.distributions.is_empty() || self.batch.params_range().is_some() {
+        if self.draws.distributions.is_empty() {
             return Ok(());
         }
         for index in 0..self.batch.len() {

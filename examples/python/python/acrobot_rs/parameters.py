@@ -225,7 +225,7 @@ class Parameters:
                 super().__setattr__(space, new)
 
     def _check_name(self, name: str) -> None:
-        """Reject the assignment of an attribute that would have no effect. A subclass may have attributes of its own."""
+        """Reject the assignment of an attribute that would have no effect. A subclass may have other attributes."""
         cls = type(self)
         if self._made and name in self._CHOSEN:
             raise AttributeError(f"{name} cannot change after {cls.__name__} was made")
