@@ -33,7 +33,7 @@ mod _native {
 /// A number among the parameters: Gymnasium's name, the crate's, and its field.
 type Number = (&'static str, &'static str, fn(&mut Params) -> &mut f64);
 
-/// In the order of the crate's draws. Gymnasium has one moment of inertia for both links.
+/// In the order of draws. Gymnasium has one moment of inertia for both links.
 const NUMBERS: [Number; 16] = [
     ("LINK_LENGTH_1", "length1", |p| &mut p.length1),
     ("LINK_LENGTH_2", "length2", |p| &mut p.length2),

@@ -1,0 +1,232 @@
+// Many acrobots.
+
+import { draw } from "./draw.js";
+import { ACTION, Kept, NUMBER, SHOWN, elements, isAction, readState, sample, writeState } from "./kept.js";
+import { seal, unseal } from "./snapshot.js";
+import { accept, bytes, checked, invalid, positive, wasm, writeSeed } from "./wasm.js";
+
+const RESULTS = ["observations", "rewards", "terminated", "truncated", "ended", "finalObservations"];
+const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
+
+/** What a batch's snapshot begins with after its length, in the format of postcard: the header, and the bounds −0.1 and 0.1 as doubles. */
+const BATCH = [...new TextEncoder().encode("\x05batch\x01\x04fast"), ...new Uint8Array(Float64Array.of(-0.1, 0.1).buffer)];
+
+/** An integer in seven bits a byte, the lowest first. The highest bit of each byte says whether more follow. */
+const varint = (value) => (value < 128 ? [value] : [(value % 128) | 128, ...varint(Math.floor(value / 128))]);
+
+export class Batch extends Kept {
+  #count;
+  #settings;
+  /** The addresses of the actions and of the results. */
+  #addresses;
+  /** The names of the results. */
+  #names;
+  /** Views of these results. */
+  #views;
+  /** Their copies in JavaScript's memory, because views of the module's memory end when that memory grows. */
+  #results = {};
+  /** Whether states have changed since the observations were written. */
+  #stale = false;
+
+  constructor(options) {
+    const names = ["count", "seed", "params", "maxSteps", "autoreset"];
+    const { count, seed, params = {}, maxSteps = 500, autoreset = "NextStep" } = checked("options", options, names);
+    positive("count", count);
+    positive("maxSteps", maxSteps);
+    if (!AUTORESETS.includes(autoreset)) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset);
+    const number = wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset));
+    const addresses = new Uint32Array(bytes().slice(0, 32).buffer);
+    super("batch", number, count);
+    this.#count = count;
+    this.#settings = Object.freeze({ count, maxSteps, autoreset });
+    this.#addresses = addresses;
+    this.#names = autoreset === "SameStep" ? RESULTS : RESULTS.slice(0, -1);
+    try {
+      this.setParams(params);
+      this.#copy(...this.#names);
+    } catch (error) {
+      this.free();
+      throw error;
+    }
+    this.#observe();
+  }
+
+  #view(index, Type, length) {
+    return new Type(wasm().memory.buffer, this.#addresses[index], length);
+  }
+
+  /** Copies results out of the module's memory. */
+  #copy(...names) {
+    const count = this.#count;
+    if (!this.#views?.rewards.length) {
+      this.#views = {
+        actions: this.#view(0, Uint8Array, count),
+        observations: this.#view(1, Float32Array, 6 * count),
+        rewards: this.#view(2, Float32Array, count),
+        terminated: this.#view(3, Uint8Array, count),
+        truncated: this.#view(4, Uint8Array, count),
+        finalObservations: this.#view(5, Float32Array, 6 * count),
+        ended: this.#view(6, Uint8Array, count),
+        mask: this.#view(7, Uint8Array, count),
+      };
+    }
+    for (const name of names) {
+      // An array that the caller has transferred to another thread has no elements.
+      if (this.#results[name]?.length) this.#results[name].set(this.#views[name]);
+      else this.#results[name] = this.#views[name].slice();
+    }
+  }
+
+  #observe() {
+    wasm().batch_observe(this[NUMBER]);
+    this.#copy("observations");
+    this.#stale = false;
+  }
+
+  /** The batch's number, for a use of acrobot `index`. */
+  #numberFor(index, what = "") {
+    const number = this[NUMBER];
+    if (!Number.isInteger(index) || index < 0 || index >= this.#count) {
+      throw invalid(`${what}index must be an integer from 0 to ${this.#count - 1}`, index);
+    }
+    return number;
+  }
+
+  get count() {
+    return this.#count;
+  }
+
+  get settings() {
+    return this.#settings;
+  }
+
+  get observations() {
+    this[NUMBER];
+    if (this.#stale || !this.#results.observations.length) this.#observe();
+    return this.#results.observations;
+  }
+
+  reset(seed) {
+    return this.#reset(new Uint8Array(this.#count).fill(1), seed);
+  }
+
+  resetMasked(mask, seed) {
+    const isFlag = (element) => [true, false, 1, 0].includes(element);
+    return this.#reset(elements("mask", mask, this.#count, isFlag, "must be true, false, 1 or 0"), seed);
+  }
+
+  #reset(mask, seed) {
+    const number = this[NUMBER];
+    const words = seed === undefined ? 0 : writeSeed(seed);
+    this.#copy();
+    this.#views.mask.set(mask);
+    wasm().batch_reset(number, words);
+    this.#observe();
+    return this.#results.observations;
+  }
+
+  sample() {
+    return Uint8Array.from({ length: this.#count }, sample);
+  }
+
+  step(actions) {
+    let given = actions;
+    // The elements of a plain Uint8Array are bytes, so the module can check them.
+    if (!ArrayBuffer.isView(actions) || !(actions instanceof Uint8Array) || actions.byteLength !== this.#count) {
+      // Reading others can run code that frees the batch or makes the module's memory grow, so they are read first.
+      given = elements("actions", actions, this.#count, isAction, ACTION);
+    }
+    const number = this[NUMBER];
+    this.#copy();
+    this.#views.actions.set(given);
+    if (!wasm().batch_step(number)) {
+      const index = this.#views.actions.findIndex((action) => action > 2);
+      throw invalid(`actions[${index}] ${ACTION}`, this.#views.actions[index]);
+    }
+    this.#copy(...this.#names);
+    this.#stale = false;
+    return { ...this.#results };
+  }
+
+  state(index) {
+    wasm().batch_state(this.#numberFor(index), index);
+    return readState();
+  }
+
+  setState(index, state) {
+    this.#numberFor(index);
+    const valueOf = writeState(state);
+    accept(wasm().batch_set_state(this[NUMBER], index), valueOf);
+    this.#stale = true;
+  }
+
+  elapsed(index) {
+    return wasm().batch_elapsed(this.#numberFor(index), index) >>> 0;
+  }
+
+  #header() {
+    const { count, maxSteps, autoreset } = this.#settings;
+    // No own parameters, and no range of them.
+    return [...varint(count + 1), ...BATCH, ...varint(maxSteps), AUTORESETS.indexOf(autoreset), 0, 0];
+  }
+
+  snapshot() {
+    const number = this[NUMBER];
+    const members = Array.from({ length: this.#count }, (_, i) => bytes().slice(0, wasm().batch_save(number, i)));
+    this.#copy();
+    return seal([this.#header(), ...members, this.#settings.autoreset === "Disabled" ? this.#views.ended : []]);
+  }
+
+  static restore(snapshot) {
+    const content = unseal(snapshot);
+    const wrong = new RangeError(`the snapshot must be a valid one of a batch, version 1, arithmetic "fast", got ${content.length} other bytes`);
+    let at = 0;
+    const read = () => {
+      let value = 0;
+      for (let unit = 1, more = true; more && unit < 2 ** 36; unit *= 128) {
+        const byte = content[at++];
+        value += (byte % 128) * unit;
+        more = byte >= 128;
+      }
+      return value;
+    };
+    const count = read() - 1;
+    at += BATCH.length;
+    const [maxSteps, mode] = [read(), read()];
+    // An acrobot has at least 94 bytes.
+    if (!(count >= 1 && count < content.length / 94 && maxSteps >= 1 && maxSteps < 2 ** 32 && mode in AUTORESETS)) throw wrong;
+    const batch = new this({ count, maxSteps, autoreset: AUTORESETS[mode] });
+    if (batch.#load(content)) return batch;
+    batch.free();
+    throw wrong;
+  }
+
+  #load(content) {
+    const [number, header] = [this[NUMBER], this.#header()];
+    if (header.some((byte, i) => byte !== content[i])) return false;
+    let at = header.length;
+    for (let index = 0; index < this.#count; index++) {
+      const member = content.subarray(at, at + 256);
+      bytes().set(member);
+      const length = wasm().batch_load(number, index, member.length);
+      if (length === 0) return false;
+      at += length;
+    }
+    const ended = content.subarray(at);
+    if (ended.length !== (this.#settings.autoreset === "Disabled" ? this.#count : 0) || ended.some((flag) => flag > 1)) return false;
+    this.#copy();
+    this.#views.ended.set(ended);
+    this.#observe();
+    return true;
+  }
+
+  draw(context, index, options) {
+    const signature = "draw(context, index, options)";
+    this.#numberFor(index, `${signature}: `);
+    draw(signature, context, this.state(index), this.params, 0, options);
+  }
+
+  get [SHOWN]() {
+    return this.#settings;
+  }
+}

@@ -1,0 +1,46 @@
+// The checksum and the header of a snapshot.
+
+import { invalid } from "./wasm.js";
+
+/** CRC-32 as in zlib. postcard's `crc32` functions append it to a snapshot, too. */
+function checksum(bytes) {
+  let crc = -1;
+  for (const byte of bytes) {
+    crc ^= byte;
+    for (let bit = 0; bit < 8; bit++) crc = (crc >>> 1) ^ (crc & 1 && 0xedb88320);
+  }
+  return ~crc >>> 0;
+}
+
+/** Joins the parts of a snapshot, and adds the checksum. */
+export function seal(parts) {
+  const length = parts.reduce((sum, part) => sum + part.length, 0);
+  const snapshot = new Uint8Array(length + 4);
+  let at = 0;
+  for (const part of parts) {
+    snapshot.set(part, at);
+    at += part.length;
+  }
+  new DataView(snapshot.buffer).setUint32(length, checksum(snapshot.subarray(0, length)), true);
+  return snapshot;
+}
+
+/** A snapshot without its checksum. */
+export function unseal(snapshot) {
+  if (!(snapshot instanceof Uint8Array)) throw invalid("the snapshot must be a Uint8Array", snapshot);
+  // A copy, because other threads may write shared memory, and a proxy can run code.
+  const copy = new Uint8Array(snapshot.length);
+  for (let i = 0; i < copy.length; i++) copy[i] = snapshot[i];
+  const content = copy.subarray(0, -4);
+  if (copy.length < 4 || new DataView(copy.buffer).getUint32(content.length, true) !== checksum(content)) {
+    throw new RangeError(`the snapshot must have the bytes of snapshot(), got ${copy.length} bytes with another checksum`);
+  }
+  return content;
+}
+
+/** The header of a snapshot: two texts after their lengths, with the version between them. */
+export function header(bytes) {
+  const text = (start) => new TextDecoder().decode(bytes.subarray(start + 1, start + 1 + bytes[start]));
+  const version = 1 + bytes[0];
+  return `"${text(0)}", version ${bytes[version]}, arithmetic "${text(version + 1)}"`;
+}
