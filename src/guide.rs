@@ -16,6 +16,7 @@
 //! | how close it is to the solution of the equations | [`accuracy`] |
 //! | why all machines compute the same bits, and where that ends | [`determinism`] |
 //! | the equations, and their sources | [`equations`] |
+//! | how another Acrobot compares itself with Gymnasium | [`ports`] |
 //! | how fast it is | [`benchmarks`] |
 //! | what it costs on a microcontroller | [`embedded_figures`] |
 //! | how well it learns | [`learning`] |
@@ -82,6 +83,10 @@ pub mod determinism {}
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/equations.md")]
 pub mod equations {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/ports.md")]
+pub mod ports {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/benchmarks.md")]

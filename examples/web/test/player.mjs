@@ -1,4 +1,5 @@
-// Opens the page in Chromium and operates it, for the tests in a file that imports this.
+// Opens the page in a browser and operates it, for the tests in a file that imports this: in Chromium by Playwright, with `ENGINE=firefox`
+// or `webkit` by WebDriver.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -12,22 +13,34 @@ import { chromium } from "playwright-core";
 
 import { launch } from "../../npm/browser.mjs";
 import { decodeActions } from "../page/link.js";
+import * as webdriver from "./webdriver.mjs";
 
 export const dist = fileURLToPath(new URL("../dist", import.meta.url));
 /** Tests write their files here. */
 export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
-let browser, origin, close;
+const engine = process.env.ENGINE ?? "chromium";
+/** For tests that change the browser's settings, or the page before it runs. */
+export const inChromium = { skip: engine !== "chromium" && "WebDriver cannot" };
+let browser, origin, close, other;
 
-before(async () => ({ browser, origin, close } = await launch(chromium, context, dist)));
+before(async () => {
+  ({ browser, origin, close } = await launch(engine === "chromium" ? chromium : null, context, dist));
+  if (engine !== "chromium") other = await webdriver.launch(engine);
+});
 
 after(async () => {
-  await close?.();
+  await Promise.all([close?.(), other?.close()]);
   rmSync(folder, { recursive: true });
 });
 
 /** Opens the page and calls `play` once it has loaded. Asserts that its console has no errors or warnings, and that it requests
  * only its own files. */
 export async function open(play, { hash = "", prepare, starts = true, ...options } = {}) {
+  if (other) {
+    await other.page.goto(origin + hash);
+    await other.page.waitForSelector("#app:not([hidden])");
+    return play(other.page);
+  }
   const window = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
   const page = await window.newPage();
   const wrong = [];
@@ -95,6 +108,7 @@ export async function linkedActions(page) {
 }
 
 export async function downloaded(page, button) {
+  if (page.download) return readFileSync(await page.download(button));
   const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
   return readFileSync(await download.path());
 }

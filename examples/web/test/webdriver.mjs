@@ -1,0 +1,112 @@
+// Firefox and WebKit by WebDriver, with those methods of Playwright's page that the tests use.
+// Playwright itself drives only its own builds of these engines.
+
+import { spawn } from "node:child_process";
+import { mkdtempSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+import { Builder, By, Capabilities, Key, until } from "selenium-webdriver";
+
+/** Without a display Firefox finds no mouse, and the page then describes touch. */
+const MOUSE = { "ui.primaryPointerCapabilities": 6, "ui.allPointerCapabilities": 6 };
+
+const ENGINES = {
+  firefox: {
+    command: ["geckodriver"],
+    capabilities: { browserName: "firefox", "moz:firefoxOptions": { binary: "/usr/bin/firefox-esr", args: ["-headless"], prefs: MOUSE } },
+  },
+  webkit: {
+    command: ["xvfb-run", "--auto-servernum", "WebKitWebDriver"],
+    capabilities: {
+      browserName: "MiniBrowser",
+      "webkitgtk:browserOptions": { binary: "/usr/lib/x86_64-linux-gnu/webkit2gtk-4.1/MiniBrowser", args: ["--automation"] },
+    },
+  },
+};
+
+const KEYS = { ArrowLeft: Key.ARROW_LEFT, ArrowRight: Key.ARROW_RIGHT, Space: " " };
+
+/** Starts an engine. Returns `newPage()` and `close()`. */
+export async function launch(engine) {
+  const { command, capabilities } = ENGINES[engine];
+  const port = 4440 + (process.pid % 1000);
+  const server = spawn(command[0], [...command.slice(1), `--port=${port}`], { stdio: "ignore", detached: true });
+  const driver = await connect(`http://127.0.0.1:${port}`, capabilities);
+  await driver.manage().setTimeouts({ script: 30_000 });
+  const close = async () => {
+    await driver.quit();
+    process.kill(-server.pid);
+  };
+  return { page: page(driver), close };
+}
+
+async function connect(url, capabilities) {
+  for (let left = 50; ; left--) {
+    try {
+      return await new Builder().usingServer(url).withCapabilities(new Capabilities(capabilities)).build();
+    } catch (error) {
+      if (left === 0) throw error;
+      await new Promise((resolve) => setTimeout(resolve, 200));
+    }
+  }
+}
+
+function page(driver) {
+  const find = (selector) => driver.findElement(By.css(selector));
+  const evaluate = (code, argument) =>
+    driver.executeScript(`return ${typeof code === "function" ? `(${code})(arguments[0])` : `(() => { ${code} })()`}`, argument);
+  const property = (selector, name) => driver.executeScript("return document.querySelector(arguments[0])[arguments[1]]", selector, name);
+  const setValue = async (selector, value) => {
+    const input = await find(selector);
+    const set = `const [input, value] = arguments; input.focus(); input.value = value;
+      for (const name of ["input", "change"]) input.dispatchEvent(new Event(name, { bubbles: true }));`;
+    await driver.executeScript(set, input, value);
+  };
+  const key = (name) => KEYS[name] ?? name;
+  return {
+    goto: async (url) => {
+      await driver.get("about:blank"); // a change of the hash alone loads nothing
+      await driver.get(url);
+    },
+    url: () => driver.getCurrentUrl(),
+    click: async (selector) => (await find(selector)).click(),
+    fill: setValue,
+    selectOption: setValue,
+    focus: (selector) => driver.executeScript("document.querySelector(arguments[0]).focus()", selector),
+    evaluate,
+    textContent: (selector) => property(selector, "textContent"),
+    inputValue: (selector) => property(selector, "value"),
+    getAttribute: (selector, name) =>
+      driver.executeScript("return document.querySelector(arguments[0]).getAttribute(arguments[1])", selector, name),
+    waitForSelector: (selector) => driver.wait(until.elementLocated(By.css(selector)), 30_000),
+    waitForFunction: (code, argument) => driver.wait(() => evaluate(code, argument), 30_000, String(code)),
+    waitForTimeout: (time) => driver.sleep(time),
+    setInputFiles: async (selector, path) => (await find(selector)).sendKeys(path),
+    locator: (selector) => ({
+      fill: (value) => setValue(selector, value),
+      allTextContents: () => evaluate("return [...document.querySelectorAll(" + JSON.stringify(selector) + ")].map((each) => each.textContent)"),
+    }),
+    keyboard: {
+      down: (name) => driver.actions().keyDown(key(name)).perform(),
+      up: (name) => driver.actions().keyUp(key(name)).perform(),
+      press: (name) => driver.actions().keyDown(key(name)).keyUp(key(name)).perform(),
+    },
+    /** Clicks a button, and returns the path of what it downloads. */
+    download: async (button) => {
+      await driver.executeScript(`
+        const { createObjectURL } = URL;
+        const { click } = HTMLAnchorElement.prototype;
+        URL.createObjectURL = (blob) => createObjectURL((window.downloaded = blob));
+        HTMLAnchorElement.prototype.click = () => {
+          URL.createObjectURL = createObjectURL;
+          HTMLAnchorElement.prototype.click = click;
+        };`);
+      await (await find(button)).click();
+      const bytes = await driver.executeScript("return window.downloaded.arrayBuffer().then((bytes) => [...new Uint8Array(bytes)])");
+      const path = join(mkdtempSync(join(tmpdir(), "acrobot-download-")), "file");
+      writeFileSync(path, Buffer.from(bytes));
+      return path;
+    },
+  };
+}
