@@ -12,3 +12,16 @@ add_executable(zephyr ${CMAKE_CURRENT_LIST_DIR}/kernel.c ${FIRMWARE}/start.c ${F
 target_include_directories(zephyr PRIVATE ${CMAKE_CURRENT_LIST_DIR} ${FIRMWARE})
 target_link_options(zephyr PRIVATE -nostdlib -T${FIRMWARE}/memory.ld -Wl,--gc-sections,-z,noexecstack)
 target_link_libraries(zephyr PRIVATE app)
+
+# As Zephyr does: options of prj.conf are variables, and each module adds its folder.
+set(ZEPHYR_BASE ${CMAKE_CURRENT_LIST_DIR})
+file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/prj.conf options REGEX "^CONFIG_.*=y")
+foreach(option ${options})
+  string(REPLACE "=y" "" option ${option})
+  set(${option} y)
+endforeach()
+foreach(module ${ZEPHYR_EXTRA_MODULES})
+  file(STRINGS ${module}/zephyr/module.yml folder REGEX "^ +cmake: ")
+  string(REGEX REPLACE "^ +cmake: " "" folder ${folder})
+  add_subdirectory(${module}/${folder} modules/acrobot)
+endforeach()
