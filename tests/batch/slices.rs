@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::batch::{Autoreset, Batch, Block, Member, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::ResetBounds;
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Acrobot, Error, Fast, Params, ResetOptions, State};
 
 type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, ([Block; BLOCKS], [Pcg64; LEN])>;
@@ -197,6 +197,14 @@ fn rejected_changes_change_nothing() {
         mass1: 0.0,
         ..Params::DEFAULT
     };
+    let heavy = Params {
+        mass1: 2.0,
+        ..Params::DEFAULT
+    };
+    let mut other = member.clone();
+    other.params = heavy;
+    let range = common::params_range(Dynamics::Book);
+    let shared = "a batch must have memory for the parameters of each acrobot";
     let mut rows = [[9.0; 6]; 4];
     for (result, message) in [
         (
@@ -241,6 +249,13 @@ fn rejected_changes_change_nothing() {
             "mass1 must be finite and above 0 kg, got 0",
         ),
         (
+            batch.set_params_of(3, Params::DEFAULT),
+            "member index must be below 3, got 3",
+        ),
+        (batch.set_params_of(0, heavy), shared),
+        (batch.set_member(0, other), shared),
+        (batch.set_params_range(Some(range)), shared),
+        (
             batch.observe(&mut rows),
             "observations must have 3 elements, got 4",
         ),
@@ -249,6 +264,8 @@ fn rejected_changes_change_nothing() {
     }
     assert_eq!(rows, [[9.0; 6]; 4]);
     assert_eq!((batch.state(3), batch.member(3)), (None, None));
+    assert_eq!((batch.params_of(3), batch.elapsed(3)), (None, None));
+    assert_eq!(batch.params_range(), None);
     assert_eq!(members(&batch), members(&twin));
     for batch in [&mut batch, &mut twin] {
         batch

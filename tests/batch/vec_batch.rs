@@ -1,10 +1,8 @@
-//! The batch that owns its memory: its results, another batch in its place, and rejected parameters.
+//! The batch that owns its memory: its results, and another batch in its place.
 
 use acrobot::batch::{Autoreset, Batch, Block, StepBuffers, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::Dynamics;
-use acrobot::{Error, Fast, Params, ResetOptions};
-use common::params_range;
+use acrobot::{Fast, ResetOptions};
 
 /// The owning batch steps as the one that borrows its memory.
 #[test]
@@ -91,45 +89,4 @@ fn a_batch_that_does_not_fit_into_memory_is_rejected() {
         new(0),
         "a batch must have at least 1 acrobot, got 0 generators"
     );
-}
-
-#[test]
-fn rejected_parameters_change_nothing() {
-    let shared = "a batch must have memory for the parameters of each acrobot";
-    let seed = SeedSequence::new(3);
-    let params = Params {
-        mass1: 2.0,
-        ..Params::DEFAULT
-    };
-    let negative = Params {
-        mass1: -1.0,
-        ..params
-    };
-    let range = params_range(Dynamics::Book);
-    for (mut batch, in_shared) in [
-        (VecBatch::<Fast>::new(seed.clone(), 20).unwrap(), true),
-        (VecBatch::with_own_params(seed, 20).unwrap(), false),
-    ] {
-        let rejects = |result: Result<(), Error>, message| {
-            assert_eq!(result.unwrap_err().to_string(), message);
-        };
-        let below = "member index must be below 20, got 20";
-        rejects(batch.set_params_of(20, params), below);
-        let positive = "mass1 must be finite and above 0 kg, got -1";
-        rejects(batch.set_params_of(0, negative), positive);
-        rejects(batch.set_params(negative), positive);
-        let actions = "actions must have 20 elements, got 19";
-        rejects(batch.step(&[1_u8; 19]).map(drop), actions);
-        if in_shared {
-            let member = batch.member(0).unwrap();
-            let other = acrobot::batch::Member { params, ..member };
-            rejects(batch.set_params_of(0, params), shared);
-            rejects(batch.set_member(0, other), shared);
-            rejects(batch.set_params_range(Some(range)), shared);
-            batch.set_params_range(None).unwrap();
-        }
-        assert!((0..20).all(|i| batch.params_of(i) == Some(Params::DEFAULT)));
-        assert_eq!(batch.params_range(), None);
-        assert_eq!((batch.params_of(20), batch.elapsed(20)), (None, None));
-    }
 }

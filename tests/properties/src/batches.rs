@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Member, SimdLevel};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, ResetBounds};
@@ -20,7 +20,8 @@ const LEN: usize = 35;
 enum Call<S> {
     Settings(Autoreset, NonZeroU32, SimdLevel, ResetBounds),
     Params(Params<S>),
-    ParamsOf(usize, Params<S>),
+    /// Valid, or without mass.
+    ParamsOf(usize, Params<S>, bool),
     ParamsRange(Option<Dynamics>),
     Reset(Option<Vec<bool>>, Option<u64>, Option<ResetBounds>),
     ResetTo(Vec<State<S>>),
@@ -52,10 +53,11 @@ fn call<S: Number>() -> BoxedStrategy<Call<S>> {
         any::<Option<u64>>(),
         prop::option::of(bounds()),
     );
+    let of_one = (index(), params(Range::Any), prop::bool::weighted(0.8));
     prop_oneof![
         3 => (mode, limit, level, bounds()).prop_map(|(a, b, c, d)| Call::Settings(a, b, c, d)),
         1 => params(Range::Any).prop_map(Call::Params),
-        3 => (index(), params(Range::Any)).prop_map(|(index, params)| Call::ParamsOf(index, params)),
+        3 => of_one.prop_map(|(index, params, valid)| Call::ParamsOf(index, params, valid)),
         1 => prop::option::of(dynamics).prop_map(Call::ParamsRange),
         3 => reset.prop_map(|(mask, seed, bounds)| Call::Reset(mask, seed, bounds)),
         2 => each(state(Range::Any)).prop_map(Call::ResetTo),
@@ -107,9 +109,12 @@ impl<A: Arithmetic<Scalar: Number>, const N: usize> Model<A, N> {
                 self.settle();
             }
             Call::Params(params) => self.twins.set_params(params),
-            Call::ParamsOf(index, params) => {
+            Call::ParamsOf(index, mut params, valid) => {
+                if !valid {
+                    params.mass1 = Real::ZERO;
+                }
                 let set = batch.set_params_of(index, params);
-                assert_eq!(set.is_ok(), self.own_params && index < len);
+                assert_eq!(set.is_ok(), valid && self.own_params && index < len);
                 if set.is_ok() {
                     alone[index].set_params(params).unwrap();
                 }
