@@ -180,7 +180,8 @@ fn reset_with_takes_a_seed_and_bounds() {
     let bounds = ResetBounds::new(-3.0, 5.0).unwrap();
     let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(0));
     let new = TimeLimit::v1(Acrobot::new(7));
-    let resets: [fn(&mut TimeLimit<Acrobot<Fast>>) -> Observation; 3] = [
+    type Reset = fn(&mut TimeLimit<Acrobot<Fast>>) -> Observation;
+    let resets: [Reset; 3] = [
         |acrobot| acrobot.reset_with_seed(7),
         |acrobot| acrobot.reset_with(7.into()),
         |acrobot| acrobot.reset_with(SeedSequence::new(7).into()),
