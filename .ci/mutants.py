@@ -27,11 +27,11 @@ SHARDS = os.cpu_count() if len(sys.argv) == 1 else 1
 OTHERS = sorted({path.stem for path in (ROOT / "tests").glob("*.rs")} - {"sines"})
 ROUNDS = [
     (["src/physics/control*"], ["control"]),
-    (["src/arithmetic*", "src/math*", "src/physics*"], ["step_error", "parity", "physics", "trigonometry"]),
+    (["src/arithmetic*", "src/math*", "src/physics*"], ["step_error", "parity", "physics", "pendulum", "trigonometry"]),
     (["src/math/sines/correctly_rounded*"], ["sines"]),
     (["src/trajectory.rs"], ["trajectory"]),
     (["src/batch*", "src/math/lanes.rs"], ["stability"]),
-    (["src/env*", "src/render*"], ["check_env", "env", "render"]),
+    (["src/env*", "src/render*"], ["check_env", "env", "display", "render"]),
     (["src/*"], ["acrobot", "validation", "seeding", "snapshot", "trajectory"]),
     (["src/*"], OTHERS),
     (["src/batch*", "src/math/lanes.rs"], ["batch"]),

@@ -1,18 +1,13 @@
-//! Environments: Gymnasium's runs through `make`, pictures, live changes, and rejected input.
-
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, mpsc};
-use std::time::Duration;
+//! Environments: Gymnasium's runs through `make`, live changes, wrappers, and rejected input.
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::env::{
-    AcrobotEnv, ArithmeticKind, BoxSpace, DiscreteSpace, Display, DynEnv, DynObservation, Env,
-    Error, Options, RecordEpisodeStatistics, RenderMode, Rendering, Space, acrobot_v1, make,
-    make_with,
+    AcrobotEnv, ArithmeticKind, BoxSpace, DiscreteSpace, Display, DynObservation, Env, Error,
+    Options, RecordEpisodeStatistics, RenderMode, Space, acrobot_v1, make, make_with,
 };
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, ResetBounds};
-use acrobot::render::{Figure, Frame};
+use acrobot::render::Figure;
 use acrobot::{
     Acrobot, Action, Fast, Observation, Params, Portable, ResetOptions, State, TimeLimit,
 };
@@ -69,18 +64,8 @@ fn reset_to(mut env: impl Env<Observation = DynObservation>, x: f64) -> Vec<f32>
 }
 
 #[test]
-fn versions_differ_in_limit_and_observation() {
-    let (mut v0, mut v1) = (make("Acrobot-v0").unwrap(), make("Acrobot-v1").unwrap());
-    let (angles, sines) = (v0.reset_with_seed(5).0, v1.reset_with_seed(5).0);
-    let (angles, sines) = (angles.as_slice(), sines.as_slice());
-    assert_eq!((angles.len(), sines.len()), (4, 6));
-    let state = v1.unwrapped().state();
-    assert_eq!(f64::from(angles[2]), state.dtheta1);
-    assert_eq!(sines[4..], angles[2..]);
-    for n in 1..=500 {
-        assert_eq!(v0.step(Action::Zero).truncated, n >= 200);
-        assert_eq!(v1.step(Action::Zero).truncated, n >= 500);
-    }
+fn versions_have_gymnasiums_spaces() {
+    let (mut v0, v1) = (make("Acrobot-v0").unwrap(), make("Acrobot-v1").unwrap());
     assert_eq!(*v0.observation_space().high(), Observation::V0_HIGH.into());
     assert_eq!(*v0.observation_space().low(), Observation::V0_LOW.into());
     assert_eq!(*v1.observation_space().high(), Observation::HIGH.into());
@@ -216,109 +201,6 @@ fn every_arithmetic_can_be_made() {
     }
 }
 
-fn with_mode(render_mode: RenderMode) -> TimeLimit<AcrobotEnv<Portable, Observation>> {
-    let mut env = acrobot_v1::<Portable>(Options {
-        render_mode,
-        ..Options::default()
-    })
-    .unwrap();
-    env.reset_with_seed(1);
-    env.unwrapped_mut()
-        .set_state(State::from([0.6, -1.5, 1.0, -2.0]))
-        .unwrap();
-    env
-}
-
-#[test]
-fn each_render_mode_returns_its_kind() {
-    let mut rgb = with_mode(RenderMode::RgbArray);
-    let Ok(Rendering::Frame(frame)) = rgb.render() else {
-        panic!("no frame")
-    };
-    assert_eq!((frame.width(), frame.height()), (500, 500));
-    assert_eq!(frame, Frame::of(&Figure::new(rgb.unwrapped())));
-
-    let Ok(Rendering::Text(text)) = with_mode(RenderMode::Ansi).render() else {
-        panic!("no text")
-    };
-    common::assert_snapshot("ansi.txt", &text);
-
-    let shown = Arc::new(Mutex::new(Vec::new()));
-    let sink = Arc::clone(&shown);
-    let display = Display::new(move |frame| sink.lock().unwrap().push(frame.clone()));
-    let mut human = with_mode(RenderMode::Human(display));
-    human.step(Action::Zero);
-    assert_eq!(human.render(), Ok(Rendering::Shown));
-    let shown = shown.lock().unwrap();
-    assert_eq!(shown.len(), 3, "the reset, the step and the call");
-    assert_eq!(shown[1], shown[2]);
-    assert_eq!(shown[2], Frame::of(&Figure::new(human.unwrapped())));
-}
-
-fn human(display: &Display) -> Options {
-    Options {
-        render_mode: RenderMode::Human(display.clone()),
-        ..Options::default()
-    }
-}
-
-/// A display's function that renders on the same display gets an error and does not deadlock. The display shows the
-/// next frame, also after a panic.
-#[test]
-fn a_display_rejects_frames_from_its_own_function() {
-    let nested: Arc<Mutex<Option<[Box<DynEnv>; 2]>>> = Arc::default();
-    let (other_sender, other_frames) = mpsc::channel();
-    let other = Display::new(move |_| other_sender.send(()).unwrap());
-    let (sender, results) = mpsc::channel();
-    let slot = Arc::clone(&nested);
-    let display = Display::new(move |_| {
-        let Some([mut same, mut other]) = slot.lock().unwrap().take() else {
-            return sender.send(None).unwrap();
-        };
-        same.reset();
-        same.step(Action::Zero);
-        sender.send(Some((same.render(), other.render()))).unwrap();
-        panic!("while the display shows a frame");
-    });
-    let make = |display| make_with("Acrobot-v1", human(display)).unwrap();
-    *nested.lock().unwrap() = Some([make(&display), make(&other)]);
-    let mut env = make(&display);
-    drop((display, other));
-    // In another thread, so that a deadlock fails the test.
-    std::thread::spawn(move || {
-        assert!(catch_unwind(AssertUnwindSafe(|| env.reset())).is_err());
-        assert_eq!(env.render(), Ok(Rendering::Shown));
-    });
-    let next = || results.recv_timeout(Duration::from_secs(10));
-    let (busy, shown) = (Err(Error::DisplayBusy), Ok(Rendering::Shown));
-    assert_eq!(next(), Ok(Some((busy, shown))));
-    assert_eq!(next(), Ok(None));
-    assert!(next().is_err(), "the sender is dropped");
-    assert_eq!(other_frames.try_iter().count(), 1);
-    assert_eq!(
-        Error::DisplayBusy.to_string(),
-        "the function of a display must not render on that display"
-    );
-}
-
-/// A display that two threads share shows every frame.
-#[test]
-fn threads_share_a_display() {
-    let (sender, frames) = mpsc::channel();
-    let display = Display::new(move |_| {
-        std::thread::sleep(Duration::from_millis(1));
-        sender.send(()).unwrap();
-    });
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            let mut env = make_with("Acrobot-v0", human(&display)).unwrap();
-            scope.spawn(move || (0..20).for_each(|_| assert!(env.render().is_ok())));
-        }
-    });
-    drop(display);
-    assert_eq!(frames.iter().count(), 40);
-}
-
 #[test]
 fn statistics_cover_each_episode() {
     let env = AcrobotEnv::<Fast, Observation>::default();
@@ -413,26 +295,6 @@ fn rejections_name_the_rule() {
     );
     let mut typed = AcrobotEnv::<Fast, Observation>::default();
     assert_eq!(typed.render(), Err(Error::NoRenderMode));
-
-    let before = mute.unwrapped().state();
-    assert!(
-        mute.unwrapped_mut()
-            .set_state(State {
-                theta1: f64::NAN,
-                ..before
-            })
-            .is_err()
-    );
-    assert!(
-        mute.unwrapped_mut()
-            .set_params(Params {
-                mass1: 0.0,
-                ..Params::DEFAULT
-            })
-            .is_err()
-    );
-    assert_eq!(mute.unwrapped().state(), before);
-    assert_eq!(mute.unwrapped().params(), Params::DEFAULT);
 }
 
 #[test]
@@ -455,8 +317,6 @@ fn spaces_know_their_elements() {
             .contains(&vec![0.5, 0.5])
     );
     assert!(BoxSpace::new(vec![0.0], vec![1.0, 2.0]).is_none());
-    assert!(BoxSpace::new([f32::NEG_INFINITY], [0.0]).is_none());
-    assert!(BoxSpace::new([0.0], [f32::NAN]).is_none());
     assert!(
         Action::ALL
             .iter()

@@ -9,7 +9,7 @@ use acrobot::env::{AcrobotEnv, Env, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Error, Fast, Observation, Portable};
-use rand_core::{Rng, SeedableRng};
+use rand_core::Rng;
 
 /// The rows of `data/seeds.txt` of one kind, without the kind.
 fn rows(kind: &str) -> impl Iterator<Item = Vec<&'static str>> {
@@ -113,21 +113,6 @@ fn descendants_equal_numpys() {
     }
 }
 
-#[test]
-fn a_later_spawn_gives_the_next_children() {
-    let mut seed = SeedSequence::new(42);
-    let parent = seed.clone();
-    let first: Vec<_> = seed.spawn(3).collect();
-    let second: Vec<_> = seed.spawn(2).collect();
-    assert_eq!(first, [0, 1, 2].map(|i| parent.child(i)));
-    assert_eq!(second, [3, 4].map(|i| parent.child(i)));
-    assert_eq!(
-        seed.generate_state::<4>(),
-        parent.generate_state::<4>(),
-        "spawning does not change the parent's stream"
-    );
-}
-
 /// Children never run out: a batch takes the next ones, even after 2⁶⁴.
 #[test]
 fn there_is_always_a_next_child() {
@@ -146,36 +131,6 @@ fn there_is_always_a_next_child() {
     let batch = Batch::<Fast, _>::new(seed, memory).unwrap();
     let alone = Acrobot::<Fast>::with_rng(next.into());
     assert_eq!(batch.state(0), Some(alone.state()));
-}
-
-#[test]
-fn integers_of_every_width_are_seeds() {
-    let five = SeedSequence::new(5);
-    assert_eq!(SeedSequence::from_words(&[5]), five);
-    assert_eq!(SeedSequence::from_words(&[5, 0, 0, 0, 0, 0]), five);
-    assert_eq!(SeedSequence::from(5), five);
-    const MAX: u32 = u32::MAX;
-    for (words, decimal) in [
-        (&[MAX][..], "4294967295"),
-        (&[MAX, MAX], "18446744073709551615"),
-        (
-            &[MAX, MAX, MAX, MAX],
-            "340282366920938463463374607431768211455",
-        ),
-        (&[4, 3, 2, 1], "79228162551157825753847955460"),
-    ] {
-        assert_eq!(SeedSequence::from_words(words), seed(decimal));
-    }
-    assert_eq!(SeedSequence::new(MAX.into()), seed("4294967295"));
-    assert_eq!(SeedSequence::new(u64::MAX), seed("18446744073709551615"));
-    assert_eq!(Pcg64::seed_from_u64(42), Pcg64::new(42));
-    assert_eq!(Pcg64::from(SeedSequence::new(42)), Pcg64::new(42));
-    let mut bytes = [0; 32];
-    bytes[16] = 1;
-    assert_eq!(
-        Pcg64::from_seed(bytes),
-        generator("340282366920938463463374607431768211456")
-    );
 }
 
 /// The decimal digits of 2 to the power of `exponent`, by doubling.
@@ -249,47 +204,6 @@ fn seeds_and_bounds_can_be_made_in_a_const() {
         acrobot.reset_with(BOUNDS.into()),
         twin.reset_with(bounds.into())
     );
-}
-
-#[test]
-fn a_reset_without_a_seed_continues_the_stream() {
-    let mut acrobot = Acrobot::<Portable>::new(42);
-    let mut rng = Pcg64::new(42);
-    let mut draw = || [(); 4].map(|()| f64::from(uniform(&mut rng, -0.1, 0.1) as f32));
-    let first = draw();
-    assert_eq!(acrobot.state(), first.into());
-    acrobot.reset();
-    let second = draw();
-    assert_eq!(acrobot.state(), second.into());
-    assert_ne!(first, second);
-}
-
-/// A custom generator, which always draws the same.
-struct Constant(u64);
-
-impl rand_core::TryRng for Constant {
-    type Error = core::convert::Infallible;
-
-    fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
-        Ok(self.0 as u32)
-    }
-
-    fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
-        Ok(self.0)
-    }
-
-    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
-        bytes.fill(self.0 as u8);
-        Ok(())
-    }
-}
-
-#[test]
-fn a_constant_generator_draws_the_lowest_state_and_does_not_hang() {
-    let lowest = Acrobot::<Portable, _>::with_rng(Constant(0)).state();
-    assert_eq!(<[f64; 4]>::from(lowest), [f64::from(-0.1_f32); 4]);
-    // Every draw of 0 must be rejected for n = 3, so after 64 the last one is taken.
-    assert_eq!(integers(&mut Constant(0), NonZeroU32::new(3).unwrap()), 0);
 }
 
 /// The generator equals PCG XSL-RR 128/64 of O'Neill's paper in draws of every width.

@@ -1,4 +1,4 @@
-//! A trajectory keeps the last transitions, in order, and writes them exactly. `properties/values.rs` has more.
+//! A trajectory keeps the last transitions, in order, and writes them exactly.
 
 use std::num::NonZeroU32;
 
@@ -120,6 +120,11 @@ fn a_trajectory_keeps_the_last_transitions_in_order() {
         assert!(trajectory.iter().eq(&all[steps - kept..]));
         trajectory.clear();
         assert!(trajectory.is_empty());
+        all.iter()
+            .for_each(|transition| trajectory.push(*transition));
+        let first = trajectory.rows().next().map(|row| row.to_string());
+        let number = format!("{},", steps - kept + 1);
+        assert!(first.is_none_or(|first| first.starts_with(&number)));
     }
 }
 

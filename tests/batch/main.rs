@@ -1,9 +1,6 @@
 //! Promise 2 for batches: acrobot `i` is bit-identical to an `Acrobot` seeded with the seed's `i`-th child, with shared
-//! parameters and with its own. `cargo test -p common` tries more widths.
+//! parameters and with its own. `cargo test -p common` tries more widths, and `cargo test -p properties` calls in any order.
 
-mod autoreset;
-mod params;
-mod resets;
 mod slices;
 mod snapshots;
 mod steps;

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::batch::{Autoreset, Batch, Block, Member, SimdLevel, StepBuffers};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::ResetBounds;
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Acrobot, Error, Fast, Params, ResetOptions, State};
 
 type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, ([Block; BLOCKS], [Pcg64; LEN])>;
@@ -45,26 +45,6 @@ fn a_limit_truncates_at_every_simd_level() {
             assert_eq!(truncated, [expected; 3]);
         }
     }
-}
-
-#[test]
-fn an_episode_ends_once_if_it_reaches_the_goal_on_its_last_step() {
-    let mut batch = small::<1, 1>().unwrap();
-    batch.set_limit(NonZeroU32::MIN);
-    let upright = State {
-        theta1: core::f32::consts::PI,
-        ..State::default()
-    };
-    batch.reset_to(&[upright]).unwrap();
-    let (mut terminated, mut truncated) = ([false], [false]);
-    batch
-        .step(
-            &[1_u8],
-            StepBuffers::new(&mut [0.0], &mut terminated, &mut truncated),
-        )
-        .unwrap();
-    assert_eq!((terminated, truncated), ([true], [true]));
-    assert!(batch.member(0).unwrap().reset_pending);
 }
 
 /// Getters return what was set, and before that the defaults.
@@ -115,24 +95,8 @@ fn a_batch_takes_seeds_of_any_size() {
     assert_eq!(members(&batch), members(&reset));
     let alone = Acrobot::<Fast>::with_rng(seed.child(19).into());
     assert_eq!(batch.state(19), Some(alone.state()));
-}
-
-/// A reset with bounds uses them once, and the next one those of the batch again.
-#[test]
-fn resets_within_bounds_leave_the_batchs_bounds() {
-    let mut batch = small::<2, 20>().unwrap();
-    let within = |batch: &Small<2, 20>, low, high| {
-        members(batch).iter().all(|member| {
-            let numbers: [f32; 4] = member.state.into();
-            numbers.iter().all(|x| (low..=high).contains(x))
-        })
-    };
-    batch.set_reset_bounds(ResetBounds::new(1.0, 2.0).unwrap());
-    batch.reset_with(ResetBounds::new(-4.0, -3.0).unwrap().into());
-    assert!(within(&batch, -4.0, -3.0));
-    assert_eq!(batch.reset_bounds(), ResetBounds::new(1.0, 2.0).unwrap());
-    batch.reset();
-    assert!(within(&batch, 1.0, 2.0));
+    reset.reset_with_seed(1);
+    assert_eq!(members(&reset), members(&small::<2, 20>().unwrap()));
 }
 
 fn members<const BLOCKS: usize, const LEN: usize>(batch: &Small<BLOCKS, LEN>) -> Vec<Member<Fast>> {
@@ -233,6 +197,14 @@ fn rejected_changes_change_nothing() {
         mass1: 0.0,
         ..Params::DEFAULT
     };
+    let heavy = Params {
+        mass1: 2.0,
+        ..Params::DEFAULT
+    };
+    let mut other = member.clone();
+    other.params = heavy;
+    let range = common::params_range(Dynamics::Book);
+    let shared = "a batch must have memory for the parameters of each acrobot";
     let mut rows = [[9.0; 6]; 4];
     for (result, message) in [
         (
@@ -277,6 +249,13 @@ fn rejected_changes_change_nothing() {
             "mass1 must be finite and above 0 kg, got 0",
         ),
         (
+            batch.set_params_of(3, Params::DEFAULT),
+            "member index must be below 3, got 3",
+        ),
+        (batch.set_params_of(0, heavy), shared),
+        (batch.set_member(0, other), shared),
+        (batch.set_params_range(Some(range)), shared),
+        (
             batch.observe(&mut rows),
             "observations must have 3 elements, got 4",
         ),
@@ -285,6 +264,8 @@ fn rejected_changes_change_nothing() {
     }
     assert_eq!(rows, [[9.0; 6]; 4]);
     assert_eq!((batch.state(3), batch.member(3)), (None, None));
+    assert_eq!((batch.params_of(3), batch.elapsed(3)), (None, None));
+    assert_eq!(batch.params_range(), None);
     assert_eq!(members(&batch), members(&twin));
     for batch in [&mut batch, &mut twin] {
         batch

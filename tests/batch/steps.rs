@@ -1,39 +1,16 @@
-//! Steps, with parameters that all acrobots share.
+//! Steps of any arithmetic, at every SIMD level and on all cores.
 
 use std::cell::Cell;
 use std::num::NonZeroU32;
 use std::rc::Rc;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, StepResults, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::Dynamics;
 use acrobot::{Action, Fast, Params, Portable, State};
 use common::params_range;
 use common::twins::{LEVELS, MODES, Twins, bits};
-use rand_core::Rng;
-
-/// Plays through ends and resets in every mode. `len` is more than one block, and not a whole number of blocks.
-fn assert_equals_single_acrobots<A: Arithmetic>(len: usize, steps: u32) {
-    for autoreset in MODES {
-        let mut twins = Twins::<A>::new(len, autoreset);
-        twins.swing(steps);
-        twins.play_randomly(steps);
-    }
-}
-
-#[test]
-fn fast_equals_single_acrobots() {
-    assert_equals_single_acrobots::<Fast>(35, 1200);
-}
-
-#[test]
-fn other_arithmetics_equal_single_acrobots() {
-    assert_equals_single_acrobots::<Reference>(17, 600);
-    assert_equals_single_acrobots::<Portable>(17, 600);
-    assert_equals_single_acrobots::<Micro>(17, 600);
-    assert_equals_single_acrobots::<Host>(17, 600);
-}
 
 /// Tries every SIMD level, and in the last batch acrobots whose parameters each reset draws.
 #[test]
@@ -67,131 +44,6 @@ fn every_arithmetic_and_simd_level_equals_single_acrobots() {
     Twins::<Portable>::at_every_level();
     Twins::<Reference>::at_every_level();
     Twins::<Host>::at_every_level();
-}
-
-/// Any number: all bits are equally likely, so most are far outside of all bounds.
-fn any<S: Real>(rng: &mut Pcg64) -> S {
-    loop {
-        let bits = rng.next_u64();
-        let x = match size_of::<S>() {
-            4 => S::from_f64(f32::from_bits(bits as u32).into()),
-            _ => S::from_f64(f64::from_bits(bits)),
-        };
-        if x.is_finite() {
-            return x;
-        }
-    }
-}
-
-/// No lane affects another, however extreme its numbers are.
-#[test]
-fn extreme_numbers_equal_single_acrobots() {
-    fn play<A: Arithmetic>() {
-        let mut rng = Pcg64::new(1);
-        for _ in 0..300 {
-            let mut twins = Twins::<A>::with_own_params(18, Autoreset::Disabled);
-            let params: Vec<_> = (0..18).map(|_| any_params(&mut rng)).collect();
-            twins.set_params_of_each(&params);
-            let states = (0..18).map(|_| State::from([(); 4].map(|()| any(&mut rng))));
-            twins.reset_to(&states.collect::<Vec<_>>());
-            for _ in 0..2 {
-                let torques: Vec<_> = (0..18).map(|_| any(&mut rng)).collect();
-                twins.step_torques(&torques, false);
-            }
-        }
-    }
-    play::<Fast>();
-    play::<Micro>();
-    play::<Portable>();
-    play::<Reference>();
-    play::<Host>();
-}
-
-/// Valid parameters, one of which can be anything.
-fn any_params<S: Real>(rng: &mut Pcg64) -> Params<S> {
-    loop {
-        let mut params = params_range(Dynamics::Book).draw(rng);
-        let x = any(rng);
-        match rng.next_u64() % 8 {
-            0 => params.length1 = x,
-            1 => params.mass2 = x,
-            2 => params.inertia1 = x,
-            3 => params.gravity = x,
-            4 => params.dt = x,
-            5 => params.max_velocity2 = x,
-            6 => params.torque_noise = x,
-            _ => {}
-        }
-        if params.validate().is_ok() {
-            return params;
-        }
-    }
-}
-
-#[test]
-fn any_size_equals_single_acrobots() {
-    for len in [1, 2, 15, 16, 17, 31, 32, 33, 100] {
-        Twins::<Fast>::new(len, Autoreset::SameStep).swing(200);
-    }
-}
-
-#[test]
-fn other_parameters_noise_and_initial_states_equal_single_acrobots() {
-    let mut rng = Pcg64::new(11);
-    for dynamics in [Dynamics::Book, Dynamics::Nips] {
-        for noise in [0.0, 0.5] {
-            for (size, dt) in [(0.1, 0.2), (3.2, 0.05), (100.0, 0.2), (1e5, 1.0)] {
-                let mut twins = Twins::<Fast>::new(40, Autoreset::NextStep);
-                let mut draw = || uniform(&mut rng, 0.5, 2.0) as f32;
-                twins.set_params(Params {
-                    mass1: draw(),
-                    mass2: draw(),
-                    length1: draw(),
-                    torques: [-draw(), draw() - 1.0, draw()],
-                    torque_noise: noise,
-                    dt,
-                    dynamics,
-                    ..Params::default()
-                });
-                twins.set_bounds(-size, size);
-                twins.swing(700);
-            }
-        }
-    }
-}
-
-/// Plays through ends in every mode, without and with noise.
-#[test]
-fn torques_equal_single_acrobots() {
-    fn play<A: Arithmetic, const N: usize>(len: usize, steps: u32, parallel: bool) {
-        for autoreset in MODES {
-            let mut twins = Twins::<A, N>::new(len, autoreset);
-            let mut rng = Pcg64::new(7);
-            let mut ends = 0;
-            for noise in [0.0, 0.5] {
-                twins.set_noise(noise);
-                twins.set_bounds(-2.0, 2.0);
-                for _ in 0..steps {
-                    let torques = twins.alone.iter().map(|alone| {
-                        let size = uniform(&mut rng, 0.0, 3.0);
-                        let falling = alone.state().dtheta1 > A::Scalar::ZERO;
-                        A::Scalar::from_f64(if falling { -size } else { size })
-                    });
-                    let torques: Vec<_> = torques.collect();
-                    let done = twins.step_torques(&torques, parallel);
-                    ends += done.iter().filter(|done| **done).count();
-                }
-            }
-            assert!(ends > len / 10, "{ends} ends in {autoreset:?}");
-        }
-    }
-    play::<Fast, 16>(35, 300, false);
-    play::<Micro, 16>(35, 300, false);
-    play::<Portable, 16>(35, 300, false);
-    play::<Host, 16>(35, 300, false);
-    // These are more acrobots than a thread takes at once.
-    play::<Portable, 16>(2100, 12, true);
-    play::<Fast, 16>(33_000, 4, true);
 }
 
 /// Here every force is 0 or −0, and beyond 2¹⁹ rad sines can be 0.

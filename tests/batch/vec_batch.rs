@@ -15,6 +15,8 @@ fn a_batch_in_vecs_equals_one_in_arrays() {
     owning.set_autoreset(Autoreset::SameStep);
     arrays.set_limit(5.try_into().unwrap());
     arrays.set_autoreset(Autoreset::SameStep);
+    assert_eq!(owning.reset_with_seed(7).len(), 20);
+    arrays.reset_with_seed(7);
     for _ in 0..30 {
         let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
             .with_observations(&mut observations)

@@ -2,6 +2,7 @@
 
 pub mod canvas;
 mod recording;
+mod repeating;
 pub mod twins;
 
 use std::fs;
@@ -13,6 +14,7 @@ use acrobot::{Params, State};
 
 pub use bits::Digest;
 pub use recording::*;
+pub use repeating::Repeating;
 
 /// The largest difference of the four numbers; angles that differ by a whole turn are equal.
 pub fn distance(x: State, y: State) -> f64 {

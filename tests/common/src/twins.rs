@@ -75,15 +75,24 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
     }
 
     pub fn reset(&mut self, options: ResetOptions) {
-        let rows = self.batch.reset_with(options.clone()).to_vec();
-        let mut expected = Vec::new();
-        for (alone, i) in self.alone.iter_mut().zip(0..) {
-            let seed = options.seed.as_ref().map(|seed| seed.child(i));
-            let options = ResetOptions { seed, ..options };
-            expected.push(reset_one(&self.batch, alone, options));
+        self.reset_some(None, options);
+    }
+
+    /// Resets all acrobots, or those of a mask.
+    pub fn reset_some(&mut self, mask: Option<&[bool]>, options: ResetOptions) {
+        let rows = match mask {
+            Some(mask) => self.batch.reset_masked(mask, options.clone()).unwrap(),
+            None => self.batch.reset_with(options.clone()),
+        };
+        let rows = rows.to_vec();
+        for (i, alone) in self.alone.iter_mut().enumerate() {
+            if mask.is_none_or(|mask| mask[i]) {
+                let seed = options.seed.as_ref().map(|seed| seed.child(i as u64));
+                reset_one(&self.batch, alone, ResetOptions { seed, ..options });
+                self.pending[i] = false;
+            }
+            assert!(equal(&rows[i], &alone.inner().observation()));
         }
-        self.pending.fill(false);
-        assert!(rows.iter().zip(expected).all(|(row, x)| equal(row, &x)));
         self.assert_equal();
     }
 
@@ -104,23 +113,15 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.assert_equal();
     }
 
-    /// Call it after a reset of the batch. It resets each scalar twin by its index, and compares every bit.
-    pub fn reset_alone(&mut self, reset: impl Fn(usize, &mut TimeLimit<Acrobot<A>>)) {
-        for (i, alone) in self.alone.iter_mut().enumerate() {
-            reset(i, alone);
-        }
-        self.pending.fill(false);
-        self.assert_equal();
-    }
-
     /// Begins an episode of each in a given state.
     pub fn reset_to(&mut self, states: &[State<A::Scalar>]) {
         self.batch.reset_to(states).unwrap();
-        self.reset_alone(|i, alone| {
-            let mut inner = alone.inner().clone();
-            inner.set_state(states[i]).unwrap();
-            *alone = TimeLimit::v1(inner);
-        });
+        for (alone, state) in self.alone.iter_mut().zip(states) {
+            *alone = TimeLimit::new(alone.inner().clone(), alone.limit());
+            alone.set_state(*state).unwrap();
+        }
+        self.pending.fill(false);
+        self.assert_equal();
     }
 
     /// Steps both with the same actions and compares every bit. Returns which episodes ended.
@@ -187,11 +188,15 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         done
     }
 
-    /// Compares every bit of the states, the steps since the last reset, the generators and the parameters.
+    /// Compares every bit of the states, the observations, the steps since the last reset, the generators and the
+    /// parameters.
     pub fn assert_equal(&self) {
+        let mut rows = vec![[9.0; 6]; self.alone.len()];
+        self.batch.observe(&mut rows).unwrap();
         for (i, alone) in self.alone.iter().enumerate() {
             let member = self.batch.member(i).unwrap();
             let inner = alone.inner();
+            assert!(equal(&rows[i], &inner.observation()), "acrobot {i}");
             assert_eq!(bits(member.state), bits(inner.state()), "acrobot {i}");
             assert_eq!(member.elapsed, alone.elapsed(), "acrobot {i}");
             assert_eq!(self.batch.elapsed(i), Some(member.elapsed));
@@ -235,14 +240,6 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
             // After an episode's end the links turn over, which wraps angles.
             twins.batch.set_autoreset(Autoreset::Disabled);
             twins.swing(200);
-        }
-    }
-
-    pub fn play_randomly(&mut self, steps: u32) {
-        let mut rng = Pcg64::new(7);
-        for _ in 0..steps {
-            let random = self.alone.iter().map(|_| Action::sample(&mut rng));
-            self.step(&random.collect::<Vec<_>>());
         }
     }
 }

@@ -2,40 +2,19 @@
 
 use std::num::NonZeroU32;
 
+use acrobot::Error;
 use acrobot::env::{BoxSpace, DiscreteSpace, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::ResetBounds;
-use acrobot::{Acrobot, Error, Portable};
+use common::Repeating;
 use proptest::prelude::*;
-use rand_core::{Rng, SeedableRng, TryRng};
+use rand_core::SeedableRng;
 
-use crate::given::{Range, holds, number, reset_bounds};
-
-/// A custom generator, which repeats these words.
-#[derive(Clone, Debug)]
-struct Repeating(Vec<u64>, usize);
-
-impl TryRng for Repeating {
-    type Error = core::convert::Infallible;
-
-    fn try_next_u32(&mut self) -> Result<u32, Self::Error> {
-        self.try_next_u64().map(|word| word as u32)
-    }
-
-    fn try_next_u64(&mut self) -> Result<u64, Self::Error> {
-        self.1 += 1;
-        Ok(self.0[self.1 % self.0.len()])
-    }
-
-    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Self::Error> {
-        bytes.fill_with(|| self.next_u64() as u8);
-        Ok(())
-    }
-}
+use crate::given::{Range, holds, number};
 
 fn generator() -> impl Strategy<Value = Repeating> {
     let word = prop_oneof![Just(0), Just(u64::MAX), any::<u64>()];
-    prop::collection::vec(word, 1..4).prop_map(|words| Repeating(words, 0))
+    prop::collection::vec(word, 1..4).prop_map(Repeating::new)
 }
 
 #[test]
@@ -43,7 +22,7 @@ fn integers_are_below_their_bound_with_any_generator() {
     let n = prop_oneof![Just(1), 1..10_u32, any::<u32>()].prop_filter_map("0", NonZeroU32::new);
     holds(2000, (generator(), n), |(mut rng, n)| {
         assert!(integers(&mut rng, n) < n.get());
-        assert!(integers(&mut Pcg64::new(rng.0[0]), n) < n.get());
+        assert!(integers(&mut Pcg64::new(rng.words[0]), n) < n.get());
     });
 }
 
@@ -63,31 +42,15 @@ fn uniform_draws_are_within_their_bounds() {
     );
 }
 
-/// The bounds are rounded to `f32`, because initial states are `f32`.
-#[test]
-fn initial_states_are_within_their_bounds() {
-    holds(1000, (generator(), reset_bounds()), |(rng, bounds)| {
-        let mut acrobot = Acrobot::<Portable, _>::with_rng(rng);
-        let state = bounds.draw(acrobot.rng_mut());
-        acrobot.set_state(state.cast()).unwrap();
-        let [low, high] = [bounds.low(), bounds.high()].map(|bound| f64::from(bound as f32));
-        for x in <[f64; 4]>::from(acrobot.state()) {
-            assert!(low <= x && x <= high, "{x}");
-        }
-    });
-}
-
 #[test]
 fn reset_bounds_are_ordered_and_in_f32() {
     let bound = || prop_oneof![number::<f64>(Range::Any), prop::num::f64::ANY];
     holds(2000, (bound(), bound()), |(low, high)| {
         let in_f32 = |x: f64| x.abs() <= f32::MAX.into();
-        match ResetBounds::new(low, high) {
-            Ok(bounds) => assert_eq!((bounds.low(), bounds.high()), (low, high)),
-            Err(_) => assert!(!in_f32(low) || !in_f32(high) || low > high),
-        }
         let valid = in_f32(low) && in_f32(high) && low <= high;
-        assert_eq!(ResetBounds::new(low, high).is_ok(), valid);
+        let bounds = ResetBounds::new(low, high).ok();
+        let found = bounds.map(|bounds| (bounds.low(), bounds.high()));
+        assert_eq!(found, valid.then_some((low, high)));
     });
 }
 
@@ -99,13 +62,15 @@ fn words_decimals_bytes_and_integers_are_the_same_seed() {
         let sequence = SeedSequence::from_words(&words);
         assert_eq!(seed.to_string().parse(), Ok(sequence.clone()));
         assert_eq!(format!("000{seed}").parse(), Ok(sequence.clone()));
-        let mut bytes = [0; 32];
-        bytes[..16].copy_from_slice(&seed.to_le_bytes());
-        assert_eq!(Pcg64::from_seed(bytes), Pcg64::from(sequence.clone()));
         if let Ok(seed) = u64::try_from(seed) {
             assert_eq!(SeedSequence::new(seed), sequence);
             assert_eq!(Pcg64::seed_from_u64(seed), Pcg64::new(seed));
         }
+    });
+    holds(200, any::<[u32; 8]>(), |words| {
+        let bytes = words.map(u32::to_le_bytes).as_flattened().try_into();
+        let sequence = SeedSequence::from_words(&words);
+        assert_eq!(Pcg64::from_seed(bytes.unwrap()), Pcg64::from(sequence));
     });
     let letter = prop_oneof![4 => prop::char::range('0', '9'), 1 => any::<char>()];
     holds(1000, prop::collection::vec(letter, 0..5), |letters| {
@@ -167,26 +132,5 @@ fn spaces_contain_their_samples() {
         }
         let space = DiscreteSpace::new(&[1, 2, 3, 5, 8]).unwrap();
         assert!(space.contains(&space.sample(&mut rng)));
-    });
-}
-
-/// A 32-bit draw takes half of a word, the low half first, and keeps the other half for the next 32-bit draw.
-#[test]
-fn half_words_survive_draws_of_whole_words() {
-    let draws = prop::collection::vec(any::<bool>(), 0..20);
-    holds(500, (any::<u64>(), draws), |(seed, draws)| {
-        let (mut rng, mut words) = (Pcg64::new(seed), Pcg64::new(seed));
-        let mut high = None;
-        for whole in draws {
-            if whole {
-                assert_eq!(rng.next_u64(), words.next_u64());
-            } else if let Some(high) = high.take() {
-                assert_eq!(rng.next_u32(), high);
-            } else {
-                let word = words.next_u64();
-                assert_eq!(rng.next_u32(), word as u32);
-                high = Some((word >> 32) as u32);
-            }
-        }
     });
 }

@@ -6,6 +6,7 @@
 #[macro_use]
 mod given;
 
+mod batches;
 mod control;
 mod draws;
 mod environments;

@@ -23,7 +23,7 @@ fn figure<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = Figure> {
 
 /// The canvas rejects pixels outside it.
 #[test]
-fn every_pixel_is_drawn_once_and_a_redraw_equals_a_drawing() {
+fn every_pixel_is_drawn_once_and_a_redraw_writes_those_that_change() {
     fn check<A: Arithmetic<Scalar: Number>>() {
         let sides = prop_oneof![
             4 => (0..70_u32, 0..70_u32),
@@ -38,9 +38,13 @@ fn every_pixel_is_drawn_once_and_a_redraw_equals_a_drawing() {
             let (mut redrawn, mut drawn) = (canvas(), canvas());
             before.draw(&mut redrawn, theme).unwrap();
             assert_eq!(redrawn.written, (width * height) as usize);
+            redrawn.written = 0;
+            let shown = redrawn.pixels.clone();
             after.redraw(&before, &mut redrawn, theme).unwrap();
             after.draw(&mut drawn, theme).unwrap();
             assert!(redrawn.pixels == drawn.pixels);
+            let changed = shown.iter().zip(&drawn.pixels).filter(|(x, y)| x != y);
+            assert_eq!(redrawn.written, changed.count());
         });
     }
     in_every_arithmetic!(check);

@@ -1,4 +1,4 @@
-//! Steps of any acrobot: bounds, mirror symmetry and time limits.
+//! Steps of any acrobot: bounds and mirror symmetry.
 
 use std::array;
 use std::cell::Cell;
@@ -8,9 +8,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
 use acrobot::numpy::{Pcg64, integers};
 use acrobot::physics::Pendulum;
-use acrobot::{
-    Acrobot, Action, Error, Fast, Observation, Params, Portable, State, Step, TimeLimit,
-};
+use acrobot::{Acrobot, Action, Error, Fast, Observation, Params, Portable, State, Step};
 use proptest::prelude::*;
 
 use crate::given::{
@@ -203,29 +201,5 @@ fn mirrored_steps_are_nearly_mirror_images_in_host() {
         right.step(opposite);
         let error = distance(left.state(), mirror(right.state()));
         assert!(error <= ROUNDING, "{error:e}");
-    });
-}
-
-#[test]
-fn episodes_are_truncated_from_their_limit_on() {
-    let done = prop::collection::vec(prop::option::weighted(0.9, action()), 0..40);
-    holds(500, (1..20_u32, done), |(limit, done)| {
-        let limit = NonZeroU32::new(limit).unwrap();
-        let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(0), limit);
-        let mut alone = acrobot.inner().clone();
-        let mut elapsed = 0;
-        for action in done {
-            if let Some(action) = action {
-                let (step, expected) = (acrobot.step(action), alone.step(action));
-                elapsed += 1;
-                assert_eq!(step.observation, expected.observation);
-                assert_eq!(step.terminated, expected.terminated);
-                assert_eq!(step.truncated, elapsed >= limit.get());
-            } else {
-                assert_eq!(acrobot.reset(), alone.reset());
-                elapsed = 0;
-            }
-            assert_eq!(acrobot.elapsed(), elapsed);
-        }
     });
 }

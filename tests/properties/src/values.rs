@@ -1,11 +1,9 @@
 //! The pure functions, for any numbers.
 
-use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::{Pendulum, bound, wrap};
-use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{Fast, Observation, Params, State};
 use proptest::prelude::*;
 
@@ -164,71 +162,4 @@ fn casts_to_a_wider_scalar_are_exact() {
             assert_eq!(params.cast::<f64>().validate(), Ok(()));
         },
     );
-}
-
-fn transition() -> impl Strategy<Value = Transition> {
-    let states = [state(Range::Any), state(Range::Any)];
-    (states, number(Range::Any), any::<[bool; 2]>()).prop_map(
-        |([state, next], torque, [terminated, truncated])| Transition {
-            state,
-            torque,
-            reward: if terminated { 0.0 } else { -1.0 },
-            next,
-            terminated,
-            truncated,
-        },
-    )
-}
-
-/// A trajectory equals a queue that drops its oldest element, and its CSV reads back to the same bits.
-#[test]
-fn a_trajectory_keeps_the_last_transitions_in_order() {
-    const ROOM: usize = 5;
-    let done = prop::collection::vec(prop::option::weighted(0.9, transition()), 0..20);
-    holds(500, done, |done| {
-        let mut trajectory = Trajectory::<f64, ROOM>::new();
-        let (mut kept, mut pushed) = (VecDeque::new(), 0);
-        for transition in done {
-            if let Some(transition) = transition {
-                trajectory.push(transition);
-                kept.push_back(transition);
-                pushed += 1;
-                if kept.len() > ROOM {
-                    kept.pop_front();
-                }
-            } else {
-                trajectory.clear();
-                kept.clear();
-                pushed = 0;
-            }
-            assert!(trajectory.iter().eq(&kept));
-            assert_eq!(trajectory.len(), kept.len());
-            assert_eq!(trajectory.is_empty(), kept.is_empty());
-        }
-        let mut csv = String::new();
-        trajectory.write_csv(&mut csv).unwrap();
-        let mut lines = csv.lines();
-        let columns: Vec<&str> = lines.next().unwrap().split(',').collect();
-        assert_eq!(columns[..2], ["step", "theta1 (rad)"]);
-        for (number, transition) in (pushed - kept.len() + 1..).zip(&kept) {
-            let fields: Vec<f64> = lines
-                .next()
-                .unwrap()
-                .split(',')
-                .map(|field| field.parse().unwrap())
-                .collect();
-            let mut expected = vec![number as f64];
-            expected.extend(<[f64; 4]>::from(transition.state));
-            expected.extend([transition.torque, transition.reward.into()]);
-            expected.extend(<[f64; 4]>::from(transition.next));
-            expected.extend(
-                [transition.terminated, transition.truncated].map(|x| f64::from(u8::from(x))),
-            );
-            let bits =
-                |numbers: Vec<f64>| numbers.into_iter().map(f64::to_bits).collect::<Vec<_>>();
-            assert_eq!(fields.len(), columns.len());
-            assert_eq!(bits(fields), bits(expected));
-        }
-        assert_eq!(lines.next(), None);
-    });
 }

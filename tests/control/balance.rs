@@ -1,0 +1,106 @@
+//! The tables of docs/control.md: what a regulator holds upright.
+
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::physics::control::{Lqr, discretize, lqr};
+use acrobot::physics::{Pendulum, bound};
+use acrobot::{Fast, Params, Portable, State};
+use common::assert_says;
+
+use crate::cast;
+use crate::regulators::diagonal;
+
+/// A pendulum at rest in `target`, and its regulator, all computed in `A`. All numbers of a state have the same weight.
+fn regulated<A: Arithmetic>(
+    params: Params,
+    target: State,
+    weight: f64,
+) -> (Pendulum<A>, Lqr<A::Scalar>) {
+    let pendulum = Pendulum::new(params.cast(), target.cast()).unwrap();
+    let model = discretize(&pendulum, A::Scalar::ZERO).unwrap();
+    let q = diagonal([weight; 4]).map(cast);
+    let regulator = lqr(&model, &q, Real::from_f64(1.0)).unwrap();
+    (pendulum, regulator)
+}
+
+/// The default parameters with this `dt`.
+fn every(dt: f64) -> Params {
+    Params {
+        dt,
+        ..Params::DEFAULT
+    }
+}
+
+/// How far link 1 may lean, mrad, at 100 Hz, so that a motor of `limit` brings it back from rest.
+fn largest_lean(params: Params, limit: f64, weight: f64) -> usize {
+    let (pendulum, regulator) = regulated::<Portable>(params, State::UPRIGHT, weight);
+    let holds = |&lean: &u32| {
+        let mut pendulum = pendulum.clone();
+        let mut state = State::UPRIGHT;
+        state.theta1 -= f64::from(lean) / 1000.0;
+        pendulum.set_state(state).unwrap();
+        for _ in 0..2000 {
+            let torque = regulator.torque(pendulum.deviation(State::UPRIGHT));
+            pendulum.step(bound(torque, limit)).unwrap();
+        }
+        let left = pendulum.deviation(State::UPRIGHT);
+        left.iter().all(|x| x.abs() < 1e-3)
+    };
+    (1..1000).take_while(holds).count()
+}
+
+#[test]
+fn a_weak_motor_holds_as_little_as_the_docs_say() {
+    let default = every(0.01);
+    let heavy = Params {
+        mass2: 2.0,
+        ..default
+    };
+    let rows = [1.0, 2.0, 5.0, 10.0].map(|limit| {
+        let leans = [
+            (default, 1.0),
+            (default, 0.01),
+            (default, 100.0),
+            (heavy, 1.0),
+        ]
+        .map(|(params, weight)| largest_lean(params, limit, weight).to_string());
+        format!("| {limit} | {} |", leans.join(" | "))
+    });
+    println!("{}", rows.join("\n"));
+    assert_says("docs/control.md", &rows.join("\n"));
+}
+
+/// The largest deviation of an angle in the tenth second, mrad, of a regulator that begins at 10 mrad.
+fn deviation_held<A: Arithmetic>(params: Params, target: State) -> f64 {
+    let (mut pendulum, regulator) = regulated::<A>(params, target, 1.0);
+    let target = target.cast();
+    let mut state = target;
+    state.theta1 = state.theta1 - Real::from_f64(0.01);
+    pendulum.set_state(state).unwrap();
+    let (steps, mut most) = ((10.0 / params.dt) as u32, 0.0_f64);
+    for step in 0..steps {
+        let x = pendulum.deviation(target);
+        pendulum.step(regulator.torque(x)).unwrap();
+        if step >= steps / 10 * 9 {
+            most = most.max(x[0].to_f64().abs()).max(x[1].to_f64().abs());
+        }
+    }
+    most * 1000.0
+}
+
+#[test]
+fn single_precision_loses_upright_what_the_docs_say() {
+    let rows = [100, 1000, 10_000].map(|rate| {
+        let params = every(1.0 / f64::from(rate));
+        let inverted = Params {
+            gravity: -params.gravity,
+            ..params
+        };
+        let upright = deviation_held::<Fast>(params, State::UPRIGHT);
+        let hanging = deviation_held::<Fast>(inverted, State::HANGING);
+        let portable = deviation_held::<Portable>(params, State::UPRIGHT);
+        assert!(hanging < 1e-3 && portable < 1e-3);
+        format!("| {rate} | {upright:.2} | {hanging:.2} | {portable:.2} |")
+    });
+    println!("{}", rows.join("\n"));
+    assert_says("docs/control.md", &rows.join("\n"));
+}

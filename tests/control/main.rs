@@ -1,0 +1,177 @@
+//! `physics::control` is right: derivatives, forces, velocities and gains equal those of automatic differentiation and of
+//! 200 digits, recorded by `tests/data/control.py`.
+
+mod balance;
+mod regulators;
+
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::physics::control::{Forces, discretize, inverse_dynamics, linearize, velocities};
+use acrobot::physics::{Dynamics, Pendulum};
+use acrobot::{Fast, Params, Portable, State};
+use common::text_of;
+
+/// The rest of each line of the recording that starts with this word.
+fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
+    text.lines()
+        .filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
+}
+
+fn numbers(line: &str) -> Vec<f64> {
+    line.split(' ').map(|x| x.parse().unwrap()).collect()
+}
+
+fn cast<T: Real, const N: usize>(x: [f64; N]) -> [T; N] {
+    x.map(T::from_f64)
+}
+
+fn vector<const N: usize>(elements: &[f64]) -> [f64; N] {
+    elements.try_into().unwrap()
+}
+
+/// The largest |found − expected|, relative to the largest |expected|.
+fn relative<S: Real>(found: &[S], expected: &[f64]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    let largest = |x: &mut dyn Iterator<Item = f64>| {
+        x.fold(0.0_f64, |most, x| {
+            assert!(x.is_finite());
+            most.max(x.abs())
+        })
+    };
+    let differences = &mut found.iter().zip(expected).map(|(x, y)| x.to_f64() - y);
+    largest(differences) / largest(&mut expected.iter().copied())
+}
+
+/// Moderate parameters, or those over six decades.
+#[derive(Clone, Copy, Debug)]
+enum Spread {
+    Moderate,
+    Decades,
+}
+
+/// A pendulum, a torque and accelerations of the recording, and what autograd computed for them.
+struct Case {
+    params: Params,
+    state: State,
+    torque: f64,
+    accelerations: [f64; 2],
+    continuous: Vec<f64>,
+    discrete: Vec<f64>,
+    motion: Vec<f64>,
+}
+
+fn cases(spread: Spread) -> Vec<Case> {
+    let text = text_of("tests/data/control.txt");
+    let results = |word| lines(&text, word).map(numbers).collect::<Vec<_>>();
+    let [continuous, discrete, motion] = ["continuous", "discrete", "motion"].map(results);
+    assert_eq!(continuous.len(), 80);
+    let first = match spread {
+        Spread::Moderate => 0,
+        Spread::Decades => 40,
+    };
+    let cases = lines(&text, "case")
+        .zip(continuous)
+        .zip(discrete.into_iter().zip(motion))
+        .skip(first)
+        .take(40);
+    cases
+        .map(|((line, continuous), (discrete, motion))| {
+            let (dynamics, given) = line.split_once(' ').unwrap();
+            let x: [f64; 17] = vector(&numbers(given));
+            Case {
+                params: Params {
+                    length1: x[0],
+                    length2: x[1],
+                    mass1: x[2],
+                    mass2: x[3],
+                    center_of_mass1: x[4],
+                    center_of_mass2: x[5],
+                    inertia1: x[6],
+                    inertia2: x[7],
+                    gravity: x[8],
+                    dt: x[9],
+                    dynamics: match dynamics {
+                        "book" => Dynamics::Book,
+                        _ => Dynamics::Nips,
+                    },
+                    ..Params::DEFAULT
+                },
+                state: State::from(vector(&x[10..14])),
+                torque: x[14],
+                accelerations: vector(&x[15..]),
+                continuous,
+                discrete,
+                motion,
+            }
+        })
+        .collect()
+}
+
+/// The largest error of each function over all cases, with the arithmetic `A`.
+fn errors<A: Arithmetic>(spread: Spread) -> [f64; 4] {
+    let mut worst = [0.0_f64; 4];
+    for case in cases(spread) {
+        let pendulum = Pendulum::<A>::new(case.params.cast(), case.state.cast()).unwrap();
+        let torque = Real::from_f64(case.torque);
+        let continuous = linearize(&pendulum, torque).unwrap();
+        let discrete = discretize(&pendulum, torque).unwrap();
+        let Forces {
+            torques,
+            reaction,
+            elbow,
+        } = inverse_dynamics(&pendulum, cast(case.accelerations)).unwrap();
+        let pairs = [
+            (
+                [continuous.a.as_flattened(), &continuous.b].concat(),
+                &case.continuous[..],
+            ),
+            (
+                [discrete.a.as_flattened(), &discrete.b].concat(),
+                &case.discrete,
+            ),
+            ([torques, reaction, elbow].concat(), &case.motion[..6]),
+            (velocities(&pendulum).unwrap().concat(), &case.motion[6..]),
+        ];
+        for (worst, (found, expected)) in worst.iter_mut().zip(pairs) {
+            *worst = worst.max(relative(&found, expected));
+        }
+    }
+    println!("{}, {spread:?}: {worst:?}", A::NAME);
+    worst
+}
+
+#[test]
+fn derivatives_forces_and_velocities_equal_automatic_differentiation() {
+    use Spread::{Decades, Moderate};
+    for (worst, limit) in [
+        (errors::<Reference>(Moderate), 1e-14),
+        (errors::<Portable>(Moderate), 1e-14),
+        (errors::<Host>(Moderate), 1e-14),
+        (errors::<Fast>(Moderate), 1e-6),
+        (errors::<Micro>(Moderate), 5e-6),
+        // The derivatives of a step amplify the rounding of these parameters by up to 8000.
+        (errors::<Reference>(Decades), 1e-12),
+        (errors::<Portable>(Decades), 1e-12),
+        (errors::<Host>(Decades), 1e-12),
+        (errors::<Fast>(Decades), 1e-3),
+        (errors::<Micro>(Decades), 1e-3),
+    ] {
+        assert!(worst.into_iter().all(|error| error < limit), "{worst:?}");
+    }
+}
+
+#[test]
+fn inputs_that_are_not_finite_are_rejected() {
+    let pendulum = Pendulum::<Fast>::hanging();
+    let torque = "torque must be a finite number of N m, got NaN";
+    assert_eq!(
+        linearize(&pendulum, f32::NAN).unwrap_err().to_string(),
+        torque
+    );
+    assert_eq!(
+        discretize(&pendulum, f32::NAN).unwrap_err().to_string(),
+        torque
+    );
+    let error = inverse_dynamics(&pendulum, [0.0, f32::INFINITY]).unwrap_err();
+    let rule = "ddtheta2 must be a finite number of rad/s², got inf";
+    assert_eq!(error.to_string(), rule);
+}

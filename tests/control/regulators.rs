@@ -1,0 +1,246 @@
+//! Gains equal SciPy's and those of 200 digits. Weights and models without a regulator are errors.
+
+use std::array::from_fn;
+
+use acrobot::arithmetic::Real;
+use acrobot::physics::Pendulum;
+use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, discretize, lqr};
+use acrobot::{Params, Portable, State};
+use common::text_of;
+
+use crate::{cast, lines, numbers, relative, vector};
+
+fn matrix(elements: &[f64]) -> [[f64; 4]; 4] {
+    elements.as_chunks().0.try_into().unwrap()
+}
+
+pub fn diagonal(x: [f64; 4]) -> [[f64; 4]; 4] {
+    from_fn(|i| from_fn(|j| if i == j { x[i] } else { 0.0 }))
+}
+
+const IDENTITY: [[f64; 4]; 4] = [
+    [1.0, 0.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, 0.0],
+    [0.0, 0.0, 0.0, 1.0],
+];
+
+/// What SciPy computed for one regulator.
+struct Recorded {
+    theta1: f64,
+    dt: f64,
+    model: DiscreteModel,
+    q: [[f64; 4]; 4],
+    r: f64,
+    gain: [f64; 4],
+    cost_to_go: [[f64; 4]; 4],
+}
+
+fn regulators() -> Vec<Recorded> {
+    let text = text_of("tests/data/control.txt");
+    let recorded = lines(&text, "lqr").map(|line| {
+        let x = numbers(line);
+        assert_eq!(x.len(), 59);
+        Recorded {
+            theta1: x[0],
+            dt: x[1],
+            model: DiscreteModel {
+                a: matrix(&x[2..18]),
+                b: vector(&x[18..22]),
+            },
+            q: matrix(&x[22..38]),
+            r: x[38],
+            gain: vector(&x[39..43]),
+            cost_to_go: matrix(&x[43..]),
+        }
+    });
+    recorded.collect()
+}
+
+/// The model and the weights in another scalar.
+fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, ControlError> {
+    let model = DiscreteModel {
+        a: model.a.map(cast),
+        b: cast(model.b),
+    };
+    lqr(&model, &q.map(cast), S::from_f64(*r))
+}
+
+/// The errors of the gain and of the cost to go.
+fn errors_of_lqr<S: Real>(recorded: &Recorded) -> [f64; 2] {
+    let found = regulate::<S>(recorded).unwrap();
+    let columns: [[S; 4]; 4] = from_fn(|j| found.cost_to_go.map(|row| row[j]));
+    assert_eq!(found.cost_to_go, columns, "not symmetric");
+    [
+        relative(&found.gain, &recorded.gain),
+        relative(
+            found.cost_to_go.as_flattened(),
+            recorded.cost_to_go.as_flattened(),
+        ),
+    ]
+}
+
+#[test]
+fn gains_equal_scipys() {
+    let recorded = regulators();
+    assert_eq!(recorded.len(), 32);
+    for recorded in recorded {
+        let double = errors_of_lqr::<f64>(&recorded);
+        let single = errors_of_lqr::<f32>(&recorded);
+        let Recorded { theta1, dt, r, .. } = recorded;
+        println!("{theta1:.2} rad, {dt} s, R {r}: f64 {double:?}, f32 {single:?}");
+        assert!(double.into_iter().all(|error| error < 1e-11), "{double:?}");
+        // The elements of A are rounded to 6e-8, and those that matter are about dt.
+        let limit = if dt < 0.01 { 5e-3 } else { 1e-3 };
+        assert!(single.into_iter().all(|error| error < limit), "{single:?}");
+    }
+}
+
+/// All numbers are exact in both scalars, so only the gain is rounded.
+#[test]
+fn gains_are_exact_over_many_decades_or_errors() {
+    fn check<S: Real>(limit: f64) {
+        let text = text_of("tests/data/control.txt");
+        let (mut found, mut rejected) = (0, 0);
+        for line in lines(&text, "model") {
+            let (kind, given) = line.split_once(' ').unwrap();
+            let mut x = numbers(given);
+            // Short texts of `f32`.
+            x[..37].iter_mut().for_each(|x| *x = f64::from(*x as f32));
+            let [a, q] = [&x[..16], &x[20..36]].map(|m| matrix(m).map(cast));
+            let b = cast(vector(&x[16..20]));
+            match lqr::<S>(&DiscreteModel { a, b }, &q, S::from_f64(x[36])) {
+                Ok(regulator) => {
+                    let error = relative(&regulator.gain, &x[37..]);
+                    assert!(error < limit, "{error:e} {line}");
+                    found += 1;
+                }
+                Err(error) => {
+                    assert!(
+                        matches!(error, ControlError::IllConditioned { .. }),
+                        "{error} {line}"
+                    );
+                    assert_eq!(kind, "any", "{error} {line}");
+                    rejected += 1;
+                }
+            }
+        }
+        println!("{found} gains, {rejected} rejected");
+        assert!(found + rejected == 240 && rejected <= 2);
+    }
+    check::<f64>(1e-8);
+    check::<f32>(1e-7);
+}
+
+fn upright() -> DiscreteModel {
+    discretize(
+        &Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap(),
+        0.0,
+    )
+    .unwrap()
+}
+
+#[test]
+fn wrong_weights_are_rejected() {
+    let message = |q, r| lqr(&upright(), &q, r).unwrap_err().to_string();
+    for (r, got) in [
+        (0.0, "0"),
+        (-1.0, "-1"),
+        (f64::NAN, "NaN"),
+        (f64::INFINITY, "inf"),
+    ] {
+        let expected = format!("r must be finite and above 0 per (N m)², got {got}");
+        assert_eq!(message(IDENTITY, r), expected);
+    }
+    assert_eq!(
+        message(diagonal([1.0, f64::NAN, 1.0, 1.0]), 1.0),
+        "q must be finite in each element, got NaN"
+    );
+    let mut q = IDENTITY;
+    q[1][3] = 0.5;
+    assert_eq!(
+        message(q, 1.0),
+        "q must be symmetric, got 0.5 and 0 on both sides of the diagonal"
+    );
+    q[3][1] = 0.5;
+    assert!(lqr(&upright(), &q, 1.0).is_ok());
+    [q[1][3], q[3][1]] = [2.0, 2.0];
+    let rule = "q must be positive semidefinite, got ";
+    assert!(message(q, 1.0).starts_with(rule));
+    assert!(message(diagonal([1.0, 1.0, -1e-3, 1.0]), 1.0).starts_with(rule));
+    assert!(message(diagonal([-1.0; 4]), 1.0).starts_with(rule));
+
+    // Of rank 1, and so up to rounding.
+    let row = [0.1, 0.7, -0.3, 0.9];
+    assert!(lqr(&upright(), &row.map(|x| row.map(|y| x * y)), 1.0).is_ok());
+}
+
+#[test]
+fn a_regulator_that_cannot_exist_is_an_error() {
+    let growing = diagonal([1.1, 0.5, 0.4, 0.3]);
+    let persistent = diagonal([1.0, 0.5, 0.4, 0.3]);
+    let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
+    let not_first = [0.0, 1.0, 1.0, 1.0];
+    let (stabilizable, detectable) = (ControlError::NotStabilizable, ControlError::NotDetectable);
+    for (a, b, q, expected) in [
+        (growing, not_first, IDENTITY, stabilizable),
+        (persistent, not_first, IDENTITY, stabilizable),
+        (growing, [0.0; 4], IDENTITY, stabilizable),
+        (diagonal([1.1, 1.1, 0.5, 0.3]), all, IDENTITY, stabilizable),
+        (persistent, all, none, detectable),
+        (
+            diagonal([1.0, 1.5, 0.5, 0.5]),
+            all,
+            diagonal([0.0, 1.0, 1.0, 1.0]),
+            detectable,
+        ),
+    ] {
+        let error = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap_err();
+        assert_eq!(error, expected, "{a:?} {b:?} {q:?}");
+    }
+
+    // A link on its centre of mass: gravity and the motor do not move link 1.
+    let params = Params {
+        center_of_mass1: 0.0,
+        center_of_mass2: 0.0,
+        gravity: 0.0,
+        ..Params::DEFAULT
+    };
+    let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
+    let model = discretize(&pendulum, 0.0).unwrap();
+    let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
+    assert_eq!(error, ControlError::NotStabilizable);
+
+    // What `f32` cannot hold has a name.
+    let model = DiscreteModel {
+        a: growing.map(cast::<f32, 4>),
+        b: [1e-30; 4],
+    };
+    let error = lqr(&model, &IDENTITY.map(cast), 1.0).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "cost_to_go must be finite in each element, got inf"
+    );
+}
+
+/// Of all gains that stabilize, the regulator has the cheapest, even where the weights do not ask for one.
+#[test]
+fn a_motion_that_grows_is_stopped_without_weights() {
+    let gain = |a, b, q| lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap().gain;
+    let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
+    // The cheapest way mirrors 1.1 in the unit circle: 1.1 − k = 1 / 1.1.
+    let found = gain(diagonal([1.1, 0.5, 0.4, 0.3]), all, none);
+    assert!(
+        relative(&found, &[1.1 - 1.0 / 1.1, 0.0, 0.0, 0.0]) < 1e-9,
+        "{found:?}"
+    );
+    // Elements below 1, whose powers grow as 1.2.
+    let found = gain([[0.3; 4]; 4], all, none);
+    assert!(
+        relative(&found, &[(1.2 - 1.0 / 1.2) / 4.0; 4]) < 1e-9,
+        "{found:?}"
+    );
+    assert_eq!(gain(diagonal([0.5; 4]), all, none), [0.0; 4]);
+    assert_eq!(gain(diagonal([0.5; 4]), [0.0; 4], IDENTITY), [0.0; 4]);
+    assert_eq!(gain(none, all, IDENTITY), [0.0; 4]);
+}

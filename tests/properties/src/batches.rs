@@ -1,0 +1,197 @@
+//! Promise 2 for batches: after any calls in any order, each acrobot is bit-identical to one alone.
+
+use std::num::NonZeroU32;
+
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::batch::{Autoreset, Member, SimdLevel};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::{Dynamics, ResetBounds};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
+use common::params_range;
+use common::twins::{LEVELS, MODES, Twins};
+use proptest::prelude::*;
+
+use crate::given::{Number, Range, action, holds, number, params, reset_bounds, state};
+
+/// The largest batch: three blocks of 16, of which one is not full.
+const LEN: usize = 35;
+
+#[derive(Clone, Debug)]
+enum Call<S> {
+    Settings(Autoreset, NonZeroU32, SimdLevel, ResetBounds),
+    Params(Params<S>),
+    /// Valid, or without mass.
+    ParamsOf(usize, Params<S>, bool),
+    ParamsRange(Option<Dynamics>),
+    Reset(Option<Vec<bool>>, Option<u64>, Option<ResetBounds>),
+    ResetTo(Vec<State<S>>),
+    State(usize, State<S>),
+    /// Stores a member.
+    Store(usize),
+    /// Sets a member to the stored one.
+    Load(usize),
+    Generator(usize, u64),
+    Step(Vec<Action>),
+    Torques(Vec<S>),
+}
+
+fn each<S: Strategy>(element: S) -> impl Strategy<Value = Vec<S::Value>> {
+    prop::collection::vec(element, LEN)
+}
+
+fn call<S: Number>() -> BoxedStrategy<Call<S>> {
+    // Lanes of the last block have no acrobot.
+    let index = || 0..LEN + 16;
+    let mode = prop::sample::select(&MODES[..]);
+    let level = prop::sample::select(&LEVELS[..]);
+    let limit = prop_oneof![1..5_u32, Just(500), Just(u32::MAX)];
+    let limit = limit.prop_map(|limit| limit.try_into().unwrap());
+    let dynamics = prop::sample::select(&[Dynamics::Book, Dynamics::Nips][..]);
+    let bounds = || prop_oneof![Just(ResetBounds::DEFAULT), reset_bounds()];
+    let reset = (
+        prop::option::of(each(any::<bool>())),
+        any::<Option<u64>>(),
+        prop::option::of(bounds()),
+    );
+    let of_one = (index(), params(Range::Any), prop::bool::weighted(0.8));
+    prop_oneof![
+        3 => (mode, limit, level, bounds()).prop_map(|(a, b, c, d)| Call::Settings(a, b, c, d)),
+        1 => params(Range::Any).prop_map(Call::Params),
+        3 => of_one.prop_map(|(index, params, valid)| Call::ParamsOf(index, params, valid)),
+        1 => prop::option::of(dynamics).prop_map(Call::ParamsRange),
+        3 => reset.prop_map(|(mask, seed, bounds)| Call::Reset(mask, seed, bounds)),
+        2 => each(state(Range::Any)).prop_map(Call::ResetTo),
+        2 => (index(), state(Range::Any)).prop_map(|(index, state)| Call::State(index, state)),
+        2 => index().prop_map(Call::Store),
+        2 => index().prop_map(Call::Load),
+        1 => (index(), any::<u64>()).prop_map(|(index, seed)| Call::Generator(index, seed)),
+        12 => each(action()).prop_map(Call::Step),
+        4 => each(number(Range::Any)).prop_map(Call::Torques),
+    ]
+    .boxed()
+}
+
+/// A batch, the acrobots alone, and a stored member.
+struct Model<A: Arithmetic, const N: usize> {
+    twins: Twins<A, N>,
+    own_params: bool,
+    stored: Option<(Member<A>, TimeLimit<Acrobot<A>>, bool)>,
+}
+
+impl<A: Arithmetic<Scalar: Number>, const N: usize> Model<A, N> {
+    fn new(len: usize, own_params: bool) -> Self {
+        let twins = match own_params {
+            true => Twins::with_own_params(len, Autoreset::NextStep),
+            false => Twins::new(len, Autoreset::NextStep),
+        };
+        Self {
+            twins,
+            own_params,
+            stored: None,
+        }
+    }
+
+    /// A rejected call leaves the batch as it was.
+    fn call(&mut self, call: Call<A::Scalar>) {
+        let Twins {
+            batch,
+            alone,
+            pending,
+        } = &mut self.twins;
+        let len = alone.len();
+        match call {
+            Call::Settings(autoreset, limit, level, bounds) => {
+                batch.set_reset_bounds(bounds);
+                batch.set_limit(limit);
+                batch.set_simd_level(level);
+                batch.set_autoreset(autoreset);
+                alone.iter_mut().for_each(|alone| alone.set_limit(limit));
+                self.settle();
+            }
+            Call::Params(params) => self.twins.set_params(params),
+            Call::ParamsOf(index, mut params, valid) => {
+                if !valid {
+                    params.mass1 = Real::ZERO;
+                }
+                let set = batch.set_params_of(index, params);
+                assert_eq!(set.is_ok(), valid && self.own_params && index < len);
+                if set.is_ok() {
+                    alone[index].set_params(params).unwrap();
+                }
+            }
+            Call::ParamsRange(dynamics) => {
+                let set = batch.set_params_range(dynamics.map(params_range));
+                assert_eq!(set.is_ok(), self.own_params || dynamics.is_none());
+            }
+            Call::Reset(mask, seed, bounds) => {
+                let mask = mask.as_ref().map(|mask| &mask[..len]);
+                let seed = seed.map(SeedSequence::new);
+                self.twins.reset_some(mask, ResetOptions { seed, bounds });
+            }
+            Call::ResetTo(states) => self.twins.reset_to(&states[..len]),
+            Call::State(index, state) => {
+                assert_eq!(batch.set_state(index, state).is_ok(), index < len);
+                if let Some(alone) = alone.get_mut(index) {
+                    alone.set_state(state).unwrap();
+                }
+            }
+            Call::Store(index) => {
+                let member = batch.member(index);
+                assert_eq!(member.is_some(), index < len);
+                self.stored = member.map(|member| (member, alone[index].clone(), pending[index]));
+            }
+            Call::Load(index) => {
+                let Some((member, stored, was_pending)) = self.stored.clone() else {
+                    return;
+                };
+                let fits = self.own_params || member.params == *alone[0].params();
+                let set = batch.set_member(index, member);
+                assert_eq!(set.is_ok(), fits && index < len);
+                if set.is_ok() {
+                    alone[index] = stored;
+                    alone[index].set_limit(batch.limit());
+                    // Shared parameters can differ from the stored ones in the sign of zero.
+                    let params = batch.params_of(index).unwrap();
+                    alone[index].set_params(params).unwrap();
+                    pending[index] = was_pending;
+                    self.settle();
+                }
+            }
+            Call::Generator(index, seed) => {
+                if let Some(rng) = batch.generators_mut().get_mut(index) {
+                    *rng = Pcg64::new(seed);
+                    *alone[index].inner_mut().rng_mut() = Pcg64::new(seed);
+                }
+            }
+            Call::Step(actions) => drop(self.twins.step(&actions[..len])),
+            Call::Torques(torques) => drop(self.twins.step_torques(&torques[..len], false)),
+        }
+        self.twins.assert_equal();
+    }
+
+    /// What a mode does with resets that are pending.
+    fn settle(&mut self) {
+        match self.twins.batch.autoreset() {
+            Autoreset::SameStep => self.twins.reset_pending(),
+            Autoreset::Disabled => self.twins.pending.fill(false),
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn any_calls_in_any_order_equal_single_acrobots() {
+    fn check<A: Arithmetic<Scalar: Number>, const N: usize>() {
+        let calls = prop::collection::vec(call(), 0..40);
+        holds(200, (1..=LEN, any::<bool>(), calls), |(len, own, calls)| {
+            let mut model = Model::<A, N>::new(len, own);
+            calls.into_iter().for_each(|call| model.call(call));
+        });
+    }
+    check::<Fast, 3>();
+    check::<Fast, 16>();
+    check::<Portable, 4>();
+    check::<Micro, 16>();
+    check::<Reference, 16>();
+    check::<Host, 16>();
+}
