@@ -88,7 +88,7 @@ impl Arithmetic for Reference {
 }
 
 /// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: bit-identical to Gymnasium if NumPy calls the
-/// same library, as on x86-64 Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
+/// same library, as on Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
 ///
 /// ```
 /// use acrobot::arithmetic::{Arithmetic, Host};
