@@ -33,7 +33,7 @@ export class Batch extends Kept {
     const { count, seed, params = {}, maxSteps = 500, autoreset = "NextStep" } = checked("options", options, names);
     positive("count", count);
     positive("maxSteps", maxSteps);
-    if (!AUTORESETS.includes(autoreset)) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset);
+    if (!AUTORESETS.includes(autoreset)) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset, []);
     const number = wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset));
     const addresses = new Uint32Array(bytes().slice(0, 32).buffer);
     super("batch", number, count);

@@ -7,15 +7,15 @@ const COLORS = { background: "white", target: "black", link: "rgb(0, 204, 204)",
 
 /** Draws into the square from (0, 0) to (size, size) of the context's coordinates. Errors begin with the signature of the method. */
 export function draw(signature, context, { theta1, theta2 }, { length1, length2 }, torque, options = {}) {
-  const fail = (rule, value) => {
-    throw invalid(`${signature}: ${rule}`, value);
+  const fail = (rule, value, types) => {
+    throw invalid(`${signature}: ${rule}`, value, types);
   };
-  if (typeof context?.arc !== "function") fail("context must be a canvas's 2D context", context);
+  if (typeof context?.arc !== "function") fail("context must be a canvas's 2D context", context, []);
   const { canvas } = context;
   const { size = Math.min(canvas?.width, canvas?.height), colors: given = {} } = checked(`${signature}: options`, options, ["size", "colors"]);
   if (!Number.isFinite(size) || size < 0) fail("options.size must be finite and at least 0 pixels", size);
   const colors = { ...COLORS, ...checked(`${signature}: options.colors`, given, Object.keys(COLORS)) };
-  for (const [name, color] of Object.entries(colors)) if (typeof color !== "string") fail(`options.colors.${name} must be a string`, color);
+  for (const [name, color] of Object.entries(colors)) if (typeof color !== "string") fail(`options.colors.${name} must be a string`, color, []);
   const reach = length1 + length2 + 0.2;
   const metre = size / 2 / reach;
   const elbow = [length1 * Math.sin(theta1), -length1 * Math.cos(theta1)];

@@ -172,7 +172,7 @@ export interface BatchStep {
   terminated: Uint8Array;
   /** 1 if the episode has reached `maxSteps`, otherwise 0. */
   truncated: Uint8Array;
-  /** 1 if one of these two is, and with "Disabled" until the acrobot is reset: a mask for `resetMasked`. */
+  /** 1 if one of these two is, and with "Disabled" until the step after the acrobot's reset: a mask for `resetMasked`. */
   ended: Uint8Array;
   /** Only with "SameStep": the last observations of the episodes that this step ended. Other rows are older, or 0. */
   finalObservations?: Float32Array;
@@ -194,13 +194,16 @@ export class Batch extends Kept {
   reset(seed?: Seed): Float32Array;
   /** As `reset`, for the acrobots whose element of the mask is true or 1. The others do not change. */
   resetMasked(mask: ArrayLike<number | boolean>, seed?: Seed): Float32Array;
-  /** Applies an action to each acrobot. A `Uint8Array` is the fastest. */
+  /** Applies an action to each acrobot. A `Uint8Array` is the fastest. With "Disabled" an ended episode continues: −1 a step, 0 at the goal. */
   step(actions: ArrayLike<number>): BatchStep;
   /** A random action for each acrobot, from `Math.random`: a new array. */
   sample(): Uint8Array;
   /** The state of an acrobot: a frozen copy. */
   state(index: number): Readonly<State>;
-  /** Sets the state of an acrobot, whose episode continues. All four numbers must be finite. */
+  /**
+   * Sets the state of an acrobot, whose episode continues. All four numbers must be finite. With "NextStep", the next step resets an ended
+   * acrobot all the same.
+   */
   setState(index: number, state: Readonly<State>): void;
   /** The number of steps of an acrobot since its last reset. */
   elapsed(index: number): number;

@@ -27,7 +27,7 @@ export function writeState(state) {
 /** The elements of an array, each read once, because that can run code of the caller. They are not converted: 258 and "2" are not 2. */
 export function elements(what, array, count, isValid, rule) {
   const length = array?.length;
-  if (length !== count) throw invalid(`${what} must have ${count} elements`, length ?? array);
+  if (length !== count) throw invalid(`${what} must have ${count} elements`, length ?? array, length === undefined ? [] : ["number"]);
   const copy = [];
   for (let i = 0; i < count; i++) {
     const element = array[i];
@@ -73,12 +73,12 @@ export class Kept {
     const given = checked("params", changes, [...NUMBERS, "dynamics"]);
     if ("torques" in given) {
       const { torques } = given;
-      if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques);
+      if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques, []);
       given.torques = [0, 1, 2].map((i) => torques[i]);
     }
     const params = { ...this.params, ...given };
     const { torques, dynamics } = params;
-    if (dynamics !== "book" && dynamics !== "nips") throw invalid('dynamics must be "book" or "nips"', dynamics);
+    if (dynamics !== "book" && dynamics !== "nips") throw invalid('dynamics must be "book" or "nips"', dynamics, []);
     const values = NUMBERS.flatMap((name) => {
       const of = name === "torques" ? torques : [params[name]];
       for (const value of of) if (typeof value !== "number") throw invalid(`${name} must be a number`, value);

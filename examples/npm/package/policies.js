@@ -2,14 +2,29 @@
 
 import { checked, instantiate, invalid, positive, seedWords } from "./wasm.js";
 
-export const bangBang = ({ state }) => (state.dtheta1 > 0 ? 0 : 2);
+/** Numbers of an object. `what` names the object in the error for one that is not finite. */
+const finite = (what, object, ...names) =>
+  names.map((name) => {
+    const number = object?.[name];
+    if (!Number.isFinite(number)) throw invalid(`${what}.${name} must be a finite number`, number);
+    return number;
+  });
 
-export const uprightEnergy = ({ gravity, mass1, mass2, length1, centerOfMass1, centerOfMass2 }) =>
-  gravity * (mass1 * centerOfMass1 + mass2 * (length1 + centerOfMass2));
+export function bangBang(acrobot) {
+  const [dtheta1] = finite("bangBang(acrobot): acrobot.state", acrobot?.state, "dtheta1");
+  return dtheta1 > 0 ? 0 : 2;
+}
 
-export function energyLaw({ state, energy, params }) {
-  const missing = uprightEnergy(params) - energy;
-  return 1 + Math.max(-1, Math.min(1, Math.round(-missing * state.dtheta1)));
+export function uprightEnergy(params) {
+  const names = ["gravity", "mass1", "mass2", "length1", "centerOfMass1", "centerOfMass2"];
+  const [gravity, mass1, mass2, length1, center1, center2] = finite("uprightEnergy(params): params", params, ...names);
+  return gravity * (mass1 * center1 + mass2 * (length1 + center2));
+}
+
+export function energyLaw(acrobot) {
+  const [energy] = finite("energyLaw(acrobot): acrobot", acrobot, "energy");
+  const [dtheta1] = finite("energyLaw(acrobot): acrobot.state", acrobot.state, "dtheta1");
+  return 1 + Math.max(-1, Math.min(1, Math.round((energy - uprightEnergy(acrobot.params)) * dtheta1)));
 }
 
 /** The size of the module's buffer in bytes. */
@@ -32,14 +47,13 @@ export class Learner {
     return new Uint8Array(this.#exports.memory.buffer, this.#exports.buffer(), length);
   }
 
-  train() {
+  train(...others) {
+    if (others.length > 0) throw invalid("train() must have no arguments", others[0], []);
     return this.#exports.train();
   }
 
-  act({ state }) {
-    const numbers = ["theta1", "theta2", "dtheta1", "dtheta2"].map((name) => state?.[name]);
-    if (!numbers.every(Number.isFinite)) throw invalid("act's argument must have a state of four finite numbers", state);
-    return this.#exports.act(...numbers);
+  act(acrobot) {
+    return this.#exports.act(...finite("act(acrobot): acrobot.state", acrobot?.state, "theta1", "theta2", "dtheta1", "dtheta2"));
   }
 
   save() {
@@ -47,7 +61,7 @@ export class Learner {
   }
 
   load(weights) {
-    if (!(weights instanceof Uint8Array)) throw invalid("weights must be a Uint8Array", weights);
+    if (!(weights instanceof Uint8Array)) throw invalid("weights must be a Uint8Array", weights, []);
     const { length } = weights;
     if (length > BUFFER) throw new RangeError(`weights must have at most ${BUFFER} bytes, got ${length}`);
     this.#bytes(length).set(weights);

@@ -27,7 +27,7 @@ export function seal(parts) {
 
 /** A snapshot without its checksum. */
 export function unseal(snapshot) {
-  if (!(snapshot instanceof Uint8Array)) throw invalid("the snapshot must be a Uint8Array", snapshot);
+  if (!(snapshot instanceof Uint8Array)) throw invalid("the snapshot must be a Uint8Array", snapshot, []);
   // A copy, because other threads may write shared memory, and a proxy can run code.
   const copy = new Uint8Array(snapshot.length);
   for (let i = 0; i < copy.length; i++) copy[i] = snapshot[i];

@@ -47,11 +47,23 @@ export function bytes() {
   return bytesView;
 }
 
-/** The error for a value of the wrong type, or outside its range. */
-export function invalid(rule, value) {
-  const name = { string: () => JSON.stringify(value), bigint: () => `${value}n`, function: () => "a function" }[typeof value];
-  const got = name?.() ?? (Object(value) === value ? Object.prototype.toString.call(value) : String(value));
-  return new (["number", "bigint"].includes(typeof value) ? RangeError : TypeError)(`${rule}, got ${got}`);
+/** A value in an error message. */
+function shown(value) {
+  if (typeof value === "function") return "a function";
+  if (typeof value === "bigint") return `${value}n`;
+  if (typeof value !== "string" && Object(value) !== value) return String(value);
+  const tag = Object.prototype.toString.call(value);
+  try {
+    const text = / (Object|Array|String)]/.test(tag) ? JSON.stringify(value) : tag;
+    return text.length > 80 ? `${text.slice(0, 80)}…` : text;
+  } catch {
+    return tag; // a cycle, a BigInt
+  }
+}
+
+/** The error for a value outside its range, which has one of these types, or of another type. */
+export function invalid(rule, value, types = ["number"]) {
+  return new (types.includes(typeof value) ? RangeError : TypeError)(`${rule}, got ${shown(value)}`);
 }
 
 /**
@@ -59,7 +71,7 @@ export function invalid(rule, value) {
  * caller, which may use the package and change the module's memory.
  */
 export function checked(what, given, names) {
-  if (typeof given !== "object" || given === null) throw invalid(`${what} must be an object`, given);
+  if (typeof given !== "object" || given === null || Array.isArray(given)) throw invalid(`${what} must be an object`, given, []);
   const unknown = Object.keys(given).find((name) => !names.includes(name));
   if (unknown !== undefined) throw new TypeError(`${what} must be among ${names.join(", ")}, got ${unknown}`);
   return Object.fromEntries(names.filter((name) => name in given).map((name) => [name, given[name]]));
@@ -74,7 +86,7 @@ export function positive(name, value) {
 /** The 32-bit words of a seed, the lowest first. Without a seed takes a random one. */
 export function seedWords(seed = Math.floor(Math.random() * 2 ** 53)) {
   const valid = typeof seed === "bigint" ? seed >= 0n && seed < 1n << 2048n : Number.isSafeInteger(seed) && seed >= 0;
-  if (!valid) throw invalid("seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1", seed);
+  if (!valid) throw invalid("seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1", seed, ["number", "bigint"]);
   const words = [];
   let rest = BigInt(seed);
   do {

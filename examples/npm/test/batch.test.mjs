@@ -170,6 +170,7 @@ test("invalid arguments are rejected, and nothing changes", () => {
   for (const [call, name, message] of [
     [() => batch.step(new Uint8Array(2)), "RangeError", "actions must have 3 elements, got 2"],
     [() => batch.step(), "TypeError", "actions must have 3 elements, got undefined"],
+    [() => batch.step(3), "TypeError", "actions must have 3 elements, got 3"],
     [() => batch.step("012"), "TypeError", `actions[0] ${ELEMENT}"0"`],
     [() => batch.step(Uint8Array.of(0, 3, 1)), "RangeError", `actions[1] ${ELEMENT}3`],
     [() => batch.step([0, 1, 258]), "RangeError", `actions[2] ${ELEMENT}258`],

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { after, test } from "node:test";
 
 import { swingUp } from "../../web/test/native.mjs";
-import { Acrobot } from "../dist/index.js";
+import { Acrobot, Batch } from "../dist/index.js";
 import { Learner, bangBang, energyLaw, uprightEnergy } from "../dist/policies.js";
 
 const folder = mkdtempSync(join(tmpdir(), "acrobot-npm-"));
@@ -63,9 +63,15 @@ test("invalid weights are rejected with the native message, as other invalid arg
   }
   for (const [call, name, message] of [
     [() => learner.load(new Uint8Array(1e6)), "RangeError", "weights must have at most 131072 bytes, got 1000000"],
-    [() => learner.load([...good]), "TypeError", "weights must be a Uint8Array, got [object Array]"],
-    [() => learner.act({}), "TypeError", "act's argument must have a state of four finite numbers, got undefined"],
-    [() => learner.act({ state: { theta1: NaN } }), "TypeError", "act's argument must have a state of four finite numbers, got [object Object]"],
+    [() => learner.load([...good]), "TypeError", /^weights must be a Uint8Array, got \[.*…$/],
+    [() => learner.act({ state: { theta1: NaN } }), "RangeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got NaN"],
+    [() => learner.train(10), "TypeError", "train() must have no arguments, got 10"],
+    ...[undefined, {}, new Batch({ count: 1 }), new Acrobot().observation].flatMap((wrong) => [
+      [() => learner.act(wrong), "TypeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got undefined"],
+      [() => bangBang(wrong), "TypeError", "bangBang(acrobot): acrobot.state.dtheta1 must be a finite number, got undefined"],
+      [() => energyLaw(wrong), "TypeError", "energyLaw(acrobot): acrobot.energy must be a finite number, got undefined"],
+      [() => uprightEnergy(wrong), "TypeError", "uprightEnergy(params): params.gravity must be a finite number, got undefined"],
+    ]),
     [() => new Learner({ episodes: 0 }), "RangeError", "episodes must be an integer from 1 to 2^32 - 1, got 0"],
     [() => new Learner({ seed: -1 }), "RangeError", /^seed must be .*, got -1$/],
     [() => new Learner({ sed: 1 }), "TypeError", "options must be among episodes, seed, got sed"],

@@ -102,7 +102,11 @@ impl Batch {
         let this = &mut *alone(slf)?;
         let num_envs = this.__len__();
         if values.len() != num_envs {
-            let rule = format_args!("one value, or one for each of {num_envs} environments");
+            let drawn = match name {
+                "AVAIL_TORQUE" | "book_or_nips" => "",
+                _ => ", or a draw such as acrobot_rs.Uniform(low, high)",
+            };
+            let rule = format_args!("one value, or one for each of {num_envs} environments{drawn}");
             let got = format_args!("{} values", values.len());
             return Err(PyValueError::new_err(must_be(name, rule, got)));
         }

@@ -79,14 +79,17 @@ fn must_be(name: &str, rule: impl Display, got: impl Display) -> String {
     format!("{name} must be {rule}, got {got}")
 }
 
-/// Converts a parameter from Python, or raises a `TypeError` that names it.
+/// Converts a parameter from Python, which is no bool, or raises a `TypeError` that names it.
 fn convert<'a, 'py, T: FromPyObject<'a, 'py>>(
     name: &str,
     rule: &str,
     value: &'a Bound<'py, PyAny>,
 ) -> PyResult<T> {
-    let wrong = |_| PyTypeError::new_err(must_be(name, rule, shown(value)));
-    value.extract().map_err(wrong)
+    let wrong = || PyTypeError::new_err(must_be(name, rule, shown(value)));
+    if value.extract::<bool>().is_ok() {
+        return Err(wrong());
+    }
+    value.extract().map_err(|_| wrong())
 }
 
 /// A value in an error message.
@@ -119,7 +122,11 @@ fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Pa
             if let Ok(count) = value.len()
                 && count != 3
             {
-                return Err(PyValueError::new_err(must_be(name, "3 numbers", count)));
+                return Err(PyValueError::new_err(must_be(
+                    name,
+                    "3 numbers, such as [-2, 0, 2]",
+                    count,
+                )));
             }
             params.torques = convert(name, "a sequence of 3 numbers", value)?;
         }

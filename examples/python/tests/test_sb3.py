@@ -204,6 +204,8 @@ def test_spaces_follow_the_parameters(sb3):
 def test_misuse_is_rejected(sb3):
     with pytest.raises(ValueError, match='autoreset_mode must be "SameStep", got "NextStep"'):
         sb3.AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(2))
+    with pytest.raises(TypeError, match="AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got TimeLimit"):
+        sb3.AcrobotVecEnv(gymnasium.make("acrobot_rs/Acrobot-v1"))
     envs = make(sb3, 2)
     envs.reset()
     for _ in range(2):

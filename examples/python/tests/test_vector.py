@@ -121,10 +121,13 @@ def test_actions_can_be_integers_of_any_type(convert):
         *(("autoreset_mode", mode) for mode in ("nextstep", None, 1, [])),
         ("threads", 0),
         ("render_mode", "human"),
+        *((name, value) for name in ("num_envs", "max_episode_steps", "threads") for value in (2.0, "2", True)),
+        *((name, value) for name in ("copy", "gymnasium_episodes") for value in (1, "False", None)),
+        *(("info_parameters", value) for value in (True, None, "dt", [0])),
     ],
 )
 def test_invalid_arguments_are_rejected(name, value):
-    with pytest.raises(ValueError, match=f"^{name} must be "):
+    with pytest.raises((TypeError, ValueError), match=f"^{name} must be .*, got "):
         acrobot_rs.AcrobotVectorEnv(**{"num_envs": 2, name: value})
 
 

@@ -2,12 +2,15 @@
 
 import copy
 import itertools
+import math
 import pickle
+import types
 
+import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs.arrays import reset_mask
+from acrobot_rs.arrays import reset_mask, warn_of_other_sines
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode
 from vectors import MODES, assert_equal, different, make_vec, pair
@@ -29,10 +32,11 @@ def test_streams_are_the_seed_s_children_whatever_the_number_of_environments():
 
 def test_rejected_seeds_and_bounds_change_nothing():
     envs = make_vec(2)
-    envs.reset(seed=True)  # Gymnasium accepts it as 1
-    assert envs.np_random_seed == 1
+    single = acrobot_rs.AcrobotEnv()
+    for each in (single, envs):
+        assert (each.reset(seed=np.uint8(255))[0] == each.reset(seed=255)[0]).all()
     before = envs._native.__getstate__(), envs.np_random_seed, envs.np_random.bit_generator.state
-    bad_seeds = (-1, "4", 4.0, np.int64(4), 10**5000)
+    bad_seeds = (-1, "4", 4.0, True, np.True_, 10**5000)
     bad_options = ({"low": 1, "high": 0}, {"high": np.inf}, {"lo": 1}, {"low": 1, "reset_mask": [True, False]})
     for seed in (*bad_seeds, [1], (1,) * 3, *([1, bad] for bad in bad_seeds), None):
         for options in bad_options if seed is None else ({},):
@@ -80,6 +84,15 @@ def test_other_bytes_than_0_and_1_in_a_mask_become_1():
     """A NumPy bool can be any byte. In Rust a bool that is not 0 or 1 is undefined behaviour."""
     mask = reset_mask({"reset_mask": np.array([2, 0, 255, 0], np.uint8).view(np.bool_)}, 4)
     assert mask.tobytes() == b"\1\0\1\0"
+
+
+def test_other_sines_are_warned_of_once(monkeypatch):
+    monkeypatch.setattr(acrobot_rs.arrays, "math", types.SimpleNamespace(sin=math.sin, cos=lambda x: math.cos(x) + (x > 0)))
+    warn_of_other_sines.cache_clear()
+    with pytest.warns(UserWarning, match="of [45],... of 10,000 angles differently .* are not bit-identical") as warned:
+        acrobot_rs.AcrobotVectorEnv(gymnasium_episodes=True)
+        acrobot_rs.AcrobotVectorEnv(gymnasium_episodes=True)
+    assert len(warned) == 1 and warned[0].filename == __file__
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.5])

@@ -33,7 +33,10 @@ export function parametersPanel(get, set) {
     $("params").append(field);
     const [slider, text] = field.querySelectorAll("input");
     const reason = field.querySelector(".reason");
-    const change = () => attempt(text, reason, () => set({ ...get(), [name]: parseNumber(text.value) }));
+    const change = () => {
+      attempt(text, reason, () => set({ ...get(), [name]: parseNumber(text.value) }));
+      reason.textContent = reason.textContent.replace(/NaN$/, () => text.value.trim() || "an empty text");
+    };
     slider.oninput = () => {
       text.value = slider.value;
       change();

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+import math
 import reprlib
+import warnings
 from collections.abc import Iterable, Mapping
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -68,6 +72,13 @@ def numbers(
     raise error(f"{name} must be {rule}, got {found}")
 
 
+def require(kind: type, rule: str, **arguments: Any) -> None:
+    """Reject arguments of another type, by their names. A bool is no integer here, and a text no sequence."""
+    for name, value in arguments.items():
+        if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool | str)):
+            raise TypeError(f"{name} must be {rule}, got {value!r}")
+
+
 def values_of_each(name: str, value: Any) -> list[Any] | None:
     """The values of a parameter, if there is one for each environment."""
     if isinstance(value, np.ndarray):
@@ -84,25 +95,44 @@ def seeds_of(seed: Seed, num_envs: int, gymnasium_episodes: bool) -> tuple[str |
     if isinstance(seed, list | tuple):
         if len(seed) != num_envs:
             raise ValueError(f"seed must have one element for each of {num_envs} environments, got {len(seed)}")
-        return None, [None if each is None else _digits(each) for each in seed]
-    digits = None if seed is None else _digits(seed)
-    if seed is None or not gymnasium_episodes:
-        return digits, None
-    return None, [_digits(seed + i) for i in range(num_envs)]
+        return None, [_digits(each) for each in seed]
+    plain = plain_seed(seed)
+    if plain is None or not gymnasium_episodes:
+        return _digits(plain), None
+    return None, [_digits(plain + i) for i in range(num_envs)]
 
 
-def _digits(seed: Any) -> str:
-    """The digits of a seed. `str` rejects more than 4,300."""
+def plain_seed(seed: Any) -> int | None:
+    """A seed as Python's ``int``, which Gymnasium requires, also if it is one of NumPy's integers."""
+    if seed is None:
+        return None
     # Gymnasium accepts True as 1.
-    if not isinstance(seed, int) or seed < 0:
+    if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
         raise Error(f"seed must be an integer of at least 0, got {seed!r}")
-    return str(int(seed))
+    return int(seed)
+
+
+def _digits(seed: Any) -> str | None:
+    """The digits of a seed. `str` rejects more than 4,300."""
+    plain = plain_seed(seed)
+    return None if plain is None else str(plain)
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
     """An assignment to its elements, which would have no effect, raises."""
     array.flags.writeable = False
     return array
+
+
+@functools.cache
+def warn_of_other_sines() -> None:
+    """Warn, once, if NumPy does not round sines as the C library does, because Gymnasium's episodes contain NumPy's."""
+    angles = np.random.default_rng(0).uniform(-2 * np.pi, 2 * np.pi, 10_000)
+    pairs = zip(angles.tolist(), np.sin(angles).tolist(), np.cos(angles).tolist(), strict=True)
+    count = sum((sine, cosine) != (math.sin(angle), math.cos(angle)) for angle, sine, cosine in pairs)
+    if count:
+        what = f"NumPy rounds the sine or cosine of {count:,} of 10,000 angles differently from the C library here"
+        warnings.warn(f"gymnasium_episodes: {what}, so episodes follow Gymnasium's but are not bit-identical", stacklevel=3)
 
 
 def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dict[str, Any]) -> dict[str, Any]:

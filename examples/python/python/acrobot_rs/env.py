@@ -11,7 +11,7 @@ from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.arrays import numbers, reset_bounds
+from acrobot_rs.arrays import numbers, plain_seed, reset_bounds
 from acrobot_rs.parameters import Parameters
 
 
@@ -138,7 +138,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
                 then.
         """
         low, high = reset_bounds(options, ())
-        super().reset(seed=seed)
+        super().reset(seed=plain_seed(seed))
         # Gymnasium rounds initial states to float32.
         state = self.np_random.uniform(low, high, 4).astype(np.float32)
         self._native.state = state
@@ -154,14 +154,15 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         """Apply a torque for ``dt``.
 
         Args:
-            action: 0, 1 or 2: a torque of -1, 0 or 1 N m.
+            action: An element of the action space. ``Discrete(3)``: 0, 1 or 2, a torque of -1, 0 or 1 N m. ``Box``: an array
+                of one torque, N m.
 
         Returns:
             The observation; the reward, -1.0, or 0.0 if the step reaches the goal; whether it does; ``False``, because the
             wrapper of ``gymnasium.make`` counts the steps and truncates; and an empty info.
 
         Raises:
-            gymnasium.error.InvalidAction: If the action is not 0, 1 or 2. Nothing changes then.
+            gymnasium.error.InvalidAction: If the action is another one. Nothing changes then.
             ValueError: If a number that is not finite was assigned to an element of ``state``.
             AssertionError: If the environment was never reset.
         """

@@ -8,6 +8,7 @@ import difflib
 import functools
 import inspect
 import math
+import re
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
 
@@ -117,7 +118,8 @@ def _near(name: str, names: tuple[str, ...], cutoff: float) -> str | None:
 def _hint(name: str, others: tuple[str, ...] = ()) -> str:
     """What an unknown name may mean: a parameter, or one of other names."""
     names = (*others, *_NAMES)
-    meant = _near(name, names, 0.5)
+    bound = re.search("(?i)torque_?(max|limit)|(max|limit)_?torque", name)
+    meant = "AVAIL_TORQUE" if bound else _near(name, names, 0.5)
     return f"did you mean {meant}?" if meant else f"it has {', '.join(names)}"
 
 
@@ -178,14 +180,19 @@ class Parameters:
             if name in _NAMES:
                 Batch().set_drawn(name, value) if isinstance(value, Drawn) else Acrobot().set(name, value)
                 setattr(cls, name, _fixed(name, value))
-        # Also what a class inherits from one without parameters.
+        cls._check_names()
+
+    @classmethod
+    def _check_names(cls) -> None:
+        """Reject attributes of this class, and of those that it inherits from, that would have no effect."""
         for base in cls.__mro__:
-            for name, value in vars(base).items() if base is cls or not issubclass(base, Parameters) else ():
+            for name, value in vars(base).items() if base is not Parameters else ():
                 if name in _IGNORED or not callable(value):
                     _reject_ignored(cls, name)
 
     def __init__(self, native: Acrobot | Batch, render_mode: str | None, parameters: dict[str, Any]) -> None:
-        """Pass the parameters to the native part: these, and those of the class, which a subclass may have changed."""
+        """Pass the parameters to the native part: these, and those of the class, which may have changed."""
+        self._check_names()
         for name in parameters.keys() - set(_NAMES):
             arguments = inspect.signature(type(self)).parameters.values()
             others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)

@@ -43,8 +43,11 @@ class AcrobotVecEnv(VecEnv):
             envs: Environments with ``autoreset_mode="SameStep"``.
 
         Raises:
+            TypeError: If they are no :class:`AcrobotVectorEnv`.
             ValueError: If they have another autoreset mode.
         """
+        if not isinstance(getattr(envs, "unwrapped", None), AcrobotVectorEnv):
+            raise TypeError(f"AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got {type(envs).__name__}")
         if envs.autoreset_mode is not AutoresetMode.SAME_STEP:
             raise ValueError(f'autoreset_mode must be "SameStep", got "{envs.autoreset_mode.value}"')
         self.envs = envs

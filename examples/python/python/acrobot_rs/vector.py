@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,9 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
+from acrobot_rs import arrays
 from acrobot_rs._native import Batch
-from acrobot_rs.arrays import Seed, final_infos, numbers, read_only, reset_bounds, reset_mask, seeds_of, values_of_each
+from acrobot_rs.arrays import Seed, numbers, read_only, require
 from acrobot_rs.parameters import _NAMES, Drawn, Parameters, _fixed, _hint
 
 Floats = NDArray[np.float32]
@@ -98,23 +100,20 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         modes = [mode.value for mode in AutoresetMode]
         if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
             raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
-        for name in [info_parameters] if isinstance(info_parameters, str) else info_parameters:
-            if name not in _NAMES or name is info_parameters:
-                raise ValueError(f"info_parameters must be a sequence of names of parameters, got {name!r}; {_hint(str(name))}")
+        require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
+        for name in (each for each in info_parameters if each not in _NAMES):
+            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {_hint(str(name))}")
         self.info_parameters = tuple(info_parameters)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self._same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
         if threads is None:
             threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-        native = Batch(
-            num_envs,
-            str(self.np_random_seed),
-            max_episode_steps,
-            self.autoreset_mode.value,
-            gymnasium_episodes,
-            self._CONTINUOUS,
-            threads,
-        )
+        require(Integral, "an integer", num_envs=num_envs, max_episode_steps=max_episode_steps, threads=threads)
+        require(bool, "True or False", copy=copy, gymnasium_episodes=gymnasium_episodes)
+        if gymnasium_episodes:
+            arrays.warn_of_other_sines()
+        seed, mode = str(self.np_random_seed), self.autoreset_mode.value
+        native = Batch(num_envs, seed, max_episode_steps, mode, gymnasium_episodes, self._CONTINUOUS, threads)
         super().__init__(native, render_mode, parameters)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self.num_envs = num_envs
@@ -145,7 +144,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """theta1, theta2 (rad) and their velocities (rad/s) of each environment, of shape ``(num_envs, 4)``: a read-only copy.
 
         To set the states, assign an array of this shape. To set some, change rows of ``state.copy()`` and assign it. Episodes
-        continue. Their numbers of steps do not change.
+        and numbers of steps continue. In mode ``NextStep`` the next step resets the ended episodes all the same.
 
         Raises:
             ValueError: If the shape is another one, or if a number is not finite. No state changes then.
@@ -195,15 +194,15 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             gymnasium.error.Error: If a seed is not an integer of at least 0. Nothing changes then.
         """
         self._check_open()
-        low, high = reset_bounds(options)
-        mask = reset_mask(options, self.num_envs)
-        child_of, seeds = seeds_of(seed, self.num_envs, self._gymnasium_episodes)
+        low, high = arrays.reset_bounds(options)
+        mask = arrays.reset_mask(options, self.num_envs)
+        child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
         if seeds is not None:
             every = np.ones(self.num_envs, np.bool_) if mask is None else mask
             self._native.seed([each if some else None for each, some in zip(seeds, every, strict=True)])
         self._native.reset(child_of, low, high, mask)
         if not isinstance(seed, list | tuple):
-            super().reset(seed=seed)
+            super().reset(seed=arrays.plain_seed(seed))
         if mask is not None and options is not None:
             del options["reset_mask"]
         if self._ended is not None:
@@ -219,7 +218,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         """Step each environment. Other Python threads can run meanwhile.
 
         Args:
-            actions: 0, 1 or 2 for each environment: integers of shape ``(num_envs,)``.
+            actions: 0, 1 or 2: integers of shape ``(num_envs,)``. Continuous: torques of shape ``(num_envs, 1)``, N m.
 
         Returns:
             Observations, of shape ``(num_envs, 6)``; rewards, -1, or 0 where the step reaches the goal; where the goal was
@@ -249,7 +248,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             np.logical_or(terminated, truncated, out=self._ended)
         infos = self._parameter_infos()
         if finals is not None:
-            infos |= final_infos(finals, terminated | truncated, last)
+            infos |= arrays.final_infos(finals, terminated | truncated, last)
         if not self._gymnasium_episodes:
             return observations, rewards, terminated, truncated, infos
         if self._same_step:
@@ -347,7 +346,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         if isinstance(value, Drawn):
             self._native.set_drawn(name, value)
             return value
-        each = values_of_each(name, value)
+        each = arrays.values_of_each(name, value)
         if each is None:
             self._native.set(name, value)
         else:
