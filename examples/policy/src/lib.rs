@@ -1,0 +1,236 @@
+//! Policies that were trained in Python: multilayer perceptrons with tanh or ReLU, without a heap and without a panic.
+//!
+//! `acrobot_rs.policy.save` writes a file, and a `static` checks and holds it:
+//!
+//! ```ignore
+//! static POLICY: Policy<64> = match Policy::new(include_bytes!("policy.bin")) {
+//!     Ok(policy) => policy,
+//!     Err(error) => panic!("{}", error.message()),
+//! };
+//! ```
+//!
+//! Each sum begins with the bias and adds the products in the order of the inputs, in `f32` without a fused multiply-add; tanh is
+//! `libm`'s. So the outputs have the same bits on every machine. torch adds in another order, so they differ from its outputs in the last digits.
+//!
+//! # The file
+//!
+//! Little-endian, in this order:
+//!
+//! | bytes | contents |
+//! |---|---|
+//! | 4 | `MLP1`: the name and the version |
+//! | 1 | the number of layers |
+//! | 1 | 0: the outputs are scores of the three actions; 1: the only output is a torque, N m |
+//! | 2 | the number of inputs, 6 |
+//! | 4 | the limit of the torque, N m, as `f32`; 0 for scores |
+//! | 4 for each layer | the number of its outputs, 2 bytes; 0 for none, 1 for tanh, 2 for ReLU; 0 |
+//! | 4 for each number | for each layer and each of its outputs: the bias, then a weight for each input, as `f32` |
+//! | 4 | the CRC-32 of all that, as zlib's |
+
+#![no_std]
+
+use acrobot::{Action, Observation};
+
+/// The number of inputs: those of an observation.
+const INPUTS: usize = 6;
+const HEADER: usize = 12;
+
+/// A policy whose layers have at most `WIDTH` outputs, 6 at least. It refers to the file, in flash. A decision needs 8 `WIDTH` bytes of stack.
+#[derive(Clone, Copy, Debug)]
+pub struct Policy<'a, const WIDTH: usize> {
+    layers: &'a [u8],
+    numbers: &'a [u8],
+    torque_limit: Option<f32>,
+}
+
+/// Why a file is rejected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PolicyError {
+    /// The file does not begin with `MLP1`.
+    Magic,
+    /// The file has another length than its header says.
+    Length,
+    /// The checksum differs.
+    Checksum,
+    /// A layer has no output, or more than `WIDTH`.
+    Width,
+    /// A layer has an activation other than 0, 1 and 2.
+    Activation,
+    /// The policy must have six inputs, and three outputs or a torque.
+    Shape,
+    /// A number is not finite, or the limit of the torque is not above 0.
+    Number,
+}
+
+impl PolicyError {
+    /// What the file must have.
+    pub const fn message(self) -> &'static str {
+        match self {
+            Self::Magic => "a policy must begin with MLP1",
+            Self::Length => "a policy must have the length that its header says",
+            Self::Checksum => "a policy must have its checksum",
+            Self::Width => "a layer of a policy must have 1 to WIDTH outputs",
+            Self::Activation => "an activation of a policy must be none, tanh or ReLU",
+            Self::Shape => "a policy must have 6 inputs, and 3 outputs or a torque",
+            Self::Number => {
+                "the numbers of a policy must be finite, and a limit of the torque above 0"
+            }
+        }
+    }
+}
+
+impl core::fmt::Display for PolicyError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.message())
+    }
+}
+
+impl core::error::Error for PolicyError {}
+
+impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
+    /// Checks a file.
+    ///
+    /// # Errors
+    ///
+    /// The file is not one that `acrobot_rs.policy.save` wrote, or a layer is too wide.
+    pub const fn new(file: &'a [u8]) -> Result<Self, PolicyError> {
+        if file.len() < HEADER + 4 || u32_at(file, 0) != u32::from_le_bytes(*b"MLP1") {
+            return Err(PolicyError::Magic);
+        }
+        let (content, checksum) = file.split_at(file.len() - 4);
+        let layers = content[4] as usize;
+        if content.len() < HEADER + 4 * layers {
+            return Err(PolicyError::Length);
+        }
+        let (head, numbers) = content.split_at(HEADER + 4 * layers);
+        let (head, layers) = head.split_at(HEADER);
+        let mut inputs = u16_at(head, 6);
+        if inputs != INPUTS || WIDTH < INPUTS {
+            return Err(PolicyError::Shape);
+        }
+        let (mut i, mut count) = (0, 0);
+        while i < layers.len() {
+            let outputs = u16_at(layers, i);
+            if outputs == 0 || outputs > WIDTH {
+                return Err(PolicyError::Width);
+            }
+            if layers[i + 2] > 2 {
+                return Err(PolicyError::Activation);
+            }
+            count += outputs * (1 + inputs);
+            inputs = outputs;
+            i += 4;
+        }
+        if numbers.len() != 4 * count {
+            return Err(PolicyError::Length);
+        }
+        if crc32(content) != u32_at(checksum, 0) {
+            return Err(PolicyError::Checksum);
+        }
+        let mut i = 0;
+        while i < numbers.len() {
+            if !f32::from_bits(u32_at(numbers, i)).is_finite() {
+                return Err(PolicyError::Number);
+            }
+            i += 4;
+        }
+        let limit = f32::from_bits(u32_at(head, 8));
+        let torque_limit = match (head[5], inputs) {
+            (0, 3) => None,
+            (1, 1) if limit > 0.0 && limit.is_finite() => Some(limit),
+            (1, 1) => return Err(PolicyError::Number),
+            _ => return Err(PolicyError::Shape),
+        };
+        Ok(Self {
+            layers,
+            numbers,
+            torque_limit,
+        })
+    }
+
+    /// The action with the highest score; among equal ones the first. A policy with a torque takes the action of its sign.
+    pub fn action(&self, observation: &Observation) -> Action {
+        let scores = self.outputs(observation);
+        if self.torque_limit.is_some() {
+            let [torque, ..] = scores;
+            return match torque {
+                x if x < 0.0 => Action::Negative,
+                x if x > 0.0 => Action::Positive,
+                _ => Action::Zero,
+            };
+        }
+        let actions = Action::ALL;
+        let mut best = (Action::Negative, f32::NEG_INFINITY);
+        for (action, &score) in actions.into_iter().zip(&scores) {
+            if score > best.1 {
+                best = (action, score);
+            }
+        }
+        best.0
+    }
+
+    /// The torque within its limits, N m. None for a policy with scores of actions.
+    pub fn torque(&self, observation: &Observation) -> Option<f32> {
+        let limit = self.torque_limit?;
+        let [torque, ..] = self.outputs(observation);
+        Some(torque.clamp(-limit, limit))
+    }
+
+    /// The outputs of the last layer: three scores, or a torque before its limits, N m. The rest is 0.
+    pub fn outputs(&self, observation: &Observation) -> [f32; 3] {
+        let mut inputs = [0.0; WIDTH];
+        for (input, x) in inputs.iter_mut().zip(observation.to_array()) {
+            *input = x;
+        }
+        let mut width = INPUTS;
+        let (numbers, _) = self.numbers.as_chunks();
+        let mut numbers = numbers.iter().map(|&number| f32::from_le_bytes(number));
+        let (layers, _) = self.layers.as_chunks();
+        for &[low, high, activation, _] in layers {
+            let mut outputs = [0.0; WIDTH];
+            let count = u16::from_le_bytes([low, high]).into();
+            for output in outputs.iter_mut().take(count) {
+                let mut sum = numbers.next().unwrap_or_default();
+                for (input, weight) in inputs.iter().take(width).zip(&mut numbers) {
+                    sum += weight * input;
+                }
+                *output = match activation {
+                    0 => sum,
+                    1 => libm::tanhf(sum),
+                    _ => sum.max(0.0),
+                };
+            }
+            inputs = outputs;
+            width = count;
+        }
+        let mut last = [0.0; 3];
+        for (output, x) in last.iter_mut().zip(inputs) {
+            *output = x;
+        }
+        last
+    }
+}
+
+const fn u16_at(bytes: &[u8], i: usize) -> usize {
+    u16::from_le_bytes([bytes[i], bytes[i + 1]]) as usize
+}
+
+const fn u32_at(bytes: &[u8], i: usize) -> u32 {
+    u32::from_le_bytes([bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]])
+}
+
+/// zlib's, without a table: the compiler computes it.
+const fn crc32(bytes: &[u8]) -> u32 {
+    let (mut crc, mut i) = (u32::MAX, 0);
+    while i < bytes.len() {
+        crc ^= bytes[i] as u32;
+        let mut bit = 0;
+        while bit < 8 {
+            crc = (crc >> 1) ^ (0xedb8_8320 * (crc & 1));
+            bit += 1;
+        }
+        i += 1;
+    }
+    !crc
+}

@@ -1,0 +1,143 @@
+//! Policies from files: outputs against sums by hand, and files that must be rejected.
+
+use acrobot::{Action, Observation};
+use policy::{Policy, PolicyError};
+
+const SEEN: [f32; 6] = [0.9, -0.4, 0.5, 0.8, -1.5, 3.0];
+
+/// Layers of two units with tanh and with ReLU, then the outputs.
+fn file(torque_limit: Option<f32>) -> Vec<u8> {
+    let mut bytes = b"MLP1".to_vec();
+    bytes.extend([3, torque_limit.is_some().into(), 6, 0]);
+    bytes.extend(torque_limit.unwrap_or(0.0).to_le_bytes());
+    let outputs = if torque_limit.is_some() { 1 } else { 3 };
+    for [outputs, activation] in [[2, 1], [2, 2], [outputs, 0]] {
+        bytes.extend([outputs, 0, activation, 0]);
+    }
+    for i in 0..2 * 7 + 2 * 3 + 3 * usize::from(outputs) {
+        bytes.extend(number(i).to_le_bytes());
+    }
+    sealed(bytes)
+}
+
+fn number(i: usize) -> f32 {
+    ((i * 37 % 19) as f32 - 9.0) / 8.0
+}
+
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&bytes);
+    bytes.extend(checksum.to_le_bytes());
+    bytes
+}
+
+/// The outputs of `file`, in `f64`.
+fn by_hand() -> Vec<f64> {
+    let mut next = 0;
+    let mut layer = |inputs: &[f64], outputs: usize, activation: fn(f64) -> f64| -> Vec<f64> {
+        (0..outputs)
+            .map(|_| {
+                let numbers: Vec<f64> = (next..=next + inputs.len())
+                    .map(|i| number(i).into())
+                    .collect();
+                next += 1 + inputs.len();
+                let products = inputs.iter().zip(&numbers[1..]).map(|(x, w)| x * w);
+                activation(numbers[0] + products.sum::<f64>())
+            })
+            .collect()
+    };
+    let first = layer(&SEEN.map(f64::from), 2, f64::tanh);
+    let second = layer(&first, 2, |x| x.max(0.0));
+    layer(&second, 3, |x| x)
+}
+
+#[test]
+fn outputs_are_those_of_the_layers() {
+    let file = file(None);
+    let policy = Policy::<6>::new(&file).unwrap();
+    let outputs = policy.outputs(&Observation::from(SEEN));
+    for (output, expected) in outputs.into_iter().zip(by_hand()) {
+        assert!(
+            (f64::from(output) - expected).abs() < 1e-6,
+            "{output} {expected}"
+        );
+    }
+    let best = (0..3)
+        .max_by(|&i, &j| outputs[i].total_cmp(&outputs[j]))
+        .unwrap();
+    assert_eq!(policy.action(&Observation::from(SEEN)), Action::ALL[best]);
+    assert_eq!(policy.torque(&Observation::from(SEEN)), None);
+}
+
+#[test]
+fn a_torque_is_within_its_limit() {
+    let wide = file(Some(100.0));
+    let policy = Policy::<64>::new(&wide).unwrap();
+    let [output, ..] = policy.outputs(&Observation::from(SEEN));
+    assert_eq!(policy.torque(&Observation::from(SEEN)), Some(output));
+    let expected = if output < 0.0 {
+        Action::Negative
+    } else {
+        Action::Positive
+    };
+    assert_eq!(policy.action(&Observation::from(SEEN)), expected);
+    let narrow = file(Some(0.01));
+    let torque = Policy::<64>::new(&narrow)
+        .unwrap()
+        .torque(&Observation::from(SEEN));
+    assert_eq!(torque, Some(0.01_f32.copysign(output)));
+}
+
+#[test]
+fn other_files_are_rejected() {
+    let good = file(None);
+    let changed = |at: usize, byte: u8| {
+        let mut bytes = good[..good.len() - 4].to_vec();
+        bytes[at] = byte;
+        sealed(bytes)
+    };
+    let infinite = {
+        let mut bytes = good[..good.len() - 4].to_vec();
+        bytes[24..28].copy_from_slice(&f32::INFINITY.to_le_bytes());
+        sealed(bytes)
+    };
+    let mut damaged = good.clone();
+    damaged[30] ^= 1;
+    for (bytes, error) in [
+        (changed(3, b'2'), PolicyError::Magic),
+        (vec![], PolicyError::Magic),
+        (good[..20].to_vec(), PolicyError::Length),
+        (changed(4, 200), PolicyError::Length),
+        (changed(4, 2), PolicyError::Length),
+        (changed(6, 5), PolicyError::Shape),
+        (changed(12, 0), PolicyError::Width),
+        (changed(12, 7), PolicyError::Width),
+        (changed(14, 3), PolicyError::Activation),
+        (changed(5, 1), PolicyError::Shape),
+        (changed(5, 2), PolicyError::Shape),
+        (file(Some(0.0)), PolicyError::Number),
+        (file(Some(f32::NAN)), PolicyError::Number),
+        (infinite, PolicyError::Number),
+        (damaged, PolicyError::Checksum),
+    ] {
+        assert_eq!(Policy::<6>::new(&bytes).unwrap_err(), error, "{error}");
+    }
+    assert_eq!(Policy::<5>::new(&good).unwrap_err(), PolicyError::Shape);
+}
+
+/// No byte of a file can make a decision panic.
+#[test]
+fn any_accepted_file_decides() {
+    let good = file(None);
+    let mut accepted = 0;
+    for at in 0..good.len() - 4 {
+        for byte in [0, 1, 2, 3, 127, 128, 255] {
+            let mut bytes = good[..good.len() - 4].to_vec();
+            bytes[at] = byte;
+            if let Ok(policy) = Policy::<64>::new(&sealed(bytes)) {
+                policy.action(&Observation::from([f32::MAX; 6]));
+                accepted += 1;
+            }
+        }
+    }
+    assert!(accepted > 500, "{accepted}");
+}
