@@ -244,7 +244,7 @@ fn a_seeded_reset_equals_a_new_acrobot() {
     acrobot.step(Action::Zero);
     let observation = acrobot.reset_with_seed(7);
     assert_eq!(acrobot, TimeLimit::v1(Acrobot::new(7)));
-    assert_eq!(observation, acrobot.inner().observation());
+    assert_eq!(observation, acrobot.observation());
 }
 
 /// With a seed, `reset_with` resets as `reset_with_seed` does. It draws from the bounds that it is given.
