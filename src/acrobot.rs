@@ -69,6 +69,7 @@ impl<O, I> Step<O, I> {
 /// The first field holds the type, the version (1) and the [name of the arithmetic](Arithmetic::NAME). Loading rejects
 /// other values of this field, and the error names both. Loading also rejects parameters and states that the setters
 /// reject. postcard's errors do not say why. The version of a [`TimeLimit`](crate::TimeLimit) is that of its acrobot.
+/// For a buffer there are `Acrobot::MAX_SNAPSHOT_SIZE` and `TimeLimit::MAX_SNAPSHOT_SIZE`, bytes in postcard's format.
 ///
 /// `Params`, `State` and `Pcg64` can also be saved alone, without a version. A saved [`Pcg64`] is the hash of a seed
 /// and a position in its stream, so any values make a valid generator.

@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-/// Why an input was rejected. The message names the value, its unit and the rule.
+/// Why an input was rejected. `Display` names the value, its unit and the rule; [`message`](Self::message) is only the
+/// kind of error.
 ///
 /// A rejected call changes nothing.
 ///

@@ -46,7 +46,8 @@
 //! - `render` (feature `graphics`): drawing, on a display or into memory.
 //! - `env` (feature `std`): Gymnasium's `make`, spaces, wrappers and render modes.
 //! - [`arithmetic`]: the types that decide the bits, and the trait to write another one.
-//! - [`guide`]: pages on parity, accuracy, determinism, the equations, speed and learning.
+//! - [`guide`]: pages on firmware, C, browsers, Python, control, parity, accuracy, determinism, the equations, speed and
+//!   learning.
 //!
 //! # Features
 //!

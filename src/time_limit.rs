@@ -132,6 +132,13 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
         self.inner.state()
     }
 
+    /// The observation of the state.
+    #[must_use]
+    #[inline]
+    pub fn observation(&self) -> Observation {
+        self.inner.observation()
+    }
+
     /// Calls [`Acrobot::set_state`]. The count of steps does not change.
     ///
     /// # Errors

@@ -188,7 +188,7 @@ fn reset_with_takes_a_seed_and_bounds() {
     ];
     for reset in resets {
         acrobot.step(Action::Zero);
-        assert_eq!(reset(&mut acrobot), new.inner().observation());
+        assert_eq!(reset(&mut acrobot), new.observation());
         assert_eq!(acrobot, new);
     }
 

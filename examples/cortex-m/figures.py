@@ -71,7 +71,7 @@ LIMITS = {
     "1_Nm": "1 N m, 100",
 }
 BALANCE = {
-    "missed": "not caught within 200 s",
+    "uncaught": "not caught within 200 s",
     "catch_mean_s": "mean time to catch, s",
     "catch_longest_s": "longest time to catch, s",
     "error_mrad": "largest error of an angle while held, mrad",

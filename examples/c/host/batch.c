@@ -43,7 +43,7 @@ int main(void)
     status = acrobot_batch_set_params(batch, &params, &error);
     if (status == ACROBOT_ERROR_OUT_OF_RANGE) {
         // dt must be finite and above 0 s, got 0
-        printf("%s must be %s %s, got %g\n", error.name, error.rule, error.unit, error.value);
+        printf("%s must be %s, got %g\n", error.name, error.rule, error.value);
     }
     for (int step = 0; step < 1000; step++) {
         for (int i = 0; i < COUNT; i++) {

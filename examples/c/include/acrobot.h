@@ -90,7 +90,7 @@ typedef enum acrobot_status_t {
   ACROBOT_ERROR_MOVED = 5,
   // The action is not 0, 1 or 2.
   ACROBOT_ERROR_UNKNOWN_ACTION = 6,
-  // A number is outside its range, infinite or NaN. An acrobot_error_t names it.
+  // A number is outside its range, infinite or NaN. The argument `error` of the function, if it has one, names it.
   ACROBOT_ERROR_OUT_OF_RANGE = 7,
   // The count is not that of the batch's acrobots, or a new batch would have none.
   ACROBOT_ERROR_WRONG_COUNT = 8,
@@ -128,7 +128,7 @@ typedef struct acrobot_observation_t {
 } acrobot_observation_t;
 
 // Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
-// with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
+// with a zero byte. Print it by `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 typedef struct acrobot_error_t {
   // The value that was rejected, in `unit`.
   double value;
@@ -136,8 +136,8 @@ typedef struct acrobot_error_t {
   char name[24];
   // Its SI unit: `"s"`.
   char unit[16];
-  // The rule: `"finite and above 0"`.
-  char rule[48];
+  // The rule, with the unit: `"finite and above 0 s"`.
+  char rule[64];
 } acrobot_error_t;
 
 // The result of a step.
@@ -293,7 +293,8 @@ enum acrobot_status_t acrobot_energy(const struct acrobot_t *acrobot, float *ene
 // The height of the tip above the fixed joint, m.
 enum acrobot_status_t acrobot_tip_height(const struct acrobot_t *acrobot, float *height);
 
-// The deviation of the state from `target`. Angles are wrapped to ±π, so it is continuous upright.
+// The deviation of the state from `target`, which must be finite. Angles are wrapped to ±π, so it is continuous
+// upright.
 enum acrobot_status_t acrobot_deviation(const struct acrobot_t *acrobot,
                                         const struct acrobot_state_t *target,
                                         struct acrobot_state_t *deviation);
@@ -302,9 +303,10 @@ enum acrobot_status_t acrobot_deviation(const struct acrobot_t *acrobot,
 // torque in each dt is −(gain.theta1 · x.theta1 + gain.theta2 · x.theta2 + gain.dtheta1 · x.dtheta1 + gain.dtheta2 ·
 // x.dtheta2) for a deviation x; clamp it to that of your motor.
 //
-// `target` must be in equilibrium without a torque, such as upright. `q` has the weights of the four squared deviations,
-// 0 or more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². Without a regulator
-// for these the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
+// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and accelerations of at most 0.01
+// rad/s². `q` has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` is that of the
+// squared torque, above 0, in 1/(N m)². Without a regulator for these and the parameters, for example without gravity,
+// the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
 enum acrobot_status_t acrobot_lqr(struct acrobot_t *acrobot,
                                   const struct acrobot_state_t *target,
                                   const struct acrobot_state_t *q,

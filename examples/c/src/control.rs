@@ -9,7 +9,8 @@ use crate::memory::{change, check, get, read};
 use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
-/// The deviation of the state from `target`. Angles are wrapped to ±π, so it is continuous upright.
+/// The deviation of the state from `target`, which must be finite. Angles are wrapped to ±π, so it is continuous
+/// upright.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_deviation(
     acrobot: *const acrobot_t,
@@ -17,7 +18,8 @@ pub unsafe extern "C" fn acrobot_deviation(
     deviation: *mut acrobot_state_t,
 ) -> acrobot_status_t {
     get(acrobot, deviation, |acrobot| {
-        let target = read(target)?.into();
+        let target = State::from(read(target)?);
+        target.validate()?;
         Ok(State::from(acrobot.inner().pendulum().deviation(target)).into())
     })
 }
@@ -26,9 +28,10 @@ pub unsafe extern "C" fn acrobot_deviation(
 /// torque in each dt is −(gain.theta1 · x.theta1 + gain.theta2 · x.theta2 + gain.dtheta1 · x.dtheta1 + gain.dtheta2 ·
 /// x.dtheta2) for a deviation x; clamp it to that of your motor.
 ///
-/// `target` must be in equilibrium without a torque, such as upright. `q` has the weights of the four squared deviations,
-/// 0 or more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². Without a regulator
-/// for these the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
+/// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and accelerations of at most 0.01
+/// rad/s². `q` has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` is that of the
+/// squared torque, above 0, in 1/(N m)². Without a regulator for these and the parameters, for example without gravity,
+/// the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_lqr(
     acrobot: *mut acrobot_t,
@@ -38,21 +41,26 @@ pub unsafe extern "C" fn acrobot_lqr(
     gain: *mut acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    const RULE: &str = "finite and at least 0";
+    const NAMES: [&str; 4] = ["q.theta1", "q.theta2", "q.dtheta1", "q.dtheta2"];
+    /// Of velocities and accelerations in equilibrium, rad/s and rad/s². Rounding upright is far below.
+    const LARGEST: [f32; 4] = [0.0, 0.0, 0.01, 0.01];
 
     change(acrobot, gain, error, |acrobot| {
         check(gain)?;
         let pendulum = Pendulum::<Fast>::new(*acrobot.params(), read(target)?.into())?;
+        for (rate, largest) in pendulum.derivative(0.0).into_iter().zip(LARGEST) {
+            if !(-largest..=largest).contains(&rate) {
+                let rule = "in equilibrium without a torque";
+                return Err(Rejected::number("target", rate.into(), "", rule));
+            }
+        }
         let mut weights = [[0.0; 4]; 4];
         let diagonal: [f32; 4] = State::from(read(q)?).into();
-        for (to, weight) in weights
-            .as_flattened_mut()
-            .iter_mut()
-            .step_by(5)
-            .zip(diagonal)
-        {
+        let elements = weights.as_flattened_mut().iter_mut().step_by(5);
+        for ((to, weight), name) in elements.zip(diagonal).zip(NAMES) {
             if !(0.0..f32::INFINITY).contains(&weight) {
-                return Err(Rejected::number("q", weight.into(), "", RULE));
+                let rule = "finite and at least 0";
+                return Err(Rejected::number(name, weight.into(), "", rule));
             }
             *to = weight;
         }

@@ -25,7 +25,7 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_MOVED = 5,
     /// The action is not 0, 1 or 2.
     ACROBOT_ERROR_UNKNOWN_ACTION = 6,
-    /// A number is outside its range, infinite or NaN. An acrobot_error_t names it.
+    /// A number is outside its range, infinite or NaN. The argument `error` of the function, if it has one, names it.
     ACROBOT_ERROR_OUT_OF_RANGE = 7,
     /// The count is not that of the batch's acrobots, or a new batch would have none.
     ACROBOT_ERROR_WRONG_COUNT = 8,
@@ -38,7 +38,7 @@ pub enum acrobot_status_t {
 use acrobot_status_t::*;
 
 /// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
-/// with a zero byte. Print it by `printf("%s must be %s %s, got %g", error.name, error.rule, error.unit, error.value)`.
+/// with a zero byte. Print it by `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 #[repr(C)]
 pub struct acrobot_error_t {
     /// The value that was rejected, in `unit`.
@@ -47,8 +47,8 @@ pub struct acrobot_error_t {
     pub name: [c_char; 24],
     /// Its SI unit: `"s"`.
     pub unit: [c_char; 16],
-    /// The rule: `"finite and above 0"`.
-    pub rule: [c_char; 48],
+    /// The rule, with the unit: `"finite and above 0 s"`.
+    pub rule: [c_char; 64],
 }
 
 /// Why a call was rejected. The other fields belong to ACROBOT_ERROR_OUT_OF_RANGE: `name must be rule unit, got value`.
@@ -76,11 +76,12 @@ impl Rejected {
     #[inline(always)]
     pub unsafe fn explain(&self, error: Array<acrobot_error_t>) {
         if !error.is_omitted() && matches!(self.status, ACROBOT_ERROR_OUT_OF_RANGE) {
+            let space = if self.unit.is_empty() { "" } else { " " };
             let explained = acrobot_error_t {
                 value: self.value,
-                name: text(self.name),
-                unit: text(self.unit),
-                rule: text(self.rule),
+                name: text([self.name, "", ""]),
+                unit: text([self.unit, "", ""]),
+                rule: text([self.rule, space, self.unit]),
             };
             error.write(explained);
         }
@@ -127,7 +128,7 @@ impl From<ControlError> for Rejected {
             ControlError::Invalid(error) => error.into(),
             // Not another status: each firmware would contain its text.
             _ => {
-                let rule = "finite; these weights have no regulator";
+                let rule = "finite; target, dt, gravity and weights allow no regulator";
                 Self::number("gain", f64::NAN, "", rule)
             }
         }
@@ -139,10 +140,11 @@ pub fn status(call: impl FnOnce() -> Result<(), Rejected>) -> acrobot_status_t {
     call().map_or_else(|rejected| rejected.status, |()| ACROBOT_OK)
 }
 
-/// A text that ends with a zero byte.
-fn text<const N: usize>(text: &str) -> [c_char; N] {
+/// Texts one after the other, and a zero byte.
+fn text<const N: usize>(texts: [&str; 3]) -> [c_char; N] {
     let mut to = [0; N];
-    for (to, from) in to.iter_mut().take(N - 1).zip(text.bytes()) {
+    let bytes = texts.into_iter().flat_map(str::bytes);
+    for (to, from) in to.iter_mut().take(N - 1).zip(bytes) {
         *to = from as c_char;
     }
     to
@@ -160,7 +162,7 @@ pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
         c"the batch was moved",
         c"the action is not 0, 1 or 2",
         c"a number is out of range",
-        c"the count is not that of the batch",
+        c"the count is 0 or not that of the batch",
         c"there is no acrobot with this index",
         c"two arguments overlap",
     ];

@@ -13,6 +13,9 @@ static const acrobot_params_t NO_MASS = {
     1, 1, 0, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK,
 };
 static const acrobot_state_t WEIGHTS = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1}, ZERO = {0, 0, 0, 0};
+static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, NO_EQUILIBRIA[] = {
+    {3.1f, 0, 0, 0}, {1.5f, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, .001f, 0}, {3.1415927f, 0, 0, -1},
+};
 static const bool MASK[COUNT] = {true, false, true};
 
 typedef acrobot_observation_t observations_t[COUNT];
@@ -182,7 +185,7 @@ static bool names(const acrobot_error_t *error, const char *name, double value, 
 // Each of these calls is rejected and leaves all bytes of the acrobot as they were.
 static void arguments_of_an_acrobot(void)
 {
-    acrobot_t *acrobot = (acrobot_t *)hold(ALONE), twin = *acrobot, floating = *acrobot;
+    acrobot_t *acrobot = (acrobot_t *)hold(ALONE), twin = *acrobot, floating = *acrobot, heavy = *acrobot;
     acrobot_action_space_t action_space;
     acrobot_error_t error;
     acrobot_step_t step, twin_step;
@@ -197,13 +200,13 @@ static void arguments_of_an_acrobot(void)
         CHECK((action >= 0 && action <= 2) || acrobot_step(acrobot, action, &step) == ACROBOT_ERROR_UNKNOWN_ACTION);
     }
     CHECK(acrobot_reset_within(acrobot, .2, -.1, NULL, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(names(&error, "low", .2, "rad and rad/s", "at most high in"));
+    CHECK(names(&error, "low", .2, "rad and rad/s", "at most high in rad and rad/s"));
     CHECK(acrobot_set_state(acrobot, NULL, &error) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_set_state(acrobot, &FAR, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(names(&error, "theta1", INFINITE, "rad", "a finite number of"));
+    CHECK(names(&error, "theta1", INFINITE, "rad", "a finite number of rad"));
     CHECK(acrobot_set_params(acrobot, NULL, &error) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_set_params(acrobot, &NO_MASS, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(names(&error, "mass1", 0, "kg", "finite and above 0"));
+    CHECK(names(&error, "mass1", 0, "kg", "finite and above 0 kg"));
     for (params.dynamics = -255; params.dynamics <= 256; params.dynamics++) {
         if (params.dynamics != ACROBOT_DYNAMICS_BOOK && params.dynamics != ACROBOT_DYNAMICS_NIPS) {
             CHECK(acrobot_set_params(acrobot, &params, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
@@ -213,20 +216,30 @@ static void arguments_of_an_acrobot(void)
     params = PARAMS;
     params.inertia2 = params.center_of_mass2 = 0;
     CHECK(acrobot_set_params(acrobot, &params, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(names(&error, "inertia2", 0, "kg m²", "(with the centre of mass on the joint) above 0"));
+    CHECK(names(&error, "inertia2", 0, "kg m²", "(with the centre of mass on the joint) above 0 kg m²"));
     CHECK(acrobot_deviation(acrobot, NULL, &x) == ACROBOT_ERROR_NULL);
+    CHECK(acrobot_deviation(acrobot, &FAR, &x) == ACROBOT_ERROR_OUT_OF_RANGE);
     CHECK(acrobot_lqr(acrobot, NULL, &WEIGHTS, 1, &x, &error) == ACROBOT_ERROR_NULL);
     CHECK(acrobot_lqr(acrobot, &REST, NULL, 1, &x, &error) == ACROBOT_ERROR_NULL);
+    for (int i = 0; i < 5; i++) {
+        CHECK(acrobot_lqr(acrobot, &NO_EQUILIBRIA[i], &WEIGHTS, 1, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
+        CHECK(same_text(error.name, "target") && same_text(error.rule, "in equilibrium without a torque"));
+    }
+    params = PARAMS;
+    params.mass1 = 1000;
+    CHECK(acrobot_set_params(&heavy, &params, NULL) == ACROBOT_OK);
+    CHECK(acrobot_lqr(&heavy, &UPRIGHT, &WEIGHTS, 1, &x, NULL) == ACROBOT_OK);
+    CHECK(acrobot_lqr(&twin, &UPRIGHT, &WEIGHTS, 1, &x, NULL) == ACROBOT_OK);
     CHECK(acrobot_lqr(acrobot, &REST, &NEGATIVE, 1, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(names(&error, "q", -2, "", "finite and at least 0"));
+    CHECK(names(&error, "q.theta2", -2, "", "finite and at least 0"));
     // Without gravity and weights nothing brings the acrobot back.
     params = PARAMS;
     params.gravity = 0;
     CHECK(acrobot_set_params(&floating, &params, NULL) == ACROBOT_OK);
     CHECK(acrobot_lqr(&floating, &REST, &ZERO, 1, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(same_text(error.name, "gain") && same_text(error.rule, "finite; these weights have no regulator"));
+    CHECK(same_text(error.name, "gain") && same_text(error.rule, "finite; target, dt, gravity and weights allow no regulator"));
     CHECK(acrobot_lqr(acrobot, &REST, &WEIGHTS, 0, &x, &error) == ACROBOT_ERROR_OUT_OF_RANGE);
-    CHECK(names(&error, "r", 0, "per (N m)²", "finite and above 0"));
+    CHECK(names(&error, "r", 0, "per (N m)²", "finite and above 0 per (N m)²"));
     CHECK(same(acrobot, saved, ACROBOT_SIZE));
 
     // A copy steps as the original does. What was rejected would have been noticed.

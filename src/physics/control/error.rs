@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::error::Error;
 
-/// Why a model, a force or a regulator cannot be computed. The message names the value, its unit and the rule.
+/// Why a model, a force or a regulator cannot be computed. `Display` names the value, its unit and the rule.
 ///
 /// ```
 /// use acrobot::physics::control::{ControlError, DiscreteModel, lqr};
