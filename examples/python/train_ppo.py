@@ -3,6 +3,7 @@
     pip install -r requirements.txt && pip install .
     python train_ppo.py                           seeds 1, 2 and 3
     python train_ppo.py 42 --picture curve.png    seed 42
+    python train_ppo.py 3 --save policy.bin       also saves the policy of the last seed, for a microcontroller
 
 Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in Gymnasium's own environment.
 Draws the learning curves. Fails if a seed has not learnt after a million steps.
@@ -22,6 +23,7 @@ import jax.numpy as jnp
 import matplotlib.figure
 import numpy as np
 import optax
+from acrobot_rs import policy
 from tqdm import tqdm
 
 NAME = "acrobot_rs/Acrobot-v1"
@@ -183,6 +185,13 @@ def train(seed):
     return parameters, curve
 
 
+def save(parameters, path):
+    """Writes the actor for `examples/policy`, with the observations' scale in its first layer."""
+    *hidden, last = [(np.asarray(weights).T, np.asarray(biases)) for weights, biases in parameters["actor"]]
+    hidden[0] = (hidden[0][0] / np.asarray(SCALE), hidden[0][1])
+    policy.write(path, [*((*layer, "tanh") for layer in hidden), (*last, "none")])
+
+
 def draw(figure, curves, path):
     axes = figure.subplots()
     for seed, curve in curves.items():
@@ -198,6 +207,7 @@ def main():
     parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help="integers of at least 0; default 1 2 3")
     help = "file for the learning curves, .png or .svg; default train_ppo.png"
     parser.add_argument("--picture", type=pathlib.Path, default="train_ppo.png", help=help)
+    parser.add_argument("--save", type=pathlib.Path, help="file for the policy of the last seed")
     arguments = parser.parse_args()
     if min(arguments.seeds) < 0:
         parser.error(f"a seed must be at least 0, got {min(arguments.seeds)}")
@@ -216,6 +226,8 @@ def main():
         there = evaluate(gymnasiums, parameters, jax.random.key(0))
         print(f"seed {seed}: {mean:.1f} after {steps:,} steps and {seconds:.1f} s; in Gymnasium's own {there:.1f}", flush=True)
     draw(figure, curves, arguments.picture)
+    if arguments.save:
+        save(parameters, arguments.save)
     return 0 if all(curve[-1][1] > THRESHOLD for curve in curves.values()) else "not all seeds have learnt"
 
 

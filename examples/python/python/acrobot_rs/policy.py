@@ -35,6 +35,10 @@ def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None 
     Raises:
         ValueError: If a shape, an activation or a number is wrong. No file is written then.
     """
+    Path(path).write_bytes(_content(layers, torque_limit))
+
+
+def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
     inputs, head, body = 6, b"", b""
     for i, (weights, biases, activation) in enumerate(layers):
         weights, biases = np.asarray(weights, "<f4"), np.asarray(biases, "<f4")
@@ -57,7 +61,7 @@ def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None 
     if not scores and not 0 < limit <= np.finfo(np.float32).max:
         raise ValueError(f"torque_limit must be finite and above 0 N m, got {torque_limit}")
     content = struct.pack("<4sBBHf", b"MLP1", len(layers), not scores, 6, limit) + head + body
-    Path(path).write_bytes(content + struct.pack("<I", zlib.crc32(content)))
+    return content + struct.pack("<I", zlib.crc32(content))
 
 
 def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None = None, torque_limit: float | None = None) -> None:
@@ -71,9 +75,11 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
 
     Raises:
         TypeError: If the model, or a layer, is of another kind.
-        ValueError: If a shape or a number is wrong, or if the file's actions differ from the model's.
+        ValueError: If a shape or a number is wrong, or if the file's actions would differ from the model's. No file is written then.
     """
     policy = getattr(model, "policy", None)
+    if policy is None and not isinstance(model, Iterable):
+        raise TypeError(f"model must be one of Stable-Baselines3 or a torch.nn.Sequential, got {model!r}")
     modules, quantiles = (model, 1) if policy is None else _modules_of(policy)
     layers = _layers(modules, quantiles)
     if policy is not None and isinstance(policy.action_space, gym.spaces.Box):
@@ -86,9 +92,10 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
             warnings.warn("VecNormalize clips extreme observations, and the file does not", stacklevel=2)
         weights, biases, activation = layers[0]
         layers[0] = (weights / deviation, biases - weights @ (mean / deviation), activation)
-    write(path, layers, torque_limit)
+    content = _content(layers, torque_limit)
     seen = _observations() if observations is None else np.asarray(observations, np.float32)
     _compare(layers, seen, _expected(model, policy, normalize, modules, seen), torque_limit)
+    Path(path).write_bytes(content)
 
 
 def _modules_of(policy: Any) -> tuple[list[Any], int]:

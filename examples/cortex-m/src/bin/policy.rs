@@ -1,0 +1,91 @@
+//! Plays a policy that was trained in Python. Compares its actions on 10,000 observations with those that torch computed.
+//!
+//! It prints figures in the format of `bench`: `fast figure value`.
+
+#![no_std]
+#![no_main]
+
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::{Acrobot, Action, Fast, TimeLimit};
+use acrobot_cortex_m::counter::Counter;
+use acrobot_cortex_m::ram;
+use cortex_m_rt::entry;
+use policy::Policy;
+use semihosting::{println, process};
+
+/// The compiler checks the file.
+static POLICY: Policy<64> = match Policy::new(include_bytes!("../../../policy/policy.bin")) {
+    Ok(policy) => policy,
+    Err(error) => panic!("{}", error.message()),
+};
+/// Four actions a byte, 3 for a tie: `record.py` in `examples/policy`.
+static ACTIONS: [u8; 2500] = *include_bytes!("../../../policy/actions.bin");
+
+const EPISODES: u32 = 100;
+
+#[entry]
+fn main() -> ! {
+    let Some(mut counter) = Counter::take() else {
+        process::exit(1)
+    };
+    let (equal, ties) = compare();
+    let total = 4 * ACTIONS.len();
+    println!("{equal} of {total} actions are equal, {ties} ties");
+
+    let mut env = env();
+    let mut observation = env.observation();
+    println!(
+        "fast decision {}",
+        counter.count(1, || {
+            core::hint::black_box(POLICY.action(&observation));
+        })
+    );
+    let mut gained = 0.0;
+    for _ in 0..EPISODES {
+        loop {
+            let step = env.step(POLICY.action(&observation));
+            gained += step.reward;
+            if step.done() {
+                break;
+            }
+            observation = step.observation;
+        }
+        observation = env.reset();
+    }
+    println!(
+        "mean return of {EPISODES} episodes: {}",
+        gained as i32 / EPISODES as i32
+    );
+    println!("fast decision_ram {}", ram::used());
+    process::exit(if equal + ties == total { 0 } else { 1 })
+}
+
+/// The first acrobot of a batch with seed 1.
+fn env() -> TimeLimit<Acrobot<Fast>> {
+    let mut env = TimeLimit::v1(Acrobot::new(0));
+    env.reset_with(SeedSequence::new(1).child(0).into());
+    env
+}
+
+/// Of the observations under random actions: on how many the action is torch's, and how many ties there are.
+fn compare() -> (usize, usize) {
+    let mut env = env();
+    let mut random = Pcg64::new(1);
+    let mut observation = env.observation();
+    let (mut equal, mut ties) = (0, 0);
+    for four in ACTIONS {
+        for shift in [0, 2, 4, 6] {
+            match Action::try_from(four >> shift & 3) {
+                Ok(expected) => equal += usize::from(POLICY.action(&observation) == expected),
+                Err(_) => ties += 1,
+            }
+            let step = env.step(Action::sample(&mut random));
+            observation = if step.done() {
+                env.reset()
+            } else {
+                step.observation
+            };
+        }
+    }
+    (equal, ties)
+}

@@ -1,0 +1,140 @@
+"""Policies in files for the crate `examples/policy`: what is written, and what is rejected. Stand-ins have the attributes of torch's modules."""
+
+import struct
+import types
+import zlib
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from acrobot_rs import policy
+
+RNG = np.random.default_rng(7)
+
+
+class Tensor(np.ndarray):
+    def detach(self):
+        return self
+
+    cpu = detach
+
+    def numpy(self):
+        return np.asarray(self)
+
+
+class Linear:
+    def __init__(self, inputs, outputs):
+        self.weight, self.bias = (RNG.normal(size=size).view(Tensor) for size in [(outputs, inputs), (outputs,)])
+
+    def __call__(self, x):
+        return x @ np.asarray(self.weight).T + np.asarray(self.bias)
+
+
+class Tanh:
+    __call__ = staticmethod(np.tanh)
+
+
+class ReLU:
+    def __call__(self, x):
+        return np.maximum(x, 0)
+
+
+class GELU:
+    pass
+
+
+class Model:
+    """A model of Stable-Baselines3: `kind` names its network."""
+
+    def __init__(self, kind, modules, space=gym.spaces.Discrete(3), quantiles=1, normalize=None):
+        networks = {
+            "ppo": {"mlp_extractor": types.SimpleNamespace(policy_net=modules[:-1]), "action_net": modules[-1]},
+            "dqn": {"q_net": types.SimpleNamespace(q_net=modules)},
+            "qrdqn": {"quantile_net": types.SimpleNamespace(quantile_net=modules, n_quantiles=quantiles)},
+        }
+        self.policy = types.SimpleNamespace(action_space=space, **networks[kind])
+        self.modules, self.quantiles, self.normalize = modules, quantiles, normalize
+
+    def get_vec_normalize_env(self):
+        return self.normalize
+
+    def predict(self, x, deterministic):
+        assert deterministic
+        for module in self.modules:
+            x = module(x)
+        scores = x.reshape(len(x), self.quantiles, -1).mean(1)
+        return scores if scores.shape[1] == 1 else scores.argmax(1), None
+
+
+class Normalize:
+    norm_obs, epsilon, clip_obs = True, 1e-8, 100.0
+    obs_rms = types.SimpleNamespace(mean=RNG.normal(size=6) / 4, var=RNG.uniform(0.2, 3, 6))
+
+    def normalize_obs(self, x):
+        return (x - self.obs_rms.mean) / np.sqrt(self.obs_rms.var + self.epsilon)
+
+
+def read(path):
+    """The header and the numbers of a file."""
+    content = path.read_bytes()
+    assert zlib.crc32(content[:-4]) == struct.unpack("<I", content[-4:])[0]
+    magic, layers, kind, inputs, limit = struct.unpack_from("<4sBBHf", content)
+    shapes = [struct.unpack_from("<HBB", content, 12 + 4 * i) for i in range(layers)]
+    return (magic, kind, inputs, limit, shapes), np.frombuffer(content[12 + 4 * layers : -4], "<f4")
+
+
+def test_a_file_has_the_header_and_the_numbers(tmp_path):
+    weights, biases = np.arange(18).reshape(3, 6), [100, 200, 300]
+    policy.write(tmp_path / "p", [(weights, biases, "relu")])
+    head, numbers = read(tmp_path / "p")
+    assert head == (b"MLP1", 0, 6, 0.0, [(3, 2, 0)])
+    np.testing.assert_array_equal(numbers.reshape(3, 7), np.column_stack([biases, weights]))
+
+
+@pytest.mark.parametrize("normalize", [None, Normalize()])
+@pytest.mark.parametrize("kind", ["ppo", "dqn", "qrdqn"])
+def test_models_of_stable_baselines3_are_saved_with_their_own_actions(kind, normalize, tmp_path):
+    quantiles = 5 if kind == "qrdqn" else 1
+    model = Model(kind, [Linear(6, 8), Tanh(), Linear(8, 8), ReLU(), Linear(8, 3 * quantiles)], quantiles=quantiles, normalize=normalize)
+    policy.save(model, tmp_path / "p")  # compares the actions
+    head, numbers = read(tmp_path / "p")
+    assert head == (b"MLP1", 0, 6, 0.0, [(8, 1, 0), (8, 2, 0), (3, 0, 0)])
+    assert len(numbers) == 8 * 7 + 8 * 9 + 3 * 9
+    # A model that answers otherwise is found.
+    model.predict = lambda x, deterministic: (np.full(len(x), 1), None)
+    with pytest.raises(ValueError, match="they differ on .* of 2000 observations"):
+        policy.save(model, tmp_path / "other")
+    assert not (tmp_path / "other").exists()
+
+
+def test_the_mean_of_a_continuous_policy_is_a_torque(tmp_path):
+    space = gym.spaces.Box(-2.5, 2.5, (1,))
+    policy.save(Model("ppo", [Linear(6, 4), Tanh(), Linear(4, 1)], space), tmp_path / "p")
+    assert read(tmp_path / "p")[0] == (b"MLP1", 1, 6, 2.5, [(4, 1, 0), (1, 0, 0)])
+
+
+def test_clipped_observations_are_warned_of(tmp_path):
+    normalize = Normalize()
+    normalize.clip_obs = 10.0
+    with pytest.warns(UserWarning, match="VecNormalize clips extreme observations"):
+        policy.save(Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "p", np.zeros((1, 6)))
+
+
+@pytest.mark.parametrize(
+    ("error", "message", "save"),
+    [
+        (TypeError, "a layer must be one of Linear, Tanh.*, got GELU", lambda p: policy.save(Model("dqn", [Linear(6, 3), GELU()]), p)),
+        (TypeError, "Tanh must follow a linear layer", lambda p: policy.save(Model("dqn", [Tanh(), Linear(6, 3)]), p)),
+        (TypeError, "the policy must be that of PPO, A2C, DQN or QR-DQN", lambda p: policy.save(types.SimpleNamespace(policy=1), p)),
+        (TypeError, "model must be .*, got 5", lambda p: policy.save(5, p)),
+        (ValueError, r"layer 0 must have weights of shape \(outputs, 6\)", lambda p: policy.save(Model("dqn", [Linear(4, 3)]), p)),
+        (ValueError, "the last layer must have 3 outputs, or 1 with a torque_limit, got 2", lambda p: policy.save(Model("dqn", [Linear(6, 2)]), p)),
+        (ValueError, "the activation of layer 0 must be one of", lambda p: policy.write(p, [(np.ones((3, 6)), np.ones(3), "elu")])),
+        (ValueError, "the numbers of layer 0 must be finite", lambda p: policy.write(p, [(np.full((3, 6), np.nan), np.ones(3), "none")])),
+        (ValueError, "torque_limit must be finite and above 0 N m", lambda p: policy.write(p, [(np.ones((1, 6)), np.ones(1), "none")], -1)),
+    ],
+)
+def test_other_models_are_rejected(error, message, save, tmp_path):
+    with pytest.raises(error, match=message):
+        save(tmp_path / "p")
+    assert not list(tmp_path.iterdir())
