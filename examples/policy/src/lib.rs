@@ -33,7 +33,6 @@ use acrobot::{Action, Observation};
 
 /// The number of inputs: those of an observation.
 const INPUTS: usize = 6;
-const HEADER: usize = 12;
 
 /// A policy whose layers have at most `WIDTH` outputs, 6 at least. It refers to the file, in flash. A decision needs 8 `WIDTH` bytes of stack.
 #[derive(Clone, Copy, Debug)]
@@ -95,48 +94,61 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
     ///
     /// The file is not one that `acrobot_rs.policy.save` wrote, or a layer is too wide.
     pub const fn new(file: &'a [u8]) -> Result<Self, PolicyError> {
-        if file.len() < HEADER + 4 || u32_at(file, 0) != u32::from_le_bytes(*b"MLP1") {
+        let Some((content, checksum)) = file.split_last_chunk() else {
             return Err(PolicyError::Magic);
-        }
-        let (content, checksum) = file.split_at(file.len() - 4);
-        let layers = content[4] as usize;
-        if content.len() < HEADER + 4 * layers {
+        };
+        let Some((head, rest)) = content.split_first_chunk() else {
+            return Err(PolicyError::Magic);
+        };
+        let &[
+            b'M',
+            b'L',
+            b'P',
+            b'1',
+            count,
+            kind,
+            low,
+            high,
+            ref limit @ ..,
+        ] = head as &[u8; 12]
+        else {
+            return Err(PolicyError::Magic);
+        };
+        let Some((layers, numbers)) = rest.split_at_checked(4 * count as usize) else {
             return Err(PolicyError::Length);
-        }
-        let (head, numbers) = content.split_at(HEADER + 4 * layers);
-        let (head, layers) = head.split_at(HEADER);
-        let mut inputs = u16_at(head, 6);
+        };
+        let mut inputs = u16::from_le_bytes([low, high]) as usize;
         if inputs != INPUTS || WIDTH < INPUTS {
             return Err(PolicyError::Shape);
         }
-        let (mut i, mut count) = (0, 0);
-        while i < layers.len() {
-            let outputs = u16_at(layers, i);
+        let (mut rest, mut bytes) = (layers, 0_usize);
+        while let Some((&[low, high, activation, _], tail)) = rest.split_first_chunk() {
+            let outputs = u16::from_le_bytes([low, high]) as usize;
             if outputs == 0 || outputs > WIDTH {
                 return Err(PolicyError::Width);
             }
-            if layers[i + 2] > 2 {
+            if activation > 2 {
                 return Err(PolicyError::Activation);
             }
-            count += outputs * (1 + inputs);
+            bytes = bytes.saturating_add(outputs.saturating_mul(4 * (1 + inputs)));
             inputs = outputs;
-            i += 4;
+            rest = tail;
         }
-        if numbers.len() != 4 * count {
+        if numbers.len() != bytes {
             return Err(PolicyError::Length);
         }
-        if crc32(content) != u32_at(checksum, 0) {
+        if crc32(content) != u32::from_le_bytes(*checksum) {
             return Err(PolicyError::Checksum);
         }
-        let mut i = 0;
-        while i < numbers.len() {
-            if !f32::from_bits(u32_at(numbers, i)).is_finite() {
+        let mut rest = numbers;
+        while let Some((&number, tail)) = rest.split_first_chunk() {
+            if !f32::from_le_bytes(number).is_finite() {
                 return Err(PolicyError::Number);
             }
-            i += 4;
+            rest = tail;
         }
-        let limit = f32::from_bits(u32_at(head, 8));
-        let torque_limit = match (head[5], inputs) {
+        let limit = f32::from_le_bytes(*limit);
+        let torque_limit = match (kind, inputs) {
             (0, 3) => None,
             (1, 1) if limit > 0.0 && limit.is_finite() => Some(limit),
             (1, 1) => return Err(PolicyError::Number),
@@ -174,7 +186,7 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
     pub fn torque(&self, observation: &Observation) -> Option<f32> {
         let limit = self.torque_limit?;
         let [torque, ..] = self.outputs(observation);
-        Some(torque.clamp(-limit, limit))
+        Some(torque.min(limit).max(-limit)) // `clamp` can panic
     }
 
     /// The outputs of the last layer: three scores, or a torque before its limits, N m. The rest is 0.
@@ -212,25 +224,17 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
     }
 }
 
-const fn u16_at(bytes: &[u8], i: usize) -> usize {
-    u16::from_le_bytes([bytes[i], bytes[i + 1]]) as usize
-}
-
-const fn u32_at(bytes: &[u8], i: usize) -> u32 {
-    u32::from_le_bytes([bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]])
-}
-
 /// zlib's, without a table: the compiler computes it.
-const fn crc32(bytes: &[u8]) -> u32 {
-    let (mut crc, mut i) = (u32::MAX, 0);
-    while i < bytes.len() {
-        crc ^= bytes[i] as u32;
+const fn crc32(mut bytes: &[u8]) -> u32 {
+    let mut crc = u32::MAX;
+    while let Some((&byte, tail)) = bytes.split_first() {
+        crc ^= byte as u32;
         let mut bit = 0;
         while bit < 8 {
             crc = (crc >> 1) ^ (0xedb8_8320 * (crc & 1));
             bit += 1;
         }
-        i += 1;
+        bytes = tail;
     }
     !crc
 }

@@ -28,6 +28,7 @@ use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::pixelcolor::raw::{BigEndian, RawU1};
 use learners::Memory16;
+use policy::Policy;
 use rand_core::{Rng as _, SeedableRng as _};
 
 unsafe extern "C" {
@@ -51,6 +52,7 @@ fn main() -> ! {
         numbers();
         learners();
         controller();
+        policy();
     }
 }
 
@@ -227,3 +229,12 @@ fn controller() {
 
 type Display =
     Framebuffer<BinaryColor, RawU1, BigEndian, 128, 64, { buffer_size::<BinaryColor>(128, 64) }>;
+
+/// A policy from a file that is read at run time.
+fn policy() {
+    static FILE: [u8; 1000] = [0; 1000];
+    if let Ok(policy) = Policy::<64>::new(black_box(&FILE)) {
+        let observation = black_box([0.0; 6]).into();
+        let _ = black_box((policy.action(&observation), policy.torque(&observation)));
+    }
+}
