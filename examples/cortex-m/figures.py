@@ -4,7 +4,7 @@
     python3 figures.py --update    writes the tables
     python3 figures.py cores       only the tables that are named: m4f, additions, balance, control, cores, stacks, sizes, levels
 
-`steps` counts instructions, stack and RAM, `bench`, `learn` and `balance` count instructions. Flash is that of `minimal` minus that of the same firmware
+`steps` counts instructions, stack and RAM, `bench`, `learn`, `policy` and `balance` count instructions. Flash is that of `minimal` minus that of the same firmware
 without an acrobot, or that of `additions`. `cycles.py` estimates the cycles per instruction. Each figure is the same in every run, the estimates too.
 """
 
@@ -47,6 +47,8 @@ ROWS = {
     "learn": "instructions per step of training",
     "training": "training until the mean return of 100 episodes is −100, millions of instructions",
     "milliseconds": "time of this training at 168 MHz, estimated, ms",
+    "decision": "instructions per decision of a perceptron with 64 and 64 units",
+    "decision_ram": "RAM of the whole firmware that plays this perceptron, bytes",
     "ram": "RAM of the whole firmware that trains and draws, bytes",
 }
 RAM_OF_AN500 = "-C link-arg=--defsym=RAM_ORIGIN=0x60000000"
@@ -157,7 +159,7 @@ def measure_m4f():
         figures[arithmetic, "tuned"] = each
         figures[arithmetic, "rate"] = int(float(f"{64e6 / each:.3g}"))
     [(_, _, figures["fast", "physics"])] = minimal(["physics"])
-    figures |= printed("learn")
+    figures |= printed("learn") | printed("policy")
     # The first three episodes. Nothing is printed before the tenth.
     each = cycles.per_instruction(image("learn"), most=3_000_000)
     figures["fast", "milliseconds"] = round(figures["fast", "training"] * each / 168 * 1000)

@@ -9,7 +9,8 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.mark.parametrize("name", ["README.md", "docs/python.md", "examples/python/README.md"])
-def test_code_runs_and_prints_what_its_comments_say(name, capsys):
+def test_code_runs_and_prints_what_its_comments_say(name, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     page = ROOT / name
     blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(), re.MULTILINE | re.DOTALL)
     assert blocks
