@@ -36,3 +36,11 @@ export class Learner {
   /** Loads weights. Throws an error with the reason if they are rejected, and changes nothing then. */
   load(weights: Uint8Array): void;
 }
+
+/** A perceptron that was trained in Python: `acrobot_rs.policy.save` writes its file. The same bits as on a microcontroller. */
+export class Perceptron {
+  /** Throws an error with the reason if the file is rejected. It may have layers of up to 256 units. */
+  constructor(file: Uint8Array);
+  /** The action with the highest score, or of the torque's sign. */
+  act(acrobot: { readonly observation: ArrayLike<number> }): Action;
+}

@@ -28,44 +28,72 @@ export function energyLaw(acrobot) {
 }
 
 /** The size of the module's buffer in bytes. */
-const BUFFER = 1 << 17;
+const BUFFER = 1 << 19;
+
+/** An instance of the module. */
+class Instance {
+  #exports = instantiate();
+
+  get exports() {
+    return this.#exports;
+  }
+
+  /** A view of the buffer. It ends when the module's memory grows. */
+  bytes(length) {
+    return new Uint8Array(this.#exports.memory.buffer, this.#exports.buffer(), length);
+  }
+
+  /** Calls one of the module's two functions that load, with a file in the buffer. */
+  load(what, file, call) {
+    if (!(file instanceof Uint8Array)) throw invalid(`${what} must be a Uint8Array`, file, []);
+    const { length } = file;
+    if (length > BUFFER) throw new RangeError(`${what} must have at most ${BUFFER} bytes, got ${length}`);
+    this.bytes(length).set(file);
+    const reason = call(length);
+    if (reason !== 0) throw new RangeError(new TextDecoder().decode(this.bytes(reason)));
+  }
+}
 
 export class Learner {
-  #exports;
+  #module;
 
   constructor(options = {}) {
     const { episodes = 2000, seed } = checked("options", options, ["episodes", "seed"]);
     positive("episodes", episodes);
     const words = seedWords(seed);
-    this.#exports = instantiate();
-    this.#bytes(4 * words.length).set(new Uint8Array(Uint32Array.from(words).buffer));
-    this.#exports.begin(episodes, words.length);
-  }
-
-  /** A view of the buffer. It ends when the module's memory grows. */
-  #bytes(length) {
-    return new Uint8Array(this.#exports.memory.buffer, this.#exports.buffer(), length);
+    this.#module = new Instance();
+    this.#module.bytes(4 * words.length).set(new Uint8Array(Uint32Array.from(words).buffer));
+    this.#module.exports.begin(episodes, words.length);
   }
 
   train(...others) {
     if (others.length > 0) throw invalid("train() must have no arguments", others[0], []);
-    return this.#exports.train();
+    return this.#module.exports.train();
   }
 
   act(acrobot) {
-    return this.#exports.act(...finite("act(acrobot): acrobot.state", acrobot?.state, "theta1", "theta2", "dtheta1", "dtheta2"));
+    return this.#module.exports.act(...finite("act(acrobot): acrobot.state", acrobot?.state, "theta1", "theta2", "dtheta1", "dtheta2"));
   }
 
   save() {
-    return this.#bytes(this.#exports.save()).slice();
+    return this.#module.bytes(this.#module.exports.save()).slice();
   }
 
   load(weights) {
-    if (!(weights instanceof Uint8Array)) throw invalid("weights must be a Uint8Array", weights, []);
-    const { length } = weights;
-    if (length > BUFFER) throw new RangeError(`weights must have at most ${BUFFER} bytes, got ${length}`);
-    this.#bytes(length).set(weights);
-    const reason = this.#exports.load(length);
-    if (reason !== 0) throw new RangeError(new TextDecoder().decode(this.#bytes(reason)));
+    this.#module.load("weights", weights, this.#module.exports.load);
+  }
+}
+
+export class Perceptron {
+  #module = new Instance();
+
+  constructor(file) {
+    this.#module.load("the policy", file, this.#module.exports.load_perceptron);
+  }
+
+  act(acrobot) {
+    const observation = finite("act(acrobot): acrobot.observation", acrobot?.observation, 0, 1, 2, 3, 4, 5);
+    this.#module.bytes(24).set(new Uint8Array(Float32Array.from(observation).buffer));
+    return this.#module.exports.act_perceptron();
   }
 }

@@ -8,7 +8,7 @@ import { after, test } from "node:test";
 
 import { swingUp } from "../../web/test/native.mjs";
 import { Acrobot, Batch } from "../dist/index.js";
-import { Learner, bangBang, energyLaw, uprightEnergy } from "../dist/policies.js";
+import { Learner, Perceptron, bangBang, energyLaw, uprightEnergy } from "../dist/policies.js";
 
 const folder = mkdtempSync(join(tmpdir(), "acrobot-npm-"));
 after(() => rmSync(folder, { recursive: true }));
@@ -62,7 +62,7 @@ test("invalid weights are rejected with the native message, as other invalid arg
     assert.throws(() => learner.load(bytes), (error) => error instanceof RangeError && native.includes(error.message));
   }
   for (const [call, name, message] of [
-    [() => learner.load(new Uint8Array(1e6)), "RangeError", "weights must have at most 131072 bytes, got 1000000"],
+    [() => learner.load(new Uint8Array(1e6)), "RangeError", "weights must have at most 524288 bytes, got 1000000"],
     [() => learner.load([...good]), "TypeError", /^weights must be a Uint8Array, got \[.*…$/],
     [() => learner.act({ state: { theta1: NaN } }), "RangeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got NaN"],
     [() => learner.train(10), "TypeError", "train() must have no arguments, got 10"],
@@ -79,4 +79,20 @@ test("invalid weights are rejected with the native message, as other invalid arg
     assert.throws(call, { name, message });
     assert.deepEqual(learner.save(), good);
   }
+});
+
+test("a perceptron from Python plays as natively, and other files are rejected", () => {
+  const file = readFileSync(new URL("../../policy/policy.bin", import.meta.url));
+  const perceptron = new Perceptron(file);
+  // As in examples/policy/tests/policy.rs.
+  assert.deepEqual([1, 2, 3, 4, 5].map((seed) => play((acrobot) => perceptron.act(acrobot), { seed })), [101, 88, 96, 72, 72]);
+  for (const [bytes, message] of [
+    [file.subarray(1), /must begin with MLP1/],
+    [Buffer.from(file).fill(1, 500, 504), /must have its checksum/],
+    [new Uint8Array(1e6), /must have at most 524288 bytes, got 1000000/],
+    ["MLP1", /must be a Uint8Array, got "MLP1"/],
+  ]) {
+    assert.throws(() => new Perceptron(bytes), message);
+  }
+  assert.throws(() => perceptron.act({}), /acrobot\.observation\.0 must be a finite number/);
 });

@@ -1,6 +1,6 @@
 //! Policies from files: outputs against sums by hand, and files that must be rejected.
 
-use acrobot::{Action, Observation};
+use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
 use policy::{Policy, PolicyError};
 
 const SEEN: [f32; 6] = [0.9, -0.4, 0.5, 0.8, -1.5, 3.0];
@@ -140,4 +140,16 @@ fn any_accepted_file_decides() {
         }
     }
     assert!(accepted > 500, "{accepted}");
+}
+
+/// As the npm package's test does with the same file.
+#[test]
+fn the_trained_policy_swings_up() {
+    let policy = Policy::<64>::new(include_bytes!("../policy.bin")).unwrap();
+    let steps = [1, 2, 3, 4, 5].map(|seed| {
+        let mut env = TimeLimit::v1(Acrobot::<Fast>::new(seed));
+        while !env.step(policy.action(&env.observation())).done() {}
+        env.elapsed()
+    });
+    assert_eq!(steps, [101, 88, 96, 72, 72]);
 }

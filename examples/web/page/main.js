@@ -17,7 +17,8 @@ const NO_ACTIONS = "The link has no actions.";
 
 function start() {
   const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
-  const POLICIES = { bang_bang: bangBang, energy_law: energyLaw, learnt: (acrobot) => learner.act(acrobot), random: (acrobot) => acrobot.sample() };
+  let learnt = learner;
+  const POLICIES = { bang_bang: bangBang, energy_law: energyLaw, learnt: (acrobot) => learnt.act(acrobot), random: (acrobot) => acrobot.sample() };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   const takeOver = matchMedia("(hover: none)").matches ? "touch a half of the picture" : "press ← or →";
   $("app").hidden = false;
@@ -303,11 +304,12 @@ function start() {
   };
   $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
 
-  const learnt = document.querySelector("[value=learnt]");
+  const option = document.querySelector("[value=learnt]");
   const training = trainingPanel(learner, {
-    ready() {
-      learnt.disabled = false;
-      learnt.textContent = "Learnt";
+    ready(policy) {
+      learnt = policy;
+      option.disabled = false;
+      option.textContent = "Learnt";
     },
     drive() {
       choose("learnt");

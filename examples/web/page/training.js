@@ -1,5 +1,6 @@
 // The panel "Train a policy": trains in a worker, draws the learning curve, loads and saves weights.
 
+import { Perceptron } from "./acrobot-rs/policies.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
 import { parseSeed } from "./settings.js";
 
@@ -10,7 +11,7 @@ const EPISODES = 1_000_000;
 
 const $ = (id) => document.getElementById(id);
 
-/** Calls `ready` once there is a learnt policy, and `drive` when the user wants to watch it. */
+/** Calls `ready` with each learnt policy, and `drive` when the user wants to watch it. */
 export function trainingPanel(learner, { ready, drive }) {
   let worker = null;
   let weights = null;
@@ -22,12 +23,14 @@ export function trainingPanel(learner, { ready, drive }) {
     plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), unit: "episodes", marks: [SOLVED] });
   };
 
-  /** Loads weights for the learnt policy. Throws an `Error` with the reason if they are rejected. */
+  /** Loads weights or a perceptron for the learnt policy. Throws an `Error` with the reason if they are rejected. */
   const take = (bytes) => {
-    learner.load(bytes);
+    const isPerceptron = String.fromCharCode(...bytes.subarray(0, 4)) === "MLP1";
+    const policy = isPerceptron ? new Perceptron(bytes) : learner;
+    if (!isPerceptron) learner.load(bytes);
     weights = bytes;
     $("save").disabled = $("drive").disabled = false;
-    ready();
+    ready(policy);
   };
 
   const stop = (message) => {

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { fileURLToPath } from "node:url";
 
 import { Learner } from "../dist/acrobot-rs/policies.js";
 import { ACTIONS, bits, trace } from "./native.mjs";
@@ -305,7 +306,7 @@ test("loaded weights reach the goal, and invalid ones are rejected with the lear
     for (const [name, bytes, message] of [
       ["short.bin", good.subarray(0, 1000), /^short\.bin: weights must have 49172 bytes, got 1000$/],
       ["damaged.bin", Buffer.from(good).fill(1, 500, 504), /^damaged\.bin: .*checksum/],
-      ["huge.bin", Buffer.alloc(1e6), /^huge\.bin: weights must have at most 131072 bytes, got 1000000$/],
+      ["huge.bin", Buffer.alloc(1e6), /^huge\.bin: weights must have at most 524288 bytes, got 1000000$/],
     ]) {
       writeFileSync(join(folder, name), bytes);
       await page.setInputFiles("#load", join(folder, name));
@@ -314,6 +315,12 @@ test("loaded weights reach the goal, and invalid ones are rejected with the lear
     }
     // The weights that were loaded before are kept.
     assert.ok((await downloaded(page, "#save")).equals(good));
+    // A perceptron from Python.
+    await page.setInputFiles("#load", fileURLToPath(new URL("../../policy/policy.bin", import.meta.url)));
+    await page.waitForFunction(() => document.querySelector("#training-status").textContent === "policy.bin is loaded.");
+    await page.click("#reset");
+    await steps(page, 200);
+    assert.match(await text(page, "#verdict"), /^\d+ steps$/);
     for (const [id, value] of [["episodes", "0"], ["episodes", "1.5"], ["episodes", "1e9"], ["training-seed", "x"]]) {
       await page.fill("#episodes", "10");
       await page.fill(`#${id}`, value);

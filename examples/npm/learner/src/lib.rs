@@ -1,22 +1,24 @@
-//! The WebAssembly module of `acrobot-rs/policies`: the learner of `swing_up` in 64 KiB. Each `Learner` of JavaScript has
-//! its own instance.
+//! The WebAssembly module of `acrobot-rs/policies`: the learner of `swing_up` in 64 KiB, and perceptrons that were trained in Python. Each
+//! `Learner` or `Perceptron` of JavaScript has its own instance.
 //!
-//! Longer data than numbers passes through a buffer: JavaScript writes seeds, Rust writes error texts, both write weights.
+//! Longer data than numbers passes through a buffer: JavaScript writes seeds and policies, Rust writes error texts, both write weights.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use acrobot::State;
 use acrobot::numpy::SeedSequence;
 use learners::{Budget, Env, Memory64, QLambda, training};
+use policy::Policy;
 
 type Learner = QLambda<'static, 6144, 52>;
 
-/// The longest data are the weights.
-const BUFFER_LEN: usize = 1 << 17;
+/// The longest data are perceptrons, of which one with 256 and 256 units has 273 KB.
+const BUFFER_LEN: usize = 1 << 19;
 
 thread_local! {
     static BUFFER: RefCell<[u8; BUFFER_LEN]> = const { RefCell::new([0; BUFFER_LEN]) };
     static TRAINING: RefCell<Option<(Learner, Env)>> = const { RefCell::new(None) };
+    static PERCEPTRON: Cell<Option<Policy<'static, 256>>> = const { Cell::new(None) };
 }
 
 /// The address of the buffer, which JavaScript reads and writes between calls.
@@ -86,4 +88,30 @@ pub extern "C" fn act(theta1: f32, theta2: f32, dtheta1: f32, dtheta2: f32) -> u
         let learner = training.as_ref().map(|(learner, ..)| learner);
         learner.map_or(1, |learner| learner.greedy(&state).into())
     })
+}
+
+/// Takes the policy in the first `len` bytes of the buffer. Returns as `load`. An instance calls this once, because it keeps the memory.
+#[unsafe(no_mangle)]
+pub extern "C" fn load_perceptron(len: usize) -> usize {
+    let file = BUFFER.with_borrow(|buffer| buffer.get(..len).map(<[u8]>::to_vec));
+    match Policy::new(file.unwrap_or_default().leak()) {
+        Ok(policy) => {
+            PERCEPTRON.set(Some(policy));
+            0
+        }
+        Err(error) => write(error.message().bytes()),
+    }
+}
+
+/// The policy's action for the observation in the buffer, six `f32`.
+#[unsafe(no_mangle)]
+pub extern "C" fn act_perceptron() -> u8 {
+    let mut observation = [0.0; 6];
+    BUFFER.with_borrow(|buffer| {
+        for (x, bytes) in observation.iter_mut().zip(buffer.as_chunks().0) {
+            *x = f32::from_le_bytes(*bytes);
+        }
+    });
+    let policy = PERCEPTRON.get();
+    policy.map_or(1, |policy| policy.action(&observation.into()).into())
 }
