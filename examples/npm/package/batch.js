@@ -29,16 +29,17 @@ export class Batch extends Kept {
   #stale = false;
 
   constructor(options) {
-    const names = ["count", "seed", "params", "maxSteps", "autoreset"];
-    const { count, seed, params = {}, maxSteps = 500, autoreset = "NextStep" } = checked("options", options, names);
+    const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams"];
+    const { count, seed, params = {}, maxSteps = 500, autoreset = "NextStep", ownParams = false } = checked("options", options, names);
     positive("count", count);
     positive("maxSteps", maxSteps);
     if (!AUTORESETS.includes(autoreset)) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset, []);
-    const number = wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset));
+    if (typeof ownParams !== "boolean") throw invalid("ownParams must be true or false", ownParams, []);
+    const number = wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset), ownParams);
     const addresses = new Uint32Array(bytes().slice(0, 32).buffer);
     super("batch", number, count);
     this.#count = count;
-    this.#settings = Object.freeze({ count, maxSteps, autoreset });
+    this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams });
     this.#addresses = addresses;
     this.#names = autoreset === "SameStep" ? RESULTS : RESULTS.slice(0, -1);
     try {
@@ -164,10 +165,21 @@ export class Batch extends Kept {
     return wasm().batch_elapsed(this.#numberFor(index), index) >>> 0;
   }
 
+  paramsOf(index) {
+    this.#numberFor(index);
+    return this.readParams(index);
+  }
+
+  setParamsOf(index, changes) {
+    this.#numberFor(index);
+    if (!this.#settings.ownParams) throw new Error("a batch must be made with ownParams for parameters of each acrobot");
+    this.writeParams(changes, index, () => wasm().batch_set_params_of(this[NUMBER], index));
+  }
+
   #header() {
-    const { count, maxSteps, autoreset } = this.#settings;
-    // No own parameters, and no range of them.
-    return [...varint(count + 1), ...BATCH, ...varint(maxSteps), AUTORESETS.indexOf(autoreset), 0, 0];
+    const { count, maxSteps, autoreset, ownParams } = this.#settings;
+    // No range of parameters.
+    return [...varint(count + 1), ...BATCH, ...varint(maxSteps), AUTORESETS.indexOf(autoreset), Number(ownParams), 0];
   }
 
   snapshot() {
@@ -192,10 +204,10 @@ export class Batch extends Kept {
     };
     const count = read() - 1;
     at += BATCH.length;
-    const [maxSteps, mode] = [read(), read()];
+    const [maxSteps, mode, own] = [read(), read(), read()];
     // An acrobot has at least 94 bytes.
     if (!(count >= 1 && count < content.length / 94 && maxSteps >= 1 && maxSteps < 2 ** 32 && mode in AUTORESETS)) throw wrong;
-    const batch = new this({ count, maxSteps, autoreset: AUTORESETS[mode] });
+    const batch = new this({ count, maxSteps, autoreset: AUTORESETS[mode], ownParams: own === 1 });
     if (batch.#load(content)) return batch;
     batch.free();
     throw wrong;
@@ -223,7 +235,7 @@ export class Batch extends Kept {
   draw(context, index, options) {
     const signature = "draw(context, index, options)";
     this.#numberFor(index, `${signature}: `);
-    draw(signature, context, this.state(index), this.params, 0, options);
+    draw(signature, context, this.state(index), this.readParams(index), 0, options);
   }
 
   get [SHOWN]() {

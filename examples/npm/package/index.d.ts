@@ -158,6 +158,8 @@ export interface BatchOptions extends Options {
   count: number;
   /** When an acrobot is reset whose episode has ended: Gymnasium's `AutoresetMode`. The default is "NextStep". */
   autoreset?: "NextStep" | "SameStep" | "Disabled";
+  /** Whether each acrobot has parameters of its own, which `setParamsOf` sets. The default is false. */
+  ownParams?: boolean;
 }
 
 /**
@@ -187,7 +189,7 @@ export class Batch extends Kept {
   /** A new batch that continues from a snapshot with the same bits. */
   static restore(snapshot: Uint8Array): Batch;
   get count(): number;
-  get settings(): Readonly<Required<Pick<BatchOptions, "count" | "maxSteps" | "autoreset">>>;
+  get settings(): Readonly<Required<Pick<BatchOptions, "count" | "maxSteps" | "autoreset" | "ownParams">>>;
   /** The array of observations, which steps and resets overwrite. After `setState`, reading this property does. */
   get observations(): Float32Array;
   /** Begins an episode of each acrobot. Returns `observations`. */
@@ -207,6 +209,10 @@ export class Batch extends Kept {
   setState(index: number, state: Readonly<State>): void;
   /** The number of steps of an acrobot since its last reset. */
   elapsed(index: number): number;
+  /** The parameters of an acrobot. `params` has those of the first. */
+  paramsOf(index: number): Readonly<Params>;
+  /** Changes parameters of one acrobot, if the batch has `ownParams`. `setParams` changes those of all. */
+  setParamsOf(index: number, changes: Readonly<Partial<Params>>): void;
   /**
    * Settings, parameters, states, steps and random numbers, in about 130 bytes for each acrobot: Rust's `VecBatch<Fast>` in postcard
    * with CRC-32, before which with "Disabled" `ended` stands. One of Rust with own parameters or other reset bounds cannot be restored.

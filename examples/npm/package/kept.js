@@ -62,7 +62,12 @@ export class Kept {
   }
 
   get params() {
-    wasm()[`${this.#kind}_params`](this[NUMBER]);
+    return this.readParams(0);
+  }
+
+  /** The parameters of an acrobot. A single one ignores the index. */
+  readParams(index) {
+    wasm()[`${this.#kind}_params`](this[NUMBER], index);
     const values = [...numbers()];
     const torques = Object.freeze(values.splice(12, 3));
     const params = Object.fromEntries(NUMBERS.filter((name) => name !== "torques").map((name, i) => [name, values[i]]));
@@ -70,13 +75,18 @@ export class Kept {
   }
 
   setParams(changes) {
+    this.writeParams(changes, 0, () => wasm()[`${this.#kind}_set_params`](this[NUMBER]));
+  }
+
+  /** Reads the old parameters and calls `set` after the changes, whose properties can run code of the caller. */
+  writeParams(changes, index, set) {
     const given = checked("params", changes, [...NUMBERS, "dynamics"]);
     if ("torques" in given) {
       const { torques } = given;
       if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques, []);
       given.torques = [0, 1, 2].map((i) => torques[i]);
     }
-    const params = { ...this.params, ...given };
+    const params = { ...this.readParams(index), ...given };
     const { torques, dynamics } = params;
     if (dynamics !== "book" && dynamics !== "nips") throw invalid('dynamics must be "book" or "nips"', dynamics, []);
     const values = NUMBERS.flatMap((name) => {
@@ -85,8 +95,7 @@ export class Kept {
       return of;
     });
     numbers().set([...values, Number(dynamics === "nips")]);
-    const length = wasm()[`${this.#kind}_set_params`](this[NUMBER]);
-    accept(length, (name) => (name.startsWith("torques") ? torques[name.at(-2)] : params[name]));
+    accept(set(), (name) => (name.startsWith("torques") ? torques[name.at(-2)] : params[name]));
   }
 
   free() {

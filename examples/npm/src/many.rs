@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::num::NonZeroU32;
 
-use acrobot::batch::{Autoreset, Batch, Block, Member, StepBuffers};
+use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, ResetOptions};
 
@@ -13,10 +13,17 @@ use crate::table::Table;
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
 
-/// A batch with its memory, and what JavaScript reads and writes. Own parameters for each acrobot would add 13 KB: the step is
-/// compiled again for them.
+/// Vectors for parameters of each acrobot, too, or for none. The step is compiled for both, which takes 13 KB.
+type Memory = (
+    Vec<Block<Fast, LANES>>,
+    Vec<Pcg64>,
+    Vec<LaneParams<Fast, LANES>>,
+);
+
+/// A batch with its memory, and what JavaScript reads and writes.
 struct Many {
-    batch: Batch<Fast, (Vec<Block<Fast, LANES>>, Vec<Pcg64>), LANES>,
+    batch: Batch<Fast, Memory, LANES>,
+    own_params: bool,
     /// JavaScript writes here before a step.
     actions: Vec<u8>,
     /// JavaScript writes here before a reset.
@@ -46,11 +53,14 @@ fn fill<T: Clone>(value: T, count: usize) -> Option<Vec<T>> {
 }
 
 impl Many {
-    fn new(words: usize, count: usize) -> Option<Self> {
-        let blocks = fill(Block::EMPTY, count.div_ceil(LANES))?;
+    fn new(words: usize, count: usize, own_params: bool) -> Option<Self> {
+        let len = count.div_ceil(LANES);
+        let blocks = fill(Block::EMPTY, len)?;
         let generators = fill(Pcg64::UNSEEDED, count)?;
+        let params = fill(LaneParams::default(), if own_params { len } else { 0 })?;
         Some(Self {
-            batch: Batch::new(memory::seed(words), (blocks, generators)).ok()?,
+            batch: Batch::new(memory::seed(words), (blocks, generators, params)).ok()?,
+            own_params,
             actions: fill(0, count)?,
             mask: fill(false, count)?,
             observations: fill([0.0; 6], count)?,
@@ -66,8 +76,14 @@ impl Many {
 /// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of what JavaScript reads and
 /// writes. Returns its number, or −1 if there is no memory for it.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_new(count: usize, words: usize, max_steps: u32, autoreset: u32) -> i32 {
-    let Some(mut many) = Many::new(words, count) else {
+pub extern "C" fn batch_new(
+    count: usize,
+    words: usize,
+    max_steps: u32,
+    autoreset: u32,
+    own_params: bool,
+) -> i32 {
+    let Some(mut many) = Many::new(words, count, own_params) else {
         return -1;
     };
     many.batch
@@ -163,9 +179,9 @@ pub extern "C" fn batch_elapsed(number: usize, index: usize) -> u32 {
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_params(number: usize) {
+pub extern "C" fn batch_params(number: usize, index: usize) {
     memory::with_value(&BATCHES, number, |many| {
-        if let Some(params) = many.batch.params_of(0) {
+        if let Some(params) = many.batch.params_of(index) {
             memory::set_params(&params);
         }
     });
@@ -176,6 +192,14 @@ pub extern "C" fn batch_params(number: usize) {
 pub extern "C" fn batch_set_params(number: usize) -> usize {
     memory::with_value(&BATCHES, number, |many| {
         memory::reason(many.batch.set_params(memory::get_params()))
+    })
+}
+
+/// Sets the parameters of acrobot `index` in a batch with own parameters. Returns as [`batch_set_params`].
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_set_params_of(number: usize, index: usize) -> usize {
+    memory::with_value(&BATCHES, number, |many| {
+        memory::reason(many.batch.set_params_of(index, memory::get_params()))
     })
 }
 
@@ -195,8 +219,8 @@ pub extern "C" fn batch_load(number: usize, index: usize, len: usize) -> usize {
         return 0;
     };
     memory::with_value(&BATCHES, number, |many| {
-        // The first brings the parameters that all acrobots share.
-        let shared = index > 0 || many.batch.set_params(member.params).is_ok();
+        // The first brings the parameters, if all acrobots share them.
+        let shared = index > 0 || many.own_params || many.batch.set_params(member.params).is_ok();
         if shared && many.batch.set_member(index, member).is_ok() {
             bytes.len() - rest.len()
         } else {

@@ -146,7 +146,7 @@ test("the console shows what an acrobot and a batch are", () => {
   const [acrobot, batch] = [new Acrobot({ maxSteps: 7 }), new Batch({ count: 3 })];
   acrobot.state = { theta1: 0.5, theta2: 0, dtheta1: 0, dtheta2: 0 };
   assert.match(inspect(acrobot), /^Acrobot \{\n  state: \{ theta1: 0\.5, theta2: 0, .*elapsed: 0,\n  maxSteps: 7,\n  params: \{\n    length1: 1,/s);
-  assert.match(inspect(batch), /^Batch \{\s+count: 3,\s+maxSteps: 500,\s+autoreset: 'NextStep'\s+\}$/);
+  assert.match(inspect(batch), /^Batch \{\s+count: 3,\s+maxSteps: 500,\s+autoreset: 'NextStep',\s+ownParams: false\s+\}$/);
   acrobot.free();
   assert.equal(inspect([acrobot]), "[ Acrobot freed ]");
 });

@@ -120,6 +120,33 @@ test("a batch's snapshot continues with the same bits", () => {
 /** CRC-32 as zlib computes it: the end of a gzip file has it, before four bytes of length. */
 const sealed = (bytes) => Buffer.concat([bytes, gzipSync(bytes).subarray(-8, -4)]);
 
+test("acrobots with own parameters have the bits of acrobots alone, also after a snapshot", () => {
+  const batch = new Batch({ ...OPTIONS, ownParams: true });
+  const others = alone(OPTIONS);
+  others.forEach((other, i) => {
+    const changes = { mass2: 1 + i / 8, dynamics: i % 2 ? "nips" : "book" };
+    batch.setParamsOf(i, changes);
+    other.setParams(changes);
+    assert.deepEqual(batch.paramsOf(i), other.params);
+  });
+  const resumed = Batch.restore(batch.snapshot());
+  assert.deepEqual(resumed.snapshot(), batch.snapshot());
+  for (let steps = 0; steps < 20; steps++) {
+    const actions = Uint8Array.from({ length: COUNT }, action);
+    for (const each of [batch, resumed]) each.step(actions);
+    for (let i = 1; i < COUNT; i++) {
+      others[i].step(actions[i]);
+      for (const each of [batch, resumed]) assert.deepEqual(each.state(i), others[i].state);
+    }
+  }
+  const before = batch.paramsOf(3);
+  assert.throws(() => batch.setParamsOf(3, { mass1: -1 }), /^RangeError: mass1 must be finite and above 0 kg, got -1$/);
+  assert.throws(() => batch.setParamsOf(COUNT, { mass1: 1 }), /index must be/);
+  assert.deepEqual(batch.paramsOf(3), before);
+  assert.throws(() => new Batch(OPTIONS).setParamsOf(0, { mass1: 2 }), /must be made with ownParams/);
+  assert.throws(() => new Batch({ ...OPTIONS, ownParams: 1 }), /^TypeError: ownParams must be true or false, got 1$/);
+});
+
 test("a batch's snapshot has the bytes of Rust's postcard, and any other is rejected", () => {
   // What version 1 stored for two acrobots with own parameters from a range: here both have those of the first.
   const stored = readFileSync(new URL("../../../tests/data/snapshots_1.txt", import.meta.url), "utf8");
@@ -128,7 +155,7 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
   const parts = [rust.subarray(0, 13), bounds, rust.subarray(29, 31), Buffer.of(0, 0), rust.subarray(163, 289), rust.subarray(163, 228), rust.subarray(354)];
   const snapshot = sealed(Buffer.concat(parts));
   const batch = Batch.restore(snapshot);
-  assert.deepEqual(batch.settings, { count: 2, maxSteps: 30, autoreset: "NextStep" });
+  assert.deepEqual(batch.settings, { count: 2, maxSteps: 30, autoreset: "NextStep", ownParams: false });
   assert.deepEqual(Buffer.from(batch.snapshot()), snapshot);
   assert.notDeepEqual(batch.state(0), batch.state(1));
 
