@@ -6,23 +6,16 @@ import { inflate } from "./inflate.js";
 
 let compiled;
 
-/** The module. The first call compiles it, so that an import alone costs nothing and cannot fail. */
-function compile() {
-  if (compiled) return compiled;
-  const bytes = inflate(Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0)), LENGTH);
+/** The functions of a new instance. A content security policy rejects the module, or in WebKit its instance. */
+export function instantiate() {
   try {
-    compiled = new WebAssembly.Module(bytes);
+    compiled ??= new WebAssembly.Module(inflate(Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0)), LENGTH));
+    return new WebAssembly.Instance(compiled).exports;
   } catch (cause) {
+    if (cause instanceof RangeError) throw cause; // no memory
     const needs = "WebAssembly with simd128, and 'wasm-unsafe-eval' in a content security policy";
     throw new Error(`acrobot-rs needs ${needs}: ${cause.message}`, { cause });
   }
-  return compiled;
-}
-
-/** The functions of a new instance. */
-export function instantiate() {
-  const module = compile();
-  return new WebAssembly.Instance(module).exports;
 }
 
 let exports;

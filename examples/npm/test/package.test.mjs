@@ -1,4 +1,4 @@
-// The packed package, installed in a fresh project, runs in Node.js, in bundles and in Chromium. So does the code of its documentation.
+// The packed package, installed in a fresh project, runs in Node.js, in bundles and in a browser. So does the code of its documentation.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -10,24 +10,29 @@ import { fileURLToPath } from "node:url";
 
 import { buildSync, context } from "esbuild";
 import { chromium } from "playwright-core";
+import * as selenium from "selenium-webdriver";
 
 import { launch } from "../browser.mjs";
+import * as webdriver from "../webdriver.mjs";
 
 const here = fileURLToPath(new URL("..", import.meta.url));
 const root = join(here, "../..");
 const [, version] = /^version = "(.*)"/m.exec(readFileSync(join(root, "Cargo.toml"), "utf8"));
 const folder = mkdtempSync(join(tmpdir(), "acrobot-npm-"));
 const run = (command, args, options) => execFileSync(command, args, { cwd: folder, encoding: "utf8", ...options });
-let browser, origin, close;
+const engine = process.env.ENGINE ?? "chromium";
+let browser, origin, close, other;
 
 before(async () => {
   run("npm", ["init", "-y"]);
   run("npm", ["install", "--silent", join(here, `acrobot-rs-${version}.tgz`)]);
-  ({ browser, origin, close } = await launch(chromium, context, folder));
+  writeFileSync(join(folder, "record.js"), `(${record})()`);
+  ({ browser, origin, close } = await launch(engine === "chromium" ? chromium : null, context, folder));
+  if (engine !== "chromium") other = await webdriver.launch(engine, selenium);
 });
 
 after(async () => {
-  await close?.();
+  await Promise.all([close?.(), other?.close()]);
   rmSync(folder, { recursive: true });
 });
 
@@ -40,21 +45,24 @@ function blocks(page, language) {
 const PROGRAMS = ["docs/wasm.md", "README.md", "examples/npm/README.md"].flatMap((page) => blocks(page, "js"));
 const printed = (program) => program.match(/^\/\/ prints: (.*)/m)?.[1] ?? "";
 
-/** Opens a page in Chromium and calls `play` with it. Asserts that there are no errors. Returns what the console has. */
+/** Runs first in a page: records what its console has, and its errors. WebDriver has no such events. */
+function record() {
+  window.recorded = { lines: [], errors: [] };
+  console.log = (line) => window.recorded.lines.push(line);
+  addEventListener("error", ({ message }) => window.recorded.errors.push(message));
+  addEventListener("unhandledrejection", ({ reason }) => window.recorded.errors.push(String(reason)));
+}
+
+/** Opens a page in a browser and calls `play` with it. Asserts that there are no errors. Returns what the console has. */
 async function open(html, play = () => {}) {
-  writeFileSync(join(folder, "index.html"), `<link rel="icon" href="data:,">${html}`);
-  const page = await browser.newPage();
-  const [errors, lines] = [[], []];
-  page.on("pageerror", (error) => errors.push(error.message));
-  page.on("console", (message) => (message.type() === "error" ? errors : lines).push(message.text()));
-  try {
-    await page.goto(origin);
-    await play(page);
-    assert.deepEqual(errors, []);
-    return lines;
-  } finally {
-    await page.close();
-  }
+  writeFileSync(join(folder, "index.html"), `<link rel="icon" href="data:,"><script src="record.js"></script>${html}`);
+  const page = other?.page ?? (await browser.newPage());
+  await page.goto(origin);
+  await play(page);
+  const { lines, errors } = await page.evaluate(() => window.recorded);
+  await page.close?.();
+  assert.deepEqual(errors, []);
+  return lines;
 }
 
 test("the package has at most 120 KB and these files", () => {
@@ -104,7 +112,7 @@ test("types pass tsc --strict, with the newest TypeScript and with 5.2", () => {
   for (const tsc of [newest, oldest]) assert.equal(run("node", [tsc, ...server]), "");
 });
 
-test("bundles of every format run in Node.js and in Chromium", async () => {
+test("bundles of every format run in Node.js and in a browser", async () => {
   for (const format of ["esm", "cjs", "iife"]) {
     const outfile = join(folder, `bundle-${format}.${format === "esm" ? "mjs" : "cjs"}`);
     // es2020 has no top-level await; Vite 6 and others compile for it.

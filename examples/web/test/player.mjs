@@ -11,9 +11,11 @@ import { fileURLToPath } from "node:url";
 import { context } from "esbuild";
 import { chromium } from "playwright-core";
 
+import * as selenium from "selenium-webdriver";
+
 import { launch } from "../../npm/browser.mjs";
+import * as webdriver from "../../npm/webdriver.mjs";
 import { decodeActions } from "../page/link.js";
-import * as webdriver from "./webdriver.mjs";
 
 export const dist = fileURLToPath(new URL("../dist", import.meta.url));
 /** Tests write their files here. */
@@ -25,7 +27,7 @@ let browser, origin, close, other;
 
 before(async () => {
   ({ browser, origin, close } = await launch(engine === "chromium" ? chromium : null, context, dist));
-  if (engine !== "chromium") other = await webdriver.launch(engine);
+  if (engine !== "chromium") other = await webdriver.launch(engine, selenium);
 });
 
 after(async () => {

@@ -6,8 +6,6 @@ import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-import { Builder, By, Capabilities, Key, until } from "selenium-webdriver";
-
 /** Without a display Firefox finds no mouse, and the page then describes touch. */
 const MOUSE = { "ui.primaryPointerCapabilities": 6, "ui.allPointerCapabilities": 6 };
 
@@ -25,23 +23,24 @@ const ENGINES = {
   },
 };
 
-const KEYS = { ArrowLeft: Key.ARROW_LEFT, ArrowRight: Key.ARROW_RIGHT, Space: " " };
+/** WebDriver's codes. */
+const KEYS = { ArrowLeft: "\uE012", ArrowRight: "\uE014", Space: " " };
 
-/** Starts an engine. Returns `newPage()` and `close()`. */
-export async function launch(engine) {
+/** Starts an engine. `selenium` is the module `selenium-webdriver`: each of the two folders has its own. Returns its page and `close()`. */
+export async function launch(engine, selenium) {
   const { command, capabilities } = ENGINES[engine];
   const port = 4440 + (process.pid % 1000);
   const server = spawn(command[0], [...command.slice(1), `--port=${port}`], { stdio: "ignore", detached: true });
-  const driver = await connect(`http://127.0.0.1:${port}`, capabilities);
+  const driver = await connect(selenium, `http://127.0.0.1:${port}`, capabilities);
   await driver.manage().setTimeouts({ script: 30_000 });
   const close = async () => {
     await driver.quit();
     process.kill(-server.pid);
   };
-  return { page: page(driver), close };
+  return { page: page(driver, selenium), close };
 }
 
-async function connect(url, capabilities) {
+async function connect({ Builder, Capabilities }, url, capabilities) {
   for (let left = 50; ; left--) {
     try {
       return await new Builder().usingServer(url).withCapabilities(new Capabilities(capabilities)).build();
@@ -52,7 +51,7 @@ async function connect(url, capabilities) {
   }
 }
 
-function page(driver) {
+function page(driver, { By, until }) {
   const find = (selector) => driver.findElement(By.css(selector));
   const evaluate = (code, argument) =>
     driver.executeScript(`return ${typeof code === "function" ? `(${code})(arguments[0])` : `(() => { ${code} })()`}`, argument);
