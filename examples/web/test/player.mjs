@@ -35,8 +35,8 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Opens the page and calls `play` once it has loaded. Asserts that its console has no errors or warnings, and that it requests
- * only its own files. */
+/** Opens the page and calls `play` once it has loaded. In Chromium, asserts that its console has no errors or warnings, and that it
+ * requests only its own files. */
 export async function open(play, { hash = "", prepare, starts = true, ...options } = {}) {
   if (other) {
     await other.page.goto(origin + hash);
