@@ -23,23 +23,21 @@ from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
 NAME = "acrobot_rs/Acrobot-v1"
 THRESHOLDS = [-100, -80, -70]
 # Settings of rl-baselines3-zoo's files in `hyperparams`: the class, environments, steps, settings.
-Q = {"gamma": 0.99, "learning_starts": 0}
+Q = {
+    "gamma": 0.99,
+    "learning_starts": 0,
+    "learning_rate": 6.3e-4,
+    "batch_size": 128,
+    "buffer_size": 50_000,
+    "target_update_interval": 250,
+    "train_freq": 4,
+    "gradient_steps": -1,
+    "exploration_fraction": 0.12,
+    "exploration_final_eps": 0.1,
+}
 AGENTS = {
-    "qrdqn": (
-        QRDQN,
-        1,
-        100_000,
-        Q | {"learning_rate": 6.3e-4, "batch_size": 128, "buffer_size": 50_000, "target_update_interval": 250, "train_freq": 4}
-        | {"gradient_steps": -1, "exploration_fraction": 0.12, "exploration_final_eps": 0.1}
-        | {"policy_kwargs": {"net_arch": [256, 256], "n_quantiles": 25}},
-    ),
-    "dqn": (
-        DQN,
-        1,
-        150_000,
-        Q | {"learning_rate": 2.5e-4, "batch_size": 512, "buffer_size": 100_000, "target_update_interval": 5000, "train_freq": 16}
-        | {"gradient_steps": 4, "exploration_fraction": 0.06, "exploration_final_eps": 0.11},
-    ),
+    "qrdqn": (QRDQN, 1, 100_000, Q | {"policy_kwargs": {"net_arch": [256, 256], "n_quantiles": 25}}),
+    "dqn": (DQN, 1, 100_000, Q | {"policy_kwargs": {"net_arch": [256, 256]}}),
     "ppo": (PPO, 16, 1_000_000, {"n_steps": 256, "gae_lambda": 0.94, "gamma": 0.99, "n_epochs": 4, "ent_coef": 0.0}),
 }
 
