@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
 use crate::observation::Observation;
-use crate::physics::{Params, Pendulum, ResetBounds, State, check_torque};
+use crate::physics::{Params, ParamsOf, Pendulum, ResetBounds, State, check_torque};
 use crate::reset_options::ResetOptions;
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
@@ -107,7 +107,7 @@ impl<A: Arithmetic> Acrobot<A> {
     /// # Errors
     ///
     /// Those of [`Params::validate`].
-    pub fn with_params(seed: u64, params: Params<A::Scalar>) -> Result<Self, Error> {
+    pub fn with_params(seed: u64, params: ParamsOf<A>) -> Result<Self, Error> {
         let mut acrobot = Self::new(seed);
         acrobot.set_params(params)?;
         Ok(acrobot)
@@ -254,7 +254,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     /// The parameters.
     #[must_use]
     #[inline]
-    pub fn params(&self) -> &Params<A::Scalar> {
+    pub fn params(&self) -> &ParamsOf<A> {
         self.pendulum.params()
     }
 
@@ -263,7 +263,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     /// # Errors
     ///
     /// Those of [`Params::validate`].
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+    pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
         self.pendulum.set_params(params)
     }
 
@@ -283,7 +283,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
 }
 
 #[cfg(feature = "defmt")]
-impl<A: Arithmetic<Scalar: defmt::Format>, R: defmt::Format> defmt::Format for Acrobot<A, R> {
+impl<A: Arithmetic, R: defmt::Format> defmt::Format for Acrobot<A, R> {
     /// Parameters, state and generator.
     fn format(&self, f: defmt::Formatter<'_>) {
         let (params, state, rng) = (self.params(), self.state(), &self.rng);
@@ -302,7 +302,7 @@ mod snapshot {
     use serde::de::{Deserialize, Deserializer, Error};
     use serde::ser::{Serialize, Serializer};
 
-    use super::{Acrobot, Arithmetic, Params, Pcg64, Pendulum, State};
+    use super::{Acrobot, Arithmetic, Pcg64, Pendulum, State};
     use crate::snapshot::{Header, Subject};
 
     impl<A: Arithmetic, R> Subject for Acrobot<A, R> {
@@ -312,9 +312,9 @@ mod snapshot {
 
     #[derive(serde::Serialize, serde::Deserialize)]
     #[serde(rename = "Acrobot")]
-    struct Snapshot<H, S, R> {
+    struct Snapshot<H, P, S, R> {
         snapshot: H,
-        params: Params<S>,
+        params: P,
         state: State<S>,
         rng: R,
     }
@@ -328,7 +328,7 @@ mod snapshot {
             + Pcg64::MAX_SNAPSHOT_SIZE;
     }
 
-    impl<A: Arithmetic<Scalar: Serialize>, R: Serialize> Serialize for Acrobot<A, R> {
+    impl<A: Arithmetic, R: Serialize> Serialize for Acrobot<A, R> {
         fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
             Snapshot {
                 snapshot: Header::<Self>::NEW,
@@ -342,12 +342,12 @@ mod snapshot {
 
     impl<'de, A, R> Deserialize<'de> for Acrobot<A, R>
     where
-        A: Arithmetic<Scalar: Deserialize<'de>>,
+        A: Arithmetic,
         R: Deserialize<'de>,
     {
         /// Rejects what `set_params` and `set_state` reject.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot::<Header<Self>, _, _> {
+            let Snapshot::<Header<Self>, _, _, _> {
                 params, state, rng, ..
             } = Snapshot::deserialize(deserializer)?;
             let pendulum = Pendulum::new(params, state).map_err(D::Error::custom)?;

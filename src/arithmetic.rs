@@ -40,12 +40,14 @@
 //! assert_eq!(step.reward, -1.0);
 //! ```
 
+use core::marker::PhantomData;
+
 use crate::error::Error;
 #[cfg(feature = "std")]
 use crate::math::sines::platform;
 use crate::math::sines::{self, correctly_rounded, polynomial, table};
 use crate::physics::{
-    Gymnasium, GymnasiumConstants, Lean, LeanConstants, Model, Params, Pendulum, State,
+    Gymnasium, GymnasiumConstants, Lean, LeanConstants, Model, Params, Pendulum, State, Viscous,
 };
 
 pub use crate::math::{Numbers, Real};
@@ -216,6 +218,53 @@ impl Arithmetic for Micro {
     fn sin_cos_near<V: Numbers<f32>>(x: V) -> (V, V) {
         x.zip3(x, x, |x, _, _| table::sin_cos(x))
     }
+}
+
+/// An arithmetic of this crate with [viscous friction](Viscous) of the joints. Its parameters have a field `friction`,
+/// which is 0 by default.
+///
+/// It needs memory and instructions for friction, which the arithmetic itself does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Damped<A>(PhantomData<A>);
+
+macro_rules! damped {
+    ($($(#[$cfg:meta])? $arithmetic:ident, $scalar:ident, $form:ident, $name:literal;)*) => {$(
+        $(#[$cfg])?
+        impl Arithmetic for Damped<$arithmetic> {
+            const NAME: &'static str = $name;
+            type Scalar = $scalar;
+            type Form = $form<Viscous<$scalar>>;
+
+            #[inline]
+            fn sin_cos(x: $scalar) -> ($scalar, $scalar) {
+                $arithmetic::sin_cos(x)
+            }
+
+            #[inline(always)]
+            fn sin_cos_near<V: Numbers<$scalar>>(x: V) -> (V, V) {
+                $arithmetic::sin_cos_near(x)
+            }
+
+            #[inline]
+            fn cos(x: $scalar) -> $scalar {
+                $arithmetic::cos(x)
+            }
+
+            #[inline(always)]
+            fn square(x: $scalar) -> $scalar {
+                $arithmetic::square(x)
+            }
+        }
+    )*};
+}
+
+damped! {
+    Reference, f64, Gymnasium, "damped reference";
+    #[cfg(feature = "std")] Host, f64, Gymnasium, "damped host";
+    Portable, f64, Lean, "damped portable";
+    Fast, f32, Lean, "damped fast";
+    Micro, f32, Lean, "damped micro";
 }
 
 // Not generic, because a `const fn` cannot calculate with a generic scalar. `Host` has none: it squares with the C library.

@@ -49,7 +49,7 @@ pub use vec_batch::{StepResults, VecBatch};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::physics::{Model, Params, ParamsRange, ResetBounds, State};
+use crate::physics::{Model, ParamsOf, ParamsRangeOf, ResetBounds, State};
 use crate::time_limit::V1;
 use buffers::{check_length, take_mut};
 use settings::{Parameters, Settings};
@@ -254,7 +254,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 
     /// The parameters of acrobot `index`, if there is one.
     #[must_use]
-    pub fn params_of(&self, index: usize) -> Option<Params<A::Scalar>> {
+    pub fn params_of(&self, index: usize) -> Option<ParamsOf<A>> {
         let (_, generators, lane_params) = self.storage.slices();
         generators.get(index)?;
         match &self.settings.parameters {
@@ -268,7 +268,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// # Errors
     ///
     /// Those of [`Params::validate`].
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+    pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;
         let model = Model::new(params);
         let (.., lane_params) = self.storage.slices_mut();
@@ -285,7 +285,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// Those of [`Params::validate`], [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and
     /// [`Error::SharedParams`] without memory for [`LaneParams`].
-    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
+    pub fn set_params_of(&mut self, index: usize, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;
         self.block_of(index)?;
         let (.., lane_params) = self.storage.slices_mut();
@@ -296,7 +296,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 
     /// The range from which each reset draws the acrobot's parameters.
     #[must_use]
-    pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
+    pub fn params_range(&self) -> Option<&ParamsRangeOf<A>> {
         match &self.settings.parameters {
             Parameters::Shared(_) => None,
             Parameters::Own(range) => range.as_ref(),
@@ -309,7 +309,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// # Errors
     ///
     /// [`Error::SharedParams`] for a range without memory for [`LaneParams`].
-    pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) -> Result<(), Error> {
+    pub fn set_params_range(&mut self, range: Option<ParamsRangeOf<A>>) -> Result<(), Error> {
         match &mut self.settings.parameters {
             Parameters::Own(own) => *own = range,
             Parameters::Shared(_) if range.is_none() => {}

@@ -5,4 +5,5 @@ mod real;
 pub mod sines;
 
 pub use lanes::{Lanes, Numbers};
+pub(crate) use real::sealed;
 pub use real::{Real, SinCos};

@@ -39,6 +39,7 @@ mod bounds;
 mod common;
 pub mod control;
 pub(crate) mod equations;
+mod friction;
 mod gymnasium;
 mod lean;
 mod params;
@@ -50,6 +51,8 @@ mod step;
 
 pub use bounds::{bound, wrap};
 pub(crate) use equations::{Arithmetic, Form, Model};
+pub use equations::{FrictionOf, ParamsOf, ParamsRangeOf};
+pub use friction::{Friction, Frictionless, Viscous};
 pub(crate) use gymnasium::Constants as GymnasiumConstants;
 pub use gymnasium::Gymnasium;
 pub(crate) use lean::Constants as LeanConstants;

@@ -9,7 +9,7 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::physics::{Params, State};
+use crate::physics::{ParamsOf, State};
 use crate::reset_options::ResetOptions;
 
 pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
@@ -151,7 +151,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
     /// The parameters.
     #[must_use]
     #[inline]
-    pub fn params(&self) -> &Params<A::Scalar> {
+    pub fn params(&self) -> &ParamsOf<A> {
         self.inner.params()
     }
 
@@ -160,7 +160,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
     /// # Errors
     ///
     /// Those of [`Params::validate`].
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+    pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
         self.inner.set_params(params)
     }
 }

@@ -16,7 +16,7 @@ fn a_pendulum_equals_an_acrobot_without_noise() {
         let params = Params {
             mass2: number(1.5),
             dt: number(0.1),
-            ..Params::DEFAULT
+            ..Params::default()
         };
         let mut acrobot = Acrobot::<A>::new(5);
         acrobot.set_params(params).unwrap();
@@ -56,7 +56,7 @@ fn a_pendulum_after_a_step_equals_a_new_one() {
             length1: number(1.25),
             length2: number(0.75),
             mass2: number(1.5),
-            ..Params::DEFAULT
+            ..Params::default()
         };
         let mut stepped = Pendulum::<A>::new(params, State::HANGING).unwrap();
         for i in 0..200 {

@@ -1,18 +1,18 @@
 //! The equations of motion are right: both forms agree with each other and with Lagrange's equations.
 
-use acrobot::arithmetic::Arithmetic;
+use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Dynamics, Lean, Pendulum};
-use acrobot::{Params, Portable, State};
+use acrobot::physics::{Dynamics, Frictionless, Gymnasium, ParamsOf, Pendulum, Viscous};
+use acrobot::{Fast, Params, Portable, State};
 
-/// `Portable`'s scalar and trigonometry with the lean form of the equations.
+/// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the lean one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct LeanF64;
+struct GymnasiumF64;
 
-impl Arithmetic for LeanF64 {
-    const NAME: &'static str = "lean f64";
+impl Arithmetic for GymnasiumF64 {
+    const NAME: &'static str = "gymnasium f64";
     type Scalar = f64;
-    type Form = Lean;
+    type Form = Gymnasium;
 
     fn sin_cos(x: f64) -> (f64, f64) {
         Portable::sin_cos(x)
@@ -57,7 +57,7 @@ fn relative(x: [f64; 2], y: [f64; 2]) -> f64 {
 }
 
 fn accelerations<A: Arithmetic<Scalar = f64>>(
-    params: &Params,
+    params: &ParamsOf<A>,
     state: &State,
     torque: f64,
 ) -> [f64; 2] {
@@ -74,8 +74,8 @@ fn both_forms_agree() {
     for (params, state, torque) in random_cases() {
         for dynamics in [Dynamics::Book, Dynamics::Nips] {
             let params = Params { dynamics, ..params };
-            let gymnasium = accelerations::<Portable>(&params, &state, torque);
-            let lean = accelerations::<LeanF64>(&params, &state, torque);
+            let gymnasium = accelerations::<GymnasiumF64>(&params, &state, torque);
+            let lean = accelerations::<Portable>(&params, &state, torque);
             let error = relative(gymnasium, lean);
             assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
         }
@@ -183,9 +183,9 @@ fn the_books_equations_equal_lagranges() {
         for (name, found) in [
             (
                 "Gymnasium's",
-                accelerations::<Portable>(&params, &state, torque),
+                accelerations::<GymnasiumF64>(&params, &state, torque),
             ),
-            ("lean", accelerations::<LeanF64>(&params, &state, torque)),
+            ("lean", accelerations::<Portable>(&params, &state, torque)),
         ] {
             let error = relative(found, expected);
             assert!(error <= ROUNDING, "{name}: {error:e}: {params:?} {state:?}");
@@ -204,7 +204,7 @@ fn the_books_equations_equal_lagranges() {
 /// M (θ̈ of the paper − θ̈ of the book) = (0, m2 l1 lc2 θ̇1² sin θ2).
 #[test]
 fn the_papers_equations_lack_one_term() {
-    fn check<A: Arithmetic<Scalar = f64>>(params: Params, state: State, torque: f64) {
+    fn check<A: Arithmetic<Scalar = f64>>(params: ParamsOf<A>, state: State, torque: f64) {
         let of = |dynamics| accelerations::<A>(&Params { dynamics, ..params }, &state, torque);
         let (book, nips) = (of(Dynamics::Book), of(Dynamics::Nips));
         let term = params.mass2
@@ -214,14 +214,88 @@ fn the_papers_equations_lack_one_term() {
             * state.dtheta1
             * A::sin_cos(state.theta2).0;
         let pendulum = Pendulum::<A>::new(params, state).unwrap();
-        let [[m11, m12], [m21, m22]] = pendulum.mass_matrix();
-        let forces = |[a, b]: [f64; 2]| [m11 * a + m12 * b, m21 * a + m22 * b];
-        let (book, nips) = (forces(book), forces(nips));
-        let error = relative([nips[0], nips[1]], [book[0], book[1] + term]);
+        let [book, nips] = [book, nips].map(|accelerations| torques(&pendulum, accelerations));
+        let error = relative(nips, [book[0], book[1] + term]);
         assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
     }
     for (params, state, torque) in random_cases() {
         check::<Portable>(params, state, torque);
-        check::<LeanF64>(params, state, torque);
+        check::<GymnasiumF64>(params, state, torque);
     }
+}
+
+/// M θ̈.
+fn torques<A: Arithmetic<Scalar = f64>>(pendulum: &Pendulum<A>, [a, b]: [f64; 2]) -> [f64; 2] {
+    pendulum.mass_matrix().map(|[m1, m2]| m1 * a + m2 * b)
+}
+
+/// M (θ̈ with friction − θ̈ without) = −(b1 θ̇1, b2 θ̇2), in both forms of the equations.
+#[test]
+fn friction_resists_the_velocity_of_each_joint() {
+    fn check<A, Without>((params, state, torque): (Params, State, f64))
+    where
+        A: Arithmetic<Scalar = f64, Form: Form<f64, Friction = Viscous<f64>>>,
+        Without: Arithmetic<Scalar = f64, Form: Form<f64, Friction = Frictionless>>,
+    {
+        let without = accelerations::<Without>(&params, &state, torque);
+        let friction = Viscous {
+            joint1: 0.3,
+            joint2: 0.7,
+        };
+        let params = params.with_friction(friction);
+        let with = accelerations::<A>(&params, &state, torque);
+        let pendulum = Pendulum::<A>::new(params, state).unwrap();
+        let [with, without] = [with, without].map(|x| torques(&pendulum, x));
+        let resistance = [0.3 * state.dtheta1, 0.7 * state.dtheta2];
+        let expected = [without[0] - resistance[0], without[1] - resistance[1]];
+        let error = relative(with, expected);
+        assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
+    }
+    for (params, state, torque) in random_cases() {
+        for dynamics in [Dynamics::Book, Dynamics::Nips] {
+            let case = (Params { dynamics, ..params }, state, torque);
+            check::<Damped<Portable>, Portable>(case);
+            check::<Damped<Reference>, Reference>(case);
+        }
+    }
+}
+
+#[test]
+fn friction_takes_energy() {
+    fn check<A: Arithmetic<Form: Form<A::Scalar, Friction = Viscous<A::Scalar>>>>() {
+        let [joint1, joint2, dt] = [0.05, 0.05, 0.02].map(A::Scalar::from_f64);
+        let params = Params {
+            dt,
+            friction: Viscous { joint1, joint2 },
+            ..Params::default()
+        };
+        let state = State::from([2.0, 1.0, 0.0, 0.0]).cast();
+        let mut pendulum = Pendulum::<A>::new(params, state).unwrap();
+        let mut before = pendulum.energy();
+        for _ in 0..20 {
+            for _ in 0..100 {
+                pendulum.step(A::Scalar::ZERO).unwrap();
+            }
+            let after = pendulum.energy();
+            assert!(after < before, "{}: {after} {before}", A::NAME);
+            before = after;
+        }
+    }
+    check::<Damped<Reference>>();
+    check::<Damped<Portable>>();
+    check::<Damped<Host>>();
+    check::<Damped<Fast>>();
+    check::<Damped<Micro>>();
+}
+
+#[test]
+fn invalid_friction_is_rejected() {
+    let friction = Viscous {
+        joint1: 0.0,
+        joint2: -0.1,
+    };
+    let params = Params::DEFAULT.with_friction(friction);
+    let error = Pendulum::<Damped<Portable>>::new(params, State::HANGING).unwrap_err();
+    let rule = "friction.joint2 must be finite and at least 0 N m s/rad, got -0.1";
+    assert_eq!(error.to_string(), rule);
 }

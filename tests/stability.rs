@@ -1,15 +1,17 @@
 //! Promise 2, the same bits everywhere: digests of long runs. Changing one takes a breaking release.
 
-use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use acrobot::physics::{FrictionOf, Frictionless, Viscous};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use bits::{Digest, episodes, training};
 
 /// Every bit of the states, rewards and ends of random episodes with 64 seeds: about 100,000 steps.
-fn digest<A: Arithmetic>() -> u64 {
+fn digest<A: Arithmetic>(friction: FrictionOf<A>) -> u64 {
     let mut digest = Digest::default();
     for seed in 0..64 {
-        let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(seed));
+        let params = Params::default().with_friction(friction);
+        let mut acrobot = TimeLimit::v1(Acrobot::<A>::with_params(seed, params).unwrap());
         let mut actions = Pcg64::new(seed);
         for _ in 0..3 {
             loop {
@@ -35,13 +37,20 @@ fn digest<A: Arithmetic>() -> u64 {
     digest.0
 }
 
+fn damped<S: Real>() -> Viscous<S> {
+    Viscous {
+        joint1: S::from_f64(0.1),
+        joint2: S::from_f64(0.05),
+    }
+}
+
 #[test]
 fn random_episodes_are_stable() {
     let found = [
-        digest::<Reference>(),
-        digest::<Portable>(),
-        digest::<Fast>(),
-        digest::<Micro>(),
+        digest::<Reference>(Frictionless),
+        digest::<Portable>(Frictionless),
+        digest::<Fast>(Frictionless),
+        digest::<Micro>(Frictionless),
     ];
     let expected = [
         0xd780_4061_b62e_8634,
@@ -50,6 +59,28 @@ fn random_episodes_are_stable() {
         0x2b57_13d8_75b4_e5db,
     ];
     assert!(found == expected, "{found:#018x?}");
+
+    let found = [
+        digest::<Damped<Reference>>(damped()),
+        digest::<Damped<Portable>>(damped()),
+        digest::<Damped<Fast>>(damped()),
+        digest::<Damped<Micro>>(damped()),
+    ];
+    let expected = [
+        0x1682_6198_c856_23fb,
+        0xdcd6_db2c_54dd_03bb,
+        0xf2df_d1ad_10ab_8b1d,
+        0x18d0_99fd_24fa_c2d7,
+    ];
+    assert!(found == expected, "with friction: {found:#018x?}");
+}
+
+#[test]
+fn a_friction_of_0_changes_no_bit() {
+    let damped = digest::<Damped<Reference>>(Viscous::default());
+    assert_eq!(damped, digest::<Reference>(Frictionless));
+    let damped = digest::<Damped<Fast>>(Viscous::default());
+    assert_eq!(damped, digest::<Fast>(Frictionless));
 }
 
 /// `Portable` calls the sines of the crate `libm`, in the version of the build.
@@ -97,6 +128,12 @@ fn the_shared_episodes_are_stable_in_the_other_arithmetics() {
 fn subnormal_numbers_are_stable() {
     let found = episodes::subnormal();
     assert!(found == episodes::SUBNORMAL, "{found:#018x?}");
+}
+
+#[test]
+fn steps_with_friction_are_stable() {
+    let found = episodes::damped();
+    assert!(found == episodes::DAMPED, "{found:#018x?}");
 }
 
 /// `cargo test -p common` tries other widths.

@@ -4,7 +4,7 @@
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Batch, Block};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, ParamsRange, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, Frictionless, ParamsRange, Pendulum, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
 use common::Repeating;
 
@@ -335,7 +335,7 @@ fn results_that_are_not_finite_keep_the_angles_and_stop() {
 /// The largest draw of a generator can round to a number above the upper bound.
 #[test]
 fn draws_of_parameters_are_within_their_range() {
-    let range = common::params_range::<f32>(Dynamics::Book);
+    let range = common::params_range::<f32, Frictionless>(Dynamics::Book);
     assert_eq!(range.draw(&mut Repeating::new([u64::MAX])), *range.high());
     let mut rng = Pcg64::new(0);
     for _ in 0..1000 {

@@ -3,7 +3,7 @@
 use super::buffers::set;
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real};
-use crate::physics::{Dynamics, Form, Model, Params};
+use crate::physics::{Dynamics, Form, Model, Params, ParamsOf};
 
 /// The memory for the parameters of `N` acrobots, where each has its own. The default is [`Params::DEFAULT`] for all.
 ///
@@ -30,38 +30,31 @@ impl<A: Arithmetic, const N: usize> Default for LaneParams<A, N> {
 impl<A: Arithmetic, const N: usize> LaneParams<A, N> {
     /// The same model in all lanes.
     #[inline(always)]
-    pub(super) fn shared(Model { params, constants }: &Model<A>) -> Self {
-        let model = Model {
-            params: params.zip(params, |x, _| Lanes([x; N])),
-            constants: A::Form::zip(*constants, *constants, |_, x| Lanes([x; N])),
-        };
+    pub(super) fn shared(model: &Model<A>) -> Self {
+        let model = model.zip(model, |_, x| Lanes([x; N]));
         Self { model }
     }
 
     /// Replaces the parameters of a lane by valid ones.
-    pub(super) fn set(&mut self, lane: usize, params: Params<A::Scalar>) {
-        let one = Model::<A>::new(params);
+    pub(super) fn set(&mut self, lane: usize, params: ParamsOf<A>) {
         let replace = |mut lanes: Lanes<_, N>, x| {
             set(&mut lanes.0, lane, x);
             lanes
         };
-        self.model = Model {
-            params: self.model.params.zip(&one.params, replace),
-            constants: A::Form::zip(self.model.constants, one.constants, replace),
-        };
+        self.model = self.model.zip(&Model::new(params), replace);
     }
 
     /// The parameters of a lane below `N`.
-    pub(super) fn get(&self, lane: usize) -> Params<A::Scalar> {
-        let Model { params, constants } = &self.model;
-        let number = |lanes: Lanes<A::Scalar, N>| *lanes.0.get(lane).unwrap_or(&A::Scalar::ZERO);
+    pub(super) fn get(&self, lane: usize) -> ParamsOf<A> {
+        let number = |lanes: Lanes<A::Scalar, N>, _| *lanes.0.get(lane).unwrap_or(&A::Scalar::ZERO);
+        let Model { params, constants } = self.model.zip(&Model::DEFAULT, number);
         Params {
-            dynamics: if number(A::Form::common(constants).nips) > A::Scalar::ZERO {
+            dynamics: if A::Form::common(&constants).nips > A::Scalar::ZERO {
                 Dynamics::Nips
             } else {
                 Dynamics::Book
             },
-            ..params.zip(params, |lanes, _| number(lanes))
+            ..params
         }
     }
 }

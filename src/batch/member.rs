@@ -6,7 +6,7 @@ use super::{Batch, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
-use crate::physics::{Params, State};
+use crate::physics::{ParamsOf, State};
 
 /// One acrobot of a batch, as plain data. With the `serde` feature it can be stored, without a version; a
 /// [whole batch](Batch#snapshots) has one.
@@ -27,16 +27,10 @@ use crate::physics::{Params, State};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(
-    feature = "serde",
-    serde(bound(
-        serialize = "A::Scalar: serde::Serialize",
-        deserialize = "A::Scalar: serde::Deserialize<'de>"
-    ))
-)]
+#[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Member<A: Arithmetic> {
     /// The parameters.
-    pub params: Params<A::Scalar>,
+    pub params: ParamsOf<A>,
     /// The state.
     pub state: State<A::Scalar>,
     /// The number of steps since the last reset.

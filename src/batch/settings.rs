@@ -3,7 +3,7 @@
 use core::num::NonZeroU32;
 
 use crate::arithmetic::Arithmetic;
-use crate::physics::{Model, ParamsRange, ResetBounds};
+use crate::physics::{Model, ParamsRangeOf, ResetBounds};
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
@@ -28,7 +28,7 @@ pub(super) enum Parameters<A: Arithmetic> {
     /// All have those of this model.
     Shared(Model<A>),
     /// Each has its own, and a reset draws them if there is a range.
-    Own(Option<ParamsRange<A::Scalar>>),
+    Own(Option<ParamsRangeOf<A>>),
 }
 
 /// What all acrobots of a batch share.

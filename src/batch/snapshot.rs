@@ -16,18 +16,12 @@ use super::{Autoreset, Batch, Member, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::SeedSequence;
-use crate::physics::{Params, ParamsRange, ResetBounds};
+use crate::physics::{ParamsOf, ParamsRange, ResetBounds};
 use crate::snapshot::{Header, Subject};
 
 /// The settings. The parameters that all acrobots share are those of each member.
 #[derive(serde::Serialize, serde::Deserialize)]
-#[serde(
-    rename = "Settings",
-    bound(
-        serialize = "A::Scalar: Serialize",
-        deserialize = "A::Scalar: Deserialize<'de>"
-    )
-)]
+#[serde(rename = "Settings", bound = "")]
 struct Settings<A: Arithmetic> {
     snapshot: Header<Self>,
     low: f64,
@@ -37,7 +31,7 @@ struct Settings<A: Arithmetic> {
     /// Whether each acrobot has its own parameters.
     own_params: bool,
     /// Both ends of the range, or nothing.
-    params_range: Vec<Params<A::Scalar>, 2>,
+    params_range: Vec<ParamsOf<A>, 2>,
 }
 
 impl<A: Arithmetic> Subject for Settings<A> {
@@ -47,7 +41,7 @@ impl<A: Arithmetic> Subject for Settings<A> {
 
 impl<A, S, const N: usize> Serialize for Batch<A, S, N>
 where
-    A: Arithmetic<Scalar: Serialize>,
+    A: Arithmetic,
     S: Storage<A, N>,
 {
     fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
@@ -81,7 +75,6 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     pub fn from_snapshot<'de, D>(storage: S, deserializer: D) -> Result<Self, D::Error>
     where
         D: Deserializer<'de>,
-        A::Scalar: Deserialize<'de>,
     {
         let mut batch = Self::new(SeedSequence::new(0), storage).map_err(D::Error::custom)?;
         let mut index = 0;
@@ -119,7 +112,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 }
 
 #[cfg(feature = "alloc")]
-impl<A: Arithmetic<Scalar: Serialize>, const N: usize> Serialize for VecBatch<A, N> {
+impl<A: Arithmetic, const N: usize> Serialize for VecBatch<A, N> {
     fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
         (**self).serialize(serializer)
     }
@@ -128,7 +121,7 @@ impl<A: Arithmetic<Scalar: Serialize>, const N: usize> Serialize for VecBatch<A,
 #[cfg(feature = "alloc")]
 impl<'de, A, const N: usize> Deserialize<'de> for VecBatch<A, N>
 where
-    A: Arithmetic<Scalar: Deserialize<'de>>,
+    A: Arithmetic,
 {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut members = alloc::vec::Vec::new();
@@ -161,14 +154,14 @@ fn read<'de, A, D>(
     each: impl FnMut(Member<A>) -> Result<(), Error>,
 ) -> Result<Settings<A>, D::Error>
 where
-    A: Arithmetic<Scalar: Deserialize<'de>>,
+    A: Arithmetic,
     D: Deserializer<'de>,
 {
     struct Records<A, F>(F, PhantomData<A>);
 
     impl<'de, A, F> Visitor<'de> for Records<A, F>
     where
-        A: Arithmetic<Scalar: Deserialize<'de>>,
+        A: Arithmetic,
         F: FnMut(Member<A>) -> Result<(), Error>,
     {
         type Value = Settings<A>;

@@ -134,7 +134,7 @@ impl<A: Arithmetic, O: ObservationKind> Env for AcrobotEnv<A, O> {
     }
 
     fn observation_space(&self) -> BoxSpace<O> {
-        O::space(&self.acrobot.params().cast())
+        O::space(&self.acrobot.params().without_friction().cast())
     }
 
     fn render(&mut self) -> Result<Rendering, Error> {
@@ -205,12 +205,13 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
     }
 
     fn params(&self) -> Params {
-        Self::params(self).cast()
+        Self::params(self).without_friction().cast()
     }
 
     fn set_params(&mut self, params: Params) -> Result<(), crate::Error> {
         params.validate()?;
-        Self::set_params(self, params.cast())
+        let friction = Self::params(self).friction;
+        Self::set_params(self, params.cast().with_friction(friction))
     }
 
     fn figure(&self) -> Figure {

@@ -118,8 +118,25 @@ impl_real!(f32, u32);
 impl_real!(f64, u64);
 
 pub(crate) mod sealed {
+    /// What the features `serde` and `defmt` need of numbers.
+    #[cfg(feature = "serde")]
+    pub trait Serde: serde::Serialize + serde::de::DeserializeOwned {}
+    #[cfg(feature = "serde")]
+    impl<T: serde::Serialize + serde::de::DeserializeOwned> Serde for T {}
+    #[cfg(not(feature = "serde"))]
+    pub trait Serde {}
+    #[cfg(not(feature = "serde"))]
+    impl<T> Serde for T {}
+
+    #[cfg(feature = "defmt")]
+    pub use defmt::Format;
+    #[cfg(not(feature = "defmt"))]
+    pub trait Format {}
+    #[cfg(not(feature = "defmt"))]
+    impl<T> Format for T {}
+
     /// Items of a scalar that only this crate uses.
-    pub trait Sealed: Sized {
+    pub trait Sealed: Sized + Serde + Format {
         /// 1.
         const ONE: Self;
 

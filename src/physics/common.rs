@@ -12,7 +12,7 @@ pub trait FromParams<S>: Sized {
     const DEFAULT: Self;
 
     /// The constants of `params`. l1², lc1² and lc2² are arguments, because `Host` squares with the platform's `pow`.
-    fn from_params(params: &Params<S>, squares: [S; 3]) -> Self;
+    fn from_params(params: &Params<S, impl Copy>, squares: [S; 3]) -> Self;
 }
 
 /// The constants that both forms need.
@@ -52,7 +52,7 @@ impl<V> Common<V> {
 
 for_f32_and_f64! {
     impl Common<S> {
-        pub(super) const fn new(params: &Params<S>, lc2_squared: S) -> Self {
+        pub(super) const fn new(params: &Params<S, impl Copy>, lc2_squared: S) -> Self {
             let Params {
                 length1: l1,
                 mass1: m1,
@@ -82,7 +82,7 @@ for_f32_and_f64! {
 }
 
 impl<S: Real> Common<S> {
-    pub(super) fn mass_matrix(&self, params: &Params<S>, cos2: S) -> [[S; 2]; 2] {
+    pub(super) fn mass_matrix(&self, params: &Params<S, impl Copy>, cos2: S) -> [[S; 2]; 2] {
         let Params {
             length1: l1,
             mass1: m1,
@@ -99,7 +99,7 @@ impl<S: Real> Common<S> {
 
     pub(super) fn energy(
         &self,
-        params: &Params<S>,
+        params: &Params<S, impl Copy>,
         [dtheta1, dtheta2]: [S; 2],
         sin_cos: [SinCos<S>; 2],
     ) -> S {
@@ -113,7 +113,10 @@ impl<S: Real> Common<S> {
 }
 
 /// Elbow and tip as \[x, y\], m.
-pub(super) fn positions<S: Real>(params: &Params<S>, sin_cos: [SinCos<S>; 2]) -> [[S; 2]; 2] {
+pub(super) fn positions<S: Real>(
+    params: &Params<S, impl Copy>,
+    sin_cos: [SinCos<S>; 2],
+) -> [[S; 2]; 2] {
     let (l1, l2) = (params.length1, params.length2);
     let [(sin1, cos1), (sin_sum, cos_sum)] = directions(sin_cos);
     let elbow = [l1 * sin1, -l1 * cos1];

@@ -3,8 +3,9 @@
 
 use core::fmt;
 
-use super::Params;
 use super::common::Common;
+use super::friction::Friction;
+use super::{Params, ParamsRange};
 use crate::math::{Numbers, Real, SinCos};
 
 /// A scalar, its sines and the form of the equations: they determine every bit of a result.
@@ -45,6 +46,16 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     }
 }
 
+/// The parameters of an arithmetic: with friction if its form of the equations has it.
+pub type ParamsOf<A, V = <A as Arithmetic>::Scalar> =
+    Params<V, <FrictionOf<A> as Friction<<A as Arithmetic>::Scalar>>::Of<V>>;
+
+/// A range of [`ParamsOf`].
+pub type ParamsRangeOf<A> = ParamsRange<<A as Arithmetic>::Scalar, FrictionOf<A>>;
+
+/// The friction in the parameters of an arithmetic.
+pub type FrictionOf<A> = <<A as Arithmetic>::Form as Form<<A as Arithmetic>::Scalar>>::Friction;
+
 /// The constants that the form of the equations computes from the parameters.
 pub type Constants<A, V> =
     <<A as Arithmetic>::Form as Form<<A as Arithmetic>::Scalar>>::Constants<V>;
@@ -52,19 +63,35 @@ pub type Constants<A, V> =
 /// The parameters, and the constants that follow from them: of one acrobot or of many.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<A: Arithmetic, V: Numbers<A::Scalar> = <A as Arithmetic>::Scalar> {
-    pub(crate) params: Params<V>,
+    pub(crate) params: ParamsOf<A, V>,
     pub(crate) constants: Constants<A, V>,
+}
+
+impl<A: Arithmetic, V: Numbers<A::Scalar>> Model<A, V> {
+    /// Applies `f` to each pair of numbers. The dynamics are those of `self`.
+    #[inline(always)]
+    pub(crate) fn zip<W: Numbers<A::Scalar>>(
+        &self,
+        one: &Model<A>,
+        f: impl Fn(V, A::Scalar) -> W + Copy,
+    ) -> Model<A, W> {
+        let friction = FrictionOf::<A>::zip(self.params.friction, one.params.friction, f);
+        Model {
+            params: self.params.zip(&one.params, f, friction),
+            constants: A::Form::zip(self.constants, one.constants, f),
+        }
+    }
 }
 
 impl<A: Arithmetic> Model<A> {
     /// The model of [`Params::DEFAULT`], computed by the compiler.
     pub(crate) const DEFAULT: Self = Self {
-        params: Params::DEFAULT,
+        params: Params::DEFAULT.with_friction(Friction::ZERO),
         constants: A::Form::DEFAULT,
     };
 
     #[inline]
-    pub(crate) fn new(params: Params<A::Scalar>) -> Self {
+    pub(crate) fn new(params: ParamsOf<A>) -> Self {
         let lengths = [
             params.length1,
             params.center_of_mass1,
@@ -80,6 +107,9 @@ impl<A: Arithmetic> Model<A> {
 /// A form of the equations of motion: [`Gymnasium`](super::Gymnasium) or [`Lean`](super::Lean), which
 /// agree up to rounding. No other type can implement it.
 pub trait Form<S: Real>: Copy + fmt::Debug {
+    /// The friction of the joints.
+    type Friction: Friction<S, Of<S> = Self::Friction>;
+
     /// The constants, which depend only on the parameters.
     type Constants<V: Numbers<S>>: Copy + fmt::Debug + Send + Sync;
 
@@ -89,7 +119,7 @@ pub trait Form<S: Real>: Copy + fmt::Debug {
 
     /// The constants of `params`, given l1², lc1² and lc2².
     #[doc(hidden)]
-    fn constants(params: &Params<S>, squares: [S; 3]) -> Self::Constants<S>;
+    fn constants(params: &Params<S, Self::Friction>, squares: [S; 3]) -> Self::Constants<S>;
 
     /// The constants that both forms need.
     #[doc(hidden)]

@@ -1,12 +1,16 @@
 //! Gymnasium's expressions, operation by operation.
 
+use core::marker::PhantomData;
+
 use super::common::{Common, FromParams};
+use super::friction::{Friction, Frictionless, resist};
 use super::{Arithmetic, Form, Model, Params};
 use crate::math::{Numbers, Real, SinCos};
 
 /// The equations as Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
+/// `F` is the friction of the joints.
 #[derive(Clone, Copy, Debug)]
-pub struct Gymnasium;
+pub struct Gymnasium<F = Frictionless>(PhantomData<F>);
 
 /// The constants.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +32,7 @@ for_f32_and_f64! {
     impl Constants<S> {
         /// From parameters and l1², lc1² and lc2².
         pub(crate) const fn new(
-            params: &Params<S>,
+            params: &Params<S, impl Copy>,
             [l1_squared, lc1_squared, lc2_squared]: [S; 3],
         ) -> Self {
             let common = Common::<S>::new(params, lc2_squared);
@@ -46,7 +50,7 @@ for_f32_and_f64! {
     impl FromParams<S> for Constants<S> {
         const DEFAULT: Self = Self::new(&Params::DEFAULT, [1.0, 0.25, 0.25]);
 
-        fn from_params(params: &Params<S>, squares: [S; 3]) -> Self {
+        fn from_params(params: &Params<S, impl Copy>, squares: [S; 3]) -> Self {
             Self::new(params, squares)
         }
     }
@@ -55,16 +59,17 @@ for_f32_and_f64! {
 /// Beyond this number of turns `wrap` takes the remainder, unlike Gymnasium.
 const MAX_TURNS: u32 = 64;
 
-impl<S: Real> Form<S> for Gymnasium
+impl<S: Real, F: Friction<S, Of<S> = F>> Form<S> for Gymnasium<F>
 where
     Constants<S>: FromParams<S>,
 {
+    type Friction = F;
     type Constants<V: Numbers<S>> = Constants<V>;
     const DEFAULT: Constants<S> = FromParams::DEFAULT;
     const COMPACT: bool = false;
 
     #[inline(always)]
-    fn constants(params: &Params<S>, squares: [S; 3]) -> Constants<S> {
+    fn constants(params: &Params<S, F>, squares: [S; 3]) -> Constants<S> {
         FromParams::from_params(params, squares)
     }
 
@@ -134,9 +139,15 @@ where
         let arm = arms_product * cos2;
         let d1 = link1 + m2 * (arms_squared + two * arm) + inertia1 + inertia2;
         let d2 = m2 * (lc2_squared + arm) + inertia2;
-        let phi1 = -coupling * square(dtheta2) * sin2 - twice_coupling * dtheta2 * dtheta1 * sin2
+        let velocities = [dtheta1, dtheta2];
+        let (torque, resistance) = resist::<S, F, V>(&model.params.friction, torque, velocities);
+        let mut phi1 = -coupling * square(dtheta2) * sin2
+            - twice_coupling * dtheta2 * dtheta1 * sin2
             + gravity1 * cos1
             + phi2;
+        if let Some(resistance) = resistance {
+            phi1 = phi1 + resistance;
+        }
         let driven = torque + d2 / d1 * phi1;
         let centrifugal = coupling * square(dtheta1) * sin2;
         let driven = nips.select_within(S::ZERO, driven - centrifugal, driven);

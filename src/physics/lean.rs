@@ -1,12 +1,16 @@
 //! The lean form: one division and the sines and cosines of θ1 and θ2 for each evaluation.
 
+use core::marker::PhantomData;
+
 use super::common::{Common, FromParams};
+use super::friction::{Friction, Frictionless, resist};
 use super::{Arithmetic, Form, Model, Params};
 use crate::math::{Numbers, Real, SinCos};
 
 /// The equations solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.
+/// `F` is the friction of the joints.
 #[derive(Clone, Copy, Debug)]
-pub struct Lean;
+pub struct Lean<F = Frictionless>(PhantomData<F>);
 
 /// The equations for the absolute angles θ1 and θ1 + θ2 have the mass matrix
 /// \[\[upper, c\], \[c, link2\]\] with c = coupling cos θ2.
@@ -25,7 +29,7 @@ for_f32_and_f64! {
     impl Constants<S> {
         /// From parameters and l1², lc1² and lc2².
         pub(crate) const fn new(
-            params: &Params<S>,
+            params: &Params<S, impl Copy>,
             [l1_squared, lc1_squared, lc2_squared]: [S; 3],
         ) -> Self {
             let common = Common::<S>::new(params, lc2_squared);
@@ -43,22 +47,23 @@ for_f32_and_f64! {
     impl FromParams<S> for Constants<S> {
         const DEFAULT: Self = Self::new(&Params::DEFAULT, [1.0, 0.25, 0.25]);
 
-        fn from_params(params: &Params<S>, squares: [S; 3]) -> Self {
+        fn from_params(params: &Params<S, impl Copy>, squares: [S; 3]) -> Self {
             Self::new(params, squares)
         }
     }
 }
 
-impl<S: Real> Form<S> for Lean
+impl<S: Real, F: Friction<S, Of<S> = F>> Form<S> for Lean<F>
 where
     Constants<S>: FromParams<S>,
 {
+    type Friction = F;
     type Constants<V: Numbers<S>> = Constants<V>;
     const DEFAULT: Constants<S> = FromParams::DEFAULT;
     const COMPACT: bool = true;
 
     #[inline(always)]
-    fn constants(params: &Params<S>, squares: [S; 3]) -> Constants<S> {
+    fn constants(params: &Params<S, F>, squares: [S; 3]) -> Constants<S> {
         FromParams::from_params(params, squares)
     }
 
@@ -115,8 +120,13 @@ where
         let square = dtheta1 * dtheta1;
 
         // The generalized forces: the negated one on θ1, and the one on θ1 + θ2.
-        let force1 =
+        let velocities = [dtheta1, dtheta2];
+        let (torque, resistance) = resist::<S, F, V>(&model.params.friction, torque, velocities);
+        let mut force1 =
             (gravity1 * sin1 - coupling_sin * (dtheta_sum * dtheta_sum - nips * square)) + torque;
+        if let Some(resistance) = resistance {
+            force1 = force1 + resistance;
+        }
         let force2 = torque - gravity2 * sin_sum - coupling_sin * (book * square);
         let inverse = V::splat(S::ONE) / (determinant + coupling_sin * coupling_sin);
         let common = link2 * force1 + coupling_cos * force2;

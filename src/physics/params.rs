@@ -1,5 +1,6 @@
 //! The parameters, in SI units, and their ranges.
 
+use super::friction::{self, Friction, Frictionless};
 use crate::action::Action;
 use crate::error::{Error, Range};
 use crate::math::Real;
@@ -34,7 +35,7 @@ pub enum Dynamics {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Params<S = f64> {
+pub struct Params<S = f64, F = Frictionless> {
     /// Length of link 1, m; above 0.
     pub length1: S,
     /// Length of link 2, m; above 0. Only [`positions`](super::Pendulum::positions), the tip's height and drawings use
@@ -68,14 +69,26 @@ pub struct Params<S = f64> {
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
+    /// The friction of the joints: [`Frictionless`], which takes no memory and is left out of snapshots, or
+    /// [`Viscous`](super::Viscous).
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "takes_no_memory")
+    )]
+    pub friction: F,
 }
 
-impl<S: Real> Default for Params<S> {
-    /// [`Params::DEFAULT`], built field by field: copying the constant would call `memcpy`, which takes 1 KB of flash
+#[cfg(feature = "serde")]
+fn takes_no_memory<F>(_: &F) -> bool {
+    size_of::<F>() == 0
+}
+
+impl<S: Real, F: Default> Default for Params<S, F> {
+    /// [`Params::DEFAULT`] and no friction, built field by field: copying the constant would call `memcpy`, which takes 1 KB of flash
     /// if nothing else calls it.
     #[inline]
     fn default() -> Self {
-        Params::<f64>::DEFAULT.cast()
+        Params::<f64>::DEFAULT.cast().with_friction(F::default())
     }
 }
 
@@ -97,15 +110,42 @@ impl<S: Real> Params<S> {
         torques: [S::MINUS_ONE, S::ZERO, S::ONE],
         torque_noise: S::ZERO,
         dynamics: Dynamics::Book,
+        friction: Frictionless,
     };
 
     /// The same parameters in another scalar. Each number is rounded to the nearest.
     #[must_use]
     #[inline]
     pub fn cast<T: Real>(&self) -> Params<T> {
-        self.zip(self, |x, _| T::from_f64(x.to_f64()))
+        self.zip(self, |x, _| T::from_f64(x.to_f64()), Frictionless)
     }
 
+    /// The same parameters, for a form of the equations with friction.
+    #[must_use]
+    #[inline]
+    pub const fn with_friction<F>(self, friction: F) -> Params<S, F> {
+        Params {
+            length1: self.length1,
+            length2: self.length2,
+            mass1: self.mass1,
+            mass2: self.mass2,
+            center_of_mass1: self.center_of_mass1,
+            center_of_mass2: self.center_of_mass2,
+            inertia1: self.inertia1,
+            inertia2: self.inertia2,
+            gravity: self.gravity,
+            dt: self.dt,
+            max_velocity1: self.max_velocity1,
+            max_velocity2: self.max_velocity2,
+            torques: self.torques,
+            torque_noise: self.torque_noise,
+            dynamics: self.dynamics,
+            friction,
+        }
+    }
+}
+
+impl<S: Real, F: Friction<S, Of<S> = F>> Params<S, F> {
     /// The torque of an action, N m.
     #[must_use]
     #[inline]
@@ -129,13 +169,23 @@ impl<S: Real> Params<S> {
     pub fn validate(&self) -> Result<(), Error> {
         // The casts change nothing: `S` is one of these two.
         match size_of::<S>() {
-            4 => self.cast::<f32>().check(),
-            _ => self.cast::<f64>().check(),
-        }
+            4 => self.without_friction().cast::<f32>().check(),
+            _ => self.without_friction().cast::<f64>().check(),
+        }?;
+        friction::fields(&self.friction).try_for_each(|(name, value)| {
+            Range::AtLeastZero.check(name, value.to_f64(), "N m s/rad")
+        })
+    }
+
+    /// The same parameters, for a form of the equations without friction.
+    #[must_use]
+    #[inline]
+    pub fn without_friction(&self) -> Params<S> {
+        self.zip(self, |x, _| x, Frictionless)
     }
 }
 
-impl<S: Copy> Params<S> {
+impl<S: Copy, F: Copy> Params<S, F> {
     /// The name, value, unit and range of each number.
     pub(super) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
         use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
@@ -163,11 +213,12 @@ impl<S: Copy> Params<S> {
 
     /// Applies `f` to each number and that of `other`, in the order of the fields. The dynamics are those of `self`.
     #[inline(always)]
-    pub(crate) fn zip<T: Copy, U>(
+    pub(crate) fn zip<T: Copy, G: Copy, U, H>(
         &self,
-        other: &Params<T>,
+        other: &Params<T, G>,
         mut f: impl FnMut(S, T) -> U,
-    ) -> Params<U> {
+        friction: H,
+    ) -> Params<U, H> {
         let ([negative, zero, positive], torques) = (self.torques, other.torques);
         Params {
             length1: f(self.length1, other.length1),
@@ -189,6 +240,7 @@ impl<S: Copy> Params<S> {
             ],
             torque_noise: f(self.torque_noise, other.torque_noise),
             dynamics: self.dynamics,
+            friction,
         }
     }
 }

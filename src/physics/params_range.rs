@@ -3,6 +3,7 @@
 use rand_core::Rng;
 
 use super::Params;
+use super::friction::{self, Friction, Frictionless};
 use crate::error::Error;
 use crate::math::Real;
 use crate::numpy::uniform;
@@ -26,22 +27,26 @@ use crate::numpy::uniform;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ParamsRange<S = f64> {
-    low: Params<S>,
-    high: Params<S>,
+pub struct ParamsRange<S = f64, F = Frictionless> {
+    low: Params<S, F>,
+    high: Params<S, F>,
 }
 
-impl<S: Real> ParamsRange<S> {
+impl<S: Real, F: Friction<S, Of<S> = F>> ParamsRange<S, F> {
     /// The range from `low` to `high`. A parameter that is equal in both is fixed.
     ///
     /// # Errors
     ///
     /// Those of [`Params::validate`], [`Error::ReversedRange`] for a parameter whose `low` is above its `high`,
     /// [`Error::OutOfRange`] for a range so wide that its width is infinite, and [`Error::DifferentDynamics`].
-    pub fn new(low: Params<S>, high: Params<S>) -> Result<Self, Error> {
+    pub fn new(low: Params<S, F>, high: Params<S, F>) -> Result<Self, Error> {
         low.validate()?;
         high.validate()?;
-        for ((name, low, unit, _), (_, high, ..)) in low.fields().into_iter().zip(high.fields()) {
+        let numbers = low.fields().into_iter().zip(high.fields());
+        let numbers = numbers.map(|((name, low, unit, _), (_, high, ..))| (name, low, high, unit));
+        let friction = friction::fields(&low.friction).zip(friction::fields(&high.friction));
+        let friction = friction.map(|((name, low), (_, high))| (name, low, high, "N m s/rad"));
+        for (name, low, high, unit) in numbers.chain(friction) {
             let (low, high) = (low.to_f64(), high.to_f64());
             if low > high {
                 return Err(Error::ReversedRange {
@@ -69,25 +74,27 @@ impl<S: Real> ParamsRange<S> {
 
     /// The lower bounds.
     #[must_use]
-    pub const fn low(&self) -> &Params<S> {
+    pub const fn low(&self) -> &Params<S, F> {
         &self.low
     }
 
     /// The upper bounds.
     #[must_use]
-    pub const fn high(&self) -> &Params<S> {
+    pub const fn high(&self) -> &Params<S, F> {
         &self.high
     }
 
     /// Draws each parameter uniformly, in the order of the fields of [`Params`]. A fixed one draws nothing.
-    pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Params<S> {
-        self.low.zip(&self.high, |low, high| {
+    pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Params<S, F> {
+        let mut draw = |low: S, high: S| {
             if low == high {
                 return low;
             }
             let drawn = S::from_f64(uniform(rng, low.to_f64(), high.to_f64()));
             // The sum in `uniform` can round to a number above `high`.
             if drawn > high { high } else { drawn }
-        })
+        };
+        let drawn = self.low.zip(&self.high, &mut draw, Frictionless);
+        drawn.with_friction(F::zip(self.low.friction, self.high.friction, draw))
     }
 }

@@ -1,7 +1,7 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
 use super::common;
-use super::{Arithmetic, Form, Model, Params, State, step};
+use super::{Arithmetic, Form, Model, ParamsOf, State, step};
 use crate::error::{Error, Range};
 use crate::math::{Real, SinCos};
 
@@ -62,7 +62,7 @@ impl<A: Arithmetic> Pendulum<A> {
     /// # Errors
     ///
     /// Those of [`Params::validate`] and [`State::validate`].
-    pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
+    pub fn new(params: ParamsOf<A>, state: State<A::Scalar>) -> Result<Self, Error> {
         params.validate()?;
         state.validate()?;
         Ok(Self::new_unchecked(params, state))
@@ -70,7 +70,7 @@ impl<A: Arithmetic> Pendulum<A> {
 
     /// As [`new`](Self::new), with parameters and a state that are known to be valid.
     #[inline]
-    pub(crate) fn new_unchecked(params: Params<A::Scalar>, state: State<A::Scalar>) -> Self {
+    pub(crate) fn new_unchecked(params: ParamsOf<A>, state: State<A::Scalar>) -> Self {
         Self {
             model: Model::new(params),
             sin_cos: sin_cos::<A>([state.theta1, state.theta2]),
@@ -139,7 +139,7 @@ impl<A: Arithmetic> Pendulum<A> {
     /// The parameters.
     #[must_use]
     #[inline]
-    pub fn params(&self) -> &Params<A::Scalar> {
+    pub fn params(&self) -> &ParamsOf<A> {
         &self.model.params
     }
 
@@ -148,7 +148,7 @@ impl<A: Arithmetic> Pendulum<A> {
     /// # Errors
     ///
     /// Those of [`Params::validate`].
-    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+    pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;
         self.model = Model::new(params);
         Ok(())
@@ -279,7 +279,7 @@ impl<A: Arithmetic> PartialEq for Pendulum<A> {
 }
 
 #[cfg(feature = "defmt")]
-impl<A: Arithmetic<Scalar: defmt::Format>> defmt::Format for Pendulum<A> {
+impl<A: Arithmetic> defmt::Format for Pendulum<A> {
     /// Parameters and state.
     fn format(&self, f: defmt::Formatter<'_>) {
         let (params, state) = (self.params(), self.state());

@@ -15,7 +15,8 @@ fn regulated<A: Arithmetic>(
     target: State,
     weight: f64,
 ) -> (Pendulum<A>, Lqr<A::Scalar>) {
-    let pendulum = Pendulum::new(params.cast(), target.cast()).unwrap();
+    let params = params.cast().with_friction(Default::default());
+    let pendulum = Pendulum::new(params, target.cast()).unwrap();
     let model = discretize(&pendulum, A::Scalar::ZERO).unwrap();
     let q = diagonal([weight; 4]).map(cast);
     let regulator = lqr(&model, &q, Real::from_f64(1.0)).unwrap();

@@ -4,11 +4,11 @@
 mod balance;
 mod regulators;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::arithmetic::{self, Arithmetic, Host, Micro, Real, Reference};
 use acrobot::physics::control::{Forces, discretize, inverse_dynamics, linearize, velocities};
-use acrobot::physics::{Dynamics, Pendulum};
+use acrobot::physics::{Dynamics, FrictionOf, Pendulum, Viscous};
 use acrobot::{Fast, Params, Portable, State};
-use common::text_of;
+use common::{AnyFriction, text_of};
 
 /// The rest of each line of the recording that starts with this word.
 fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
@@ -41,16 +41,17 @@ fn relative<S: Real>(found: &[S], expected: &[f64]) -> f64 {
     largest(differences) / largest(&mut expected.iter().copied())
 }
 
-/// Moderate parameters, or those over six decades.
+/// Moderate parameters, those over six decades, or moderate ones with friction.
 #[derive(Clone, Copy, Debug)]
 enum Spread {
     Moderate,
     Decades,
+    Damped,
 }
 
 /// A pendulum, a torque and accelerations of the recording, and what autograd computed for them.
 struct Case {
-    params: Params,
+    params: Params<f64, Viscous<f64>>,
     state: State,
     torque: f64,
     accelerations: [f64; 2],
@@ -63,10 +64,11 @@ fn cases(spread: Spread) -> Vec<Case> {
     let text = text_of("tests/data/control.txt");
     let results = |word| lines(&text, word).map(numbers).collect::<Vec<_>>();
     let [continuous, discrete, motion] = ["continuous", "discrete", "motion"].map(results);
-    assert_eq!(continuous.len(), 80);
+    assert_eq!(continuous.len(), 120);
     let first = match spread {
         Spread::Moderate => 0,
         Spread::Decades => 40,
+        Spread::Damped => 80,
     };
     let cases = lines(&text, "case")
         .zip(continuous)
@@ -76,7 +78,7 @@ fn cases(spread: Spread) -> Vec<Case> {
     cases
         .map(|((line, continuous), (discrete, motion))| {
             let (dynamics, given) = line.split_once(' ').unwrap();
-            let x: [f64; 17] = vector(&numbers(given));
+            let x: [f64; 19] = vector(&numbers(given));
             Case {
                 params: Params {
                     length1: x[0],
@@ -93,11 +95,15 @@ fn cases(spread: Spread) -> Vec<Case> {
                         "book" => Dynamics::Book,
                         _ => Dynamics::Nips,
                     },
-                    ..Params::DEFAULT
+                    friction: Viscous {
+                        joint1: x[10],
+                        joint2: x[11],
+                    },
+                    ..Params::default()
                 },
-                state: State::from(vector(&x[10..14])),
-                torque: x[14],
-                accelerations: vector(&x[15..]),
+                state: State::from(vector(&x[12..16])),
+                torque: x[16],
+                accelerations: vector(&x[17..]),
                 continuous,
                 discrete,
                 motion,
@@ -107,10 +113,17 @@ fn cases(spread: Spread) -> Vec<Case> {
 }
 
 /// The largest error of each function over all cases, with the arithmetic `A`.
-fn errors<A: Arithmetic>(spread: Spread) -> [f64; 4] {
+fn errors<A: Arithmetic>(spread: Spread) -> [f64; 4]
+where
+    FrictionOf<A>: AnyFriction<A::Scalar>,
+{
     let mut worst = [0.0_f64; 4];
     for case in cases(spread) {
-        let pendulum = Pendulum::<A>::new(case.params.cast(), case.state.cast()).unwrap();
+        let Viscous { joint1, joint2 } = case.params.friction;
+        let friction = AnyFriction::new(Real::from_f64(joint1), Real::from_f64(joint2));
+        let params = case.params.without_friction().cast();
+        let params = params.with_friction(friction);
+        let pendulum = Pendulum::<A>::new(params, case.state.cast()).unwrap();
         let torque = Real::from_f64(case.torque);
         let continuous = linearize(&pendulum, torque).unwrap();
         let discrete = discretize(&pendulum, torque).unwrap();
@@ -141,7 +154,7 @@ fn errors<A: Arithmetic>(spread: Spread) -> [f64; 4] {
 
 #[test]
 fn derivatives_forces_and_velocities_equal_automatic_differentiation() {
-    use Spread::{Decades, Moderate};
+    use Spread::{Damped, Decades, Moderate};
     for (worst, limit) in [
         (errors::<Reference>(Moderate), 1e-14),
         (errors::<Portable>(Moderate), 1e-14),
@@ -154,6 +167,9 @@ fn derivatives_forces_and_velocities_equal_automatic_differentiation() {
         (errors::<Host>(Decades), 1e-12),
         (errors::<Fast>(Decades), 1e-3),
         (errors::<Micro>(Decades), 1e-3),
+        (errors::<arithmetic::Damped<Reference>>(Damped), 1e-14),
+        (errors::<arithmetic::Damped<Portable>>(Damped), 1e-14),
+        (errors::<arithmetic::Damped<Fast>>(Damped), 1e-6),
     ] {
         assert!(worst.into_iter().all(|error| error < limit), "{worst:?}");
     }

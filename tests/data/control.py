@@ -24,10 +24,11 @@ import mpmath
 from autograd import grad, jacobian
 from scipy.linalg import solve_discrete_are
 
-NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2 gravity dt".split()
+NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2 gravity dt friction1 friction2".split()
 LOW = [0.3, 0.3, 0.3, 0.3, 0.0, 0.0, 0.1, 0.1, -15.0, 0.002]
 HIGH = [2.0, 2.0, 3.0, 3.0, 1.0, 1.0, 2.0, 2.0, 15.0, 0.2]
-DEFAULT = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 1.0, 9.8, 0.2]
+NONE = [0.0, 0.0]
+DEFAULT = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 1.0, 9.8, 0.2, *NONE]
 STATES = np.array([3.2, 3.2, 6.0, 8.0])
 
 
@@ -49,7 +50,7 @@ class Floats:
 def terms(p, y, dynamics, math):
     """The mass matrix, and the torques that accelerations of 0 need."""
     theta1, theta2, dtheta1, dtheta2 = y
-    l1, _, m1, m2, lc1, lc2, i1, i2, g, _ = p
+    l1, _, m1, m2, lc1, lc2, i1, i2, g, *_ = p
     sin2, arm = math.sin(theta2), m2 * l1 * lc2
     d1 = m1 * lc1**2 + m2 * (l1**2 + lc2**2) + 2 * arm * math.cos(theta2) + i1 + i2
     d2 = m2 * lc2**2 + arm * math.cos(theta2) + i2
@@ -62,12 +63,12 @@ def terms(p, y, dynamics, math):
 def derivative(p, y, torque, dynamics, math=Floats):
     theta1, theta2, dtheta1, dtheta2 = y
     mass, phi1, centrifugal, phi2 = terms(p, (theta1, theta2, dtheta1, dtheta2), dynamics, math)
-    rates = math.solve(mass, np.array([-phi1, torque - centrifugal - phi2]))
+    rates = math.solve(mass, np.array([-phi1 - p[10] * dtheta1, torque - centrifugal - phi2 - p[11] * dtheta2]))
     return np.array([dtheta1, dtheta2, rates[0], rates[1]])
 
 
 def step(p, y, torque, dynamics, math=Floats):
-    dt = p[-1]
+    dt = p[9]
     k1 = derivative(p, y, torque, dynamics, math)
     k2 = derivative(p, y + dt / 2 * k1, torque, dynamics, math)
     k3 = derivative(p, y + dt / 2 * k2, torque, dynamics, math)
@@ -88,7 +89,7 @@ def point(theta, distance1, distance2, math=Floats):
 
 
 def lagrangian(p, theta, dtheta):
-    l1, _, m1, m2, lc1, lc2, i1, i2, g, _ = p
+    l1, _, m1, m2, lc1, lc2, i1, i2, g, *_ = p
     energy = i1 * dtheta[0] ** 2 / 2 + i2 * (dtheta[0] + dtheta[1]) ** 2 / 2
     for mass, distances in ((m1, (lc1, 0.0)), (m2, (l1, lc2))):
         velocity = jacobian(point)(theta, *distances) @ dtheta
@@ -98,7 +99,7 @@ def lagrangian(p, theta, dtheta):
 
 def motion(p, y, accelerations, dynamics):
     """Torques, reaction, force in the elbow, velocities of elbow and tip."""
-    l1, l2, m1, m2, lc1, lc2, _, _, g, _ = p
+    l1, l2, m1, m2, lc1, lc2, _, _, g, *_ = p
     theta, dtheta = y[:2], y[2:]
     path = lambda t: theta + dtheta * t + accelerations * t**2 / 2
     velocity = lambda *distances: jacobian(lambda t: point(path(t), *distances))
@@ -108,7 +109,7 @@ def motion(p, y, accelerations, dynamics):
     reaction = elbow + m1 * (acceleration(lc1, 0.0) + weight)
 
     momentum = lambda t: grad(lagrangian, 2)(p, path(t), dtheta + accelerations * t)
-    torques = jacobian(momentum)(0.0) - grad(lagrangian, 1)(p, theta, dtheta)
+    torques = jacobian(momentum)(0.0) - grad(lagrangian, 1)(p, theta, dtheta) + p[10:] * dtheta
     if dynamics == "nips":
         torques[1] -= m2 * l1 * lc2 * dtheta[0] ** 2 * np.sin(theta[1])
     return torques, reaction, elbow, velocity(l1, 0.0)(0.0), velocity(l1, l2)(0.0)
@@ -126,7 +127,7 @@ def exactly(f, p, y, torque, dynamics):
 
 def exact_motion(p, y, accelerations, dynamics):
     """As motion, by differences in 200 digits. The torques are those of the equations in `terms`."""
-    l1, l2, m1, m2, lc1, lc2, _, _, g, _ = p
+    l1, l2, m1, m2, lc1, lc2, _, _, g, *_ = p
     theta, dtheta = y[:2], y[2:]
     h = mpmath.mpf(10) ** -60
     times = -h, mpmath.mpf(0), h
@@ -137,7 +138,7 @@ def exact_motion(p, y, accelerations, dynamics):
     elbow = m2 * (acceleration(*places(l1, lc2)) + weight)
     reaction = elbow + m1 * (acceleration(*places(lc1, 0)) + weight)
     mass, phi1, centrifugal, phi2 = terms(p, y, dynamics, Digits)
-    torques = mass @ accelerations + np.array([phi1, centrifugal + phi2])
+    torques = mass @ accelerations + np.array([phi1, centrifugal + phi2]) + p[10:] * dtheta
     return torques, reaction, elbow, velocity(*places(l1, 0)), velocity(*places(l1, l2))
 
 
@@ -177,7 +178,7 @@ def models(rng):
     """Models with weights: the acrobot with sensible and extreme weights, then anything over many decades."""
     for dt in 0.002, 0.01, 0.05:
         for angle in 0.0, np.pi:
-            a, b = linear(step, np.array([*DEFAULT[:-1], dt]), np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
+            a, b = linear(step, np.array([*DEFAULT[:9], dt, *NONE]), np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
             for diagonal in (1.0, 1.0, 1.0, 1.0), (1000.0, 1000.0, 10.0, 10.0), (1.0, 1.0, 0.0, 0.0):
                 for r in 1e-8, 1e-4, 1.0, 1e6, 1e8:
                     yield "acrobot", a, b, np.diag(diagonal), r
@@ -194,21 +195,25 @@ def models(rng):
         yield "any", a, b, (q + q.T) / 2, decades(rng, -12, 8)
 
 
+def case(rng, number, p):
+    dynamics = ["book", "nips"][number % 2]
+    y, torque, accelerations = rng.uniform(-STATES, STATES), rng.uniform(-5, 5), rng.uniform(-20, 20, 2)
+    yield f"case {dynamics} {texts(p, y, torque, accelerations)}"
+    yield f"continuous {texts(*linear(derivative, p, y, torque, dynamics))}"
+    yield f"discrete {texts(*linear(step, p, y, torque, dynamics))}"
+    yield f"motion {texts(*motion(p, y, accelerations, dynamics))}"
+
+
 def main():
     mpmath.mp.dps = 200
     rng = np.random.default_rng(5)
     lines = []
     for number in range(40):
-        dynamics = ["book", "nips"][number % 2]
-        p = np.array(DEFAULT) if number < 8 else rng.uniform(LOW, HIGH)
-        y, torque, accelerations = rng.uniform(-STATES, STATES), rng.uniform(-5, 5), rng.uniform(-20, 20, 2)
-        lines.append(f"case {dynamics} {texts(p, y, torque, accelerations)}")
-        lines.append(f"continuous {texts(*linear(derivative, p, y, torque, dynamics))}")
-        lines.append(f"discrete {texts(*linear(step, p, y, torque, dynamics))}")
-        lines.append(f"motion {texts(*motion(p, y, accelerations, dynamics))}")
+        p = np.array(DEFAULT) if number < 8 else np.array([*rng.uniform(LOW, HIGH), *NONE])
+        lines += case(rng, number, p)
     for dt in 0.001, 0.01, 0.05, 0.2:
         for angle in 0.0, np.pi:
-            p = np.array([*DEFAULT[:-1], dt])
+            p = np.array([*DEFAULT[:9], dt, *NONE])
             a, b = linear(step, p, np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
             for q, r in weights(rng):
                 approximate = solve_discrete_are(a, b[:, None], q, np.array([[r]]))
@@ -217,7 +222,7 @@ def main():
                 lines.append(f"lqr {texts(angle, dt, a, b, q, r, gain, cost)}")
     for number in range(40):
         dynamics = ["book", "nips"][number % 2]
-        p = np.array([*decades(rng, -3, 3, 8), rng.normal() * decades(rng, -3, 3), decades(rng, -5, -2)])
+        p = np.array([*decades(rng, -3, 3, 8), rng.normal() * decades(rng, -3, 3), decades(rng, -5, -2), *NONE])
         y = rng.uniform(-STATES, STATES)
         torque, accelerations = rng.normal() * decades(rng, -3, 3), rng.normal(size=2) * decades(rng, -3, 3, 2)
         p, y, torque, accelerations = (np.float32(x).astype(float) for x in (p, y, torque, accelerations))
@@ -231,13 +236,15 @@ def main():
         gain, _ = regulator(*(x.astype(float) for x in given))
         numbers = " ".join(str(x) for array in given for x in np.ravel(array))
         lines.append(f"model {kind} {numbers} {texts(gain)}")
+    for number in range(40):
+        lines += case(rng, number, np.array([*rng.uniform(LOW, HIGH), *decades(rng, -3, 0, 2)]))
     head = [
         f"# {', '.join(f'{name} {version(name)}' for name in ('autograd', 'mpmath', 'numpy', 'scipy'))}",
         f"# case DYNAMICS {' '.join(NAMES)}, the state, the torque, two accelerations",
         "# continuous, discrete: A by rows, B",
         "# motion: torques, reaction, force in the elbow, velocities of elbow and tip",
         "# lqr THETA1 DT: A, B, Q by rows, R, the gain, the cost by rows",
-        "# the second half of the cases: parameters over six decades",
+        "# the second 40 cases: parameters over six decades; the last 40: with friction",
         "# model KIND: A, B, Q by rows and R, all f32, and the gain",
     ]
     (Path(__file__).parent / "control.txt").write_text("\n".join(head + lines) + "\n")

@@ -5,7 +5,7 @@ use super::matrix::check_finite;
 use crate::error::Range;
 use crate::math::Real;
 use crate::physics::common::directions;
-use crate::physics::{Arithmetic, Dynamics, Pendulum};
+use crate::physics::{Arithmetic, Dynamics, Friction, FrictionOf, Pendulum};
 
 /// The torques and forces of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,11 +78,16 @@ pub fn inverse_dynamics<A: Arithmetic>(
     let across = |(sin, cos), [x, y]: [A::Scalar; 2]| cos * x + sin * y;
     let force2 = center2.map(|x| params.mass2 * x);
     let force1 = add(force2, center1.map(|x| params.mass1 * x));
-    let torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2);
-    let torque1 = torque2
+    let mut torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2);
+    let mut torque1 = torque2
         + params.inertia1 * turn1
         + lc1 * across(direction1, force1)
         + (l1 - lc1) * across(direction1, force2);
+
+    if let Some([joint1, joint2]) = FrictionOf::<A>::coefficients::<A::Scalar>(&params.friction) {
+        torque1 = torque1 + joint1 * state.dtheta1;
+        torque2 = torque2 + joint2 * state.dtheta2;
+    }
 
     let (sin2, _) = pendulum.sin_cos()[1];
     let centrifugal = params.mass2 * l1 * lc2 * (rate1 * rate1) * sin2;

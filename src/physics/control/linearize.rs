@@ -4,7 +4,7 @@ use super::ControlError;
 use super::matrix::check_finite;
 use crate::math::{Real, SinCos};
 use crate::physics::common::Common;
-use crate::physics::{Arithmetic, Form, Model, Pendulum, check_torque};
+use crate::physics::{Arithmetic, Form, Friction, FrictionOf, Model, Pendulum, check_torque};
 
 /// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
 /// rad/s, and u that from the torque, N m.
@@ -105,23 +105,32 @@ pub(super) fn partials<A: Arithmetic>(
     let cos_sum = cos1 * cos2 - sin1 * sin2;
     let fall = -(gravity2 * cos_sum);
     let dalpha_squared = dalpha * dalpha;
-    let [ddalpha, ddtheta2] = solve([
-        coupling_sin * (dbeta * dbeta - nips * dalpha_squared) - gravity1 * sin1 - torque,
-        torque - gravity2 * sin_sum - coupling_sin * (book * dalpha_squared),
-    ]);
-    let ddbeta = ddalpha + ddtheta2;
     let twice_sin = coupling_sin + coupling_sin;
+    let mut force1 =
+        coupling_sin * (dbeta * dbeta - nips * dalpha_squared) - gravity1 * sin1 - torque;
+    let mut force2 = torque - gravity2 * sin_sum - coupling_sin * (book * dalpha_squared);
+    let [
+        mut force1_by_dtheta1,
+        mut force1_by_dtheta2,
+        mut force2_by_dtheta2,
+    ] = [twice_sin * (dbeta - nips * dalpha), twice_sin * dbeta, zero];
+    if let Some([joint1, joint2]) = FrictionOf::<A>::coefficients(&params.friction) {
+        force1 = force1 - joint1 * dtheta1 + joint2 * dtheta2;
+        force2 = force2 - joint2 * dtheta2;
+        force1_by_dtheta1 = force1_by_dtheta1 - joint1;
+        force1_by_dtheta2 = force1_by_dtheta2 + joint2;
+        force2_by_dtheta2 = -joint2;
+    }
+    let [ddalpha, ddtheta2] = solve([force1, force2]);
+    let ddbeta = ddalpha + ddtheta2;
     let derivatives = [
         [-(gravity1 * cos1), fall],
         [
             coupling_cos * (dbeta * dbeta - nips * dalpha_squared) + coupling_sin * ddbeta,
             fall - coupling_cos * (book * dalpha_squared) + coupling_sin * ddalpha,
         ],
-        [
-            twice_sin * (dbeta - nips * dalpha),
-            -(twice_sin * (book * dalpha)),
-        ],
-        [twice_sin * dbeta, zero],
+        [force1_by_dtheta1, -(twice_sin * (book * dalpha))],
+        [force1_by_dtheta2, force2_by_dtheta2],
         [-one, one],
     ]
     .map(solve);

@@ -1,9 +1,9 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
-use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Form, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::ParamsRange;
+use acrobot::physics::{ParamsOf, ParamsRange, Viscous};
 use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, TimeLimit};
 
 use crate::{Digest, against};
@@ -50,7 +50,7 @@ pub fn equal<A: Arithmetic>(expected: &[u64; 16]) -> usize {
 }
 
 /// Torques so small that angles and velocities stay subnormal for 200 steps.
-fn subnormal_torques<A: Arithmetic>(params: &mut Params<A::Scalar>) {
+fn subnormal_torques<A: Arithmetic>(params: &mut ParamsOf<A>) {
     let smallest_normal = if size_of::<A::Scalar>() == 4 {
         f64::from(f32::MIN_POSITIVE)
     } else {
@@ -77,6 +77,33 @@ fn subnormal_in<A: Arithmetic>() -> u64 {
     if acrobot.set_params(params).is_err() {
         return 0;
     }
+    steps(acrobot)
+}
+
+/// Every bit of 200 steps with friction, in both forms of the equations.
+pub fn damped() -> [u64; 2] {
+    [
+        damped_in::<Damped<Reference>>(),
+        damped_in::<Damped<Fast>>(),
+    ]
+}
+
+fn damped_in<A>() -> u64
+where
+    A: Arithmetic<Form: Form<A::Scalar, Friction = Viscous<A::Scalar>>>,
+{
+    let mut acrobot = Acrobot::<A>::new(0);
+    let [joint1, joint2] = [0.1, 0.05].map(A::Scalar::from_f64);
+    let mut params = *acrobot.params();
+    params.friction = Viscous { joint1, joint2 };
+    if acrobot.set_params(params).is_err() {
+        return 0;
+    }
+    steps(acrobot)
+}
+
+/// Every bit of 200 steps against θ̇1.
+fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
     let mut digest = Digest::default();
     for _ in 0..200 {
         let step = acrobot.step(against(acrobot.state().dtheta1));
@@ -171,6 +198,8 @@ pub const SUBNORMAL: [u64; 4] = [
     0x2460_ddd8_8094_68c1, // where angles are that small, sin x is x in both
     0x2460_ddd8_8094_68c1,
 ];
+
+pub const DAMPED: [u64; 2] = [0xaa5b_ea28_3a02_5fe0, 0x02ab_1a17_374e_5871];
 
 pub const SUBNORMAL_BATCH: u64 = 0xcc78_d474_8108_4cf5;
 

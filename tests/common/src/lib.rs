@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use acrobot::arithmetic::Real;
-use acrobot::physics::{Dynamics, ParamsRange};
+use acrobot::physics::{Dynamics, Friction, Frictionless, ParamsRange, Viscous};
 use acrobot::{Params, State};
 
 pub use bits::Digest;
@@ -28,8 +28,25 @@ pub fn distance(x: State, y: State) -> f64 {
         .max((x.dtheta2 - y.dtheta2).abs())
 }
 
+/// A friction with these coefficients, where there is any.
+pub trait AnyFriction<S: Real>: Friction<S, Of<S> = Self> {
+    fn new(joint1: S, joint2: S) -> Self;
+}
+
+impl<S: Real> AnyFriction<S> for Frictionless {
+    fn new(_: S, _: S) -> Self {
+        Self
+    }
+}
+
+impl<S: Real> AnyFriction<S> for Viscous<S> {
+    fn new(joint1: S, joint2: S) -> Self {
+        Self { joint1, joint2 }
+    }
+}
+
 /// All parameters, each from a wide range.
-pub fn params_range<S: Real>(dynamics: Dynamics) -> ParamsRange<S> {
+pub fn params_range<S: Real, F: AnyFriction<S>>(dynamics: Dynamics) -> ParamsRange<S, F> {
     let low = Params {
         length1: 0.5,
         length2: 0.5,
@@ -46,6 +63,7 @@ pub fn params_range<S: Real>(dynamics: Dynamics) -> ParamsRange<S> {
         torques: [-2.0, -0.5, 0.5],
         torque_noise: 0.0,
         dynamics,
+        friction: Frictionless,
     };
     let high = Params {
         length1: 2.0,
@@ -63,8 +81,15 @@ pub fn params_range<S: Real>(dynamics: Dynamics) -> ParamsRange<S> {
         torques: [-0.5, 0.5, 2.0],
         torque_noise: 0.5,
         dynamics,
+        friction: Frictionless,
     };
-    ParamsRange::new(low.cast(), high.cast()).unwrap()
+    let [joint1, joint2] = [0.5, 0.3].map(S::from_f64);
+    let friction = F::new(joint1, joint2);
+    ParamsRange::new(
+        low.cast().with_friction(F::default()),
+        high.cast().with_friction(friction),
+    )
+    .unwrap()
 }
 
 /// Fails with the text that a page of the docs should contain. Line breaks do not count.

@@ -32,7 +32,8 @@ impl Episode {
     /// An acrobot in the episode's initial state.
     pub fn start<A: Arithmetic>(&self) -> Acrobot<A> {
         let mut acrobot = Acrobot::<A>::new(0);
-        acrobot.set_params(self.params.cast()).unwrap();
+        let params = self.params.cast().with_friction(Default::default());
+        acrobot.set_params(params).unwrap();
         acrobot.reset_with(ResetOptions {
             seed: Some(self.seed.clone()),
             bounds: Some(self.bounds),

@@ -3,7 +3,7 @@
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, SimdLevel, StepBuffers, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::ResetBounds;
+use acrobot::physics::{ParamsOf, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Observation, Params, ResetOptions, State, Step, TimeLimit};
 use bits::against;
 
@@ -51,7 +51,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         }
     }
 
-    pub fn set_params(&mut self, params: Params<A::Scalar>) {
+    pub fn set_params(&mut self, params: ParamsOf<A>) {
         self.batch.set_params(params).unwrap();
         for alone in &mut self.alone {
             alone.set_params(params).unwrap();
@@ -59,7 +59,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.assert_equal();
     }
 
-    pub fn set_params_of_each(&mut self, params: &[Params<A::Scalar>]) {
+    pub fn set_params_of_each(&mut self, params: &[ParamsOf<A>]) {
         for (i, alone) in self.alone.iter_mut().enumerate() {
             self.batch.set_params_of(i, params[i]).unwrap();
             alone.set_params(params[i]).unwrap();

@@ -2,26 +2,26 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Member, SimdLevel};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, ResetBounds};
+use acrobot::physics::{Dynamics, FrictionOf, ResetBounds};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
-use common::params_range;
 use common::twins::{LEVELS, MODES, Twins};
+use common::{AnyFriction, params_range};
 use proptest::prelude::*;
 
-use crate::given::{Number, Range, action, holds, number, params, reset_bounds, state};
+use crate::given::{Number, Range, Tested, action, holds, number, params, reset_bounds, state};
 
 /// The largest batch: three blocks of 16, of which one is not full.
 const LEN: usize = 35;
 
 #[derive(Clone, Debug)]
-enum Call<S> {
+enum Call<S, F> {
     Settings(Autoreset, NonZeroU32, SimdLevel, ResetBounds),
-    Params(Params<S>),
+    Params(Params<S, F>),
     /// Valid, or without mass.
-    ParamsOf(usize, Params<S>, bool),
+    ParamsOf(usize, Params<S, F>, bool),
     ParamsRange(Option<Dynamics>),
     Reset(Option<Vec<bool>>, Option<u64>, Option<ResetBounds>),
     ResetTo(Vec<State<S>>),
@@ -39,7 +39,7 @@ fn each<S: Strategy>(element: S) -> impl Strategy<Value = Vec<S::Value>> {
     prop::collection::vec(element, LEN)
 }
 
-fn call<S: Number>() -> BoxedStrategy<Call<S>> {
+fn call<S: Number, F: AnyFriction<S>>() -> BoxedStrategy<Call<S, F>> {
     // Lanes of the last block have no acrobot.
     let index = || 0..LEN + 16;
     let mode = prop::sample::select(&MODES[..]);
@@ -78,7 +78,7 @@ struct Model<A: Arithmetic, const N: usize> {
     stored: Option<(Member<A>, TimeLimit<Acrobot<A>>, bool)>,
 }
 
-impl<A: Arithmetic<Scalar: Number>, const N: usize> Model<A, N> {
+impl<A: Tested, const N: usize> Model<A, N> {
     fn new(len: usize, own_params: bool) -> Self {
         let twins = match own_params {
             true => Twins::with_own_params(len, Autoreset::NextStep),
@@ -92,7 +92,7 @@ impl<A: Arithmetic<Scalar: Number>, const N: usize> Model<A, N> {
     }
 
     /// A rejected call leaves the batch as it was.
-    fn call(&mut self, call: Call<A::Scalar>) {
+    fn call(&mut self, call: Call<A::Scalar, FrictionOf<A>>) {
         let Twins {
             batch,
             alone,
@@ -181,7 +181,7 @@ impl<A: Arithmetic<Scalar: Number>, const N: usize> Model<A, N> {
 
 #[test]
 fn any_calls_in_any_order_equal_single_acrobots() {
-    fn check<A: Arithmetic<Scalar: Number>, const N: usize>() {
+    fn check<A: Tested, const N: usize>() {
         let calls = prop::collection::vec(call(), 0..40);
         holds(200, (1..=LEN, any::<bool>(), calls), |(len, own, calls)| {
             let mut model = Model::<A, N>::new(len, own);
@@ -194,4 +194,6 @@ fn any_calls_in_any_order_equal_single_acrobots() {
     check::<Micro, 16>();
     check::<Reference, 16>();
     check::<Host, 16>();
+    check::<Damped<Fast>, 16>();
+    check::<Damped<Reference>, 3>();
 }

@@ -2,7 +2,7 @@
 
 use std::array::from_fn;
 
-use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::arithmetic::Real;
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
     ControlError, DiscreteModel, difference, discretize, inverse_dynamics, linearize, lqr,
@@ -10,7 +10,7 @@ use acrobot::physics::control::{
 };
 use proptest::prelude::*;
 
-use crate::given::{Number, Range, holds, number, params, state};
+use crate::given::{Number, Range, Tested, holds, number, params, state};
 
 /// Whether the result is finite, or an error that says what is not.
 fn is_finite<S: Real>(result: Result<Vec<S>, ControlError>) -> bool {
@@ -22,7 +22,7 @@ fn is_finite<S: Real>(result: Result<Vec<S>, ControlError>) -> bool {
 
 #[test]
 fn results_are_finite_or_errors() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let rates = [number::<A::Scalar>(Range::Any), number(Range::Any)];
         let given = (
             params(Range::Any),
@@ -55,9 +55,9 @@ fn results_are_finite_or_errors() {
 /// With moderate numbers nothing overflows, and the inverse dynamics undo the derivative.
 #[test]
 fn moderate_pendulums_have_models() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let given = (
-            params::<A::Scalar>(Range::Moderate),
+            params::<A::Scalar, _>(Range::Moderate),
             state(Range::Moderate),
             number(Range::Moderate),
         );
@@ -139,11 +139,11 @@ fn regulators_stabilize_or_are_errors() {
 /// Upright, with a motor that is weighted more or less.
 #[test]
 fn moderate_pendulums_can_be_held_upright() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let weight = (-4.0..4.0_f64).prop_map(f64::exp);
         holds(
             500,
-            (params::<A::Scalar>(Range::Moderate), weight),
+            (params::<A::Scalar, _>(Range::Moderate), weight),
             |(params, r)| {
                 let target = acrobot::State::UPRIGHT;
                 let pendulum = Pendulum::<A>::new(params, target).unwrap();

@@ -1,6 +1,5 @@
 //! The contract of `Env` for any valid parameters, and after any calls.
 
-use acrobot::arithmetic::Arithmetic;
 use acrobot::env::{
     ArithmeticKind, Env, Error, Options, RecordEpisodeStatistics, RenderMode, Rendering, Space,
     acrobot_v0, acrobot_v1, check_env, make_with,
@@ -10,16 +9,16 @@ use acrobot::physics::ResetBounds;
 use acrobot::{Action, Params, ResetOptions, State, TimeLimit};
 use proptest::prelude::*;
 
-use crate::given::{Number, Range, action, holds, params, reset_bounds, state};
+use crate::given::{Range, Tested, action, holds, params, reset_bounds, state};
 
 /// Parameters that are also valid in `f32`.
 fn fitting() -> impl Strategy<Value = Params> {
-    params::<f32>(Range::Any).prop_map(|params| params.cast())
+    params::<f32, _>(Range::Any).prop_map(|params| params.cast())
 }
 
 #[test]
 fn environments_of_any_parameters_keep_the_contract() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         holds(
             10,
             (fitting(), any::<u64>(), 1..600_u32),
@@ -56,7 +55,7 @@ fn call() -> impl Strategy<Value = Call> {
         2 => reset.prop_map(|(seed, bounds)| Call::Reset(seed, bounds)),
         20 => action().prop_map(Call::Step),
         2 => state::<f64>(Range::Any).prop_map(Call::SetState),
-        2 => params::<f64>(Range::Any).prop_map(Call::SetParams),
+        2 => params::<f64, _>(Range::Any).prop_map(Call::SetParams),
         2 => Just(Call::Render),
         1 => Just(Call::Close),
     ]

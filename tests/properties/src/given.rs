@@ -2,10 +2,11 @@
 
 use std::fmt::Debug;
 
-use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::arithmetic::{Arithmetic, Form, Real};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::{Dynamics, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, ParamsOf, Pendulum, ResetBounds};
 use acrobot::{Acrobot, Action, Params, State};
+use common::AnyFriction;
 use proptest::num::{f32, f64};
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed, TestRunner};
@@ -41,7 +42,18 @@ fn hold<T: Debug>(cases: u32, given: BoxedStrategy<T>, property: &dyn Fn(T)) {
     }
 }
 
-/// Calls `check::<A>()` for each arithmetic.
+/// An arithmetic whose scalar and friction can be generated.
+pub trait Tested:
+    Arithmetic<Scalar: Number, Form: Form<Self::Scalar, Friction: AnyFriction<Self::Scalar>>>
+{
+}
+
+impl<A> Tested for A where
+    A: Arithmetic<Scalar: Number, Form: Form<Self::Scalar, Friction: AnyFriction<Self::Scalar>>>
+{
+}
+
+/// Calls `check::<A>()` for each arithmetic, and with friction.
 macro_rules! in_every_arithmetic {
     ($check:ident) => {{
         $check::<acrobot::arithmetic::Reference>();
@@ -49,6 +61,7 @@ macro_rules! in_every_arithmetic {
         $check::<acrobot::arithmetic::Host>();
         $check::<acrobot::arithmetic::Fast>();
         $check::<acrobot::arithmetic::Micro>();
+        $check::<acrobot::arithmetic::Damped<acrobot::Fast>>();
     }};
 }
 
@@ -114,7 +127,7 @@ fn positive<S: Number>(range: Range, usual: f64) -> BoxedStrategy<S> {
 }
 
 /// Valid parameters.
-pub fn params<S: Number>(range: Range) -> BoxedStrategy<Params<S>> {
+pub fn params<S: Number, F: AnyFriction<S>>(range: Range) -> BoxedStrategy<Params<S, F>> {
     let Params {
         dt,
         max_velocity1,
@@ -130,34 +143,39 @@ pub fn params<S: Number>(range: Range) -> BoxedStrategy<Params<S>> {
     let torques = [(); 3].map(|()| number::<S>(range));
     let noise = prop_oneof![2 => Just(S::ZERO), 1 => positive::<S>(range, 1.0)];
     let dynamics = prop_oneof![Just(Dynamics::Book), Just(Dynamics::Nips)];
+    let friction = [(); 2].map(|()| or_none(0.05));
     let all = (
         (of_links, centers, inertias, limits),
         (gravity, positive(range, dt), torques, noise, dynamics),
+        friction,
     );
-    all.prop_map(|((links, centers, inertias, limits), others)| {
-        let (gravity, dt, torques, torque_noise, dynamics) = others;
-        let [length1, length2, mass1, mass2] = links;
-        let [center_of_mass1, center_of_mass2] = centers;
-        let [inertia1, inertia2] = inertias;
-        let [max_velocity1, max_velocity2] = limits;
-        Params {
-            length1,
-            length2,
-            mass1,
-            mass2,
-            center_of_mass1,
-            center_of_mass2,
-            inertia1,
-            inertia2,
-            gravity,
-            dt,
-            max_velocity1,
-            max_velocity2,
-            torques,
-            torque_noise,
-            dynamics,
-        }
-    })
+    all.prop_map(
+        |((links, centers, inertias, limits), others, [joint1, joint2])| {
+            let (gravity, dt, torques, torque_noise, dynamics) = others;
+            let [length1, length2, mass1, mass2] = links;
+            let [center_of_mass1, center_of_mass2] = centers;
+            let [inertia1, inertia2] = inertias;
+            let [max_velocity1, max_velocity2] = limits;
+            Params {
+                length1,
+                length2,
+                mass1,
+                mass2,
+                center_of_mass1,
+                center_of_mass2,
+                inertia1,
+                inertia2,
+                gravity,
+                dt,
+                max_velocity1,
+                max_velocity2,
+                torques,
+                torque_noise,
+                dynamics,
+                friction: F::new(joint1, joint2),
+            }
+        },
+    )
     .prop_filter("valid parameters", |params| params.validate().is_ok())
     .boxed()
 }
@@ -187,7 +205,7 @@ pub fn reset_bounds() -> impl Strategy<Value = ResetBounds> {
 
 /// An acrobot with these parameters in this state.
 pub fn acrobot<A: Arithmetic>(
-    params: Params<A::Scalar>,
+    params: ParamsOf<A>,
     state: State<A::Scalar>,
     seed: u64,
 ) -> Acrobot<A> {

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use acrobot::arithmetic::{Arithmetic, Portable};
+use acrobot::arithmetic::Portable;
 use acrobot::render::{Figure, Theme};
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
@@ -11,10 +11,10 @@ use embedded_graphics::pixelcolor::BinaryColor;
 use embedded_graphics::primitives::Rectangle;
 use proptest::prelude::*;
 
-use crate::given::{Number, Range, acrobot, holds, params, state};
+use crate::given::{Range, Tested, acrobot, holds, params, state};
 use common::canvas::Canvas;
 
-fn figure<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = Figure> {
+fn figure<A: Tested>() -> impl Strategy<Value = Figure> {
     let given = (params(Range::Any), state(Range::Any), prop::num::f32::ANY);
     given.prop_map(|(params, state, torque)| {
         Figure::new(&acrobot::<A>(params, state, 0)).with_torque(torque)
@@ -24,7 +24,7 @@ fn figure<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = Figure> {
 /// The canvas rejects pixels outside it.
 #[test]
 fn every_pixel_is_drawn_once_and_a_redraw_writes_those_that_change() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let sides = prop_oneof![
             4 => (0..70_u32, 0..70_u32),
             1 => (0..3_u32, 900..1000_u32),

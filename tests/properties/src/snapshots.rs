@@ -1,6 +1,5 @@
 //! Snapshots of any acrobot resume to the same bits, and are harmless when damaged.
 
-use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
@@ -11,10 +10,10 @@ use rand_core::Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::formats::again;
-use crate::given::{Number, Range, acrobot, bits, holds, params, state};
+use crate::given::{Range, Tested, acrobot, bits, holds, params, state};
 
 /// An acrobot after some steps and draws, with any time limit.
-fn running<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = TimeLimit<Acrobot<A>>> {
+fn running<A: Tested>() -> impl Strategy<Value = TimeLimit<Acrobot<A>>> {
     let given = (params(Range::Any), state(Range::Any), any::<u64>(), 0..4);
     let limit = prop_oneof![Just(1), Just(500), 1..=u32::MAX];
     (given, limit).prop_map(|((params, state, seed, steps), limit)| {
@@ -29,7 +28,7 @@ fn running<A: Arithmetic<Scalar: Number>>() -> impl Strategy<Value = TimeLimit<A
 
 #[test]
 fn snapshots_resume_to_the_same_bits() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         holds(500, running::<A>(), |original| {
             let expected = serde_json::to_string(&original).unwrap();
             for (format, mut resumed) in again(&original) {
@@ -77,7 +76,7 @@ fn members_and_parts_load_as_stored() {
             assert_eq!(loaded, member);
         }
     });
-    let given = (params::<f64>(Range::Any), state::<f64>(Range::Any));
+    let given = (params::<f64, _>(Range::Any), state::<f64>(Range::Any));
     holds(500, given, |(params, state): (Params, State)| {
         for (_, loaded) in again(&params) {
             assert_eq!(loaded, params);
@@ -112,7 +111,7 @@ fn every_format_stores_batches() {
 /// Changed or truncated bytes are rejected, or load as another valid acrobot.
 #[test]
 fn damaged_snapshots_are_rejected_or_valid() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let changes = prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4);
         let kept = any::<prop::sample::Index>();
         let given = (running::<A>(), changes, prop::option::weighted(0.2, kept));

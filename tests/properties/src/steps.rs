@@ -7,12 +7,12 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
 use acrobot::numpy::{Pcg64, integers};
-use acrobot::physics::Pendulum;
+use acrobot::physics::{ParamsOf, Pendulum};
 use acrobot::{Acrobot, Action, Error, Fast, Observation, Params, Portable, State, Step};
 use proptest::prelude::*;
 
 use crate::given::{
-    Number, Range, acrobot, action, bits, holds, number, params, reset_bounds, state,
+    Range, Tested, acrobot, action, bits, holds, number, params, reset_bounds, state,
 };
 use common::distance;
 
@@ -54,7 +54,7 @@ fn assert_stepped<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) {
 fn any_settings_and_steps_stay_in_bounds() {
     const CASES: u32 = if cfg!(debug_assertions) { 500 } else { 25_500 };
 
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let steps = Cell::new(0_u64);
         let set = (two(|| params(Range::Any)), two(|| state(Range::Any)));
         let done = (
@@ -104,7 +104,7 @@ fn mirror<S: Real>(state: State<S>) -> State<S> {
     <[S; 4]>::from(state).map(|x| -x).into()
 }
 
-fn mirrored<S: Real>(params: Params<S>) -> Params<S> {
+fn mirrored<S: Real, F>(params: Params<S, F>) -> Params<S, F> {
     let [negative, zero, positive] = params.torques;
     Params {
         torques: [-positive, -zero, -negative],
@@ -115,7 +115,7 @@ fn mirrored<S: Real>(params: Params<S>) -> Params<S> {
 
 /// The largest angle that a Runge-Kutta step passes through, rad. An error if a number is not finite.
 fn reach<A: Arithmetic>(
-    params: &Params<A::Scalar>,
+    params: &ParamsOf<A>,
     state: State<A::Scalar>,
     torque: A::Scalar,
 ) -> Result<f64, Error> {
@@ -143,11 +143,11 @@ fn reach<A: Arithmetic>(
 /// 2⁵².
 #[test]
 fn mirrored_steps_are_mirror_images() {
-    fn check<A: Arithmetic<Scalar: Number>>(farthest: f64) {
+    fn check<A: Tested>(farthest: f64) {
         let checked = Cell::new(0);
         let given = (params(Range::Any), state(Range::Any), action());
         holds(2000, given, |(params, state, action)| {
-            let right = mirrored::<A::Scalar>(params);
+            let right = mirrored(params);
             let left = mirrored(right);
             let reach = reach::<A>(&left, state, left.torque(action));
             if !reach.is_ok_and(|reach| reach <= farthest) {
@@ -172,10 +172,10 @@ fn mirrored_steps_are_mirror_images() {
 /// The sign of zero is not mirrored: hanging at rest under no torque, θ2 is +0 after a step from +0 and from −0.
 #[test]
 fn mirror_images_differ_in_the_sign_of_zero() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let hanging = State::<A::Scalar>::HANGING;
         for start in [hanging, mirror(hanging)] {
-            let mut pendulum = Pendulum::<A>::new(Params::DEFAULT, start).unwrap();
+            let mut pendulum = Pendulum::<A>::new(Params::default(), start).unwrap();
             pendulum.step(start.theta1).unwrap();
             assert_eq!(pendulum.state(), hanging);
             assert_eq!(bits(pendulum.state())[1], 0);

@@ -2,16 +2,16 @@
 
 use std::f64::consts::TAU;
 
-use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::arithmetic::Real;
 use acrobot::physics::{Pendulum, bound, wrap};
-use acrobot::{Fast, Observation, Params, State};
+use acrobot::{Fast, Observation, State};
 use proptest::prelude::*;
 
-use crate::given::{Number, Range, acrobot, bits, holds, number, params, state};
+use crate::given::{Number, Range, Tested, acrobot, bits, holds, number, params, state};
 
 #[test]
 fn angles_wrap_into_half_a_turn_to_either_side() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         holds(5000, number::<A::Scalar>(Range::Any), |x| {
             let wrapped = wrap::<A>(x);
             let pi = A::Scalar::PI;
@@ -52,7 +52,7 @@ fn angles_wrap_by_whole_turns() {
 
 #[test]
 fn bound_is_clamp() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let given = (number::<A::Scalar>(Range::Any), number(Range::Any));
         holds(1000, given, |(x, limit): (A::Scalar, A::Scalar)| {
             let limit = if limit < A::Scalar::ZERO {
@@ -69,7 +69,7 @@ fn bound_is_clamp() {
 
 #[test]
 fn sines_and_cosines_are_on_the_unit_circle() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         holds(5000, number::<A::Scalar>(Range::Any), |x| {
             let (sin, cos) = A::sin_cos(x);
             let [sine, cosine] = [sin, cos].map(Real::to_f64);
@@ -87,7 +87,7 @@ fn sines_and_cosines_are_on_the_unit_circle() {
 /// An acrobot returns the parameters and the state that it was given, and the tip is within reach.
 #[test]
 fn the_tip_is_within_reach() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let given = (params(Range::Any), state(Range::Any));
         holds(1000, given, |(params, state)| {
             let acrobot = acrobot::<A>(params, state, 0);
@@ -111,42 +111,37 @@ fn the_tip_is_within_reach() {
 /// For moderate parameters and states. Extreme ones can exceed the range of the scalar.
 #[test]
 fn the_equations_are_those_of_a_pendulum() {
-    fn check<A: Arithmetic<Scalar: Number>>() {
+    fn check<A: Tested>() {
         let given = (
             params(Range::Moderate),
             state(Range::Moderate),
             number(Range::Moderate),
         );
-        holds(
-            2000,
-            given,
-            |(params, state, torque): (Params<A::Scalar>, _, _)| {
-                let mut pendulum = Pendulum::<A>::new(params, state).unwrap();
-                let rates = pendulum.derivative(torque).map(Real::to_f64);
-                assert!(rates.into_iter().all(f64::is_finite), "{rates:?}");
-                let State {
-                    dtheta1, dtheta2, ..
-                } = state.cast::<f64>();
-                assert_eq!(rates[..2], [dtheta1, dtheta2]);
+        holds(2000, given, |(params, state, torque)| {
+            let mut pendulum = Pendulum::<A>::new(params, state).unwrap();
+            let rates = pendulum.derivative(torque).map(Real::to_f64);
+            assert!(rates.into_iter().all(f64::is_finite), "{rates:?}");
+            let State {
+                dtheta1, dtheta2, ..
+            } = state.cast::<f64>();
+            assert_eq!(rates[..2], [dtheta1, dtheta2]);
 
-                let [[m11, m12], [m21, m22]] =
-                    pendulum.mass_matrix().map(|row| row.map(Real::to_f64));
-                assert_eq!(m12, m21);
-                assert!(m11 > 0.0 && m22 > 0.0, "{m11} {m22}");
+            let [[m11, m12], [m21, m22]] = pendulum.mass_matrix().map(|row| row.map(Real::to_f64));
+            assert_eq!(m12, m21);
+            assert!(m11 > 0.0 && m22 > 0.0, "{m11} {m22}");
 
-                // The kinetic energy is never negative, except for rounding where parts cancel.
-                let total = pendulum.energy().to_f64();
-                let at_rest = State {
-                    dtheta1: A::Scalar::ZERO,
-                    dtheta2: A::Scalar::ZERO,
-                    ..state
-                };
-                pendulum.set_state(at_rest).unwrap();
-                let potential = pendulum.energy().to_f64();
-                let parts = m11 * dtheta1 * dtheta1 + m22 * dtheta2 * dtheta2 + potential.abs();
-                assert!(total >= potential - 1e-5 * parts, "{total} {potential}");
-            },
-        );
+            // The kinetic energy is never negative, except for rounding where parts cancel.
+            let total = pendulum.energy().to_f64();
+            let at_rest = State {
+                dtheta1: A::Scalar::ZERO,
+                dtheta2: A::Scalar::ZERO,
+                ..state
+            };
+            pendulum.set_state(at_rest).unwrap();
+            let potential = pendulum.energy().to_f64();
+            let parts = m11 * dtheta1 * dtheta1 + m22 * dtheta2 * dtheta2 + potential.abs();
+            assert!(total >= potential - 1e-5 * parts, "{total} {potential}");
+        });
     }
     in_every_arithmetic!(check);
 }
@@ -155,7 +150,7 @@ fn the_equations_are_those_of_a_pendulum() {
 fn casts_to_a_wider_scalar_are_exact() {
     holds(
         1000,
-        (params::<f32>(Range::Any), state::<f32>(Range::Any)),
+        (params::<f32, _>(Range::Any), state::<f32>(Range::Any)),
         |(params, state)| {
             assert_eq!(params.cast::<f64>().cast::<f32>(), params);
             assert_eq!(bits(state.cast::<f64>().cast::<f32>()), bits(state));

@@ -72,11 +72,11 @@ fn state<S: Real>() -> State<S> {
     [(); 4].map(|()| number()).into()
 }
 
-fn params<S: Real>() -> Params<S> {
+fn params<S: Real, F: Default>() -> Params<S, F> {
     Params {
         torque_noise: number(),
         mass1: number(),
-        ..Params::DEFAULT
+        ..Params::default()
     }
 }
 
