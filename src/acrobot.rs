@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
 use crate::observation::Observation;
-use crate::physics::{Params, ParamsOf, Pendulum, ResetBounds, State, check_torque};
+use crate::physics::{Params, ParamsOf, Pendulum, ResetBounds, State, Task, check_torque, task};
 use crate::reset_options::ResetOptions;
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
@@ -124,7 +124,7 @@ impl<A: Arithmetic> Acrobot<A> {
         if let Some(seed) = options.seed {
             self.rng = seed.into();
         }
-        self.begin(options.bounds.unwrap_or_default())
+        self.begin(options.bounds.unwrap_or(A::TASK.reset_bounds()))
     }
 }
 
@@ -132,17 +132,22 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
     /// An acrobot with the default parameters, in an initial state drawn from `rng`.
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {
-        let state = ResetBounds::DEFAULT.draw(&mut rng).cast();
-        Self::from_pendulum(Pendulum::new_unchecked(Params::default(), state), rng)
+        let state = A::TASK.draw(A::TASK.reset_bounds(), &mut rng).cast();
+        let params = match A::TASK {
+            // Built field by field: see `Params::default`.
+            Task::Acrobot => Params::default(),
+            Task::Swingup | Task::SwingupSparse => A::DEFAULT.params,
+        };
+        Self::from_pendulum(Pendulum::new_unchecked(params, state), rng)
     }
 
     /// Draws a new initial state from [`ResetBounds::DEFAULT`] and returns its observation.
     pub fn reset(&mut self) -> Observation {
-        self.begin(ResetBounds::DEFAULT)
+        self.begin(A::TASK.reset_bounds())
     }
 
     fn begin(&mut self, bounds: ResetBounds) -> Observation {
-        let state = bounds.draw(&mut self.rng).cast();
+        let state = A::TASK.draw(bounds, &mut self.rng).cast();
         let sin_cos = self.pendulum.set_state_unchecked(state);
         self.observe(sin_cos)
     }
@@ -177,7 +182,11 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         let (terminated, sin_cos) = self.pendulum.advance(torque);
         Step {
             observation: self.observe(sin_cos),
-            reward: if terminated { 0.0 } else { -1.0 },
+            reward: match task::reward::<A, A::Scalar>(self.params(), sin_cos) {
+                Some(reward) => reward.to_f64() as f32,
+                None if terminated => 0.0,
+                None => -1.0,
+            },
             terminated,
             truncated: false,
             info: (),
@@ -226,13 +235,11 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     }
 
     #[inline]
-    fn observe(&self, [(sin1, cos1), (sin2, cos2)]: [SinCos<A::Scalar>; 2]) -> Observation {
+    fn observe(&self, sin_cos: [SinCos<A::Scalar>; 2]) -> Observation {
         let State {
             dtheta1, dtheta2, ..
         } = self.state();
-        [cos1, sin1, cos2, sin2, dtheta1, dtheta2]
-            .map(|x| x.to_f64() as f32)
-            .into()
+        task::observe::<A>(sin_cos, [dtheta1, dtheta2]).into()
     }
 
     /// The state.

@@ -47,7 +47,8 @@ use crate::error::Error;
 use crate::math::sines::platform;
 use crate::math::sines::{self, correctly_rounded, polynomial, table};
 use crate::physics::{
-    Gymnasium, GymnasiumConstants, Lean, LeanConstants, Model, Params, Pendulum, State, Viscous,
+    Gymnasium, GymnasiumConstants, Lean, LeanConstants, Model, Params, Pendulum, State, Task,
+    Viscous,
 };
 
 pub use crate::math::{Numbers, Real};
@@ -223,18 +224,60 @@ impl Arithmetic for Micro {
 /// An arithmetic of this crate with [viscous friction](Viscous) of the joints. Its parameters have a field `friction`,
 /// which is 0 by default.
 ///
-/// It needs memory and instructions for friction, which the arithmetic itself does not.
+/// It needs memory and instructions for friction, which the arithmetic itself does not. `TASK` is 0, or that of
+/// [`Swingup`] and [`SwingupSparse`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Damped<A>(PhantomData<A>);
+pub struct Damped<A, const TASK: u8 = 0>(PhantomData<A>);
+
+/// dm_control's `acrobot-swingup` in an arithmetic of this crate: see [`Task::Swingup`], and [`Params::SWINGUP`] for its
+/// parameters.
+///
+/// ```
+/// use acrobot::arithmetic::{Arithmetic, Swingup};
+/// use acrobot::{Acrobot, Fast, TimeLimit};
+///
+/// let swingup = Acrobot::<Swingup<Fast>>::new(42); // at rest, anywhere
+/// let mut swingup = TimeLimit::new(swingup, Swingup::<Fast>::TASK.limit());
+/// let step = swingup.step_torque(2.0)?; // N m; dm_control's action times 2
+/// // Sines, then cosines of both links' angles from upright, then θ̇1 and θ̇2.
+/// let [sin1, _, cos1, _, _, _] = step.observation.to_array();
+/// assert!((sin1 * sin1 + cos1 * cos1 - 1.0).abs() < 1e-6);
+/// assert!((0.0..=1.0).contains(&step.reward) && !step.terminated);
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+pub type Swingup<A> = Damped<A, 1>;
+
+/// dm_control's `acrobot-swingup_sparse`: see [`Task::SwingupSparse`].
+pub type SwingupSparse<A> = Damped<A, 2>;
 
 macro_rules! damped {
-    ($($(#[$cfg:meta])? $arithmetic:ident, $scalar:ident, $form:ident, $name:literal;)*) => {$(
+    ($($(#[$cfg:meta])? $arithmetic:ident, $scalar:ident, $form:ident, $constants:ident, [$damped:literal, $swingup:literal, $sparse:literal];)*) => {$(
         $(#[$cfg])?
-        impl Arithmetic for Damped<$arithmetic> {
-            const NAME: &'static str = $name;
+        impl<const TASK: u8> Arithmetic for Damped<$arithmetic, TASK> {
+            const NAME: &'static str = match Self::TASK {
+                Task::Acrobot => $damped,
+                Task::Swingup => $swingup,
+                Task::SwingupSparse => $sparse,
+            };
             type Scalar = $scalar;
             type Form = $form<Viscous<$scalar>>;
+            const TASK: Task = match TASK {
+                0 => Task::Acrobot,
+                1 => Task::Swingup,
+                2 => Task::SwingupSparse,
+                _ => panic!("TASK must be 0, 1 or 2"),
+            };
+            const DEFAULT: Model<Self> = match Self::TASK {
+                Task::Acrobot => Model::UNDAMPED,
+                Task::Swingup | Task::SwingupSparse => {
+                    const PARAMS: Params<$scalar, Viscous<$scalar>> = Params::<$scalar, Viscous<$scalar>>::SWINGUP;
+                    Model {
+                        params: PARAMS,
+                        constants: $constants::<$scalar>::new(&PARAMS, [1.0, 0.25, 0.25]),
+                    }
+                }
+            };
 
             #[inline]
             fn sin_cos(x: $scalar) -> ($scalar, $scalar) {
@@ -260,11 +303,12 @@ macro_rules! damped {
 }
 
 damped! {
-    Reference, f64, Gymnasium, "damped reference";
-    #[cfg(feature = "std")] Host, f64, Gymnasium, "damped host";
-    Portable, f64, Lean, "damped portable";
-    Fast, f32, Lean, "damped fast";
-    Micro, f32, Lean, "damped micro";
+    Reference, f64, Gymnasium, GymnasiumConstants, ["damped reference", "swing reference", "sparse reference"];
+    #[cfg(feature = "std")]
+    Host, f64, Gymnasium, GymnasiumConstants, ["damped host", "swing host", "sparse host"];
+    Portable, f64, Lean, LeanConstants, ["damped portable", "swing portable", "sparse portable"];
+    Fast, f32, Lean, LeanConstants, ["damped fast", "swing fast", "sparse fast"];
+    Micro, f32, Lean, LeanConstants, ["damped micro", "swing micro", "sparse micro"];
 }
 
 // Not generic, because a `const fn` cannot calculate with a generic scalar. `Host` has none: it squares with the C library.

@@ -50,7 +50,6 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{Model, ParamsOf, ParamsRangeOf, ResetBounds, State};
-use crate::time_limit::V1;
 use buffers::{check_length, take_mut};
 use settings::{Parameters, Settings};
 use work::Work;
@@ -115,7 +114,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         }
         check_length("blocks", blocks.len(), generators.len().div_ceil(N))?;
         let parameters = if lane_params.is_empty() {
-            Parameters::Shared(Model::DEFAULT)
+            Parameters::Shared(A::DEFAULT)
         } else {
             check_length("lane_params", lane_params.len(), blocks.len())?;
             lane_params.fill(LaneParams::default());
@@ -124,8 +123,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         let mut batch = Self {
             settings: Settings {
                 parameters,
-                bounds: ResetBounds::DEFAULT,
-                limit: V1,
+                bounds: A::TASK.reset_bounds(),
+                limit: A::TASK.limit(),
                 autoreset: Autoreset::default(),
             },
             simd_level: SimdLevel::widest(),

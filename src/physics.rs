@@ -48,6 +48,7 @@ mod pendulum;
 mod rk4;
 mod state;
 mod step;
+pub(crate) mod task;
 
 pub use bounds::{bound, wrap};
 pub(crate) use equations::{Arithmetic, Form, Model};
@@ -63,3 +64,4 @@ pub use pendulum::Pendulum;
 pub(crate) use pendulum::{check_torque, sin_cos};
 pub use state::{ResetBounds, State};
 pub(crate) use step::step;
+pub use task::Task;

@@ -9,10 +9,9 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::physics::{ParamsOf, State};
+use crate::physics::{ParamsOf, State, Task};
 use crate::reset_options::ResetOptions;
 
-pub(crate) const V1: NonZeroU32 = NonZeroU32::new(500).unwrap();
 const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they reach the limit. It
@@ -51,7 +50,7 @@ impl<E> TimeLimit<E> {
     /// Truncates episodes after 500 steps, as `Acrobot-v1` does.
     #[must_use]
     pub const fn v1(inner: E) -> Self {
-        Self::new(inner, V1)
+        Self::new(inner, Task::Acrobot.limit())
     }
 
     /// Truncates episodes after 200 steps, as `Acrobot-v0` does.

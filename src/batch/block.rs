@@ -7,7 +7,7 @@ use super::{Autoreset, LaneParams, StepBuffers};
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Numbers, Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
-use crate::physics::{ResetBounds, State, sin_cos, step};
+use crate::physics::{ResetBounds, State, sin_cos, step, task};
 
 /// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
 ///
@@ -109,7 +109,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
                     {
                         params.set(lane, range.draw(rng));
                     }
-                    bounds.draw(rng).cast()
+                    A::TASK.draw(bounds, rng).cast()
                 });
                 self.begin_episode(lane, state);
             }
@@ -141,7 +141,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         let angles = (cos1.0.iter().zip(&sin1.0)).zip(cos2.0.iter().zip(&sin2.0));
         let all = angles.zip(dtheta1.0.iter().zip(&dtheta2.0));
         all.map(|(((cos1, sin1), (cos2, sin2)), (dtheta1, dtheta2))| {
-            [cos1, sin1, cos2, sin2, dtheta1, dtheta2].map(|x| x.to_f64() as f32)
+            let sin_cos = [(*sin1, *cos1), (*sin2, *cos2)];
+            task::observe::<A>(sin_cos, [*dtheta1, *dtheta2])
         })
     }
 
@@ -192,6 +193,11 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
                 *reward = 0.0;
             }
             *ended = *terminated | *truncated;
+        }
+        if let Some(swingup) = task::reward::<A, _>(&model.params, self.sin_cos) {
+            for (reward, x) in rewards.iter_mut().zip(swingup.0) {
+                *reward = x.to_f64() as f32;
+            }
         }
         let resets = match settings.autoreset {
             Autoreset::NextStep => core::mem::replace(&mut self.reset_pending, ended),

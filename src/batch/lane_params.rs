@@ -23,7 +23,7 @@ pub struct LaneParams<A: Arithmetic = Fast, const N: usize = 16> {
 
 impl<A: Arithmetic, const N: usize> Default for LaneParams<A, N> {
     fn default() -> Self {
-        Self::shared(&Model::DEFAULT)
+        Self::shared(&A::DEFAULT)
     }
 }
 
@@ -47,7 +47,7 @@ impl<A: Arithmetic, const N: usize> LaneParams<A, N> {
     /// The parameters of a lane below `N`.
     pub(super) fn get(&self, lane: usize) -> ParamsOf<A> {
         let number = |lanes: Lanes<A::Scalar, N>, _| *lanes.0.get(lane).unwrap_or(&A::Scalar::ZERO);
-        let Model { params, constants } = self.model.zip(&Model::DEFAULT, number);
+        let Model { params, constants } = self.model.zip(&A::DEFAULT, number);
         Params {
             dynamics: if A::Form::common(&constants).nips > A::Scalar::ZERO {
                 Dynamics::Nips

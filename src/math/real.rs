@@ -44,6 +44,9 @@ pub trait Real:
     /// It consists of two additions, because a Cortex-M4F has no rounding instruction.
     fn round_small(self) -> Self;
 
+    /// The square root; NaN below 0.
+    fn sqrt(self) -> Self;
+
     /// The exact remainder of the division by `divisor`, with the sign of `self`.
     fn remainder(self, divisor: Self) -> Self;
 }
@@ -52,7 +55,7 @@ pub trait Real:
 pub type SinCos<V> = (V, V);
 
 macro_rules! impl_real {
-    ($scalar:ident, $bits:ident) => {
+    ($scalar:ident, $bits:ident, $sqrt:ident) => {
         impl sealed::Sealed for $scalar {
             const ONE: Self = 1.0;
             const MINUS_ONE: Self = -1.0;
@@ -76,6 +79,15 @@ macro_rules! impl_real {
             #[inline]
             fn abs(self) -> Self {
                 self.abs()
+            }
+
+            #[inline(always)]
+            fn power_of_two(self) -> Self {
+                // As in `round_small`: the last bits of the sum are the integer, and the exponent has a bias.
+                const MAGIC: $scalar = 1.5 / $scalar::EPSILON;
+                const DIGITS: u32 = $scalar::MANTISSA_DIGITS - 1;
+                let biased = self + (MAGIC + ($scalar::MAX_EXP - 1) as $scalar);
+                $scalar::from_bits(biased.to_bits() << DIGITS)
             }
         }
 
@@ -107,6 +119,14 @@ macro_rules! impl_real {
             }
 
             #[inline]
+            fn sqrt(self) -> Self {
+                #[cfg(feature = "std")]
+                return self.sqrt();
+                #[cfg(not(feature = "std"))]
+                libm::$sqrt(self)
+            }
+
+            #[inline]
             fn remainder(self, divisor: Self) -> Self {
                 self % divisor
             }
@@ -114,8 +134,8 @@ macro_rules! impl_real {
     };
 }
 
-impl_real!(f32, u32);
-impl_real!(f64, u64);
+impl_real!(f32, u32, sqrtf);
+impl_real!(f64, u64, sqrt);
 
 pub(crate) mod sealed {
     /// What the features `serde` and `defmt` need of numbers.
@@ -166,5 +186,8 @@ pub(crate) mod sealed {
 
         /// The absolute value.
         fn abs(self) -> Self;
+
+        /// 2^self for an integer from −120 to 120.
+        fn power_of_two(self) -> Self;
     }
 }

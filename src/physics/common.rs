@@ -3,6 +3,8 @@
 //! M(θ2) θ̈ = f(θ, θ̇, torque), with the mass matrix M = \[\[d1, d2\], \[d2, m2 lc2² + I2\]\] and the names of
 //! Sutton & Barto, *Reinforcement Learning: An Introduction* (1998), section 11.3: d1, d2, phi1 and phi2.
 
+use core::ops::{Add, Mul, Neg, Sub};
+
 use super::{Dynamics, Params};
 use crate::math::{Real, SinCos};
 
@@ -113,10 +115,11 @@ impl<S: Real> Common<S> {
 }
 
 /// Elbow and tip as \[x, y\], m.
-pub(super) fn positions<S: Real>(
-    params: &Params<S, impl Copy>,
-    sin_cos: [SinCos<S>; 2],
-) -> [[S; 2]; 2] {
+#[inline(always)]
+pub(super) fn positions<V>(params: &Params<V, impl Copy>, sin_cos: [SinCos<V>; 2]) -> [[V; 2]; 2]
+where
+    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<Output = V> + Neg<Output = V>,
+{
     let (l1, l2) = (params.length1, params.length2);
     let [(sin1, cos1), (sin_sum, cos_sum)] = directions(sin_cos);
     let elbow = [l1 * sin1, -l1 * cos1];
@@ -125,7 +128,11 @@ pub(super) fn positions<S: Real>(
 }
 
 /// Sines and cosines of θ1 and θ1 + θ2, the angles of both links from hanging down.
-pub(super) fn directions<S: Real>([(sin1, cos1), (sin2, cos2)]: [SinCos<S>; 2]) -> [SinCos<S>; 2] {
+#[inline(always)]
+pub(super) fn directions<V>([(sin1, cos1), (sin2, cos2)]: [SinCos<V>; 2]) -> [SinCos<V>; 2]
+where
+    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<Output = V>,
+{
     let sum = (sin1 * cos2 + cos1 * sin2, cos1 * cos2 - sin1 * sin2);
     [(sin1, cos1), sum]
 }

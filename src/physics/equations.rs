@@ -5,7 +5,7 @@ use core::fmt;
 
 use super::common::Common;
 use super::friction::Friction;
-use super::{Params, ParamsRange};
+use super::{Params, ParamsRange, Task};
 use crate::math::{Numbers, Real, SinCos};
 
 /// A scalar, its sines and the form of the equations: they determine every bit of a result.
@@ -37,6 +37,13 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     fn cos(x: Self::Scalar) -> Self::Scalar {
         Self::sin_cos(x).1
     }
+
+    /// The task. The crate's [`Swingup`](crate::arithmetic::Swingup) names another than Gymnasium's.
+    const TASK: Task = Task::Acrobot;
+
+    /// The model of the default parameters, computed by the compiler.
+    #[doc(hidden)]
+    const DEFAULT: Model<Self> = Model::UNDAMPED;
 
     /// The square of `x`: only `Host` replaces it.
     #[doc(hidden)]
@@ -84,8 +91,8 @@ impl<A: Arithmetic, V: Numbers<A::Scalar>> Model<A, V> {
 }
 
 impl<A: Arithmetic> Model<A> {
-    /// The model of [`Params::DEFAULT`], computed by the compiler.
-    pub(crate) const DEFAULT: Self = Self {
+    /// The model of [`Params::DEFAULT`], without friction.
+    pub(crate) const UNDAMPED: Self = Self {
         params: Params::DEFAULT.with_friction(Friction::ZERO),
         constants: A::Form::DEFAULT,
     };

@@ -44,7 +44,7 @@ impl<A: Arithmetic> Pendulum<A> {
     /// A pendulum with the default parameters that hangs at rest.
     #[must_use]
     pub const fn hanging() -> Self {
-        Self::from_model(Model::DEFAULT, [A::Scalar::ZERO; 4])
+        Self::from_model(A::DEFAULT, [A::Scalar::ZERO; 4])
     }
 
     /// A pendulum with this model in a state that is known to be finite.

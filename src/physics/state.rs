@@ -123,6 +123,12 @@ impl ResetBounds {
         high: 0.1,
     };
 
+    /// Any angle: from −π to π.
+    pub const ANYWHERE: Self = Self {
+        low: -core::f64::consts::PI,
+        high: core::f64::consts::PI,
+    };
+
     /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state.
     ///
     /// Bounds may be beyond ±π and beyond the velocity bounds. The first step then wraps the angles and bounds the
@@ -165,6 +171,12 @@ impl ResetBounds {
         [(); 4]
             .map(|()| uniform(rng, self.low, self.high) as f32)
             .into()
+    }
+
+    /// As [`draw`](Self::draw), with velocities of 0, for which it draws nothing.
+    pub(crate) fn draw_at_rest<R: Rng + ?Sized>(&self, rng: &mut R) -> State<f32> {
+        let [theta1, theta2] = [(); 2].map(|()| uniform(rng, self.low, self.high) as f32);
+        [theta1, theta2, 0.0, 0.0].into()
     }
 
     /// The lower bound, rad and rad/s.

@@ -1,11 +1,11 @@
 //! One step, of one acrobot or of many side by side.
 
 use super::rk4::rk4;
-use super::{Arithmetic, Form, Model};
+use super::{Arithmetic, Form, Model, Task};
 use crate::math::{Numbers, Real, SinCos};
 
 /// Advances `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 by one dt under a constant torque, N m.
-/// Returns whether the new state is a goal state.
+/// Returns whether the new state ends the task.
 #[inline(always)]
 pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<A, V>,
@@ -23,7 +23,10 @@ pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
         enforce_bounds_out_of_line(model, y, angles);
     }
     *sin_cos = [A::sin_cos_near(y[0]), A::sin_cos_near(y[1])];
-    A::Form::reaches_goal::<A, V>([y[0], y[1]], *sin_cos)
+    match A::TASK {
+        Task::Acrobot => A::Form::reaches_goal::<A, V>([y[0], y[1]], *sin_cos),
+        Task::Swingup | Task::SwingupSparse => V::splat(A::Scalar::ZERO).above(A::Scalar::ZERO),
+    }
 }
 
 /// Whether all angles are within ±π and all velocities within their bounds; false for NaN.

@@ -44,7 +44,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         let seeds = SeedSequence::new(42).spawn(batch.len() as u64);
         Self {
             alone: seeds
-                .map(|seed| TimeLimit::v1(Acrobot::with_rng(seed.into())))
+                .map(|seed| TimeLimit::new(Acrobot::with_rng(seed.into()), A::TASK.limit()))
                 .collect(),
             pending: vec![false; batch.len()],
             batch,

@@ -1,0 +1,42 @@
+"""Records dm_control's acrobot: writes swingup.txt to its folder.
+
+    pip install dm_control==1.0.50 mujoco==3.17.0
+    python tests/data/swingup.py
+
+Each line is a step: the angles from upright and their velocities, the action, the same after the step, the observation, and the rewards of swingup and of
+swingup_sparse. Ten episodes of 100 steps with random actions. Every other one begins near upright, where rewards are high.
+"""
+
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+from dm_control import suite
+
+
+def main():
+    lines = [f"# {', '.join(f'{name} {version(name)}' for name in ('dm_control', 'mujoco', 'numpy'))}"]
+    dense, sparse = (suite.load("acrobot", task, task_kwargs={"random": 1}) for task in ("swingup", "swingup_sparse"))
+    lines.append("# inertias " + " ".join(repr(float(x)) for x in dense.physics.named.model.body_inertia[["upper_arm", "lower_arm"], 1]))
+    rng = np.random.default_rng(1)
+    for episode in range(10):
+        dense.reset()
+        sparse.reset()
+        if episode % 2:
+            near = np.concatenate([rng.uniform(-0.3, 0.3, 2), rng.uniform(-1, 1, 2)])
+            with dense.physics.reset_context():
+                dense.physics.set_state(near)
+        for _ in range(100):
+            before = dense.physics.get_state().copy()
+            action = rng.uniform(-1, 1)
+            step = dense.step(action)
+            after = dense.physics.get_state().copy()
+            with sparse.physics.reset_context():
+                sparse.physics.set_state(after)
+            observation = np.concatenate([step.observation[name] for name in ("orientations", "velocity")])
+            numbers = [*before, action, *after, *observation, step.reward, sparse.task.get_reward(sparse.physics)]
+            lines.append(" ".join(repr(float(x)) for x in numbers))
+    (Path(__file__).parent / "swingup.txt").write_text("\n".join(lines) + "\n")
+
+
+main()

@@ -1,0 +1,184 @@
+//! dm_control's swing-up: its model, steps, observations and rewards equal those that `tests/data/swingup.py` recorded.
+
+use std::f64::consts::PI;
+
+use acrobot::arithmetic::{
+    Arithmetic, Damped, Host, Micro, Real, Reference, Swingup, SwingupSparse,
+};
+use acrobot::physics::{Pendulum, Viscous};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
+use common::{distance, text_of};
+
+struct Recorded {
+    before: State,
+    torque: f64,
+    after: State,
+    observation: [f64; 6],
+    reward: f64,
+    sparse: f64,
+}
+
+/// This crate's angles are from hanging, dm_control's from upright.
+fn state(numbers: &[f64]) -> State {
+    let [theta1, rest @ ..] = <[f64; 4]>::try_from(numbers).unwrap();
+    let [theta2, dtheta1, dtheta2] = rest;
+    State::from([theta1 + PI, theta2, dtheta1, dtheta2])
+}
+
+/// The steps of ten episodes, a hundred each.
+fn recorded() -> Vec<Recorded> {
+    let text = text_of("tests/data/swingup.txt");
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
+    let steps = lines.map(|line| {
+        let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+        Recorded {
+            before: state(&numbers[..4]),
+            torque: 2.0 * numbers[4],
+            after: state(&numbers[5..9]),
+            observation: numbers[9..15].try_into().unwrap(),
+            reward: numbers[15],
+            sparse: numbers[16],
+        }
+    });
+    let steps: Vec<_> = steps.collect();
+    assert_eq!(steps.len(), 1000);
+    steps
+}
+
+/// The largest error of a state, an observation and a reward.
+fn errors<A: Arithmetic>(reward: fn(&Recorded) -> f64) -> [f64; 3] {
+    let mut acrobot = Acrobot::<A>::new(0);
+    let mut worst = [0.0_f64; 3];
+    for recorded in recorded() {
+        acrobot.set_state(recorded.before.cast()).unwrap();
+        let torque = Real::from_f64(recorded.torque);
+        let step = acrobot.step_torque(torque).unwrap();
+        assert!(!step.terminated);
+        let seen = step.observation.to_array().into_iter();
+        let seen = seen.zip(recorded.observation);
+        let errors = [
+            distance(acrobot.state().cast(), recorded.after),
+            seen.fold(0.0, |most, (x, y)| most.max((f64::from(x) - y).abs())),
+            (f64::from(step.reward) - reward(&recorded)).abs(),
+        ];
+        for (worst, error) in worst.iter_mut().zip(errors) {
+            *worst = worst.max(error);
+        }
+    }
+    worst
+}
+
+#[test]
+fn steps_observations_and_rewards_are_dm_controls() {
+    for ([state, observation, reward], limit) in [
+        (errors::<Swingup<Reference>>(|step| step.reward), 1e-12),
+        (errors::<Swingup<Portable>>(|step| step.reward), 1e-12),
+        (errors::<Swingup<Host>>(|step| step.reward), 1e-12),
+        (errors::<Swingup<Fast>>(|step| step.reward), 5e-6),
+        (errors::<Swingup<Micro>>(|step| step.reward), 1e-5),
+        (
+            errors::<SwingupSparse<Reference>>(|step| step.sparse),
+            1e-12,
+        ),
+        (errors::<SwingupSparse<Fast>>(|step| step.sparse), 5e-6),
+    ] {
+        println!("{state:e} {observation:e} {reward:e}");
+        assert!(state < limit, "{state:e}");
+        // Observations and rewards are `f32`.
+        assert!(observation < limit + 1e-6, "{observation:e}");
+        assert!(reward < limit + 1e-6, "{reward:e}");
+    }
+}
+
+/// The recording has rewards of both kinds.
+#[test]
+fn the_recording_covers_the_rewards() {
+    let steps = recorded();
+    let count = |holds: fn(&Recorded) -> bool| steps.iter().filter(|step| holds(step)).count();
+    assert!(count(|step| step.sparse == 1.0) > 20);
+    assert!(count(|step| step.reward < 0.1) > 20);
+    assert!(count(|step| (0.1..1.0).contains(&step.reward)) > 100);
+}
+
+/// A thousand steps add up the rounding of MuJoCo and of this crate.
+#[test]
+fn episodes_follow_dm_controls() {
+    let mut pendulum = Pendulum::<Swingup<Portable>>::hanging();
+    for (number, step) in recorded().into_iter().enumerate() {
+        if number % 100 == 0 {
+            pendulum.set_state(step.before).unwrap();
+        }
+        pendulum.step(step.torque).unwrap();
+        assert!(distance(pendulum.state(), step.after) < 1e-11, "{number}");
+    }
+}
+
+#[test]
+fn the_model_is_mujocos() {
+    let text = text_of("tests/data/swingup.txt");
+    let inertias = text
+        .lines()
+        .find_map(|line| line.strip_prefix("# inertias "));
+    let inertias = inertias.unwrap().split(' ').map(|x| x.parse().unwrap());
+    let params = Params::<f64, Viscous<f64>>::SWINGUP;
+    params.validate().unwrap();
+    for (ours, mujocos) in [params.inertia1, params.inertia2].into_iter().zip(inertias) {
+        let mujocos: f64 = mujocos;
+        assert!((ours - mujocos).abs() < 1e-16, "{ours} {mujocos}");
+    }
+    let single = Params::<f32, Viscous<f32>>::SWINGUP;
+    assert_eq!(single.without_friction(), params.without_friction().cast());
+}
+
+/// With own lengths the target stays 2 m above the joint, and no state is nearer to it than the links reach.
+#[test]
+fn rewards_are_finite_from_0_to_1() {
+    for length2 in [1e-3, 1.0, 1e3, 1e30] {
+        let params = Params {
+            length2,
+            ..Params::<f32, Viscous<f32>>::SWINGUP
+        };
+        let mut acrobot = Acrobot::<Swingup<Fast>>::with_params(1, params).unwrap();
+        for _ in 0..200 {
+            let step = acrobot.step(Action::Positive);
+            assert!((0.0..=1.0).contains(&step.reward), "{}", step.reward);
+        }
+    }
+    let mut upright = Acrobot::<Swingup<Fast>>::new(0);
+    upright.set_state(State::UPRIGHT).unwrap();
+    assert_eq!(upright.step(Action::Zero).reward, 1.0);
+}
+
+#[test]
+fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
+    let mut acrobot = Acrobot::<Swingup<Fast>>::new(42);
+    let mut quadrants = [0; 16];
+    for _ in 0..1000 {
+        let State {
+            theta1,
+            theta2,
+            dtheta1,
+            dtheta2,
+        } = acrobot.state();
+        assert_eq!([dtheta1, dtheta2], [0.0; 2]);
+        let quadrant = |x: f32| ((x + 3.2) / 1.6) as usize;
+        quadrants[4 * quadrant(theta1) + quadrant(theta2)] += 1;
+        acrobot.reset();
+    }
+    assert!(
+        quadrants.into_iter().all(|count| count > 30),
+        "{quadrants:?}"
+    );
+
+    let mut episode = TimeLimit::new(acrobot, Swingup::<Fast>::TASK.limit());
+    let lengths = (1..).find(|_| episode.step(Action::Positive).done());
+    assert_eq!(lengths, Some(1000));
+}
+
+/// Friction and a task are two things: with Gymnasium's task and friction, the reward is Gymnasium's.
+#[test]
+fn friction_alone_changes_no_rule() {
+    let step = Acrobot::<Damped<Fast>>::new(42).step(Action::Positive);
+    let without = Acrobot::<Fast>::new(42).step(Action::Positive);
+    assert_eq!(step, without);
+}
