@@ -13,7 +13,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference, Swingup};
 use acrobot::batch::{SimdLevel, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
@@ -29,6 +29,8 @@ fn main() {
         batch::<Fast>("fast", len, SimdLevel::widest());
     }
     own_params(1024);
+    swingup::<Fast>("fast", 1024);
+    swingup::<Portable>("portable", 1024);
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
     batch::<Portable>("portable", 1024, SimdLevel::widest());
@@ -111,6 +113,19 @@ fn own_params(len: usize) {
         || (0..2000).map(|_| shared.play(true)).sum(),
     );
     report(&format!("batch_fast_{len}_own_params"), rates);
+}
+
+/// The swing-up; the ratio is to Gymnasium's task.
+fn swingup<A: Arithmetic>(arithmetic: &str, len: usize)
+where
+    Swingup<A>: Arithmetic,
+{
+    let (mut swingup, mut gymnasium) = (Play::<Swingup<A>>::new(len), Play::<A>::new(len));
+    let rates = compare(
+        || (0..2000).map(|_| swingup.play(true)).sum(),
+        || (0..2000).map(|_| gymnasium.play(true)).sum(),
+    );
+    report(&format!("batch_{arithmetic}_{len}_swingup"), rates);
 }
 
 /// Steps on all cores; the ratio is to the same steps on one core. The actions stay the same, because only the step
