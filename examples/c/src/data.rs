@@ -158,7 +158,7 @@ pub struct acrobot_params_t {
 
 /// A struct of another type with the same parameters. Only `dynamics` has another type, too.
 macro_rules! same_params {
-    ($type:ident, $params:expr, $dynamics:expr) => {
+    ($type:ident, $params:expr, $dynamics:expr $(, $friction:ident)?) => {
         $type {
             length1: $params.length1,
             length2: $params.length2,
@@ -175,6 +175,7 @@ macro_rules! same_params {
             torques: $params.torques,
             torque_noise: $params.torque_noise,
             dynamics: $dynamics,
+            $($friction: acrobot::physics::Frictionless,)?
         }
     };
 }
@@ -199,7 +200,7 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
             ACROBOT_DYNAMICS_NIPS => Dynamics::Nips,
             other => return Err(unknown("dynamics", other, "0 (book) or 1 (NIPS)")),
         };
-        Ok(same_params!(Params, params, dynamics))
+        Ok(same_params!(Params, params, dynamics, friction))
     }
 }
 

@@ -92,7 +92,7 @@ impl<A: Arithmetic> Many<A> {
     }
 
     pub fn params(&self, index: usize) -> Params {
-        self.batch.params_of(index).unwrap_or_default().cast()
+        self.batch.params_of(index).unwrap_or_default().without_friction().cast()
     }
 
     /// The parameters of all acrobots, or one for all if they share them.
@@ -135,6 +135,7 @@ impl<A: Arithmetic> Many<A> {
         }
         for index in 0..if self.own { self.batch.len() } else { 1 } {
             let params = params.get(index).unwrap_or(&params[0]).cast();
+            let params = params.with_friction(Default::default());
             if self.own {
                 self.batch.set_params_of(index, params)
             } else {
@@ -157,7 +158,8 @@ impl<A: Arithmetic> Many<A> {
                 let params = self.params(index);
                 let rng = &mut self.batch.generators_mut()[index];
                 let drawn = self.draws.draw(params, rng);
-                self.batch.set_params_of(index, drawn.cast())?;
+                let drawn = drawn.cast().with_friction(Default::default());
+                self.batch.set_params_of(index, drawn)?;
             }
         }
         Ok(())
