@@ -45,15 +45,7 @@ impl Batch {
         let len = positive("num_envs", num_envs)?.get() as usize;
         let limit = positive("max_episode_steps", max_episode_steps)?;
         let threads = positive("threads", threads)?;
-        let mode = match mode {
-            "NextStep" => Autoreset::NextStep,
-            "SameStep" => Autoreset::SameStep,
-            "Disabled" => Autoreset::Disabled,
-            other => {
-                let rule = r#""NextStep", "SameStep" or "Disabled""#;
-                return Err(unknown("autoreset_mode", rule, other));
-            }
-        };
+        let mode = autoreset(mode)?;
         let mut engine = if gymnasium {
             Engine::Host(Many::new(len, parse(seed)?)?)
         } else {
@@ -312,7 +304,7 @@ impl Batch {
 }
 
 /// Rewards, terminated and truncated.
-type Results<'py> = (
+pub type Results<'py> = (
     Bound<'py, PyArray1<f32>>,
     Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray1<bool>>,
@@ -336,11 +328,24 @@ fn indexed(py: Python<'_>, error: PyErr, index: usize) -> PyErr {
     PyErr::from_type(error.get_type(py), format!("{name}[{index}]{rest}"))
 }
 
+/// The mode of this name.
+pub fn autoreset(mode: &str) -> PyResult<Autoreset> {
+    match mode {
+        "NextStep" => Ok(Autoreset::NextStep),
+        "SameStep" => Ok(Autoreset::SameStep),
+        "Disabled" => Ok(Autoreset::Disabled),
+        other => {
+            let rule = r#""NextStep", "SameStep" or "Disabled""#;
+            Err(unknown("autoreset_mode", rule, other))
+        }
+    }
+}
+
 /// Parses a seed: a decimal integer of at least 0, of any size.
-fn parse(seed: &str) -> PyResult<SeedSequence> {
+pub fn parse(seed: &str) -> PyResult<SeedSequence> {
     seed.parse::<SeedSequence>().map_err(rejected)
 }
 
-fn no_such(index: usize) -> impl Fn() -> PyErr {
+pub fn no_such(index: usize) -> impl Fn() -> PyErr {
     move || PyIndexError::new_err(index)
 }

@@ -92,7 +92,11 @@ impl<A: Arithmetic> Many<A> {
     }
 
     pub fn params(&self, index: usize) -> Params {
-        self.batch.params_of(index).unwrap_or_default().without_friction().cast()
+        self.batch
+            .params_of(index)
+            .unwrap_or_default()
+            .without_friction()
+            .cast()
     }
 
     /// The parameters of all acrobots, or one for all if they share them.

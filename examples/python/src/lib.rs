@@ -5,6 +5,7 @@ mod draws;
 mod engine;
 mod pool;
 mod single;
+mod swingup;
 
 use std::fmt::Display;
 use std::num::NonZeroU32;
@@ -28,6 +29,8 @@ mod _native {
     use super::batch::Batch;
     #[pymodule_export]
     use super::single::Acrobot;
+    #[pymodule_export]
+    use super::swingup::Swingup;
 }
 
 /// A number among the parameters: Gymnasium's name, the crate's, and its field.

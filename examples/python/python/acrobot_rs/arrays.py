@@ -72,6 +72,18 @@ def numbers(
     raise error(f"{name} must be {rule}, got {found}")
 
 
+def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> NDArray[np.float64]:
+    """States of all environments, which must be finite in the type that they are computed in."""
+    shape = (num_envs, 4)
+    states = numbers("state", f"numbers of shape {shape}", value, shape)
+    with np.errstate(over="ignore"):
+        finite = np.isfinite(states.astype(dtype))
+    if not finite.all():
+        row, column = np.argwhere(~finite)[0]
+        raise ValueError(f"state[{row}, {column}] must be a finite number, got {states[row, column]}")
+    return np.ascontiguousarray(states, np.float64)
+
+
 def require(kind: type, rule: str, **arguments: Any) -> None:
     """Reject arguments of another type, by their names. A bool is no integer here, and a text no sequence."""
     for name, value in arguments.items():

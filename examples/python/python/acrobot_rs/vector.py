@@ -155,14 +155,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
 
     @state.setter
     def state(self, states: ArrayLike) -> None:
-        shape = (self.num_envs, 4)
-        states = numbers("state", f"numbers of shape {shape}", states, shape)
-        with np.errstate(over="ignore"):
-            finite = np.isfinite(states if self._gymnasium_episodes else states.astype(np.float32))
-        if not finite.all():
-            row, column = np.argwhere(~finite)[0]
-            raise ValueError(f"state[{row}, {column}] must be a finite number, got {states[row, column]}")
-        self._native.set_states(np.ascontiguousarray(states, np.float64))
+        dtype = np.float64 if self._gymnasium_episodes else np.float32
+        self._native.set_states(arrays.finite_states(states, self.num_envs, dtype))
 
     @property
     def elapsed_steps(self) -> NDArray[np.int64]:

@@ -1,0 +1,252 @@
+"""dm_control's ``acrobot-swingup``: swing up from anywhere, with friction and a weak motor, and stay up."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import ArrayLike, NDArray
+
+from acrobot_rs import arrays
+from acrobot_rs._native import Swingup
+from acrobot_rs.arrays import numbers, plain_seed, read_only
+
+Floats = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+
+#: The torque of an action of 1, N m.
+_TORQUE = 2.0
+_METADATA: dict[str, Any] = {"render_modes": ["rgb_array", "ansi"], "render_fps": 100}
+
+
+def _spaces() -> tuple[spaces.Box[np.float32], spaces.Box[np.float32]]:
+    """Of actions and of observations."""
+    high = np.array([1.0, 1.0, 1.0, 1.0, np.inf, np.inf], np.float32)
+    return spaces.Box(-1.0, 1.0, (1,), np.float32), spaces.Box(-high, high, dtype=np.float32)
+
+
+def _checked_mode(render_mode: str | None) -> str | None:
+    modes = _METADATA["render_modes"]
+    if render_mode is not None and not (isinstance(render_mode, str) and render_mode in modes):
+        raise ValueError(f"render_mode must be None or one of {modes}, got {render_mode!r}")
+    return render_mode
+
+
+def _torques(name: str, actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """The torques of actions, N m. An action beyond 1 acts as 1, as in MuJoCo."""
+    array = numbers(name, f"numbers of shape {shape}", actions, shape, error=InvalidAction).astype(np.float64)
+    if np.isnan(array).any():
+        raise InvalidAction(f"{name} must be numbers, got {array}")
+    return _TORQUE * np.clip(array.ravel(), -1.0, 1.0)
+
+
+def _check_no_options(options: dict[str, Any] | None, known: tuple[str, ...] = ()) -> None:
+    for key in options or ():
+        if key not in known:
+            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}")
+
+
+class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
+    """dm_control's ``acrobot-swingup``, step by step within the rounding of ``float64``.
+
+    The action is an array of one number from -1 to 1: a torque of up to 2 N m between the links, for 0.01 s. Both joints have
+    friction.
+
+    The observation, ``float32`` of shape ``(6,)``, has the sines of both links' angles from upright, their cosines, and the
+    velocities of theta1 and theta2, rad/s: dm_control's ``orientations`` and ``velocity``.
+
+    The reward is 1 up to 0.2 m from the target, 2 m above the joint, and falls to 0.1 at 1.2 m. An episode begins anywhere at
+    rest. No state ends it; ``gymnasium.make`` truncates it after 1,000 steps.
+
+    The parameters of the physics cannot be changed here; in Rust they can.
+
+    >>> import gymnasium as gym
+    >>> import acrobot_rs
+    >>> env = gym.make("acrobot_rs/AcrobotSwingup-v0")
+    >>> observation, info = env.reset(seed=42)
+    >>> observation, reward, terminated, truncated, info = env.step([0.5])
+    >>> 0.0 <= reward <= 1.0
+    True
+    """
+
+    metadata = _METADATA
+    _SPARSE = False
+
+    def __init__(self, render_mode: str | None = None) -> None:
+        """Make an environment. ``render_mode``: ``None``, ``"rgb_array"`` or ``"ansi"``."""
+        self.render_mode = _checked_mode(render_mode)
+        self.action_space, self.observation_space = _spaces()
+        self._native = Swingup(sparse=self._SPARSE)
+        self._ready = False
+
+    @property
+    def state(self) -> NDArray[np.float64]:
+        """theta1, theta2 (rad; 0 hangs down) and their velocities (rad/s), of shape ``(4,)``: a read-only copy. It can be set."""
+        states = np.empty((1, 4))
+        self._native.states(states)
+        return read_only(states[0])
+
+    @state.setter
+    def state(self, state: ArrayLike) -> None:
+        self._native.set_states(numbers("state", "four finite numbers", state, (4,)).astype(np.float64).reshape(1, 4))
+        self._ready = True
+
+    def _observation(self) -> Floats:
+        observations = np.empty((1, 6), np.float32)
+        self._native.observe(observations)
+        return observations[0]
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
+        """Begin an episode at rest, with both angles drawn uniformly from -pi to pi. There are no options."""
+        _check_no_options(options)
+        super().reset(seed=plain_seed(seed))
+        self.state = np.array([*self.np_random.uniform(-np.pi, np.pi, 2), 0.0, 0.0])
+        return self._observation(), {}
+
+    def step(self, action: ArrayLike) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
+        """Apply an action for 0.01 s.
+
+        Raises:
+            gymnasium.error.InvalidAction: If the action is not an array of one number. Nothing changes then.
+            gymnasium.error.ResetNeeded: Before the first reset.
+        """
+        if not self._ready:
+            raise ResetNeeded("the environment has no state yet; call reset before step")
+        observations = np.empty((1, 6), np.float32)
+        rewards, _, _ = self._native.step(_torques("action", action, (1,)), observations, None)
+        return observations[0], float(rewards[0]), False, False, {}
+
+    def render(self) -> NDArray[np.uint8] | str | None:
+        """An array of shape ``(500, 500, 3)`` or a text, depending on the render mode."""
+        return None if self.render_mode is None else self._native.render(0, self.render_mode)
+
+
+class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
+    """dm_control's ``acrobot-swingup_sparse``: :class:`AcrobotSwingupEnv` with a reward of 0 beyond 0.2 m from the target."""
+
+    _SPARSE = True
+
+
+class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
+    """Many :class:`AcrobotSwingupEnv`, computed in ``float32``, bit-identically on every machine.
+
+    Actions have the shape ``(num_envs, 1)``. Environment ``i`` draws from the ``i``-th child of the seed, as in
+    :class:`acrobot_rs.AcrobotVectorEnv`.
+
+    >>> import gymnasium as gym
+    >>> import acrobot_rs
+    >>> envs = gym.make_vec("acrobot_rs/AcrobotSwingup-v0", num_envs=1024)
+    >>> envs.reset(seed=42)[0].shape
+    (1024, 6)
+    """
+
+    metadata: dict[str, Any] = {**_METADATA, "autoreset_mode": AutoresetMode.NEXT_STEP}
+    _SPARSE = False
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        max_episode_steps: int = 1000,
+        render_mode: str | None = None,
+        autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        threads: int = 1,
+    ) -> None:
+        """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
+        self.render_mode = _checked_mode(render_mode)
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        mode = self.autoreset_mode.value
+        self._native = Swingup(num_envs, str(self.np_random_seed), max_episode_steps, mode, self._SPARSE, False, threads)
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
+        self.num_envs = num_envs
+        self.single_action_space, self.single_observation_space = _spaces()
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        # Without autoreset: the environments that must be reset before the next step.
+        self._ended = np.zeros(num_envs, np.bool_)
+        self._ready = False
+
+    @property
+    def state(self) -> Floats:
+        """theta1, theta2 (rad; 0 hangs down) and their velocities (rad/s), of shape ``(num_envs, 4)``: a read-only copy.
+
+        An array of this shape can be assigned. Episodes continue.
+        """
+        states = np.empty((self.num_envs, 4))
+        self._native.states(states)
+        return read_only(states.astype(np.float32))
+
+    @state.setter
+    def state(self, states: ArrayLike) -> None:
+        self._native.set_states(arrays.finite_states(states, self.num_envs, np.float32))
+
+    @property
+    def elapsed_steps(self) -> NDArray[np.int64]:
+        """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
+        elapsed = np.empty(self.num_envs, np.int64)
+        self._native.elapsed(elapsed)
+        return read_only(elapsed)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
+        """Begin an episode in each environment, or in those of ``options["reset_mask"]``."""
+        self._check_open()
+        _check_no_options(options, ("reset_mask",))
+        mask = arrays.reset_mask(options, self.num_envs)
+        plain = plain_seed(seed)
+        self._native.reset(None if plain is None else str(plain), mask)
+        super().reset(seed=plain)
+        if mask is not None and options is not None:
+            del options["reset_mask"]
+        self._ended[slice(None) if mask is None else mask] = False
+        self._ready = True
+        observations = self._empty()
+        self._native.observe(observations)
+        return observations, {}
+
+    def step(self, actions: ArrayLike) -> tuple[Floats, Floats, Bools, Bools, dict[str, Any]]:
+        """Step each environment. In mode ``SameStep``, ``infos["final_obs"]`` has the last observations of ended episodes.
+
+        Raises:
+            gymnasium.error.InvalidAction: If the actions have another shape, or are no numbers. No environment steps then.
+            gymnasium.error.ResetNeeded: Before the first reset, and in mode ``Disabled`` after an episode's end.
+        """
+        self._check_open()
+        if not self._ready:
+            raise ResetNeeded("the environments have no states yet; call reset before step")
+        if self._ended.any():
+            raise ResetNeeded(f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; reset it before the next step")
+        torques = _torques("actions", actions, (self.num_envs, 1))
+        observations = self._empty()
+        finals = self._empty() if self.autoreset_mode is AutoresetMode.SAME_STEP else None
+        rewards, terminated, truncated = self._native.step(torques, observations, finals)
+        if self.autoreset_mode is AutoresetMode.DISABLED:
+            self._ended = truncated.copy()
+        infos = {} if finals is None else arrays.final_infos(finals, truncated, {})
+        return observations, rewards, terminated, truncated, infos
+
+    def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
+        """A picture or a text for each environment, depending on the render mode."""
+        if self.render_mode is None:
+            return None
+        return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Later calls raise ``ClosedEnvironmentError``."""
+        self._ready = False
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError("the environments were closed; make new ones")
+
+    def _empty(self) -> Floats:
+        return np.empty((self.num_envs, 6), np.float32)
+
+
+class AcrobotSwingupSparseVectorEnv(AcrobotSwingupVectorEnv):
+    """Many :class:`AcrobotSwingupSparseEnv`."""
+
+    _SPARSE = True
