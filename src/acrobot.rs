@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
 use crate::observation::Observation;
-use crate::physics::{Params, ParamsOf, Pendulum, ResetBounds, State, Task, check_torque, task};
+use crate::physics::{Params, ParamsOf, Pendulum, ResetBounds, State, Task, check_torque, reward};
 use crate::reset_options::ResetOptions;
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
@@ -182,7 +182,7 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         let (terminated, sin_cos) = self.pendulum.advance(torque);
         Step {
             observation: self.observe(sin_cos),
-            reward: match task::reward::<A, A::Scalar>(self.params(), sin_cos) {
+            reward: match reward::<A, A::Scalar>(self.params(), sin_cos) {
                 Some(reward) => reward.to_f64() as f32,
                 None if terminated => 0.0,
                 None => -1.0,
@@ -239,7 +239,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         let State {
             dtheta1, dtheta2, ..
         } = self.state();
-        task::observe::<A>(sin_cos, [dtheta1, dtheta2]).into()
+        Observation::of::<A>(sin_cos, [dtheta1, dtheta2])
     }
 
     /// The state.

@@ -20,6 +20,7 @@
 //! | how fast it is | [`benchmarks`] |
 //! | what it costs on a microcontroller | [`embedded_figures`] |
 //! | how well it learns | [`learning`] |
+//! | dm_control's swing-up, with friction | [`swingup`] |
 //! | how well any policy can do | [`optimum`] |
 //!
 //! # Files
@@ -95,6 +96,10 @@ pub mod benchmarks {}
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/learning.md")]
 pub mod learning {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/swingup.md")]
+pub mod swingup {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/optimum.md")]

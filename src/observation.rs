@@ -2,13 +2,17 @@
 
 use core::f32::consts::PI;
 
-use crate::math::Real;
-use crate::physics::State;
+use crate::arithmetic::Arithmetic;
+use crate::math::{Real, SinCos};
+use crate::physics::{State, Task, directions};
 
 /// What an agent sees: `N` numbers in Gymnasium's order.
 ///
 /// `Observation`, short for `Observation<6>`, is the observation of `Acrobot-v1`:
 /// \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\], velocities in rad/s. Hanging at rest it is \[1, 0, 1, 0, 0, 0\].
+///
+/// In dm_control's [`Swingup`](crate::arithmetic::Swingup) the six numbers are the sines of both links' angles from upright,
+/// their cosines, and the velocities. The accessors have the names of `Acrobot-v1`.
 ///
 /// `Observation<4>` is the observation of `Acrobot-v0`: the state \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
 ///
@@ -78,6 +82,28 @@ impl Observation<4> {
     pub const V0_HIGH: Self = Self([PI, PI, 4.0 * PI, 9.0 * PI]);
     /// The lower bounds: `-V0_HIGH`.
     pub const V0_LOW: Self = Self([-PI, -PI, -4.0 * PI, -9.0 * PI]);
+}
+
+impl Observation<6> {
+    /// What an agent sees of a state: in Gymnasium's task or in dm_control's.
+    #[inline(always)]
+    pub(crate) fn of<A: Arithmetic>(
+        sin_cos: [SinCos<A::Scalar>; 2],
+        [dtheta1, dtheta2]: [A::Scalar; 2],
+    ) -> Self {
+        let numbers = match A::TASK {
+            Task::Acrobot => {
+                let [(sin1, cos1), (sin2, cos2)] = sin_cos;
+                [cos1, sin1, cos2, sin2, dtheta1, dtheta2]
+            }
+            // From upright, where this crate's angles are from hanging.
+            Task::Swingup | Task::SwingupSparse => {
+                let [(sin1, cos1), (sin_sum, cos_sum)] = directions(sin_cos);
+                [-sin1, -sin_sum, -cos1, -cos_sum, dtheta1, dtheta2]
+            }
+        };
+        Self(numbers.map(|x| x.to_f64() as f32))
+    }
 }
 
 impl<S: Real> From<State<S>> for Observation<4> {

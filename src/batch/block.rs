@@ -7,7 +7,8 @@ use super::{Autoreset, LaneParams, StepBuffers};
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Numbers, Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
-use crate::physics::{ResetBounds, State, sin_cos, step, task};
+use crate::observation::Observation;
+use crate::physics::{ResetBounds, State, reward, sin_cos, step};
 
 /// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
 ///
@@ -142,7 +143,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         let all = angles.zip(dtheta1.0.iter().zip(&dtheta2.0));
         all.map(|(((cos1, sin1), (cos2, sin2)), (dtheta1, dtheta2))| {
             let sin_cos = [(*sin1, *cos1), (*sin2, *cos2)];
-            task::observe::<A>(sin_cos, [*dtheta1, *dtheta2])
+            Observation::of::<A>(sin_cos, [*dtheta1, *dtheta2]).to_array()
         })
     }
 
@@ -194,7 +195,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
             }
             *ended = *terminated | *truncated;
         }
-        if let Some(swingup) = task::reward::<A, _>(&model.params, self.sin_cos) {
+        if let Some(swingup) = reward::<A, _>(&model.params, self.sin_cos) {
             for (reward, x) in rewards.iter_mut().zip(swingup.0) {
                 *reward = x.to_f64() as f32;
             }

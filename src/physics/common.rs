@@ -129,7 +129,7 @@ where
 
 /// Sines and cosines of θ1 and θ1 + θ2, the angles of both links from hanging down.
 #[inline(always)]
-pub(super) fn directions<V>([(sin1, cos1), (sin2, cos2)]: [SinCos<V>; 2]) -> [SinCos<V>; 2]
+pub(crate) fn directions<V>([(sin1, cos1), (sin2, cos2)]: [SinCos<V>; 2]) -> [SinCos<V>; 2]
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<Output = V>,
 {
