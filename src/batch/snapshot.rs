@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 use core::num::NonZeroU32;
 
 use heapless::Vec;
-use serde::de::{Deserialize, Deserializer, Error as _, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeSeq, Serializer};
 
 use super::buffers::check_length;
@@ -119,7 +119,7 @@ impl<A: Arithmetic, const N: usize> Serialize for VecBatch<A, N> {
 }
 
 #[cfg(feature = "alloc")]
-impl<'de, A, const N: usize> Deserialize<'de> for VecBatch<A, N>
+impl<'de, A, const N: usize> serde::Deserialize<'de> for VecBatch<A, N>
 where
     A: Arithmetic,
 {
