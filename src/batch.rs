@@ -266,7 +266,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`].
+    /// Those of [`Params::validate`](crate::Params::validate).
     pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;
         let model = Model::new(params);
@@ -282,7 +282,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`], [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and
+    /// Those of [`Params::validate`](crate::Params::validate), [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and
     /// [`Error::SharedParams`] without memory for [`LaneParams`].
     pub fn set_params_of(&mut self, index: usize, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;

@@ -158,7 +158,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`].
+    /// Those of [`Params::validate`](crate::Params::validate).
     pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
         self.inner.set_params(params)
     }

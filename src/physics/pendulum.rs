@@ -61,7 +61,7 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`] and [`State::validate`].
+    /// Those of [`Params::validate`](crate::Params::validate) and [`State::validate`].
     pub fn new(params: ParamsOf<A>, state: State<A::Scalar>) -> Result<Self, Error> {
         params.validate()?;
         state.validate()?;
@@ -147,7 +147,7 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`].
+    /// Those of [`Params::validate`](crate::Params::validate).
     pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;
         self.model = Model::new(params);
@@ -167,7 +167,7 @@ impl<A: Arithmetic> Pendulum<A> {
 
     /// The derivative of the state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque between the links, N m.
     ///
-    /// [`Arithmetic::Form`] determines the order of evaluation, and [`Params::dynamics`] the
+    /// [`Arithmetic::Form`] determines the order of evaluation, and [`Params::dynamics`](crate::Params::dynamics) the
     /// [equations](crate::guide::equations). A torque that is not finite gives what IEEE 754 gives.
     ///
     /// Your own integrator sets each state at which it needs the derivative. The constants stay cached:

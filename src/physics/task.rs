@@ -6,7 +6,7 @@ use rand_core::Rng;
 
 use super::{Params, ResetBounds, State, Viscous};
 
-/// What an acrobot is to do. An [arithmetic](Arithmetic::TASK) names its task.
+/// What an acrobot is to do. An [arithmetic](crate::arithmetic::Arithmetic::TASK) names its task.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
