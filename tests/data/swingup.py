@@ -1,17 +1,21 @@
 """Records dm_control's acrobot: writes swingup.txt to its folder.
 
-    pip install dm_control==1.0.50 mujoco==3.17.0
+    pip install -r tests/data/requirements.txt
     python tests/data/swingup.py
 
 Each line is a step: the angles from upright and their velocities, the action, the same after the step, the observation, and the rewards of swingup and of
 swingup_sparse. Ten episodes of 100 steps with random actions. Every other one begins near upright, where rewards are high.
 """
 
+import os
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
-from dm_control import suite
+
+os.environ["MUJOCO_GL"] = "disable"  # no graphics are needed
+
+from dm_control import suite  # noqa: E402
 
 
 def main():

@@ -11,7 +11,7 @@ use core::hint::black_box;
 use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
-use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference, Swingup};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::control::{
@@ -47,6 +47,7 @@ fn main() -> ! {
         all_of::<Micro>();
         all_of::<Portable>();
         all_of::<Reference>();
+        all_of::<Swingup<Fast>>();
         let own_params = [LaneParams::default(); 2];
         batch::<Fast, 6, 4>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6], own_params));
         numbers();
