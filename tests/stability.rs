@@ -131,9 +131,10 @@ fn subnormal_numbers_are_stable() {
 }
 
 #[test]
-fn steps_with_friction_are_stable() {
-    let found = episodes::damped();
-    assert!(found == episodes::DAMPED, "{found:#018x?}");
+fn steps_with_friction_and_of_the_swing_up_are_stable() {
+    let found = [episodes::damped(), episodes::swingup()];
+    let expected = [episodes::DAMPED, episodes::SWINGUP];
+    assert!(found == expected, "{found:#018x?}");
 }
 
 /// `cargo test -p common` tries other widths.

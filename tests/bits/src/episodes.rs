@@ -1,6 +1,6 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
-use acrobot::arithmetic::{Arithmetic, Damped, Form, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Form, Micro, Real, Reference, Swingup};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::{ParamsOf, ParamsRange, Viscous};
@@ -102,6 +102,30 @@ where
     steps(acrobot)
 }
 
+/// Every bit of 200 steps of the swing-up, with their rewards, from a state near the target and from one far away.
+pub fn swingup() -> [u64; 2] {
+    [
+        swingup_in::<Swingup<Reference>>(),
+        swingup_in::<Swingup<Fast>>(),
+    ]
+}
+
+fn swingup_in<A: Arithmetic>() -> u64 {
+    let mut digest = Digest::default();
+    for start in [[3.0, 0.2, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0]] {
+        let mut acrobot = Acrobot::<A>::new(0);
+        if acrobot.set_state(State::from(start).cast()).is_err() {
+            return 0;
+        }
+        for _ in 0..100 {
+            let step = acrobot.step(against(acrobot.state().dtheta1));
+            add_seen(&mut digest, &acrobot, step.observation);
+            digest.add(step.reward.to_bits().into());
+        }
+    }
+    digest.0
+}
+
 /// Every bit of 200 steps against θ̇1.
 fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
     let mut digest = Digest::default();
@@ -200,6 +224,8 @@ pub const SUBNORMAL: [u64; 4] = [
 ];
 
 pub const DAMPED: [u64; 2] = [0xaa5b_ea28_3a02_5fe0, 0x02ab_1a17_374e_5871];
+
+pub const SWINGUP: [u64; 2] = [0x22a6_0076_4bda_c4c0, 0x4329_8e9d_2663_2406];
 
 pub const SUBNORMAL_BATCH: u64 = 0xcc78_d474_8108_4cf5;
 

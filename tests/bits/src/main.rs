@@ -37,6 +37,7 @@ fn main() -> ! {
             episodes::subnormal_batch::<4, 5>() == episodes::SUBNORMAL_BATCH,
         ),
         report("friction", episodes::damped() == episodes::DAMPED),
+        report("swing-up", episodes::swingup() == episodes::SWINGUP),
         report(
             "batch of 1 lane",
             episodes::shared_params::<1, 20>() == episodes::SHARED_PARAMS,
@@ -56,7 +57,7 @@ fn main() -> ! {
         // The learner and the stack do not fit into 16 KiB of RAM. The firmware `learn` compares them.
         cfg!(target_os = "none") || report("training", training::weights() == training::WEIGHTS),
     ];
-    process::exit(if equal == [true; 12] { 0 } else { 1 })
+    process::exit(if equal == [true; 13] { 0 } else { 1 })
 }
 
 fn check<A: Arithmetic>(expected: &[u64; 16]) -> bool {
