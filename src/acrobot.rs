@@ -22,7 +22,7 @@ pub const REWARD_THRESHOLD: f32 = -100.0;
 pub struct Step<O = Observation, I = ()> {
     /// The observation of the new state.
     pub observation: O,
-    /// −1, or 0 if `terminated`.
+    /// −1, or 0 if `terminated`; of a swing-up from 0 to 1.
     pub reward: f32,
     /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
     pub terminated: bool,

@@ -49,7 +49,7 @@ pub struct Transition<S = f64> {
     pub state: State<S>,
     /// The requested torque, N m, without noise.
     pub torque: S,
-    /// −1, or 0 if `terminated`.
+    /// −1, or 0 if `terminated`; of a swing-up from 0 to 1.
     pub reward: f32,
     /// The state after the step.
     pub next: State<S>,

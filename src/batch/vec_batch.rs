@@ -59,7 +59,7 @@ pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StepResults {
-    /// −1, or 0 if the acrobot terminated or was only reset.
+    /// −1, or 0 if the acrobot terminated or was only reset; of a swing-up from 0 to 1.
     pub rewards: Vec<f32>,
     /// Whether the new state is a goal state.
     pub terminated: Vec<bool>,
