@@ -2,9 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{
-    Arithmetic, Damped, Host, Micro, Real, Reference, Swingup, SwingupSparse,
-};
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference, Swingup};
 use acrobot::batch::{Autoreset, Member, SimdLevel};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, FrictionOf, ResetBounds};
@@ -196,8 +194,6 @@ fn any_calls_in_any_order_equal_single_acrobots() {
     check::<Micro, 16>();
     check::<Reference, 16>();
     check::<Host, 16>();
-    check::<Damped<Fast>, 16>();
     check::<Damped<Reference>, 3>();
     check::<Swingup<Fast>, 16>();
-    check::<SwingupSparse<Portable>, 3>();
 }
