@@ -24,7 +24,7 @@ pub struct Step<O = Observation, I = ()> {
     pub observation: O,
     /// −1, or 0 if `terminated`; of a swing-up from 0 to 1.
     pub reward: f32,
-    /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
+    /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1. Never in a swing-up.
     pub terminated: bool,
     /// Whether a time limit ended the episode. Always false without a [`TimeLimit`](crate::TimeLimit).
     pub truncated: bool,
@@ -141,7 +141,7 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         Self::from_pendulum(Pendulum::new_unchecked(params, state), rng)
     }
 
-    /// Draws a new initial state from [`ResetBounds::DEFAULT`] and returns its observation.
+    /// Draws a new initial state from the task's [bounds](Task::reset_bounds) and returns its observation.
     pub fn reset(&mut self) -> Observation {
         self.begin(A::TASK.reset_bounds())
     }
@@ -310,6 +310,7 @@ mod snapshot {
     use serde::ser::{Serialize, Serializer};
 
     use super::{Acrobot, Arithmetic, Pcg64, Pendulum, State};
+    use crate::physics::FrictionOf;
     use crate::snapshot::{Header, Subject};
 
     impl<A: Arithmetic, R> Subject for Acrobot<A, R> {
@@ -329,8 +330,9 @@ mod snapshot {
     impl<A: Arithmetic> Acrobot<A> {
         /// The largest size of a snapshot in postcard's format, bytes, without a checksum: of a buffer in firmware.
         pub const MAX_SNAPSHOT_SIZE: usize = Header::<Self>::SIZE
-            + 16 * size_of::<A::Scalar>() // the parameters, and their dynamics
+            + 16 * size_of::<A::Scalar>() // the parameters, their dynamics and their friction
             + 1
+            + size_of::<FrictionOf<A>>()
             + 4 * size_of::<A::Scalar>() // the state
             + Pcg64::MAX_SNAPSHOT_SIZE;
     }

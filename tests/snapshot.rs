@@ -3,7 +3,7 @@
 
 use std::fmt::Debug;
 
-use acrobot::arithmetic::{Arithmetic, Micro, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Micro, Reference};
 use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::{Dynamics, Lean, ResetBounds};
@@ -276,6 +276,8 @@ fn no_snapshot_is_larger_than_its_constant() {
     check::<Micro>();
     check::<Portable>();
     check::<Reference>();
+    check::<Damped<Fast>>();
+    check::<Damped<Portable>>();
 }
 
 /// The figures of `docs/embedded.md`: without a checksum most snapshots with a flipped bit load as another acrobot.

@@ -38,7 +38,7 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
         Self::sin_cos(x).1
     }
 
-    /// The task. The crate's [`Swingup`](crate::arithmetic::Swingup) names another than Gymnasium's.
+    /// The task: Gymnasium's, unless it is replaced as in [`Swingup`](crate::arithmetic::Swingup).
     const TASK: Task = Task::Acrobot;
 
     /// The model of the default parameters, computed by the compiler.

@@ -38,9 +38,24 @@ pub struct Viscous<V> {
     pub joint2: V,
 }
 
+mod private {
+    pub trait Sealed {}
+    impl Sealed for super::Frictionless {}
+    impl<V> Sealed for super::Viscous<V> {}
+}
+
 /// The friction of a form of the equations: [`Frictionless`] or [`Viscous`]. No other type can implement it.
 pub trait Friction<S: Real>:
-    Copy + fmt::Debug + Default + PartialEq + Send + Sync + sealed::Serde + sealed::Format + 'static
+    private::Sealed
+    + Copy
+    + fmt::Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + sealed::Serde
+    + sealed::Format
+    + 'static
 {
     /// The same for one acrobot or for many.
     type Of<V: Numbers<S>>: Copy + fmt::Debug + Send + Sync;

@@ -30,14 +30,14 @@ pub(crate) fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
     Some(distance.select_within(A::Scalar::from_f64(RADIUS), number(1.0), outside))
 }
 
-/// 2^x for x up to 0, with a relative error below 1e-8 and the rounding of the scalar. Below −100, and for NaN, 2^−100.
+/// 2^x for x up to 0, for rewards, which are `f32`. Below −100, and for NaN, 2^−100.
 #[inline(always)]
 fn exp2<S: Real, V: Numbers<S>>(x: V) -> V {
     const LEAST: f64 = -100.0;
     let number = |x| V::splat(S::from_f64(x));
     let x = x.select_within(S::from_f64(-LEAST), x, number(LEAST));
     let whole = x.map(S::round_small);
-    // The Taylor series of e^y, |y| ≤ ln 2 / 2.
+    // The Taylor series of e^y, |y| ≤ ln 2 / 2. Its first omitted term is at most 6e-9.
     let y = (x - whole) * number(core::f64::consts::LN_2);
     let factorials = [720.0, 120.0, 24.0, 6.0, 2.0, 1.0, 1.0];
     let series = factorials

@@ -124,7 +124,7 @@ impl ResetBounds {
     };
 
     /// Any angle: from −π to π.
-    pub const ANYWHERE: Self = Self {
+    pub(crate) const ANYWHERE: Self = Self {
         low: -core::f64::consts::PI,
         high: core::f64::consts::PI,
     };

@@ -8,11 +8,10 @@ use super::{Params, ResetBounds, State, Viscous};
 
 /// What an acrobot is to do. An [arithmetic](crate::arithmetic::Arithmetic::TASK) names its task.
 #[non_exhaustive]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Task {
     /// Gymnasium's `Acrobot-v1`: swing the tip above a height.
-    #[default]
     Acrobot,
     /// dm_control's `acrobot-swingup`: swing up from anywhere and stay up. The reward is 1 up to 0.2 m from the target,
     /// 2 m above the fixed joint, and falls to 0.1 at 1.2 m. No state ends an episode.
@@ -50,8 +49,8 @@ impl Task {
     }
 }
 
-/// The mass 1 kg of a capsule of length 1 m between the centres of its hemispheres, about an axis across its centre,
-/// kg m². MuJoCo computes it from the same volumes.
+/// The moment of inertia of a capsule of 1 kg about an axis across its centre, kg m². The centres of its hemispheres are 1 m
+/// apart. As in MuJoCo, its mass is spread evenly over its volume.
 const fn inertia_of_capsule(radius: f64) -> f64 {
     let (cylinder, sphere) = (1.0, 4.0 / 3.0 * radius);
     let whole = cylinder + sphere;

@@ -71,13 +71,7 @@ pub fn subnormal() -> [u64; 4] {
 }
 
 fn subnormal_in<A: Arithmetic>() -> u64 {
-    let mut acrobot = Acrobot::<A>::hanging(Pcg64::new(0));
-    let mut params = *acrobot.params();
-    subnormal_torques::<A>(&mut params);
-    if acrobot.set_params(params).is_err() {
-        return 0;
-    }
-    steps(acrobot)
+    steps(Acrobot::<A>::hanging(Pcg64::new(0)), subnormal_torques::<A>)
 }
 
 /// Every bit of 200 steps with friction, in both forms of the equations.
@@ -92,14 +86,10 @@ fn damped_in<A>() -> u64
 where
     A: Arithmetic<Form: Form<A::Scalar, Friction = Viscous<A::Scalar>>>,
 {
-    let mut acrobot = Acrobot::<A>::new(0);
     let [joint1, joint2] = [0.1, 0.05].map(A::Scalar::from_f64);
-    let mut params = *acrobot.params();
-    params.friction = Viscous { joint1, joint2 };
-    if acrobot.set_params(params).is_err() {
-        return 0;
-    }
-    steps(acrobot)
+    steps(Acrobot::<A>::new(0), |params| {
+        params.friction = Viscous { joint1, joint2 };
+    })
 }
 
 /// Every bit of 200 steps of the swing-up, with their rewards, from a state near the target and from one far away.
@@ -126,8 +116,13 @@ fn swingup_in<A: Arithmetic>() -> u64 {
     digest.0
 }
 
-/// Every bit of 200 steps against θ̇1.
-fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>) -> u64 {
+/// Every bit of 200 steps against θ̇1 with changed parameters.
+fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>, change: impl Fn(&mut ParamsOf<A>)) -> u64 {
+    let mut params = *acrobot.params();
+    change(&mut params);
+    if acrobot.set_params(params).is_err() {
+        return 0;
+    }
     let mut digest = Digest::default();
     for _ in 0..200 {
         let step = acrobot.step(against(acrobot.state().dtheta1));
