@@ -4,9 +4,10 @@
 //! cargo run --release -p desktop --bin stay_up
 //! ```
 //!
-//! Every 0.1 s the planner tries 1,024 sequences of torques for the next 1.2 s, on a batch. It draws them around the best of the last round: the
-//! cross-entropy method (R. Y. Rubinstein, *The Cross-Entropy Method for Combinatorial and Continuous Optimization*, 1999). A
-//! sequence is worth the sum of its rewards, and its last state less if its energy is not that of standing upright, or if link 2 turns fast.
+//! Every 0.1 s the planner tries 1,024 sequences of torques for the next 1.2 s, on a batch, in three rounds. It draws the sequences of a round around the
+//! best of the round before: the cross-entropy method (R. Y. Rubinstein, *The Cross-Entropy Method for Combinatorial and Continuous Optimization*,
+//! 1999). The worth of a sequence is the sum of its rewards, less a penalty if its last state has another energy than standing upright, or if link 2 turns fast,
+//! plus a bonus near upright.
 //!
 //! Prints the mean return of episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0.
 
@@ -23,7 +24,7 @@ use rayon::prelude::*;
 
 type Task = Swingup<Fast>;
 
-/// Sequences that a round tries, of which the best make the next round.
+/// A round tries this many sequences. The next round is drawn around the best ones.
 const TRIES: usize = 1024;
 const BEST: usize = 64;
 const ROUNDS: usize = 3;

@@ -31,6 +31,7 @@ impl Folder {
             "optimum" => env!("CARGO_BIN_EXE_optimum"),
             "plan" => env!("CARGO_BIN_EXE_plan"),
             "random_agent" => env!("CARGO_BIN_EXE_random_agent"),
+            "stay_up" => env!("CARGO_BIN_EXE_stay_up"),
             "trace" => env!("CARGO_BIN_EXE_trace"),
             "swing_up" => env!("CARGO_BIN_EXE_swing_up"),
             name => panic!("no program is called {name}"),
@@ -121,13 +122,14 @@ fn planning_beats_the_learnt_policy_within_fixed_memory() {
 }
 
 /// Commands, and a part of the error message of each.
-const REJECTED: [(&str, &str); 9] = [
+const REJECTED: [(&str, &str); 10] = [
     ("optimum search --width 0", "0 is not in 1.."),
     ("optimum table --file none.txt", "Error: none.txt"),
     ("plan --depth 129", "129 is not in 1..=128"),
     ("plan --load none.bin", "Error: none.bin"),
     ("random_agent --seed 4x2", "got 'x' as character 2"),
     ("episode --out no/a.svg", "Error: cannot write no/a.svg"),
+    ("stay_up --episodes 0", "0 is not in 1.."),
     ("trace 013", "an action must be 0, 1 or 2"),
     ("swing_up --load /dev/zero", "weights must"),
     ("swing_up --steps 1 --episodes 1", "cannot be used with"),
