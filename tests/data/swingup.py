@@ -32,7 +32,7 @@ def main():
                 dense.physics.set_state(near)
         for _ in range(100):
             before = dense.physics.get_state().copy()
-            action = rng.uniform(-1, 1)
+            action = float(np.float32(rng.uniform(-1, 1)))  # as in an action space of float32
             step = dense.step(action)
             after = dense.physics.get_state().copy()
             with sparse.physics.reset_context():

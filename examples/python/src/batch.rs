@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::draws::Distribution;
-use crate::engine::{Engine, Inputs, Many, memory, with_batch};
+use crate::engine::{Engine, Inputs, memory, with_batch};
 use crate::pool::Pool;
 use crate::{Reduced, fields, load, must_be, positive, rejected, render, save, unknown, with};
 
@@ -32,25 +32,29 @@ pub struct Batch {
 #[pymethods]
 impl Batch {
     #[new]
-    #[pyo3(signature = (num_envs=1, seed="0", max_episode_steps=500, mode="NextStep", gymnasium=false, continuous=false, threads=1))]
+    #[pyo3(signature = (num_envs=1, seed="0", max_episode_steps=500, mode="NextStep", engine="fast", continuous=false, threads=1))]
     fn new(
         num_envs: i64,
         seed: &str,
         max_episode_steps: i64,
         mode: &str,
-        gymnasium: bool,
+        engine: &str,
         continuous: bool,
         threads: i64,
     ) -> PyResult<Self> {
         let len = positive("num_envs", num_envs)?.get() as usize;
         let limit = positive("max_episode_steps", max_episode_steps)?;
         let threads = positive("threads", threads)?;
-        let mode = autoreset(mode)?;
-        let mut engine = if gymnasium {
-            Engine::Host(Many::new(len, parse(seed)?)?)
-        } else {
-            Engine::Fast(Many::new(len, parse(seed)?)?)
+        let mode = match mode {
+            "NextStep" => Autoreset::NextStep,
+            "SameStep" => Autoreset::SameStep,
+            "Disabled" => Autoreset::Disabled,
+            other => {
+                let rule = r#""NextStep", "SameStep" or "Disabled""#;
+                return Err(unknown("autoreset_mode", rule, other));
+            }
         };
+        let mut engine = Engine::new(engine, len, parse(seed)?)?;
         with_batch!(&mut engine, many => {
             many.batch.set_limit(limit);
             many.batch.set_autoreset(mode);
@@ -218,8 +222,8 @@ impl Batch {
         let engine = &mut this.engine;
         // The crate does not share less work than this between threads.
         let task = match engine {
-            Engine::Host(_) => 1024,
-            Engine::Fast(_) => 16_384,
+            Engine::Fast(_) | Engine::Swingup(_) | Engine::SwingupSparse(_) => 16_384,
+            _ => 1024,
         };
         let tasks = len.div_ceil(task);
         match tasks.min(this.threads.get() as usize) {
@@ -304,7 +308,7 @@ impl Batch {
 }
 
 /// Rewards, terminated and truncated.
-pub type Results<'py> = (
+type Results<'py> = (
     Bound<'py, PyArray1<f32>>,
     Bound<'py, PyArray1<bool>>,
     Bound<'py, PyArray1<bool>>,
@@ -328,24 +332,11 @@ fn indexed(py: Python<'_>, error: PyErr, index: usize) -> PyErr {
     PyErr::from_type(error.get_type(py), format!("{name}[{index}]{rest}"))
 }
 
-/// The mode of this name.
-pub fn autoreset(mode: &str) -> PyResult<Autoreset> {
-    match mode {
-        "NextStep" => Ok(Autoreset::NextStep),
-        "SameStep" => Ok(Autoreset::SameStep),
-        "Disabled" => Ok(Autoreset::Disabled),
-        other => {
-            let rule = r#""NextStep", "SameStep" or "Disabled""#;
-            Err(unknown("autoreset_mode", rule, other))
-        }
-    }
-}
-
 /// Parses a seed: a decimal integer of at least 0, of any size.
-pub fn parse(seed: &str) -> PyResult<SeedSequence> {
+fn parse(seed: &str) -> PyResult<SeedSequence> {
     seed.parse::<SeedSequence>().map_err(rejected)
 }
 
-pub fn no_such(index: usize) -> impl Fn() -> PyErr {
+fn no_such(index: usize) -> impl Fn() -> PyErr {
     move || PyIndexError::new_err(index)
 }

@@ -1,12 +1,12 @@
-//! A batch of one of two arithmetics.
+//! A batch of one of six arithmetics.
 
 use std::ops::DerefMut;
 
-use acrobot::arithmetic::{Arithmetic, Host, Real};
+use acrobot::arithmetic::{Arithmetic, Host, Real, Swingup, SwingupSparse};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::ParamsRange;
-use acrobot::{Error, Fast, Params};
+use acrobot::physics::{FrictionOf, ParamsRange};
+use acrobot::{Error, Fast, Params, Portable};
 use numpy::{
     PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
     PyUntypedArrayMethods,
@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::draws::{Distribution, Draws};
-use crate::{ACTIONS, InvalidAction, must_be, rejected, with};
+use crate::{ACTIONS, InvalidAction, must_be, rejected, unknown, with};
 
 /// Actions (0, 1 or 2), or torques, N m.
 #[derive(FromPyObject)]
@@ -49,6 +49,25 @@ pub enum Engine {
     Fast(Many<Fast>),
     /// Computes as Gymnasium does.
     Host(Many<Host>),
+    Swingup(Many<Swingup<Fast>>),
+    SwingupSparse(Many<SwingupSparse<Fast>>),
+    /// In `f64`.
+    ExactSwingup(Many<Swingup<Portable>>),
+    ExactSwingupSparse(Many<SwingupSparse<Portable>>),
+}
+
+impl Engine {
+    pub fn new(name: &str, len: usize, seed: SeedSequence) -> PyResult<Self> {
+        Ok(match name {
+            "fast" => Self::Fast(Many::new(len, seed)?),
+            "gymnasium" => Self::Host(Many::new(len, seed)?),
+            "swingup" => Self::Swingup(Many::new(len, seed)?),
+            "swingup_sparse" => Self::SwingupSparse(Many::new(len, seed)?),
+            "exact_swingup" => Self::ExactSwingup(Many::new(len, seed)?),
+            "exact_swingup_sparse" => Self::ExactSwingupSparse(Many::new(len, seed)?),
+            other => return Err(unknown("engine", "the name of an engine", other)),
+        })
+    }
 }
 
 /// Does something with the batch in an engine, whatever its arithmetic.
@@ -57,6 +76,10 @@ macro_rules! with_batch {
         match $engine {
             $crate::engine::Engine::Fast($many) => $result,
             $crate::engine::Engine::Host($many) => $result,
+            $crate::engine::Engine::Swingup($many) => $result,
+            $crate::engine::Engine::SwingupSparse($many) => $result,
+            $crate::engine::Engine::ExactSwingup($many) => $result,
+            $crate::engine::Engine::ExactSwingupSparse($many) => $result,
         }
     };
 }
@@ -99,6 +122,11 @@ impl<A: Arithmetic> Many<A> {
             .cast()
     }
 
+    /// The friction of all acrobots, which nothing changes.
+    fn friction(&self) -> FrictionOf<A> {
+        self.batch.params_of(0).unwrap_or_default().friction
+    }
+
     /// The parameters of all acrobots, or one for all if they share them.
     pub fn all_params(&self) -> Vec<Params> {
         let count = if self.own { self.batch.len() } else { 1 };
@@ -137,9 +165,10 @@ impl<A: Arithmetic> Many<A> {
             self.batch = self.owning()?;
             self.own = true;
         }
+        let friction = self.friction();
         for index in 0..if self.own { self.batch.len() } else { 1 } {
             let params = params.get(index).unwrap_or(&params[0]).cast();
-            let params = params.with_friction(Default::default());
+            let params = params.with_friction(friction);
             if self.own {
                 self.batch.set_params_of(index, params)
             } else {
@@ -157,12 +186,13 @@ impl<A: Arithmetic> Many<A> {
         if self.draws.distributions.is_empty() {
             return Ok(());
         }
+        let friction = self.friction();
         for index in 0..self.batch.len() {
             if were_reset(&self.batch, index) {
                 let params = self.params(index);
                 let rng = &mut self.batch.generators_mut()[index];
                 let drawn = self.draws.draw(params, rng);
-                let drawn = drawn.cast().with_friction(Default::default());
+                let drawn = drawn.cast().with_friction(friction);
                 self.batch.set_params_of(index, drawn)?;
             }
         }

@@ -5,7 +5,6 @@ mod draws;
 mod engine;
 mod pool;
 mod single;
-mod swingup;
 
 use std::fmt::Display;
 use std::num::NonZeroU32;
@@ -29,8 +28,6 @@ mod _native {
     use super::batch::Batch;
     #[pymodule_export]
     use super::single::Acrobot;
-    #[pymodule_export]
-    use super::swingup::Swingup;
 }
 
 /// A number among the parameters: Gymnasium's name, the crate's, and its field.

@@ -82,8 +82,10 @@ def test_seeds_and_copies_repeat():
     few.reset(seed=7)
     assert (many.state[:3] == few.state).all()
     play(many, 20)
-    for twin in copy.deepcopy(many), pickle.loads(pickle.dumps(many)):
-        assert np.array_equal(play(twin, 10), play(copy.deepcopy(many), 10))
+    twins = [copy.deepcopy(many), pickle.loads(pickle.dumps(many))]
+    expected = play(many, 10)
+    for twin in twins:
+        assert np.array_equal(play(twin, 10), expected)
     threads = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=40_000, threads=2)
     one = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=40_000)
     threads.reset(seed=1)

@@ -13,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
-from acrobot_rs._native import Swingup
+from acrobot_rs._native import Batch
 from acrobot_rs.arrays import numbers, plain_seed, read_only
 
 Floats = NDArray[np.float32]
@@ -37,12 +37,12 @@ def _checked_mode(render_mode: str | None) -> str | None:
     return render_mode
 
 
-def _torques(name: str, actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """The torques of actions, N m. An action beyond 1 acts as 1, as in MuJoCo."""
-    array = numbers(name, f"numbers of shape {shape}", actions, shape, error=InvalidAction).astype(np.float64)
+def _torques(name: str, actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float32]:
+    """The torques of actions, N m, a row for each environment. An action beyond 1 acts as 1, as in MuJoCo."""
+    array = numbers(name, f"numbers of shape {shape}", actions, shape, error=InvalidAction)
     if np.isnan(array).any():
         raise InvalidAction(f"{name} must be numbers, got {array}")
-    return _TORQUE * np.clip(array.ravel(), -1.0, 1.0)
+    return (_TORQUE * np.clip(array, -1.0, 1.0)).astype(np.float32).reshape(-1, 1)
 
 
 def _check_no_options(options: dict[str, Any] | None, known: tuple[str, ...] = ()) -> None:
@@ -81,7 +81,8 @@ class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
         """Make an environment. ``render_mode``: ``None``, ``"rgb_array"`` or ``"ansi"``."""
         self.render_mode = _checked_mode(render_mode)
         self.action_space, self.observation_space = _spaces()
-        self._native = Swingup(sparse=self._SPARSE)
+        engine = "exact_swingup_sparse" if self._SPARSE else "exact_swingup"
+        self._native = Batch(mode="Disabled", engine=engine, continuous=True)
         self._ready = False
 
     @property
@@ -118,7 +119,7 @@ class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
         if not self._ready:
             raise ResetNeeded("the environment has no state yet; call reset before step")
         observations = np.empty((1, 6), np.float32)
-        rewards, _, _ = self._native.step(_torques("action", action, (1,)), observations, None)
+        rewards, _, _ = self._native.step(self, _torques("action", action, (1,)), observations)
         return observations[0], float(rewards[0]), False, False, {}
 
     def render(self) -> NDArray[np.uint8] | str | None:
@@ -160,7 +161,8 @@ class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
         self.render_mode = _checked_mode(render_mode)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         mode = self.autoreset_mode.value
-        self._native = Swingup(num_envs, str(self.np_random_seed), max_episode_steps, mode, self._SPARSE, False, threads)
+        engine = "swingup_sparse" if self._SPARSE else "swingup"
+        self._native = Batch(num_envs, str(self.np_random_seed), max_episode_steps, mode, engine, True, threads)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self.num_envs = num_envs
         self.single_action_space, self.single_observation_space = _spaces()
@@ -197,7 +199,7 @@ class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
         _check_no_options(options, ("reset_mask",))
         mask = arrays.reset_mask(options, self.num_envs)
         plain = plain_seed(seed)
-        self._native.reset(None if plain is None else str(plain), mask)
+        self._native.reset(None if plain is None else str(plain), -np.pi, np.pi, mask)
         super().reset(seed=plain)
         if mask is not None and options is not None:
             del options["reset_mask"]
@@ -222,7 +224,7 @@ class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
         torques = _torques("actions", actions, (self.num_envs, 1))
         observations = self._empty()
         finals = self._empty() if self.autoreset_mode is AutoresetMode.SAME_STEP else None
-        rewards, terminated, truncated = self._native.step(torques, observations, finals)
+        rewards, terminated, truncated = self._native.step(self, torques, observations, finals)
         if self.autoreset_mode is AutoresetMode.DISABLED:
             self._ended = truncated.copy()
         infos = {} if finals is None else arrays.final_infos(finals, truncated, {})

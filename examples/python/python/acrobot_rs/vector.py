@@ -113,7 +113,8 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         if gymnasium_episodes:
             arrays.warn_of_other_sines()
         seed, mode = str(self.np_random_seed), self.autoreset_mode.value
-        native = Batch(num_envs, seed, max_episode_steps, mode, gymnasium_episodes, self._CONTINUOUS, threads)
+        engine = "gymnasium" if gymnasium_episodes else "fast"
+        native = Batch(num_envs, seed, max_episode_steps, mode, engine, self._CONTINUOUS, threads)
         super().__init__(native, render_mode, parameters)
         self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
         self.num_envs = num_envs
