@@ -252,7 +252,11 @@ pub type Swingup<A> = Damped<A, 1>;
 pub type SwingupSparse<A> = Damped<A, 2>;
 
 macro_rules! damped {
-    ($($(#[$cfg:meta])? $arithmetic:ident, $scalar:ident, $form:ident, $constants:ident, [$damped:literal, $swingup:literal, $sparse:literal];)*) => {$(
+    ($(
+        $(#[$cfg:meta])?
+        $arithmetic:ident, $scalar:ident, $form:ident, $constants:ident,
+        [$damped:literal, $swingup:literal, $sparse:literal];
+    )*) => {$(
         $(#[$cfg])?
         impl<const TASK: u8> Arithmetic for Damped<$arithmetic, TASK> {
             const NAME: &'static str = match Self::TASK {
@@ -271,7 +275,8 @@ macro_rules! damped {
             const DEFAULT: Model<Self> = match Self::TASK {
                 Task::Acrobot => Model::UNDAMPED,
                 Task::Swingup | Task::SwingupSparse => {
-                    const PARAMS: Params<$scalar, Viscous<$scalar>> = Params::<$scalar, Viscous<$scalar>>::SWINGUP;
+                    const PARAMS: Params<$scalar, Viscous<$scalar>> =
+                        Params::<$scalar, Viscous<$scalar>>::SWINGUP;
                     Model {
                         params: PARAMS,
                         constants: $constants::<$scalar>::new(&PARAMS, [1.0, 0.25, 0.25]),

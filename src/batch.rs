@@ -282,8 +282,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`](crate::Params::validate), [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and
-    /// [`Error::SharedParams`] without memory for [`LaneParams`].
+    /// Those of [`Params::validate`](crate::Params::validate), [`Error::NoSuchIndex`] for an index of at least
+    /// [`len`](Self::len), and [`Error::SharedParams`] without memory for [`LaneParams`].
     pub fn set_params_of(&mut self, index: usize, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;
         self.block_of(index)?;

@@ -64,8 +64,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// # Errors
     ///
     /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), [`Error::OutOfRange`] for a state with a
-    /// number that is not finite, those of [`Params::validate`](crate::Params::validate), and [`Error::SharedParams`] for parameters other than
-    /// those that all acrobots of this batch share.
+    /// number that is not finite, those of [`Params::validate`](crate::Params::validate), and [`Error::SharedParams`] for
+    /// parameters other than those that all acrobots of this batch share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
         member.params.validate()?;
         member.state.validate()?;
