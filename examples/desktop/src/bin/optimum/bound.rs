@@ -1,15 +1,16 @@
 //! A lower bound: no policy reaches the goal in fewer steps than a function of the initial state says.
 //!
-//! The function W estimates the progress towards the goal, in steps. Two statements about all states are proved by
-//! affine arithmetic, in boxes that are halved until the statement is certain:
+//! The function P estimates the progress towards the goal, in steps. The target is the goal, and all states whose energy is
+//! above `MOST`. Taylor models prove a statement about all states, in boxes that are halved until it is certain:
 //!
-//! 1. From a state whose energy is below `GOAL`, no step increases W by more than `UNIT` or ends above `MOST`.
-//! 2. States with an energy from `GOAL` to `MOST` have at least the progress `LEAST`.
+//! From a state outside of the target where P is below `at_target` − `unit`, each step ends outside of the target, and
+//! increases P by at most `unit`.
 //!
-//! So from a state s below `GOAL` the goal is at least (`LEAST` − W(s)) / `UNIT` steps away. This holds for Gymnasium's
-//! parameters, the book's dynamics and `f64`.
+//! So from a state s outside of the target the goal is at least (`at_target` − P(s)) / `unit` steps away. This holds for
+//! Gymnasium's parameters, the book's dynamics and `f64`. docs/optimum.md has the argument.
 
 use std::array::from_fn;
+use std::ops::Add;
 use std::time::Instant;
 
 use acrobot::State;
@@ -17,56 +18,34 @@ use anyhow::bail;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-use crate::affine::Affine;
+use crate::certificate::{AT_TARGET, QUADRATIC, QUARTIC, RADIAL, UNIT};
+use crate::taylor::{PAIRS, TaylorModel};
 
-/// (m1 lc1 + m2 l1) g and m2 lc2 g, N m, of docs/equations.md with Gymnasium's parameters, as are the numbers in `energy`
-/// and `derivative`.
+/// (m1 lc1 + m2 l1) g and m2 lc2 g, N m, of docs/equations.md with Gymnasium's parameters, as are the numbers in `derivative`
+/// and `energy_height_progress`.
 const GRAVITY: [f64; 2] = [14.7, 4.9];
-/// More than rounding can change in a step of `f64`.
+/// The torques, N m.
+const TORQUES: [f64; 3] = [-1.0, 0.0, 1.0];
+/// More than rounding can change in a step of `f64`, and in its check of the goal.
 const SLACK: f64 = 1e-6;
-/// The threshold of the energy, J above hanging at rest. Every goal state has more than 24.5 J; docs/optimum.md says why.
-const GOAL: f64 = 24.5 - SLACK;
-/// No step from below `GOAL` leads above this energy, J.
-const MOST: f64 = 27.5;
+/// The energy above hanging at rest, J, from which a state counts as a goal.
+const MOST: f64 = 30.0;
 
 /// θ1, θ1 + θ2 and their velocities, rad and rad/s, of all states up to the energy `MOST`, except mirror images and whole
-/// turns. Outside there is more: a potential energy of 14.7 (1 − cos 2.75) = 28.2 J, or a kinetic energy of at least
-/// (1.125 − 0.1) 5.25² = 28.2 J or (0.625 − 0.0556) 7² = 27.9 J. Within, no velocity reaches its bound. These numbers are
-/// multiples of 1/4, so halving them is exact.
-const STATES: [[f64; 2]; 4] = [[-2.75, 2.75], [-3.25, 3.25], [0.0, 5.25], [-7.0, 7.0]];
-
-/// The coefficients of W, from certificate.py.
-const RADIAL: [f64; 5] = [3.8966, 1.9878, -0.30848, 0.014542, -2.2048];
-const PRODUCTS: [[f64; 3]; 5] = [
-    [-1.1093, 4.625, 0.036812],
-    [2.6725, -6.9567, -0.30744],
-    [1.8384, -6.5274, -0.15029],
-    [0.16131, 7.0408, -0.19725],
-    [0.47063, 1.2797, -0.13048],
-];
-/// The largest increase of W by a step, with a margin: a proof of less takes more boxes.
-const UNIT: f64 = 1.02;
-/// The least W with the energy of goal states, with a margin.
-const LEAST: f64 = 38.3;
+/// turns. Outside there is more kinetic energy: at least (1.125 − 0.1) 5.5² = 31.0 J or (0.625 − 0.0556) 7.5² = 32.0 J. Within,
+/// no velocity reaches its bound. These numbers are multiples of 1/4, so halving them is exact.
+const STATES: [[f64; 2]; 4] = [[-3.25, 3.25], [-3.25, 3.25], [0.0, 5.5], [-7.5, 7.5]];
 
 /// θ1, θ1 + θ2 and their velocities.
-type Space = [Affine; 4];
-
-/// The energy above hanging at rest, J.
-fn energy([alpha, beta, v, w]: Space) -> Affine {
-    let [[_, cos1], [_, cos_sum], [_, cos2]] = [alpha, beta, beta - alpha].map(Affine::sin_cos);
-    let kinetic = 1.125 * v.square() + 0.625 * w.square() + 0.5 * (cos2 * v * w);
-    let one = Affine::from(1.0);
-    kinetic + GRAVITY[0] * (one - cos1) + GRAVITY[1] * (one - cos_sum)
-}
+type Space = [TaylorModel; 4];
 
 fn derivative([alpha, beta, v, w]: Space, torque: f64) -> Space {
     const LEAST: f64 = 2.5625;
-    let [[sin1, _], [sin_sum, _], [sin2, cos2]] = [alpha, beta, beta - alpha].map(Affine::sin_cos);
-    let torque = Affine::from(torque);
+    let [[sin1, _], [sin_sum, _], [sin2, cos2]] = [alpha, beta, beta - alpha].map(|x| x.sin_cos());
+    let torque = TaylorModel::from(torque);
     let force1 = 0.5 * (sin2 * w.square()) - GRAVITY[0] * sin1 - torque;
     let force2 = torque - GRAVITY[1] * sin_sum - 0.5 * (sin2 * v.square());
-    let inverse = (Affine::from(LEAST) + 0.25 * sin2.square()).inverse(LEAST);
+    let inverse = (TaylorModel::from(LEAST) + 0.25 * sin2.square()).inverse(LEAST);
     let coupling = 0.5 * cos2;
     let dv = (1.25 * force1 - coupling * force2) * inverse;
     let dw = (2.25 * force2 - coupling * force1) * inverse;
@@ -75,108 +54,152 @@ fn derivative([alpha, beta, v, w]: Space, torque: f64) -> Space {
 
 /// The Runge-Kutta step of 0.2 s.
 fn step(y: Space, torque: f64) -> Space {
-    let along = |h: f64, k: Space| from_fn(|i| y[i] + h * k[i]);
+    let along = |h: f64, k: Space| from_fn(|i| TaylorModel::sum([(1.0, &y[i]), (h, &k[i])]));
     let k1 = derivative(y, torque);
     let k2 = derivative(along(0.1, k1), torque);
     let k3 = derivative(along(0.1, k2), torque);
     let k4 = derivative(along(0.2, k3), torque);
-    along(
-        0.2 / 6.0,
-        from_fn(|i| k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]),
-    )
+    let k = from_fn(|i| k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    along(0.2 / 6.0, k)
 }
 
-/// The energy and W. W is a function of the energy, corrected by the phase of the swing, because the motor gains most
-/// energy where link 2 is fast.
-fn energy_and_progress(y: Space) -> [Affine; 2] {
+/// The energy above hanging at rest, J, the height of the free end above the axis, m, and P. P is a function of the energy,
+/// corrected by the phase of the swing, because the motor gains most energy where link 2 is fast. With r = √(energy + 0.3):
+///
+/// P = Σ RADIAL rⁿ + Σ r⁻ⁿ (quadratic polynomials of x, times cosines) + Σ r⁻ⁿ⁻¹ (polynomials of x of degree 4),
+/// x = (sin θ1, sin(θ1 + θ2), and the velocities of both angles).
+fn energy_height_progress(y: Space) -> [TaylorModel; 3] {
     const AT_REST: f64 = 0.3;
+    let sum = TaylorModel::sum;
     let [alpha, beta, v, w] = y;
-    let [[sin1, _], [sin_sum, _], [sin2, _]] = [alpha, beta, beta - alpha].map(Affine::sin_cos);
-    let energy = energy(y);
-    let r = (energy + Affine::from(AT_REST)).sqrt(AT_REST);
+    let [[sin1, cos1], [sin_sum, cos_sum], [_, cos2]] =
+        [alpha, beta, beta - alpha].map(|x| x.sin_cos());
+    let one = TaylorModel::from(1.0);
+    let kinetic = 1.125 * v.square() + 0.625 * w.square() + 0.5 * (cos2 * v * w);
+    let energy = kinetic + GRAVITY[0] * (one - cos1) + GRAVITY[1] * (one - cos_sum);
+
+    let r = (energy + TaylorModel::from(AT_REST)).sqrt(AT_REST);
     let inverse = r.inverse(AT_REST.sqrt().next_down());
-    let [a, b, c, d, e] = RADIAL.map(Affine::from);
+    let [a, b, c, d, e] = RADIAL.map(TaylorModel::from);
     let radial = (((d * r + c) * r + b) * r + a) * r + e * inverse;
-    let products = [sin2 * (w - v), sin1 * v, sin_sum * w, sin1 * w, sin_sum * v];
-    let products = products.into_iter().zip(PRODUCTS);
-    let progress = products.fold(radial, |sum, (product, factors)| {
-        let [p, q, s] = factors.map(Affine::from);
-        sum + product * ((q * inverse + p) * inverse + s)
+
+    let x = [sin1, sin_sum, v, w];
+    let pairs = PAIRS.map(|(i, j)| match i == j {
+        true => x[i].square(),
+        false => x[i] * x[j],
     });
-    [energy, progress]
+    let cosines = [one, cos1, cos_sum, cos1 * cos_sum];
+    let phases = QUADRATIC.iter().zip(&QUARTIC).rev();
+    let phase = phases.fold(TaylorModel::from(0.0), |phase, (quadratic, quartic)| {
+        let terms = cosines.iter().zip(quadratic);
+        let terms =
+            terms.map(|(&cosine, factors)| cosine * sum(factors.iter().copied().zip(&pairs)));
+        terms.fold((phase + self::quartic(quartic, &pairs)) * inverse, Add::add)
+    });
+    [energy, -1.0 * (cos1 + cos_sum), radial + phase]
 }
 
-/// From a state below `GOAL`, no step with this torque increases W by more than `unit` or ends above `MOST`.
-fn no_step_is_longer(unit: f64, y: Space, torque: f64) -> bool {
-    let [energy, before] = energy_and_progress(y);
-    energy.low() > GOAL || {
-        let [energy, after] = energy_and_progress(step(y, torque));
-        (after - before).high() < unit - SLACK && energy.high() < MOST - SLACK
+/// A polynomial of degree 4, given the products of two of its variables.
+fn quartic(factors: &[f64; 35], pairs: &[TaylorModel; 10]) -> TaylorModel {
+    let mut rest = &factors[..];
+    let terms = from_fn::<_, 10, _>(|n| {
+        // x[i] x[j] x[k] x[l] with i <= j <= k <= l.
+        let later = &pairs[PAIRS.partition_point(|&(k, _)| k < PAIRS[n].1)..];
+        let factors = rest.split_off(..later.len()).expect("35 products of four");
+        pairs[n] * TaylorModel::sum(factors.iter().copied().zip(later))
+    });
+    TaylorModel::sum(terms.iter().map(|term| (1.0, term)))
+}
+
+/// The numbers of the statement.
+#[derive(Clone, Copy)]
+struct Bound {
+    /// P of the target.
+    at_target: f64,
+    /// The largest increase of P by a step.
+    unit: f64,
+}
+
+const BOUND: Bound = Bound {
+    at_target: AT_TARGET,
+    unit: UNIT,
+};
+
+impl Bound {
+    /// Those of the torques for which the statement is not certain in a box.
+    fn open(&self, y: Space, torques: &[f64]) -> Vec<f64> {
+        let [energy, height, before] = energy_height_progress(y);
+        if energy.low() > MOST + SLACK
+            || height.low() > 1.0 + SLACK
+            || before.low() > self.at_target - self.unit + SLACK
+        {
+            return Vec::new();
+        }
+        let is_open = |&torque: &f64| {
+            let [energy, height, after] = energy_height_progress(step(y, torque));
+            let is_certain = energy.high() < MOST - SLACK
+                && height.high() < 1.0 - SLACK
+                && (after - before).high() < self.unit - SLACK;
+            !is_certain
+        };
+        torques.iter().copied().filter(is_open).collect()
     }
-}
 
-/// States from `GOAL` to `MOST` have at least the progress `least`.
-fn no_goal_is_nearer(least: f64, y: Space) -> bool {
-    let [energy, progress] = energy_and_progress(y);
-    energy.high() < GOAL || energy.low() > MOST || progress.low() > least
-}
-
-/// Proves a statement in a box, given its centre and its radius in each dimension. Halves the box where the statement is
-/// not certain, at most `halvings` times. Returns the number of boxes.
-fn prove_in(
-    centre: [f64; 4],
-    mut radius: [f64; 4],
-    halvings: u32,
-    holds: &impl Fn(Space) -> bool,
-) -> anyhow::Result<u64> {
-    if holds(Affine::coordinates(centre, radius)) {
-        return Ok(1);
+    /// Proves the statement in a box, given its centre and its radius in each dimension. Halves the box where the statement
+    /// is not certain, at most `halvings` times. Returns the number of boxes.
+    fn prove_in(
+        &self,
+        centre: [f64; 4],
+        mut radius: [f64; 4],
+        torques: &[f64],
+        halvings: u32,
+    ) -> anyhow::Result<u64> {
+        let open = self.open(TaylorModel::coordinates(centre, radius), torques);
+        if open.is_empty() {
+            return Ok(1);
+        }
+        if halvings == 0 {
+            bail!("not proved near {centre:?} with {open:?} N m");
+        }
+        // An angle of 1 rad changes P about as much as 3 rad/s.
+        let size = |&d: &usize| radius[d] * [3.0, 3.0, 1.0, 1.0][d];
+        let widest = (0..4).max_by(|a, b| size(a).total_cmp(&size(b)));
+        let widest = widest.expect("four dimensions");
+        radius[widest] /= 2.0;
+        [-1.0, 1.0].into_iter().try_fold(0, |boxes, sign| {
+            let mut centre = centre;
+            centre[widest] += sign * radius[widest];
+            Ok(boxes + self.prove_in(centre, radius, &open, halvings - 1)?)
+        })
     }
-    if halvings == 0 {
-        bail!("not proved near {centre:?}");
-    }
-    // An angle of 1 rad changes W about as much as 3 rad/s.
-    let size = |&d: &usize| radius[d] * [3.0, 3.0, 1.0, 1.0][d];
-    let widest = (0..4).max_by(|a, b| size(a).total_cmp(&size(b)));
-    let widest = widest.expect("four dimensions");
-    radius[widest] /= 2.0;
-    [-1.0, 1.0].into_iter().try_fold(0, |boxes, sign| {
-        let mut centre = centre;
-        centre[widest] += sign * radius[widest];
-        Ok(boxes + prove_in(centre, radius, halvings - 1, holds)?)
-    })
-}
 
-/// Proves a statement for all states, on all cores.
-fn prove_in_all(holds: &(impl Fn(Space) -> bool + Sync)) -> anyhow::Result<u64> {
-    /// Parts in each dimension.
-    const PARTS: u32 = 16;
-    /// More than a true statement with these margins needs.
-    const HALVINGS: u32 = 40;
-    let radius = STATES.map(|[low, high]| (high - low) / f64::from(2 * PARTS));
-    let progress = ProgressBar::new(PARTS.pow(4).into());
-    let boxes = (0..PARTS.pow(4)).into_par_iter().map(|part| {
-        let centre = from_fn(|d| {
-            let i = part / PARTS.pow(d as u32) % PARTS;
-            STATES[d][0] + f64::from(2 * i + 1) * radius[d]
+    /// Proves the statement for all states, on all cores.
+    fn prove(&self) -> anyhow::Result<u64> {
+        /// Parts in each dimension.
+        const PARTS: u32 = 16;
+        /// More than a true statement with these margins needs.
+        const HALVINGS: u32 = 40;
+        let radius = STATES.map(|[low, high]| (high - low) / f64::from(2 * PARTS));
+        let progress = ProgressBar::new(PARTS.pow(4).into());
+        let boxes = (0..PARTS.pow(4)).into_par_iter().map(|part| {
+            let centre = from_fn(|d| {
+                let i = part / PARTS.pow(d as u32) % PARTS;
+                STATES[d][0] + f64::from(2 * i + 1) * radius[d]
+            });
+            let boxes = self.prove_in(centre, radius, &TORQUES, HALVINGS);
+            progress.inc(1);
+            boxes
         });
-        let boxes = prove_in(centre, radius, HALVINGS, holds);
-        progress.inc(1);
+        let boxes = boxes.try_reduce(|| 0, |a, b| Ok(a + b));
+        progress.finish_and_clear();
         boxes
-    });
-    let boxes = boxes.try_reduce(|| 0, |a, b| Ok(a + b));
-    progress.finish_and_clear();
-    boxes
+    }
 }
 
-/// Proves both statements.
+/// Proves the statement.
 pub fn prove() -> anyhow::Result<()> {
     let began = Instant::now();
-    let mut boxes = prove_in_all(&|y| no_goal_is_nearer(LEAST, y))?;
-    // The set is symmetric, so `STATES` needs no mirror images.
-    for torque in [-1.0, 0.0, 1.0] {
-        boxes += prove_in_all(&|y| no_step_is_longer(UNIT, y, torque))?;
-    }
+    let boxes = BOUND.prove()?;
     println!(
         "proved in {} million boxes: from hanging at rest the goal is at least {} steps away",
         boxes / 1_000_000,
@@ -186,7 +209,7 @@ pub fn prove() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// No policy reaches the goal in fewer steps. The energy must be below `GOAL`, as the argument needs.
+/// No policy reaches the goal in fewer steps. The state must be outside of the target, as the argument needs.
 pub fn least_steps(state: State) -> u32 {
     let State {
         theta1,
@@ -194,13 +217,13 @@ pub fn least_steps(state: State) -> u32 {
         dtheta1,
         dtheta2,
     } = state;
-    let y = [theta1, theta1 + theta2, dtheta1, dtheta1 + dtheta2].map(Affine::from);
-    let [energy, progress] = energy_and_progress(y);
+    let y = [theta1, theta1 + theta2, dtheta1, dtheta1 + dtheta2].map(TaylorModel::from);
+    let [energy, height, progress] = energy_height_progress(y);
     assert!(
-        energy.high() < GOAL,
-        "the state must have less energy than every goal state"
+        energy.high() < MOST && height.high() < 1.0 - SLACK,
+        "the state must be outside of the target"
     );
-    ((LEAST - SLACK - progress.high()) / UNIT).ceil() as u32
+    ((BOUND.at_target - SLACK - progress.high()) / BOUND.unit).ceil() as u32
 }
 
 #[cfg(test)]
@@ -224,72 +247,85 @@ mod tests {
         // The edges are the extreme positions.
         let position = [(); 4].map(|()| uniform(rng, -1.5, 1.5).clamp(-1.0, 1.0));
         let y = from_fn(|d| centre[d] + radius[d] * position[d]);
-        (Affine::coordinates(centre, radius), position, y)
+        (TaylorModel::coordinates(centre, radius), position, y)
     }
 
     #[track_caller]
-    fn assert_contains(form: Affine, position: [f64; 4], number: f64) {
-        let [low, high] = form.range_at(position);
+    fn assert_contains(model: TaylorModel, position: [f64; 4], number: f64) {
+        let [low, high] = model.range_at(position);
         let is_inside = (low..=high).contains(&number);
         assert!(is_inside, "{number} is not from {low} to {high}");
     }
 
-    /// The crate's own step and energy are independent of this file's.
+    /// The crate's own step, energy and height are independent of this file's.
     #[test]
-    fn forms_contain_the_steps_and_energies_of_reference() {
+    fn models_contain_the_steps_energies_and_heights_of_reference() {
         let mut rng = Pcg64::new(1);
         for _ in 0..20_000 {
             let (region, position, [alpha, beta, v, w]) = draw(&mut rng);
             let state = State::from([alpha, beta - alpha, v, w - v]);
             let mut pendulum = Pendulum::<Reference>::new(Params::DEFAULT, state).unwrap();
             let hanging = Pendulum::<Reference>::new(Params::DEFAULT, State::HANGING).unwrap();
-            let above = pendulum.energy() - hanging.energy();
-            assert_contains(energy(region), position, above);
+            let [energy, height, _] = energy_height_progress(region);
+            assert_contains(energy, position, pendulum.energy() - hanging.energy());
+            assert_contains(height, position, pendulum.tip_height());
 
             let torque = pendulum.params().torque(Action::sample(&mut rng));
             pendulum.step(torque).unwrap();
             let [theta1, theta2, dtheta1, dtheta2] = pendulum.state().into();
             let reached = [theta1, theta1 + theta2, dtheta1, dtheta1 + dtheta2];
-            for (i, form) in step(region, torque).into_iter().enumerate() {
-                let [low, high] = form.range_at(position);
+            for (i, model) in step(region, torque).into_iter().enumerate() {
+                let [low, high] = model.range_at(position);
                 // The acrobot wraps its angles.
                 let turns = match i {
                     0 | 1 => (((low + high) / 2.0 - reached[i]) / TAU).round(),
                     _ => 0.0,
                 };
-                assert_contains(form, position, reached[i] + turns * TAU);
+                assert_contains(model, position, reached[i] + turns * TAU);
+            }
+        }
+    }
+
+    /// The mirror image has the same progress, so the proof needs only one of both.
+    #[test]
+    fn models_contain_the_progress_of_each_state() {
+        let mut rng = Pcg64::new(2);
+        for _ in 0..20_000 {
+            let (region, position, y) = draw(&mut rng);
+            let [_, _, model] = energy_height_progress(region);
+            for y in [y, y.map(|x| -x)] {
+                let [_, _, point] = energy_height_progress(y.map(TaylorModel::from));
+                assert!(point.high() - point.low() < 1e-6, "{point:?}");
+                assert_contains(model, position, (point.low() + point.high()) / 2.0);
             }
         }
     }
 
     #[test]
-    fn forms_contain_the_progress_of_each_state() {
-        let mut rng = Pcg64::new(2);
-        for _ in 0..20_000 {
-            let (region, position, y) = draw(&mut rng);
-            let [_, form] = energy_and_progress(region);
-            let [_, point] = energy_and_progress(y.map(Affine::from));
-            assert_contains(form, position, (point.low() + point.high()) / 2.0);
-        }
-    }
-
-    #[test]
-    #[should_panic(expected = "less energy than every goal state")]
-    fn states_with_the_energy_of_goal_states_have_no_bound() {
+    #[should_panic(expected = "outside of the target")]
+    fn goal_states_have_no_bound() {
         least_steps(State::from([3.0, 0.0, 0.0, 0.0]));
     }
 
-    /// Near the state whose step is the longest of a sample, and near the goal state of the least progress.
+    #[test]
+    #[should_panic(expected = "outside of the target")]
+    fn states_of_more_energy_have_no_bound() {
+        least_steps(State::from([0.0, 0.0, 0.0, 7.5]));
+    }
+
+    const LONGEST: [f64; 4] = [-0.31028, 1.05353, 0.80987, 6.04149];
+    const LATEST: [f64; 4] = [-0.15488, 0.80654, -0.93411, 6.67199];
+
+    /// Near the states that the program certificate.py finds to be nearest to a contradiction.
     #[test]
     fn bounds_that_are_too_tight_are_not_proved() {
-        let near = |y, holds: &dyn Fn(Space) -> bool| {
-            prove_in(y, [1.0 / 64.0; 4], 30, &|y| holds(y)).is_ok()
+        let proves = |at_target, unit| {
+            let bound = Bound { at_target, unit };
+            let near = |y| bound.prove_in(y, [1.0 / 64.0; 4], &TORQUES, 30).is_ok();
+            [LONGEST, LATEST].map(near)
         };
-        let longest = [-0.0855, -3.105, 0.6254, 5.0155];
-        let proves = |unit| near(longest, &|y| no_step_is_longer(unit, y, 1.0));
-        assert_eq!([1.0, 1.008, UNIT].map(proves), [false, false, true]);
-        let nearest = [1.0494, -1.0311, 0.4618, -4.7274];
-        let proves = |least| near(nearest, &|y| no_goal_is_nearer(least, y));
-        assert_eq!([38.6, 38.45, LEAST].map(proves), [false, false, true]);
+        assert_eq!(proves(AT_TARGET, UNIT), [true, true]);
+        assert_eq!(proves(AT_TARGET, UNIT - 0.015), [false, true]);
+        assert_eq!(proves(AT_TARGET + 0.2, UNIT), [true, false]);
     }
 }

@@ -21,11 +21,12 @@ use desktop::write;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-mod affine;
 mod beam;
 mod bound;
+mod certificate;
 mod sequences;
 mod table;
+mod taylor;
 mod values;
 
 use beam::Beam;
