@@ -7,13 +7,13 @@
 //! increases P by at most `unit`.
 //!
 //! So from a state s outside of the target the goal is at least (`at_target` − P(s)) / `unit` steps away. This holds for
-//! Gymnasium's parameters, the book's dynamics and `f64`. docs/optimum.md has the argument.
+//! Gymnasium's parameters, the book's dynamics, `f64`, and angles from −π to π. docs/optimum.md has the argument.
 
 use std::array::from_fn;
 use std::ops::Add;
 use std::time::Instant;
 
-use acrobot::State;
+use acrobot::{Params, State};
 use anyhow::bail;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
@@ -25,10 +25,10 @@ use crate::taylor::{PAIRS, TaylorModel};
 /// and `energy_height_progress`.
 const GRAVITY: [f64; 2] = [14.7, 4.9];
 /// The torques, N m.
-const TORQUES: [f64; 3] = [-1.0, 0.0, 1.0];
+const TORQUES: [f64; 3] = Params::<f64>::DEFAULT.torques;
 /// More than rounding can change in a step of `f64`, and in its check of the goal.
 const SLACK: f64 = 1e-6;
-/// The energy above hanging at rest, J, from which a state counts as a goal.
+/// The energy above hanging at rest, J, from which a state is in the target.
 const MOST: f64 = 30.0;
 
 /// θ1, θ1 + θ2 and their velocities, rad and rad/s, of all states up to the energy `MOST`, except mirror images and whole
@@ -228,12 +228,12 @@ pub fn least_steps(state: State) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
+    use std::f64::consts::{PI, TAU};
 
+    use acrobot::Action;
     use acrobot::arithmetic::Reference;
     use acrobot::numpy::{Pcg64, uniform};
     use acrobot::physics::Pendulum;
-    use acrobot::{Action, Params};
 
     use super::*;
 
@@ -313,8 +313,27 @@ mod tests {
         least_steps(State::from([0.0, 0.0, 0.0, 7.5]));
     }
 
+    #[test]
+    fn states_outside_of_the_boxes_have_more_energy() {
+        let mut rng = Pcg64::new(4);
+        for _ in 0..100_000 {
+            let y = STATES.map(|[_, high]| high * uniform(&mut rng, -1.2, 1.2));
+            let [energy, ..] = energy_height_progress(y.map(TaylorModel::from));
+            let is_inside = y[2].abs() < STATES[2][1] && y[3].abs() < STATES[3][1];
+            assert!(is_inside || energy.low() > MOST, "{y:?}");
+        }
+        assert!(STATES[0][1] > PI && STATES[1][1] > PI);
+    }
+
+    #[test]
+    fn hanging_at_rest_has_the_steps_of_the_page() {
+        assert_eq!(least_steps(State::HANGING), 52);
+    }
+
     const LONGEST: [f64; 4] = [-0.31028, 1.05353, 0.80987, 6.04149];
     const LATEST: [f64; 4] = [-0.15488, 0.80654, -0.93411, 6.67199];
+    /// Steps from here reach the target by their height alone.
+    const HIGHEST: [f64; 4] = [-1.40517, 3.00841, -1.44586, 0.76542];
 
     /// Near the states that the program certificate.py finds to be nearest to a contradiction.
     #[test]
@@ -322,10 +341,10 @@ mod tests {
         let proves = |at_target, unit| {
             let bound = Bound { at_target, unit };
             let near = |y| bound.prove_in(y, [1.0 / 64.0; 4], &TORQUES, 30).is_ok();
-            [LONGEST, LATEST].map(near)
+            [LONGEST, LATEST, HIGHEST].map(near)
         };
-        assert_eq!(proves(AT_TARGET, UNIT), [true, true]);
-        assert_eq!(proves(AT_TARGET, UNIT - 0.015), [false, true]);
-        assert_eq!(proves(AT_TARGET + 0.2, UNIT), [true, false]);
+        assert_eq!(proves(AT_TARGET, UNIT), [true, true, true]);
+        assert_eq!(proves(AT_TARGET, UNIT - 0.015), [false, true, true]);
+        assert_eq!(proves(AT_TARGET + 1.0, UNIT), [true, false, false]);
     }
 }

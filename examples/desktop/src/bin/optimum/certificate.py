@@ -158,7 +158,7 @@ def attack():
         states = [climb(found, sample(100_000), torque, unit=UNIT) for _ in range(34)]
         y, values = (np.concatenate(parts, -1) for parts in zip(*states))
         at = values.argmax()
-        print(f"torque {torque} N m: at most {UNIT + values[at]:.4f}, at {y[:, at].round(4).tolist()}")
+        print(f"torque {torque} N m: a margin of {-values[at]:.4f}, at {y[:, at].round(4).tolist()}")
 
 
 def write(coefficients, at_target):

@@ -264,25 +264,72 @@ mod tests {
 
     use super::*;
 
-    /// Also where a part of the box is below the least number.
+    /// A model of random terms, large or small, one of the functions that it contains, and the value of that function at `t`.
+    fn draw(rng: &mut Pcg64, t: [f64; 4]) -> (TaylorModel, f64) {
+        let mut draw = |size: f64| size * uniform(rng, -1.0, 1.0);
+        let [linear_size, quadratic_size, error_size] =
+            [draw(4.0), draw(4.0), draw(4.0)].map(f64::exp2);
+        let mut model = TaylorModel::from(draw(2.0));
+        model.linear = [(); 4].map(|()| draw(linear_size));
+        model.quadratic = [(); 10].map(|()| draw(quadratic_size));
+        model.error = draw(error_size).abs();
+        model.size += model.radius();
+        let [low, high] = model.range_at(t);
+        // The edges are the extreme functions.
+        let value = (low + high) / 2.0 + (high - low) / 2.0 * draw(1.5).clamp(-1.0, 1.0);
+        (model, value)
+    }
+
+    #[track_caller]
+    fn assert_contains(model: TaylorModel, t: [f64; 4], exact: f64) {
+        let slack = 1e-12 * model.size;
+        let [low, high] = model.range_at(t);
+        assert!(
+            low - slack <= exact && exact <= high + slack,
+            "{exact}: {model:?}"
+        );
+        let (low, high) = (model.low(), model.high());
+        assert!(
+            low - slack <= exact && exact <= high + slack,
+            "{exact}: {low} to {high}"
+        );
+    }
+
+    /// Each operation, also roots and reciprocals where a part of the box is below the least number.
     #[test]
-    fn roots_and_reciprocals_contain_those_of_each_number() {
+    fn models_contain_the_results_of_each_number() {
         const LEAST: f64 = 0.3;
         let mut rng = Pcg64::new(3);
-        for _ in 0..100_000 {
-            let (centre, radius) = (uniform(&mut rng, -1.0, 2.0), uniform(&mut rng, 0.0, 2.0));
-            let t = uniform(&mut rng, -1.0, 1.0);
-            let number = centre + radius * t;
-            let [x, ..] = TaylorModel::coordinates([centre; 4], [radius, 0.0, 0.0, 0.0]);
-            if number >= LEAST {
-                for (model, exact) in [
-                    (x.sqrt(LEAST), number.sqrt()),
-                    (x.inverse(LEAST), 1.0 / number),
-                ] {
-                    let [low, high] = model.range_at([t, 0.0, 0.0, 0.0]);
-                    assert!(low <= exact && exact <= high, "{exact}: {model:?}");
-                }
+        for _ in 0..200_000 {
+            let t = [(); 4].map(|()| uniform(&mut rng, -1.5, 1.5).clamp(-1.0, 1.0));
+            let [(x, a), (y, b)] = [(); 2].map(|()| draw(&mut rng, t));
+            assert_contains(x, t, a);
+            assert_contains(x + y, t, a + b);
+            assert_contains(x - y, t, a - b);
+            assert_contains(x * y, t, a * b);
+            assert_contains(x.square(), t, a * a);
+            let (sin, cos) = Reference::sin_cos(a);
+            let [sine, cosine] = x.sin_cos();
+            assert_contains(sine, t, sin);
+            assert_contains(cosine, t, cos);
+            if a >= LEAST {
+                assert_contains(x.sqrt(LEAST), t, a.sqrt());
+                assert_contains(x.inverse(LEAST), t, 1.0 / a);
             }
+        }
+    }
+
+    #[test]
+    fn a_parabola_is_highest_at_its_vertex_or_at_an_edge() {
+        for (linear, quadratic, highest) in [
+            (1.0, -1.0, 0.25),
+            (-1.0, -1.0, 0.25),
+            (1.0, 0.5, 1.5),
+            (4.0, -1.0, 3.0),
+        ] {
+            let [mut x, ..] = TaylorModel::coordinates([0.0; 4], [linear, 0.0, 0.0, 0.0]);
+            x.quadratic[0] = quadratic;
+            assert!((x.high() - highest).abs() < 1e-12, "{x:?}");
         }
     }
 }
