@@ -268,7 +268,7 @@ mod tests {
     fn draw(rng: &mut Pcg64, t: [f64; 4]) -> (TaylorModel, f64) {
         let mut draw = |size: f64| size * uniform(rng, -1.0, 1.0);
         let [linear_size, quadratic_size, error_size] =
-            [draw(4.0), draw(4.0), draw(4.0)].map(f64::exp2);
+            [(); 3].map(|()| f64::exp2(draw(20.0) - 18.0));
         let mut model = TaylorModel::from(draw(2.0));
         model.linear = [(); 4].map(|()| draw(linear_size));
         model.quadratic = [(); 10].map(|()| draw(quadratic_size));
@@ -301,7 +301,7 @@ mod tests {
         const LEAST: f64 = 0.3;
         let mut rng = Pcg64::new(3);
         for _ in 0..200_000 {
-            let t = [(); 4].map(|()| uniform(&mut rng, -1.5, 1.5).clamp(-1.0, 1.0));
+            let t = [(); 4].map(|()| uniform(&mut rng, -4.0, 4.0).clamp(-1.0, 1.0));
             let [(x, a), (y, b)] = [(); 2].map(|()| draw(&mut rng, t));
             assert_contains(x, t, a);
             assert_contains(x + y, t, a + b);
