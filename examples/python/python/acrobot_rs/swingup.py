@@ -7,17 +7,15 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium import spaces
-from gymnasium.error import ClosedEnvironmentError, InvalidAction, ResetNeeded
-from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.error import InvalidAction, ResetNeeded
+from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Batch
 from acrobot_rs.arrays import numbers, plain_seed, read_only
-
-Floats = NDArray[np.float32]
-Bools = NDArray[np.bool_]
+from acrobot_rs.vector import Bools, Floats, NativeVectorEnv
 
 #: The torque of an action of 1, N m.
 _TORQUE = 2.0
@@ -133,7 +131,7 @@ class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
     _SPARSE = True
 
 
-class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
+class AcrobotSwingupVectorEnv(NativeVectorEnv):
     """Many :class:`AcrobotSwingupEnv`, computed in ``float32``, bit-identically on every machine.
 
     Actions have the shape ``(num_envs, 1)``. Environment ``i`` draws from the ``i``-th child of the seed, as in
@@ -168,30 +166,7 @@ class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
         self.single_action_space, self.single_observation_space = _spaces()
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        # Without autoreset: the environments that must be reset before the next step.
-        self._ended = np.zeros(num_envs, np.bool_)
-        self._ready = False
-
-    @property
-    def state(self) -> Floats:
-        """theta1, theta2 (rad; 0 hangs down) and their velocities (rad/s), of shape ``(num_envs, 4)``: a read-only copy.
-
-        An array of this shape can be assigned. Episodes continue.
-        """
-        states = np.empty((self.num_envs, 4))
-        self._native.states(states)
-        return read_only(states.astype(np.float32))
-
-    @state.setter
-    def state(self, states: ArrayLike) -> None:
-        self._native.set_states(arrays.finite_states(states, self.num_envs, np.float32))
-
-    @property
-    def elapsed_steps(self) -> NDArray[np.int64]:
-        """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
-        elapsed = np.empty(self.num_envs, np.int64)
-        self._native.elapsed(elapsed)
-        return read_only(elapsed)
+        self._ended = np.zeros(num_envs, np.bool_) if self.autoreset_mode is AutoresetMode.DISABLED else None
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment, or in those of ``options["reset_mask"]``."""
@@ -203,7 +178,8 @@ class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
         super().reset(seed=plain)
         if mask is not None and options is not None:
             del options["reset_mask"]
-        self._ended[slice(None) if mask is None else mask] = False
+        if self._ended is not None:
+            self._ended[slice(None) if mask is None else mask] = False
         self._ready = True
         observations = self._empty()
         self._native.observe(observations)
@@ -216,17 +192,13 @@ class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
             gymnasium.error.InvalidAction: If the actions have another shape, or are no numbers. No environment steps then.
             gymnasium.error.ResetNeeded: Before the first reset, and in mode ``Disabled`` after an episode's end.
         """
-        self._check_open()
-        if not self._ready:
-            raise ResetNeeded("the environments have no states yet; call reset before step")
-        if self._ended.any():
-            raise ResetNeeded(f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; reset it before the next step")
+        self._check_ready()
         torques = _torques("actions", actions, (self.num_envs, 1))
         observations = self._empty()
         finals = self._empty() if self.autoreset_mode is AutoresetMode.SAME_STEP else None
         rewards, terminated, truncated = self._native.step(self, torques, observations, finals)
-        if self.autoreset_mode is AutoresetMode.DISABLED:
-            self._ended = truncated.copy()
+        if self._ended is not None:
+            self._ended[:] = truncated
         infos = {} if finals is None else arrays.final_infos(finals, truncated, {})
         return observations, rewards, terminated, truncated, infos
 
@@ -235,17 +207,6 @@ class AcrobotSwingupVectorEnv(VectorEnv[Floats, Floats, np.ndarray]):
         if self.render_mode is None:
             return None
         return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
-
-    def close_extras(self, **kwargs: Any) -> None:
-        """Later calls raise ``ClosedEnvironmentError``."""
-        self._ready = False
-
-    def _check_open(self) -> None:
-        if self.closed:
-            raise ClosedEnvironmentError("the environments were closed; make new ones")
-
-    def _empty(self) -> Floats:
-        return np.empty((self.num_envs, 6), np.float32)
 
 
 class AcrobotSwingupSparseVectorEnv(AcrobotSwingupVectorEnv):

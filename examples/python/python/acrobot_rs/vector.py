@@ -29,7 +29,66 @@ _ATTRIBUTES = (
 )
 
 
-class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
+class NativeVectorEnv(VectorEnv[Floats, NDArray[Any], np.ndarray]):
+    """What the vector environments of both tasks share."""
+
+    _native: Batch
+    #: Whether states and rewards are ``float64``.
+    _gymnasium_episodes = False
+    #: Whether it was reset and not closed.
+    _ready = False
+    #: Without autoreset: the environments that must be reset before the next step.
+    _ended: Bools | None
+
+    @property
+    def state(self) -> NDArray[np.floating[Any]]:
+        """theta1, theta2 (rad) and their velocities (rad/s) of each environment, of shape ``(num_envs, 4)``: a read-only copy.
+
+        To set the states, assign an array of this shape. To set some, change rows of ``state.copy()`` and assign it. Episodes
+        and numbers of steps continue. In mode ``NextStep`` the next step resets the ended episodes all the same.
+
+        Raises:
+            ValueError: If the shape is another one, or if a number is not finite. No state changes then.
+        """
+        states = np.empty((self.num_envs, 4), np.float64)
+        self._native.states(states)
+        return read_only(states if self._gymnasium_episodes else states.astype(np.float32))
+
+    @state.setter
+    def state(self, states: ArrayLike) -> None:
+        dtype = np.float64 if self._gymnasium_episodes else np.float32
+        self._native.set_states(arrays.finite_states(states, self.num_envs, dtype))
+
+    @property
+    def elapsed_steps(self) -> NDArray[np.int64]:
+        """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
+        elapsed = np.empty(self.num_envs, np.int64)
+        self._native.elapsed(elapsed)
+        return read_only(elapsed)
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
+        self._ready = False
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError("the environments were closed; make new ones")
+
+    def _check_ready(self) -> None:
+        if not self._ready:
+            self._check_open()
+            raise ResetNeeded("the environments have no states yet; call reset before step")
+        if self._ended is not None and self._ended.any():
+            raise ResetNeeded(
+                f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; "
+                'reset it before the next step, with options={"reset_mask": terminated | truncated}'
+            )
+
+    def _empty(self) -> Floats:
+        return np.empty((self.num_envs, 6), np.float32)
+
+
+class AcrobotVectorEnv(Parameters, NativeVectorEnv):
     """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
     They are computed in ``float32``, bit-identically on every machine. Each step is as close to Gymnasium's as ``float32``
@@ -59,7 +118,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    _native: Batch
     _CHOSEN = ("autoreset_mode", "copy", "info_parameters", "num_envs")
 
     def __init__(
@@ -124,10 +182,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         for name, space in self._spaces().items():
             setattr(self, name, space)
         self._observations = None if copy else self._empty()
-        # Without autoreset: the environments that must be reset before the next step.
         self._ended = np.zeros(num_envs, np.bool_) if self.autoreset_mode is AutoresetMode.DISABLED else None
-        #: Whether it was reset and not closed.
-        self._ready = False
         self._made = True
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
@@ -139,32 +194,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     def max_episode_steps(self) -> int:
         """The steps after which an episode is truncated. Read-only: chosen when the environments are made."""
         return self._max_episode_steps
-
-    @property
-    def state(self) -> NDArray[np.floating[Any]]:
-        """theta1, theta2 (rad) and their velocities (rad/s) of each environment, of shape ``(num_envs, 4)``: a read-only copy.
-
-        To set the states, assign an array of this shape. To set some, change rows of ``state.copy()`` and assign it. Episodes
-        and numbers of steps continue. In mode ``NextStep`` the next step resets the ended episodes all the same.
-
-        Raises:
-            ValueError: If the shape is another one, or if a number is not finite. No state changes then.
-        """
-        states = np.empty((self.num_envs, 4), np.float64)
-        self._native.states(states)
-        return read_only(states if self._gymnasium_episodes else states.astype(np.float32))
-
-    @state.setter
-    def state(self, states: ArrayLike) -> None:
-        dtype = np.float64 if self._gymnasium_episodes else np.float32
-        self._native.set_states(arrays.finite_states(states, self.num_envs, dtype))
-
-    @property
-    def elapsed_steps(self) -> NDArray[np.int64]:
-        """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
-        elapsed = np.empty(self.num_envs, np.int64)
-        self._native.elapsed(elapsed)
-        return read_only(elapsed)
 
     def reset(self, *, seed: Seed = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment.
@@ -227,14 +256,7 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
                 environment was not reset. No environment steps then.
             gymnasium.error.ClosedEnvironmentError: After ``close``.
         """
-        if not self._ready:
-            self._check_open()
-            raise ResetNeeded("the environments have no states yet; call reset before step")
-        if self._ended is not None and self._ended.any():
-            raise ResetNeeded(
-                f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; "
-                'reset it before the next step, with options={"reset_mask": terminated | truncated}'
-            )
+        self._check_ready()
         observations = self._empty() if self._observations is None else self._observations
         finals = self._empty() if self._same_step else None
         last = self._parameter_infos() if self._same_step else {}
@@ -333,10 +355,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             raise ResetNeeded("the environments have no states yet; call reset before render")
         return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
 
-    def close_extras(self, **kwargs: Any) -> None:
-        """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
-        self._ready = False
-
     def _pass(self, name: str, value: Any) -> Any:
         if isinstance(value, Drawn):
             self._native.set_drawn(name, value)
@@ -360,10 +378,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
         # An array over packed bytes is not aligned, which Rust requires.
         return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), dtype)
 
-    def _check_open(self) -> None:
-        if self.closed:
-            raise ClosedEnvironmentError("the environments were closed; make new ones")
-
     def _observe_initial_states(self, observations: Floats, which: Bools) -> None:
         """Write the observations of initial states. Gymnasium computes their sines with NumPy in ``float32``."""
         if which.any():
@@ -371,8 +385,6 @@ class AcrobotVectorEnv(Parameters, VectorEnv[Floats, NDArray[Any], np.ndarray]):
             cosines, sines = np.cos(angles), np.sin(angles)
             observations[which, :4] = np.stack([cosines, sines], axis=2).reshape(-1, 4)
 
-    def _empty(self) -> Floats:
-        return np.empty((self.num_envs, 6), np.float32)
 
 
 class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
