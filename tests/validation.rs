@@ -230,6 +230,15 @@ fn a_link_needs_inertia_about_its_joint() {
             "{error}"
         );
     }
+    // This one underflows only in f32.
+    let small = Params {
+        inertia2: 0.0,
+        center_of_mass2: 1e-30,
+        ..Params::<f64>::DEFAULT
+    };
+    small.validate().unwrap();
+    let error = small.cast::<f32>().validate().unwrap_err();
+    assert!(matches!(error, Error::NoInertia { .. }), "{error}");
     // Point masses at the tips are a pendulum.
     let points = Params {
         inertia1: 0.0,
