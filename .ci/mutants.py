@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Mutation testing of the committed source: which changes to src/ does no test notice?
 
-    python3 .ci/mutants.py              # an hour on two cores
+    python3 .ci/mutants.py              # three hours on two cores
     python3 .ci/mutants.py src/trajectory.rs
 
 Each mutant first meets the tests of its file, and if it survives, all other tests. The script fails unless the
