@@ -341,7 +341,7 @@ fn results_that_are_not_finite_keep_the_angles_and_stop() {
     check::<Micro>();
 }
 
-/// The largest draw of a generator can round to a number above the upper bound.
+/// The largest draw of a generator is rounded to the upper bound.
 #[test]
 fn draws_of_parameters_are_within_their_range() {
     let range = common::params_range::<f32, Frictionless>(Dynamics::Book);

@@ -90,9 +90,8 @@ impl<S: Real, F: Friction<S, Of<S> = F>> ParamsRange<S, F> {
             if low == high {
                 return low;
             }
-            let drawn = S::from_f64(uniform(rng, low.to_f64(), high.to_f64()));
-            // The sum in `uniform` can round to a number above `high`.
-            if drawn > high { high } else { drawn }
+            // At most `high`: `uniform` adds at most the exact width to `low`, and rounding keeps the order.
+            S::from_f64(uniform(rng, low.to_f64(), high.to_f64()))
         };
         let drawn = self.low.zip(&self.high, &mut draw, Frictionless);
         drawn.with_friction(F::zip(self.low.friction, self.high.friction, draw))
