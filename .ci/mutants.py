@@ -66,7 +66,9 @@ def play(folder, shard, files, tests, done):
         (output / f"{name}.txt").write_text("".join(f"{mutant}\n" for mutant in done) if name == "caught" else "")
     options = ["--in-place", "--iterate", f"--shard={shard}/{SHARDS}", "--no-times", "--colors=never", "--timeout=300"]
     options += [f"--file={file}" for file in files]
-    options += ["--test-package=properties"] if tests == ["properties"] else [f"--cargo-arg=--test={test}" for test in tests]
+    # `--lib` tests the rotations that this machine does not use.
+    selected = ["--cargo-arg=--lib"] + [f"--cargo-arg=--test={test}" for test in tests]
+    options += ["--test-package=properties"] if tests == ["properties"] else selected
     options += [f"--cargo-arg={option}" for option in CARGO]
     # A single shard uses the dependencies that are built in target/.
     environment = {**os.environ, "CARGO_TARGET_DIR": str(ROOT / "target" if SHARDS == 1 else folder / "target")}
