@@ -41,11 +41,8 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
         if words.first() != Some(&MAGIC) {
             return Err(LoadError::Magic);
         }
-        let differs = |found, expected| (found != expected).then_some((found, expected));
-        if words.len() > 1
-            && let Some((found, expected)) = differs(word(1), VERSION)
-        {
-            return Err(LoadError::Version { found, expected });
+        if words.len() > 1 && word(1) != VERSION {
+            return Err(LoadError::Version(word(1)));
         }
         if bytes.len() != Self::BYTES {
             return Err(LoadError::Size {
@@ -53,17 +50,17 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
                 expected: Self::BYTES,
             });
         }
-        if let Some((found, expected)) = differs(word(3), self.tiles.fingerprint()) {
-            return Err(LoadError::Features { found, expected });
+        if word(3) != self.tiles.fingerprint() {
+            return Err(LoadError::Features);
         }
         let body = bytes.iter().take(Self::BYTES - 4).copied();
-        if let Some((found, expected)) = differs(word(HEADER + 2 * S), body.fold(FNV, fnv)) {
-            return Err(LoadError::Checksum { found, expected });
+        if word(HEADER + 2 * S) != body.fold(FNV, fnv) {
+            return Err(LoadError::Checksum);
         }
         let weights = words.iter().skip(HEADER).take(2 * S);
         let weights = weights.map(|&bytes| f32::from_le_bytes(bytes));
         if let Some(index) = weights.clone().position(|w| !w.is_finite()) {
-            return Err(LoadError::NotFinite { index });
+            return Err(LoadError::NotFinite(index));
         }
         for (w, number) in self.weights.as_flattened_mut().iter_mut().zip(weights) {
             *w = number;
@@ -85,13 +82,8 @@ pub(crate) fn fnv(hash: u32, byte: u8) -> u32 {
 pub enum LoadError {
     /// The bytes do not begin as saved weights do.
     Magic,
-    /// Another version of the format.
-    Version {
-        /// The version in the bytes.
-        found: u32,
-        /// The version that this code reads.
-        expected: u32,
-    },
+    /// Another version of the format: this one.
+    Version(u32),
     /// Too few or too many bytes.
     Size {
         /// The bytes given.
@@ -100,47 +92,29 @@ pub enum LoadError {
         expected: usize,
     },
     /// The weights of a learner with other features, for which they mean something else.
-    Features {
-        /// The fingerprint in the bytes.
-        found: u32,
-        /// The fingerprint of this learner's features.
-        expected: u32,
-    },
+    Features,
     /// The bytes changed since they were saved.
-    Checksum {
-        /// The checksum in the bytes.
-        found: u32,
-        /// The checksum computed from the bytes.
-        expected: u32,
-    },
-    /// A weight that is infinite or NaN.
-    NotFinite {
-        /// Its index among the weights, counted from 0.
-        index: usize,
-    },
+    Checksum,
+    /// A weight that is infinite or NaN: its index among the weights, counted from 0.
+    NotFinite(usize),
 }
 
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Magic => write!(f, "weights must begin with the bytes TILE"),
-            Self::Version { found, expected } => {
-                write!(f, "weights must have version {expected}, got {found}")
+            Self::Version(found) => {
+                write!(f, "weights must have version {VERSION}, got {found}")
             }
             Self::Size { found, expected } => {
                 write!(f, "weights must have {expected} bytes, got {found}")
             }
-            Self::Features { found, expected } => {
-                write!(
-                    f,
-                    "weights must be for features {expected:08x}, got {found:08x}"
-                )
-            }
-            Self::Checksum { found, expected } => write!(
+            Self::Features => write!(
                 f,
-                "damaged weights: the checksum must be {expected:08x}, got {found:08x}"
+                "weights must be those of a learner with the same features"
             ),
-            Self::NotFinite { index } => write!(f, "weight {index} must be a finite number"),
+            Self::Checksum => write!(f, "damaged weights: the checksum differs"),
+            Self::NotFinite(index) => write!(f, "weight {index} must be a finite number"),
         }
     }
 }

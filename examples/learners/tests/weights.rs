@@ -74,17 +74,15 @@ fn damaged_bytes_are_rejected() {
         if at < 8 || (12..16).contains(&at) {
             continue;
         }
-        let error = rejected(&with(at, byte ^ 1));
-        let is_checksum = matches!(error, LoadError::Checksum { .. });
-        assert!(is_checksum, "byte {at}: {error}");
+        assert_eq!(rejected(&with(at, byte ^ 1)), LoadError::Checksum, "{at}");
     }
 }
 
 /// The weights have the same size, but belong to other tiles.
 #[test]
 fn weights_of_other_tiles_are_rejected() {
-    let error = rejected(&learnt(Memory::<32, 20, 100>::EMPTY));
-    assert!(matches!(error, LoadError::Features { .. }), "{error}");
+    let bytes = learnt(Memory::<32, 20, 100>::EMPTY);
+    assert_eq!(rejected(&bytes), LoadError::Features);
 }
 
 /// The checksum is computed after the damage, so it is right.
@@ -92,15 +90,13 @@ fn weights_of_other_tiles_are_rejected() {
 fn weights_that_are_not_finite_are_rejected() {
     for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         let mut bytes = learnt(Small::EMPTY);
+        bytes.truncate(bytes.len() - 4);
         bytes[16 + 4 * 5..][..4].copy_from_slice(&number.to_le_bytes());
-        let LoadError::Checksum { expected, .. } = rejected(&bytes) else {
-            panic!("the checksum matches {number}")
-        };
-        let end = bytes.len() - 4;
-        bytes[end..].copy_from_slice(&expected.to_le_bytes());
-        assert_eq!(
-            rejected(&bytes).to_string(),
-            "weight 5 must be a finite number"
-        );
+        let checksum = bytes.iter().fold(0x811c_9dc5, |hash: u32, &byte| {
+            (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+        });
+        bytes.extend(checksum.to_le_bytes());
+        let reason = rejected(&bytes).to_string();
+        assert_eq!(reason, "weight 5 must be a finite number");
     }
 }
