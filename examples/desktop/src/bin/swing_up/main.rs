@@ -10,7 +10,7 @@
 //! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
 //! states that it was not trained on, and K of these missed the goal. The time of learning goes to stderr. With `--evaluate N` a line `steps M greedy_mean R`
 //! for every N steps comes before. Without `--quiet` it draws the learning curve, the values and the last greedy
-//! episode.
+//! episode. With `--plan 60` it also plays a beam search on the model over the learnt values.
 //!
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
 //! This is the baseline.
@@ -21,8 +21,9 @@ use std::time::Instant;
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, State};
 use clap::{Parser, ValueEnum};
+use desktop::search::Search;
 use desktop::{Returns, animation, bang_bang, evaluate, load, write};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressIterator, ProgressStyle};
 
 mod curve;
 mod pictures;
@@ -55,6 +56,9 @@ struct Options {
     /// File to load the weights from. Without it all weights are 0.
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
+    /// Also plays a beam search over the learnt values, which looks so many steps ahead.
+    #[arg(long, value_name = "STEPS", conflicts_with = "quiet", value_parser = clap::value_parser!(u32).range(1..=128))]
+    plan: Option<u32>,
     /// Folder for the pictures.
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pictures: PathBuf,
@@ -119,20 +123,32 @@ fn run<const S: usize, const T: usize, const N: usize>(
         println!("solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses}");
         return Ok(());
     }
-    let against = |state: &State<f32>| bang_bang(state.dtheta1);
     let mut actions = Pcg64::from(seed.child(2));
     println!("solved at episode: {solved_at}\n");
     println!("policy              mean return of {EVALUATION} episodes  missed the goal");
-    for (name, returns) in [
-        ("learnt", learnt),
-        ("torque against θ̇1", evaluate(seed, 0..EVALUATION, against)),
-        (
-            "random",
-            evaluate(seed, 0..EVALUATION, |_| Action::sample(&mut actions)),
-        ),
-    ] {
-        let Returns { mean, sd, misses } = returns;
+    let row = |name: &str, Returns { mean, sd, misses }: Returns| {
         println!("{name:<18}  {mean:>19.2} ± {sd:<9.2}  {misses:>15}");
+    };
+    row("learnt", learnt);
+    row(
+        "torque against θ̇1",
+        evaluate(seed, 0..EVALUATION, |state| bang_bang(state.dtheta1)),
+    );
+    row(
+        "random",
+        evaluate(seed, 0..EVALUATION, |_| Action::sample(&mut actions)),
+    );
+    if let Some(depth) = options.plan {
+        let mut search = Search::default();
+        let planned = evaluate(seed, (0..EVALUATION).progress(), |state| {
+            search.choose(*state, depth, |state| learner.value(state))
+        });
+        row("planned", planned);
+        println!(
+            "the search takes {} bytes, and {} steps of the model per action",
+            size_of::<Search>(),
+            search.steps_per_choice()
+        );
     }
     println!();
     draw(&learner, &returns, options)
