@@ -164,20 +164,6 @@ def write_seeds():
     for seed in seeds:
         env.reset(seed=seed)
         lines.append(f"reset {seed} {hexes(env.state.view('<u4'), 8)}")
-    lines.append("# agent SEED: the episodes of 3000 random steps, a reset at each end: length, goal (1) or limit (0)")
-    limited = gymnasium.make("Acrobot-v1")
-    for seed in seeds:
-        limited.reset(seed=seed)
-        limited.action_space.seed(seed)
-        episodes, length = [], 0
-        for _ in range(3000):
-            _, _, terminated, truncated, _ = limited.step(limited.action_space.sample())
-            length += 1
-            if terminated or truncated:
-                episodes.append(f"{length} {int(terminated)}")
-                length = 0
-                limited.reset()
-        lines.append(f"agent {seed} {' '.join(episodes)}")
     lines.append("# sample SEED N: twenty draws of Discrete(N).sample() after seed(SEED)")
     for seed, n in product(seeds, [3, 1, 2, 1000, 3 * 2**30, 2**32 - 1]):
         space = Discrete(n)

@@ -1,6 +1,5 @@
 //! The programs do what their documentation says.
 
-mod pictures;
 mod swing_up;
 
 use std::env::consts::EXE_EXTENSION;
@@ -75,29 +74,16 @@ impl Drop for Folder {
     }
 }
 
-/// The lengths and ends of the episodes are those that Gymnasium's random agent has.
+/// The pictures of the README and of docs/embedded.md.
 #[test]
-fn the_random_agent_plays_gymnasiums_episodes() {
-    if !common::is_recorded_library() {
-        return;
-    }
+fn pictures_are_those_of_the_pages() {
     let folder = Folder::new();
-    let seeds = common::text_of("tests/data/seeds.txt");
-    let rows = seeds.lines().filter_map(|line| line.strip_prefix("agent "));
-    for row in rows.step_by(4) {
-        let (seed, episodes) = row.split_once(' ').unwrap();
-        let numbers: Vec<&str> = episodes.split(' ').collect();
-        let mut expected = String::new();
-        for (episode, number) in numbers.chunks(2).zip(1..) {
-            let end = if episode[1] == "1" {
-                "terminated"
-            } else {
-                "truncated"
-            };
-            expected += &format!("episode {number}: {} steps, {end}\n", episode[0]);
-        }
-        let output = folder.printed(&format!("random_agent --seed {seed} --steps 3000"));
-        assert!(output.starts_with(&expected), "seed {seed}: {output}");
+    folder.printed("episode");
+    folder.printed("balance --definition balance.txt");
+    for name in ["episode.svg", "balance.svg", "balance.txt"] {
+        let recorded = common::text_of(&format!("docs/{name}"));
+        let drawn = String::from_utf8(folder.read(name)).unwrap();
+        assert!(drawn == recorded, "docs/{name} differs");
     }
 }
 
@@ -107,7 +93,7 @@ const REJECTED: [(&str, &str); 10] = [
     ("optimum table --file none.txt", "Error: none.txt"),
     ("swing_up --plan 129", "129 is not in 1..=128"),
     ("swing_up --load none.bin", "Error: none.bin"),
-    ("random_agent --seed 4x2", "got 'x' as character 2"),
+    ("episode --seed 4x2", "got 'x' as character 2"),
     ("episode --out no/a.svg", "Error: cannot write no/a.svg"),
     ("stay_up --episodes 0", "0 is not in 1.."),
     ("trace 013", "an action must be 0, 1 or 2"),
