@@ -89,17 +89,6 @@ fn swing_up_draws_its_results() {
     assert!(one[2] != other[2], "the seed must change the episode");
 }
 
-#[test]
-fn swing_up_takes_every_memory() {
-    let folder = Folder::new();
-    for (memory, slots) in [("16k", 1408), ("32k", 2944), ("64k", 6144)] {
-        let options = format!("--quiet --episodes 3 --memory {memory} --save weights");
-        let line = folder.swing_up(&options);
-        assert_eq!(figures(&line).0, None);
-        assert_eq!(folder.read("weights").len(), slots * 8 + 20);
-    }
-}
-
 /// Each of the evaluations comes after the first episode that ends beyond another 2,000 steps.
 #[test]
 fn swing_up_evaluates_during_a_budget_of_steps() {
@@ -129,7 +118,9 @@ fn swing_up_rejects_weights_of_another_learner() {
         assert!(errors.contains(reason), "{errors}");
         assert!(!folder.path("out").exists());
     };
+    // Each memory has its slots.
     rejects("--memory 16k", "weights must have 11284 bytes, got 49172");
+    rejects("--memory 32k", "weights must have 23572 bytes, got 49172");
     let mut bytes = folder.read("weights");
     bytes[30_000] ^= 2;
     fs::write(folder.path("weights"), bytes).unwrap();
