@@ -90,22 +90,22 @@ fn search(width: u32, fineness: f32, file: &Path) -> anyhow::Result<()> {
     } else {
         vec![Vec::new(); SEEDS as usize]
     };
-    let values = Values::compute()?;
+    let values = Values::compute();
     let progress = ProgressBar::new(SEEDS.into());
     let found = (0..SEEDS).into_par_iter().map(|seed| {
         let mut beam = Beam {
             width: width as usize,
             fineness,
             values: &values,
-            stepper: Stepper::new(512)?,
+            stepper: Stepper::default(),
         };
         let depth = known[seed as usize].len().checked_sub(1).unwrap_or(DEPTH);
         let state = initial(seed.into());
         let path = beam.search(state.cast(), depth, |path| reaches(state, path));
         progress.inc(1);
-        Ok(path)
+        path
     });
-    let found = found.collect::<Result<Vec<_>, acrobot::Error>>()?;
+    let found: Vec<_> = found.collect();
     progress.finish_and_clear();
     let shorter = found.iter().flatten().count();
     for (known, found) in known.iter_mut().zip(found) {

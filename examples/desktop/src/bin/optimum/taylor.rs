@@ -224,29 +224,24 @@ impl Sub for TaylorModel {
 
 impl Mul for TaylorModel {
     type Output = Self;
-    #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        product(&self, &other)
-    }
-}
-
-fn product(a: &TaylorModel, b: &TaylorModel) -> TaylorModel {
-    let ([linear_a, quadratic_a], [linear_b, quadratic_b]) = (a.magnitudes(), b.magnitudes());
-    let [size_a, size_b] = [a, b].map(|x| x.constant.abs() + x.radius());
-    let size = 1.0 + size_a * size_b;
-    let products = products(a.linear, b.linear);
-    TaylorModel {
-        constant: a.constant * b.constant,
-        linear: from_fn(|i| a.constant * b.linear[i] + b.constant * a.linear[i]),
-        quadratic: from_fn(|k| {
-            a.constant * b.quadratic[k] + b.constant * a.quadratic[k] + products[k]
-        }),
-        error: linear_a * quadratic_b
-            + quadratic_a * (linear_b + quadratic_b)
-            + a.error * size_b
-            + b.error * size_a
-            + ROUNDING * size,
-        size,
+        let ([linear_a, quadratic_a], [linear_b, quadratic_b]) =
+            (self.magnitudes(), other.magnitudes());
+        let [size_a, size_b] = [self, other].map(|x| x.constant.abs() + x.radius());
+        let size = 1.0 + size_a * size_b;
+        let products = products(self.linear, other.linear);
+        let scaled = |x: f64, y: f64| self.constant * y + other.constant * x;
+        Self {
+            constant: self.constant * other.constant,
+            linear: from_fn(|i| scaled(self.linear[i], other.linear[i])),
+            quadratic: from_fn(|k| scaled(self.quadratic[k], other.quadratic[k]) + products[k]),
+            error: linear_a * quadratic_b
+                + quadratic_a * (linear_b + quadratic_b)
+                + self.error * size_b
+                + other.error * size_a
+                + ROUNDING * size,
+            size,
+        }
     }
 }
 

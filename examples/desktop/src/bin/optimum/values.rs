@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
-use acrobot::{Action, Error, Fast, State};
+use acrobot::{Action, Fast, State};
 use indicatif::ProgressIterator;
 use rayon::prelude::*;
 
@@ -23,34 +23,29 @@ pub struct Values(Vec<f32>);
 
 impl Values {
     /// Iterates V(s) = 1 + min V(s′) over the actions, from V = 0.
-    pub fn compute() -> Result<Self, Error> {
+    pub fn compute() -> Self {
         let mut values = Self(vec![0.0; SHAPE.iter().product()]);
         let planes = SHAPE[0] * SHAPE[1];
         for _ in (0..SWEEPS).progress() {
             // The mirror image of a state has its value, so half of the planes are enough.
             let half = (0..=planes / 2 + SHAPE[1]).into_par_iter();
-            let swept = half.map_init(
-                || Stepper::new(512),
-                |stepper, plane| {
-                    let stepper = stepper.as_mut().map_err(|error| *error)?;
-                    let states: Vec<_> = (0..PLANE).map(|i| state(plane * PLANE + i)).collect();
-                    let mut found = vec![f32::MAX; PLANE];
-                    for action in Action::ALL {
-                        stepper.step(&states, action, |i, next, reached| {
-                            let value = if reached { 0.0 } else { values.at(&next) };
-                            found[i] = found[i].min(1.0 + value);
-                        });
+            let swept = half.map_init(Stepper::default, |stepper, plane| {
+                let states: Vec<_> = (0..PLANE).map(|i| state(plane * PLANE + i)).collect();
+                let mut found = vec![f32::MAX; PLANE];
+                for action in Action::ALL {
+                    stepper.step(&states, action, |i, next, reached| {
+                        let value = if reached { 0.0 } else { values.at(&next) };
+                        found[i] = found[i].min(1.0 + value);
+                    });
+                }
+                for (value, state) in found.iter_mut().zip(&states) {
+                    if is_goal(state) {
+                        *value = 0.0;
                     }
-                    for (value, state) in found.iter_mut().zip(&states) {
-                        if is_goal(state) {
-                            *value = 0.0;
-                        }
-                    }
-                    Ok(found)
-                },
-            );
-            let swept = swept.collect::<Result<Vec<Vec<f32>>, Error>>()?;
-            for (plane, found) in swept.into_iter().enumerate() {
+                }
+                found
+            });
+            for (plane, found) in swept.collect::<Vec<_>>().into_iter().enumerate() {
                 let mirrored = mirror(plane) * PLANE;
                 for (i, value) in found.into_iter().enumerate() {
                     values.0[plane * PLANE + i] = value;
@@ -58,7 +53,7 @@ impl Values {
                 }
             }
         }
-        Ok(values)
+        values
     }
 
     /// The interpolated value of a state.
@@ -138,16 +133,18 @@ pub struct Stepper {
     actions: Vec<Action>,
 }
 
-impl Stepper {
-    /// Steps `lanes` states at a time.
-    pub fn new(lanes: usize) -> Result<Self, Error> {
-        Ok(Self {
-            batch: VecBatch::new(SeedSequence::new(0), lanes)?,
-            states: vec![State::default(); lanes],
-            actions: vec![Action::Zero; lanes],
-        })
+impl Default for Stepper {
+    /// Steps 512 states at a time.
+    fn default() -> Self {
+        Self {
+            batch: VecBatch::new(SeedSequence::new(0), 512).expect("lanes"),
+            states: vec![State::default(); 512],
+            actions: vec![Action::Zero; 512],
+        }
     }
+}
 
+impl Stepper {
     /// Calls `to` with the index of each state, its next state, and whether that is a goal state.
     pub fn step(
         &mut self,
