@@ -44,38 +44,21 @@ pub struct Policy<'a, const WIDTH: usize> {
 
 /// Why a file is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum PolicyError {
-    /// The file does not begin with `MLP1`.
-    Magic,
-    /// The file has another length than its header says.
-    Length,
-    /// The checksum differs.
-    Checksum,
-    /// A layer has no output, or more than `WIDTH`.
-    Width,
-    /// A layer has an activation other than 0, 1 and 2.
-    Activation,
-    /// The policy must have six inputs, and three outputs or a torque.
-    Shape,
-    /// A number is not finite, or the limit of the torque is not above 0.
-    Number,
-}
+pub struct PolicyError(&'static str);
 
 impl PolicyError {
+    const MAGIC: Self = Self("a policy must begin with MLP1");
+    const LENGTH: Self = Self("a policy must have the length that its header says");
+    const CHECKSUM: Self = Self("a policy must have its checksum");
+    const WIDTH: Self = Self("a layer of a policy must have 1 to WIDTH outputs");
+    const ACTIVATION: Self = Self("an activation of a policy must be none, tanh or ReLU");
+    const SHAPE: Self = Self("a policy must have 6 inputs, and 3 outputs or a torque");
+    const NUMBER: Self =
+        Self("the numbers of a policy must be finite, and a limit of the torque above 0");
+
     /// What the file must have.
     pub const fn message(self) -> &'static str {
-        match self {
-            Self::Magic => "a policy must begin with MLP1",
-            Self::Length => "a policy must have the length that its header says",
-            Self::Checksum => "a policy must have its checksum",
-            Self::Width => "a layer of a policy must have 1 to WIDTH outputs",
-            Self::Activation => "an activation of a policy must be none, tanh or ReLU",
-            Self::Shape => "a policy must have 6 inputs, and 3 outputs or a torque",
-            Self::Number => {
-                "the numbers of a policy must be finite, and a limit of the torque above 0"
-            }
-        }
+        self.0
     }
 }
 
@@ -95,10 +78,10 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
     /// The file is not one that `acrobot_rs.policy.save` wrote, or a layer is too wide.
     pub const fn new(file: &'a [u8]) -> Result<Self, PolicyError> {
         let Some((content, checksum)) = file.split_last_chunk() else {
-            return Err(PolicyError::Magic);
+            return Err(PolicyError::MAGIC);
         };
         let Some((head, rest)) = content.split_first_chunk() else {
-            return Err(PolicyError::Magic);
+            return Err(PolicyError::MAGIC);
         };
         let &[
             b'M',
@@ -112,38 +95,38 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
             ref limit @ ..,
         ] = head as &[u8; 12]
         else {
-            return Err(PolicyError::Magic);
+            return Err(PolicyError::MAGIC);
         };
         let Some((layers, numbers)) = rest.split_at_checked(4 * count as usize) else {
-            return Err(PolicyError::Length);
+            return Err(PolicyError::LENGTH);
         };
         let mut inputs = u16::from_le_bytes([low, high]) as usize;
         if inputs != INPUTS || WIDTH < INPUTS {
-            return Err(PolicyError::Shape);
+            return Err(PolicyError::SHAPE);
         }
         let (mut rest, mut bytes) = (layers, 0_usize);
         while let Some((&[low, high, activation, _], tail)) = rest.split_first_chunk() {
             let outputs = u16::from_le_bytes([low, high]) as usize;
             if outputs == 0 || outputs > WIDTH {
-                return Err(PolicyError::Width);
+                return Err(PolicyError::WIDTH);
             }
             if activation > 2 {
-                return Err(PolicyError::Activation);
+                return Err(PolicyError::ACTIVATION);
             }
             bytes = bytes.saturating_add(outputs.saturating_mul(4 * (1 + inputs)));
             inputs = outputs;
             rest = tail;
         }
         if numbers.len() != bytes {
-            return Err(PolicyError::Length);
+            return Err(PolicyError::LENGTH);
         }
         if crc32(content) != u32::from_le_bytes(*checksum) {
-            return Err(PolicyError::Checksum);
+            return Err(PolicyError::CHECKSUM);
         }
         let mut rest = numbers;
         while let Some((&number, tail)) = rest.split_first_chunk() {
             if !f32::from_le_bytes(number).is_finite() {
-                return Err(PolicyError::Number);
+                return Err(PolicyError::NUMBER);
             }
             rest = tail;
         }
@@ -151,8 +134,8 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
         let torque_limit = match (kind, inputs) {
             (0, 3) => None,
             (1, 1) if limit > 0.0 && limit.is_finite() => Some(limit),
-            (1, 1) => return Err(PolicyError::Number),
-            _ => return Err(PolicyError::Shape),
+            (1, 1) => return Err(PolicyError::NUMBER),
+            _ => return Err(PolicyError::SHAPE),
         };
         Ok(Self {
             layers,
