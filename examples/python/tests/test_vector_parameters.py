@@ -20,6 +20,7 @@ from vectors import CONTINUOUS, make_vec
         ("LINK_MASS_1", [1.0, 2.0], ValueError, "LINK_MASS_1 must be one value, or one for each of 3 environments, or a draw "),
         ("book_or_nips", ["book"], ValueError, "book_or_nips must be one value, or one for each of 3 environments, got 1 values"),
         ("LINK_COM_POS_1", [0.1, 0.0, 0.0], ValueError, r"LINK_MOI\[1\] must be above 0 kg m² if the centre of mass"),
+        ("AVAIL_TORQUE", [-1.0, 1.0], ValueError, r"AVAIL_TORQUE must be 3 numbers, such as \[-2, 0, 2\], got 2"),
         ("AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, np.inf, 3]], ValueError, r"AVAIL_TORQUE\[2\]\[1\] must be a finite number"),
         ("AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], ValueError, r"AVAIL_TORQUE\[1\] must be 3 numbers, such as \[-2"),
         ("MAX_VEL_1", [1.0, 1e300, 1.0], ValueError, r"MAX_VEL_1\[1\] must be "),

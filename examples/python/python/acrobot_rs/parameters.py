@@ -23,11 +23,7 @@ from acrobot_rs.arrays import numbers
 _NAMES: tuple[str, ...] = ()
 _EQUATIONS = "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
 #: What Gymnasium's environment calls or reads, but ours does not, and what to do instead.
-_IGNORED = {
-    "_dsdt": _EQUATIONS,
-    "rk4": _EQUATIONS,
-    "wrap": _EQUATIONS,
-    "bound": _EQUATIONS,
+_IGNORED = dict.fromkeys(("_dsdt", "rk4", "wrap", "bound"), _EQUATIONS) | {
     "_get_ob": "change observations with a wrapper",
     "_terminal": "change the end of episodes with a wrapper",
     "SCREEN_DIM": "pictures have 500 x 500 pixels: resize what render returns",

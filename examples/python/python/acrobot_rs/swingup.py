@@ -60,14 +60,13 @@ class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
     """
 
     metadata = _METADATA
-    _SPARSE = False
+    _ENGINE = "swingup"
 
     def __init__(self, render_mode: str | None = None) -> None:
         """Make an environment. ``render_mode``: ``None``, ``"rgb_array"`` or ``"ansi"``."""
         self.render_mode = arrays.render_mode(render_mode, self.metadata)
         self.action_space, self.observation_space = _spaces()
-        engine = "exact_swingup_sparse" if self._SPARSE else "exact_swingup"
-        self._native = Batch(mode="Disabled", engine=engine, continuous=True)
+        self._native = Batch(mode="Disabled", engine=f"exact_{self._ENGINE}", continuous=True)
         self._ready = False
 
     @property
@@ -115,7 +114,7 @@ class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
 class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
     """dm_control's ``acrobot-swingup_sparse``: :class:`AcrobotSwingupEnv` with a reward of 0 beyond 0.2 m from the target."""
 
-    _SPARSE = True
+    _ENGINE = "swingup_sparse"
 
 
 class AcrobotSwingupVectorEnv(NativeVectorEnv):
@@ -132,7 +131,7 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv):
     """
 
     metadata: dict[str, Any] = {**_METADATA, "autoreset_mode": AutoresetMode.NEXT_STEP}
-    _SPARSE = False
+    _ENGINE = "swingup"
 
     def __init__(
         self,
@@ -144,8 +143,7 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv):
     ) -> None:
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
         self.render_mode = arrays.render_mode(render_mode, self.metadata)
-        engine = "swingup_sparse" if self._SPARSE else "swingup"
-        self._native = self._make(num_envs, max_episode_steps, autoreset_mode, engine, True, threads)
+        self._native = self._make(num_envs, max_episode_steps, autoreset_mode, self._ENGINE, True, threads)
         self.single_action_space, self.single_observation_space = _spaces()
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -177,4 +175,4 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv):
 class AcrobotSwingupSparseVectorEnv(AcrobotSwingupVectorEnv):
     """Many :class:`AcrobotSwingupSparseEnv`."""
 
-    _SPARSE = True
+    _ENGINE = "swingup_sparse"
