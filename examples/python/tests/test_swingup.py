@@ -81,6 +81,9 @@ def test_seeds_and_copies_repeat():
     many.reset(seed=7)
     few.reset(seed=7, options={"reset_mask": np.ones(3, bool)})
     assert (many.state[:3] == few.state).all()
+    few.reset(seed=[1, 2, 3])
+    angles = [np.random.default_rng(seed).uniform(-np.pi, np.pi, 2) for seed in (1, 2, 3)]
+    assert np.allclose(few.state[:, :2], angles, atol=1e-5)
     play(many, 20)
     twins = [copy.deepcopy(many), pickle.loads(pickle.dumps(many))]
     expected = play(many, 10)
