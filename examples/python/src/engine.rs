@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::draws::{Distribution, Draws};
-use crate::{ACTIONS, InvalidAction, must_be, rejected, unknown, with};
+use crate::{InvalidAction, must_be, rejected, unknown, with};
 
 /// Actions (0, 1 or 2), or torques, N m.
 #[derive(FromPyObject)]
@@ -223,7 +223,7 @@ impl<A: Arithmetic> Many<A> {
                     &mut self.actions,
                     |action| (0..3).contains(action),
                     |_, action| action as u8,
-                    ACTIONS,
+                    "0 (negative torque), 1 (none) or 2 (positive)",
                 )
             }
             Inputs::Torques(from) => {

@@ -98,9 +98,6 @@ fn shown(value: &Bound<'_, PyAny>) -> String {
     text.unwrap_or_else(|_| format!("{}", value.get_type()))
 }
 
-/// What an action of the vector environment must be.
-const ACTIONS: &str = "0 (negative torque), 1 (none) or 2 (positive)";
-
 /// The error for a text from Python that is not one of the names in `rule`.
 fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
     PyValueError::new_err(must_be(name, rule, format_args!("{got:?}")))

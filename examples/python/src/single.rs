@@ -47,20 +47,6 @@ struct Inner {
 }
 
 impl Inner {
-    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        match name {
-            "AVAIL_TORQUE" => {
-                let torques = convert(name, "a sequence of numbers", value)?;
-                self.set_torques(torques)
-            }
-            "torque_noise_max" => self.set_noise(convert(name, "a number", value)?),
-            _ => {
-                let params = with(*self.acrobot.params(), name, value)?;
-                self.acrobot.set_params(params).map_err(rejected)
-            }
-        }
-    }
-
     fn set_noise(&mut self, noise: f64) -> PyResult<()> {
         let params = Params {
             torque_noise: noise,
@@ -105,7 +91,15 @@ impl Acrobot {
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.inner.set(name, value)
+        let inner = &mut self.inner;
+        match name {
+            "AVAIL_TORQUE" => inner.set_torques(convert(name, "a sequence of numbers", value)?),
+            "torque_noise_max" => inner.set_noise(convert(name, "a number", value)?),
+            _ => {
+                let params = with(*inner.acrobot.params(), name, value)?;
+                inner.acrobot.set_params(params).map_err(rejected)
+            }
+        }
     }
 
     /// The state, as an array whose elements can be assigned until the next step.

@@ -42,16 +42,10 @@ ANYTHING = st.recursive(
 NAMES = st.sampled_from(_NAMES)
 TORQUES = st.lists(NUMBERS, min_size=3, max_size=3)
 VALUES = st.one_of(NUMBERS, TORQUES, st.sampled_from(["book", "nips"]), ANYTHING)
-
-
-def drawn(kind, args):
-    """A parameter that resets draw, if the arguments are valid."""
-    return attempt(kind, *args)
-
-
 #: Also valid ones.
 BOUNDS = st.lists(NUMBERS | TORQUES, min_size=2, max_size=4) | st.just([0.5, 1.5]) | st.just([1.0, 0.1, 0.5, 1.5])
-MANY = st.one_of(VALUES, st.lists(VALUES, max_size=4), st.builds(drawn, st.sampled_from([Uniform, LogUniform, Normal]), BOUNDS))
+DRAWN = st.builds(lambda kind, args: attempt(kind, *args), st.sampled_from([Uniform, LogUniform, Normal]), BOUNDS)
+MANY = st.one_of(VALUES, st.lists(VALUES, max_size=4), DRAWN)
 MASKS = st.lists(st.booleans(), max_size=4) | ARRAYS
 OPTIONS = st.none() | st.dictionaries(st.sampled_from(["low", "high", "reset_mask"]), MASKS | NUMBERS | ANYTHING)
 MODES = st.sampled_from(["NextStep", "SameStep", "Disabled"])

@@ -336,14 +336,6 @@ def test_an_environment_takes_over_the_values_that_its_class_has_when_it_is_made
         Heavy()
 
 
-def test_a_vector_environment_has_three_torques():
-    envs, two = acrobot_rs.AcrobotVectorEnv(2), type("Two", (acrobot_rs.AcrobotVectorEnv,), {"AVAIL_TORQUE": [-1.0, 1.0]})
-    for change in (lambda: setattr(envs, "AVAIL_TORQUE", [-1.0, 1.0]), two):
-        with pytest.raises(ValueError, match=r"AVAIL_TORQUE must be 3 numbers, such as \[-2, 0, 2\], got 2"):
-            change()
-    assert envs.AVAIL_TORQUE == (-1.0, 0.0, 1.0)
-
-
 def test_values_cannot_change_in_place(env):
     """A change would have no effect."""
     mass, torques = np.array(2.0), [-2.0, 0.0, 2.0]

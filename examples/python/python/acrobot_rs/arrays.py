@@ -25,15 +25,28 @@ def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset
         ValueError: If a bound is not a finite number in the range of float32, if low is above high, or if the options have
             another key, except ``others``.
     """
-    keys = ["low", "high", *others]
-    for key in options or ():
-        if key not in keys:
-            raise ValueError(f"the keys of options must be among {keys}, got {key!r}")
+    check_keys(options, ("low", "high", *others))
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
     if not (abs(low) <= largest and abs(high) <= largest):
         raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
     return low, high
+
+
+def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
+    """Reject other options of ``reset``."""
+    for key in options or ():
+        if key not in known:
+            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}")
+
+
+def render_mode(mode: str | None, metadata: dict[str, Any]) -> str | None:
+    """A render mode, if it is one of these environments."""
+    modes = metadata["render_modes"]
+    # A comparison with an array is no bool.
+    if mode is not None and not (isinstance(mode, str) and mode in modes):
+        raise ValueError(f"render_mode must be None or one of {modes}, got {mode!r}")
+    return mode
 
 
 def reset_mask(options: dict[str, Any] | None, num_envs: int) -> NDArray[np.bool_] | None:

@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from gymnasium import logger, spaces
 
+from acrobot_rs import arrays
 from acrobot_rs._native import Acrobot, Batch
 from acrobot_rs.arrays import numbers
 
@@ -22,11 +23,7 @@ from acrobot_rs.arrays import numbers
 _NAMES: tuple[str, ...] = ()
 _EQUATIONS = "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
 #: What Gymnasium's environment calls or reads, but ours does not, and what to do instead.
-_IGNORED = {
-    "_dsdt": _EQUATIONS,
-    "rk4": _EQUATIONS,
-    "wrap": _EQUATIONS,
-    "bound": _EQUATIONS,
+_IGNORED = dict.fromkeys(("_dsdt", "rk4", "wrap", "bound"), _EQUATIONS) | {
     "_get_ob": "change observations with a wrapper",
     "_terminal": "change the end of episodes with a wrapper",
     "SCREEN_DIM": "pictures have 500 x 500 pixels: resize what render returns",
@@ -197,12 +194,8 @@ class Parameters:
             arguments = inspect.signature(type(self)).parameters.values()
             others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)
             raise TypeError(f"{type(self).__name__} has no argument {name}; {_hint(name, others)}")
-        modes = self.metadata["render_modes"]
-        # A comparison with an array is no bool.
-        if render_mode is not None and not (isinstance(render_mode, str) and render_mode in modes):
-            raise ValueError(f"render_mode must be None or one of {modes}, got {render_mode!r}")
         self._native = native
-        self.render_mode = render_mode
+        self.render_mode = arrays.render_mode(render_mode, self.metadata)
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
         for name in _NAMES:
             setattr(self, name, parameters.get(name, getattr(self, name)))

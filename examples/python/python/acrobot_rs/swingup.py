@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Batch
-from acrobot_rs.arrays import numbers, plain_seed, read_only
+from acrobot_rs.arrays import Seed, numbers, plain_seed, read_only
 from acrobot_rs.vector import Bools, Floats, NativeVectorEnv
 
 #: The torque of an action of 1, N m.
@@ -28,25 +28,12 @@ def _spaces() -> tuple[spaces.Box[np.float32], spaces.Box[np.float32]]:
     return spaces.Box(-1.0, 1.0, (1,), np.float32), spaces.Box(-high, high, dtype=np.float32)
 
 
-def _checked_mode(render_mode: str | None) -> str | None:
-    modes = _METADATA["render_modes"]
-    if render_mode is not None and not (isinstance(render_mode, str) and render_mode in modes):
-        raise ValueError(f"render_mode must be None or one of {modes}, got {render_mode!r}")
-    return render_mode
-
-
 def _torques(name: str, actions: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float32]:
     """The torques of actions, N m, a row for each environment. An action beyond 1 acts as 1, as in MuJoCo."""
     array = numbers(name, f"numbers of shape {shape}", actions, shape, error=InvalidAction)
     if np.isnan(array).any():
         raise InvalidAction(f"{name} must be numbers, got {array}")
     return (_TORQUE * np.clip(array, -1.0, 1.0)).astype(np.float32).reshape(-1, 1)
-
-
-def _check_no_options(options: dict[str, Any] | None, known: tuple[str, ...] = ()) -> None:
-    for key in options or ():
-        if key not in known:
-            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}")
 
 
 class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
@@ -73,14 +60,13 @@ class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
     """
 
     metadata = _METADATA
-    _SPARSE = False
+    _ENGINE = "swingup"
 
     def __init__(self, render_mode: str | None = None) -> None:
         """Make an environment. ``render_mode``: ``None``, ``"rgb_array"`` or ``"ansi"``."""
-        self.render_mode = _checked_mode(render_mode)
+        self.render_mode = arrays.render_mode(render_mode, self.metadata)
         self.action_space, self.observation_space = _spaces()
-        engine = "exact_swingup_sparse" if self._SPARSE else "exact_swingup"
-        self._native = Batch(mode="Disabled", engine=engine, continuous=True)
+        self._native = Batch(mode="Disabled", engine=f"exact_{self._ENGINE}", continuous=True)
         self._ready = False
 
     @property
@@ -102,7 +88,7 @@ class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode at rest, with both angles drawn uniformly from -pi to pi. There are no options."""
-        _check_no_options(options)
+        arrays.check_keys(options, ())
         super().reset(seed=plain_seed(seed))
         self.state = np.array([*self.np_random.uniform(-np.pi, np.pi, 2), 0.0, 0.0])
         return self._observation(), {}
@@ -128,7 +114,7 @@ class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
 class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
     """dm_control's ``acrobot-swingup_sparse``: :class:`AcrobotSwingupEnv` with a reward of 0 beyond 0.2 m from the target."""
 
-    _SPARSE = True
+    _ENGINE = "swingup_sparse"
 
 
 class AcrobotSwingupVectorEnv(NativeVectorEnv):
@@ -145,7 +131,7 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv):
     """
 
     metadata: dict[str, Any] = {**_METADATA, "autoreset_mode": AutoresetMode.NEXT_STEP}
-    _SPARSE = False
+    _ENGINE = "swingup"
 
     def __init__(
         self,
@@ -153,37 +139,19 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv):
         max_episode_steps: int = 1000,
         render_mode: str | None = None,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
-        threads: int = 1,
+        threads: int | None = 1,
     ) -> None:
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
-        self.render_mode = _checked_mode(render_mode)
-        self.autoreset_mode = AutoresetMode(autoreset_mode)
-        mode = self.autoreset_mode.value
-        engine = "swingup_sparse" if self._SPARSE else "swingup"
-        self._native = Batch(num_envs, str(self.np_random_seed), max_episode_steps, mode, engine, True, threads)
-        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
-        self.num_envs = num_envs
+        self.render_mode = arrays.render_mode(render_mode, self.metadata)
+        self._native = self._make(num_envs, max_episode_steps, autoreset_mode, self._ENGINE, True, threads)
         self.single_action_space, self.single_observation_space = _spaces()
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self._ended = np.zeros(num_envs, np.bool_) if self.autoreset_mode is AutoresetMode.DISABLED else None
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
+    def reset(self, *, seed: Seed = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment, or in those of ``options["reset_mask"]``."""
-        self._check_open()
-        _check_no_options(options, ("reset_mask",))
-        mask = arrays.reset_mask(options, self.num_envs)
-        plain = plain_seed(seed)
-        self._native.reset(None if plain is None else str(plain), -np.pi, np.pi, mask)
-        super().reset(seed=plain)
-        if mask is not None and options is not None:
-            del options["reset_mask"]
-        if self._ended is not None:
-            self._ended[slice(None) if mask is None else mask] = False
-        self._ready = True
-        observations = self._empty()
-        self._native.observe(observations)
-        return observations, {}
+        arrays.check_keys(options, ("reset_mask",))
+        return self._reset(seed, options, -np.pi, np.pi), {}
 
     def step(self, actions: ArrayLike) -> tuple[Floats, Floats, Bools, Bools, dict[str, Any]]:
         """Step each environment. In mode ``SameStep``, ``infos["final_obs"]`` has the last observations of ended episodes.
@@ -192,13 +160,8 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv):
             gymnasium.error.InvalidAction: If the actions have another shape, or are no numbers. No environment steps then.
             gymnasium.error.ResetNeeded: Before the first reset, and in mode ``Disabled`` after an episode's end.
         """
-        self._check_ready()
         torques = _torques("actions", actions, (self.num_envs, 1))
-        observations = self._empty()
-        finals = self._empty() if self.autoreset_mode is AutoresetMode.SAME_STEP else None
-        rewards, terminated, truncated = self._native.step(self, torques, observations, finals)
-        if self._ended is not None:
-            self._ended[:] = truncated
+        observations, rewards, terminated, truncated, finals = self._step(torques)
         infos = {} if finals is None else arrays.final_infos(finals, truncated, {})
         return observations, rewards, terminated, truncated, infos
 
@@ -212,4 +175,4 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv):
 class AcrobotSwingupSparseVectorEnv(AcrobotSwingupVectorEnv):
     """Many :class:`AcrobotSwingupSparseEnv`."""
 
-    _SPARSE = True
+    _ENGINE = "swingup_sparse"

@@ -39,6 +39,57 @@ class NativeVectorEnv(VectorEnv[Floats, NDArray[Any], np.ndarray]):
     _ready = False
     #: Without autoreset: the environments that must be reset before the next step.
     _ended: Bools | None
+    #: The array that all calls return, or ``None`` if each returns a new one.
+    _observations: Floats | None = None
+
+    def _make(
+        self, num_envs: int, max_episode_steps: int, autoreset_mode: Any, engine: str, continuous: bool, threads: int | None
+    ) -> Batch:
+        """The native part. Checks its arguments and keeps them."""
+        modes = [mode.value for mode in AutoresetMode]
+        if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
+            raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
+        if threads is None:
+            threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        require(Integral, "an integer", num_envs=num_envs, max_episode_steps=max_episode_steps, threads=threads)
+        mode = AutoresetMode(autoreset_mode)
+        native = Batch(num_envs, str(self.np_random_seed), max_episode_steps, mode.value, engine, continuous, threads)
+        self.autoreset_mode = mode
+        self.metadata = {**self.metadata, "autoreset_mode": mode}
+        self.num_envs = num_envs
+        self._same_step = mode is AutoresetMode.SAME_STEP
+        self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
+        return native
+
+    def _reset(self, seed: Seed, options: dict[str, Any] | None, low: float, high: float) -> Floats:
+        """Seed and reset the environments that the options select, within these bounds, and observe all."""
+        self._check_open()
+        mask = arrays.reset_mask(options, self.num_envs)
+        child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
+        if seeds is not None:
+            every = np.ones(self.num_envs, np.bool_) if mask is None else mask
+            self._native.seed([each if some else None for each, some in zip(seeds, every, strict=True)])
+        self._native.reset(child_of, low, high, mask)
+        if not isinstance(seed, list | tuple):
+            super().reset(seed=arrays.plain_seed(seed))
+        if mask is not None and options is not None:
+            del options["reset_mask"]
+        if self._ended is not None:
+            self._ended[slice(None) if mask is None else mask] = False
+        self._ready = True
+        observations = self._empty() if self._observations is None else self._observations
+        self._native.observe(observations)
+        return observations
+
+    def _step(self, inputs: ArrayLike) -> tuple[Floats, Floats, Bools, Bools, Floats | None]:
+        """Step: observations, rewards, terminated, truncated, and in mode ``SameStep`` the episodes' last observations."""
+        self._check_ready()
+        observations = self._empty() if self._observations is None else self._observations
+        finals = self._empty() if self._same_step else None
+        rewards, terminated, truncated = self._native.step(self, inputs, observations, finals)
+        if self._ended is not None:
+            np.logical_or(terminated, truncated, out=self._ended)
+        return observations, rewards, terminated, truncated, finals
 
     @property
     def state(self) -> NDArray[np.floating[Any]]:
@@ -155,34 +206,22 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
             ValueError: If a number is out of its range, or if a mode or a name in ``info_parameters`` is unknown.
             MemoryError: If the environments do not fit into memory.
         """
-        modes = [mode.value for mode in AutoresetMode]
-        if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
-            raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
         require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
         for name in (each for each in info_parameters if each not in _NAMES):
             raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {_hint(str(name))}")
         self.info_parameters = tuple(info_parameters)
-        self.autoreset_mode = AutoresetMode(autoreset_mode)
-        self._same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
-        if threads is None:
-            threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-        require(Integral, "an integer", num_envs=num_envs, max_episode_steps=max_episode_steps, threads=threads)
         require(bool, "True or False", copy=copy, gymnasium_episodes=gymnasium_episodes)
         if gymnasium_episodes:
             arrays.warn_of_other_sines()
-        seed, mode = str(self.np_random_seed), self.autoreset_mode.value
         engine = "gymnasium" if gymnasium_episodes else "fast"
-        native = Batch(num_envs, seed, max_episode_steps, mode, engine, self._CONTINUOUS, threads)
+        native = self._make(num_envs, max_episode_steps, autoreset_mode, engine, self._CONTINUOUS, threads)
         super().__init__(native, render_mode, parameters)
-        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
-        self.num_envs = num_envs
         self._max_episode_steps = max_episode_steps
         self._gymnasium_episodes = gymnasium_episodes
         self.copy = copy
         for name, space in self._spaces().items():
             setattr(self, name, space)
         self._observations = None if copy else self._empty()
-        self._ended = np.zeros(num_envs, np.bool_) if self.autoreset_mode is AutoresetMode.DISABLED else None
         self._made = True
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
@@ -217,23 +256,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
                 element, or if the list of seeds has another length. Nothing changes then.
             gymnasium.error.Error: If a seed is not an integer of at least 0. Nothing changes then.
         """
-        self._check_open()
-        low, high = arrays.reset_bounds(options)
-        mask = arrays.reset_mask(options, self.num_envs)
-        child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
-        if seeds is not None:
-            every = np.ones(self.num_envs, np.bool_) if mask is None else mask
-            self._native.seed([each if some else None for each, some in zip(seeds, every, strict=True)])
-        self._native.reset(child_of, low, high, mask)
-        if not isinstance(seed, list | tuple):
-            super().reset(seed=arrays.plain_seed(seed))
-        if mask is not None and options is not None:
-            del options["reset_mask"]
-        if self._ended is not None:
-            self._ended[slice(None) if mask is None else mask] = False
-        self._ready = True
-        observations = self._empty() if self._observations is None else self._observations
-        self._native.observe(observations)
+        observations = self._reset(seed, options, *arrays.reset_bounds(options))
         if self._gymnasium_episodes:
             self._observe_initial_states(observations, self.elapsed_steps == 0)
         return observations, self._parameter_infos()
@@ -256,13 +279,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
                 environment was not reset. No environment steps then.
             gymnasium.error.ClosedEnvironmentError: After ``close``.
         """
-        self._check_ready()
-        observations = self._empty() if self._observations is None else self._observations
-        finals = self._empty() if self._same_step else None
         last = self._parameter_infos() if self._same_step else {}
-        rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
-        if self._ended is not None:
-            np.logical_or(terminated, truncated, out=self._ended)
+        observations, rewards, terminated, truncated, finals = self._step(actions)
         infos = self._parameter_infos()
         if finals is not None:
             infos |= arrays.final_infos(finals, terminated | truncated, last)
@@ -384,7 +402,6 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
             angles = self.state[which, :2].astype(np.float32)
             cosines, sines = np.cos(angles), np.sin(angles)
             observations[which, :4] = np.stack([cosines, sines], axis=2).reshape(-1, 4)
-
 
 
 class AcrobotContinuousVectorEnv(AcrobotVectorEnv):
