@@ -150,7 +150,7 @@ fn the_monochrome_drawing_equals_its_snapshot() {
 fn the_oled_episode_equals_its_digest() {
     let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
     let (mut digest, mut frames) = (Digest::default(), 0);
-    let drawn = oled::play(&mut canvas, oled::start(), oled::policy, |canvas| {
+    let drawn = oled::play(&mut canvas, |canvas| {
         frames += 1;
         let lit =
             |x: usize, y: usize| u64::from(canvas.pixels[y * 128 + x] == Some(BinaryColor::On));

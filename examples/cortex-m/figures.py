@@ -49,7 +49,7 @@ ROWS = {
     "milliseconds": "time of this training at 168 MHz, estimated, ms",
     "decision": "instructions per decision of a perceptron with 64 and 64 units",
     "decision_ram": "RAM of the whole firmware that plays this perceptron, bytes",
-    "ram": "RAM of the whole firmware that trains and draws, bytes",
+    "ram": "RAM of the whole firmware that trains, bytes",
 }
 RAM_OF_AN500 = "-C link-arg=--defsym=RAM_ORIGIN=0x60000000"
 CORE_COLUMNS = ARITHMETICS | {"fast_soft_floats": "`Fast`, soft-floats", "micro_soft_floats": "`Micro`, soft-floats"}

@@ -4,7 +4,6 @@
 
 pub mod counter;
 pub mod episode;
-pub mod panel;
 #[cfg(target_arch = "arm")]
 pub mod ram;
 pub mod stack;

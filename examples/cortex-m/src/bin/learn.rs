@@ -1,26 +1,19 @@
-//! Learns to swing up on the microcontroller until the mean return of 100 episodes is at least −100. It needs 19,872
-//! bytes of RAM, and the learner has 16 KiB of them. Its weights are bit-identical to those of a desktop. Then it plays an episode on an OLED.
+//! Learns to swing up on the microcontroller until the mean return of 100 episodes is at least −100. It needs 17,152
+//! bytes of RAM, and the learner has 16 KiB of them. Its weights are bit-identical to those of a desktop.
 //!
 //! It prints figures in the format of `bench`: `fast figure value`.
 
 #![no_std]
 #![no_main]
 
-use core::cell::RefCell;
-
-use acrobot::{Action, REWARD_THRESHOLD, State};
+use acrobot::{REWARD_THRESHOLD, State};
 use acrobot_cortex_m::counter::Counter;
-use acrobot_cortex_m::panel::{Bus, Panel};
 use acrobot_cortex_m::ram;
-use bits::training::{EPISODES, Learner};
-use bits::{oled, training};
+use bits::training::{self, EPISODES, Learner};
 use cortex_m_rt::entry;
 use heapless::HistoryBuf;
-use learners::{Env, Memory16, play};
+use learners::{Memory16, play};
 use semihosting::{println, process};
-use ssd1306::mode::DisplayConfig;
-use ssd1306::prelude::{DisplayRotation, DisplaySize128x64};
-use ssd1306::{I2CDisplayInterface, Ssd1306};
 
 #[entry]
 fn main() -> ! {
@@ -34,13 +27,13 @@ fn main() -> ! {
     let policy = |state: &State<f32>| learner.greedy(state);
     let sum: f32 = (0..100).map(|_| play(&mut env, policy).0).sum();
     println!("mean return of 100 greedy episodes: {}", sum as i32 / 100);
-    env.reset();
-    let swung_up = draw(env, policy);
     println!("fast ram {}", ram::used());
-    process::exit(if solved && swung_up { 0 } else { 1 })
+    let solved = solved && sum >= REWARD_THRESHOLD * 100.0;
+    process::exit(if solved { 0 } else { 1 })
 }
 
 /// Returns whether the task was solved with the expected weights on the way.
+#[inline(never)] // inlined it needs 4 % more instructions
 fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
     let mut env = training::env();
     let mut returns = HistoryBuf::<f32, 100>::new();
@@ -75,27 +68,4 @@ fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
     }
     println!("not solved in {EPISODES} episodes");
     false
-}
-
-/// Plays an episode on a display. Returns whether it reached the goal.
-fn draw(env: Env, policy: impl Fn(&State<f32>) -> Action) -> bool {
-    let panel = RefCell::new(Panel::default());
-    let interface = I2CDisplayInterface::new(Bus(&panel));
-    let mut display = Ssd1306::new(interface, DisplaySize128x64, DisplayRotation::Rotate0)
-        .into_buffered_graphics_mode();
-    let mut failed = display.init().is_err();
-    let mut frames = 0;
-    let drawn = oled::play(
-        &mut display,
-        env,
-        |acrobot| policy(&acrobot.state()),
-        |display| {
-            frames += 1;
-            failed |= display.flush().is_err();
-        },
-    );
-    // The first frame shows the initial state.
-    let steps = frames - 1;
-    println!("swings up in {steps} steps");
-    !failed && !panel.borrow().unknown && drawn.is_ok() && steps < 500
 }
