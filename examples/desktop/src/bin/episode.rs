@@ -1,39 +1,95 @@
-//! An episode of the bang-bang policy, torque against θ̇1, as an animated SVG.
+//! An episode as an animated SVG: the bang-bang policy, torque against θ̇1, or the firmware's controller.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin episode -- --seed 42 --out episode.svg
+//! cargo run --release -p desktop --bin episode -- --balance --out balance.svg
 //! ```
 
 use std::path::PathBuf;
 
-use acrobot::numpy::SeedSequence;
-use acrobot::{Acrobot, Portable, TimeLimit};
+use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::control::ControlError;
+use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 use clap::Parser;
+use controller::Controller;
 use desktop::{animation, bang_bang, write};
 
 /// Draws an episode as an animated SVG, about three times as fast as real time.
 #[derive(Parser)]
 struct Options {
-    /// Seed of the initial state: a decimal integer of any size.
+    /// Seed of the initial state, and of the disturbance: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
+    /// Draws in real time how the controller of the firmware `balance` swings up and holds the acrobot upright.
+    #[arg(long)]
+    balance: bool,
     /// File to write.
     #[arg(long, value_name = "FILE", default_value = "episode.svg")]
     out: PathBuf,
+    /// Also writes the picture as a definition for Markdown, because rustdoc's pages have no files beside them.
+    #[arg(long, value_name = "FILE")]
+    definition: Option<PathBuf>,
 }
 
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
-    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(options.seed.into()));
+    let rng = options.seed.into();
+    let (states, delay) = if options.balance {
+        (balance(rng)?, STEPS_PER_FRAME as u16) // steps of 1/100 s
+    } else {
+        (bang_bang_episode(rng), animation::DELAY)
+    };
+    let svg = animation::svg(&states, delay);
+    if let Some(definition) = &options.definition {
+        write(definition, data_url(&svg))?;
+    }
+    write(&options.out, svg)?;
+    println!("{}: {} frames", options.out.display(), states.len());
+    Ok(())
+}
+
+/// Defines the picture `balance.svg` of a Markdown page as a URL that contains it.
+fn data_url(svg: &str) -> String {
+    let svg = svg.replace('\n', "").replace(' ', "%20");
+    let svg = svg.replace('"', "'").replace('#', "%23");
+    format!("[balance.svg]: data:image/svg+xml,{svg}\n")
+}
+
+fn bang_bang_episode(rng: Pcg64) -> Vec<State> {
+    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::with_rng(rng));
     let mut states = vec![acrobot.state()];
     loop {
         let step = acrobot.step(bang_bang(acrobot.state().dtheta1));
         states.push(acrobot.state());
         if step.done() {
-            break;
+            return states;
         }
     }
-    write(&options.out, animation::svg(&states, animation::DELAY))?;
-    println!("{}: {} frames", options.out.display(), states.len());
-    Ok(())
+}
+
+/// Steps of the balanced acrobot, each 0.01 s.
+const STEPS: usize = 1000;
+/// Each of its frames shows this many steps: 25 frames a second.
+const STEPS_PER_FRAME: usize = 4;
+
+/// The state of each frame.
+fn balance(rng: Pcg64) -> Result<Vec<State>, ControlError> {
+    // As in the firmware with a largest torque of 10 N m.
+    let params = Params {
+        dt: 0.01,
+        torque_noise: 0.5,
+        ..Params::DEFAULT
+    };
+    let mut machine = Acrobot::<Fast>::with_rng(rng);
+    machine.set_params(params)?;
+    let mut controller = Controller::new(params, 10.0)?;
+    let mut states = Vec::new();
+    for step in 0..STEPS {
+        let state = machine.state();
+        if step % STEPS_PER_FRAME == 0 {
+            states.push(State::from(<[f32; 4]>::from(state).map(f64::from)));
+        }
+        machine.step_torque(controller.decide(state)?)?;
+    }
+    Ok(states)
 }
