@@ -1,12 +1,9 @@
 //! A pendulum equals an acrobot without noise. Its positions and its wrapped angles follow from its state.
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Real, Reference};
 use acrobot::physics::{Pendulum, wrap};
-use acrobot::{Acrobot, Fast, Params, Portable, State};
-
-fn bits<S: Real, const N: usize>(numbers: [S; N]) -> [u64; N] {
-    numbers.map(|x| x.to_f64().to_bits())
-}
+use acrobot::{Acrobot, Params, Portable, State};
+use common::{bits, in_every_arithmetic};
 
 /// A pendulum steps bit-identically to an acrobot without noise, and returns whether the acrobot terminates.
 #[test]
@@ -31,7 +28,7 @@ fn a_pendulum_equals_an_acrobot_without_noise() {
             });
             let step = acrobot.step_torque(torque).unwrap();
             assert_eq!(pendulum.step(torque), Ok(step.terminated));
-            assert_eq!(bits(pendulum.state().into()), bits(acrobot.state().into()));
+            assert_eq!(bits(pendulum.state()), bits(acrobot.state()));
             let placed = Acrobot::from_pendulum(pendulum.clone(), ());
             assert_eq!(placed.observation(), step.observation);
             let State { theta1, theta2, .. } = pendulum.state();
@@ -40,11 +37,7 @@ fn a_pendulum_equals_an_acrobot_without_noise() {
         }
         assert!(terminated > 10, "{terminated}");
     }
-    check::<Reference>();
-    check::<Portable>();
-    check::<Host>();
-    check::<Fast>();
-    check::<Micro>();
+    in_every_arithmetic!(check);
 }
 
 /// After each step, whose sines are cached, a pendulum gives the same bits as a new one in its state.
@@ -74,11 +67,7 @@ fn a_pendulum_after_a_step_equals_a_new_one() {
             assert_eq!(found, expected);
         }
     }
-    check::<Reference>();
-    check::<Portable>();
-    check::<Host>();
-    check::<Fast>();
-    check::<Micro>();
+    in_every_arithmetic!(check);
 }
 
 /// Elbow and tip are at the ends of their links, x to the right and y up.

@@ -16,12 +16,7 @@ fn digest<A: Arithmetic>(friction: FrictionOf<A>) -> u64 {
         for _ in 0..3 {
             loop {
                 let step = acrobot.step(Action::sample(&mut actions));
-                for x in <[A::Scalar; 4]>::from(acrobot.state()) {
-                    digest.add(x.to_f64().to_bits());
-                }
-                for x in step.observation.to_array() {
-                    digest.add(x.to_bits().into());
-                }
+                episodes::add_seen(&mut digest, acrobot.inner(), step.observation);
                 digest.add(
                     u64::from(step.reward.to_bits()) << 2
                         | u64::from(step.terminated) << 1

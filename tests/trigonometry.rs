@@ -3,11 +3,8 @@
 
 use std::f32::consts::PI;
 
-use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Real, Reference};
-
-fn bits<S: Real>(x: S) -> u64 {
-    x.to_f64().to_bits()
-}
+use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Real};
+use common::{bits, in_every_arithmetic};
 
 const EVERY: usize = if cfg!(debug_assertions) { 257 } else { 1 };
 
@@ -96,14 +93,10 @@ fn sin_cos_near_equals_sin_cos_near_the_origin() {
     fn check<A: Arithmetic>() {
         for x in (-1000..1000).map(|i| A::Scalar::from_f64(f64::from(i).powi(3) / 1908.0)) {
             let [(sin, cos), (near_sin, near_cos)] = [A::sin_cos(x), A::sin_cos_near(x)];
-            assert_eq!([sin, cos].map(bits), [near_sin, near_cos].map(bits));
+            assert_eq!(bits([sin, cos]), bits([near_sin, near_cos]));
         }
     }
-    check::<Fast>();
-    check::<Micro>();
-    check::<Reference>();
-    check::<Portable>();
-    check::<Host>();
+    in_every_arithmetic!(check);
 }
 
 /// Any finite state has an observation.

@@ -9,7 +9,7 @@ use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, TimeL
 use crate::{Digest, against};
 
 /// Adds every bit of the state and of the observation.
-fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: Observation) {
+pub fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: Observation) {
     for x in <[A::Scalar; 4]>::from(acrobot.state()) {
         digest.add(x.to_f64().to_bits());
     }

@@ -13,6 +13,7 @@ use proptest::prelude::*;
 
 use crate::given::{Range, Tested, acrobot, holds, params, state};
 use common::canvas::Canvas;
+use common::in_every_arithmetic;
 
 fn figure<A: Tested>() -> impl Strategy<Value = Figure> {
     let given = (params(Range::Any), state(Range::Any), prop::num::f32::ANY);
