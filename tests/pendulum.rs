@@ -1,7 +1,7 @@
-//! A pendulum equals an acrobot without noise. Its positions and its wrapped angles follow from its state.
+//! A pendulum equals an acrobot without noise. Its positions follow from its state.
 
-use acrobot::arithmetic::{Arithmetic, Real, Reference};
-use acrobot::physics::{Pendulum, wrap};
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::physics::Pendulum;
 use acrobot::{Acrobot, Params, Portable, State};
 use common::{bits, in_every_arithmetic};
 
@@ -102,35 +102,4 @@ fn positions_follow_from_the_angles() {
         let (sin, cos) = Portable::sin_cos(theta1 + theta2);
         close(tip, [elbow[0] + 0.5 * sin, elbow[1] - 0.5 * cos]);
     }
-}
-
-#[test]
-fn angles_wrap() {
-    use std::f64::consts::{PI, TAU};
-    fn check<A: Arithmetic<Scalar = f64>>() {
-        for (x, wrapped) in [
-            (0.5, 0.5),
-            (PI, PI),
-            (-PI, -PI),
-            (4.0, 4.0 - TAU),
-            (-4.0, TAU - 4.0),
-        ] {
-            assert_eq!(wrap::<A>(x), wrapped);
-        }
-        // Beyond 64 turns Gymnasium's form takes one remainder, which agrees up to rounding.
-        for turns in [60.0, 63.0, 64.0, 65.0, 70.0, 1e6] {
-            for x in [-3.0, -1.0, 0.25, 3.0] {
-                for turns in [-turns, turns] {
-                    let wrapped = wrap::<A>(x + turns * TAU);
-                    let error = (wrapped - x).abs();
-                    assert!(
-                        error <= 1e-15 * turns * turns,
-                        "{x} + {turns} turns: {wrapped}"
-                    );
-                }
-            }
-        }
-    }
-    check::<Reference>();
-    check::<Portable>();
 }
