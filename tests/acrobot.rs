@@ -4,7 +4,7 @@
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::control::ControlError;
-use acrobot::physics::{Dynamics, Gymnasium, Lean, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, Gymnasium, Pendulum, ResetBounds};
 use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{
     Acrobot, Action, Error, Fast, Observation, Params, Portable, REWARD_THRESHOLD, ResetOptions,
@@ -36,7 +36,7 @@ const _: () = {
     is_send_sync_clone::<ControlError>();
 };
 
-/// Cosines that put the tip at exactly the target height, whatever the angles.
+/// An arithmetic with only the required items. Its cosines put the tip at exactly the target height, whatever the angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct AtTheTarget;
 
@@ -47,34 +47,6 @@ impl Arithmetic for AtTheTarget {
 
     fn sin_cos(_: f64) -> (f64, f64) {
         (0.0, -0.5)
-    }
-}
-
-/// An arithmetic with only the required items.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Least;
-
-impl Arithmetic for Least {
-    const NAME: &'static str = "least";
-    type Scalar = f64;
-    type Form = Lean;
-
-    fn sin_cos(x: f64) -> (f64, f64) {
-        Portable::sin_cos(x)
-    }
-}
-
-#[test]
-fn the_default_methods_of_an_arithmetic_equal_those_of_portable() {
-    let mut least = Acrobot::<Least>::new(3);
-    let mut portable = Acrobot::<Portable>::new(3);
-    for _ in 0..100 {
-        assert_eq!(
-            least.step(Action::Positive),
-            portable.step(Action::Positive)
-        );
-        assert_eq!(least.state(), portable.state());
-        assert_eq!(least.pendulum().energy(), portable.pendulum().energy());
     }
 }
 
