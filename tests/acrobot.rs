@@ -4,13 +4,13 @@
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::control::ControlError;
-use acrobot::physics::{Dynamics, Gymnasium, Lean, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, Gymnasium, Pendulum, ResetBounds};
 use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{
     Acrobot, Action, Error, Fast, Observation, Params, Portable, REWARD_THRESHOLD, ResetOptions,
     State, Step, TimeLimit,
 };
-use common::Repeating;
+use common::{Repeating, bits, in_every_arithmetic};
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
 
@@ -36,7 +36,7 @@ const _: () = {
     is_send_sync_clone::<ControlError>();
 };
 
-/// Cosines that put the tip at exactly the target height, whatever the angles.
+/// An arithmetic with only the required items. Its cosines put the tip at exactly the target height, whatever the angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct AtTheTarget;
 
@@ -47,34 +47,6 @@ impl Arithmetic for AtTheTarget {
 
     fn sin_cos(_: f64) -> (f64, f64) {
         (0.0, -0.5)
-    }
-}
-
-/// An arithmetic with only the required items.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Least;
-
-impl Arithmetic for Least {
-    const NAME: &'static str = "least";
-    type Scalar = f64;
-    type Form = Lean;
-
-    fn sin_cos(x: f64) -> (f64, f64) {
-        Portable::sin_cos(x)
-    }
-}
-
-#[test]
-fn the_default_methods_of_an_arithmetic_equal_those_of_portable() {
-    let mut least = Acrobot::<Least>::new(3);
-    let mut portable = Acrobot::<Portable>::new(3);
-    for _ in 0..100 {
-        assert_eq!(
-            least.step(Action::Positive),
-            portable.step(Action::Positive)
-        );
-        assert_eq!(least.state(), portable.state());
-        assert_eq!(least.pendulum().energy(), portable.pendulum().energy());
     }
 }
 
@@ -114,11 +86,7 @@ fn assert_height_decides_the_goal<A: Arithmetic>() {
 
 #[test]
 fn the_tip_height_decides_the_goal_in_every_arithmetic() {
-    assert_height_decides_the_goal::<Fast>();
-    assert_height_decides_the_goal::<Micro>();
-    assert_height_decides_the_goal::<Reference>();
-    assert_height_decides_the_goal::<Portable>();
-    assert_height_decides_the_goal::<Host>();
+    in_every_arithmetic!(assert_height_decides_the_goal);
 }
 
 #[test]
@@ -212,23 +180,13 @@ fn reset_with_takes_a_seed_and_bounds() {
     assert_eq!(acrobot, expected, "without a seed the stream continues");
 }
 
-fn bits<S: Real, const N: usize>(numbers: [S; N]) -> [u64; N] {
-    numbers.map(|x| x.to_f64().to_bits())
-}
-
 /// Every bit of a state, an observation, a reward and an end.
-fn bits_of<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) -> ([u64; 4], [u64; 6], u64, bool) {
-    let Step {
-        observation,
-        reward,
-        terminated,
-        ..
-    } = step;
+fn bits_of<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) -> ([u64; 4], [u64; 6], u32, bool) {
     (
-        bits(acrobot.state().into()),
-        bits(observation.to_array()),
-        reward.to_f64().to_bits(),
-        terminated,
+        bits(acrobot.state()),
+        bits(step.observation.to_array()),
+        step.reward.to_bits(),
+        step.terminated,
     )
 }
 

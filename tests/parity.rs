@@ -6,7 +6,7 @@ use acrobot::arithmetic::{Arithmetic, Host, Reference};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Acrobot, Action, Portable, State};
 use common::{
-    Digest, RECORDING, STEPS, assert_says, distance, is_recorded_library, recorded_steps,
+    Digest, RECORDING, STEPS, assert_says, bits, distance, is_recorded_library, recorded_steps,
 };
 
 /// The tolerance of a single step with another C library: twice the error of [`Reference`].
@@ -15,10 +15,6 @@ const OTHER_LIBRARY: f64 = 1.5e-14;
 /// The tolerance of `Portable`, whose lean form adds in another order: twice its error, at up to 28 rad/s and after
 /// dozens of turns.
 const OTHER_ORDER: f64 = 1.5e-12;
-
-fn bits(state: State) -> [u64; 4] {
-    <[f64; 4]>::from(state).map(f64::to_bits)
-}
 
 #[test]
 fn host_replays_gymnasium() {

@@ -1,12 +1,9 @@
-//! A pendulum equals an acrobot without noise. Its positions and its wrapped angles follow from its state.
+//! A pendulum equals an acrobot without noise. Its positions follow from its state.
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
-use acrobot::physics::{Pendulum, wrap};
-use acrobot::{Acrobot, Fast, Params, Portable, State};
-
-fn bits<S: Real, const N: usize>(numbers: [S; N]) -> [u64; N] {
-    numbers.map(|x| x.to_f64().to_bits())
-}
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::physics::Pendulum;
+use acrobot::{Acrobot, Params, Portable, State};
+use common::{bits, in_every_arithmetic};
 
 /// A pendulum steps bit-identically to an acrobot without noise, and returns whether the acrobot terminates.
 #[test]
@@ -31,7 +28,7 @@ fn a_pendulum_equals_an_acrobot_without_noise() {
             });
             let step = acrobot.step_torque(torque).unwrap();
             assert_eq!(pendulum.step(torque), Ok(step.terminated));
-            assert_eq!(bits(pendulum.state().into()), bits(acrobot.state().into()));
+            assert_eq!(bits(pendulum.state()), bits(acrobot.state()));
             let placed = Acrobot::from_pendulum(pendulum.clone(), ());
             assert_eq!(placed.observation(), step.observation);
             let State { theta1, theta2, .. } = pendulum.state();
@@ -40,11 +37,7 @@ fn a_pendulum_equals_an_acrobot_without_noise() {
         }
         assert!(terminated > 10, "{terminated}");
     }
-    check::<Reference>();
-    check::<Portable>();
-    check::<Host>();
-    check::<Fast>();
-    check::<Micro>();
+    in_every_arithmetic!(check);
 }
 
 /// After each step, whose sines are cached, a pendulum gives the same bits as a new one in its state.
@@ -74,11 +67,7 @@ fn a_pendulum_after_a_step_equals_a_new_one() {
             assert_eq!(found, expected);
         }
     }
-    check::<Reference>();
-    check::<Portable>();
-    check::<Host>();
-    check::<Fast>();
-    check::<Micro>();
+    in_every_arithmetic!(check);
 }
 
 /// Elbow and tip are at the ends of their links, x to the right and y up.
@@ -113,35 +102,4 @@ fn positions_follow_from_the_angles() {
         let (sin, cos) = Portable::sin_cos(theta1 + theta2);
         close(tip, [elbow[0] + 0.5 * sin, elbow[1] - 0.5 * cos]);
     }
-}
-
-#[test]
-fn angles_wrap() {
-    use std::f64::consts::{PI, TAU};
-    fn check<A: Arithmetic<Scalar = f64>>() {
-        for (x, wrapped) in [
-            (0.5, 0.5),
-            (PI, PI),
-            (-PI, -PI),
-            (4.0, 4.0 - TAU),
-            (-4.0, TAU - 4.0),
-        ] {
-            assert_eq!(wrap::<A>(x), wrapped);
-        }
-        // Beyond 64 turns Gymnasium's form takes one remainder, which agrees up to rounding.
-        for turns in [60.0, 63.0, 64.0, 65.0, 70.0, 1e6] {
-            for x in [-3.0, -1.0, 0.25, 3.0] {
-                for turns in [-turns, turns] {
-                    let wrapped = wrap::<A>(x + turns * TAU);
-                    let error = (wrapped - x).abs();
-                    assert!(
-                        error <= 1e-15 * turns * turns,
-                        "{x} + {turns} turns: {wrapped}"
-                    );
-                }
-            }
-        }
-    }
-    check::<Reference>();
-    check::<Portable>();
 }

@@ -16,12 +16,7 @@ fn digest<A: Arithmetic>(friction: FrictionOf<A>) -> u64 {
         for _ in 0..3 {
             loop {
                 let step = acrobot.step(Action::sample(&mut actions));
-                for x in <[A::Scalar; 4]>::from(acrobot.state()) {
-                    digest.add(x.to_f64().to_bits());
-                }
-                for x in step.observation.to_array() {
-                    digest.add(x.to_bits().into());
-                }
+                episodes::add_seen(&mut digest, acrobot.inner(), step.observation);
                 digest.add(
                     u64::from(step.reward.to_bits()) << 2
                         | u64::from(step.terminated) << 1
@@ -125,32 +120,21 @@ fn the_shared_episodes_are_stable_in_the_other_arithmetics() {
 }
 
 #[test]
-fn subnormal_numbers_are_stable() {
-    let found = episodes::subnormal();
-    assert!(found == episodes::SUBNORMAL, "{found:#018x?}");
-}
-
-#[test]
-fn steps_with_friction_and_of_the_swing_up_are_stable() {
-    let found = [episodes::damped(), episodes::swingup()];
-    let expected = [episodes::DAMPED, episodes::SWINGUP];
+fn subnormal_numbers_friction_and_the_swing_up_are_stable() {
+    let found = (
+        episodes::subnormal(),
+        episodes::damped(),
+        episodes::swingup(),
+    );
+    let expected = (episodes::SUBNORMAL, episodes::DAMPED, episodes::SWINGUP);
     assert!(found == expected, "{found:#018x?}");
 }
 
-/// `cargo test -p common` tries other widths.
+/// The program `bits` tries other widths.
 #[test]
 fn batches_are_stable() {
-    let found = [
-        episodes::shared_params::<16, 2>(),
-        episodes::subnormal_batch::<16, 2>(),
-        episodes::own_params::<16, 1>(),
-    ];
-    let expected = [
-        episodes::SHARED_PARAMS,
-        episodes::SUBNORMAL_BATCH,
-        episodes::OWN_PARAMS,
-    ];
-    assert!(found == expected, "{found:#018x?}");
+    let found = episodes::batches::<16, 2, 1>();
+    assert!(found == episodes::BATCHES, "{found:#018x?}");
 }
 
 /// The weights after 100 episodes. Any change in the learner or the task changes them.

@@ -3,11 +3,8 @@
 
 use std::f32::consts::PI;
 
-use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Real, Reference};
-
-fn bits<S: Real>(x: S) -> u64 {
-    x.to_f64().to_bits()
-}
+use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Real};
+use common::{bits, in_every_arithmetic};
 
 const EVERY: usize = if cfg!(debug_assertions) { 257 } else { 1 };
 
@@ -96,31 +93,10 @@ fn sin_cos_near_equals_sin_cos_near_the_origin() {
     fn check<A: Arithmetic>() {
         for x in (-1000..1000).map(|i| A::Scalar::from_f64(f64::from(i).powi(3) / 1908.0)) {
             let [(sin, cos), (near_sin, near_cos)] = [A::sin_cos(x), A::sin_cos_near(x)];
-            assert_eq!([sin, cos].map(bits), [near_sin, near_cos].map(bits));
+            assert_eq!(bits([sin, cos]), bits([near_sin, near_cos]));
         }
     }
-    check::<Fast>();
-    check::<Micro>();
-    check::<Reference>();
-    check::<Portable>();
-    check::<Host>();
-}
-
-/// Any finite state has an observation.
-#[test]
-fn every_finite_angle_has_a_sine_and_a_cosine() {
-    fn holds<A: Arithmetic<Scalar = f32>>() {
-        for bits in
-            (0..f32::INFINITY.to_bits()).step_by(if cfg!(debug_assertions) { 10_007 } else { 101 })
-        {
-            for x in [f32::from_bits(bits), -f32::from_bits(bits)] {
-                let (sin, cos) = A::sin_cos(x);
-                assert!(sin.abs() <= 1.0 && cos.abs() <= 1.0, "{x:e}: {sin} {cos}");
-            }
-        }
-    }
-    holds::<Fast>();
-    holds::<Micro>();
+    in_every_arithmetic!(check);
 }
 
 /// `Portable`'s error against Gymnasium follows from this property of `libm`.

@@ -1,12 +1,12 @@
 //! Promise 3: input out of range is rejected before anything changes. Extreme but valid input neither hangs nor panics
 //! nor gives NaN.
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Batch, Block};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, Frictionless, ParamsRange, Pendulum, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
-use common::Repeating;
+use common::{Repeating, in_every_arithmetic};
 
 const NOT_FINITE: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
@@ -334,11 +334,7 @@ fn results_that_are_not_finite_keep_the_angles_and_stop() {
         acrobot.step(Action::Positive);
         assert_ne!(acrobot.state().dtheta1, A::Scalar::ZERO);
     }
-    check::<Reference>();
-    check::<Portable>();
-    check::<Host>();
-    check::<Fast>();
-    check::<Micro>();
+    in_every_arithmetic!(check);
 }
 
 /// The largest draw of a generator is rounded to the upper bound.

@@ -5,4 +5,4 @@ mod loops;
 mod play;
 
 pub use loops::{Lanes, bare_f32, bare_f64};
-pub use play::Play;
+pub use play::{Play, draw};

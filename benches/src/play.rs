@@ -4,6 +4,12 @@ use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
 
+/// The policy: the next action of a stream. It costs little compared with a step, and SIMD can compute it.
+pub fn draw(stream: &mut u32) -> u8 {
+    *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    (((*stream >> 16) * 3) >> 16) as u8
+}
+
 /// A batch, the random policy that plays it, and the buffers of its steps.
 #[derive(Debug)]
 pub struct Play<A: Arithmetic> {
@@ -40,17 +46,19 @@ impl<A: Arithmetic> From<VecBatch<A>> for Play<A> {
 }
 
 impl<A: Arithmetic> Play<A> {
-    fn draw_actions(&mut self) {
-        for (stream, action) in self.streams.iter_mut().zip(&mut self.actions) {
-            *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            *action = (((*stream >> 16) * 3) >> 16) as u8;
-        }
-    }
-
     /// Draws actions and steps. Returns the number of acrobots.
     pub fn play(&mut self, observe: bool) -> usize {
-        self.draw_actions();
+        for (stream, action) in self.streams.iter_mut().zip(&mut self.actions) {
+            *action = draw(stream);
+        }
         self.step(observe, false)
+    }
+
+    /// How many episodes the last step ended.
+    pub fn ends(&self) -> usize {
+        let ends = self.terminated.iter().zip(&self.truncated);
+        ends.filter(|(terminated, truncated)| **terminated || **truncated)
+            .count()
     }
 
     /// Steps with the last actions, on one core or on all. Returns the number of acrobots.

@@ -143,20 +143,6 @@ fn fields_have_any_order_and_unknown_ones_are_ignored() {
     }
 }
 
-/// A binary format can hold NaN, JSON cannot.
-#[test]
-fn states_that_are_not_finite_are_rejected() {
-    let batch = three(false);
-    let mut bytes = postcard::to_stdvec(&batch).unwrap();
-    let theta1 = batch.state(1).unwrap().theta1.to_le_bytes();
-    let at = bytes
-        .windows(4)
-        .position(|window| window == theta1)
-        .unwrap();
-    bytes[at..at + 4].copy_from_slice(&f32::NAN.to_le_bytes());
-    assert!(postcard::from_bytes::<VecBatch<Fast>>(&bytes).is_err());
-}
-
 fn three(own_params: bool) -> VecBatch<Fast> {
     let seed = SeedSequence::new(1);
     match own_params {
@@ -194,16 +180,6 @@ fn invalid_snapshots_are_rejected() {
             r#""of":"batch""#,
             r#""of":"acrobot""#,
             r#"the snapshot must be "batch", version 1, arithmetic "fast", got "acrobot", version 1, arithmetic "fast""#,
-        ),
-        (
-            r#""version":1"#,
-            r#""version":2"#,
-            r#"the snapshot must be "batch", version 1, arithmetic "fast", got "batch", version 2, arithmetic "fast""#,
-        ),
-        (
-            r#""fast""#,
-            r#""micro""#,
-            r#"the snapshot must be "batch", version 1, arithmetic "fast", got "batch", version 1, arithmetic "micro""#,
         ),
         (
             r#""limit":500"#,

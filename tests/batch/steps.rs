@@ -9,8 +9,8 @@ use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, StepResul
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::Dynamics;
 use acrobot::{Action, Fast, Params, Portable, State};
-use common::params_range;
-use common::twins::{LEVELS, MODES, Twins, bits};
+use common::twins::{LEVELS, MODES, Twins};
+use common::{bits, params_range};
 
 /// Tries every SIMD level, and in the last batch acrobots whose parameters each reset draws.
 #[test]

@@ -7,9 +7,8 @@ use std::env;
 use std::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Host, Reference};
-use acrobot::batch::{Batch, Block, StepBuffers};
-use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use benches::{Play, draw};
 use cpu_time::ProcessTime;
 use gmgn::env::Env as _;
 use gmgn::envs::classic_control::AcrobotEnv;
@@ -73,12 +72,6 @@ fn version(package: &str) -> &'static str {
     rest.split_once('"').expect("a version in quotes").0
 }
 
-/// The policy. It costs little compared with a step, and SIMD can compute it.
-fn draw(stream: &mut u32) -> u8 {
-    *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-    (((*stream >> 16) * 3) >> 16) as u8
-}
-
 /// An implementation from a `step`, which resets after an episode's end and returns whether there was one.
 fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Implementation {
     let mut stream = 0;
@@ -97,29 +90,14 @@ fn ours<A: Arithmetic + 'static>() -> Implementation {
 }
 
 fn batch(observe: bool) -> Implementation {
-    const N: usize = ACROBOTS;
-    let blocks = vec![Block::EMPTY; N.div_ceil(Block::<Fast>::LANES)];
-    let generators = vec![Pcg64::UNSEEDED; N];
-    let mut batch =
-        Batch::<Fast, _>::new(0, (blocks, generators)).expect("blocks for all acrobots");
-    let mut streams: Vec<u32> = (0..N as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect();
-    let (mut actions, mut rewards, mut rows) = (vec![0; N], vec![0.0; N], vec![[0.0; 6]; N]);
-    let (mut terminated, mut truncated) = (vec![false; N], vec![false; N]);
+    let mut play = Play::<Fast>::new(ACROBOTS);
     Box::new(move |steps| {
-        let mut ends = 0;
-        for _ in 0..steps / N {
-            for (action, stream) in actions.iter_mut().zip(&mut streams) {
-                *action = draw(stream);
-            }
-            let mut buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
-            buffers.observations = observe.then_some(&mut rows);
-            batch
-                .step(&actions, buffers)
-                .expect("slices of the batch's length");
-            let ended = terminated.iter().zip(&truncated).map(|(a, b)| a | b);
-            ends += usize::from(ended.map(u16::from).sum::<u16>());
-        }
-        ends
+        let batch_steps = 0..steps / ACROBOTS;
+        let ends = batch_steps.map(|_| {
+            play.play(observe);
+            play.ends()
+        });
+        ends.sum()
     })
 }
 

@@ -1,7 +1,7 @@
 //! Steps per second on one core, and their ratio to a bare loop, one line each: `name steps_per_second ratio`.
 //!
-//! A batch plays a random policy, and draws actions and resets episodes in the loop. Its yardstick is a handwritten
-//! loop over eight lanes of AVX2 that does neither, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick
+//! A batch plays a random policy, and draws actions and resets episodes in the loop. Its yardstick is a loop over
+//! eight lanes of AVX2 that does neither, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick
 //! of `scalar_fast` and `scalar_micro` has the same equations for one acrobot in f32. That of the other `scalar_…` has
 //! Gymnasium's order of operations in f64 and the platform's sines. Both play the same actions as the crate. Each
 //! figure is the best of several runs, interleaved with runs of the yardstick.

@@ -9,7 +9,7 @@ use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, TimeL
 use crate::{Digest, against};
 
 /// Adds every bit of the state and of the observation.
-fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: Observation) {
+pub fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: Observation) {
     for x in <[A::Scalar; 4]>::from(acrobot.state()) {
         digest.add(x.to_f64().to_bits());
     }
@@ -131,14 +131,26 @@ fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>, change: impl Fn(&mut ParamsOf<A
     digest.0
 }
 
-/// Every bit that a batch of twenty in `Fast` with the same parameters returns. It is the same for any width `N`.
+/// Every bit that three batches return, which is the same for any width `N`. Each is a function out of line, which frees its
+/// stack before the next, because RAM has 16 KiB.
+pub fn batches<const N: usize, const BLOCKS_OF_20: usize, const BLOCKS_OF_8: usize>() -> [u64; 3] {
+    [
+        shared_params::<N, BLOCKS_OF_20>(),
+        subnormal_batch::<N, BLOCKS_OF_20>(),
+        own_params::<N, BLOCKS_OF_8>(),
+    ]
+}
+
+/// A batch of twenty in `Fast` with the same parameters.
+#[inline(never)]
 pub fn shared_params<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
     batch::<20, N, _>((&mut blocks[..], &mut generators[..]), |_| {})
 }
 
 /// As [`shared_params`] with subnormal numbers.
-pub fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
+#[inline(never)]
+fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
     let (mut blocks, mut generators) = ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; 20]);
     batch::<20, N, _>((&mut blocks[..], &mut generators[..]), |batch| {
         let mut params = Params::DEFAULT;
@@ -150,7 +162,8 @@ pub fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
 }
 
 /// As [`shared_params`] for eight, of which each reset draws parameters.
-pub fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
+#[inline(never)]
+fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
     let low = Params {
         mass1: 0.9,
         inertia2: 0.9,
@@ -179,7 +192,6 @@ pub fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
 }
 
 /// Every bit that a batch returns in 200 steps under torque against θ̇1, which ends episodes.
-#[inline(never)] // each frees its stack before the next, because RAM has 16 KiB
 fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
     memory: S,
     prepare: impl FnOnce(&mut Batch<Fast, S, N>),
@@ -207,9 +219,11 @@ fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
     digest.0
 }
 
-pub const SHARED_PARAMS: u64 = 0xeae8_bc44_fb2b_ab5e;
-
-pub const OWN_PARAMS: u64 = 0xd88c_48c6_8c23_a5eb;
+pub const BATCHES: [u64; 3] = [
+    0xeae8_bc44_fb2b_ab5e,
+    0xcc78_d474_8108_4cf5,
+    0xd88c_48c6_8c23_a5eb,
+];
 
 pub const SUBNORMAL: [u64; 4] = [
     0x9042_c808_54ae_9aad,
@@ -221,8 +235,6 @@ pub const SUBNORMAL: [u64; 4] = [
 pub const DAMPED: [u64; 2] = [0xaa5b_ea28_3a02_5fe0, 0x02ab_1a17_374e_5871];
 
 pub const SWINGUP: [u64; 2] = [0x22a6_0076_4bda_c4c0, 0x4329_8e9d_2663_2406];
-
-pub const SUBNORMAL_BATCH: u64 = 0xcc78_d474_8108_4cf5;
 
 pub const REFERENCE: [u64; 16] = [
     0x1814_77bc_77f4_e827,

@@ -28,6 +28,24 @@ pub fn distance(x: State, y: State) -> f64 {
         .max((x.dtheta2 - y.dtheta2).abs())
 }
 
+/// The bits of a state or of other numbers, which distinguish 0 from −0.
+pub fn bits<S: Real, const N: usize>(numbers: impl Into<[S; N]>) -> [u64; N] {
+    numbers.into().map(|x| x.to_f64().to_bits())
+}
+
+/// Calls `check::<A>()` for each arithmetic, and with friction.
+#[macro_export]
+macro_rules! in_every_arithmetic {
+    ($check:ident) => {{
+        $check::<acrobot::arithmetic::Reference>();
+        $check::<acrobot::arithmetic::Portable>();
+        $check::<acrobot::arithmetic::Host>();
+        $check::<acrobot::arithmetic::Fast>();
+        $check::<acrobot::arithmetic::Micro>();
+        $check::<acrobot::arithmetic::Damped<acrobot::Fast>>();
+    }};
+}
+
 /// A friction with these coefficients, where there is any.
 pub trait AnyFriction<S: Real>: Friction<S, Of<S> = Self> {
     fn new(joint1: S, joint2: S) -> Self;

@@ -7,6 +7,8 @@ use acrobot::physics::{ParamsOf, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Observation, Params, ResetOptions, State, Step, TimeLimit};
 use bits::against;
 
+use crate::bits;
+
 pub const MODES: [Autoreset; 3] = [
     Autoreset::NextStep,
     Autoreset::SameStep,
@@ -265,9 +267,4 @@ fn reset_one<A: Arithmetic, const N: usize>(
 /// Whether a row has the bits of an observation.
 pub fn equal(row: &[f32; 6], observation: &Observation) -> bool {
     row.map(f32::to_bits) == observation.to_array().map(f32::to_bits)
-}
-
-/// The bits of a state, which distinguish 0 from −0.
-pub fn bits<S: Real>(state: State<S>) -> [u64; 4] {
-    <[S; 4]>::from(state).map(|x| x.to_f64().to_bits())
 }

@@ -8,6 +8,7 @@ use acrobot::physics::control::{
     ControlError, DiscreteModel, difference, discretize, inverse_dynamics, linearize, lqr,
     velocities,
 };
+use common::in_every_arithmetic;
 use proptest::prelude::*;
 
 use crate::given::{Number, Range, Tested, holds, number, params, state};

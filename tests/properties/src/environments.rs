@@ -7,6 +7,7 @@ use acrobot::env::{
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::ResetBounds;
 use acrobot::{Action, Params, ResetOptions, State, TimeLimit};
+use common::in_every_arithmetic;
 use proptest::prelude::*;
 
 use crate::given::{Range, Tested, action, holds, params, reset_bounds, state};

@@ -36,12 +36,9 @@ pub fn again<T: Serialize + DeserializeOwned>(value: &T) -> Vec<(&'static str, T
     let flattened_json = serde_json::to_string(&flattened).unwrap();
     let tagged = serde_json::to_string(&Tagged::One(value)).unwrap();
     let untagged = serde_json::to_string(&Untagged::One(value)).unwrap();
-    let Flattened { value: flat, .. } =
-        serde_json::from_str::<Flattened<T>>(&flattened_json).unwrap();
+    let flat: Flattened<T> = serde_json::from_str(&flattened_json).unwrap();
     let flattened_toml = toml::to_string(&flattened).unwrap();
-    let Flattened {
-        value: flat_toml, ..
-    } = toml::from_str::<Flattened<T>>(&flattened_toml).unwrap();
+    let flat_toml: Flattened<T> = toml::from_str(&flattened_toml).unwrap();
     let Tagged::One(tagged) = serde_json::from_str::<Tagged<T>>(&tagged).unwrap();
     let Untagged::One(untagged) = serde_json::from_str::<Untagged<T>>(&untagged).unwrap();
     vec![
@@ -72,8 +69,8 @@ pub fn again<T: Serialize + DeserializeOwned>(value: &T) -> Vec<(&'static str, T
             ron::from_str(&ron::to_string(value).unwrap()).unwrap(),
         ),
         ("YAML", serde_yaml_ng::from_str(&yaml).unwrap()),
-        ("flattened JSON", flat),
-        ("flattened TOML", flat_toml),
+        ("flattened JSON", flat.value),
+        ("flattened TOML", flat_toml.value),
         ("a tagged enum", tagged),
         ("an untagged enum", untagged),
     ]

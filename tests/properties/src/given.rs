@@ -53,24 +53,10 @@ impl<A> Tested for A where
 {
 }
 
-/// Calls `check::<A>()` for each arithmetic, and with friction.
-macro_rules! in_every_arithmetic {
-    ($check:ident) => {{
-        $check::<acrobot::arithmetic::Reference>();
-        $check::<acrobot::arithmetic::Portable>();
-        $check::<acrobot::arithmetic::Host>();
-        $check::<acrobot::arithmetic::Fast>();
-        $check::<acrobot::arithmetic::Micro>();
-        $check::<acrobot::arithmetic::Damped<acrobot::Fast>>();
-    }};
-}
-
-/// A scalar that can be generated and compared by its bits.
+/// A scalar that can be generated.
 pub trait Number: Real + Debug + Serialize + DeserializeOwned {
     /// Any finite number. All exponents are equally likely.
     fn finite() -> BoxedStrategy<Self>;
-
-    fn bits(self) -> u64;
 }
 
 macro_rules! impl_number {
@@ -80,20 +66,11 @@ macro_rules! impl_number {
                 use $scalar::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
                 (POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO).boxed()
             }
-
-            fn bits(self) -> u64 {
-                self.to_bits().into()
-            }
         }
     )*};
 }
 
 impl_number!(f32, f64);
-
-/// The bits of a state, which distinguish 0 from −0.
-pub fn bits<S: Number>(state: State<S>) -> [u64; 4] {
-    <[S; 4]>::from(state).map(S::bits)
-}
 
 /// The size of numbers.
 #[derive(Clone, Copy, PartialEq)]

@@ -3,14 +3,12 @@
 
 #![cfg(test)]
 
-#[macro_use]
-mod given;
-
 mod batches;
 mod control;
 mod draws;
 mod environments;
 mod formats;
+mod given;
 mod pictures;
 mod snapshots;
 mod steps;

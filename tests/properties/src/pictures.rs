@@ -1,18 +1,14 @@
 //! Pictures of any acrobot on a target of any position and size.
 
-use std::convert::Infallible;
-
 use acrobot::arithmetic::Portable;
 use acrobot::render::{Figure, Theme};
-use embedded_graphics::Pixel;
-use embedded_graphics::draw_target::DrawTarget;
-use embedded_graphics::geometry::{Dimensions, Point, Size};
-use embedded_graphics::pixelcolor::BinaryColor;
+use embedded_graphics::geometry::{Point, Size};
 use embedded_graphics::primitives::Rectangle;
 use proptest::prelude::*;
 
 use crate::given::{Range, Tested, acrobot, holds, params, state};
 use common::canvas::Canvas;
+use common::in_every_arithmetic;
 
 fn figure<A: Tested>() -> impl Strategy<Value = Figure> {
     let given = (params(Range::Any), state(Range::Any), prop::num::f32::ANY);
@@ -50,40 +46,6 @@ fn every_pixel_is_drawn_once_and_a_redraw_writes_those_that_change() {
     in_every_arithmetic!(check);
 }
 
-/// A target of any area, which takes the first pixels of a drawing.
-struct Far {
-    area: Rectangle,
-    /// The most pixels that are taken.
-    most: usize,
-    written: usize,
-}
-
-impl Dimensions for Far {
-    fn bounding_box(&self) -> Rectangle {
-        self.area
-    }
-}
-
-impl DrawTarget for Far {
-    type Color = BinaryColor;
-    type Error = Infallible;
-
-    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
-        &mut self,
-        pixels: I,
-    ) -> Result<(), Infallible> {
-        for Pixel(Point { x, y }, _) in pixels.into_iter().take(self.most) {
-            let Rectangle { top_left, size } = self.area;
-            let column = i64::from(x) - i64::from(top_left.x);
-            let row = i64::from(y) - i64::from(top_left.y);
-            assert!((0..size.width.into()).contains(&column), "{x}");
-            assert!((0..size.height.into()).contains(&row), "{y}");
-            self.written += 1;
-        }
-        Ok(())
-    }
-}
-
 /// No overflow for any bounding box. A box beyond `i32` stays empty.
 #[test]
 fn targets_at_the_ends_of_the_grid_do_not_overflow() {
@@ -101,11 +63,7 @@ fn targets_at_the_ends_of_the_grid_do_not_overflow() {
     let given = (figure::<Portable>(), figure::<Portable>(), place);
     holds(4000, given, |(before, after, (x, y, width, height))| {
         let area = Rectangle::new(Point::new(x, y), Size::new(width, height));
-        let mut target = Far {
-            area,
-            most: 1000,
-            written: 0,
-        };
+        let mut target = Canvas::of_first(1000, area);
         before.draw(&mut target, &Theme::MONOCHROME).unwrap();
         let fits = |start: i32, side: u32| {
             let end = i64::from(start) + i64::from(side);

@@ -4,13 +4,13 @@ use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
-use common::params_range;
+use common::{bits, in_every_arithmetic, params_range};
 use proptest::prelude::*;
 use rand_core::Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::formats::again;
-use crate::given::{Range, Tested, acrobot, bits, holds, params, state};
+use crate::given::{Range, Tested, acrobot, holds, params, state};
 
 /// An acrobot after some steps and draws, with any time limit.
 fn running<A: Tested>() -> impl Strategy<Value = TimeLimit<Acrobot<A>>> {

@@ -11,10 +11,8 @@ use acrobot::physics::{ParamsOf, Pendulum};
 use acrobot::{Acrobot, Action, Error, Fast, Observation, Params, Portable, State, Step};
 use proptest::prelude::*;
 
-use crate::given::{
-    Range, Tested, acrobot, action, bits, holds, number, params, reset_bounds, state,
-};
-use common::distance;
+use crate::given::{Range, Tested, acrobot, action, holds, number, params, reset_bounds, state};
+use common::{bits, distance, in_every_arithmetic};
 
 /// Two inputs from the same strategy.
 fn two<G: Strategy>(given: impl Fn() -> G) -> [G; 2] {

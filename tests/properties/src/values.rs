@@ -2,12 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use acrobot::arithmetic::Real;
+use acrobot::arithmetic::{Real, Reference};
 use acrobot::physics::{Pendulum, bound, wrap};
-use acrobot::{Fast, Observation, State};
+use acrobot::{Fast, Observation, Portable, State};
+use common::{bits, in_every_arithmetic};
 use proptest::prelude::*;
 
-use crate::given::{Number, Range, Tested, acrobot, bits, holds, number, params, state};
+use crate::given::{Range, Tested, acrobot, holds, number, params, state};
 
 #[test]
 fn angles_wrap_into_half_a_turn_to_either_side() {
@@ -26,7 +27,7 @@ fn angles_wrap_into_half_a_turn_to_either_side() {
                 assert_eq!(wrap::<A>(-x), -wrapped);
             }
             if -pi <= x && x <= pi {
-                assert_eq!(wrapped.bits(), x.bits());
+                assert_eq!(bits([wrapped]), bits([x]));
             }
         });
     }
@@ -35,19 +36,21 @@ fn angles_wrap_into_half_a_turn_to_either_side() {
 
 #[test]
 fn angles_wrap_by_whole_turns() {
-    /// The spacing of `f32` at x, and that of π near 0.
-    const ROUNDING: [f64; 2] = [1.2e-7, 2e-7];
-
-    let angle = (0.0..15.0_f32).prop_map(f32::exp);
-    holds(5000, (angle, any::<bool>()), |(x, negative)| {
-        let x = if negative { -x } else { x };
-        let turns = (f64::from(x) - f64::from(wrap::<Fast>(x))) / TAU;
-        let error = (turns - turns.round()).abs() * TAU;
-        assert!(
-            error <= ROUNDING[0] * f64::from(x.abs()) + ROUNDING[1],
-            "{error:e}"
-        );
-    });
+    /// Rounding is relative to x, and to π near 0.
+    fn check<A: Tested>([relative, absolute]: [f64; 2]) {
+        let angle = (0.0..15.0_f64).prop_map(f64::exp);
+        holds(5000, (angle, any::<bool>()), |(x, negative)| {
+            let x = A::Scalar::from_f64(if negative { -x } else { x });
+            let (x, wrapped) = (x.to_f64(), wrap::<A>(x).to_f64());
+            let turns = (x - wrapped) / TAU;
+            let error = (turns - turns.round()).abs() * TAU;
+            assert!(error <= relative * x.abs() + absolute, "{error:e}");
+        });
+    }
+    check::<Fast>([1.2e-7, 2e-7]);
+    check::<Portable>([5e-16, 4e-16]);
+    // Up to 64 turns it subtracts one by one.
+    check::<Reference>([1e-14, 4e-16]);
 }
 
 #[test]
@@ -78,7 +81,7 @@ fn sines_and_cosines_are_on_the_unit_circle() {
             // For large angles, which are far apart in `f32`, `Micro` leaves the range of its polynomials.
             assert!((radius - 1.0).abs() <= 1e-4, "{radius}");
             assert_eq!(A::sin_cos(-x), (-sin, cos));
-            assert_eq!(A::cos(x).bits(), cos.bits());
+            assert_eq!(bits([A::cos(x)]), bits([cos]));
         });
     }
     in_every_arithmetic!(check);
