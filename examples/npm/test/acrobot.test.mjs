@@ -299,7 +299,7 @@ test("after free, every use throws, and other acrobots continue", () => {
   for (const use of [...uses, ...reads, write, () => acrobot.restore(before)]) {
     assert.throws(use, { name: "Error", message: "the acrobot has been freed" });
   }
-  // Its number is used again.
+  // Its memory is used again.
   const third = new Acrobot({ seed: 3 });
   assert.throws(() => acrobot.step(1), /freed/);
   assert.deepEqual(third.snapshot(), new Acrobot({ seed: 3 }).snapshot());
@@ -307,5 +307,12 @@ test("after free, every use throws, and other acrobots continue", () => {
   if (Symbol.dispose) {
     third[Symbol.dispose]();
     assert.throws(() => third.step(1), /freed/);
+  }
+});
+
+test("a method rejects what is no acrobot, whose address it would not have", () => {
+  const base = Object.getPrototypeOf(Acrobot);
+  for (const wrong of [{}, new Batch({ count: 1 }), new Proxy(new Acrobot(), {}), new base(), Reflect.construct(base, ["acrobot", 4096], Acrobot)]) {
+    assert.throws(() => Acrobot.prototype.step.call(wrong, 1), TypeError);
   }
 });

@@ -269,12 +269,3 @@ test("memory grows while batches are in use, and is used again after free and af
   }
   assert.ok(size() < grown + 20e6, `${size()} bytes after ${grown}`);
 });
-
-test("many acrobots at a time keep their numbers apart", () => {
-  const acrobots = Array.from({ length: 3000 }, (_, seed) => new Acrobot({ seed }));
-  acrobots.forEach((acrobot, seed) => seed % 3 === 0 && acrobot.free());
-  const more = Array.from({ length: 1500 }, (_, seed) => new Acrobot({ seed: seed + 10_000 }));
-  const check = (acrobot, seed) => assert.deepEqual(acrobot.observation, new Acrobot({ seed }).observation);
-  acrobots.forEach((acrobot, seed) => seed % 3 && check(acrobot, seed));
-  more.forEach((acrobot, seed) => check(acrobot, seed + 10_000));
-});
