@@ -1,21 +1,20 @@
 // Firefox and WebKit by WebDriver, with those methods of Playwright's page that the tests use.
 // Playwright itself drives only its own builds of these engines.
 
-import { spawn } from "node:child_process";
 import { mkdtempSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-/** Without a display Firefox finds no mouse, and the page then describes touch. */
-const MOUSE = { "ui.primaryPointerCapabilities": 6, "ui.allPointerCapabilities": 6 };
+import { Builder, By, Capabilities, until } from "selenium-webdriver";
+import { DriverService } from "selenium-webdriver/remote/index.js";
 
 const ENGINES = {
   firefox: {
-    command: ["geckodriver"],
-    capabilities: { browserName: "firefox", "moz:firefoxOptions": { binary: "/usr/bin/firefox-esr", args: ["-headless"], prefs: MOUSE } },
+    program: "geckodriver",
+    capabilities: { browserName: "firefox", "moz:firefoxOptions": { binary: "/usr/bin/firefox-esr" } },
   },
   webkit: {
-    command: ["xvfb-run", "--auto-servernum", "WebKitWebDriver"],
+    program: "WebKitWebDriver",
     capabilities: {
       browserName: "MiniBrowser",
       "webkitgtk:browserOptions": { binary: "/usr/lib/x86_64-linux-gnu/webkit2gtk-4.1/MiniBrowser", args: ["--automation"] },
@@ -26,32 +25,20 @@ const ENGINES = {
 /** WebDriver's codes. */
 const KEYS = { ArrowLeft: "\uE012", ArrowRight: "\uE014", Space: " " };
 
-/** Starts an engine. `selenium` is the module `selenium-webdriver`: each of the two folders has its own. Returns its page and `close()`. */
-export async function launch(engine, selenium) {
-  const { command, capabilities } = ENGINES[engine];
-  const port = 4440 + (process.pid % 1000);
-  const server = spawn(command[0], [...command.slice(1), `--port=${port}`], { stdio: "ignore", detached: true });
-  const driver = await connect(selenium, `http://127.0.0.1:${port}`, capabilities);
+/** Starts an engine, which has one page. */
+export async function launch(engine) {
+  const { program, capabilities } = ENGINES[engine];
+  const service = new DriverService.Builder(program).setLoopback(true).build();
+  const driver = await new Builder().usingServer(await service.start()).withCapabilities(new Capabilities(capabilities)).build();
   await driver.manage().setTimeouts({ script: 30_000 });
   const close = async () => {
     await driver.quit();
-    process.kill(-server.pid);
+    await service.kill();
   };
-  return { page: page(driver, selenium), close };
+  return { newPage: () => page(driver), close };
 }
 
-async function connect({ Builder, Capabilities }, url, capabilities) {
-  for (let left = 50; ; left--) {
-    try {
-      return await new Builder().usingServer(url).withCapabilities(new Capabilities(capabilities)).build();
-    } catch (error) {
-      if (left === 0) throw error;
-      await new Promise((resolve) => setTimeout(resolve, 200));
-    }
-  }
-}
-
-function page(driver, { By, until }) {
+function page(driver) {
   const find = (selector) => driver.findElement(By.css(selector));
   const evaluate = (code, argument) =>
     driver.executeScript(`return ${typeof code === "function" ? `(${code})(arguments[0])` : `(() => { ${code} })()`}`, argument);

@@ -6,9 +6,10 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
+import { inChromium } from "../../npm/browser.mjs";
 import { Learner } from "../dist/acrobot-rs/policies.js";
 import { ACTIONS, bits, trace } from "./native.mjs";
-import { downloaded, folder, inChromium, linkedActions, open, paused, press, shownBits, steps, text } from "./player.mjs";
+import { downloaded, folder, linkedActions, open, paused, press, shownBits, steps, text } from "./player.mjs";
 
 test("the page loads, plays a policy, and has a strict content security policy", () =>
   open(async (page) => {
