@@ -187,15 +187,13 @@ pub extern "C" fn batch_save(many: &Many, index: usize) -> usize {
 /// Loads acrobot `index` from the first of `len` bytes. Returns how many these are, or 0 if they are invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_load(many: &mut Many, index: usize, len: usize) -> usize {
-    let bytes = memory::get_bytes();
-    let bytes = bytes.get(..len).unwrap_or_default();
-    let Ok((member, rest)) = postcard::take_from_bytes::<Member<Fast>>(bytes) else {
+    let Some((member, used)) = memory::load::<Member<Fast>>(len) else {
         return 0;
     };
     // The first brings the parameters, if all acrobots share them.
     let shared = index > 0 || many.own_params || many.batch.set_params(member.params).is_ok();
     if shared && many.batch.set_member(index, member).is_ok() {
-        bytes.len() - rest.len()
+        used
     } else {
         0
     }

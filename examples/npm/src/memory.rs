@@ -46,10 +46,6 @@ pub fn get_state() -> State<f32> {
     State::from([theta1, theta2, dtheta1, dtheta2])
 }
 
-pub fn get_bytes() -> [u8; BYTES_LEN] {
-    BYTES.get()
-}
-
 fn set<T>(cells: &Cell<[T]>, values: impl IntoIterator<Item = T>) -> usize {
     let pairs = cells.as_slice_of_cells().iter().zip(values);
     pairs.map(|(cell, value)| cell.set(value)).count()
@@ -82,9 +78,16 @@ pub fn seed(words: usize) -> SeedSequence {
     SeedSequence::from_words(&seed)
 }
 
+/// Loads what [`save`] writes from the first of `len` bytes. Returns it with the number of its bytes, or `None` if they are invalid.
+pub fn load<T: serde::de::DeserializeOwned>(len: usize) -> Option<(T, usize)> {
+    let bytes = BYTES.get();
+    let (value, rest) = postcard::take_from_bytes(bytes.get(..len)?).ok()?;
+    Some((value, len - rest.len()))
+}
+
 /// The parameters that JavaScript has written as [`save`] writes them.
 pub fn get_params() -> Params<f32> {
-    postcard::from_bytes(&BYTES.get()).unwrap_or_default()
+    load(BYTES_LEN).map_or(Params::DEFAULT, |(params, _)| params)
 }
 
 /// 0, or the length of the reason for which numbers are rejected: name, rule and unit, a line each. JavaScript has the

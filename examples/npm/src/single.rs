@@ -86,10 +86,8 @@ pub extern "C" fn acrobot_save(env: &Env) -> usize {
 /// Loads the snapshot in the first `len` bytes. Returns false and changes nothing if it is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_load(env: &mut Env, len: usize) -> bool {
-    let bytes = memory::get_bytes();
-    let bytes = bytes.get(..len).unwrap_or_default();
-    match postcard::take_from_bytes(bytes) {
-        Ok((loaded, [])) => {
+    match memory::load(len) {
+        Some((loaded, used)) if used == len => {
             *env = loaded;
             true
         }
