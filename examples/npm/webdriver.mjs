@@ -1,10 +1,6 @@
 // Firefox and WebKit by WebDriver, with those methods of Playwright's page that the tests use.
 // Playwright itself drives only its own builds of these engines.
 
-import { mkdtempSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
-
 import { Builder, By, Capabilities, until } from "selenium-webdriver";
 import { DriverService } from "selenium-webdriver/remote/index.js";
 
@@ -78,7 +74,7 @@ function page(driver) {
       up: (name) => driver.actions().keyUp(key(name)).perform(),
       press: (name) => driver.actions().keyDown(key(name)).keyUp(key(name)).perform(),
     },
-    /** Clicks a button, and returns the path of what it downloads. */
+    /** Clicks a button, and returns the bytes that it downloads. */
     download: async (button) => {
       await driver.executeScript(`
         const { createObjectURL } = URL;
@@ -89,10 +85,7 @@ function page(driver) {
           HTMLAnchorElement.prototype.click = click;
         };`);
       await (await find(button)).click();
-      const bytes = await driver.executeScript("return window.downloaded.arrayBuffer().then((bytes) => [...new Uint8Array(bytes)])");
-      const path = join(mkdtempSync(join(tmpdir(), "acrobot-download-")), "file");
-      writeFileSync(path, Buffer.from(bytes));
-      return path;
+      return driver.executeScript("return window.downloaded.arrayBuffer().then((bytes) => [...new Uint8Array(bytes)])");
     },
   };
 }

@@ -100,7 +100,7 @@ export async function linkedActions(page) {
 }
 
 export async function downloaded(page, button) {
-  if (page.download) return readFileSync(await page.download(button));
+  if (page.download) return Buffer.from(await page.download(button));
   const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
   return readFileSync(await download.path());
 }
