@@ -17,19 +17,16 @@ const SMALL = ["-unroll-full-max-count=16", "-unroll-allow-partial=false", "-inl
  * is safe because Rust puts nothing below address 1024.
  */
 const PASSES = ["--low-memory-unused", "-Os", "--const-hoisting", "-Os", "--strip-debug", "--strip-producers", "--strip-target-features"];
-/** simd128, and what rustc assumes. Every browser with modules in workers has the others. */
-const FEATURES = ["simd", "bulk-memory", "multivalue", "mutable-globals", "nontrapping-float-to-int", "reference-types", "sign-ext"];
 
 /** Compiles a crate of this workspace to target/`library`.wasm, and returns its bytes. */
 function compile(library) {
   const flags = [...SMALL.map((option) => `-Cllvm-args=${option}`), "-Ctarget-feature=+simd128"];
   const args = ["build", "--quiet", "--locked", "--release", "--package", library.replace("_", "-"), "--target-dir", "target"];
   run("cargo", args, { RUSTFLAGS: flags.join(" ") });
-  const features = FEATURES.map((feature) => `--enable-${feature}`);
   const [text, out] = [`target/${library}.wat`, `target/${library}.wasm`];
   // As text first, for the test that nothing panics: in the binary format, code that is never reached also ends in `unreachable`.
-  run("node_modules/.bin/wasm-opt", [`target/wasm32-unknown-unknown/release/${library}.wasm`, "-S", "-o", text, ...features, ...PASSES]);
-  run("node_modules/.bin/wasm-as", [text, "-o", out, ...features]);
+  run("node_modules/.bin/wasm-opt", [`target/wasm32-unknown-unknown/release/${library}.wasm`, "-S", "-o", text, ...PASSES]);
+  run("node_modules/.bin/wasm-as", [text, "-o", out, "--all-features"]);
   const module = readFileSync(here + out);
   console.log(`${library}.wasm: ${module.length} bytes`);
   return module;
