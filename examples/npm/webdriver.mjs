@@ -36,9 +36,7 @@ export async function launch(engine) {
 
 function page(driver) {
   const find = (selector) => driver.findElement(By.css(selector));
-  const evaluate = (code, argument) =>
-    driver.executeScript(`return ${typeof code === "function" ? `(${code})(arguments[0])` : `(() => { ${code} })()`}`, argument);
-  const property = (selector, name) => driver.executeScript("return document.querySelector(arguments[0])[arguments[1]]", selector, name);
+  const evaluate = (code, argument) => driver.executeScript(`return (${code})(arguments[0])`, argument);
   const setValue = async (selector, value) => {
     const input = await find(selector);
     const set = `const [input, value] = arguments; input.focus(); input.value = value;
@@ -55,20 +53,15 @@ function page(driver) {
     click: async (selector) => (await find(selector)).click(),
     fill: setValue,
     selectOption: setValue,
-    focus: (selector) => driver.executeScript("document.querySelector(arguments[0]).focus()", selector),
+    focus: (selector) => evaluate((selector) => document.querySelector(selector).focus(), selector),
     evaluate,
-    textContent: (selector) => property(selector, "textContent"),
-    inputValue: (selector) => property(selector, "value"),
-    getAttribute: (selector, name) =>
-      driver.executeScript("return document.querySelector(arguments[0]).getAttribute(arguments[1])", selector, name),
+    textContent: async (selector) => (await find(selector)).getProperty("textContent"),
+    inputValue: async (selector) => (await find(selector)).getProperty("value"),
+    getAttribute: async (selector, name) => (await find(selector)).getDomAttribute(name),
     waitForSelector: (selector) => driver.wait(until.elementLocated(By.css(selector)), 30_000),
     waitForFunction: (code, argument) => driver.wait(() => evaluate(code, argument), 30_000, String(code)),
     waitForTimeout: (time) => driver.sleep(time),
     setInputFiles: async (selector, path) => (await find(selector)).sendKeys(path),
-    locator: (selector) => ({
-      fill: (value) => setValue(selector, value),
-      allTextContents: () => evaluate("return [...document.querySelectorAll(" + JSON.stringify(selector) + ")].map((each) => each.textContent)"),
-    }),
     keyboard: {
       down: (name) => driver.actions().keyDown(key(name)).perform(),
       up: (name) => driver.actions().keyUp(key(name)).perform(),
@@ -76,16 +69,12 @@ function page(driver) {
     },
     /** Clicks a button, and returns the bytes that it downloads. */
     download: async (button) => {
-      await driver.executeScript(`
-        const { createObjectURL } = URL;
-        const { click } = HTMLAnchorElement.prototype;
-        URL.createObjectURL = (blob) => createObjectURL((window.downloaded = blob));
-        HTMLAnchorElement.prototype.click = () => {
-          URL.createObjectURL = createObjectURL;
-          HTMLAnchorElement.prototype.click = click;
-        };`);
+      await evaluate(() => {
+        URL.createObjectURL = (blob) => (window.downloaded = blob);
+        HTMLAnchorElement.prototype.click = () => {};
+      });
       await (await find(button)).click();
-      return driver.executeScript("return window.downloaded.arrayBuffer().then((bytes) => [...new Uint8Array(bytes)])");
+      return evaluate(async () => [...new Uint8Array(await window.downloaded.arrayBuffer())]);
     },
   };
 }

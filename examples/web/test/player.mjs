@@ -64,7 +64,7 @@ export const text = async (page, selector) => {
 
 export const shownBits = async (page) => {
   await shown(page);
-  return page.locator("#state code").allTextContents();
+  return page.evaluate(() => Array.from(document.querySelectorAll("#state code"), (code) => code.textContent));
 };
 
 /** Pauses the page in the initial state of a seed, and lets the keys play. */
@@ -88,8 +88,9 @@ export async function press(page, actions) {
 /** Lets the policy step, without a wait for each. */
 export async function steps(page, count) {
   await page.focus("#stage");
-  const key = () => document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "s", bubbles: true }));
-  await page.evaluate(`for (let i = 0; i < ${count}; i++) (${key})()`);
+  await page.evaluate((count) => {
+    for (let i = 0; i < count; i++) document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "s", bubbles: true }));
+  }, count);
 }
 
 /** The actions in the page's link to its run. */
