@@ -1,21 +1,16 @@
 // Firefox and WebKit by WebDriver, with those methods of Playwright's page that the tests use.
 // Playwright itself drives only its own builds of these engines.
 
-import { spawn } from "node:child_process";
-import { mkdtempSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
-
-/** Without a display Firefox finds no mouse, and the page then describes touch. */
-const MOUSE = { "ui.primaryPointerCapabilities": 6, "ui.allPointerCapabilities": 6 };
+import { Builder, By, Capabilities, until } from "selenium-webdriver";
+import { DriverService } from "selenium-webdriver/remote/index.js";
 
 const ENGINES = {
   firefox: {
-    command: ["geckodriver"],
-    capabilities: { browserName: "firefox", "moz:firefoxOptions": { binary: "/usr/bin/firefox-esr", args: ["-headless"], prefs: MOUSE } },
+    program: "geckodriver",
+    capabilities: { browserName: "firefox", "moz:firefoxOptions": { binary: "/usr/bin/firefox-esr" } },
   },
   webkit: {
-    command: ["xvfb-run", "--auto-servernum", "WebKitWebDriver"],
+    program: "WebKitWebDriver",
     capabilities: {
       browserName: "MiniBrowser",
       "webkitgtk:browserOptions": { binary: "/usr/lib/x86_64-linux-gnu/webkit2gtk-4.1/MiniBrowser", args: ["--automation"] },
@@ -26,36 +21,22 @@ const ENGINES = {
 /** WebDriver's codes. */
 const KEYS = { ArrowLeft: "\uE012", ArrowRight: "\uE014", Space: " " };
 
-/** Starts an engine. `selenium` is the module `selenium-webdriver`: each of the two folders has its own. Returns its page and `close()`. */
-export async function launch(engine, selenium) {
-  const { command, capabilities } = ENGINES[engine];
-  const port = 4440 + (process.pid % 1000);
-  const server = spawn(command[0], [...command.slice(1), `--port=${port}`], { stdio: "ignore", detached: true });
-  const driver = await connect(selenium, `http://127.0.0.1:${port}`, capabilities);
+/** Starts an engine, which has one page. */
+export async function launch(engine) {
+  const { program, capabilities } = ENGINES[engine];
+  const service = new DriverService.Builder(program).setLoopback(true).build();
+  const driver = await new Builder().usingServer(await service.start()).withCapabilities(new Capabilities(capabilities)).build();
   await driver.manage().setTimeouts({ script: 30_000 });
   const close = async () => {
     await driver.quit();
-    process.kill(-server.pid);
+    await service.kill();
   };
-  return { page: page(driver, selenium), close };
+  return { newPage: () => page(driver), close };
 }
 
-async function connect({ Builder, Capabilities }, url, capabilities) {
-  for (let left = 50; ; left--) {
-    try {
-      return await new Builder().usingServer(url).withCapabilities(new Capabilities(capabilities)).build();
-    } catch (error) {
-      if (left === 0) throw error;
-      await new Promise((resolve) => setTimeout(resolve, 200));
-    }
-  }
-}
-
-function page(driver, { By, until }) {
+function page(driver) {
   const find = (selector) => driver.findElement(By.css(selector));
-  const evaluate = (code, argument) =>
-    driver.executeScript(`return ${typeof code === "function" ? `(${code})(arguments[0])` : `(() => { ${code} })()`}`, argument);
-  const property = (selector, name) => driver.executeScript("return document.querySelector(arguments[0])[arguments[1]]", selector, name);
+  const evaluate = (code, argument) => driver.executeScript(`return (${code})(arguments[0])`, argument);
   const setValue = async (selector, value) => {
     const input = await find(selector);
     const set = `const [input, value] = arguments; input.focus(); input.value = value;
@@ -72,40 +53,28 @@ function page(driver, { By, until }) {
     click: async (selector) => (await find(selector)).click(),
     fill: setValue,
     selectOption: setValue,
-    focus: (selector) => driver.executeScript("document.querySelector(arguments[0]).focus()", selector),
+    focus: (selector) => evaluate((selector) => document.querySelector(selector).focus(), selector),
     evaluate,
-    textContent: (selector) => property(selector, "textContent"),
-    inputValue: (selector) => property(selector, "value"),
-    getAttribute: (selector, name) =>
-      driver.executeScript("return document.querySelector(arguments[0]).getAttribute(arguments[1])", selector, name),
+    textContent: async (selector) => (await find(selector)).getProperty("textContent"),
+    inputValue: async (selector) => (await find(selector)).getProperty("value"),
+    getAttribute: async (selector, name) => (await find(selector)).getDomAttribute(name),
     waitForSelector: (selector) => driver.wait(until.elementLocated(By.css(selector)), 30_000),
     waitForFunction: (code, argument) => driver.wait(() => evaluate(code, argument), 30_000, String(code)),
     waitForTimeout: (time) => driver.sleep(time),
     setInputFiles: async (selector, path) => (await find(selector)).sendKeys(path),
-    locator: (selector) => ({
-      fill: (value) => setValue(selector, value),
-      allTextContents: () => evaluate("return [...document.querySelectorAll(" + JSON.stringify(selector) + ")].map((each) => each.textContent)"),
-    }),
     keyboard: {
       down: (name) => driver.actions().keyDown(key(name)).perform(),
       up: (name) => driver.actions().keyUp(key(name)).perform(),
       press: (name) => driver.actions().keyDown(key(name)).keyUp(key(name)).perform(),
     },
-    /** Clicks a button, and returns the path of what it downloads. */
+    /** Clicks a button, and returns the bytes that it downloads. */
     download: async (button) => {
-      await driver.executeScript(`
-        const { createObjectURL } = URL;
-        const { click } = HTMLAnchorElement.prototype;
-        URL.createObjectURL = (blob) => createObjectURL((window.downloaded = blob));
-        HTMLAnchorElement.prototype.click = () => {
-          URL.createObjectURL = createObjectURL;
-          HTMLAnchorElement.prototype.click = click;
-        };`);
+      await evaluate(() => {
+        URL.createObjectURL = (blob) => (window.downloaded = blob);
+        HTMLAnchorElement.prototype.click = () => {};
+      });
       await (await find(button)).click();
-      const bytes = await driver.executeScript("return window.downloaded.arrayBuffer().then((bytes) => [...new Uint8Array(bytes)])");
-      const path = join(mkdtempSync(join(tmpdir(), "acrobot-download-")), "file");
-      writeFileSync(path, Buffer.from(bytes));
-      return path;
+      return evaluate(async () => [...new Uint8Array(await window.downloaded.arrayBuffer())]);
     },
   };
 }

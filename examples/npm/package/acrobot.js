@@ -1,7 +1,7 @@
 // One acrobot.
 
 import { draw } from "./draw.js";
-import { ACTION, Kept, NUMBER, SHOWN, isAction, readState, sample, writeState } from "./kept.js";
+import { ACTION, Kept, SHOWN, addressOf, isAction, keep, readState, sample, writeState } from "./kept.js";
 import { header, seal, unseal } from "./snapshot.js";
 import { accept, bytes, checked, invalid, numbers, positive, wasm, writeSeed } from "./wasm.js";
 
@@ -17,15 +17,20 @@ export class Acrobot extends Kept {
   #action = 1;
 
   constructor(options = {}) {
+    super();
     const { seed, params = {}, maxSteps = 500 } = checked("options", options, ["seed", "params", "maxSteps"]);
-    super("acrobot", wasm().acrobot_new(positive("maxSteps", maxSteps)), 1);
+    keep(this, "acrobot", wasm().acrobot_new(positive("maxSteps", maxSteps)), 1);
     try {
       this.setParams(params);
-      wasm().acrobot_reset(this[NUMBER], writeSeed(seed));
+      wasm().acrobot_reset(this.#address, writeSeed(seed));
     } catch (error) {
       this.free();
       throw error;
     }
+  }
+
+  get #address() {
+    return addressOf(this);
   }
 
   static restore(snapshot) {
@@ -40,14 +45,14 @@ export class Acrobot extends Kept {
   }
 
   reset(seed) {
-    wasm().acrobot_reset(this[NUMBER], seed === undefined ? 0 : writeSeed(seed));
+    wasm().acrobot_reset(this.#address, seed === undefined ? 0 : writeSeed(seed));
     this.#action = 1;
     return observation();
   }
 
   step(action) {
     if (!isAction(action)) throw invalid(`action ${ACTION}`, action);
-    const flags = wasm().acrobot_step(this[NUMBER], action);
+    const flags = wasm().acrobot_step(this.#address, action);
     this.#action = action;
     const terminated = (flags & 1) !== 0;
     return { observation: observation(), reward: terminated ? 0 : -1, terminated, truncated: (flags & 2) !== 0 };
@@ -58,50 +63,50 @@ export class Acrobot extends Kept {
   }
 
   get observation() {
-    wasm().acrobot_observe(this[NUMBER]);
+    wasm().acrobot_observe(this.#address);
     return observation();
   }
 
   get state() {
-    wasm().acrobot_read(this[NUMBER]);
+    wasm().acrobot_read(this.#address);
     return readState();
   }
 
   set state(state) {
     const valueOf = writeState(state);
-    accept(wasm().acrobot_set_state(this[NUMBER]), valueOf);
+    accept(wasm().acrobot_set_state(this.#address), valueOf);
   }
 
   get energy() {
-    wasm().acrobot_read(this[NUMBER]);
+    wasm().acrobot_read(this.#address);
     return numbers()[4];
   }
 
   get tipHeight() {
-    wasm().acrobot_read(this[NUMBER]);
+    wasm().acrobot_read(this.#address);
     return numbers()[5];
   }
 
   get elapsed() {
-    return wasm().acrobot_elapsed(this[NUMBER]) >>> 0;
+    return wasm().acrobot_elapsed(this.#address) >>> 0;
   }
 
   get maxSteps() {
-    return wasm().acrobot_max_steps(this[NUMBER]) >>> 0;
+    return wasm().acrobot_max_steps(this.#address) >>> 0;
   }
 
   snapshot() {
-    const length = wasm().acrobot_save(this[NUMBER]);
+    const length = wasm().acrobot_save(this.#address);
     return seal([bytes().subarray(0, length)]);
   }
 
   restore(snapshot) {
     const content = unseal(snapshot);
-    wasm().acrobot_save(this[NUMBER]);
+    wasm().acrobot_save(this.#address);
     const rule = `the snapshot must be a valid one of ${header(bytes())}`;
     if (content.length > 256) throw new RangeError(`${rule}, got ${content.length} bytes`);
     bytes().set(content);
-    if (!wasm().acrobot_load(this[NUMBER], content.length)) throw new RangeError(`${rule}, got ${header(content)}`);
+    if (!wasm().acrobot_load(this.#address, content.length)) throw new RangeError(`${rule}, got ${header(content)}`);
     this.#action = 1;
   }
 

@@ -1,7 +1,9 @@
 // Many acrobots.
 
 import { draw } from "./draw.js";
-import { ACTION, Kept, NUMBER, SHOWN, elements, isAction, readState, sample, writeState } from "./kept.js";
+import {
+  ACTION, Kept, SHOWN, addressOf, elements, isAction, keep, readParams, readState, sample, writeParams, writeState,
+} from "./kept.js";
 import { seal, unseal } from "./snapshot.js";
 import { accept, bytes, checked, invalid, positive, wasm, writeSeed } from "./wasm.js";
 
@@ -29,18 +31,17 @@ export class Batch extends Kept {
   #stale = false;
 
   constructor(options) {
+    super();
     const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams"];
     const { count, seed, params = {}, maxSteps = 500, autoreset = "NextStep", ownParams = false } = checked("options", options, names);
     positive("count", count);
     positive("maxSteps", maxSteps);
     if (!AUTORESETS.includes(autoreset)) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset, []);
     if (typeof ownParams !== "boolean") throw invalid("ownParams must be true or false", ownParams, []);
-    const number = wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset), ownParams);
-    const addresses = new Uint32Array(bytes().slice(0, 32).buffer);
-    super("batch", number, count);
+    keep(this, "batch", wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset), ownParams), count);
+    this.#addresses = new Uint32Array(bytes().slice(0, 32).buffer);
     this.#count = count;
     this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams });
-    this.#addresses = addresses;
     this.#names = autoreset === "SameStep" ? RESULTS : RESULTS.slice(0, -1);
     try {
       this.setParams(params);
@@ -50,6 +51,10 @@ export class Batch extends Kept {
       throw error;
     }
     this.#observe();
+  }
+
+  get #address() {
+    return addressOf(this);
   }
 
   #view(index, Type, length) {
@@ -79,18 +84,18 @@ export class Batch extends Kept {
   }
 
   #observe() {
-    wasm().batch_observe(this[NUMBER]);
+    wasm().batch_observe(this.#address);
     this.#copy("observations");
     this.#stale = false;
   }
 
-  /** The batch's number, for a use of acrobot `index`. */
-  #numberFor(index, what = "") {
-    const number = this[NUMBER];
+  /** The batch's address, for a use of acrobot `index`. */
+  #addressFor(index, what = "") {
+    const address = this.#address;
     if (!Number.isInteger(index) || index < 0 || index >= this.#count) {
       throw invalid(`${what}index must be an integer from 0 to ${this.#count - 1}`, index);
     }
-    return number;
+    return address;
   }
 
   get count() {
@@ -102,7 +107,7 @@ export class Batch extends Kept {
   }
 
   get observations() {
-    this[NUMBER];
+    this.#address;
     if (this.#stale || !this.#results.observations.length) this.#observe();
     return this.#results.observations;
   }
@@ -117,11 +122,11 @@ export class Batch extends Kept {
   }
 
   #reset(mask, seed) {
-    const number = this[NUMBER];
+    const address = this.#address;
     const words = seed === undefined ? 0 : writeSeed(seed);
     this.#copy();
     this.#views.mask.set(mask);
-    wasm().batch_reset(number, words);
+    wasm().batch_reset(address, words);
     this.#observe();
     return this.#results.observations;
   }
@@ -137,10 +142,10 @@ export class Batch extends Kept {
       // Reading others can run code that frees the batch or makes the module's memory grow, so they are read first.
       given = elements("actions", actions, this.#count, isAction, ACTION);
     }
-    const number = this[NUMBER];
+    const address = this.#address;
     this.#copy();
     this.#views.actions.set(given);
-    if (!wasm().batch_step(number)) {
+    if (!wasm().batch_step(address)) {
       const index = this.#views.actions.findIndex((action) => action > 2);
       throw invalid(`actions[${index}] ${ACTION}`, this.#views.actions[index]);
     }
@@ -150,30 +155,29 @@ export class Batch extends Kept {
   }
 
   state(index) {
-    wasm().batch_state(this.#numberFor(index), index);
+    wasm().batch_state(this.#addressFor(index), index);
     return readState();
   }
 
   setState(index, state) {
-    this.#numberFor(index);
+    this.#addressFor(index);
     const valueOf = writeState(state);
-    accept(wasm().batch_set_state(this[NUMBER], index), valueOf);
+    accept(wasm().batch_set_state(this.#address, index), valueOf);
     this.#stale = true;
   }
 
   elapsed(index) {
-    return wasm().batch_elapsed(this.#numberFor(index), index) >>> 0;
+    return wasm().batch_elapsed(this.#addressFor(index), index) >>> 0;
   }
 
   paramsOf(index) {
-    this.#numberFor(index);
-    return this.readParams(index);
+    return readParams("batch", this.#addressFor(index), index);
   }
 
   setParamsOf(index, changes) {
-    this.#numberFor(index);
+    this.#addressFor(index);
     if (!this.#settings.ownParams) throw new Error("a batch must be made with ownParams for parameters of each acrobot");
-    this.writeParams(changes, index, () => wasm().batch_set_params_of(this[NUMBER], index));
+    writeParams(changes, () => this.paramsOf(index), () => wasm().batch_set_params_of(this.#address, index));
   }
 
   #header() {
@@ -183,8 +187,8 @@ export class Batch extends Kept {
   }
 
   snapshot() {
-    const number = this[NUMBER];
-    const members = Array.from({ length: this.#count }, (_, i) => bytes().slice(0, wasm().batch_save(number, i)));
+    const address = this.#address;
+    const members = Array.from({ length: this.#count }, (_, i) => bytes().slice(0, wasm().batch_save(address, i)));
     this.#copy();
     return seal([this.#header(), ...members, this.#settings.autoreset === "Disabled" ? this.#views.ended : []]);
   }
@@ -214,13 +218,13 @@ export class Batch extends Kept {
   }
 
   #load(content) {
-    const [number, header] = [this[NUMBER], this.#header()];
+    const [address, header] = [this.#address, this.#header()];
     if (header.some((byte, i) => byte !== content[i])) return false;
     let at = header.length;
     for (let index = 0; index < this.#count; index++) {
       const member = content.subarray(at, at + 256);
       bytes().set(member);
-      const length = wasm().batch_load(number, index, member.length);
+      const length = wasm().batch_load(address, index, member.length);
       if (length === 0) return false;
       at += length;
     }
@@ -234,8 +238,8 @@ export class Batch extends Kept {
 
   draw(context, index, options) {
     const signature = "draw(context, index, options)";
-    this.#numberFor(index, `${signature}: `);
-    draw(signature, context, this.state(index), this.readParams(index), 0, options);
+    this.#addressFor(index, `${signature}: `);
+    draw(signature, context, this.state(index), this.paramsOf(index), 0, options);
   }
 
   get [SHOWN]() {

@@ -1,13 +1,14 @@
 // What acrobots and batches share: the checks of their arguments, and what the module keeps.
 
-import { accept, checked, invalid, numbers, wasm } from "./wasm.js";
+import { accept, bytes, checked, invalid, numbers, wasm } from "./wasm.js";
 
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
-/** The parameters in the order of the module, where three torques follow instead of `torques`. */
+/** The parameters that are numbers, and the three torques, in the order of Rust's `Params`. */
 const NUMBERS = [
   "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2", "gravity", "dt",
   "maxVelocity1", "maxVelocity2", "torques", "torqueNoise",
 ];
+const DYNAMICS = ["book", "nips"];
 export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
 export const isAction = (action) => action === 0 || action === 1 || action === 2;
@@ -37,72 +38,76 @@ export function elements(what, array, count, isValid, rule) {
   return copy;
 }
 
+/** The parameters of acrobot `index` in postcard's format: sixteen numbers, and a byte for the dynamics. A single one ignores the index. */
+export function readParams(kind, address, index) {
+  wasm()[`${kind}_params`](address, index);
+  const values = [...new Float32Array(bytes().slice(0, 64).buffer)];
+  const torques = Object.freeze(values.splice(12, 3));
+  const params = Object.fromEntries(NUMBERS.filter((name) => name !== "torques").map((name, i) => [name, values[i]]));
+  return Object.freeze({ ...params, torques, dynamics: DYNAMICS[bytes()[64]] });
+}
+
+/** Calls `read` for the old parameters, and `set` for new ones, after the changes, whose properties can run code of the caller. */
+export function writeParams(changes, read, set) {
+  const given = checked("params", changes, [...NUMBERS, "dynamics"]);
+  if ("torques" in given) {
+    const { torques } = given;
+    if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques, []);
+    given.torques = [0, 1, 2].map((i) => torques[i]);
+  }
+  const params = { ...read(), ...given };
+  const { torques, dynamics } = params;
+  if (!DYNAMICS.includes(dynamics)) throw invalid('dynamics must be "book" or "nips"', dynamics, []);
+  const values = NUMBERS.flatMap((name) => {
+    const of = name === "torques" ? torques : [params[name]];
+    for (const value of of) if (typeof value !== "number") throw invalid(`${name} must be a number`, value);
+    return of;
+  });
+  bytes().set([...new Uint8Array(Float32Array.from(values).buffer), DYNAMICS.indexOf(dynamics)]);
+  accept(set(), (name) => (name.startsWith("torques") ? torques[name.at(-2)] : params[name]));
+}
+
 /** Frees what the program has forgotten to free. */
-const registry = new FinalizationRegistry(({ kind, number }) => wasm()[`${kind}_free`](number));
+const registry = new FinalizationRegistry(({ kind, address }) => wasm()[`${kind}_free`](address));
 
-/** Properties that only this package can read. */
-export const [NUMBER, SHOWN] = [Symbol("number"), Symbol("shown")];
+/** A property that only this package can read. */
+export const SHOWN = Symbol("shown");
 
-/** What the module keeps under a number: an acrobot or a batch. */
+/** Gives the memory at an address to an acrobot or a batch, and returns that address. No caller can call them, and so pass others. */
+export let keep, addressOf;
+
+/** What the module keeps at an address: an acrobot or a batch. */
 export class Kept {
   #kind;
-  #number;
+  #address = 0;
 
-  /** Without memory, the module returns a negative number. */
-  constructor(kind, number, count) {
-    if (number < 0) throw new RangeError(`acrobots must fit into WebAssembly's memory of at most 4 GiB, got ${count} more`);
-    this.#kind = kind;
-    this.#number = number;
-    registry.register(this, { kind, number }, this);
-  }
-
-  get [NUMBER]() {
-    if (this.#number === undefined) throw new Error(`the ${this.#kind} has been freed`);
-    return this.#number;
+  static {
+    keep = (kept, kind, address, count) => {
+      if (address === 0) throw new RangeError(`acrobots must fit into WebAssembly's memory of at most 4 GiB, got ${count} more`);
+      kept.#kind = kind;
+      kept.#address = address;
+      registry.register(kept, { kind, address }, kept);
+    };
+    addressOf = (kept) => {
+      if (kept.#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
+      return kept.#address;
+    };
   }
 
   get params() {
-    return this.readParams(0);
-  }
-
-  /** The parameters of an acrobot. A single one ignores the index. */
-  readParams(index) {
-    wasm()[`${this.#kind}_params`](this[NUMBER], index);
-    const values = [...numbers()];
-    const torques = Object.freeze(values.splice(12, 3));
-    const params = Object.fromEntries(NUMBERS.filter((name) => name !== "torques").map((name, i) => [name, values[i]]));
-    return Object.freeze({ ...params, torques, dynamics: values.at(-1) === 1 ? "nips" : "book" });
+    return readParams(this.#kind, addressOf(this), 0);
   }
 
   setParams(changes) {
-    this.writeParams(changes, 0, () => wasm()[`${this.#kind}_set_params`](this[NUMBER]));
-  }
-
-  /** Reads the old parameters and calls `set` after the changes, whose properties can run code of the caller. */
-  writeParams(changes, index, set) {
-    const given = checked("params", changes, [...NUMBERS, "dynamics"]);
-    if ("torques" in given) {
-      const { torques } = given;
-      if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques, []);
-      given.torques = [0, 1, 2].map((i) => torques[i]);
-    }
-    const params = { ...this.readParams(index), ...given };
-    const { torques, dynamics } = params;
-    if (dynamics !== "book" && dynamics !== "nips") throw invalid('dynamics must be "book" or "nips"', dynamics, []);
-    const values = NUMBERS.flatMap((name) => {
-      const of = name === "torques" ? torques : [params[name]];
-      for (const value of of) if (typeof value !== "number") throw invalid(`${name} must be a number`, value);
-      return of;
-    });
-    numbers().set([...values, Number(dynamics === "nips")]);
-    accept(set(), (name) => (name.startsWith("torques") ? torques[name.at(-2)] : params[name]));
+    const set = () => wasm()[`${this.#kind}_set_params`](addressOf(this));
+    writeParams(changes, () => readParams(this.#kind, addressOf(this), 0), set);
   }
 
   free() {
-    if (this.#number === undefined) return;
+    if (this.#address === 0) return;
     registry.unregister(this);
-    wasm()[`${this.#kind}_free`](this.#number);
-    this.#number = undefined;
+    wasm()[`${this.#kind}_free`](this.#address);
+    this.#address = 0;
   }
 
   // Older engines have no `using`, and no such symbol.
@@ -112,7 +117,7 @@ export class Kept {
 
   /** What Node.js's console shows. */
   [Symbol.for("nodejs.util.inspect.custom")](depth, options, inspect) {
-    const shown = this.#number === undefined ? "freed" : inspect(this[SHOWN], options);
+    const shown = this.#address === 0 ? "freed" : inspect(this[SHOWN], options);
     return `${this.constructor.name} ${shown}`;
   }
 }

@@ -32,15 +32,11 @@ const BUFFER = 1 << 19;
 
 /** An instance of the module. */
 class Instance {
-  #exports = instantiate();
-
-  get exports() {
-    return this.#exports;
-  }
+  exports = instantiate();
 
   /** A view of the buffer. It ends when the module's memory grows. */
   bytes(length) {
-    return new Uint8Array(this.#exports.memory.buffer, this.#exports.buffer(), length);
+    return new Uint8Array(this.exports.memory.buffer, this.exports.buffer(), length);
   }
 
   /** Calls one of the module's two functions that load, with a file in the buffer. */

@@ -28,9 +28,9 @@ export function wasm() {
 let numbersView = new Float32Array();
 let bytesView = new Uint8Array();
 
-/** The memory for 17 numbers. Like every view of the module's memory, it has length 0 once that memory has grown. */
+/** The memory for six numbers. Like every view of the module's memory, it has length 0 once that memory has grown. */
 export function numbers() {
-  if (numbersView.length === 0) numbersView = new Float32Array(wasm().memory.buffer, wasm().numbers(), 17);
+  if (numbersView.length === 0) numbersView = new Float32Array(wasm().memory.buffer, wasm().numbers(), 6);
   return numbersView;
 }
 

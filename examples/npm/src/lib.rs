@@ -1,12 +1,11 @@
 //! The WebAssembly module of the npm package `acrobot-rs`: exported functions that its JavaScript calls.
 //!
-//! An acrobot or a batch has a number. Longer data passes through the memory in `memory`. The JavaScript checks numbers,
-//! lengths and actions, and the crate checks parameters, states and snapshots.
+//! JavaScript keeps the address of each acrobot and of each batch in a private field, until it frees it. Longer data passes through
+//! the memory in `memory`. The JavaScript checks numbers, lengths and actions, and the crate checks parameters, states and snapshots.
 
 mod many;
 mod memory;
 mod single;
-mod table;
 
 use lol_alloc::{AssumeSingleThreaded, FreeListAllocator};
 

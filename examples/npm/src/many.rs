@@ -1,6 +1,5 @@
 //! Many acrobots at once: the class `Batch` of the package.
 
-use std::cell::Cell;
 use std::num::NonZeroU32;
 
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
@@ -8,7 +7,6 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Fast, ResetOptions};
 
 use crate::memory::{self, set_bytes, set_numbers};
-use crate::table::Table;
 
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
@@ -21,7 +19,7 @@ type Memory = (
 );
 
 /// A batch with its memory, and what JavaScript reads and writes.
-struct Many {
+pub struct Many {
     batch: Batch<Fast, Memory, LANES>,
     own_params: bool,
     /// JavaScript writes here before a step.
@@ -35,10 +33,6 @@ struct Many {
     final_observations: Vec<[f32; 6]>,
     /// Whose episodes have ended: in this step, or with `Autoreset::Disabled` since their last reset.
     ended: Vec<bool>,
-}
-
-thread_local! {
-    static BATCHES: Cell<Table<Many>> = const { Cell::new(Table::EMPTY) };
 }
 
 /// `count` copies of a value, or `None` if there is no memory for them.
@@ -74,7 +68,7 @@ impl Many {
 }
 
 /// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of what JavaScript reads and
-/// writes. Returns its number, or −1 if there is no memory for it.
+/// writes. Returns the batch's address, or 0 if there is no memory for it.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_new(
     count: usize,
@@ -82,10 +76,8 @@ pub extern "C" fn batch_new(
     max_steps: u32,
     autoreset: u32,
     own_params: bool,
-) -> i32 {
-    let Some(mut many) = Many::new(words, count, own_params) else {
-        return -1;
-    };
+) -> Option<Box<Many>> {
+    let mut many = memory::keep(Many::new(words, count, own_params)?)?;
     many.batch
         .set_limit(NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN));
     many.batch.set_autoreset(match autoreset {
@@ -104,127 +96,105 @@ pub extern "C" fn batch_new(
         many.mask.as_ptr().addr(),
     ];
     set_bytes(addresses.into_iter().flat_map(usize::to_le_bytes));
-    memory::insert(&BATCHES, many)
+    Some(many)
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_free(number: usize) {
-    memory::with(&BATCHES, |table| table.remove(number));
+pub extern "C" fn batch_free(many: Box<Many>) {
+    drop(many);
 }
 
 /// Resets the acrobots in the mask, with a seed of this many 32-bit words, or with the next draws if there are none.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_reset(number: usize, words: usize) {
+pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
-    memory::with_value(&BATCHES, number, |many| {
-        let options = ResetOptions { seed, bounds: None };
-        // The lengths are equal, so this cannot fail.
-        let _ = many.batch.reset_masked(&many.mask, options);
-        for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
-            *ended &= !reset;
-        }
-    });
+    let options = ResetOptions { seed, bounds: None };
+    // The lengths are equal, so this cannot fail.
+    let _ = many.batch.reset_masked(&many.mask, options);
+    for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
+        *ended &= !reset;
+    }
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_observe(number: usize) {
-    memory::with_value(&BATCHES, number, |many| {
-        // The lengths are equal, so this cannot fail.
-        let _ = many.batch.observe(&mut many.observations);
-    });
+pub extern "C" fn batch_observe(many: &mut Many) {
+    // The lengths are equal, so this cannot fail.
+    let _ = many.batch.observe(&mut many.observations);
 }
 
 /// Steps. Returns false if an action is above 2. Then nothing changes.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_step(number: usize) -> bool {
-    memory::with_value(&BATCHES, number, |many| {
-        let buffers =
-            StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
-                .with_observations(&mut many.observations)
-                .with_final_observations(&mut many.final_observations);
-        let stepped = many.batch.step(&many.actions, buffers).is_ok();
-        if stepped {
-            let lasting = many.batch.autoreset() == Autoreset::Disabled;
-            let flags = many.terminated.iter().zip(&many.truncated);
-            for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
-                *ended = (*ended & lasting) | terminated | truncated;
-            }
+pub extern "C" fn batch_step(many: &mut Many) -> bool {
+    let buffers = StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
+        .with_observations(&mut many.observations)
+        .with_final_observations(&mut many.final_observations);
+    let stepped = many.batch.step(&many.actions, buffers).is_ok();
+    if stepped {
+        let lasting = many.batch.autoreset() == Autoreset::Disabled;
+        let flags = many.terminated.iter().zip(&many.truncated);
+        for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
+            *ended = (*ended & lasting) | terminated | truncated;
         }
-        stepped
-    })
+    }
+    stepped
 }
 
 /// Writes the state of acrobot `index`.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_state(number: usize, index: usize) {
-    memory::with_value(&BATCHES, number, |many| {
-        if let Some(state) = many.batch.state(index) {
-            set_numbers(state.into());
-        }
-    });
+pub extern "C" fn batch_state(many: &Many, index: usize) {
+    if let Some(state) = many.batch.state(index) {
+        set_numbers(state.into());
+    }
 }
 
 /// Sets the state of acrobot `index`. Returns 0, or the length of the reason for which it is rejected.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_state(number: usize, index: usize) -> usize {
-    let state = memory::get_state();
-    memory::with_value(&BATCHES, number, |many| {
-        memory::reason(many.batch.set_state(index, state))
-    })
+pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> usize {
+    memory::reason(many.batch.set_state(index, memory::get_state()))
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_elapsed(number: usize, index: usize) -> u32 {
-    memory::with_value(&BATCHES, number, |many| many.batch.elapsed(index)).unwrap_or_default()
+pub extern "C" fn batch_elapsed(many: &Many, index: usize) -> u32 {
+    many.batch.elapsed(index).unwrap_or_default()
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_params(number: usize, index: usize) {
-    memory::with_value(&BATCHES, number, |many| {
-        if let Some(params) = many.batch.params_of(index) {
-            memory::set_params(&params);
-        }
-    });
+pub extern "C" fn batch_params(many: &Many, index: usize) {
+    if let Some(params) = many.batch.params_of(index) {
+        memory::save(&params);
+    }
 }
 
 /// Sets the parameters. Returns 0, or the length of the reason for which they are rejected.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params(number: usize) -> usize {
-    memory::with_value(&BATCHES, number, |many| {
-        memory::reason(many.batch.set_params(memory::get_params()))
-    })
+pub extern "C" fn batch_set_params(many: &mut Many) -> usize {
+    memory::reason(many.batch.set_params(memory::get_params()))
 }
 
 /// Sets the parameters of acrobot `index` in a batch with own parameters. Returns as [`batch_set_params`].
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params_of(number: usize, index: usize) -> usize {
-    memory::with_value(&BATCHES, number, |many| {
-        memory::reason(many.batch.set_params_of(index, memory::get_params()))
-    })
+pub extern "C" fn batch_set_params_of(many: &mut Many, index: usize) -> usize {
+    memory::reason(many.batch.set_params_of(index, memory::get_params()))
 }
 
 /// Writes acrobot `index` in the format of postcard, and returns its length.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_save(number: usize, index: usize) -> usize {
-    let member = memory::with_value(&BATCHES, number, |many| many.batch.member(index));
+pub extern "C" fn batch_save(many: &Many, index: usize) -> usize {
+    let member = many.batch.member(index);
     member.map_or(0, |member| memory::save(&member))
 }
 
 /// Loads acrobot `index` from the first of `len` bytes. Returns how many these are, or 0 if they are invalid.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_load(number: usize, index: usize, len: usize) -> usize {
-    let bytes = memory::get_bytes();
-    let bytes = bytes.get(..len).unwrap_or_default();
-    let Ok((member, rest)) = postcard::take_from_bytes::<Member<Fast>>(bytes) else {
+pub extern "C" fn batch_load(many: &mut Many, index: usize, len: usize) -> usize {
+    let Some((member, used)) = memory::load::<Member<Fast>>(len) else {
         return 0;
     };
-    memory::with_value(&BATCHES, number, |many| {
-        // The first brings the parameters, if all acrobots share them.
-        let shared = index > 0 || many.own_params || many.batch.set_params(member.params).is_ok();
-        if shared && many.batch.set_member(index, member).is_ok() {
-            bytes.len() - rest.len()
-        } else {
-            0
-        }
-    })
+    // The first brings the parameters, if all acrobots share them.
+    let shared = index > 0 || many.own_params || many.batch.set_params(member.params).is_ok();
+    if shared && many.batch.set_member(index, member).is_ok() {
+        used
+    } else {
+        0
+    }
 }

@@ -1,44 +1,26 @@
-//! What the exported functions share: acrobots, batches, and memory to exchange values with JavaScript.
+//! What the exported functions share: memory for acrobots and batches, and to exchange values with JavaScript.
 
+use std::alloc::{Layout, alloc};
 use std::cell::Cell;
-use std::thread::LocalKey;
 
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::Dynamics;
 use acrobot::{Error, Params, State};
 
-use crate::table::Table;
-
-type Shared<T> = LocalKey<Cell<Table<T>>>;
-
-/// Calls `f` with a table, which is moved out meanwhile. A `RefCell`, or `with` for `try_with`, would bring a panic.
-pub fn with<T, R: Default>(shared: &'static Shared<T>, f: impl FnOnce(&mut Table<T>) -> R) -> R {
-    let called = shared.try_with(|cell| {
-        let mut table = cell.replace(Table::EMPTY);
-        let result = f(&mut table);
-        cell.set(table);
-        result
-    });
-    called.unwrap_or_default()
+/// Moves a value to the heap, or returns `None` if there is no memory. `Box::new` would panic.
+pub fn keep<T>(value: T) -> Option<Box<T>> {
+    // SAFETY: the size of what JavaScript keeps is not 0, and a box frees memory of this layout.
+    unsafe {
+        let memory = alloc(Layout::new::<T>()).cast::<T>();
+        if memory.is_null() {
+            return None;
+        }
+        memory.write(value);
+        Some(Box::from_raw(memory))
+    }
 }
 
-/// Calls `f` with the value of this number. JavaScript uses no number after it has removed the value.
-pub fn with_value<T, R: Default>(
-    shared: &'static Shared<T>,
-    number: usize,
-    f: impl FnOnce(&mut T) -> R,
-) -> R {
-    with(shared, |table| table.get_mut(number).map(f)).unwrap_or_default()
-}
-
-/// The number of a new value, or −1 if there is no memory for it.
-pub fn insert<T>(shared: &'static Shared<T>, value: T) -> i32 {
-    let number = with(shared, |table| table.insert(value));
-    number.map_or(-1, |number| number as i32)
-}
-
-/// The sixteen numbers of `Params`, then their dynamics.
-const NUMBERS_LEN: usize = 17;
+/// A state, the energy and the tip's height, or an observation.
+const NUMBERS_LEN: usize = 6;
 /// The longest seed, 64 words of 4 bytes. Snapshots and error texts are shorter.
 const BYTES_LEN: usize = 256;
 
@@ -64,10 +46,6 @@ pub fn get_state() -> State<f32> {
     State::from([theta1, theta2, dtheta1, dtheta2])
 }
 
-pub fn get_bytes() -> [u8; BYTES_LEN] {
-    BYTES.get()
-}
-
 fn set<T>(cells: &Cell<[T]>, values: impl IntoIterator<Item = T>) -> usize {
     let pairs = cells.as_slice_of_cells().iter().zip(values);
     pairs.map(|(cell, value)| cell.set(value)).count()
@@ -82,7 +60,7 @@ pub fn set_bytes(values: impl IntoIterator<Item = u8>) -> usize {
     BYTES.with(|cells| set(cells, values))
 }
 
-/// Writes a snapshot in the format of postcard, and returns its length.
+/// Writes parameters or a snapshot in the format of postcard, and returns the length.
 pub fn save(value: &impl serde::Serialize) -> usize {
     let mut bytes = [0; BYTES_LEN];
     let saved = postcard::to_slice(value, &mut bytes);
@@ -100,48 +78,16 @@ pub fn seed(words: usize) -> SeedSequence {
     SeedSequence::from_words(&seed)
 }
 
-/// The numbers of parameters, in the order in which JavaScript reads and writes them.
-fn fields(params: &mut Params<f32>) -> [&mut f32; 16] {
-    let [negative, zero, positive] = &mut params.torques;
-    [
-        &mut params.length1,
-        &mut params.length2,
-        &mut params.mass1,
-        &mut params.mass2,
-        &mut params.center_of_mass1,
-        &mut params.center_of_mass2,
-        &mut params.inertia1,
-        &mut params.inertia2,
-        &mut params.gravity,
-        &mut params.dt,
-        &mut params.max_velocity1,
-        &mut params.max_velocity2,
-        negative,
-        zero,
-        positive,
-        &mut params.torque_noise,
-    ]
+/// Loads what [`save`] writes from the first of `len` bytes. Returns it with the number of its bytes, or `None` if they are invalid.
+pub fn load<T: serde::de::DeserializeOwned>(len: usize) -> Option<(T, usize)> {
+    let bytes = BYTES.get();
+    let (value, rest) = postcard::take_from_bytes(bytes.get(..len)?).ok()?;
+    Some((value, len - rest.len()))
 }
 
-/// Writes parameters, the dynamics after the numbers: 0 for the book's.
-pub fn set_params(params: &Params<f32>) {
-    let nips = f32::from(params.dynamics == Dynamics::Nips);
-    let mut params = *params;
-    let numbers = fields(&mut params).map(|number| *number);
-    NUMBERS.with(|cells| set(cells, numbers.into_iter().chain([nips])));
-}
-
-/// Reads what [`set_params`] writes.
+/// The parameters that JavaScript has written as [`save`] writes them.
 pub fn get_params() -> Params<f32> {
-    let mut params = Params::DEFAULT;
-    let [numbers @ .., nips] = NUMBERS.get();
-    for (field, number) in fields(&mut params).into_iter().zip(numbers) {
-        *field = number;
-    }
-    if nips != 0.0 {
-        params.dynamics = Dynamics::Nips;
-    }
-    params
+    load(BYTES_LEN).map_or(Params::DEFAULT, |(params, _)| params)
 }
 
 /// 0, or the length of the reason for which numbers are rejected: name, rule and unit, a line each. JavaScript has the

@@ -1,116 +1,96 @@
 //! Single acrobots: the class `Acrobot` of the package.
 
-use std::cell::Cell;
 use std::num::NonZeroU32;
 
 use acrobot::{Acrobot, Action, Fast, ResetOptions, TimeLimit};
 
 use crate::memory::{self, set_numbers};
-use crate::table::Table;
 
 type Env = TimeLimit<Acrobot<Fast>>;
 
-thread_local! {
-    static ENVS: Cell<Table<Env>> = const { Cell::new(Table::EMPTY) };
-}
-
-/// Makes an acrobot that JavaScript resets, and returns its number, or −1 if there is no memory for it.
+/// Makes an acrobot that JavaScript resets, and returns its address, or 0 if there is no memory for it.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_new(max_steps: u32) -> i32 {
+pub extern "C" fn acrobot_new(max_steps: u32) -> Option<Box<Env>> {
     let limit = NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN);
-    memory::insert(&ENVS, TimeLimit::new(Acrobot::new(0), limit))
+    memory::keep(TimeLimit::new(Acrobot::new(0), limit))
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_free(number: usize) {
-    memory::with(&ENVS, |table| table.remove(number));
+pub extern "C" fn acrobot_free(env: Box<Env>) {
+    drop(env);
 }
 
 /// Resets, with a seed of this many 32-bit words, or with the next draws if there are none.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_reset(number: usize, words: usize) {
+pub extern "C" fn acrobot_reset(env: &mut Env, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
-    memory::with_value(&ENVS, number, |env| {
-        let options = ResetOptions { seed, bounds: None };
-        set_numbers(env.reset_with(options).to_array());
-    });
+    let options = ResetOptions { seed, bounds: None };
+    set_numbers(env.reset_with(options).to_array());
 }
 
 /// Steps with an action from 0 to 2. In the result, bit 0 says that the step reached the goal, and bit 1 that the episode
 /// was truncated.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_step(number: usize, action: u8) -> u32 {
-    let action = Action::try_from(action).unwrap_or(Action::Zero);
-    memory::with_value(&ENVS, number, |env| {
-        let step = env.step(action);
-        set_numbers(step.observation.to_array());
-        u32::from(step.terminated) | u32::from(step.truncated) << 1
-    })
+pub extern "C" fn acrobot_step(env: &mut Env, action: u8) -> u32 {
+    let step = env.step(Action::try_from(action).unwrap_or(Action::Zero));
+    set_numbers(step.observation.to_array());
+    u32::from(step.terminated) | u32::from(step.truncated) << 1
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_observe(number: usize) {
-    memory::with_value(&ENVS, number, |env| {
-        set_numbers(env.inner().observation().to_array());
-    });
+pub extern "C" fn acrobot_observe(env: &Env) {
+    set_numbers(env.inner().observation().to_array());
 }
 
 /// Writes the state, the energy and the tip's height.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_read(number: usize) {
-    memory::with_value(&ENVS, number, |env| {
-        let pendulum = env.inner().pendulum();
-        let [a, b, c, d] = pendulum.state().into();
-        set_numbers([a, b, c, d, pendulum.energy(), pendulum.tip_height()]);
-    });
+pub extern "C" fn acrobot_read(env: &Env) {
+    let pendulum = env.inner().pendulum();
+    let [a, b, c, d] = pendulum.state().into();
+    set_numbers([a, b, c, d, pendulum.energy(), pendulum.tip_height()]);
 }
 
 /// Sets the state. Returns 0, or the length of the reason for which it is rejected.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_set_state(number: usize) -> usize {
-    let state = memory::get_state();
-    memory::with_value(&ENVS, number, |env| memory::reason(env.set_state(state)))
+pub extern "C" fn acrobot_set_state(env: &mut Env) -> usize {
+    memory::reason(env.set_state(memory::get_state()))
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_params(number: usize) {
-    memory::with_value(&ENVS, number, |env| memory::set_params(env.params()));
+pub extern "C" fn acrobot_params(env: &Env) {
+    memory::save(env.params());
 }
 
 /// Sets the parameters. Returns 0, or the length of the reason for which they are rejected.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_set_params(number: usize) -> usize {
-    memory::with_value(&ENVS, number, |env| {
-        memory::reason(env.set_params(memory::get_params()))
-    })
+pub extern "C" fn acrobot_set_params(env: &mut Env) -> usize {
+    memory::reason(env.set_params(memory::get_params()))
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_max_steps(number: usize) -> u32 {
-    memory::with_value(&ENVS, number, |env| env.limit().get())
+pub extern "C" fn acrobot_max_steps(env: &Env) -> u32 {
+    env.limit().get()
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_elapsed(number: usize) -> u32 {
-    memory::with_value(&ENVS, number, |env| env.elapsed())
+pub extern "C" fn acrobot_elapsed(env: &Env) -> u32 {
+    env.elapsed()
 }
 
 /// Writes a snapshot in the format of postcard, and returns its length.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_save(number: usize) -> usize {
-    memory::with_value(&ENVS, number, |env| memory::save(env))
+pub extern "C" fn acrobot_save(env: &Env) -> usize {
+    memory::save(env)
 }
 
 /// Loads the snapshot in the first `len` bytes. Returns false and changes nothing if it is invalid.
 #[unsafe(no_mangle)]
-pub extern "C" fn acrobot_load(number: usize, len: usize) -> bool {
-    let bytes = memory::get_bytes();
-    let bytes = bytes.get(..len).unwrap_or_default();
-    match postcard::take_from_bytes(bytes) {
-        Ok((loaded, [])) => memory::with_value(&ENVS, number, |env| {
+pub extern "C" fn acrobot_load(env: &mut Env, len: usize) -> bool {
+    match memory::load(len) {
+        Some((loaded, used)) if used == len => {
             *env = loaded;
             true
-        }),
+        }
         _ => false,
     }
 }

@@ -4,10 +4,10 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { inspect } from "node:util";
-import { gzipSync } from "node:zlib";
 
 import { ACTIONS, bits as bitsOf, trace } from "../../web/test/native.mjs";
 import { Acrobot, Batch } from "../dist/index.js";
+import { sealed } from "./module.mjs";
 
 const bits = ({ state }) => bitsOf(Object.values(state));
 
@@ -230,12 +230,8 @@ test("a snapshot has the bytes of Rust's postcard, then its checksum", () => {
   const stored = readFileSync(new URL("../../../tests/data/snapshots_1.txt", import.meta.url), "utf8");
   const [rust] = /^076163726f626f740104666173740.*$/m.exec(stored);
   const snapshot = Buffer.from(new Acrobot({ seed: 3 }).snapshot());
-  assert.equal(snapshot.subarray(0, -4).toString("hex"), `${rust}f40300`);
-  assert.deepEqual(snapshot.subarray(-4), crc32(snapshot.subarray(0, -4)));
+  assert.deepEqual(snapshot, sealed(Buffer.from(`${rust}f40300`, "hex")));
 });
-
-/** CRC-32 as zlib computes it: the end of a gzip file has it, before four bytes of length. */
-const crc32 = (bytes) => gzipSync(bytes).subarray(-8, -4);
 
 test("damaged snapshots, and those of others, are rejected, and nothing changes", () => {
   const acrobot = busy();
@@ -265,7 +261,7 @@ test("damaged snapshots, and those of others, are rejected, and nothing changes"
   const changed = (start, ...bytes) => {
     const body = Buffer.from(before.subarray(0, -4));
     body.set(bytes, start);
-    return Buffer.concat([body, crc32(body)]);
+    return sealed(body);
   };
   assert.ok(restores(changed(8, 1)));
   for (const [bytes, message] of [
@@ -299,7 +295,7 @@ test("after free, every use throws, and other acrobots continue", () => {
   for (const use of [...uses, ...reads, write, () => acrobot.restore(before)]) {
     assert.throws(use, { name: "Error", message: "the acrobot has been freed" });
   }
-  // Its number is used again.
+  // Its memory is used again.
   const third = new Acrobot({ seed: 3 });
   assert.throws(() => acrobot.step(1), /freed/);
   assert.deepEqual(third.snapshot(), new Acrobot({ seed: 3 }).snapshot());
@@ -307,5 +303,12 @@ test("after free, every use throws, and other acrobots continue", () => {
   if (Symbol.dispose) {
     third[Symbol.dispose]();
     assert.throws(() => third.step(1), /freed/);
+  }
+});
+
+test("a method rejects what is no acrobot, whose address it would not have", () => {
+  const base = Object.getPrototypeOf(Acrobot);
+  for (const wrong of [{}, new Batch({ count: 1 }), new Proxy(new Acrobot(), {}), new base(), Reflect.construct(base, ["acrobot", 4096], Acrobot)]) {
+    assert.throws(() => Acrobot.prototype.step.call(wrong, 1), TypeError);
   }
 });

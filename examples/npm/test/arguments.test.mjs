@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { instance } from "./instance.mjs";
+import { instance } from "./module.mjs";
 
 const { Acrobot, Batch, size } = await instance();
 

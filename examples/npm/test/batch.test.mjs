@@ -5,10 +5,9 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { setFlagsFromString } from "node:v8";
 import { runInNewContext } from "node:vm";
-import { gzipSync } from "node:zlib";
 
 import { Acrobot, Batch } from "../dist/index.js";
-import { instance } from "./instance.mjs";
+import { instance, sealed } from "./module.mjs";
 
 const COUNT = 21; // the last block is partly filled
 const OPTIONS = { seed: 42n, count: COUNT, maxSteps: 25, params: { torqueNoise: 0.5, mass1: 1.5 } };
@@ -116,9 +115,6 @@ test("a batch's snapshot continues with the same bits", () => {
     }
   }
 });
-
-/** CRC-32 as zlib computes it: the end of a gzip file has it, before four bytes of length. */
-const sealed = (bytes) => Buffer.concat([bytes, gzipSync(bytes).subarray(-8, -4)]);
 
 test("acrobots with own parameters have the bits of acrobots alone, also after a snapshot", () => {
   const batch = new Batch({ ...OPTIONS, ownParams: true });
@@ -268,13 +264,4 @@ test("memory grows while batches are in use, and is used again after free and af
     await new Promise((resolve) => setTimeout(resolve));
   }
   assert.ok(size() < grown + 20e6, `${size()} bytes after ${grown}`);
-});
-
-test("many acrobots at a time keep their numbers apart", () => {
-  const acrobots = Array.from({ length: 3000 }, (_, seed) => new Acrobot({ seed }));
-  acrobots.forEach((acrobot, seed) => seed % 3 === 0 && acrobot.free());
-  const more = Array.from({ length: 1500 }, (_, seed) => new Acrobot({ seed: seed + 10_000 }));
-  const check = (acrobot, seed) => assert.deepEqual(acrobot.observation, new Acrobot({ seed }).observation);
-  acrobots.forEach((acrobot, seed) => seed % 3 && check(acrobot, seed));
-  more.forEach((acrobot, seed) => check(acrobot, seed + 10_000));
 });

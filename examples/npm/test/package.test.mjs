@@ -8,31 +8,26 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { buildSync, context } from "esbuild";
-import { chromium } from "playwright-core";
-import * as selenium from "selenium-webdriver";
+import { buildSync } from "esbuild";
 
 import { launch } from "../browser.mjs";
-import * as webdriver from "../webdriver.mjs";
 
 const here = fileURLToPath(new URL("..", import.meta.url));
 const root = join(here, "../..");
 const [, version] = /^version = "(.*)"/m.exec(readFileSync(join(root, "Cargo.toml"), "utf8"));
 const folder = mkdtempSync(join(tmpdir(), "acrobot-npm-"));
 const run = (command, args, options) => execFileSync(command, args, { cwd: folder, encoding: "utf8", ...options });
-const engine = process.env.ENGINE ?? "chromium";
-let browser, origin, close, other;
+let browser, origin, close;
 
 before(async () => {
   run("npm", ["init", "-y"]);
   run("npm", ["install", "--silent", join(here, `acrobot-rs-${version}.tgz`)]);
   writeFileSync(join(folder, "record.js"), `(${record})()`);
-  ({ browser, origin, close } = await launch(engine === "chromium" ? chromium : null, context, folder));
-  if (engine !== "chromium") other = await webdriver.launch(engine, selenium);
+  ({ browser, origin, close } = await launch(folder));
 });
 
 after(async () => {
-  await Promise.all([close?.(), other?.close()]);
+  await close?.();
   rmSync(folder, { recursive: true });
 });
 
@@ -56,7 +51,7 @@ function record() {
 /** Opens a page in a browser and calls `play` with it. Asserts that there are no errors. Returns what the console has. */
 async function open(html, play = () => {}) {
   writeFileSync(join(folder, "index.html"), `<link rel="icon" href="data:,"><script src="record.js"></script>${html}`);
-  const page = other?.page ?? (await browser.newPage());
+  const page = await browser.newPage();
   await page.goto(origin);
   await play(page);
   const { lines, errors } = await page.evaluate(() => window.recorded);

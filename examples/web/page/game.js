@@ -1,7 +1,6 @@
 // One episode: its seed, parameters, actions and states.
 
 import { Acrobot } from "./acrobot-rs/index.js";
-import { uprightEnergy } from "./acrobot-rs/policies.js";
 import { LIMIT } from "./settings.js";
 
 export class Game {
@@ -52,11 +51,6 @@ export class Game {
   /** The four numbers of the state, the energy and the height of the tip. */
   get numbers() {
     return this.#rows.at(-1);
-  }
-
-  /** The energy of standing upright, J. */
-  get standing() {
-    return uprightEnergy(this.acrobot.params);
   }
 
   /** Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames than the physics takes steps. */

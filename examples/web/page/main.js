@@ -1,6 +1,6 @@
 // Connects the page to an episode and to the panels.
 
-import { Learner, bangBang, energyLaw } from "./acrobot-rs/policies.js";
+import { Learner, bangBang, energyLaw, uprightEnergy } from "./acrobot-rs/policies.js";
 import { Game } from "./game.js";
 import { decodeRun, encodeRun } from "./link.js";
 import { attempt, parametersPanel } from "./parameters.js";
@@ -149,7 +149,7 @@ function start() {
 
   const plots = () => {
     const [theta1, theta2, dtheta1, dtheta2, energy, heights] = [0, 1, 2, 3, 4, 5].map((index) => game.column(index));
-    const { standing } = game;
+    const standing = uprightEnergy(game.acrobot.params);
     const upright = [`upright: ${number(standing)} J`, "hint"];
     const height = [`tip height ${number(heights.at(-1))} m`, ""];
     const range = rangeOf([...energy, standing, -standing]);
@@ -238,23 +238,20 @@ function start() {
       pointers.set(event.pointerId, side);
       hold(side, true);
     });
-    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
-      element.addEventListener(end, ({ pointerId }) => {
-        const side = pointers.get(pointerId);
-        pointers.delete(pointerId);
-        if (side && ![...pointers.values()].includes(side)) hold(side, false);
-      });
-    }
+    element.addEventListener("lostpointercapture", ({ pointerId }) => {
+      const side = pointers.get(pointerId);
+      pointers.delete(pointerId);
+      if (![...pointers.values()].includes(side)) hold(side, false);
+    });
+    element.addEventListener("contextmenu", (event) => event.preventDefault());
   };
   // A mouse's click only focuses the picture.
   holdBy($("stage"), ({ pointerType, offsetX }) => (pointerType === "mouse" ? null : offsetX < $("stage").clientWidth / 2 ? "left" : "right"));
-  $("stage").addEventListener("contextmenu", (event) => event.preventDefault());
   for (const side of ["left", "right"]) {
     const button = $(side);
     holdBy(button, () => side);
     button.addEventListener("keydown", ({ key }) => [" ", "Enter"].includes(key) && hold(side, true));
     button.addEventListener("keyup", ({ key }) => [" ", "Enter"].includes(key) && hold(side, false));
-    button.addEventListener("contextmenu", (event) => event.preventDefault());
   }
   Object.entries({ pause: toggle, single, reset, next }).forEach(([id, act]) => ($(id).onclick = act));
   $("policy").onchange = ({ target }) => choose(target.value);

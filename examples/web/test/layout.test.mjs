@@ -14,18 +14,24 @@ const SCREENS = {
   desktop: { viewport: { width: 1280, height: 900 } },
 };
 
+/** Returns a function that touches an element: the type of the event, and for each finger the part of the element's width, from the left. */
+async function fingers(page, selector) {
+  await page.locator(selector).scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await page.locator(selector).boundingBox();
+  const session = await page.context().newCDPSession(page);
+  const at = (part) => ({ x: x + part * width, y: y + height / 2, id: part * 10 });
+  return (type, ...parts) => session.send("Input.dispatchTouchEvent", { type, touchPoints: parts.map(at) });
+}
+
 test("a touched button applies torque until it is released", () =>
   open(
     async (page) => {
       await paused(page, 42);
       await page.focus("#stage");
-      await page.locator("#right").scrollIntoViewIfNeeded();
-      const { x, y, width, height } = await page.locator("#right").boundingBox();
-      const finger = await page.context().newCDPSession(page);
-      const touch = (type, touchPoints) => finger.send("Input.dispatchTouchEvent", { type, touchPoints });
-      await touch("touchStart", [{ x: x + width / 2, y: y + height / 2 }]);
+      const touch = await fingers(page, "#right");
+      await touch("touchStart", 0.5);
       await page.keyboard.press("s");
-      await touch("touchEnd", []);
+      await touch("touchEnd");
       await page.keyboard.press("s");
       assert.deepEqual(await linkedActions(page), [2, 1]);
     },
@@ -36,11 +42,7 @@ test("a half of the picture applies torque while it is touched", () =>
   open(
     async (page) => {
       await paused(page, 42);
-      await page.evaluate(() => scrollTo(0, 0));
-      const { x, y, width, height } = await page.locator("#stage").boundingBox();
-      const finger = await page.context().newCDPSession(page);
-      const at = (part) => ({ x: x + part * width, y: y + height / 2, id: part * 10 });
-      const touch = (type, ...parts) => finger.send("Input.dispatchTouchEvent", { type, touchPoints: parts.map(at) });
+      const touch = await fingers(page, "#stage");
       const step = () => page.evaluate(() => document.querySelector("#single").click());
       for (const [type, ...parts] of [["touchStart", 0.2], ["touchEnd"], ["touchStart", 0.9], ["touchStart", 0.9, 0.2], ["touchEnd", 0.2], ["touchEnd"]]) {
         await touch(type, ...parts);

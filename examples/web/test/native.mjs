@@ -2,7 +2,6 @@
 
 import { spawnSync } from "node:child_process";
 
-// Not this folder, whose Cargo configuration builds for WebAssembly.
 const root = new URL("../../..", import.meta.url);
 
 /** The actions of several tests. */

@@ -6,9 +6,10 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
+import { inChromium } from "../../npm/browser.mjs";
 import { Learner } from "../dist/acrobot-rs/policies.js";
 import { ACTIONS, bits, trace } from "./native.mjs";
-import { downloaded, folder, inChromium, linkedActions, open, paused, press, shownBits, steps, text } from "./player.mjs";
+import { downloaded, folder, linkedActions, open, paused, press, shownBits, steps, text } from "./player.mjs";
 
 test("the page loads, plays a policy, and has a strict content security policy", () =>
   open(async (page) => {
@@ -167,11 +168,11 @@ test("parameters change the physics as in the crate, and invalid ones are reject
     assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
     assert.deepEqual(await shownBits(page), state);
 
-    const slider = page.locator(".parameter:has(#mass1) [type=range]");
-    await slider.fill("0");
+    const slider = ".parameter:has(#mass1) [type=range]";
+    await page.fill(slider, "0");
     assert.equal(await text(page, "#mass1-reason"), "mass1 must be finite and above 0 kg, got 0");
     assert.deepEqual(await shownBits(page), state);
-    await slider.fill("2");
+    await page.fill(slider, "2");
     assert.equal(await text(page, "#mass1-reason"), "");
     assert.equal(await page.inputValue("#mass1"), "2");
     assert.equal(await text(page, "#step"), "0");

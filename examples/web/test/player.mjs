@@ -1,5 +1,4 @@
-// Opens the page in a browser and operates it, for the tests in a file that imports this: in Chromium by Playwright, with `ENGINE=firefox`
-// or `webkit` by WebDriver.
+// Opens the page in a browser and operates it, for the tests in a file that imports this.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -8,40 +7,31 @@ import { join } from "node:path";
 import { after, before } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { context } from "esbuild";
-import { chromium } from "playwright-core";
-
-import * as selenium from "selenium-webdriver";
-
-import { launch } from "../../npm/browser.mjs";
-import * as webdriver from "../../npm/webdriver.mjs";
+import { inChromium, launch } from "../../npm/browser.mjs";
 import { decodeActions } from "../page/link.js";
 
 export const dist = fileURLToPath(new URL("../dist", import.meta.url));
 /** Tests write their files here. */
 export const folder = mkdtempSync(join(tmpdir(), "acrobot-web-"));
-const engine = process.env.ENGINE ?? "chromium";
-/** For tests that change the browser's settings, or the page before it runs. */
-export const inChromium = { skip: engine !== "chromium" && "WebDriver cannot" };
-let browser, origin, close, other;
+let browser, origin, close;
 
 before(async () => {
-  ({ browser, origin, close } = await launch(engine === "chromium" ? chromium : null, context, dist));
-  if (engine !== "chromium") other = await webdriver.launch(engine, selenium);
+  ({ browser, origin, close } = await launch(dist));
 });
 
 after(async () => {
-  await Promise.all([close?.(), other?.close()]);
+  await close?.();
   rmSync(folder, { recursive: true });
 });
 
 /** Opens the page and calls `play` once it has loaded. In Chromium, asserts that its console has no errors or warnings, and that it
  * requests only its own files. */
 export async function open(play, { hash = "", prepare, starts = true, ...options } = {}) {
-  if (other) {
-    await other.page.goto(origin + hash);
-    await other.page.waitForSelector("#app:not([hidden])");
-    return play(other.page);
+  if (inChromium.skip) {
+    const page = browser.newPage();
+    await page.goto(origin + hash);
+    await page.waitForSelector("#app:not([hidden])");
+    return play(page);
   }
   const window = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
   const page = await window.newPage();
@@ -74,7 +64,7 @@ export const text = async (page, selector) => {
 
 export const shownBits = async (page) => {
   await shown(page);
-  return page.locator("#state code").allTextContents();
+  return page.evaluate(() => Array.from(document.querySelectorAll("#state code"), (code) => code.textContent));
 };
 
 /** Pauses the page in the initial state of a seed, and lets the keys play. */
@@ -98,8 +88,9 @@ export async function press(page, actions) {
 /** Lets the policy step, without a wait for each. */
 export async function steps(page, count) {
   await page.focus("#stage");
-  const key = () => document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "s", bubbles: true }));
-  await page.evaluate(`for (let i = 0; i < ${count}; i++) (${key})()`);
+  await page.evaluate((count) => {
+    for (let i = 0; i < count; i++) document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "s", bubbles: true }));
+  }, count);
 }
 
 /** The actions in the page's link to its run. */
@@ -110,7 +101,7 @@ export async function linkedActions(page) {
 }
 
 export async function downloaded(page, button) {
-  if (page.download) return readFileSync(await page.download(button));
+  if (page.download) return Buffer.from(await page.download(button));
   const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
   return readFileSync(await download.path());
 }

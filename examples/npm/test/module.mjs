@@ -1,5 +1,5 @@
 import { readFileSync } from "node:fs";
-import { inflateRawSync } from "node:zlib";
+import { gzipSync, inflateRawSync } from "node:zlib";
 
 /** The source with its own instance of the module, whose memory a test can see. */
 export async function instance() {
@@ -10,3 +10,6 @@ export async function instance() {
   const { wasm } = await import("../package/wasm.js");
   return { ...classes, size: () => wasm().memory.buffer.byteLength };
 }
+
+/** The bytes with their CRC-32 as zlib computes it: the end of a gzip file has it, before four bytes of length. */
+export const sealed = (bytes) => Buffer.concat([bytes, gzipSync(bytes).subarray(-8, -4)]);
