@@ -5,11 +5,12 @@
     python3 figures.py cores       only the tables that are named: m4f, additions, balance, control, cores, stacks, sizes, levels
 
 `steps` counts instructions, stack and RAM, `bench`, `learn`, `policy` and `balance` count instructions. Flash is that of `minimal` minus that of the same firmware
-without an acrobot, or that of `additions`. `cycles.py` estimates the cycles per instruction. Each figure is the same in every run, the estimates too.
+without an acrobot, or without an addition to it. `cycles.py` estimates the cycles per instruction. Each figure is the same in every run, the estimates too.
 """
 
 import argparse
 import collections
+import difflib
 import functools
 import os
 import pathlib
@@ -23,14 +24,7 @@ DOCUMENT = pathlib.Path("../../docs/embedded-figures.md")
 M4F = "thumbv7em-none-eabihf"
 TUNED = "-C target-cpu=cortex-m4"
 ARITHMETICS = {"fast": "`Fast`", "micro": "`Micro`", "reference": "`Reference`", "portable": "`Portable`"}
-COLUMNS = {
-    "fast": "`Fast`",
-    "micro": "`Micro`",
-    "reference": "`Reference`",
-    "reference_libgcc": "`Reference`, libgcc",
-    "portable": "`Portable`",
-    "portable_libgcc": "`Portable`, libgcc",
-}
+COLUMNS = ARITHMETICS | {"reference_libgcc": "`Reference`, libgcc", "portable_libgcc": "`Portable`, libgcc"}
 ROWS = {
     "step": "instructions per step, with observation, end test and resets",
     "cycles": "cycles per step, estimated",
@@ -101,8 +95,8 @@ ADDITIONS = {
 LEVELS = ["2", '"s"', '"z"']
 
 
-def run(*command, rustflags="", machine="", minimal="", addition=""):
-    environment = os.environ | {"RUSTFLAGS": rustflags, "MINIMAL": minimal, "ADDITION": addition}
+def run(*command, rustflags="", machine="", minimal=""):
+    environment = os.environ | {"RUSTFLAGS": rustflags, "MINIMAL": minimal}
     if machine:
         environment["CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUNNER"] = f"../../.cargo/qemu arm {machine}"
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
@@ -207,10 +201,10 @@ def measure_balance():
 
 def measure_additions():
     def size(name):
-        return flash(image("additions", addition=name, features="serde" if name == "serde" else ""))
+        return flash(image("minimal", minimal=name, features="serde" if name == "serde" else ""))
 
-    alone = size("none")
-    figures = printed("additions")
+    alone = size("fast")
+    figures = printed("minimal", minimal="lqr_stack")
     return figures | {("fast", name): size(name) - alone for name in ADDITIONS if ("fast", name) not in figures}
 
 
@@ -242,27 +236,6 @@ def written(table, figures):
         yield f"| {words} | " + " | ".join(texts.get((column, row), "") for column in table.columns) + " |"
 
 
-def find(first, lines):
-    """Where the table begins that has this first line, and where it ends."""
-    start = lines.index(first)
-    return start, next((i for i in range(start, len(lines)) if not lines[i].startswith("|")), len(lines))
-
-
-def cells(lines):
-    """The figures in the lines of a table: {(row, column): text}."""
-    (_, *columns), _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines)
-    return {(row, column): text for row, *texts in rows for column, text in zip(columns, texts) if text}
-
-
-def differences(title, page, measured):
-    """What differs between two tables, each {(row, column): text}. Prints what was measured."""
-    for row, column in page | measured:
-        old, new = page.get((row, column), "nothing"), measured.get((row, column), "nothing")
-        print(f"{title}; {row}; {column}: {new}")
-        if old != new:
-            yield f"{title}; {row}; {column}: the page has {old}, measured {new}"
-
-
 def main():
     parser = argparse.ArgumentParser(description="Measures what the crate costs on microcontrollers.")
     parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"one of {', '.join(TABLES)}; default: all")
@@ -270,17 +243,18 @@ def main():
     options = parser.parse_args()
     if unknown := set(options.tables) - TABLES.keys():
         parser.error(f"there is no table {', '.join(sorted(unknown))}; there are: {', '.join(TABLES)}")
-    lines = DOCUMENT.read_text().splitlines()
-    wrong = []
+    page = DOCUMENT.read_text().splitlines()
+    lines = page.copy()
     for table in [TABLES[name] for name in options.tables or TABLES]:
         rows = list(written(table, table.measure()))
-        start, end = find(rows[0], lines)
-        wrong += differences(table.title, cells(lines[start:end]), cells(rows))
-        lines[start:end] = rows
+        print("\n".join(rows), flush=True)
+        start = lines.index(rows[0])
+        lines[start : lines.index("", start)] = rows
     if options.update:
         DOCUMENT.write_text("\n".join(lines) + "\n")
-    elif wrong:
-        sys.exit("\n".join(wrong) + "\nIf this is intended: python3 figures.py --update")
+    elif lines != page:
+        difference = difflib.unified_diff(page, lines, "the page", "measured", n=0, lineterm="")
+        sys.exit("\n".join(difference) + "\nIf this is intended: python3 figures.py --update")
 
 
 main()

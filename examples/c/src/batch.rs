@@ -8,7 +8,7 @@ use acrobot::numpy::Pcg64;
 use acrobot::{Fast, Params, ResetOptions};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, unknown};
-use crate::memory::{Array, Holder, Span, change, check, check_apart, fits, get, read};
+use crate::memory::{Holder, Span, array, change, check, check_apart, fits, get, optional, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The alignment of the memory for a batch, bytes.
@@ -173,27 +173,29 @@ pub unsafe extern "C" fn acrobot_batch_step(
         check_count(placed, count)?;
         let pointers = Span::new(results, 1);
         let results = read(results)?;
-        let actions = Array::new(actions.cast_mut(), count)?;
-        let rewards = Array::new(results.rewards, count)?;
-        let terminated = Array::new(results.terminated, count)?;
-        let truncated = Array::new(results.truncated, count)?;
-        let observations = Array::optional(results.observations.cast(), count)?;
-        let finals = Array::optional(results.final_observations.cast(), count)?;
+        let actions = array(actions.cast_mut(), count)?;
+        let rewards = array(results.rewards, count)?;
+        let terminated = array(results.terminated, count)?;
+        let truncated = array(results.truncated, count)?;
+        let observations = optional(results.observations.cast(), count)?;
+        let finals = optional(results.final_observations.cast(), count)?;
         check_apart(&[
             memory_of(batch, count),
             pointers,
-            actions.span(),
-            rewards.span(),
-            terminated.span(),
-            truncated.span(),
-            observations.span(),
-            finals.span(),
+            Span::of(actions),
+            Span::of(rewards),
+            Span::of(terminated),
+            Span::of(truncated),
+            Span::of(observations),
+            Span::of(finals),
         ])?;
-        let mut buffers =
-            StepBuffers::new(rewards.get_mut(), terminated.cleared(), truncated.cleared());
-        buffers.observations = (!observations.is_omitted()).then(|| observations.get_mut());
-        buffers.final_observations = (!finals.is_omitted()).then(|| finals.get_mut());
-        placed.batch.step(actions.get(), buffers)?;
+        // They may contain bytes that no `bool` has.
+        results.terminated.write_bytes(0, count);
+        results.truncated.write_bytes(0, count);
+        let mut buffers = StepBuffers::new(&mut *rewards, &mut *terminated, &mut *truncated);
+        buffers.observations = observations.as_mut();
+        buffers.final_observations = finals.as_mut();
+        placed.batch.step(&*actions, buffers)?;
         Ok(())
     })
 }
@@ -208,9 +210,9 @@ pub unsafe extern "C" fn acrobot_batch_observe(
     status(|| {
         let placed = Holder::value(batch)?;
         check_count(placed, count)?;
-        let observations = Array::new(observations.cast(), count)?;
-        check_apart(&[memory_of(batch, count), observations.span()])?;
-        Ok(placed.batch.observe(observations.get_mut())?)
+        let observations = array(observations.cast(), count)?;
+        check_apart(&[memory_of(batch, count), Span::of(observations)])?;
+        Ok(placed.batch.observe(&mut *observations)?)
     })
 }
 
@@ -255,10 +257,13 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
     status(|| {
         let placed = Holder::value_mut(batch)?;
         check_count(placed, count)?;
-        let mask = Array::new(mask.cast_mut(), count)?;
-        check_apart(&[memory_of(batch, count), mask.span()])?;
-        let options = ResetOptions::default();
-        Ok(placed.batch.reset_masked(mask.checked()?, options)?)
+        let bytes = array(mask.cast::<u8>().cast_mut(), count)?;
+        check_apart(&[memory_of(batch, count), Span::of(bytes)])?;
+        if (*bytes).iter().any(|byte| *byte > 1) {
+            return Err(ACROBOT_ERROR_OUT_OF_RANGE.into());
+        }
+        let mask = slice::from_raw_parts(mask, count);
+        Ok(placed.batch.reset_masked(mask, ResetOptions::default())?)
     })
 }
 

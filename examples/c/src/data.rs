@@ -42,21 +42,13 @@ pub struct acrobot_observation_t {
 
 impl From<Observation> for acrobot_observation_t {
     fn from(observation: Observation) -> Self {
-        let [
-            cos_theta1,
-            sin_theta1,
-            cos_theta2,
-            sin_theta2,
-            dtheta1,
-            dtheta2,
-        ] = observation.to_array();
         Self {
-            cos_theta1,
-            sin_theta1,
-            cos_theta2,
-            sin_theta2,
-            dtheta1,
-            dtheta2,
+            cos_theta1: observation.cos_theta1(),
+            sin_theta1: observation.sin_theta1(),
+            cos_theta2: observation.cos_theta2(),
+            sin_theta2: observation.sin_theta2(),
+            dtheta1: observation.dtheta1(),
+            dtheta2: observation.dtheta2(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The caller's memory: what is checked before a reference into it is made. The header demands that pointers are valid.
 
-use core::{ptr, slice};
+use core::ptr;
 
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
@@ -91,12 +91,14 @@ pub unsafe fn change<H: Holder, T>(
     call: impl FnOnce(&mut H::Value) -> Result<T, Rejected>,
 ) -> acrobot_status_t {
     status(|| {
-        let error = Array::result(error, holder)?;
-        let result = Array::result(result, holder)?;
+        check_result(error, holder)?;
+        check_result(result, holder)?;
         let value = H::value_mut(holder)
             .and_then(call)
             .inspect_err(|rejected| rejected.explain(error))?;
-        result.write(value);
+        if !result.is_null() {
+            result.write(value);
+        }
         Ok(())
     })
 }
@@ -109,7 +111,7 @@ pub unsafe fn get<H: Holder, T>(
 ) -> acrobot_status_t {
     status(|| {
         check(result)?;
-        let result = Array::result(result, holder)?;
+        check_result(result, holder)?;
         result.write(call(H::value(holder)?)?);
         Ok(())
     })
@@ -130,6 +132,10 @@ impl Span {
         }
     }
 
+    pub fn of<T>(array: *const [T]) -> Self {
+        Self::new(array.cast::<T>(), array.len())
+    }
+
     fn overlaps(self, other: Self) -> bool {
         let contains = |one: Self, start: usize| start.wrapping_sub(one.start) < one.bytes;
         contains(self, other.start) || contains(other, self.start)
@@ -148,73 +154,24 @@ pub fn check_apart(spans: &[Span]) -> Result<(), Rejected> {
 }
 
 /// An array of the caller. No reference, because it may contain anything.
-#[derive(Clone, Copy)]
-pub struct Array<T> {
-    start: *mut T,
-    count: usize,
+pub fn array<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
+    check(start)?;
+    Ok(ptr::slice_from_raw_parts_mut(start, count))
 }
 
-impl<T> Array<T> {
-    pub fn new(start: *mut T, count: usize) -> Result<Self, Rejected> {
-        check(start)?;
-        Ok(Self { start, count })
+/// An array that the caller may omit: null and without elements then.
+pub fn optional<T>(start: *mut T, count: usize) -> Result<*mut [T], Rejected> {
+    if start.is_null() {
+        return Ok(ptr::slice_from_raw_parts_mut(start, 0));
     }
-
-    /// An array that the caller may omit: without elements then.
-    pub fn optional(start: *mut T, count: usize) -> Result<Self, Rejected> {
-        if start.is_null() {
-            return Ok(Self { start, count: 0 });
-        }
-        Self::new(start, count)
-    }
-
-    /// A single result, which the caller may omit. Rejected if it would overwrite the holder.
-    pub unsafe fn result<H: Holder>(to: *mut T, holder: *const H) -> Result<Self, Rejected> {
-        let result = Self::optional(to, 1)?;
-        if !result.is_omitted() {
-            check_apart(&[result.span(), H::span(holder)?])?;
-        }
-        Ok(result)
-    }
-
-    pub fn is_omitted(&self) -> bool {
-        self.count == 0
-    }
-
-    /// Writes a single result, unless the caller omits it.
-    pub unsafe fn write(self, value: T) {
-        if !self.is_omitted() {
-            self.start.write(value);
-        }
-    }
-
-    pub fn span(&self) -> Span {
-        Span::new(self.start, self.count)
-    }
-
-    pub unsafe fn get<'a>(&self) -> &'a [T] {
-        slice::from_raw_parts(self.start, self.count)
-    }
-
-    /// The caller has checked that no other array overlaps it, and that it has elements.
-    pub unsafe fn get_mut<'a>(&self) -> &'a mut [T] {
-        slice::from_raw_parts_mut(self.start, self.count)
-    }
+    array(start, count)
 }
 
-impl Array<bool> {
-    /// As [`get_mut`](Self::get_mut). All elements become false, because memory may contain bytes that no `bool` has.
-    pub unsafe fn cleared<'a>(&self) -> &'a mut [bool] {
-        ptr::write_bytes(self.start, 0, self.count);
-        self.get_mut()
+/// Rejects a result or error that would overwrite the holder. The caller may omit it.
+unsafe fn check_result<T, H: Holder>(to: *const T, holder: *const H) -> Result<(), Rejected> {
+    if to.is_null() {
+        return Ok(());
     }
-
-    /// Rejects memory that contains a byte that no `bool` has.
-    pub unsafe fn checked<'a>(&self) -> Result<&'a [bool], Rejected> {
-        let bytes = slice::from_raw_parts(self.start.cast::<u8>(), self.count);
-        if bytes.iter().any(|byte| *byte > 1) {
-            return Err(ACROBOT_ERROR_OUT_OF_RANGE.into());
-        }
-        Ok(self.get())
-    }
+    check(to)?;
+    check_apart(&[Span::new(to, 1), H::span(holder)?])
 }

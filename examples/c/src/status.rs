@@ -5,8 +5,6 @@ use core::ffi::{CStr, c_char, c_int};
 use acrobot::Error;
 use acrobot::physics::control::ControlError;
 
-use crate::memory::Array;
-
 /// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -74,8 +72,8 @@ impl Rejected {
     /// Fills the caller's error if a number is out of range. Inlined, because a function without an error should not
     /// contain it.
     #[inline(always)]
-    pub unsafe fn explain(&self, error: Array<acrobot_error_t>) {
-        if !error.is_omitted() && matches!(self.status, ACROBOT_ERROR_OUT_OF_RANGE) {
+    pub unsafe fn explain(&self, error: *mut acrobot_error_t) {
+        if !error.is_null() && matches!(self.status, ACROBOT_ERROR_OUT_OF_RANGE) {
             let space = if self.unit.is_empty() { "" } else { " " };
             let explained = acrobot_error_t {
                 value: self.value,

@@ -49,10 +49,8 @@ enum { OK = ACROBOT_OK, OUT_OF_RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     CALL(ALONE, acrobot_observation_t, NEEDED, OK, acrobot_observe(acrobot, out)) \
     CALL(ALONE, uint32_t, NEEDED, OK, acrobot_elapsed(acrobot, out)) \
     CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_state(acrobot, out)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, OK, acrobot_set_state(acrobot, &REST, out)) \
     CALL(ALONE, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_set_state(acrobot, &FAR, out)) \
     CALL(ALONE, acrobot_params_t, NEEDED, OK, acrobot_params(acrobot, out)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, OK, acrobot_set_params(acrobot, &PARAMS, out)) \
     CALL(ALONE, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_set_params(acrobot, &NO_MASS, out)) \
     CALL(ALONE, float, NEEDED, OK, acrobot_energy(acrobot, out)) \
     CALL(ALONE, float, NEEDED, OK, acrobot_tip_height(acrobot, out)) \
@@ -66,13 +64,10 @@ enum { OK = ACROBOT_OK, OUT_OF_RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     CALL(BATCH, rewards_t, NEEDED, OK, step_batch(batch, out)) \
     CALL(BATCH, observations_t, NEEDED, OK, acrobot_batch_observe(batch, (acrobot_observation_t *)out, COUNT)) \
     CALL(BATCH, size_t, NEEDED, OK, acrobot_batch_count(batch, out)) \
-    CALL(BATCH, acrobot_error_t, OPTIONAL, OK, acrobot_batch_set_autoreset(batch, 1, out)) \
     CALL(BATCH, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_batch_set_autoreset(batch, 3, out)) \
     CALL(BATCH, acrobot_state_t, NEEDED, OK, acrobot_batch_state(batch, 0, out)) \
-    CALL(BATCH, acrobot_error_t, OPTIONAL, OK, acrobot_batch_set_state(batch, 0, &REST, out)) \
     CALL(BATCH, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_batch_set_state(batch, 0, &FAR, out)) \
     CALL(BATCH, acrobot_params_t, NEEDED, OK, acrobot_batch_params(batch, out)) \
-    CALL(BATCH, acrobot_error_t, OPTIONAL, OK, acrobot_batch_set_params(batch, &PARAMS, out)) \
     CALL(BATCH, acrobot_error_t, OPTIONAL, OUT_OF_RANGE, acrobot_batch_set_params(batch, &NO_MASS, out))
 
 struct call {

@@ -4,6 +4,8 @@
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
 #[cfg(target_arch = "riscv32")]
 use riscv::register::minstret;
+#[cfg(target_arch = "arm")]
+use semihosting::process;
 
 /// SysTick, with its frequency in MHz. It counts down from 2²⁴ − 1, longer than any measurement takes.
 #[cfg(target_arch = "arm")]
@@ -11,9 +13,11 @@ pub struct Counter(SYST, u64);
 
 #[cfg(target_arch = "arm")]
 impl Counter {
-    /// Returns `None` if the peripherals are in use.
-    pub fn take() -> Option<Self> {
-        let mut peripherals = Peripherals::take()?;
+    /// Ends the program if the peripherals are in use.
+    pub fn take() -> Self {
+        let Some(mut peripherals) = Peripherals::take() else {
+            process::exit(1)
+        };
         peripherals.SYST.set_clock_source(SystClkSource::Core);
         peripherals.SYST.set_reload(0xff_ffff);
         // The core's part number tells which QEMU machine this is.
@@ -22,7 +26,7 @@ impl Counter {
             0xd21 => 20, // Cortex-M33: mps2-an505
             _ => 25,     // Cortex-M3 and M4: mps2-an385 and mps2-an386
         };
-        Some(Self(peripherals.SYST, megahertz))
+        Self(peripherals.SYST, megahertz)
     }
 
     fn start(&mut self) {
@@ -43,8 +47,8 @@ pub struct Counter(u64);
 
 #[cfg(target_arch = "riscv32")]
 impl Counter {
-    pub fn take() -> Option<Self> {
-        Some(Self(0))
+    pub fn take() -> Self {
+        Self(0)
     }
 
     fn start(&mut self) {

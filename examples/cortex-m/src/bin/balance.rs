@@ -114,11 +114,8 @@ fn main() -> ! {
         }
     }
     println!("10_Nm ram_bytes {}", ram::used());
-    process::exit(if in_time == Ok(0) && caught == Ok(0) {
-        0
-    } else {
-        1
-    })
+    let passed = in_time == Ok(0) && caught == Ok(0);
+    process::exit(if passed { 0 } else { 1 })
 }
 
 /// Plays episodes with a largest torque, N m. Prints the figures, times and errors rounded up, and returns how many acrobots
@@ -157,10 +154,8 @@ fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, Co
         error = error.max(episode.error);
     }
     println!("{name} uncaught {uncaught}");
-    println!(
-        "{name} instructions_mean {}",
-        counts * u64::from(PER_COUNT) / u64::from(ticks)
-    );
+    let mean = counts * u64::from(PER_COUNT) / u64::from(ticks);
+    println!("{name} instructions_mean {mean}");
     println!("{name} instructions_most {}", slowest * PER_COUNT);
     if uncaught < episodes {
         let mean = caught / (episodes - uncaught);

@@ -1,31 +1,57 @@
-//! The smallest firmware with the crate: it seeds an acrobot, and steps and resets it forever. `MINIMAL` chooses the arithmetic when it is
-//! built: `MINIMAL=reference cargo build --release --bin minimal`. Its flash minus that of the firmware without an acrobot, which
-//! is built without `MINIMAL`, is the flash of the crate.
+//! Firmware whose flash `figures.py` measures: an acrobot that is seeded, then stepped and reset forever. `MINIMAL` chooses its
+//! arithmetic, or what else is in it, when it is built: `MINIMAL=reference cargo build --release --bin minimal`. Its flash minus that
+//! of the firmware without an acrobot, which is built without `MINIMAL`, is the flash of the crate.
 
 #![no_std]
 #![no_main]
 
+use core::cell::RefCell;
+use core::fmt::{self, Write as _};
 use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::physics::Pendulum;
-use acrobot::{Acrobot, Action, Fast, Portable};
-use acrobot_cortex_m::nop;
-use panic_halt as _;
+use acrobot::physics::control::{discretize, lqr};
+use acrobot::{Acrobot, Action, Error, Fast, Params, Portable};
+use acrobot_cortex_m::{nop, stack};
+use semihosting::{println, process};
 
 #[acrobot_cortex_m::entry]
 fn main() -> ! {
     match option_env!("MINIMAL") {
-        Some("fast") => acrobot::<Fast>(),
-        Some("micro") => acrobot::<Micro>(),
-        Some("reference") => acrobot::<Reference>(),
-        Some("portable") => acrobot::<Portable>(),
+        Some("fast") => acrobot::<Fast>(|_| {}),
+        Some("micro") => acrobot::<Micro>(|_| {}),
+        Some("reference") => acrobot::<Reference>(|_| {}),
+        Some("portable") => acrobot::<Portable>(|_| {}),
         Some("physics") => pendulum(),
-        _ => without(),
+        Some("message") => acrobot(|acrobot| {
+            if let Err(error) = set_params(acrobot) {
+                black_box(error.message());
+            }
+        }),
+        Some("display") => acrobot(|acrobot| {
+            if let Err(error) = set_params(acrobot) {
+                let _ = write!(Output, "{error}");
+            }
+        }),
+        // It can panic, and then semihosting's panic handler prints.
+        Some("cell") => acrobot::<Fast>(|acrobot| {
+            let cell = RefCell::new(acrobot.state());
+            black_box(&cell).borrow_mut().theta1 = 0.0;
+        }),
+        Some("lqr") => acrobot(regulate),
+        Some("lqr_stack") => print_stack(),
+        #[cfg(feature = "serde")]
+        Some("serde") => acrobot(resume),
+        _ => loop {
+            nop();
+            black_box(black_box(Action::Zero));
+        },
     }
 }
 
-fn acrobot<A: Arithmetic>() -> ! {
+/// An acrobot, and something more after each step.
+fn acrobot<A: Arithmetic>(more: impl Fn(&mut Acrobot<A>)) -> ! {
     let mut acrobot = Acrobot::<A>::new(black_box(42));
     loop {
         // `cycles.py` counts a step here.
@@ -34,6 +60,51 @@ fn acrobot<A: Arithmetic>() -> ! {
         if black_box(acrobot.step(black_box(Action::Zero))).terminated {
             black_box(acrobot.reset());
         }
+        more(&mut acrobot);
+    }
+}
+
+fn set_params(acrobot: &mut Acrobot<Fast>) -> Result<(), Error> {
+    acrobot.set_params(black_box(Params::DEFAULT))
+}
+
+/// Computes a gain, and the torque.
+fn regulate(acrobot: &mut Acrobot<Fast>) {
+    if let Ok(model) = discretize(acrobot.pendulum(), 0.0)
+        && let Ok(regulator) = lqr(&model, &black_box([[1.0; 4]; 4]), 1.0)
+    {
+        let x = acrobot.pendulum().deviation(acrobot.state());
+        black_box(regulator.torque(x));
+    }
+}
+
+fn print_stack() -> ! {
+    let model = discretize(&Pendulum::<Fast>::hanging(), 0.0);
+    let bytes = stack::depth(|| {
+        let _ = black_box(model.map(|model| lqr(&model, &black_box([[1.0; 4]; 4]), 1.0)));
+    });
+    println!("fast lqr_stack {}", bytes.unwrap_or_default());
+    process::exit(if bytes.is_some() { 0 } else { 1 })
+}
+
+/// Saves the acrobot with a checksum, and loads it.
+#[cfg(feature = "serde")]
+fn resume(acrobot: &mut Acrobot<Fast>) {
+    static CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISCSI);
+    let mut page = [0; Acrobot::<Fast>::MAX_SNAPSHOT_SIZE + 4];
+    let _ = black_box(postcard::to_slice_crc32(acrobot, &mut page, CRC.digest()));
+    if let Ok(loaded) = postcard::from_bytes_crc32(black_box(&page), CRC.digest()) {
+        *acrobot = loaded;
+    }
+}
+
+/// Stands for a display or a serial port.
+struct Output;
+
+impl fmt::Write for Output {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        black_box(text);
+        Ok(())
     }
 }
 
@@ -47,12 +118,5 @@ fn pendulum() -> ! {
         if pendulum.step(black_box(0.0)).is_ok() {
             black_box(pendulum.state());
         }
-    }
-}
-
-fn without() -> ! {
-    loop {
-        nop();
-        black_box(black_box(Action::Zero));
     }
 }

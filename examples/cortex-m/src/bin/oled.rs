@@ -43,18 +43,12 @@ fn main() -> ! {
         }
     });
 
-    let all = panel.borrow().received;
+    let mean = panel.borrow().received / frames;
     let equal = !failed && drawn.is_ok() && (frames, digest.0) == (oled::FRAMES, oled::DIGEST);
-    println!(
-        "{frames} frames; bytes on the bus: {first} for the first, {} on average",
-        all / frames
-    );
+    println!("{frames} frames; bytes on the bus: {first} for the first, {mean} on average");
     if !equal {
-        println!(
-            "the frames differ: expected {}, got digest {:#018x}",
-            oled::FRAMES,
-            digest.0
-        );
+        let (expected, found) = (oled::FRAMES, digest.0);
+        println!("the frames differ: expected {expected}, got digest {found:#018x}");
     }
     process::exit(if equal { 0 } else { 1 })
 }

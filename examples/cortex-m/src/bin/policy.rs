@@ -25,37 +25,30 @@ const EPISODES: u32 = 100;
 
 #[entry]
 fn main() -> ! {
-    let Some(mut counter) = Counter::take() else {
-        process::exit(1)
-    };
+    let mut counter = Counter::take();
     let (equal, ties) = compare();
     let total = 4 * ACTIONS.len();
     println!("{equal} of {total} actions are equal, {ties} ties");
 
     let mut env = env();
-    let mut observation = env.observation();
-    println!(
-        "fast decision {}",
-        counter.count(1, || {
-            core::hint::black_box(POLICY.action(&observation));
-        })
-    );
+    let observation = env.observation();
+    let count = counter.count(1, || {
+        core::hint::black_box(POLICY.action(&observation));
+    });
+    println!("fast decision {count}");
     let mut gained = 0.0;
     for _ in 0..EPISODES {
         loop {
-            let step = env.step(POLICY.action(&observation));
+            let step = env.step(POLICY.action(&env.observation()));
             gained += step.reward;
             if step.done() {
                 break;
             }
-            observation = step.observation;
         }
-        observation = env.reset();
+        env.reset();
     }
-    println!(
-        "mean return of {EPISODES} episodes: {}",
-        gained as i32 / EPISODES as i32
-    );
+    let mean = gained as i32 / EPISODES as i32;
+    println!("mean return of {EPISODES} episodes: {mean}");
     println!("fast decision_ram {}", ram::used());
     process::exit(if equal + ties == total { 0 } else { 1 })
 }
@@ -71,20 +64,16 @@ fn env() -> TimeLimit<Acrobot<Fast>> {
 fn compare() -> (usize, usize) {
     let mut env = env();
     let mut random = Pcg64::new(1);
-    let mut observation = env.observation();
     let (mut equal, mut ties) = (0, 0);
     for four in ACTIONS {
         for shift in [0, 2, 4, 6] {
             match Action::try_from(four >> shift & 3) {
-                Ok(expected) => equal += usize::from(POLICY.action(&observation) == expected),
+                Ok(expected) => equal += usize::from(POLICY.action(&env.observation()) == expected),
                 Err(_) => ties += 1,
             }
-            let step = env.step(Action::sample(&mut random));
-            observation = if step.done() {
-                env.reset()
-            } else {
-                step.observation
-            };
+            if env.step(Action::sample(&mut random)).done() {
+                env.reset();
+            }
         }
     }
     (equal, ties)
