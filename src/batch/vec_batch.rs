@@ -33,22 +33,7 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
-/// Each acrobot can have its own parameters. Here each episode draws new ones:
-///
-/// ```
-/// use acrobot::batch::VecBatch;
-/// use acrobot::numpy::SeedSequence;
-/// use acrobot::physics::ParamsRange;
-/// use acrobot::{Fast, Params};
-///
-/// let light = Params { mass1: 0.9, mass2: 0.9, ..Params::DEFAULT };
-/// let heavy = Params { mass1: 1.1, mass2: 1.1, ..Params::DEFAULT };
-/// let mut batch = VecBatch::<Fast>::with_own_params(SeedSequence::new(42), 1024)?;
-/// batch.set_params_range(Some(ParamsRange::new(light, heavy)?))?;
-/// batch.reset();
-/// assert_ne!(batch.params_of(0), batch.params_of(1));
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// The guide has one in which [each episode draws new parameters](crate::guide::rust#many-at-once).
 #[derive(Clone, Debug)]
 pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
     batch: InVecs<A, N>,
@@ -93,11 +78,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         Self::allocate(seed, len, len.div_ceil(N))
     }
 
-    pub(super) fn allocate(
-        seed: SeedSequence,
-        len: usize,
-        lane_params: usize,
-    ) -> Result<Self, Error> {
+    fn allocate(seed: SeedSequence, len: usize, lane_params: usize) -> Result<Self, Error> {
         let storage = (
             fill(Block::EMPTY, len.div_ceil(N), len)?,
             fill(Pcg64::UNSEEDED, len, len)?,

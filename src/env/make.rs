@@ -33,7 +33,7 @@ pub enum ArithmeticKind {
 }
 
 /// The options of an environment. The default is Gymnasium's `make(id)`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Options {
     /// What `render` returns.
     pub render_mode: RenderMode,
@@ -41,16 +41,6 @@ pub struct Options {
     pub arithmetic: ArithmeticKind,
     /// The parameters.
     pub params: Params,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            render_mode: RenderMode::None,
-            arithmetic: ArithmeticKind::Host,
-            params: Params::DEFAULT,
-        }
-    }
 }
 
 /// The environment that [`make`] returns, of either version and in any arithmetic.
@@ -115,16 +105,6 @@ impl fmt::Debug for DynEnv {
 /// # Errors
 ///
 /// [`Error::UnknownId`] for another id.
-///
-/// ```
-/// use acrobot::env::make;
-///
-/// let error = make("Acrobat-v1").unwrap_err();
-/// assert_eq!(
-///     error.to_string(),
-///     r#"the id must be "Acrobot-v1" or "Acrobot-v0", got "Acrobat-v1""#
-/// );
-/// ```
 pub fn make(id: &str) -> Result<Box<DynEnv>, Error> {
     make_with(id, Options::default())
 }
