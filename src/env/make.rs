@@ -4,6 +4,7 @@ use core::fmt;
 use std::boxed::Box;
 use std::string::String;
 
+use super::wrapper::forward;
 use super::{
     AcrobotEnv, BoxSpace, DiscreteSpace, DynAcrobot, Env, Error, Info, RenderMode, Rendering,
 };
@@ -243,29 +244,11 @@ where
         }
     }
 
-    fn action_space(&self) -> DiscreteSpace<Action> {
-        self.0.action_space()
-    }
-
     fn observation_space(&self) -> BoxSpace<DynObservation> {
         self.0.observation_space().map(Into::into)
     }
 
-    fn render(&mut self) -> Result<Rendering, Error> {
-        self.0.render()
-    }
-
-    fn close(&mut self) {
-        self.0.close();
-    }
-
-    fn unwrapped(&self) -> &(dyn DynAcrobot + 'static) {
-        self.0.unwrapped()
-    }
-
-    fn unwrapped_mut(&mut self) -> &mut (dyn DynAcrobot + 'static) {
-        self.0.unwrapped_mut()
-    }
+    forward!(unobserved self, self.0);
 }
 
 #[cfg(test)]
