@@ -1,8 +1,7 @@
 //! Many acrobots at once, each bit-identical to one alone.
 //!
 //! A [`Batch`] steps acrobots side by side, with SIMD and without a heap: it borrows or owns arrays, slices or
-//! `Vec`s. Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th child. With the
-//! feature `alloc`, `VecBatch` is a batch that owns its memory and that of the results.
+//! `Vec`s. With the feature `alloc`, `VecBatch` is a batch that owns its memory and that of the results.
 //!
 //! ```
 //! use acrobot::Fast;

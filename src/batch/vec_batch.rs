@@ -146,12 +146,11 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         &self.results.observations
     }
 
-    /// Applies an action or a torque to each acrobot for one dt: the numbers 0, 1 and 2, [`Action`](crate::Action)s, or
-    /// any finite torques in N m.
+    /// Calls [`Batch::step`] with actions or torques, and returns the results.
     ///
     /// # Errors
     ///
-    /// Those of [`Batch::step`].
+    /// Those of [`Batch::step`], and [`Error::OutOfMemory`].
     pub fn step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.step(inputs, buffers))
     }
@@ -160,7 +159,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     ///
     /// # Errors
     ///
-    /// Those of [`Batch::step`].
+    /// Those of [`step`](Self::step).
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.par_step(inputs, buffers))
