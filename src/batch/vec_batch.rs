@@ -58,9 +58,7 @@ pub struct StepResults {
 }
 
 impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
-    /// A batch of `len` acrobots. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet spawned, and is in
-    /// its initial state. The batch has the default parameters, a limit of 500 steps and
-    /// [`Autoreset::NextStep`](super::Autoreset::NextStep).
+    /// A batch of `len` acrobots, with seeds and settings as those of [`Batch::new`].
     ///
     /// # Errors
     ///
