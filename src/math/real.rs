@@ -157,13 +157,8 @@ pub(crate) mod sealed {
 
     /// Items of a scalar that only this crate uses.
     pub trait Sealed: Sized + Serde + Format {
-        /// 1.
         const ONE: Self;
-
-        /// −1.
         const MINUS_ONE: Self;
-
-        /// 1/2.
         const HALF: Self;
 
         /// The distance from 1 to the next number.
