@@ -110,25 +110,7 @@ pub fn make(id: &str) -> Result<Box<DynEnv>, Error> {
     make_with(id, Options::default())
 }
 
-/// [`make`] with options.
-///
-/// ```
-/// use acrobot::Params;
-/// use acrobot::env::{Env, Options, RenderMode, Rendering, make_with};
-/// use acrobot::physics::Dynamics;
-///
-/// let mut env = make_with(
-///     "Acrobot-v1",
-///     Options { render_mode: RenderMode::RgbArray, ..Options::default() },
-/// )?;
-/// env.reset_with_seed(42);
-/// assert!(matches!(env.render()?, Rendering::Frame(frame) if frame.width() == 500));
-///
-/// // env.unwrapped.book_or_nips = "nips"
-/// let params = env.unwrapped().params();
-/// env.unwrapped_mut().set_params(Params { dynamics: Dynamics::Nips, ..params })?;
-/// # Ok::<(), acrobot::env::Error>(())
-/// ```
+/// [`make`] with options: [an example with pictures](crate::guide::rust#spaces-wrappers-rendering).
 ///
 /// # Errors
 ///
