@@ -242,7 +242,6 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         Ok(())
     }
 
-    /// The block with acrobot `index`.
     fn block_of(&self, index: usize) -> Result<&Block<A, N>, Error> {
         let (blocks, generators, _) = self.storage.slices();
         let len = generators.len();

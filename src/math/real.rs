@@ -179,7 +179,6 @@ pub(crate) mod sealed {
         /// The element with an index of 0 to 2, without a branch or an address that depends on the index.
         fn select(three: [Self; 3], index: u8) -> Self;
 
-        /// The absolute value.
         fn abs(self) -> Self;
 
         /// 2^self for an integer from −120 to 120.

@@ -225,7 +225,6 @@ impl<A: Arithmetic> Pendulum<A> {
         height
     }
 
-    /// The parameters with their constants.
     #[inline]
     pub(super) fn model(&self) -> &Model<A> {
         &self.model
@@ -254,7 +253,6 @@ impl<A: Arithmetic> defmt::Format for Pendulum<A> {
     }
 }
 
-/// Rejects a torque that is not finite.
 pub(crate) fn check_torque<S: Real>(torque: S) -> Result<(), Error> {
     Range::Finite.check("torque", torque.to_f64(), "N m")
 }
