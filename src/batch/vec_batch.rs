@@ -33,7 +33,7 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
-/// The guide has one in which [each episode draws new parameters](crate::guide::rust#many-at-once).
+/// Each acrobot can have its own parameters: [an example that draws them](crate::guide::rust#many-at-once).
 #[derive(Clone, Debug)]
 pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
     batch: InVecs<A, N>,

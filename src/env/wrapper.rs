@@ -7,8 +7,8 @@ use crate::acrobot::Step;
 use crate::reset_options::ResetOptions;
 use crate::time_limit::TimeLimit;
 
-/// Forwards parts of [`Env`] to the wrapped one: types, `reset_with` and `step`, the other methods, or those of them
-/// that no observation is in.
+/// Forwards parts of [`Env`] to the wrapped one: its types; an episode, which is `reset_with` and `step`; all other
+/// methods; or only those of them without an observation.
 macro_rules! forward {
     (types $inner:ident) => {
         type Observation = $inner::Observation;
