@@ -349,11 +349,7 @@ mod snapshot {
         }
     }
 
-    impl<'de, A, R> Deserialize<'de> for Acrobot<A, R>
-    where
-        A: Arithmetic,
-        R: Deserialize<'de>,
-    {
+    impl<'de, A: Arithmetic, R: Deserialize<'de>> Deserialize<'de> for Acrobot<A, R> {
         /// Rejects what `set_params` and `set_state` reject.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
             let Snapshot::<Header<Self>, _, _, _> {

@@ -37,15 +37,6 @@ impl Action {
 
     /// Draws a random action, all equally likely: Gymnasium's `action_space.sample()`, if `rng` is a
     /// [`Pcg64`](crate::numpy::Pcg64) with the seed given to `action_space.seed`.
-    ///
-    /// ```
-    /// use acrobot::Action;
-    /// use acrobot::numpy::Pcg64;
-    ///
-    /// let mut action_space = Pcg64::new(42);
-    /// let numbers = [(); 8].map(|()| u8::from(Action::sample(&mut action_space)));
-    /// assert_eq!(numbers, [0, 2, 1, 1, 1, 2, 0, 2]);
-    /// ```
     #[inline]
     pub fn sample<R: Rng + ?Sized>(rng: &mut R) -> Self {
         const THREE: NonZeroU32 = NonZeroU32::new(3).unwrap();

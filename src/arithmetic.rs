@@ -2,18 +2,7 @@
 //!
 //! An [`Arithmetic`] names a scalar, a sine and cosine, and a [`Form`] of the equations of motion. It is a type
 //! parameter and not a feature flag, because Cargo unifies features: a flag that changes results would change them for
-//! every crate in the build.
-//!
-//! | type | scalar | sine and cosine | equations | use |
-//! |---|---|---|---|---|
-//! | [`Reference`] | `f64` | correctly rounded | Gymnasium's | bits defined by mathematics, and nearest to Gymnasium's |
-//! | `Host` (feature `std`) | `f64` | the platform's C library | Gymnasium's | Gymnasium's own bits |
-//! | [`Portable`] | `f64` | the crate `libm` | lean | the fastest `f64` on desktops, the same bits everywhere |
-//! | [`Fast`] | `f32` | polynomial | lean | single-precision FPUs, WASM, SIMD batches |
-//! | [`Micro`] | `f32` | table | lean | the fewest instructions on a microcontroller |
-//!
-//! No arithmetic uses the sines of the crate `micromath`. On a Cortex-M4F they take more flash than those of [`Fast`]
-//! and [`Micro`] and more instructions (616 per step, `Fast` 559), and their error is 1.1e-3.
+//! every crate in the build. The guide says [which to choose](crate::guide::numbers#arithmetics).
 //!
 //! For a hardware sine unit, implement [`Arithmetic`]:
 //!
@@ -92,12 +81,6 @@ impl Arithmetic for Reference {
 
 /// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: bit-identical to Gymnasium if NumPy calls the
 /// same library, as on Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
-///
-/// ```
-/// use acrobot::arithmetic::{Arithmetic, Host};
-///
-/// assert_eq!(Host::sin_cos(1.0), 1.0_f64.sin_cos());
-/// ```
 #[cfg(feature = "std")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -129,14 +112,6 @@ impl Arithmetic for Host {
 ///
 /// A release of `libm` could round its sines differently and so change the bits. [Fix its
 /// version](crate::guide::determinism#limits), or use [`Reference`], which depends on no library.
-///
-/// ```
-/// use acrobot::Portable;
-/// use acrobot::arithmetic::Arithmetic;
-///
-/// let (sin, cos) = Portable::sin_cos(1.0);
-/// assert_eq!([sin, cos].map(f64::to_bits), [0x3fea_ed54_8f09_0cee, 0x3fe1_4a28_0fb5_068c]);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Portable;
@@ -157,15 +132,8 @@ impl Arithmetic for Portable {
     }
 }
 
-/// `f32`, polynomial sines, and the lean form: the same bits on every target, with or without an FPU.
-///
-/// ```
-/// use acrobot::Fast;
-/// use acrobot::arithmetic::Arithmetic;
-///
-/// let (sin, cos) = Fast::sin_cos(1.0);
-/// assert!((sin - 0.84147098).abs() < 1.2e-7 && (cos - 0.54030231).abs() < 1.2e-7);
-/// ```
+/// `f32`, polynomial sines, and the lean form: the same bits on every target, with or without an FPU. For
+/// single-precision FPUs, WASM and batches with SIMD.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Fast;
@@ -191,13 +159,6 @@ impl Arithmetic for Fast {
 
 /// `f32`, a table of sixteen sines for half a turn, and the lean form: a sixth fewer instructions than [`Fast`] on a
 /// Cortex-M4, and about seven times its error for |x| ≤ π.
-///
-/// ```
-/// use acrobot::arithmetic::{Arithmetic, Micro};
-///
-/// let (sin, cos) = Micro::sin_cos(1.0);
-/// assert!((sin - 0.84147098).abs() < 8e-7 && (cos - 0.54030231).abs() < 8e-7);
-/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Micro;

@@ -1,8 +1,7 @@
 //! Many acrobots at once, each bit-identical to one alone.
 //!
 //! A [`Batch`] steps acrobots side by side, with SIMD and without a heap: it borrows or owns arrays, slices or
-//! `Vec`s. Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th child. With the
-//! feature `alloc`, `VecBatch` is a batch that owns its memory and that of the results.
+//! `Vec`s. With the feature `alloc`, `VecBatch` is a batch that owns its memory and that of the results.
 //!
 //! ```
 //! use acrobot::Fast;
@@ -243,7 +242,6 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         Ok(())
     }
 
-    /// The block with acrobot `index`.
     fn block_of(&self, index: usize) -> Result<&Block<A, N>, Error> {
         let (blocks, generators, _) = self.storage.slices();
         let len = generators.len();

@@ -181,7 +181,6 @@ impl fmt::Display for Error {
 
 impl core::error::Error for Error {}
 
-/// The range of a quantity.
 #[derive(Clone, Copy)]
 pub(crate) enum Range {
     Finite,
@@ -195,7 +194,6 @@ pub(crate) enum Range {
 }
 
 impl Range {
-    /// Rejects a `value` outside the range.
     pub(crate) const fn check(
         self,
         name: &'static str,

@@ -45,65 +45,31 @@ pub mod rust {}
 )]
 pub mod embedded {}
 
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/embedded-figures.md")]
-pub mod embedded_figures {}
+macro_rules! pages {
+    ($($module:ident $file:literal),* $(,)?) => {$(
+        #[doc = include_str!("../docs/rustdoc-links.txt")]
+        #[doc = include_str!(concat!("../docs/", $file))]
+        pub mod $module {}
+    )*};
+}
 
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/c.md")]
-pub mod c {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/wasm.md")]
-pub mod wasm {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/python.md")]
-pub mod python {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/numbers.md")]
-pub mod numbers {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/control.md")]
-pub mod control {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/parity.md")]
-pub mod parity {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/accuracy.md")]
-pub mod accuracy {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/determinism.md")]
-pub mod determinism {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/equations.md")]
-pub mod equations {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/ports.md")]
-pub mod ports {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/benchmarks.md")]
-pub mod benchmarks {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/learning.md")]
-pub mod learning {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/swingup.md")]
-pub mod swingup {}
-
-#[doc = include_str!("../docs/rustdoc-links.txt")]
-#[doc = include_str!("../docs/optimum.md")]
-pub mod optimum {}
+pages! {
+    embedded_figures "embedded-figures.md",
+    c "c.md",
+    wasm "wasm.md",
+    python "python.md",
+    numbers "numbers.md",
+    control "control.md",
+    parity "parity.md",
+    accuracy "accuracy.md",
+    determinism "determinism.md",
+    equations "equations.md",
+    ports "ports.md",
+    benchmarks "benchmarks.md",
+    learning "learning.md",
+    swingup "swingup.md",
+    optimum "optimum.md",
+}
 
 // For its tests only: its links and pictures lead into the repository.
 #[cfg(doctest)]

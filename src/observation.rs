@@ -70,13 +70,6 @@ accessors! {
         3 dtheta2 "Angular velocity of link 2 relative to link 1, rad/s.";
 }
 
-impl Observation<6> {
-    /// The upper bounds of `Acrobot-v1`'s observation space: 1, 4π rad/s and 9π rad/s.
-    pub const HIGH: Self = Self([1.0, 1.0, 1.0, 1.0, 4.0 * PI, 9.0 * PI]);
-    /// The lower bounds: `-HIGH`.
-    pub const LOW: Self = Self([-1.0, -1.0, -1.0, -1.0, -4.0 * PI, -9.0 * PI]);
-}
-
 impl Observation<4> {
     /// The upper bounds of `Acrobot-v0`'s observation space: π rad, 4π rad/s and 9π rad/s.
     pub const V0_HIGH: Self = Self([PI, PI, 4.0 * PI, 9.0 * PI]);
@@ -85,6 +78,11 @@ impl Observation<4> {
 }
 
 impl Observation<6> {
+    /// The upper bounds of `Acrobot-v1`'s observation space: 1, 4π rad/s and 9π rad/s.
+    pub const HIGH: Self = Self([1.0, 1.0, 1.0, 1.0, 4.0 * PI, 9.0 * PI]);
+    /// The lower bounds: `-HIGH`.
+    pub const LOW: Self = Self([-1.0, -1.0, -1.0, -1.0, -4.0 * PI, -9.0 * PI]);
+
     /// What an agent sees of a state: in Gymnasium's task or in dm_control's.
     #[inline(always)]
     pub(crate) fn of<A: Arithmetic>(

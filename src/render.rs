@@ -35,6 +35,7 @@ pub(crate) use frame::text;
 
 use crate::acrobot::Acrobot;
 use crate::arithmetic::{Arithmetic, Real};
+use crate::physics::directions;
 
 /// The colours of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,15 +112,13 @@ impl Figure {
     /// The figure of an acrobot, without a torque.
     #[must_use]
     pub fn new<A: Arithmetic, R>(acrobot: &Acrobot<A, R>) -> Self {
-        let [cos1, sin1, cos2, sin2, _, _] = acrobot.observation().to_array();
+        let narrow = |x: A::Scalar| x.to_f64() as f32;
+        let sin_cos = acrobot.pendulum().sin_cos();
         let params = acrobot.params();
         let reach = params.length1 + params.length2 + A::Scalar::from_f64(0.2);
-        let part = |x: A::Scalar| (x / reach).to_f64() as f32;
+        let part = |x| narrow(x / reach);
         Self {
-            directions: [
-                (sin1, cos1),
-                (sin1 * cos2 + cos1 * sin2, cos1 * cos2 - sin1 * sin2),
-            ],
+            directions: directions(sin_cos.map(|(sin, cos)| (narrow(sin), narrow(cos)))),
             lengths: [part(params.length1), part(params.length2)],
             metre: part(A::Scalar::from_f64(1.0)),
             torque: 0,

@@ -6,6 +6,7 @@ use acrobot::arithmetic::{
     Arithmetic, Damped, Host, Micro, Real, Reference, Swingup, SwingupSparse,
 };
 use acrobot::physics::{Pendulum, Viscous};
+use acrobot::render::Figure;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use common::{distance, text_of};
 
@@ -177,6 +178,15 @@ fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
     let mut episode = TimeLimit::new(acrobot, Swingup::<Fast>::TASK.limit());
     let lengths = (1..).find(|_| episode.step(Action::Positive).done());
     assert_eq!(lengths, Some(1000));
+}
+
+/// A picture shows the state, whatever the task observes.
+#[test]
+fn pictures_are_those_of_acrobots() {
+    let swingup = Acrobot::<Swingup<Fast>>::new(42);
+    let mut acrobot = Acrobot::<Fast>::new(0);
+    acrobot.set_state(swingup.state()).unwrap();
+    assert_eq!(Figure::new(&swingup), Figure::new(&acrobot));
 }
 
 /// Friction and the task are two things: with friction alone the initial states, rewards and the goal are Gymnasium's.

@@ -83,7 +83,6 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         set(&mut self.reset_pending, lane, reset_pending);
     }
 
-    /// Begins an episode of a lane.
     pub(super) fn begin_episode(&mut self, lane: usize, state: State<A::Scalar>) {
         self.set_state(lane, state);
         self.set_progress(lane, 0, false);
@@ -134,7 +133,6 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// The observations of the lanes.
     #[inline(always)]
     fn rows(&self) -> impl Iterator<Item = [f32; 6]> {
         let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
@@ -155,7 +153,6 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// Writes the observations of the lanes in `mask`.
     #[cold]
     fn observe_masked(&self, mask: &[bool; N], to: &mut [[f32; 6]]) {
         for ((to, row), _) in to
@@ -248,7 +245,6 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     }
 }
 
-/// The results of a step.
 pub(super) struct Results<const N: usize> {
     rewards: [f32; N],
     terminated: [bool; N],

@@ -103,7 +103,6 @@ pub(super) fn set<T>(to: &mut [T], index: usize, x: T) {
     }
 }
 
-/// Rejects a slice whose length is not `expected`.
 pub(super) fn check_length(name: &'static str, len: usize, expected: usize) -> Result<(), Error> {
     if len == expected {
         Ok(())

@@ -6,19 +6,8 @@ use crate::arithmetic::Arithmetic;
 /// The SIMD instructions that a step of a [`Batch`](super::Batch) uses. They change no bit.
 ///
 /// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there is only the
-/// baseline: what the crate is compiled for, such as WASM's simd128 or NEON.
-///
-/// ```
-/// use acrobot::Fast;
-/// use acrobot::batch::{Batch, Block, SimdLevel};
-/// use acrobot::numpy::Pcg64;
-///
-/// let mut batch = Batch::<Fast, _>::new(42, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 16]))?;
-/// assert_eq!(batch.simd_level(), SimdLevel::widest());
-/// batch.set_simd_level(SimdLevel::Baseline); // to compare their speed
-/// # assert!(SimdLevel::widest().is_available());
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// baseline: what the crate is compiled for, such as WASM's simd128 or NEON. To compare their speed, call
+/// [`Batch::set_simd_level`](super::Batch::set_simd_level).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

@@ -39,11 +39,7 @@ impl<A: Arithmetic> Subject for Settings<A> {
     type Arithmetic = A;
 }
 
-impl<A, S, const N: usize> Serialize for Batch<A, S, N>
-where
-    A: Arithmetic,
-    S: Storage<A, N>,
-{
+impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Serialize for Batch<A, S, N> {
     fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
         let range = self.params_range();
         let ends = range.map(|range| Vec::from_array([*range.low(), *range.high()]));
@@ -119,10 +115,7 @@ impl<A: Arithmetic, const N: usize> Serialize for VecBatch<A, N> {
 }
 
 #[cfg(feature = "alloc")]
-impl<'de, A, const N: usize> serde::Deserialize<'de> for VecBatch<A, N>
-where
-    A: Arithmetic,
-{
+impl<'de, A: Arithmetic, const N: usize> serde::Deserialize<'de> for VecBatch<A, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut members = alloc::vec::Vec::new();
         let settings = read(deserializer, |member| {

@@ -33,22 +33,7 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
-/// Each acrobot can have its own parameters. Here each episode draws new ones:
-///
-/// ```
-/// use acrobot::batch::VecBatch;
-/// use acrobot::numpy::SeedSequence;
-/// use acrobot::physics::ParamsRange;
-/// use acrobot::{Fast, Params};
-///
-/// let light = Params { mass1: 0.9, mass2: 0.9, ..Params::DEFAULT };
-/// let heavy = Params { mass1: 1.1, mass2: 1.1, ..Params::DEFAULT };
-/// let mut batch = VecBatch::<Fast>::with_own_params(SeedSequence::new(42), 1024)?;
-/// batch.set_params_range(Some(ParamsRange::new(light, heavy)?))?;
-/// batch.reset();
-/// assert_ne!(batch.params_of(0), batch.params_of(1));
-/// # Ok::<(), acrobot::Error>(())
-/// ```
+/// Each acrobot can have its own parameters: [an example that draws them](crate::guide::rust#many-at-once).
 #[derive(Clone, Debug)]
 pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
     batch: InVecs<A, N>,
@@ -73,9 +58,7 @@ pub struct StepResults {
 }
 
 impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
-    /// A batch of `len` acrobots. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet spawned, and is in
-    /// its initial state. The batch has the default parameters, a limit of 500 steps and
-    /// [`Autoreset::NextStep`](super::Autoreset::NextStep).
+    /// A batch of `len` acrobots, with seeds and settings as those of [`Batch::new`].
     ///
     /// # Errors
     ///
@@ -93,11 +76,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         Self::allocate(seed, len, len.div_ceil(N))
     }
 
-    pub(super) fn allocate(
-        seed: SeedSequence,
-        len: usize,
-        lane_params: usize,
-    ) -> Result<Self, Error> {
+    fn allocate(seed: SeedSequence, len: usize, lane_params: usize) -> Result<Self, Error> {
         let storage = (
             fill(Block::EMPTY, len.div_ceil(N), len)?,
             fill(Pcg64::UNSEEDED, len, len)?,
@@ -165,12 +144,11 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         &self.results.observations
     }
 
-    /// Applies an action or a torque to each acrobot for one dt: the numbers 0, 1 and 2, [`Action`](crate::Action)s, or
-    /// any finite torques in N m.
+    /// Calls [`Batch::step`] with actions or torques, and returns the results.
     ///
     /// # Errors
     ///
-    /// Those of [`Batch::step`].
+    /// Those of [`Batch::step`], and [`Error::OutOfMemory`].
     pub fn step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.step(inputs, buffers))
     }
@@ -179,7 +157,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     ///
     /// # Errors
     ///
-    /// Those of [`Batch::step`].
+    /// Those of [`step`](Self::step).
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.par_step(inputs, buffers))

@@ -12,20 +12,7 @@ use crate::physics::{Params, ResetBounds, State};
 use crate::render::Figure;
 use crate::reset_options::ResetOptions;
 
-/// A kind of observation of an acrobot.
-///
-/// ```
-/// use acrobot::env::ObservationKind;
-/// use acrobot::{Acrobot, Observation, Portable};
-///
-/// fn length<O: ObservationKind>(acrobot: &Acrobot<Portable>) -> usize {
-///     O::of(acrobot).as_ref().len()
-/// }
-///
-/// let acrobot = Acrobot::new(42);
-/// assert_eq!(length::<Observation>(&acrobot), 6);
-/// assert_eq!(length::<Observation<4>>(&acrobot), 4);
-/// ```
+/// A kind of observation of an acrobot: those of `Acrobot-v1` and of `Acrobot-v0`, or one of yours.
 pub trait ObservationKind:
     AsRef<[f32]> + AsMut<[f32]> + Clone + fmt::Debug + PartialEq + 'static
 {
@@ -37,7 +24,6 @@ pub trait ObservationKind:
     fn space(params: &Params<f32>) -> BoxSpace<Self>;
 }
 
-/// The observation of `Acrobot-v1`.
 impl ObservationKind for Observation<6> {
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self {
         acrobot.observation()
@@ -50,7 +36,6 @@ impl ObservationKind for Observation<6> {
     }
 }
 
-/// The observation of `Acrobot-v0`.
 impl ObservationKind for Observation<4> {
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self {
         acrobot.state().into()

@@ -122,14 +122,11 @@ struct Episode<O> {
     steps: Vec<Step<O, Info>>,
 }
 
-fn play<E>(
+fn play<E: Env<Observation: fmt::Debug, Action: Clone>>(
     env: &mut E,
     seed: Option<u64>,
     actions: &[E::Action],
-) -> Result<Episode<E::Observation>, Violation>
-where
-    E: Env<Observation: Clone + fmt::Debug, Action: Clone>,
-{
+) -> Result<Episode<E::Observation>, Violation> {
     let (start, _) = match seed {
         Some(seed) => env.reset_with_seed(seed),
         None => env.reset(),
@@ -140,13 +137,10 @@ where
 }
 
 /// Steps to the end of the episode or to the last action.
-fn follow<E>(
+fn follow<E: Env<Observation: fmt::Debug, Action: Clone>>(
     env: &mut E,
     actions: &[E::Action],
-) -> Result<Vec<Step<E::Observation, Info>>, Violation>
-where
-    E: Env<Observation: Clone + fmt::Debug, Action: Clone>,
-{
+) -> Result<Vec<Step<E::Observation, Info>>, Violation> {
     let mut steps = Vec::new();
     for action in actions {
         let step = env.step(action.clone());

@@ -4,14 +4,6 @@ use core::fmt;
 use std::string::String;
 
 /// Why an environment cannot be made or rendered.
-///
-/// ```
-/// use acrobot::env::{Env, Error, make};
-///
-/// let mut env = make("Acrobot-v1")?;
-/// assert_eq!(env.render(), Err(Error::NoRenderMode));
-/// # Ok::<(), Error>(())
-/// ```
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {

@@ -4,6 +4,7 @@ use core::fmt;
 use std::boxed::Box;
 use std::string::String;
 
+use super::wrapper::forward;
 use super::{
     AcrobotEnv, BoxSpace, DiscreteSpace, DynAcrobot, Env, Error, Info, RenderMode, Rendering,
 };
@@ -33,7 +34,7 @@ pub enum ArithmeticKind {
 }
 
 /// The options of an environment. The default is Gymnasium's `make(id)`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Options {
     /// What `render` returns.
     pub render_mode: RenderMode,
@@ -41,16 +42,6 @@ pub struct Options {
     pub arithmetic: ArithmeticKind,
     /// The parameters.
     pub params: Params,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            render_mode: RenderMode::None,
-            arithmetic: ArithmeticKind::Host,
-            params: Params::DEFAULT,
-        }
-    }
 }
 
 /// The environment that [`make`] returns, of either version and in any arithmetic.
@@ -115,39 +106,11 @@ impl fmt::Debug for DynEnv {
 /// # Errors
 ///
 /// [`Error::UnknownId`] for another id.
-///
-/// ```
-/// use acrobot::env::make;
-///
-/// let error = make("Acrobat-v1").unwrap_err();
-/// assert_eq!(
-///     error.to_string(),
-///     r#"the id must be "Acrobot-v1" or "Acrobot-v0", got "Acrobat-v1""#
-/// );
-/// ```
 pub fn make(id: &str) -> Result<Box<DynEnv>, Error> {
     make_with(id, Options::default())
 }
 
-/// [`make`] with options.
-///
-/// ```
-/// use acrobot::Params;
-/// use acrobot::env::{Env, Options, RenderMode, Rendering, make_with};
-/// use acrobot::physics::Dynamics;
-///
-/// let mut env = make_with(
-///     "Acrobot-v1",
-///     Options { render_mode: RenderMode::RgbArray, ..Options::default() },
-/// )?;
-/// env.reset_with_seed(42);
-/// assert!(matches!(env.render()?, Rendering::Frame(frame) if frame.width() == 500));
-///
-/// // env.unwrapped.book_or_nips = "nips"
-/// let params = env.unwrapped().params();
-/// env.unwrapped_mut().set_params(Params { dynamics: Dynamics::Nips, ..params })?;
-/// # Ok::<(), acrobot::env::Error>(())
-/// ```
+/// [`make`] with options: [an example with pictures](crate::guide::rust#spaces-wrappers-rendering).
 ///
 /// # Errors
 ///
@@ -263,29 +226,11 @@ where
         }
     }
 
-    fn action_space(&self) -> DiscreteSpace<Action> {
-        self.0.action_space()
-    }
-
     fn observation_space(&self) -> BoxSpace<DynObservation> {
         self.0.observation_space().map(Into::into)
     }
 
-    fn render(&mut self) -> Result<Rendering, Error> {
-        self.0.render()
-    }
-
-    fn close(&mut self) {
-        self.0.close();
-    }
-
-    fn unwrapped(&self) -> &(dyn DynAcrobot + 'static) {
-        self.0.unwrapped()
-    }
-
-    fn unwrapped_mut(&mut self) -> &mut (dyn DynAcrobot + 'static) {
-        self.0.unwrapped_mut()
-    }
+    forward!(unobserved self, self.0);
 }
 
 #[cfg(test)]

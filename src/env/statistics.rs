@@ -35,7 +35,6 @@ pub struct RecordEpisodeStatistics<E> {
     episodes: VecDeque<EpisodeStatistics>,
 }
 
-/// The number of episodes that are kept.
 const KEPT: usize = 100;
 
 impl<E> RecordEpisodeStatistics<E> {

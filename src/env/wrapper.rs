@@ -7,7 +7,8 @@ use crate::acrobot::Step;
 use crate::reset_options::ResetOptions;
 use crate::time_limit::TimeLimit;
 
-/// Forwards parts of [`Env`] to the wrapped one: types, `reset_with` and `step`, or the other methods.
+/// Forwards parts of [`Env`] to the wrapped one: its types; an episode, which is `reset_with` and `step`; all other
+/// methods; or only those of them without an observation.
 macro_rules! forward {
     (types $inner:ident) => {
         type Observation = $inner::Observation;
@@ -26,12 +27,15 @@ macro_rules! forward {
         }
     };
     ($self:ident, $inner:expr) => {
-        fn action_space(&$self) -> Self::ActionSpace {
-            $inner.action_space()
-        }
-
         fn observation_space(&$self) -> Self::ObservationSpace {
             $inner.observation_space()
+        }
+
+        forward!(unobserved $self, $inner);
+    };
+    (unobserved $self:ident, $inner:expr) => {
+        fn action_space(&$self) -> Self::ActionSpace {
+            $inner.action_space()
         }
 
         fn render(&mut $self) -> Result<Rendering, Error> {

@@ -157,13 +157,8 @@ pub(crate) mod sealed {
 
     /// Items of a scalar that only this crate uses.
     pub trait Sealed: Sized + Serde + Format {
-        /// 1.
         const ONE: Self;
-
-        /// −1.
         const MINUS_ONE: Self;
-
-        /// 1/2.
         const HALF: Self;
 
         /// The distance from 1 to the next number.
@@ -184,7 +179,6 @@ pub(crate) mod sealed {
         /// The element with an index of 0 to 2, without a branch or an address that depends on the index.
         fn select(three: [Self; 3], index: u8) -> Self;
 
-        /// The absolute value.
         fn abs(self) -> Self;
 
         /// 2^self for an integer from −120 to 120.

@@ -42,13 +42,6 @@ impl SeedSequence {
 
     /// The sequence of the integer with these 32-bit digits, the lowest first. An empty slice is the integer 0, and
     /// leading zeros do not count.
-    ///
-    /// ```
-    /// use acrobot::numpy::SeedSequence;
-    ///
-    /// assert_eq!(SeedSequence::from_words(&[7, 1]), SeedSequence::new((1 << 32) + 7));
-    /// assert_eq!(SeedSequence::from_words(&[]), SeedSequence::new(0));
-    /// ```
     #[must_use]
     #[expect(
         clippy::indexing_slicing,

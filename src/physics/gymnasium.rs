@@ -56,7 +56,6 @@ for_f32_and_f64! {
     }
 }
 
-/// Beyond this number of turns `wrap` takes the remainder, unlike Gymnasium.
 const MAX_TURNS: u32 = 64;
 
 impl<S: Real, F: Friction<S, Of<S> = F>> Form<S> for Gymnasium<F>

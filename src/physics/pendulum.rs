@@ -8,20 +8,18 @@ use crate::math::{Real, SinCos};
 /// A double pendulum with a motor between its links.
 ///
 /// `A` is the [arithmetic](crate::arithmetic), which determines every bit. A pendulum can be made in a `const`, so it
-/// can be a `static`:
+/// can be a `static`.
 ///
 /// ```
-/// use std::sync::Mutex;
-///
-/// use acrobot::Fast;
+/// use acrobot::Portable;
 /// use acrobot::physics::Pendulum;
 ///
-/// static PENDULUM: Mutex<Pendulum<Fast>> = Mutex::new(Pendulum::hanging());
+/// const HANGING: Pendulum<Portable> = Pendulum::hanging();
 ///
-/// let mut pendulum = PENDULUM.lock().unwrap();
-/// pendulum.step(1.0)?; // N m
-/// assert!(pendulum.state().dtheta2 > 0.0);
-/// # Ok::<(), acrobot::Error>(())
+/// assert!((HANGING.energy() + 9.8 * (0.5 + 1.5)).abs() < 1e-12);
+/// assert_eq!(HANGING.mass_matrix(), [[4.5, 1.75], [1.75, 1.25]]);
+/// assert_eq!(HANGING.positions(), [[0.0, -1.0], [0.0, -2.0]]);
+/// assert_eq!(HANGING.tip_height(), -2.0);
 /// ```
 ///
 /// # Results that are not finite
@@ -196,14 +194,6 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// Without a torque, `Dynamics::Book` conserves it and `Dynamics::Nips` does not. Extreme velocities or parameters
     /// can make it infinite or NaN.
-    ///
-    /// ```
-    /// use acrobot::Portable;
-    /// use acrobot::physics::Pendulum;
-    ///
-    /// let hanging = Pendulum::<Portable>::hanging().energy();
-    /// assert!((hanging + 9.8 * (0.5 + 1.5)).abs() < 1e-12);
-    /// ```
     #[must_use]
     pub fn energy(&self) -> A::Scalar {
         let [_, _, dtheta1, dtheta2] = self.y;
@@ -214,14 +204,6 @@ impl<A: Arithmetic> Pendulum<A> {
 
     /// The mass matrix M at the state, kg m². The kinetic energy is θ̇ᵀ M θ̇ / 2. M is symmetric and positive definite.
     /// Extreme parameters can make its elements infinite or NaN.
-    ///
-    /// ```
-    /// use acrobot::Portable;
-    /// use acrobot::physics::Pendulum;
-    ///
-    /// let stretched = Pendulum::<Portable>::hanging().mass_matrix();
-    /// assert_eq!(stretched, [[4.5, 1.75], [1.75, 1.25]]);
-    /// ```
     #[must_use]
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
         let [_, (_, cos2)] = self.sin_cos();
@@ -230,14 +212,6 @@ impl<A: Arithmetic> Pendulum<A> {
     }
 
     /// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the right and y up.
-    ///
-    /// ```
-    /// use acrobot::Portable;
-    /// use acrobot::physics::Pendulum;
-    ///
-    /// let [elbow, tip] = Pendulum::<Portable>::hanging().positions();
-    /// assert_eq!((elbow, tip), ([0.0, -1.0], [0.0, -2.0]));
-    /// ```
     #[must_use]
     pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
         common::positions(self.params(), self.sin_cos())
@@ -245,20 +219,12 @@ impl<A: Arithmetic> Pendulum<A> {
 
     /// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from −(l1 + l2) hanging to
     /// l1 + l2 upright.
-    ///
-    /// ```
-    /// use acrobot::Portable;
-    /// use acrobot::physics::Pendulum;
-    ///
-    /// assert_eq!(Pendulum::<Portable>::hanging().tip_height(), -2.0);
-    /// ```
     #[must_use]
     pub fn tip_height(&self) -> A::Scalar {
         let [_, [_, height]] = self.positions();
         height
     }
 
-    /// The parameters with their constants.
     #[inline]
     pub(super) fn model(&self) -> &Model<A> {
         &self.model
@@ -287,7 +253,6 @@ impl<A: Arithmetic> defmt::Format for Pendulum<A> {
     }
 }
 
-/// Rejects a torque that is not finite.
 pub(crate) fn check_torque<S: Real>(torque: S) -> Result<(), Error> {
     Range::Finite.check("torque", torque.to_f64(), "N m")
 }

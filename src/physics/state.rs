@@ -134,14 +134,6 @@ impl ResetBounds {
     /// Bounds may be beyond ±π and beyond the velocity bounds. The first step then wraps the angles and bounds the
     /// velocities.
     ///
-    /// ```
-    /// use acrobot::physics::ResetBounds;
-    ///
-    /// assert!(ResetBounds::new(-0.2, 0.2).is_ok());
-    /// assert!(ResetBounds::new(0.2, -0.2).is_err());
-    /// assert!(ResetBounds::new(f64::NAN, 0.2).is_err());
-    /// ```
-    ///
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedRange`] for a `low`

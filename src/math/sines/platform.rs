@@ -27,7 +27,6 @@ pub fn square(x: f64) -> f64 {
     }
 }
 
-/// `pow(x, 2.0)`.
 #[cold]
 fn power(x: f64) -> f64 {
     // LLVM replaces the call by `x * x` if it sees the exponent.

@@ -5,14 +5,6 @@ use core::fmt;
 use crate::error::Error;
 
 /// Why a model, a force or a regulator cannot be computed. `Display` names the value, its unit and the rule.
-///
-/// ```
-/// use acrobot::physics::control::{ControlError, DiscreteModel, lqr};
-///
-/// let doubling = [[2.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
-/// let without_motor = DiscreteModel { a: doubling, b: [0.0; 4] };
-/// assert_eq!(lqr(&without_motor, &[[0.0; 4]; 4], 1.0), Err(ControlError::NotStabilizable));
-/// ```
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

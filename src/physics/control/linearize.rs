@@ -3,7 +3,7 @@
 use super::ControlError;
 use super::matrix::check_finite;
 use crate::math::{Real, SinCos};
-use crate::physics::common::Common;
+use crate::physics::common::{Common, directions};
 use crate::physics::{Arithmetic, Form, Friction, FrictionOf, Model, Pendulum, check_torque};
 
 /// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
@@ -101,8 +101,7 @@ pub(super) fn partials<A: Arithmetic>(
     // The term in α̇² acts on link 2 in the book's equations, and on link 1 in those of the paper.
     let book = one - nips;
     let (dalpha, dbeta) = (dtheta1, dtheta1 + dtheta2);
-    let sin_sum = sin1 * cos2 + cos1 * sin2;
-    let cos_sum = cos1 * cos2 - sin1 * sin2;
+    let [_, (sin_sum, cos_sum)] = directions([(sin1, cos1), (sin2, cos2)]);
     let fall = -(gravity2 * cos_sum);
     let dalpha_squared = dalpha * dalpha;
     let twice_sin = coupling_sin + coupling_sin;

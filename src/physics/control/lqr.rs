@@ -65,8 +65,7 @@ impl<A: Arithmetic> Pendulum<A> {
     }
 }
 
-/// The linear-quadratic regulator of a discrete model: of all state feedbacks that make every deviation vanish, the one
-/// with the least sum of xᵀ Q x + R u² over all steps.
+/// The [linear-quadratic regulator](Lqr) of a discrete model.
 ///
 /// `q` weights the deviation of the state: it is symmetric and positive semidefinite, by rows, in 1/rad², s/rad² and
 /// s²/rad². `r` weights the torque, in 1/(N m)²; above 0. Only their ratio matters for the gain.

@@ -39,7 +39,6 @@ pub(super) static TWO_OVER_PI: [u64; 21] = [
     0xa9e3_9161_5ee6_1b08,
 ];
 
-/// π/4.
 const QUARTER_PI: Fraction = [
     0xc90f_daa2_2168_c234,
     0xc4c6_628b_80dc_1cd1,
