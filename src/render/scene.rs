@@ -5,6 +5,7 @@ use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::pixelcolor::PixelColor;
 use embedded_graphics_core::primitives::{PointsIter, Rectangle};
+use micromath::F32Ext;
 
 use super::{Figure, Theme};
 
@@ -118,7 +119,7 @@ impl Scene {
         Some(Self {
             corners: [corner(f32::min, -margin), corner(f32::max, margin)],
             // Gymnasium counts rows upwards and truncates, so on the edge of two rows it takes the upper one.
-            line: (libm::ceilf(center.y - metre) as i32).saturating_sub(1),
+            line: (F32Ext::ceil(center.y - metre) as i32).saturating_sub(1),
             links: [
                 Bar::new(center, elbow, thickness),
                 Bar::new(elbow, tip, thickness),
