@@ -3,15 +3,11 @@
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import gymnasium
 import jax
 import numpy as np
-import pytest
 import train_ppo
-
-SCRIPT = Path(train_ppo.__file__)
 
 
 def test_advantages_are_the_discounted_errors_until_the_end_of_the_episode():
@@ -62,25 +58,8 @@ def test_an_evaluation_counts_one_episode_of_each_environment():
     assert train_ppo.evaluate(envs, train_ppo.initial(jax.random.key(0)), jax.random.key(0)) == -7
 
 
-def test_it_learns_and_draws_the_curves(tmp_path):
-    picture = tmp_path / "curve.svg"
-    run = subprocess.run(
-        [sys.executable, SCRIPT, "1", "2", "3", "--picture", picture], capture_output=True, text=True, check=True
-    )
+def test_it_learns():
+    run = subprocess.run([sys.executable, train_ppo.__file__, "1", "2", "3"], capture_output=True, text=True, check=True)
     means = [float(mean) for mean in re.findall(r"seed \d: (-[\d.]+) after", run.stdout)]
     assert len(means) == 3 and min(means) > -100, run.stdout
     assert "mean return" in run.stderr
-    assert picture.read_text().count("<path") > 3
-
-
-@pytest.mark.parametrize(
-    ("arguments", "reason"),
-    [
-        (["--", "-1"], "a seed must be at least 0, got -1"),
-        (["--picture", "missing/curve.png"], "--picture must be a file in a folder that exists, of type "),
-        (["--picture", "curve.text"], ", got curve.text"),
-    ],
-)
-def test_invalid_arguments_are_rejected_before_training(arguments, reason, tmp_path):
-    run = subprocess.run([sys.executable, SCRIPT, *arguments], capture_output=True, text=True, cwd=tmp_path, check=False)
-    assert run.returncode == 2 and reason in run.stderr and not run.stdout
