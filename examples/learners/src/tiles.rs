@@ -4,13 +4,12 @@ use core::f32::consts::PI;
 
 use crate::weights::{FNV, fnv};
 
-/// How one number of the state is divided.
+/// How one number of the state, from `-high` to `high`, is divided.
 #[derive(Clone, Debug)]
 struct Dimension {
-    low: f32,
     high: f32,
     intervals: u16,
-    /// Whether `high` equals `low`. Otherwise a number outside counts as the nearest bound, and there is one more interval
+    /// Whether `high` equals `-high`. Otherwise a number outside counts as the nearest bound, and there is one more interval
     /// beyond the bounds, because tilings are offset.
     cyclic: bool,
     /// Intervals for each unit of the state.
@@ -20,7 +19,6 @@ struct Dimension {
 impl Dimension {
     fn new(high: f32, intervals: u16, cyclic: bool) -> Self {
         Self {
-            low: -high,
             high,
             intervals,
             cyclic,
@@ -36,7 +34,7 @@ impl Dimension {
     /// The interval of `x` before any offset, the next one, and how far `x` is between them, in 2⁻¹⁶ intervals.
     #[inline]
     fn locate(&self, x: f32) -> [u16; 3] {
-        let mut x = (x - self.low) * self.per_unit;
+        let mut x = (x + self.high) * self.per_unit;
         if self.cyclic && x >= f32::from(self.intervals) {
             x = 0.0;
         }
@@ -161,7 +159,7 @@ impl<const S: usize, const T: usize> TileCoder<S, T> {
         let mut mix = |word: u32| hash = word.to_le_bytes().into_iter().fold(hash, fnv);
         let tilings = self.offsets.iter().zip(&self.strides);
         for (dimension, (offsets, strides)) in self.dimensions.iter().zip(tilings) {
-            mix(dimension.low.to_bits());
+            mix((-dimension.high).to_bits());
             mix(dimension.high.to_bits());
             mix(u32::from(dimension.intervals) << 1 | u32::from(dimension.cyclic));
             for (&offset, &stride) in offsets.iter().zip(strides) {

@@ -91,37 +91,6 @@ fn velocities_beyond_a_bound_count_as_the_bound_and_every_slot_is_in_the_table()
     }
 }
 
-#[test]
-fn a_tiling_depends_only_on_its_dimensions() {
-    let groups: [(&[usize], usize); 9] = [
-        (&[0, 1, 2, 3], 16),
-        (&[0, 1], 3),
-        (&[2, 3], 3),
-        (&[0, 2], 3),
-        (&[1, 3], 3),
-        (&[0, 1, 2], 6),
-        (&[0, 1, 3], 6),
-        (&[0, 2, 3], 6),
-        (&[1, 2, 3], 6),
-    ];
-    let coder = Many::new();
-    let mut rng = Pcg64::new(2);
-    for d in 0..4 {
-        let mut depends = [false; 52];
-        for _ in 0..100 {
-            let from = anywhere(&mut rng);
-            let mut to = from;
-            to[d] = anywhere(&mut rng)[d];
-            let slots = coder.active(&from).into_iter().zip(coder.active(&to));
-            for (depends, (from, to)) in depends.iter_mut().zip(slots) {
-                *depends |= from != to;
-            }
-        }
-        let expected = groups.map(|(dimensions, n)| vec![dimensions.contains(&d); n]);
-        assert_eq!(depends[..], expected.concat(), "dimension {d}");
-    }
-}
-
 /// With 65,536 slots each tile has its own. Random slots would leave 24 % of those of 3,600 tiles in 6,144 slots shared.
 #[test]
 fn hashing_spreads_the_tiles() {
