@@ -131,28 +131,21 @@ impl Env for Broken {
     }
 
     fn action_space(&self) -> Altered<DiscreteSpace<Action>> {
-        match self.flaw {
-            Flaw::ActionSamples => Altered {
-                space: DiscreteSpace::new(&[Action::Negative, Action::Zero]).unwrap(),
-                alter: |_| Action::Positive,
-            },
-            _ => Altered {
-                space: self.env.action_space(),
-                alter: |action| action,
+        Altered {
+            space: DiscreteSpace::new(&[Action::Negative, Action::Zero]).unwrap(),
+            alter: match self.flaw {
+                Flaw::ActionSamples => |_| Action::Positive,
+                _ => |action| action,
             },
         }
     }
 
     fn observation_space(&self) -> Altered<BoxSpace<Observation>> {
-        let space = self.env.observation_space();
-        match self.flaw {
-            Flaw::ObservationSamples => Altered {
-                space,
-                alter: |seen| seen.to_array().map(|x| x + 60.0).into(),
-            },
-            _ => Altered {
-                space,
-                alter: |seen| seen,
+        Altered {
+            space: self.env.observation_space(),
+            alter: match self.flaw {
+                Flaw::ObservationSamples => |seen| seen.to_array().map(|x| x + 60.0).into(),
+                _ => |seen| seen,
             },
         }
     }
