@@ -70,6 +70,7 @@ fn random_episodes_are_stable() {
     assert!(found == expected, "with friction: {found:#018x?}");
 }
 
+/// Friction and the task are two things: the initial states, rewards and the goal stay Gymnasium's, too.
 #[test]
 fn a_friction_of_0_changes_no_bit() {
     let damped = digest::<Damped<Reference>>(Viscous::default());

@@ -2,12 +2,10 @@
 
 use std::f64::consts::PI;
 
-use acrobot::arithmetic::{
-    Arithmetic, Damped, Host, Micro, Real, Reference, Swingup, SwingupSparse,
-};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference, Swingup, SwingupSparse};
 use acrobot::physics::{Pendulum, Viscous};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
-use common::{distance, text_of};
+use common::{distance, numbers, text_of};
 
 struct Recorded {
     before: State,
@@ -30,7 +28,7 @@ fn recorded() -> Vec<Recorded> {
     let text = text_of("tests/data/swingup.txt");
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     let steps = lines.map(|line| {
-        let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+        let numbers = numbers(line);
         Recorded {
             before: state(&numbers[..4]),
             torque: 2.0 * numbers[4],
@@ -119,10 +117,9 @@ fn the_model_is_mujocos() {
     let inertias = text
         .lines()
         .find_map(|line| line.strip_prefix("# inertias "));
-    let inertias = inertias.unwrap().split(' ').map(|x| x.parse().unwrap());
     let params = Params::<f64, Viscous<f64>>::SWINGUP;
     params.validate().unwrap();
-    let mujocos: Vec<f64> = inertias.collect();
+    let mujocos = numbers(inertias.unwrap());
     let ours = [params.inertia1, params.inertia2];
     assert!(
         (ours[0] - mujocos[0])
@@ -177,27 +174,4 @@ fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
     let mut episode = TimeLimit::new(acrobot, Swingup::<Fast>::TASK.limit());
     let lengths = (1..).find(|_| episode.step(Action::Positive).done());
     assert_eq!(lengths, Some(1000));
-}
-
-/// Friction and the task are two things: with friction alone the initial states, rewards and the goal are Gymnasium's.
-#[test]
-fn friction_alone_changes_no_rule() {
-    let friction = Viscous {
-        joint1: 0.01,
-        joint2: 0.01,
-    };
-    let params = Params::DEFAULT.with_friction(friction);
-    let mut acrobot = Acrobot::<Damped<Fast>>::with_params(42, params).unwrap();
-    let mut without = Acrobot::<Fast>::new(42);
-    assert_eq!(acrobot.state(), without.state());
-    loop {
-        let action = bits::against(acrobot.state().dtheta1);
-        let step = acrobot.step(action);
-        assert_ne!(step.observation, without.step(action).observation);
-        assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
-        if step.terminated {
-            assert!(acrobot.pendulum().tip_height() > 1.0);
-            break;
-        }
-    }
 }

@@ -52,7 +52,9 @@ fn running(kind: Kind, autoreset: Autoreset, noise: f32) -> Twins<Fast> {
     twins.set_bounds(-0.5, 0.25);
     twins.swing(200);
     if autoreset == Autoreset::NextStep {
-        twins.swing_until_pending();
+        while !twins.pending.contains(&true) {
+            twins.swing(1);
+        }
     }
     // Half of a draw is left over.
     Action::sample(&mut twins.batch.generators_mut()[0]);

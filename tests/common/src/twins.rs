@@ -221,16 +221,6 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         }
     }
 
-    /// Returns the first acrobot whose reset is pending.
-    pub fn swing_until_pending(&mut self) -> usize {
-        loop {
-            if let Some(index) = self.pending.iter().position(|pending| *pending) {
-                return index;
-            }
-            self.swing(1);
-        }
-    }
-
     /// Plays with every SIMD level. Initial states are far outside of the bounds, and there is noise.
     pub fn at_every_level() {
         for level in LEVELS {
