@@ -194,11 +194,6 @@ fn invalid_snapshots_are_rejected() {
             "the lower reset bound must not be above the upper one, got 0.5 and 0.1 rad and rad/s",
         ),
         (
-            r#""high":0.1"#,
-            r#""high":1e39"#,
-            "high must be from -3.4e38 to 3.4e38 rad and rad/s, got 1000000000000000000000000000000000000000",
-        ),
-        (
             r#""autoreset":"NextStep""#,
             r#""autoreset":"Never""#,
             "unknown variant `Never`, expected one of `NextStep`, `SameStep`, `Disabled`",
@@ -287,14 +282,6 @@ fn invalid_ranges_are_rejected() {
     assert_eq!(
         changed(|range| range.reverse()),
         "the lower length1 must not be above the upper one, got 2 and 0.5 m"
-    );
-    assert_eq!(
-        changed(|range| range[1]["dynamics"] = "Nips".into()),
-        "dynamics must be the same in both bounds of a range"
-    );
-    assert_eq!(
-        changed(|range| range[0]["dt"] = 0.into()),
-        "dt must be finite and above 0 s, got 0"
     );
     assert_eq!(
         changed(|range| range.truncate(1)),
