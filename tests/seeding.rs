@@ -9,15 +9,13 @@ use acrobot::env::{AcrobotEnv, Env, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Error, Fast, Observation, Portable};
+use common::lines;
 use rand_core::Rng;
 
 /// The rows of `data/seeds.txt` of one kind, without the kind.
-fn rows(kind: &str) -> impl Iterator<Item = Vec<&'static str>> {
-    let lines = include_str!("data/seeds.txt").lines();
-    let rows: Vec<Vec<_>> = lines
-        .filter_map(|line| line.strip_prefix(kind)?.strip_prefix(' '))
-        .map(|row| row.split(' ').collect())
-        .collect();
+fn rows(kind: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
+    let rows = lines(include_str!("data/seeds.txt"), kind);
+    let rows: Vec<Vec<_>> = rows.map(|row| row.split(' ').collect()).collect();
     assert!(rows.len() >= 20, "{} rows of {kind}", rows.len());
     // Miri takes a thousand times as long.
     rows.into_iter().step_by(if cfg!(miri) { 10 } else { 1 })

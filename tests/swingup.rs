@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference, Swingup, SwingupSparse};
 use acrobot::physics::{Pendulum, Viscous};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
-use common::{distance, numbers, text_of};
+use common::{distance, lines, numbers, text_of};
 
 struct Recorded {
     before: State,
@@ -114,9 +114,7 @@ fn episodes_follow_dm_controls() {
 #[test]
 fn the_model_is_mujocos() {
     let text = text_of("tests/data/swingup.txt");
-    let inertias = text
-        .lines()
-        .find_map(|line| line.strip_prefix("# inertias "));
+    let inertias = lines(&text, "# inertias").next();
     let params = Params::<f64, Viscous<f64>>::SWINGUP;
     params.validate().unwrap();
     let mujocos = numbers(inertias.unwrap());

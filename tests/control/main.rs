@@ -8,13 +8,7 @@ use acrobot::arithmetic::{self, Arithmetic, Host, Micro, Real, Reference};
 use acrobot::physics::control::{Forces, discretize, inverse_dynamics, linearize, velocities};
 use acrobot::physics::{FrictionOf, Pendulum, Viscous};
 use acrobot::{Fast, Params, Portable, State};
-use common::{AnyFriction, dynamics_of, numbers, text_of};
-
-/// The rest of each line of the recording that starts with this word.
-fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
-    text.lines()
-        .filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
-}
+use common::{AnyFriction, dynamics_of, lines, numbers, text_of};
 
 fn cast<T: Real, const N: usize>(x: [f64; N]) -> [T; N] {
     x.map(T::from_f64)

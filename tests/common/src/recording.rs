@@ -145,6 +145,12 @@ pub fn dynamics_of(name: &str) -> Dynamics {
     }
 }
 
+/// The rest of each line of a recording that starts with this word.
+pub fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
+    text.lines()
+        .filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
+}
+
 /// The numbers in a line of a recording.
 pub fn numbers(line: &str) -> Vec<f64> {
     line.split(' ').map(|x| x.parse().unwrap()).collect()
