@@ -14,11 +14,6 @@ use proptest::prelude::*;
 use crate::given::{Range, Tested, acrobot, action, holds, number, params, reset_bounds, state};
 use common::{bits, distance, in_every_arithmetic};
 
-/// Two inputs from the same strategy.
-fn two<G: Strategy>(given: impl Fn() -> G) -> [G; 2] {
-    [given(), given()]
-}
-
 fn assert_seen<A: Arithmetic>(acrobot: &Acrobot<A>, observation: Observation) {
     assert_eq!(observation, acrobot.observation());
     let [trigonometric @ .., dtheta1, dtheta2] = observation.to_array();
@@ -54,7 +49,10 @@ fn any_settings_and_steps_stay_in_bounds() {
 
     fn check<A: Tested>() {
         let steps = Cell::new(0_u64);
-        let set = (two(|| params(Range::Any)), two(|| state(Range::Any)));
+        let set = (
+            [(); 2].map(|()| params(Range::Any)),
+            [(); 2].map(|()| state(Range::Any)),
+        );
         let done = (
             reset_bounds(),
             number(Range::Any),
