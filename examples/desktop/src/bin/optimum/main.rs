@@ -101,7 +101,9 @@ fn search(width: u32, fineness: f32, file: &Path) -> anyhow::Result<()> {
         };
         let depth = known[seed as usize].len().checked_sub(1).unwrap_or(DEPTH);
         let state = initial(seed.into());
-        let path = beam.search(state.cast(), depth, |path| reaches(state, path));
+        let path = beam.search(state.cast(), depth, |path| {
+            reaches::<Reference>(state, path)
+        });
         progress.inc(1);
         path
     });
