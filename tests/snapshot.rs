@@ -265,9 +265,9 @@ fn no_snapshot_is_larger_than_its_constant() {
 #[test]
 fn a_checksum_finds_every_flipped_bit() {
     static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
-    /// How many of `bytes` with a flipped bit load, and how many there are. Miri takes one in 311.
+    /// How many of `bytes` with a flipped bit load, and how many there are.
     fn flip(mut bytes: Vec<u8>, load: fn(&[u8]) -> postcard::Result<Acrobot<Fast>>) -> [usize; 2] {
-        let bits = (0..8 * bytes.len()).step_by(if cfg!(miri) { 311 } else { 1 });
+        let bits = 0..8 * bytes.len();
         let loaded = bits.clone().filter(|bit| {
             bytes[bit / 8] ^= 1 << (bit % 8);
             let loads = load(&bytes).is_ok();
@@ -286,8 +286,5 @@ fn a_checksum_finds_every_flipped_bit() {
     let checked = flip(checked, |bytes| {
         postcard::from_bytes_crc32(bytes, CRC.digest())
     });
-    assert_eq!(checked[0], 0, "of {}", checked[1]);
-    if !cfg!(miri) {
-        assert_eq!([plain, checked], [[893, 1104], [0, 1136]]);
-    }
+    assert_eq!([plain, checked], [[893, 1104], [0, 1136]]);
 }
