@@ -159,7 +159,7 @@ fn error<T: Debug>(loaded: Result<T, serde_json::Error>) -> String {
     error.split(" at line").next().unwrap().to_owned()
 }
 
-fn load<A: Arithmetic<Scalar: DeserializeOwned>>(json: &str) -> String {
+fn load<A: Arithmetic>(json: &str) -> String {
     error(serde_json::from_str::<VecBatch<A>>(json))
 }
 
