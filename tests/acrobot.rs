@@ -316,9 +316,8 @@ fn both_observations_show_the_state() {
     assert_eq!([angles.dtheta1(), angles.dtheta2()], [3.0, -4.0]);
 }
 
-/// `with_params`, and what a time limit passes to its acrobot.
 #[test]
-fn parameters_and_states_need_no_inner_acrobot() {
+fn acrobots_can_begin_with_parameters() {
     let heavy = Params {
         mass1: 2.0,
         ..Params::DEFAULT
@@ -331,17 +330,4 @@ fn parameters_and_states_need_no_inner_acrobot() {
         ..heavy
     };
     assert!(Acrobot::<Portable>::with_params(42, without_mass).is_err());
-
-    let mut limited = TimeLimit::v1(acrobot);
-    limited.step(Action::Zero);
-    assert!(limited.set_params(without_mass).is_err());
-    assert_eq!(*limited.params(), heavy);
-    limited.set_params(Params::DEFAULT).unwrap();
-    limited.set_state(State::UPRIGHT).unwrap();
-    assert_eq!(*limited.inner().params(), Params::DEFAULT);
-    assert_eq!(
-        [limited.state(), limited.inner().state()],
-        [State::UPRIGHT; 2]
-    );
-    assert_eq!(limited.elapsed(), 1);
 }

@@ -131,28 +131,21 @@ impl Env for Broken {
     }
 
     fn action_space(&self) -> Altered<DiscreteSpace<Action>> {
-        match self.flaw {
-            Flaw::ActionSamples => Altered {
-                space: DiscreteSpace::new(&[Action::Negative, Action::Zero]).unwrap(),
-                alter: |_| Action::Positive,
-            },
-            _ => Altered {
-                space: self.env.action_space(),
-                alter: |action| action,
+        Altered {
+            space: DiscreteSpace::new(&[Action::Negative, Action::Zero]).unwrap(),
+            alter: match self.flaw {
+                Flaw::ActionSamples => |_| Action::Positive,
+                _ => |action| action,
             },
         }
     }
 
     fn observation_space(&self) -> Altered<BoxSpace<Observation>> {
-        let space = self.env.observation_space();
-        match self.flaw {
-            Flaw::ObservationSamples => Altered {
-                space,
-                alter: |seen| seen.to_array().map(|x| x + 60.0).into(),
-            },
-            _ => Altered {
-                space,
-                alter: |seen| seen,
+        Altered {
+            space: self.env.observation_space(),
+            alter: match self.flaw {
+                Flaw::ObservationSamples => |seen| seen.to_array().map(|x| x + 60.0).into(),
+                _ => |seen| seen,
             },
         }
     }
@@ -185,42 +178,24 @@ fn every_violation_is_found() {
         )
     };
     assert_eq!(check(Flaw::None), Ok(()));
+    let in_space = "observations are in the observation space";
+    let repeats = "the same seed and actions give the same episode";
+    let restarts = "a reset after the end begins a full new episode";
     for (flaw, rule) in [
-        (Flaw::Outside, "observations are in the observation space"),
-        (
-            Flaw::OutsideAtReset,
-            "observations are in the observation space",
-        ),
+        (Flaw::Outside, in_space),
+        (Flaw::OutsideAtReset, in_space),
+        (Flaw::ObservationSamples, in_space),
+        (Flaw::ActionSamples, "the action space contains its samples"),
         (Flaw::Reward, "rewards are finite"),
+        (Flaw::Seed, repeats),
+        (Flaw::Resets(Cell::default()), repeats),
+        (Flaw::Shared(Rc::default()), repeats),
         (
-            Flaw::Seed,
-            "the same seed and actions give the same episode",
-        ),
-        (
-            Flaw::Resets(Cell::new(0)),
-            "the same seed and actions give the same episode",
-        ),
-        (
-            Flaw::Count(Cell::new(0)),
-            "a reset after the end begins a full new episode",
-        ),
-        (
-            Flaw::Unseeded(Cell::new(0)),
-            "a reset after the end begins a full new episode",
-        ),
-        (
-            Flaw::Shared(Rc::new(Cell::new(0))),
-            "the same seed and actions give the same episode",
-        ),
-        (
-            Flaw::SharedInEpisode(Rc::new(Cell::new(0))),
+            Flaw::SharedInEpisode(Rc::default()),
             "a clone behaves like its original",
         ),
-        (
-            Flaw::ObservationSamples,
-            "observations are in the observation space",
-        ),
-        (Flaw::ActionSamples, "the action space contains its samples"),
+        (Flaw::Count(Cell::default()), restarts),
+        (Flaw::Unseeded(Cell::default()), restarts),
         (Flaw::Render, "rendering changes nothing"),
     ] {
         let violation = check(flaw).expect_err(rule);

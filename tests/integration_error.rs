@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::{Fast, Params, Portable, State};
-use common::{assert_says, distance};
+use common::{assert_says, distance, dynamics_of};
 
 /// A run under torques that last 0.2 s each.
 struct Run {
@@ -41,11 +41,7 @@ static RUNS: LazyLock<Vec<Run>> = LazyLock::new(|| {
                 torques.insert(words[1], &*numbers.leak());
             }
             "start" => runs.push(Run {
-                dynamics: match words[1] {
-                    "book" => Dynamics::Book,
-                    "nips" => Dynamics::Nips,
-                    name => panic!("unknown dynamics {name}"),
-                },
+                dynamics: dynamics_of(words[1]),
                 start: words[2],
                 state: state(&words[4..]),
                 torques: torques[words[3]],

@@ -6,6 +6,7 @@ use acrobot::render::{Figure, Frame, Theme};
 use acrobot::{Acrobot, Params, Portable, State};
 use bits::{Digest, oled};
 use common::canvas::Canvas;
+use common::numbers;
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
 use embedded_graphics::geometry::{OriginDimensions, Point, Size};
@@ -40,16 +41,12 @@ fn recorded_frames() -> Vec<([f64; 4], Vec<u8>)> {
         .lines()
         .filter(|line| !line.starts_with('#'));
     let frames = states.enumerate().map(|(number, line)| {
-        let numbers: Vec<f64> = line
-            .split(' ')
-            .map(|number| number.parse().unwrap())
-            .collect();
         let (row, column) = (number / 8 * SIDE, number % 8 * SIDE);
         let pixels = (0..SIDE * SIDE).flat_map(|i| {
             let start = ((row + i / SIDE) * 4000 + column + i % SIDE) * channels;
             grid[start..start + 3].to_vec()
         });
-        (numbers.try_into().unwrap(), pixels.collect())
+        (numbers(line).try_into().unwrap(), pixels.collect())
     });
     frames.collect()
 }

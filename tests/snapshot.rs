@@ -9,8 +9,8 @@ use acrobot::numpy::SeedSequence;
 use acrobot::physics::{Dynamics, Lean, ResetBounds};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use crc::{CRC_32_ISCSI, Crc};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 
 type Limited = TimeLimit<Acrobot<Portable>>;
 
@@ -70,7 +70,7 @@ fn snapshots_that_are_not_valid_are_rejected() {
 }
 
 /// A batch whose resets draw parameters, after a step. Single acrobots make the step, so that this file compiles no batch's.
-fn batch() -> Saved {
+fn batch() -> VecBatch<Fast> {
     let seed = SeedSequence::new(42);
     let range = common::params_range(Dynamics::Book);
     let bounds = ResetBounds::new(-0.5, 0.25).unwrap();
@@ -93,24 +93,7 @@ fn batch() -> Saved {
         };
         batch.set_member(i, member).unwrap();
     }
-    Saved(batch)
-}
-
-/// A batch that can be compared.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(transparent)]
-struct Saved(VecBatch<Fast>);
-
-impl PartialEq for Saved {
-    fn eq(&self, other: &Self) -> bool {
-        let [this, other] = [self, other].map(|Self(batch)| {
-            let members: Vec<_> = (0..batch.len()).map(|i| batch.member(i)).collect();
-            let range = batch.params_range().copied();
-            let settings = (batch.limit(), batch.reset_bounds(), batch.autoreset());
-            (members, range, settings)
-        });
-        this == other
-    }
+    batch
 }
 
 fn to_hex(bytes: &[u8]) -> String {
@@ -124,16 +107,14 @@ fn from_hex(text: &str) -> Vec<u8> {
 }
 
 /// Two lines: `original` as JSON and as postcard. The lines of the file must load as `original`.
-fn stored<T>(original: T, lines: &mut std::str::Lines<'_>) -> String
-where
-    T: Serialize + DeserializeOwned + PartialEq + Debug,
-{
+fn stored<T: Serialize + DeserializeOwned>(original: T, lines: &mut std::str::Lines<'_>) -> String {
     let [json, hex] = [(); 2].map(|()| lines.next().unwrap());
-    assert_eq!(serde_json::from_str::<T>(json).unwrap(), original);
+    let from_json: T = serde_json::from_str(json).unwrap();
     let from_bytes: T = postcard::from_bytes(&from_hex(hex)).unwrap();
-    assert_eq!(from_bytes, original);
     let json = serde_json::to_string(&original).unwrap();
-    let hex = to_hex(&postcard::to_stdvec(&original).unwrap());
+    let [hex, ref loaded @ ..] =
+        [original, from_json, from_bytes].map(|x| to_hex(&postcard::to_stdvec(&x).unwrap()));
+    assert_eq!(*loaded, [&*hex; 2]);
     format!("{json}\n{hex}\n")
 }
 
@@ -187,11 +168,11 @@ fn snapshots_of_another_type_are_rejected_by_their_header() {
 /// Binary formats have no field names, so bytes could load as another type.
 #[test]
 fn bytes_of_another_type_are_rejected() {
-    fn acrobot<A: Arithmetic<Scalar: Serialize>>() -> Vec<u8> {
+    fn acrobot<A: Arithmetic>() -> Vec<u8> {
         postcard::to_stdvec(&Acrobot::<A>::new(1)).unwrap()
     }
     /// A snapshot of a release before version 1.
-    fn unversioned<A: Arithmetic<Scalar: Serialize>>() -> Vec<u8> {
+    fn unversioned<A: Arithmetic>() -> Vec<u8> {
         let acrobot = Acrobot::<A>::new(1);
         postcard::to_stdvec(&(acrobot.params(), acrobot.state(), acrobot.rng())).unwrap()
     }
@@ -204,7 +185,7 @@ fn bytes_of_another_type_are_rejected() {
     let mut newer = acrobot::<Portable>();
     let version = newer.iter().position(|&byte| byte == 1).unwrap();
     newer[version] = 2;
-    fn batch<A: Arithmetic<Scalar: Serialize>>() -> Vec<u8> {
+    fn batch<A: Arithmetic>() -> Vec<u8> {
         postcard::to_stdvec(&VecBatch::<A>::new(SeedSequence::new(1), 1).unwrap()).unwrap()
     }
     let all = [
@@ -258,7 +239,7 @@ fn an_arithmetics_name_has_up_to_16_bytes() {
 /// The largest snapshot: all integers of the generator and of the limit have their largest value.
 #[test]
 fn no_snapshot_is_larger_than_its_constant() {
-    fn check<A: Arithmetic<Scalar: Serialize + DeserializeOwned>>() {
+    fn check<A: Arithmetic>() {
         let mut largest = serde_json::to_value(TimeLimit::v1(Acrobot::<A>::new(0))).unwrap();
         let (seed, half) = ([u32::MAX; 8], u32::MAX);
         largest["inner"]["rng"] = serde_json::json!(
@@ -284,9 +265,9 @@ fn no_snapshot_is_larger_than_its_constant() {
 #[test]
 fn a_checksum_finds_every_flipped_bit() {
     static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
-    /// How many of `bytes` with a flipped bit load, and how many there are. Miri takes one in 311.
+    /// How many of `bytes` with a flipped bit load, and how many there are.
     fn flip(mut bytes: Vec<u8>, load: fn(&[u8]) -> postcard::Result<Acrobot<Fast>>) -> [usize; 2] {
-        let bits = (0..8 * bytes.len()).step_by(if cfg!(miri) { 311 } else { 1 });
+        let bits = 0..8 * bytes.len();
         let loaded = bits.clone().filter(|bit| {
             bytes[bit / 8] ^= 1 << (bit % 8);
             let loads = load(&bytes).is_ok();
@@ -305,8 +286,5 @@ fn a_checksum_finds_every_flipped_bit() {
     let checked = flip(checked, |bytes| {
         postcard::from_bytes_crc32(bytes, CRC.digest())
     });
-    assert_eq!(checked[0], 0, "of {}", checked[1]);
-    if !cfg!(miri) {
-        assert_eq!([plain, checked], [[893, 1104], [0, 1136]]);
-    }
+    assert_eq!([plain, checked], [[893, 1104], [0, 1136]]);
 }

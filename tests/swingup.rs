@@ -2,13 +2,11 @@
 
 use std::f64::consts::PI;
 
-use acrobot::arithmetic::{
-    Arithmetic, Damped, Host, Micro, Real, Reference, Swingup, SwingupSparse,
-};
+use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference, Swingup, SwingupSparse};
 use acrobot::physics::{Pendulum, Viscous};
 use acrobot::render::Figure;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
-use common::{distance, text_of};
+use common::{distance, lines, numbers, text_of};
 
 struct Recorded {
     before: State,
@@ -31,7 +29,7 @@ fn recorded() -> Vec<Recorded> {
     let text = text_of("tests/data/swingup.txt");
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     let steps = lines.map(|line| {
-        let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+        let numbers = numbers(line);
         Recorded {
             before: state(&numbers[..4]),
             torque: 2.0 * numbers[4],
@@ -117,13 +115,10 @@ fn episodes_follow_dm_controls() {
 #[test]
 fn the_model_is_mujocos() {
     let text = text_of("tests/data/swingup.txt");
-    let inertias = text
-        .lines()
-        .find_map(|line| line.strip_prefix("# inertias "));
-    let inertias = inertias.unwrap().split(' ').map(|x| x.parse().unwrap());
+    let inertias = lines(&text, "# inertias").next();
     let params = Params::<f64, Viscous<f64>>::SWINGUP;
     params.validate().unwrap();
-    let mujocos: Vec<f64> = inertias.collect();
+    let mujocos = numbers(inertias.unwrap());
     let ours = [params.inertia1, params.inertia2];
     assert!(
         (ours[0] - mujocos[0])
@@ -187,27 +182,4 @@ fn pictures_are_those_of_acrobots() {
     let mut acrobot = Acrobot::<Fast>::new(0);
     acrobot.set_state(swingup.state()).unwrap();
     assert_eq!(Figure::new(&swingup), Figure::new(&acrobot));
-}
-
-/// Friction and the task are two things: with friction alone the initial states, rewards and the goal are Gymnasium's.
-#[test]
-fn friction_alone_changes_no_rule() {
-    let friction = Viscous {
-        joint1: 0.01,
-        joint2: 0.01,
-    };
-    let params = Params::DEFAULT.with_friction(friction);
-    let mut acrobot = Acrobot::<Damped<Fast>>::with_params(42, params).unwrap();
-    let mut without = Acrobot::<Fast>::new(42);
-    assert_eq!(acrobot.state(), without.state());
-    loop {
-        let action = bits::against(acrobot.state().dtheta1);
-        let step = acrobot.step(action);
-        assert_ne!(step.observation, without.step(action).observation);
-        assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
-        if step.terminated {
-            assert!(acrobot.pendulum().tip_height() > 1.0);
-            break;
-        }
-    }
 }

@@ -206,23 +206,18 @@ fn parameters_out_of_range_are_rejected_by_name() {
 
 #[test]
 fn a_link_needs_inertia_about_its_joint() {
+    let params = |inertia1, center_of_mass1, inertia2, center_of_mass2| Params {
+        inertia1,
+        center_of_mass1,
+        inertia2,
+        center_of_mass2,
+        ..Params::DEFAULT
+    };
     for point in [
-        Params {
-            inertia1: 0.0,
-            center_of_mass1: 0.0,
-            ..Params::DEFAULT
-        },
-        Params {
-            inertia2: 0.0,
-            center_of_mass2: 0.0,
-            ..Params::DEFAULT
-        },
+        params(0.0, 0.0, 1.0, 0.5),
+        params(1.0, 0.5, 0.0, 0.0),
         // Their squares underflow to 0 in f64.
-        Params {
-            inertia2: 0.0,
-            center_of_mass2: 1e-170,
-            ..Params::DEFAULT
-        },
+        params(1.0, 0.5, 0.0, 1e-170),
     ] {
         let error = point.validate().unwrap_err();
         assert!(
@@ -231,23 +226,12 @@ fn a_link_needs_inertia_about_its_joint() {
         );
     }
     // This one underflows only in f32.
-    let small = Params {
-        inertia2: 0.0,
-        center_of_mass2: 1e-30,
-        ..Params::<f64>::DEFAULT
-    };
+    let small = params(1.0, 0.5, 0.0, 1e-30);
     small.validate().unwrap();
     let error = small.cast::<f32>().validate().unwrap_err();
     assert!(matches!(error, Error::NoInertia { .. }), "{error}");
     // Point masses at the tips are a pendulum.
-    let points = Params {
-        inertia1: 0.0,
-        inertia2: 0.0,
-        center_of_mass1: 1.0,
-        center_of_mass2: 1.0,
-        ..Params::DEFAULT
-    };
-    points.validate().unwrap();
+    params(0.0, 1.0, 0.0, 1.0).validate().unwrap();
 }
 
 #[test]

@@ -22,12 +22,6 @@ pub struct Play<A: Arithmetic> {
     rows: Vec<[f32; 6]>,
 }
 
-impl<A: Arithmetic> Play<A> {
-    pub fn new(len: usize) -> Self {
-        Self::from(VecBatch::new(SeedSequence::new(0), len).expect("memory for the batch"))
-    }
-}
-
 impl<A: Arithmetic> From<VecBatch<A>> for Play<A> {
     fn from(batch: VecBatch<A>) -> Self {
         let len = batch.len();
@@ -46,6 +40,10 @@ impl<A: Arithmetic> From<VecBatch<A>> for Play<A> {
 }
 
 impl<A: Arithmetic> Play<A> {
+    pub fn new(len: usize) -> Self {
+        Self::from(VecBatch::new(SeedSequence::new(0), len).expect("memory for the batch"))
+    }
+
     /// Draws actions and steps. Returns the number of acrobots.
     pub fn play(&mut self, observe: bool) -> usize {
         for (stream, action) in self.streams.iter_mut().zip(&mut self.actions) {

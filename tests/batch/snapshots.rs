@@ -52,7 +52,9 @@ fn running(kind: Kind, autoreset: Autoreset, noise: f32) -> Twins<Fast> {
     twins.set_bounds(-0.5, 0.25);
     twins.swing(200);
     if autoreset == Autoreset::NextStep {
-        twins.swing_until_pending();
+        while !twins.pending.contains(&true) {
+            twins.swing(1);
+        }
     }
     // Half of a draw is left over.
     Action::sample(&mut twins.batch.generators_mut()[0]);
@@ -157,7 +159,7 @@ fn error<T: Debug>(loaded: Result<T, serde_json::Error>) -> String {
     error.split(" at line").next().unwrap().to_owned()
 }
 
-fn load<A: Arithmetic<Scalar: DeserializeOwned>>(json: &str) -> String {
+fn load<A: Arithmetic>(json: &str) -> String {
     error(serde_json::from_str::<VecBatch<A>>(json))
 }
 
@@ -190,11 +192,6 @@ fn invalid_snapshots_are_rejected() {
             r#""low":-0.1"#,
             r#""low":0.5"#,
             "the lower reset bound must not be above the upper one, got 0.5 and 0.1 rad and rad/s",
-        ),
-        (
-            r#""high":0.1"#,
-            r#""high":1e39"#,
-            "high must be from -3.4e38 to 3.4e38 rad and rad/s, got 1000000000000000000000000000000000000000",
         ),
         (
             r#""autoreset":"NextStep""#,
@@ -285,14 +282,6 @@ fn invalid_ranges_are_rejected() {
     assert_eq!(
         changed(|range| range.reverse()),
         "the lower length1 must not be above the upper one, got 2 and 0.5 m"
-    );
-    assert_eq!(
-        changed(|range| range[1]["dynamics"] = "Nips".into()),
-        "dynamics must be the same in both bounds of a range"
-    );
-    assert_eq!(
-        changed(|range| range[0]["dt"] = 0.into()),
-        "dt must be finite and above 0 s, got 0"
     );
     assert_eq!(
         changed(|range| range.truncate(1)),

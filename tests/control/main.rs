@@ -6,19 +6,9 @@ mod regulators;
 
 use acrobot::arithmetic::{self, Arithmetic, Host, Micro, Real, Reference};
 use acrobot::physics::control::{Forces, discretize, inverse_dynamics, linearize, velocities};
-use acrobot::physics::{Dynamics, FrictionOf, Pendulum, Viscous};
+use acrobot::physics::{FrictionOf, Pendulum, Viscous};
 use acrobot::{Fast, Params, Portable, State};
-use common::{AnyFriction, text_of};
-
-/// The rest of each line of the recording that starts with this word.
-fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
-    text.lines()
-        .filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
-}
-
-fn numbers(line: &str) -> Vec<f64> {
-    line.split(' ').map(|x| x.parse().unwrap()).collect()
-}
+use common::{AnyFriction, dynamics_of, lines, numbers, text_of};
 
 fn cast<T: Real, const N: usize>(x: [f64; N]) -> [T; N] {
     x.map(T::from_f64)
@@ -91,10 +81,7 @@ fn cases(spread: Spread) -> Vec<Case> {
                     inertia2: x[7],
                     gravity: x[8],
                     dt: x[9],
-                    dynamics: match dynamics {
-                        "book" => Dynamics::Book,
-                        _ => Dynamics::Nips,
-                    },
+                    dynamics: dynamics_of(dynamics),
                     friction: Viscous {
                         joint1: x[10],
                         joint2: x[11],

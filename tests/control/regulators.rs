@@ -6,9 +6,9 @@ use acrobot::arithmetic::Real;
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, discretize, lqr};
 use acrobot::{Params, Portable, State};
-use common::text_of;
+use common::{lines, numbers, text_of};
 
-use crate::{cast, lines, numbers, relative, vector};
+use crate::{cast, relative, vector};
 
 fn matrix(elements: &[f64]) -> [[f64; 4]; 4] {
     elements.as_chunks().0.try_into().unwrap()

@@ -28,9 +28,14 @@ fn main() {
     for len in [1024, 1 << 20] {
         batch::<Fast>("fast", len, SimdLevel::widest());
     }
-    own_params(1024);
-    swingup::<Fast>("fast", 1024);
-    swingup::<Portable>("portable", 1024);
+    let own = VecBatch::with_own_params(SeedSequence::new(0), 1024).expect("memory for the batch");
+    versus::<Fast, Fast>("fast_1024_own_params", Play::from(own), Play::new(1024));
+    versus::<Swingup<Fast>, Fast>("fast_1024_swingup", Play::new(1024), Play::new(1024));
+    versus::<Swingup<Portable>, Portable>(
+        "portable_1024_swingup",
+        Play::new(1024),
+        Play::new(1024),
+    );
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
     batch::<Portable>("portable", 1024, SimdLevel::widest());
@@ -104,28 +109,13 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) {
     }
 }
 
-/// Each acrobot has its own parameters; the ratio is to a batch that shares them.
-fn own_params(len: usize) {
-    let own = VecBatch::with_own_params(SeedSequence::new(0), len).expect("memory for the batch");
-    let (mut own, mut shared) = (Play::<Fast>::from(own), Play::<Fast>::new(len));
+/// A batch with observations; the ratio is to another one.
+fn versus<A: Arithmetic, B: Arithmetic>(name: &str, mut ours: Play<A>, mut other: Play<B>) {
     let rates = compare(
-        || (0..2000).map(|_| own.play(true)).sum(),
-        || (0..2000).map(|_| shared.play(true)).sum(),
+        || (0..2000).map(|_| ours.play(true)).sum(),
+        || (0..2000).map(|_| other.play(true)).sum(),
     );
-    report(&format!("batch_fast_{len}_own_params"), rates);
-}
-
-/// The swing-up; the ratio is to Gymnasium's task.
-fn swingup<A: Arithmetic>(arithmetic: &str, len: usize)
-where
-    Swingup<A>: Arithmetic,
-{
-    let (mut swingup, mut gymnasium) = (Play::<Swingup<A>>::new(len), Play::<A>::new(len));
-    let rates = compare(
-        || (0..2000).map(|_| swingup.play(true)).sum(),
-        || (0..2000).map(|_| gymnasium.play(true)).sum(),
-    );
-    report(&format!("batch_{arithmetic}_{len}_swingup"), rates);
+    report(&format!("batch_{name}"), rates);
 }
 
 /// Steps on all cores; the ratio is to the same steps on one core. The actions stay the same, because only the step

@@ -102,10 +102,7 @@ fn assert_settled<S: Real, F>(state: State<S>, params: &Params<S, F>) {
     }
 }
 
-impl<A> Snapshot for Acrobot<A>
-where
-    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
-{
+impl<A: Arithmetic> Snapshot for Acrobot<A> {
     fn sample() -> Self {
         let mut acrobot = Acrobot::new(42);
         let noisy = Params {
@@ -135,10 +132,7 @@ where
     }
 }
 
-impl<A> Snapshot for TimeLimit<Acrobot<A>>
-where
-    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
-{
+impl<A: Arithmetic> Snapshot for TimeLimit<Acrobot<A>> {
     fn sample() -> Self {
         let mut limited = TimeLimit::v1(Acrobot::sample());
         limited.step(Action::Zero);
@@ -154,10 +148,7 @@ where
     }
 }
 
-impl<A> Snapshot for Member<A>
-where
-    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
-{
+impl<A: Arithmetic> Snapshot for Member<A> {
     fn sample() -> Self {
         let acrobot = Acrobot::<A>::sample();
         Self {
@@ -201,10 +192,7 @@ fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, N>) {
 }
 
 /// With one or three lanes each acrobot has its own parameters.
-impl<A, const N: usize> Snapshot for VecBatch<A, N>
-where
-    A: Arithmetic<Scalar: Serialize + DeserializeOwned>,
-{
+impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, N> {
     fn sample() -> Self {
         let seed = SeedSequence::new(42);
         let low = ParamsOf::<A>::default();

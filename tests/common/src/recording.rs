@@ -114,11 +114,7 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
         seed: decimal.parse().unwrap(),
         bounds: ResetBounds::new(number(low), number(high)).unwrap(),
         params: Params {
-            dynamics: match dynamics {
-                "book" => Dynamics::Book,
-                "nips" => Dynamics::Nips,
-                _ => panic!("unknown dynamics {dynamics}"),
-            },
+            dynamics: dynamics_of(dynamics),
             torque_noise: number(noise),
             dt: number(dt),
             ..Params::DEFAULT
@@ -138,6 +134,26 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
         start_observation: f32s(take(24)).try_into().unwrap(),
         observations: Digest(u64::from_le_bytes(take(8).try_into().unwrap())),
     }
+}
+
+/// The dynamics with this name in a recording.
+pub fn dynamics_of(name: &str) -> Dynamics {
+    match name {
+        "book" => Dynamics::Book,
+        "nips" => Dynamics::Nips,
+        _ => panic!("unknown dynamics {name}"),
+    }
+}
+
+/// The rest of each line of a recording that starts with this word.
+pub fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
+    text.lines()
+        .filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
+}
+
+/// The numbers in a line of a recording.
+pub fn numbers(line: &str) -> Vec<f64> {
+    line.split(' ').map(|x| x.parse().unwrap()).collect()
 }
 
 fn f64s(bytes: &[u8]) -> Vec<f64> {

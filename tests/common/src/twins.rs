@@ -69,13 +69,6 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.assert_equal();
     }
 
-    pub fn set_noise(&mut self, noise: f64) {
-        self.set_params(Params {
-            torque_noise: A::Scalar::from_f64(noise),
-            ..self.batch.params_of(0).unwrap()
-        });
-    }
-
     pub fn reset(&mut self, options: ResetOptions) {
         self.reset_some(None, options);
     }
@@ -126,30 +119,27 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.assert_equal();
     }
 
-    /// Steps both with the same actions and compares every bit. Returns which episodes ended.
-    pub fn step(&mut self, actions: &[Action]) -> Vec<bool> {
+    /// Steps both with the same actions and compares every bit.
+    pub fn step(&mut self, actions: &[Action]) {
         self.step_by(
             |batch, buffers| batch.step(actions, buffers),
             |i, alone| alone.step(actions[i]),
-        )
+        );
     }
 
-    /// [`step`](Self::step) with torques, on one core or on all.
-    pub fn step_torques(&mut self, torques: &[A::Scalar], parallel: bool) -> Vec<bool> {
+    /// [`step`](Self::step) with torques.
+    pub fn step_torques(&mut self, torques: &[A::Scalar]) {
         self.step_by(
-            |batch, buffers| match parallel {
-                true => batch.par_step(torques, buffers),
-                false => batch.step(torques, buffers),
-            },
+            |batch, buffers| batch.step(torques, buffers),
             |i, alone| alone.step_torque(torques[i]).unwrap(),
-        )
+        );
     }
 
     fn step_by(
         &mut self,
         step: impl FnOnce(&mut InVecs<A, N>, StepBuffers<'_>) -> Result<(), Error>,
         step_alone: impl Fn(usize, &mut TimeLimit<Acrobot<A>>) -> Step,
-    ) -> Vec<bool> {
+    ) {
         let len = self.alone.len();
         let (mut rewards, mut terminated, mut truncated) =
             (vec![9.0; len], vec![true; len], vec![true; len]);
@@ -160,21 +150,19 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         step(&mut self.batch, buffers).unwrap();
         let autoreset = self.batch.autoreset();
         let reset = |alone: &mut _| reset_one(&self.batch, alone, ResetOptions::default());
-        let mut done = vec![false; len];
         for (i, alone) in self.alone.iter_mut().enumerate() {
             let mut last = [9.0; 6].into();
             let expected = if std::mem::take(&mut self.pending[i]) {
                 (reset(alone), 0.0, false, false)
             } else {
                 let step = step_alone(i, alone);
-                done[i] = step.done();
                 let mut observation = step.observation;
                 match autoreset {
-                    Autoreset::SameStep if done[i] => {
+                    Autoreset::SameStep if step.done() => {
                         last = observation;
                         observation = reset(alone);
                     }
-                    Autoreset::NextStep => self.pending[i] = done[i],
+                    Autoreset::NextStep => self.pending[i] = step.done(),
                     _ => {}
                 }
                 (observation, step.reward, step.terminated, step.truncated)
@@ -187,7 +175,6 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
             );
         }
         self.assert_equal();
-        done
     }
 
     /// Compares every bit of the states, the observations, the steps since the last reset, the generators and the
@@ -209,25 +196,11 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         }
     }
 
-    /// Torque against θ̇1, which reaches the goal.
-    pub fn swinging(&self) -> Vec<Action> {
-        let velocities = self.alone.iter().map(|alone| alone.state().dtheta1);
-        velocities.map(against).collect()
-    }
-
+    /// Steps with torque against θ̇1, which reaches the goal.
     pub fn swing(&mut self, steps: u32) {
         for _ in 0..steps {
-            self.step(&self.swinging());
-        }
-    }
-
-    /// Returns the first acrobot whose reset is pending.
-    pub fn swing_until_pending(&mut self) -> usize {
-        loop {
-            if let Some(index) = self.pending.iter().position(|pending| *pending) {
-                return index;
-            }
-            self.swing(1);
+            let velocities = self.alone.iter().map(|alone| alone.state().dtheta1);
+            self.step(&velocities.map(against).collect::<Vec<_>>());
         }
     }
 
@@ -237,7 +210,10 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
             let mut twins = Self::new(37, Autoreset::SameStep);
             twins.batch.set_simd_level(level);
             twins.swing(200);
-            twins.set_noise(0.5);
+            twins.set_params(Params {
+                torque_noise: Real::from_f64(0.5),
+                ..twins.batch.params_of(0).unwrap()
+            });
             twins.set_bounds(-100.0, 100.0);
             // After an episode's end the links turn over, which wraps angles.
             twins.batch.set_autoreset(Autoreset::Disabled);
@@ -265,6 +241,6 @@ fn reset_one<A: Arithmetic, const N: usize>(
 }
 
 /// Whether a row has the bits of an observation.
-pub fn equal(row: &[f32; 6], observation: &Observation) -> bool {
+fn equal(row: &[f32; 6], observation: &Observation) -> bool {
     row.map(f32::to_bits) == observation.to_array().map(f32::to_bits)
 }

@@ -163,8 +163,8 @@ impl<A: Tested, const N: usize> Model<A, N> {
                     *alone[index].inner_mut().rng_mut() = Pcg64::new(seed);
                 }
             }
-            Call::Step(actions) => drop(self.twins.step(&actions[..len])),
-            Call::Torques(torques) => drop(self.twins.step_torques(&torques[..len], false)),
+            Call::Step(actions) => self.twins.step(&actions[..len]),
+            Call::Torques(torques) => self.twins.step_torques(&torques[..len]),
         }
         self.twins.assert_equal();
     }

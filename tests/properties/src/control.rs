@@ -153,12 +153,7 @@ fn moderate_pendulums_can_be_held_upright() {
                     return;
                 };
                 let one = A::Scalar::from_f64(1.0);
-                let q = [
-                    [one, zero, zero, zero],
-                    [zero, one, zero, zero],
-                    [zero, zero, one, zero],
-                    [zero, zero, zero, one],
-                ];
+                let q = from_fn(|i| from_fn(|j| if i == j { one } else { zero }));
                 let Ok(regulator) = lqr(&model, &q, A::Scalar::from_f64(r)) else {
                     return;
                 };

@@ -10,8 +10,6 @@ use common::AnyFriction;
 use proptest::num::{f32, f64};
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed, TestRunner};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 /// Tries a property on this many cases, the same in every run. In the environment, `PROPTEST_CASES` changes their
 /// number and `PROPTEST_RNG_SEED` the cases.
@@ -54,7 +52,7 @@ impl<A> Tested for A where
 }
 
 /// A scalar that can be generated.
-pub trait Number: Real + Debug + Serialize + DeserializeOwned {
+pub trait Number: Real {
     /// Any finite number. All exponents are equally likely.
     fn finite() -> BoxedStrategy<Self>;
 }

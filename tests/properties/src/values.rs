@@ -30,6 +30,9 @@ fn angles_wrap_into_half_a_turn_to_either_side() {
                 assert_eq!(bits([wrapped]), bits([x]));
             }
         });
+        for pi in [A::Scalar::PI, -A::Scalar::PI] {
+            assert_eq!(wrap::<A>(pi), pi);
+        }
     }
     in_every_arithmetic!(check);
 }

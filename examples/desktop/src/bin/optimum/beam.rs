@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use acrobot::arithmetic::Reference;
 use acrobot::{Action, State};
 
 use crate::sequences::reaches;
@@ -29,7 +30,7 @@ pub fn search(values: &Values, width: usize, initial: State, depth: usize) -> Op
             });
         }
         let mut paths = goals.into_iter().map(|goal| path(&origins, goal));
-        if let Some(path) = paths.find(|path| reaches(initial, path)) {
+        if let Some(path) = paths.find(|path| reaches::<Reference>(initial, path)) {
             return Some(path);
         }
         // Stable, so that equal values keep their order.
