@@ -42,9 +42,9 @@ export function elements(what, array, count, isValid, rule) {
 export function readParams(kind, address, index) {
   wasm()[`${kind}_params`](address, index);
   const values = [...new Float32Array(bytes().slice(0, 64).buffer)];
-  const torques = Object.freeze(values.splice(12, 3));
-  const params = Object.fromEntries(NUMBERS.filter((name) => name !== "torques").map((name, i) => [name, values[i]]));
-  return Object.freeze({ ...params, torques, dynamics: DYNAMICS[bytes()[64]] });
+  const next = (name) => (name === "torques" ? Object.freeze(values.splice(0, 3)) : values.shift());
+  const params = Object.fromEntries(NUMBERS.map((name) => [name, next(name)]));
+  return Object.freeze({ ...params, dynamics: DYNAMICS[bytes()[64]] });
 }
 
 /** Calls `read` for the old parameters, and `set` for new ones, after the changes, whose properties can run code of the caller. */

@@ -254,21 +254,13 @@ test("the CSV file is bit-identical to the episode", () =>
     assert.equal(lines.length, ACTIONS.length);
   }));
 
-test("the random policy has all actions, and two other policies reach the goal", () =>
+test("the random policy has all actions", () =>
   open(async (page) => {
     await paused(page, 42);
     await page.selectOption("#policy", "random");
     await page.focus("#stage");
     await steps(page, 50);
     assert.deepEqual([...new Set(await linkedActions(page))].sort(), [0, 1, 2]);
-    for (const policy of ["bang_bang", "energy_law"]) {
-      await page.selectOption("#policy", policy);
-      await page.click("#reset");
-      await steps(page, 200);
-      assert.match(await text(page, "#verdict"), /^\d+ steps$/, policy);
-      assert.equal(await text(page, "#status"), "The episode has ended. Press Restart or Next seed.");
-      assert.ok(Number(await text(page, "#best")) < 200);
-    }
   }));
 
 /** Weights that the learner learns without a page. */
@@ -364,6 +356,7 @@ test("the fewest steps are those of who played, with these parameters", () =>
     await steps(page, 200);
     const best = await text(page, "#best");
     assert.equal(await text(page, "#verdict"), `${best} steps`);
+    assert.equal(await text(page, "#status"), "The episode has ended. Press Restart or Next seed.");
     assert.equal(await text(page, "#best-label"), "Fewest steps of Bang-bang");
     await page.selectOption("#policy", "keys");
     assert.deepEqual([await text(page, "#best"), await text(page, "#best-label")], ["–", "Your fewest steps"]);
