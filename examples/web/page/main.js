@@ -158,7 +158,6 @@ function start() {
     $("best-label").textContent = $("policy").value === "keys" ? "Your fewest steps" : `Fewest steps of ${$("policy").selectedOptions[0].label}`;
     $("pause").textContent = playing ? "Pause" : "Play";
     $("verdict").textContent = { goal: `${game.steps} steps`, limit: "Out of time" }[game.end] ?? "";
-    $("drive").disabled = document.querySelector("[value=learnt]").disabled;
     $("between").textContent = calm.matches
       ? "The red arrow is the torque. Reduced motion: the picture moves step by step, without a trail."
       : `The red arrow is the torque. The physics steps every ${game.params.dt} s. Between steps the picture is interpolated, at most one step behind the numbers.`;
