@@ -73,7 +73,10 @@ const registry = new FinalizationRegistry(({ kind, address }) => wasm()[`${kind}
 /** A property that only this package can read. */
 export const SHOWN = Symbol("shown");
 
-/** Gives the memory at an address to an acrobot or a batch, and returns that address. No caller can call them, and so pass others. */
+/**
+ * `keep` gives an acrobot or a batch the memory at an address, and `addressOf` returns the address. No caller of the package reaches
+ * them, so the module gets only addresses of its own, and none that it has freed.
+ */
 export let keep, addressOf;
 
 /** What the module keeps at an address: an acrobot or a batch. */
