@@ -40,7 +40,6 @@ PLACES = {
     "examples/npm/package/package.json": [
         ('  "keywords"', '  "repository": { "type": "git", "url": "git+URL.git", "directory": "examples/npm" },\n  "keywords"'),
     ],
-    "examples/npm/README.md": [("[the page](../web/README.md)", "[the page](URL/tree/main/examples/web)")],
     "examples/python/pyproject.toml": [
         ("# The first release adds [project.urls].\n",
          '\n[project.urls]\nRepository = "URL"\nDocumentation = "URL/blob/main/docs/python.md"\nChangelog = "URL/blob/main/CHANGELOG.md"\nIssues = "URL/issues"\n'),

@@ -7,7 +7,17 @@ import {
 import { seal, unseal } from "./snapshot.js";
 import { accept, bytes, checked, invalid, positive, wasm, writeSeed } from "./wasm.js";
 
-const RESULTS = ["observations", "rewards", "terminated", "truncated", "ended", "finalObservations"];
+/** The results, and what JavaScript writes, in the order of the module's addresses: type, and number of elements of an acrobot. */
+const ARRAYS = {
+  observations: [Float32Array, 6],
+  rewards: [Float32Array, 1],
+  terminated: [Uint8Array, 1],
+  truncated: [Uint8Array, 1],
+  ended: [Uint8Array, 1],
+  finalObservations: [Float32Array, 6],
+  actions: [Uint8Array, 1],
+  mask: [Uint8Array, 1],
+};
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
 /** What a batch's snapshot begins with after its length, in the format of postcard: the header, and the bounds −0.1 and 0.1 as doubles. */
@@ -19,13 +29,13 @@ const varint = (value) => (value < 128 ? [value] : [(value % 128) | 128, ...vari
 export class Batch extends Kept {
   #count;
   #settings;
-  /** The addresses of the actions and of the results. */
+  /** The addresses of the arrays. */
   #addresses;
   /** The names of the results. */
   #names;
-  /** Views of these results. */
+  /** Views of the arrays. */
   #views;
-  /** Their copies in JavaScript's memory, because views of the module's memory end when that memory grows. */
+  /** Copies of the results in JavaScript's memory, because views of the module's memory end when that memory grows. */
   #results = {};
   /** Whether states have changed since the observations were written. */
   #stale = false;
@@ -42,7 +52,7 @@ export class Batch extends Kept {
     this.#addresses = new Uint32Array(bytes().slice(0, 32).buffer);
     this.#count = count;
     this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams });
-    this.#names = autoreset === "SameStep" ? RESULTS : RESULTS.slice(0, -1);
+    this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
     try {
       this.setParams(params);
       this.#copy(...this.#names);
@@ -57,24 +67,12 @@ export class Batch extends Kept {
     return addressOf(this);
   }
 
-  #view(index, Type, length) {
-    return new Type(wasm().memory.buffer, this.#addresses[index], length);
-  }
-
   /** Copies results out of the module's memory. */
   #copy(...names) {
-    const count = this.#count;
     if (!this.#views?.rewards.length) {
-      this.#views = {
-        actions: this.#view(0, Uint8Array, count),
-        observations: this.#view(1, Float32Array, 6 * count),
-        rewards: this.#view(2, Float32Array, count),
-        terminated: this.#view(3, Uint8Array, count),
-        truncated: this.#view(4, Uint8Array, count),
-        finalObservations: this.#view(5, Float32Array, 6 * count),
-        ended: this.#view(6, Uint8Array, count),
-        mask: this.#view(7, Uint8Array, count),
-      };
+      const { buffer } = wasm().memory;
+      const view = ([name, [Type, width]], i) => [name, new Type(buffer, this.#addresses[i], width * this.#count)];
+      this.#views = Object.fromEntries(Object.entries(ARRAYS).map(view));
     }
     for (const name of names) {
       // An array that the caller has transferred to another thread has no elements.

@@ -42,9 +42,9 @@ export function elements(what, array, count, isValid, rule) {
 export function readParams(kind, address, index) {
   wasm()[`${kind}_params`](address, index);
   const values = [...new Float32Array(bytes().slice(0, 64).buffer)];
-  const torques = Object.freeze(values.splice(12, 3));
-  const params = Object.fromEntries(NUMBERS.filter((name) => name !== "torques").map((name, i) => [name, values[i]]));
-  return Object.freeze({ ...params, torques, dynamics: DYNAMICS[bytes()[64]] });
+  const next = (name) => (name === "torques" ? Object.freeze(values.splice(0, 3)) : values.shift());
+  const params = Object.fromEntries(NUMBERS.map((name) => [name, next(name)]));
+  return Object.freeze({ ...params, dynamics: DYNAMICS[bytes()[64]] });
 }
 
 /** Calls `read` for the old parameters, and `set` for new ones, after the changes, whose properties can run code of the caller. */
@@ -73,7 +73,10 @@ const registry = new FinalizationRegistry(({ kind, address }) => wasm()[`${kind}
 /** A property that only this package can read. */
 export const SHOWN = Symbol("shown");
 
-/** Gives the memory at an address to an acrobot or a batch, and returns that address. No caller can call them, and so pass others. */
+/**
+ * `keep` gives an acrobot or a batch the memory at an address, and `addressOf` returns the address. No caller of the package reaches
+ * them, so the module gets only addresses of its own, and none that it has freed.
+ */
 export let keep, addressOf;
 
 /** What the module keeps at an address: an acrobot or a batch. */

@@ -86,13 +86,13 @@ pub extern "C" fn batch_new(
         _ => Autoreset::Disabled,
     });
     let addresses = [
-        many.actions.as_ptr().addr(),
         many.observations.as_ptr().addr(),
         many.rewards.as_ptr().addr(),
         many.terminated.as_ptr().addr(),
         many.truncated.as_ptr().addr(),
-        many.final_observations.as_ptr().addr(),
         many.ended.as_ptr().addr(),
+        many.final_observations.as_ptr().addr(),
+        many.actions.as_ptr().addr(),
         many.mask.as_ptr().addr(),
     ];
     set_bytes(addresses.into_iter().flat_map(usize::to_le_bytes));

@@ -6,7 +6,7 @@ import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed } from "./settings.
 const PADDING = 3;
 
 /** Actions as base64url, two bits each and the first in the highest. */
-export function encodeActions(actions) {
+function encodeActions(actions) {
   let binary = "";
   for (let i = 0; i < actions.length; i += 4) {
     const [a, b = PADDING, c = PADDING, d = PADDING] = actions.slice(i, i + 4);

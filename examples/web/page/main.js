@@ -124,27 +124,14 @@ function start() {
 
   // ---- what the page shows
 
-  const rows = [
-    ["θ1", "rad"], ["θ2", "rad"], ["θ1′", "rad/s"], ["θ2′", "rad/s"],
-  ].map(([name, unit]) => {
-    const row = $("state").insertRow();
-    row.innerHTML = `<th scope="row">${name}</th><td></td><td><code></code></td>`;
-    return { unit, value: row.cells[1], bits: row.querySelector("code") };
-  });
-
   const number = (value, digits = 2) => minus(value.toFixed(digits));
   /** Draws a plot of columns, and a caption with their last values and further parts. */
   const show = (id, title, names, unit, columns, options, ...more) => {
     const series = columns.map((values, i) => ({ values, color: color(["--accent", "--second"][i]) }));
     plot($(id), { series, end: Math.max(game.steps, 50), unit: "steps", ...options });
     const values = columns.map((column, i) => [`${names[i]} ${number(column.at(-1))} ${unit}`, ["first", "second"][i]]);
-    const parts = [[title, ""], ...values, ...more].map(([text, kind]) => {
-      const span = document.createElement("span");
-      span.textContent = text;
-      span.className = kind;
-      return span;
-    });
-    $(`${id}-caption`).replaceChildren(...parts);
+    const parts = [[title, ""], ...values, ...more];
+    $(`${id}-caption`).innerHTML = parts.map(([text, kind]) => `<span class="${kind}">${text}</span>`).join("");
   };
 
   const plots = () => {
@@ -171,15 +158,15 @@ function start() {
     $("best-label").textContent = $("policy").value === "keys" ? "Your fewest steps" : `Fewest steps of ${$("policy").selectedOptions[0].label}`;
     $("pause").textContent = playing ? "Pause" : "Play";
     $("verdict").textContent = { goal: `${game.steps} steps`, limit: "Out of time" }[game.end] ?? "";
-    $("drive").disabled = document.querySelector("[value=learnt]").disabled;
     $("between").textContent = calm.matches
       ? "The red arrow is the torque. Reduced motion: the picture moves step by step, without a trail."
       : `The red arrow is the torque. The physics steps every ${game.params.dt} s. Between steps the picture is interpolated, at most one step behind the numbers.`;
     const bits = new Uint32Array(game.numbers.buffer);
-    rows.forEach(({ unit, value, bits: code }, i) => {
-      value.textContent = `${number(game.numbers[i], 4)} ${unit}`;
-      code.textContent = bits[i].toString(16).padStart(8, "0");
+    const rows = [["θ1", "rad"], ["θ2", "rad"], ["θ1′", "rad/s"], ["θ2′", "rad/s"]].map(([name, unit], i) => {
+      const code = bits[i].toString(16).padStart(8, "0");
+      return `<tr><th scope="row">${name}</th><td>${number(game.numbers[i], 4)} ${unit}</td><td><code>${code}</code></td></tr>`;
     });
+    $("state").innerHTML = rows.join("");
     plots();
   };
 

@@ -5,7 +5,7 @@ import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { dist, linkedActions, open, paused, text } from "./player.mjs";
+import { dist, linkedActions, onPage, open, paused, text } from "./player.mjs";
 
 const touched = { hasTouch: true, isMobile: true };
 const SCREENS = {
@@ -23,37 +23,29 @@ async function fingers(page, selector) {
   return (type, ...parts) => session.send("Input.dispatchTouchEvent", { type, touchPoints: parts.map(at) });
 }
 
-test("a touched button applies torque until it is released", () =>
-  open(
-    async (page) => {
-      await paused(page, 42);
-      await page.focus("#stage");
-      const touch = await fingers(page, "#right");
-      await touch("touchStart", 0.5);
-      await page.keyboard.press("s");
-      await touch("touchEnd");
-      await page.keyboard.press("s");
-      assert.deepEqual(await linkedActions(page), [2, 1]);
-    },
-    SCREENS.phone,
-  ));
+onPage("a touched button applies torque until it is released", SCREENS.phone, async (page) => {
+  await paused(page, 42);
+  await page.focus("#stage");
+  const touch = await fingers(page, "#right");
+  await touch("touchStart", 0.5);
+  await page.keyboard.press("s");
+  await touch("touchEnd");
+  await page.keyboard.press("s");
+  assert.deepEqual(await linkedActions(page), [2, 1]);
+});
 
-test("a half of the picture applies torque while it is touched", () =>
-  open(
-    async (page) => {
-      await paused(page, 42);
-      const touch = await fingers(page, "#stage");
-      const step = () => page.evaluate(() => document.querySelector("#single").click());
-      for (const [type, ...parts] of [["touchStart", 0.2], ["touchEnd"], ["touchStart", 0.9], ["touchStart", 0.9, 0.2], ["touchEnd", 0.2], ["touchEnd"]]) {
-        await touch(type, ...parts);
-        await text(page, "#step");
-        await step();
-      }
-      // The first end names the finger that leaves.
-      assert.deepEqual(await linkedActions(page), [0, 1, 2, 1, 2, 1]);
-    },
-    SCREENS.landscape,
-  ));
+onPage("a half of the picture applies torque while it is touched", SCREENS.landscape, async (page) => {
+  await paused(page, 42);
+  const touch = await fingers(page, "#stage");
+  const step = () => page.evaluate(() => document.querySelector("#single").click());
+  for (const [type, ...parts] of [["touchStart", 0.2], ["touchEnd"], ["touchStart", 0.9], ["touchStart", 0.9, 0.2], ["touchEnd", 0.2], ["touchEnd"]]) {
+    await touch(type, ...parts);
+    await text(page, "#step");
+    await step();
+  }
+  // The first end names the finger that leaves.
+  assert.deepEqual(await linkedActions(page), [0, 1, 2, 1, 2, 1]);
+});
 
 /** Records the boxes of the labels that each plot shows. */
 function recordLabels() {
@@ -97,48 +89,45 @@ test("each screen shows what its player needs, and nothing overlaps or is wider 
   mkdirSync(join(dist, "screenshots"), { recursive: true });
   for (const [name, options] of Object.entries(SCREENS)) {
     const { width, height } = options.viewport;
-    await open(
-      async (page) => {
-        const hint = options.hasTouch ? "#touch" : "#keys";
-        assert.deepEqual(await page.evaluate(() => ["#keys", "#touch"].filter((id) => document.querySelector(id).checkVisibility())), [hint]);
-        assert.equal(/←|→/.test(await text(page, "#status")), !options.hasTouch);
-        for (const id of ["stage", "left", "right", "pause", "reset", "step", "best"]) {
-          const box = await page.locator(`#${id}`).boundingBox();
-          assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height, `${name}: ${id}`);
-        }
-        const stage = await page.locator("#stage").boundingBox();
-        assert.ok(stage.width > 0.8 * Math.min(width, height, 500), `${stage.width}`);
-        const train = await page.locator("#train").boundingBox();
-        assert.ok(train.y < 1120, `Train is at ${train.y}`);
+    await open({ ...options, prepare: recordLabels }, async (page) => {
+      const hint = options.hasTouch ? "#touch" : "#keys";
+      assert.deepEqual(await page.evaluate(() => ["#keys", "#touch"].filter((id) => document.querySelector(id).checkVisibility())), [hint]);
+      assert.equal(/←|→/.test(await text(page, "#status")), !options.hasTouch);
+      for (const id of ["stage", "left", "right", "pause", "reset", "step", "best"]) {
+        const box = await page.locator(`#${id}`).boundingBox();
+        assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height, `${name}: ${id}`);
+      }
+      const stage = await page.locator("#stage").boundingBox();
+      assert.ok(stage.width > 0.8 * Math.min(width, height, 500), `${stage.width}`);
+      const train = await page.locator("#train").boundingBox();
+      assert.ok(train.y < 1120, `Train is at ${train.y}`);
 
-        await page.fill("#episodes", "30");
-        await page.click("#train");
-        await page.selectOption("#pace", "4");
-        await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 40);
-        await page.click("#pause");
-        await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
-        await page.evaluate(() => scrollTo(0, 0));
-        for (const colorScheme of ["light", "dark"]) {
-          await page.emulateMedia({ colorScheme });
-          await text(page, "#step");
-          // A picture of a full page would end the emulation of touch.
-          await page.screenshot({ path: join(dist, "screenshots", `${name}-${colorScheme}.png`), fullPage: !options.hasTouch });
-        }
-        const filled = await page.evaluate(() =>
-          [...document.querySelectorAll("section")].map((section) => {
-            const { top, height } = section.getBoundingClientRect();
-            return (Math.max(...Array.from(section.children, (child) => child.getBoundingClientRect().bottom)) - top) / height;
-          }),
-        );
-        assert.ok(Math.min(...filled) > 0.6, `${name}: parts of the panels with content: ${filled}`);
-        for (const other of name === "desktop" ? [width, 832, 1000, 1920] : [width, 320, 568, 667, 932]) {
-          await page.setViewportSize({ width: other, height });
-          await text(page, "#step");
-          assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), other);
-          assert.deepEqual(await overlaps(page), [], `${other}×${height}`);
-        }
-      },
-      { ...options, prepare: recordLabels },
-    );
+      await page.fill("#episodes", "30");
+      await page.click("#train");
+      await page.selectOption("#pace", "4");
+      await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 40);
+      await page.click("#pause");
+      await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
+      await page.evaluate(() => scrollTo(0, 0));
+      for (const colorScheme of ["light", "dark"]) {
+        await page.emulateMedia({ colorScheme });
+        await text(page, "#step");
+        // A picture of a full page would end the emulation of touch.
+        await page.screenshot({ path: join(dist, "screenshots", `${name}-${colorScheme}.png`), fullPage: !options.hasTouch });
+      }
+      const filled = await page.evaluate(() =>
+        [...document.querySelectorAll("section")].map((section) => {
+          const { top, height } = section.getBoundingClientRect();
+          return (Math.max(...Array.from(section.children, (child) => child.getBoundingClientRect().bottom)) - top) / height;
+        }),
+      );
+      assert.ok(Math.min(...filled) > 0.6, `${name}: parts of the panels with content: ${filled}`);
+      for (const other of name === "desktop" ? [width, 832, 1000, 1920] : [width, 320, 568, 667, 932]) {
+        await page.setViewportSize({ width: other, height });
+        await text(page, "#step");
+        assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), other);
+        assert.deepEqual(await overlaps(page), [], `${other}×${height}`);
+      }
+    });
   }
 });

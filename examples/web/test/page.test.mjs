@@ -9,55 +9,53 @@ import { fileURLToPath } from "node:url";
 import { inChromium } from "../../npm/browser.mjs";
 import { Learner } from "../dist/acrobot-rs/policies.js";
 import { ACTIONS, bits, trace } from "./native.mjs";
-import { downloaded, folder, linkedActions, open, paused, press, shownBits, steps, text } from "./player.mjs";
+import { downloaded, folder, linkedActions, onPage, open, paused, press, shownBits, steps, text } from "./player.mjs";
 
-test("the page loads, plays a policy, and has a strict content security policy", () =>
-  open(async (page) => {
-    const policy = await page.getAttribute("meta[http-equiv]", "content");
-    assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
-    assert.match(policy, /default-src 'none'/);
-    await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 2);
-    assert.equal(await text(page, "#status"), "Bang-bang plays. To take over, press ← or →.");
-    const drawn = await page.evaluate(() => {
-      const { data } = document.querySelector("#picture").getContext("2d").getImageData(0, 0, 900, 900);
-      return [...new Set(new Uint32Array(data.buffer))].map((pixel) => pixel.toString(16));
-    });
-    // Background, links, joints and torque: opacity, blue, green, red.
-    for (const color of ["0", "ffa8a012", "ff00b0b8", "ff2b3acc"]) assert.ok(drawn.includes(color), color);
-  }));
+onPage("the page loads, plays a policy, and has a strict content security policy", async (page) => {
+  const policy = await page.getAttribute("meta[http-equiv]", "content");
+  assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
+  assert.match(policy, /default-src 'none'/);
+  await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 2);
+  assert.equal(await text(page, "#status"), "Bang-bang plays. To take over, press ← or →.");
+  const drawn = await page.evaluate(() => {
+    const { data } = document.querySelector("#picture").getContext("2d").getImageData(0, 0, 900, 900);
+    return [...new Set(new Uint32Array(data.buffer))].map((pixel) => pixel.toString(16));
+  });
+  // Background, links, joints and torque: opacity, blue, green, red.
+  for (const color of ["0", "ffa8a012", "ff00b0b8", "ff2b3acc"]) assert.ok(drawn.includes(color), color);
+});
 
-test("keys apply torque, and states are bit-identical to native", () =>
-  open(async (page) => {
-    await paused(page, 42);
-    await press(page, ACTIONS);
-    assert.deepEqual(await shownBits(page), trace("42", ACTIONS).at(-1));
-    assert.equal(await text(page, "#step"), String(ACTIONS.length));
-    assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
+onPage("keys apply torque, and states are bit-identical to native", async (page) => {
+  await paused(page, 42);
+  await press(page, ACTIONS);
+  assert.deepEqual(await shownBits(page), trace("42", ACTIONS).at(-1));
+  assert.equal(await text(page, "#step"), String(ACTIONS.length));
+  assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
 
-    // → turns link 2 counter-clockwise and ← clockwise, as the page says.
-    for (const [action, sign] of [[2, 1], [0, -1]]) {
-      await page.click("#reset");
-      await press(page, [action]);
-      const velocity = (await text(page, "#state tr:nth-child(4) td")).replace("−", "-");
-      assert.equal(Math.sign(Number.parseFloat(velocity)), sign);
-    }
+  // → turns link 2 counter-clockwise and ← clockwise, as the page says.
+  for (const [action, sign] of [[2, 1], [0, -1]]) {
     await page.click("#reset");
-    await press(page, ACTIONS);
+    await press(page, [action]);
+    const velocity = (await text(page, "#state tr:nth-child(4) td")).replace("−", "-");
+    assert.equal(Math.sign(Number.parseFloat(velocity)), sign);
+  }
+  await page.click("#reset");
+  await press(page, ACTIONS);
 
-    // The page decides when it steps, so the actions are read from its link.
-    await page.keyboard.press("Space");
-    await page.keyboard.down("ArrowRight");
-    await page.waitForTimeout(700);
-    await page.keyboard.up("ArrowRight");
-    await page.keyboard.down("ArrowLeft");
-    await page.waitForTimeout(500);
-    await page.keyboard.up("ArrowLeft");
-    await page.keyboard.press("Space");
-    const actions = await linkedActions(page);
-    const played = actions.slice(ACTIONS.length);
-    assert.ok(played.includes(2) && played.includes(0), `${played}`);
-    assert.deepEqual(await shownBits(page), trace("42", actions).at(-1));
-  }));
+  // The page decides when it steps, so the actions are read from its link.
+  await page.keyboard.press("Space");
+  await page.keyboard.down("ArrowRight");
+  await page.waitForTimeout(700);
+  await page.keyboard.up("ArrowRight");
+  await page.keyboard.down("ArrowLeft");
+  await page.waitForTimeout(500);
+  await page.keyboard.up("ArrowLeft");
+  await page.keyboard.press("Space");
+  const actions = await linkedActions(page);
+  const played = actions.slice(ACTIONS.length);
+  assert.ok(played.includes(2) && played.includes(0), `${played}`);
+  assert.deepEqual(await shownBits(page), trace("42", actions).at(-1));
+});
 
 /** What the package of this address computes: a batch with noise and resets, and a snapshot. */
 async function results(address) {
@@ -68,133 +66,126 @@ async function results(address) {
   return [...batch.snapshot(), ...new Uint8Array(step.observations.slice().buffer), ...step.rewards, ...step.ended];
 }
 
-test("a batch of the package, with noise and resets, is bit-identical to one in Node", () =>
-  open(async (page) => {
-    const found = await page.evaluate(results, "/acrobot-rs/index.js");
-    assert.ok(found.length > 2000);
-    assert.deepEqual(found, await results("../dist/acrobot-rs/index.js"));
-  }));
+onPage("a batch of the package, with noise and resets, is bit-identical to one in Node", async (page) => {
+  const found = await page.evaluate(results, "/acrobot-rs/index.js");
+  assert.ok(found.length > 2000);
+  assert.deepEqual(found, await results("../dist/acrobot-rs/index.js"));
+});
 
-test("seeds give Gymnasium's initial states, and invalid seeds are rejected", () =>
-  open(async (page) => {
-    const seed = "123456789012345678901234567890";
-    await paused(page, seed);
-    const [start] = trace(seed, []);
+onPage("seeds give Gymnasium's initial states, and invalid seeds are rejected", async (page) => {
+  const seed = "123456789012345678901234567890";
+  await paused(page, seed);
+  const [start] = trace(seed, []);
+  assert.deepEqual(await shownBits(page), start);
+  for (const [bad, got] of [
+    ["", "an empty text"],
+    ["-1", "'-' as character 1"],
+    ["12x", "'x' as character 3"],
+    ["9".repeat(601), "601 digits"],
+  ]) {
+    await page.fill("#seed", bad);
+    assert.equal(await text(page, "#seed-reason"), `seed must be a decimal integer of at least 0 with at most 600 digits, got ${got}`);
+    assert.equal(await page.getAttribute("#seed", "aria-invalid"), "true");
     assert.deepEqual(await shownBits(page), start);
-    for (const [bad, got] of [
-      ["", "an empty text"],
-      ["-1", "'-' as character 1"],
-      ["12x", "'x' as character 3"],
-      ["9".repeat(601), "601 digits"],
-    ]) {
-      await page.fill("#seed", bad);
-      assert.equal(await text(page, "#seed-reason"), `seed must be a decimal integer of at least 0 with at most 600 digits, got ${got}`);
-      assert.equal(await page.getAttribute("#seed", "aria-invalid"), "true");
-      assert.deepEqual(await shownBits(page), start);
-    }
-    await page.fill("#seed", "5");
-    assert.equal(await text(page, "#seed-reason"), "");
-    assert.deepEqual(await shownBits(page), trace("5", [])[0]);
-  }));
+  }
+  await page.fill("#seed", "5");
+  assert.equal(await text(page, "#seed-reason"), "");
+  assert.deepEqual(await shownBits(page), trace("5", [])[0]);
+});
 
-test("reset, pause and next seed do what they say", () =>
-  open(async (page) => {
-    await paused(page, 42);
-    const start = await shownBits(page);
-    await press(page, [2, 2, 2]);
-    const before = await shownBits(page);
-    await page.waitForTimeout(500);
-    assert.deepEqual(await shownBits(page), before);
-    await page.keyboard.press("r");
-    assert.deepEqual(await shownBits(page), start);
-    assert.equal(await text(page, "#step"), "0");
-    await page.click("#next");
-    assert.equal(await page.inputValue("#seed"), "43");
-    assert.deepEqual(await shownBits(page), trace("43", [])[0]);
-    await page.click("#single");
-    await page.click("#reset");
-    assert.equal(await text(page, "#step"), "0");
-    await page.click("#pause");
-    await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) > 0);
-    assert.equal(await text(page, "#pause"), "Pause");
-  }));
+onPage("reset, pause and next seed do what they say", async (page) => {
+  await paused(page, 42);
+  const start = await shownBits(page);
+  await press(page, [2, 2, 2]);
+  const before = await shownBits(page);
+  await page.waitForTimeout(500);
+  assert.deepEqual(await shownBits(page), before);
+  await page.keyboard.press("r");
+  assert.deepEqual(await shownBits(page), start);
+  assert.equal(await text(page, "#step"), "0");
+  await page.click("#next");
+  assert.equal(await page.inputValue("#seed"), "43");
+  assert.deepEqual(await shownBits(page), trace("43", [])[0]);
+  await page.click("#single");
+  await page.click("#reset");
+  assert.equal(await text(page, "#step"), "0");
+  await page.click("#pause");
+  await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) > 0);
+  assert.equal(await text(page, "#pause"), "Pause");
+});
 
-test("when paused, the picture shows the last step, as the numbers do", () =>
-  open(async (page) => {
-    const picture = () => page.evaluate(() => document.querySelector("#picture").toDataURL());
-    await page.selectOption("#pace", "4");
-    await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 30);
-    // A step now takes 0.8 s, so the page is amid a step when it pauses.
-    await page.selectOption("#pace", "0.25");
-    await page.click("#pause");
-    assert.equal(await text(page, "#status"), "Paused.");
-    const [state, last] = [await shownBits(page), await picture()];
-    const actions = await linkedActions(page);
-    await page.selectOption("#policy", "keys");
-    await page.click("#reset");
-    assert.ok((await shownBits(page)) && (await picture()) !== last);
-    await press(page, actions);
-    assert.deepEqual(await shownBits(page), state);
-    assert.ok((await picture()) === last, "the picture differs from that of the last step");
-  }));
+onPage("when paused, the picture shows the last step, as the numbers do", async (page) => {
+  const picture = () => page.evaluate(() => document.querySelector("#picture").toDataURL());
+  await page.selectOption("#pace", "4");
+  await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 30);
+  // A step now takes 0.8 s, so the page is amid a step when it pauses.
+  await page.selectOption("#pace", "0.25");
+  await page.click("#pause");
+  assert.equal(await text(page, "#status"), "Paused.");
+  const [state, last] = [await shownBits(page), await picture()];
+  const actions = await linkedActions(page);
+  await page.selectOption("#policy", "keys");
+  await page.click("#reset");
+  assert.ok((await shownBits(page)) && (await picture()) !== last);
+  await press(page, actions);
+  assert.deepEqual(await shownBits(page), state);
+  assert.ok((await picture()) === last, "the picture differs from that of the last step");
+});
 
-test("after a policy's goal the next seed follows, and a key takes over", () =>
-  open(async (page) => {
-    await page.selectOption("#pace", "4");
-    // The goal depends on the angles only.
-    await page.fill("#length2", "2");
-    const status = (pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector("#status").textContent), pattern);
-    await status("^Goal after \\d+ steps\\. The next seed follows\\.$");
-    await status("^Seed 43\\. Bang-bang plays\\.");
-    await page.focus("#stage");
-    await page.keyboard.press("ArrowLeft");
-    assert.equal(await text(page, "#status"), "You play.");
-    assert.equal(await page.inputValue("#policy"), "keys");
-  }));
+onPage("after a policy's goal the next seed follows, and a key takes over", async (page) => {
+  await page.selectOption("#pace", "4");
+  // The goal depends on the angles only.
+  await page.fill("#length2", "2");
+  const status = (pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector("#status").textContent), pattern);
+  await status("^Goal after \\d+ steps\\. The next seed follows\\.$");
+  await status("^Seed 43\\. Bang-bang plays\\.");
+  await page.focus("#stage");
+  await page.keyboard.press("ArrowLeft");
+  assert.equal(await text(page, "#status"), "You play.");
+  assert.equal(await page.inputValue("#policy"), "keys");
+});
 
-test("parameters change the physics as in the crate, and invalid ones are rejected with the reason", () =>
-  open(async (page) => {
-    await paused(page, 42);
-    await page.fill("#dt", "0.05");
-    await page.selectOption("#dynamics", "nips");
-    await press(page, ACTIONS);
-    const state = await shownBits(page);
-    assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
+onPage("parameters change the physics as in the crate, and invalid ones are rejected with the reason", async (page) => {
+  await paused(page, 42);
+  await page.fill("#dt", "0.05");
+  await page.selectOption("#dynamics", "nips");
+  await press(page, ACTIONS);
+  const state = await shownBits(page);
+  assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
 
-    for (const [value, got] of [["-0.1", "−0.1"], ["0", "0"], ["abc", "abc"], [" ", "an empty text"], ["1e999", "Infinity"]]) {
-      await page.fill("#dt", value);
-      assert.equal(await text(page, "#dt-reason"), `dt must be finite and above 0 s, got ${got}`);
-    }
-    assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
-    assert.deepEqual(await shownBits(page), state);
+  for (const [value, got] of [["-0.1", "−0.1"], ["0", "0"], ["abc", "abc"], [" ", "an empty text"], ["1e999", "Infinity"]]) {
+    await page.fill("#dt", value);
+    assert.equal(await text(page, "#dt-reason"), `dt must be finite and above 0 s, got ${got}`);
+  }
+  assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
+  assert.deepEqual(await shownBits(page), state);
 
-    const slider = ".parameter:has(#mass1) [type=range]";
-    await page.fill(slider, "0");
-    assert.equal(await text(page, "#mass1-reason"), "mass1 must be finite and above 0 kg, got 0");
-    assert.deepEqual(await shownBits(page), state);
-    await page.fill(slider, "2");
-    assert.equal(await text(page, "#mass1-reason"), "");
-    assert.equal(await page.inputValue("#mass1"), "2");
-    assert.equal(await text(page, "#step"), "0");
-    await press(page, ACTIONS);
-    assert.notDeepEqual(await shownBits(page), state);
+  const slider = ".parameter:has(#mass1) [type=range]";
+  await page.fill(slider, "0");
+  assert.equal(await text(page, "#mass1-reason"), "mass1 must be finite and above 0 kg, got 0");
+  assert.deepEqual(await shownBits(page), state);
+  await page.fill(slider, "2");
+  assert.equal(await text(page, "#mass1-reason"), "");
+  assert.equal(await page.inputValue("#mass1"), "2");
+  assert.equal(await text(page, "#step"), "0");
+  await press(page, ACTIONS);
+  assert.notDeepEqual(await shownBits(page), state);
 
-    await page.click("#defaults");
-    assert.equal(await page.inputValue("#mass1"), "1");
-    await press(page, ACTIONS);
-    assert.deepEqual(await shownBits(page), trace("42", ACTIONS).at(-1));
-  }));
+  await page.click("#defaults");
+  assert.equal(await page.inputValue("#mass1"), "1");
+  await press(page, ACTIONS);
+  assert.deepEqual(await shownBits(page), trace("42", ACTIONS).at(-1));
+});
 
-test("a tiny time step does not freeze the page", () =>
-  open(async (page) => {
-    await page.fill("#dt", "1e-9");
-    await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 500);
-    assert.match(await text(page, "#status"), /^Out of time/);
-  }));
+onPage("a tiny time step does not freeze the page", async (page) => {
+  await page.fill("#dt", "1e-9");
+  await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 500);
+  assert.match(await text(page, "#status"), /^Out of time/);
+});
 
 test("a link replays a run, and an invalid link is rejected", async () => {
   let link, state;
-  await open(async (page) => {
+  await open({}, async (page) => {
     await paused(page, 7);
     await page.fill("#length2", "1.5");
     await page.fill("#mass2", "0.75");
@@ -208,68 +199,49 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     state = await shownBits(page);
   });
   const { hash } = new URL(link);
-  await open(
-    async (page) => {
-      await page.selectOption("#pace", "4");
-      await page.waitForFunction(() => document.querySelector("#status").textContent === "The replay has ended.");
-      assert.deepEqual(await shownBits(page), state);
-      assert.equal(await page.inputValue("#length2"), "1.5");
-    },
-    { hash },
-  );
-  await open(
-    async (page) => {
-      await page.waitForFunction(() => document.querySelector("#pause").textContent === "Play");
-      assert.equal(await text(page, "#status"), "The link has no actions.");
-      assert.equal(await page.inputValue("#seed"), "7");
-    },
-    { hash: "#seed=7" },
-  );
-  await open(
-    async (page) => {
-      assert.equal(await text(page, "#link-reason"), "mass1 must be finite and above 0 kg, got 0");
-      assert.equal(await page.inputValue("#seed"), "42");
-      assert.equal(await page.inputValue("#mass1"), "1");
-    },
-    { hash: "#seed=4&mass1=0" },
-  );
+  await open({ hash }, async (page) => {
+    await page.selectOption("#pace", "4");
+    await page.waitForFunction(() => document.querySelector("#status").textContent === "The replay has ended.");
+    assert.deepEqual(await shownBits(page), state);
+    assert.equal(await page.inputValue("#length2"), "1.5");
+  });
+  await open({ hash: "#seed=7" }, async (page) => {
+    await page.waitForFunction(() => document.querySelector("#pause").textContent === "Play");
+    assert.equal(await text(page, "#status"), "The link has no actions.");
+    assert.equal(await page.inputValue("#seed"), "7");
+  });
+  await open({ hash: "#seed=4&mass1=0" }, async (page) => {
+    assert.equal(await text(page, "#link-reason"), "mass1 must be finite and above 0 kg, got 0");
+    assert.equal(await page.inputValue("#seed"), "42");
+    assert.equal(await page.inputValue("#mass1"), "1");
+  });
 });
 
-test("the CSV file is bit-identical to the episode", () =>
-  open(async (page) => {
-    await paused(page, 42);
-    await press(page, ACTIONS);
-    const [names, ...lines] = (await downloaded(page, "#csv")).toString().trimEnd().split("\n");
-    // The column names of the crate's `Trajectory::write_csv`.
-    assert.equal(names.split(",").length, 13);
-    assert.ok(readFileSync(new URL("../../../src/trajectory.rs", import.meta.url), "utf8").replace(/\\\n\s*/g, "").includes(names));
-    const states = trace("42", ACTIONS);
-    lines.forEach((line, i) => {
-      const cells = line.split(",").map(Number);
-      assert.deepEqual(cells.slice(5, 7), [ACTIONS[i] - 1, -1]);
-      assert.equal(cells[0], i + 1);
-      assert.deepEqual(bits(cells.slice(1, 5)), states[i]);
-      assert.deepEqual(bits(cells.slice(7, 11)), states[i + 1]);
-    });
-    assert.equal(lines.length, ACTIONS.length);
-  }));
+onPage("the CSV file is bit-identical to the episode", async (page) => {
+  await paused(page, 42);
+  await press(page, ACTIONS);
+  const [names, ...lines] = (await downloaded(page, "#csv")).toString().trimEnd().split("\n");
+  // The column names of the crate's `Trajectory::write_csv`.
+  assert.equal(names.split(",").length, 13);
+  assert.ok(readFileSync(new URL("../../../src/trajectory.rs", import.meta.url), "utf8").replace(/\\\n\s*/g, "").includes(names));
+  const states = trace("42", ACTIONS);
+  lines.forEach((line, i) => {
+    const cells = line.split(",").map(Number);
+    assert.deepEqual(cells.slice(5, 7), [ACTIONS[i] - 1, -1]);
+    assert.equal(cells[0], i + 1);
+    assert.deepEqual(bits(cells.slice(1, 5)), states[i]);
+    assert.deepEqual(bits(cells.slice(7, 11)), states[i + 1]);
+  });
+  assert.equal(lines.length, ACTIONS.length);
+});
 
-test("the random policy has all actions, and two other policies reach the goal", () =>
-  open(async (page) => {
-    await paused(page, 42);
-    await page.selectOption("#policy", "random");
-    await page.focus("#stage");
-    await steps(page, 50);
-    assert.deepEqual([...new Set(await linkedActions(page))].sort(), [0, 1, 2]);
-    for (const policy of ["bang_bang", "energy_law"]) {
-      await page.selectOption("#policy", policy);
-      await page.click("#reset");
-      await steps(page, 200);
-      assert.match(await text(page, "#verdict"), /^\d+ steps$/, policy);
-      assert.equal(await text(page, "#status"), "The episode has ended. Press Restart or Next seed.");
-      assert.ok(Number(await text(page, "#best")) < 200);
-    }
-  }));
+onPage("the random policy has all actions", async (page) => {
+  await paused(page, 42);
+  await page.selectOption("#policy", "random");
+  await page.focus("#stage");
+  await steps(page, 50);
+  assert.deepEqual([...new Set(await linkedActions(page))].sort(), [0, 1, 2]);
+});
 
 /** Weights that the learner learns without a page. */
 function learnt(episodes, seed) {
@@ -278,105 +250,95 @@ function learnt(episodes, seed) {
   return Buffer.from(learner.save());
 }
 
-test("the worker trains the weights of the learner, whose test compares them with native ones", () =>
-  open(async (page) => {
-    for (const seed of ["42", "123456789012345678901"]) {
-      await page.fill("#episodes", "20");
-      await page.fill("#training-seed", seed);
-      await page.click("#train");
-      await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
-      assert.match(await text(page, "#training-status"), /^20 of 20 episodes/);
-      assert.ok((await downloaded(page, "#save")).equals(learnt(20, BigInt(seed))), `seed ${seed}`);
-    }
-  }));
+onPage("the worker trains the weights of the learner, whose test compares them with native ones", async (page) => {
+  for (const seed of ["42", "123456789012345678901"]) {
+    await page.fill("#episodes", "20");
+    await page.fill("#training-seed", seed);
+    await page.click("#train");
+    await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
+    assert.match(await text(page, "#training-status"), /^20 of 20 episodes/);
+    assert.ok((await downloaded(page, "#save")).equals(learnt(20, BigInt(seed))), `seed ${seed}`);
+  }
+});
 
-test("loaded weights reach the goal, and invalid ones are rejected with the learner's message", () =>
-  open(async (page) => {
-    const path = join(folder, "weights.bin");
-    const good = learnt(200, 42);
-    writeFileSync(path, good);
-    await paused(page, 42);
-    await page.setInputFiles("#load", path);
-    await page.waitForFunction(() => document.querySelector("#training-status").textContent.endsWith("is loaded."));
-    assert.ok((await downloaded(page, "#save")).equals(good));
-    await page.click("#drive");
-    await page.click("#pause");
-    await steps(page, 200);
-    assert.match(await text(page, "#verdict"), /^\d+ steps$/);
+onPage("loaded weights reach the goal, and invalid ones are rejected with the learner's message", async (page) => {
+  const path = join(folder, "weights.bin");
+  const good = learnt(200, 42);
+  writeFileSync(path, good);
+  await paused(page, 42);
+  await page.setInputFiles("#load", path);
+  await page.waitForFunction(() => document.querySelector("#training-status").textContent.endsWith("is loaded."));
+  assert.ok((await downloaded(page, "#save")).equals(good));
+  await page.click("#drive");
+  await page.click("#pause");
+  await steps(page, 200);
+  assert.match(await text(page, "#verdict"), /^\d+ steps$/);
 
-    for (const [name, bytes, message] of [
-      ["short.bin", good.subarray(0, 1000), /^short\.bin: weights must have 49172 bytes, got 1000$/],
-      ["damaged.bin", Buffer.from(good).fill(1, 500, 504), /^damaged\.bin: .*checksum/],
-      ["huge.bin", Buffer.alloc(1e6), /^huge\.bin: weights must have at most 524288 bytes, got 1000000$/],
-    ]) {
-      writeFileSync(join(folder, name), bytes);
-      await page.setInputFiles("#load", join(folder, name));
-      await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
-      assert.match(await text(page, "#weights-reason"), message);
-    }
-    // The weights that were loaded before are kept.
-    assert.ok((await downloaded(page, "#save")).equals(good));
-    // A perceptron from Python, with the steps of examples/policy/tests/policy.rs.
-    await page.setInputFiles("#load", fileURLToPath(new URL("../../policy/policy.bin", import.meta.url)));
-    await page.waitForFunction(() => document.querySelector("#training-status").textContent === "policy.bin is loaded.");
-    await page.fill("#seed", "1");
-    await steps(page, 200);
-    assert.equal(await text(page, "#verdict"), "101 steps");
-    for (const [id, value] of [["episodes", "0"], ["episodes", "1.5"], ["episodes", "1e9"], ["training-seed", "x"]]) {
-      await page.fill("#episodes", "10");
-      await page.fill(`#${id}`, value);
-      await page.click("#train");
-      assert.match(await text(page, "#training-reason"), / must be /);
-      assert.equal(await text(page, "#train"), "Train");
-    }
-  }));
+  for (const [name, bytes, message] of [
+    ["short.bin", good.subarray(0, 1000), /^short\.bin: weights must have 49172 bytes, got 1000$/],
+    ["damaged.bin", Buffer.from(good).fill(1, 500, 504), /^damaged\.bin: .*checksum/],
+    ["huge.bin", Buffer.alloc(1e6), /^huge\.bin: weights must have at most 524288 bytes, got 1000000$/],
+  ]) {
+    writeFileSync(join(folder, name), bytes);
+    await page.setInputFiles("#load", join(folder, name));
+    await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
+    assert.match(await text(page, "#weights-reason"), message);
+  }
+  // The weights that were loaded before are kept.
+  assert.ok((await downloaded(page, "#save")).equals(good));
+  // A perceptron from Python, with the steps of examples/policy/tests/policy.rs.
+  await page.setInputFiles("#load", fileURLToPath(new URL("../../policy/policy.bin", import.meta.url)));
+  await page.waitForFunction(() => document.querySelector("#training-status").textContent === "policy.bin is loaded.");
+  await page.fill("#seed", "1");
+  await steps(page, 200);
+  assert.equal(await text(page, "#verdict"), "101 steps");
+  for (const [id, value] of [["episodes", "0"], ["episodes", "1.5"], ["episodes", "1e9"], ["training-seed", "x"]]) {
+    await page.fill("#episodes", "10");
+    await page.fill(`#${id}`, value);
+    await page.click("#train");
+    assert.match(await text(page, "#training-reason"), / must be /);
+    assert.equal(await text(page, "#train"), "Train");
+  }
+});
 
 for (const [missing, message, options] of [
   ["WebAssembly", /needs WebAssembly/, { prepare: () => delete globalThis.WebAssembly }],
   ["JavaScript", /needs JavaScript/, { javaScriptEnabled: false }],
 ]) {
-  test(`without ${missing} the page says so`, inChromium, () =>
-    open(
-      async (page) => {
-        await page.locator("#notice", { hasText: message }).waitFor();
-        assert.ok(await page.isHidden("#app"));
-      },
-      { ...options, starts: false },
-    ));
+  onPage(`without ${missing} the page says so`, { ...inChromium, ...options, starts: false }, async (page) => {
+    await page.locator("#notice", { hasText: message }).waitFor();
+    assert.ok(await page.isHidden("#app"));
+  });
 }
 
-test("with reduced motion the page begins paused and moves step by step", inChromium, () =>
-  open(
-    async (page) => {
-      assert.equal(await text(page, "#pause"), "Play");
-      assert.match(await text(page, "#between"), /Reduced motion/);
-      assert.match(await text(page, "#status"), /^Press Play/);
-      await page.waitForTimeout(500);
-      assert.equal(await text(page, "#step"), "0");
-    },
-    { reducedMotion: "reduce" },
-  ));
+onPage("with reduced motion the page begins paused and moves step by step", { ...inChromium, reducedMotion: "reduce" }, async (page) => {
+  assert.equal(await text(page, "#pause"), "Play");
+  assert.match(await text(page, "#between"), /Reduced motion/);
+  assert.match(await text(page, "#status"), /^Press Play/);
+  await page.waitForTimeout(500);
+  assert.equal(await text(page, "#step"), "0");
+});
 
-test("the fewest steps are those of who played, with these parameters", () =>
-  open(async (page) => {
-    await paused(page, 42);
-    await page.selectOption("#policy", "bang_bang");
-    await steps(page, 200);
-    const best = await text(page, "#best");
-    assert.equal(await text(page, "#verdict"), `${best} steps`);
-    assert.equal(await text(page, "#best-label"), "Fewest steps of Bang-bang");
-    await page.selectOption("#policy", "keys");
-    assert.deepEqual([await text(page, "#best"), await text(page, "#best-label")], ["–", "Your fewest steps"]);
-    await page.selectOption("#policy", "bang_bang");
-    await page.fill("#gravity", "9");
-    assert.equal(await text(page, "#best"), "–");
-    await page.click("#defaults");
-    assert.equal(await text(page, "#best"), best);
-    // An episode that two have played counts for nobody.
-    await page.selectOption("#policy", "keys");
-    await press(page, [2]);
-    await page.selectOption("#policy", "energy_law");
-    await steps(page, 200);
-    assert.match(await text(page, "#verdict"), /steps$/);
-    assert.equal(await text(page, "#best"), "–");
-  }));
+onPage("the fewest steps are those of who played, with these parameters", async (page) => {
+  await paused(page, 42);
+  await page.selectOption("#policy", "bang_bang");
+  await steps(page, 200);
+  const best = await text(page, "#best");
+  assert.equal(await text(page, "#verdict"), `${best} steps`);
+  assert.equal(await text(page, "#status"), "The episode has ended. Press Restart or Next seed.");
+  assert.equal(await text(page, "#best-label"), "Fewest steps of Bang-bang");
+  await page.selectOption("#policy", "keys");
+  assert.deepEqual([await text(page, "#best"), await text(page, "#best-label")], ["–", "Your fewest steps"]);
+  await page.selectOption("#policy", "bang_bang");
+  await page.fill("#gravity", "9");
+  assert.equal(await text(page, "#best"), "–");
+  await page.click("#defaults");
+  assert.equal(await text(page, "#best"), best);
+  // An episode that two have played counts for nobody.
+  await page.selectOption("#policy", "keys");
+  await press(page, [2]);
+  await page.selectOption("#policy", "energy_law");
+  await steps(page, 200);
+  assert.match(await text(page, "#verdict"), /steps$/);
+  assert.equal(await text(page, "#best"), "–");
+});

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { after, before } from "node:test";
+import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import { inChromium, launch } from "../../npm/browser.mjs";
@@ -26,7 +26,7 @@ after(async () => {
 
 /** Opens the page and calls `play` once it has loaded. In Chromium, asserts that its console has no errors or warnings, and that it
  * requests only its own files. */
-export async function open(play, { hash = "", prepare, starts = true, ...options } = {}) {
+export async function open({ hash = "", prepare, starts = true, ...options }, play) {
   if (inChromium.skip) {
     const page = browser.newPage();
     await page.goto(origin + hash);
@@ -51,6 +51,12 @@ export async function open(play, { hash = "", prepare, starts = true, ...options
   } finally {
     await window.close();
   }
+}
+
+/** A test in which `play` operates the page: as `test`, with the options of `open`, and `skip`. */
+export function onPage(name, ...more) {
+  const [play, { skip, ...options } = {}] = more.reverse();
+  test(name, { skip }, () => open(options, play));
 }
 
 /** Resolves when the page has drawn its current state. */
