@@ -2,7 +2,7 @@
 
 use acrobot::arithmetic::Host;
 use acrobot::{Observation, Params, State};
-use numpy::{Element, PyArray1, PyArrayMethods};
+use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -232,8 +232,9 @@ impl Acrobot {
 /// The torque of a continuous action, N m. The environment converts or rejects all but an array of one `f32`.
 fn number(env: &Bound<'_, PyAny>, action: &Bound<'_, PyAny>) -> PyResult<f64> {
     if let Ok(array) = action.cast::<PyArray1<f32>>()
-        && let Ok(array) = array.try_readonly()
-        && let Ok(&[torque]) = array.as_slice()
+        && array.len() == 1
+        && array.is_aligned()
+        && let Some(torque) = array.get_owned(0)
         && !torque.is_nan()
     {
         return Ok(torque.into());

@@ -85,7 +85,7 @@ def compare(seed):
                 env.state[step % 4] = event
         action, count = theirs.action_space.sample(), len(theirs.AVAIL_TORQUE)
         assert ours.action_space == gymnasium.spaces.Discrete(count)
-        if count == 3:
+        if count == 3:  # Gymnasium's space does not follow AVAIL_TORQUE
             assert ours.action_space.sample() == action
         if count < 3 or rng.random() < 0.5:
             action = int(rng.integers(count))
