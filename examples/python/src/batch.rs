@@ -11,14 +11,14 @@ use numpy::{
     PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2,
     PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyIndexError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::draws::Distribution;
 use crate::engine::{Engine, Inputs, memory, with_batch};
 use crate::pool::Pool;
-use crate::{Reduced, fields, load, must_be, positive, rejected, render, save, unknown, with};
+use crate::{Reduced, fields, load, must_be, rejected, render, save, unknown, with};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -32,19 +32,17 @@ pub struct Batch {
 #[pymethods]
 impl Batch {
     #[new]
-    #[pyo3(signature = (num_envs=1, seed="0", max_episode_steps=500, mode="NextStep", engine="fast", continuous=false, threads=1))]
+    #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed="0", max_episode_steps=NonZeroU32::MAX, mode="NextStep",
+        engine="fast", continuous=false, threads=NonZeroU32::MIN))]
     fn new(
-        num_envs: i64,
+        num_envs: NonZeroU32,
         seed: &str,
-        max_episode_steps: i64,
+        max_episode_steps: NonZeroU32,
         mode: &str,
         engine: &str,
         continuous: bool,
-        threads: i64,
+        threads: NonZeroU32,
     ) -> PyResult<Self> {
-        let len = positive("num_envs", num_envs)?.get() as usize;
-        let limit = positive("max_episode_steps", max_episode_steps)?;
-        let threads = positive("threads", threads)?;
         let mode = match mode {
             "NextStep" => Autoreset::NextStep,
             "SameStep" => Autoreset::SameStep,
@@ -54,9 +52,9 @@ impl Batch {
                 return Err(unknown("autoreset_mode", rule, other));
             }
         };
-        let mut engine = Engine::new(engine, len, parse(seed)?)?;
+        let mut engine = Engine::new(engine, num_envs.get() as usize, parse(seed)?)?;
         with_batch!(&mut engine, many => {
-            many.batch.set_limit(limit);
+            many.batch.set_limit(max_episode_steps);
             many.batch.set_autoreset(mode);
         });
         Ok(Self {
@@ -247,8 +245,7 @@ impl Batch {
         let this = alone(slf)?;
         let rows = states.as_slice_mut()?.as_chunks_mut().0;
         for (index, row) in rows.iter_mut().enumerate() {
-            let state = with_batch!(&this.engine, many => many.batch.state(index).map(State::cast));
-            *row = state.ok_or_else(no_such(index))?.into();
+            *row = with_batch!(&this.engine, many => many.state(index)).into();
         }
         Ok(())
     }
@@ -270,7 +267,7 @@ impl Batch {
         let this = alone(slf)?;
         for (index, elapsed) in elapsed.as_slice_mut()?.iter_mut().enumerate() {
             let steps = with_batch!(&this.engine, many => many.batch.elapsed(index));
-            *elapsed = steps.ok_or_else(no_such(index))?.into();
+            *elapsed = steps.unwrap_or_default().into();
         }
         Ok(())
     }
@@ -281,10 +278,9 @@ impl Batch {
         mode: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let this = alone(slf)?;
-        let (params, state) = with_batch!(&this.engine, many => {
-            (many.params(index), many.batch.state(index).map(State::cast))
-        });
-        render(slf.py(), params, state.ok_or_else(no_such(index))?, mode)
+        let (params, state) =
+            with_batch!(&this.engine, many => (many.params(index), many.state(index)));
+        render(slf.py(), params, state, mode)
     }
 
     /// Every protocol of pickle calls this, and `copy.deepcopy`. `__setstate__` replaces the smallest batch.
@@ -335,8 +331,4 @@ fn indexed(py: Python<'_>, error: PyErr, index: usize) -> PyErr {
 /// Parses a seed: a decimal integer of at least 0, of any size.
 fn parse(seed: &str) -> PyResult<SeedSequence> {
     seed.parse::<SeedSequence>().map_err(rejected)
-}
-
-fn no_such(index: usize) -> impl Fn() -> PyErr {
-    move || PyIndexError::new_err(index)
 }

@@ -6,10 +6,9 @@ use acrobot::arithmetic::{Arithmetic, Host, Real, Swingup, SwingupSparse};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::{FrictionOf, ParamsRange};
-use acrobot::{Error, Fast, Params, Portable};
+use acrobot::{Error, Fast, Params, Portable, State};
 use numpy::{
-    PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyUntypedArrayMethods,
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
@@ -28,20 +27,17 @@ pub enum Inputs<'py> {
 impl<'py> Inputs<'py> {
     /// The actions, if no conversion is necessary.
     pub fn of(actions: &Bound<'py, PyAny>, len: usize, continuous: bool) -> Option<Self> {
-        if !continuous {
-            let actions = actions.cast::<PyArray1<i64>>().ok()?;
-            let fits = actions.len() == len && is_slice(actions);
-            return fits.then(|| Some(Self::Actions(actions.try_readonly().ok()?)))?;
+        if continuous {
+            let torques = actions.cast::<PyArray2<f32>>().ok()?;
+            let torques = torques.try_readonly().ok()?;
+            let fits = torques.shape() == [len, 1] && torques.as_slice().is_ok();
+            return fits.then_some(Self::Torques(torques));
         }
-        let torques = actions.cast::<PyArray2<f32>>().ok()?;
-        let fits = torques.shape() == [len, 1] && is_slice(torques);
-        fits.then(|| Some(Self::Torques(torques.try_readonly().ok()?)))?
+        let actions = actions.cast::<PyArray1<i64>>().ok()?;
+        let actions = actions.try_readonly().ok()?;
+        let fits = actions.len() == len && actions.as_slice().is_ok();
+        fits.then_some(Self::Actions(actions))
     }
-}
-
-/// Whether Rust can read the elements: an array over packed bytes is not aligned.
-fn is_slice<T, D>(array: &Bound<'_, PyArray<T, D>>) -> bool {
-    array.is_c_contiguous() && array.data().is_aligned()
 }
 
 #[derive(Serialize, Deserialize)]
@@ -120,6 +116,10 @@ impl<A: Arithmetic> Many<A> {
             .unwrap_or_default()
             .without_friction()
             .cast()
+    }
+
+    pub fn state(&self, index: usize) -> State {
+        self.batch.state(index).unwrap_or_default().cast()
     }
 
     /// The friction of all acrobots, which nothing changes.

@@ -7,14 +7,13 @@ mod pool;
 mod single;
 
 use std::fmt::Display;
-use std::num::NonZeroU32;
 
 use acrobot::arithmetic::Host;
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::Dynamics;
 use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::{PyAttributeError, PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyType};
 use serde::Serialize;
@@ -103,15 +102,6 @@ fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
     PyValueError::new_err(must_be(name, rule, format_args!("{got:?}")))
 }
 
-/// Converts a count from Python, or raises a `ValueError` if it is not from 1 to `u32::MAX`.
-fn positive(name: &str, value: i64) -> PyResult<NonZeroU32> {
-    let count = u32::try_from(value).ok().and_then(NonZeroU32::new);
-    count.ok_or_else(|| {
-        let rule = format_args!("an integer from 1 to {}", u32::MAX);
-        PyValueError::new_err(must_be(name, rule, value))
-    })
-}
-
 /// The parameters with one of them changed.
 fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     match name {
@@ -136,12 +126,8 @@ fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Pa
             }
         }
         _ => {
-            let mut fields = fields(name).peekable();
-            if fields.peek().is_none() {
-                return Err(PyAttributeError::new_err(format!("no parameter {name}")));
-            }
             let number = convert(name, "a number", value)?;
-            fields.for_each(|field| *field(&mut params) = number);
+            fields(name).for_each(|field| *field(&mut params) = number);
         }
     }
     params.validate().map_err(rejected)?;

@@ -1,7 +1,5 @@
 //! The single environment: one acrobot, bit-identical to Gymnasium's.
 
-use std::mem;
-
 use acrobot::arithmetic::Host;
 use acrobot::{Observation, Params, State};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
@@ -47,27 +45,19 @@ struct Inner {
 }
 
 impl Inner {
-    fn set_noise(&mut self, noise: f64) -> PyResult<()> {
-        let params = Params {
-            torque_noise: noise,
-            ..*self.acrobot.params()
-        };
-        params.validate().map_err(rejected)?;
-        self.noise = noise;
-        Ok(())
-    }
-
-    fn set_torques(&mut self, torques: Vec<f64>) -> PyResult<()> {
+    /// Checks the torques and the noise.
+    fn validate(&self) -> PyResult<()> {
+        let torques = &self.torques;
         if torques.is_empty() || torques.iter().any(|torque| !torque.is_finite()) {
-            let message = must_be(
-                "AVAIL_TORQUE",
-                "one or more finite numbers of N m",
-                format_args!("{torques:?}"),
-            );
+            let rule = "one or more finite numbers of N m";
+            let message = must_be("AVAIL_TORQUE", rule, format_args!("{torques:?}"));
             return Err(PyValueError::new_err(message));
         }
-        self.torques = torques;
-        Ok(())
+        let params = Params {
+            torque_noise: self.noise,
+            ..*self.acrobot.params()
+        };
+        params.validate().map_err(rejected)
     }
 }
 
@@ -91,15 +81,18 @@ impl Acrobot {
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let inner = &mut self.inner;
+        let mut inner = self.inner.clone();
         match name {
-            "AVAIL_TORQUE" => inner.set_torques(convert(name, "a sequence of numbers", value)?),
-            "torque_noise_max" => inner.set_noise(convert(name, "a number", value)?),
+            "AVAIL_TORQUE" => inner.torques = convert(name, "a sequence of numbers", value)?,
+            "torque_noise_max" => inner.noise = convert(name, "a number", value)?,
             _ => {
                 let params = with(*inner.acrobot.params(), name, value)?;
-                inner.acrobot.set_params(params).map_err(rejected)
+                inner.acrobot.set_params(params).map_err(rejected)?;
             }
         }
+        inner.validate()?;
+        self.inner = inner;
+        Ok(())
     }
 
     /// The state, as an array whose elements can be assigned until the next step.
@@ -196,9 +189,7 @@ impl Acrobot {
 
     fn __setstate__(&mut self, bytes: &[u8]) -> PyResult<()> {
         let mut inner: Inner = load(bytes)?;
-        inner.set_noise(inner.noise)?;
-        let torques = mem::take(&mut inner.torques);
-        inner.set_torques(torques)?;
+        inner.validate()?;
         // Damaged bytes may have numbers that are no `f32`.
         let state: [f64; 4] = inner.acrobot.state().into();
         inner.single &= state.iter().all(|&x| f64::from(x as f32) == x);
@@ -240,21 +231,15 @@ impl Acrobot {
 
 /// The torque of a continuous action, N m. The environment converts or rejects all but an array of one `f32`.
 fn number(env: &Bound<'_, PyAny>, action: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let array = action.cast::<PyArray1<f32>>().ok();
-    let array = array.filter(|array| array.len() == 1 && array.data().is_aligned());
-    let torque = match array.and_then(|array| array.get_owned(0)) {
-        Some(torque) => f64::from(torque),
-        None => env.call_method1("_torque", (action,))?.extract()?,
-    };
-    if torque.is_nan() {
-        let rule = "a torque in N m, as an array of shape (1,)";
-        return Err(InvalidAction::new_err(must_be(
-            "action",
-            rule,
-            shown(action),
-        )));
+    if let Ok(array) = action.cast::<PyArray1<f32>>()
+        && array.len() == 1
+        && array.is_aligned()
+        && let Some(torque) = array.get_owned(0)
+        && !torque.is_nan()
+    {
+        return Ok(torque.into());
     }
-    Ok(torque)
+    env.call_method1("_torque", (action,))?.extract()
 }
 
 /// A state from an array, and whether its numbers are `f32`.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import gymnasium
@@ -93,8 +94,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         self.screen: Any = None
         self.clock: Any = None
         self.isopen = True
-        for name, space in self._spaces().items():
-            setattr(self, name, space)
         self._made = True
 
     def set_wrapper_attr(self, name: str, value: Any, **kwargs: Any) -> bool:
@@ -231,8 +230,12 @@ class AcrobotContinuousEnv(AcrobotEnv):
     _CONTINUOUS = True
 
     def _torque(self, action: ArrayLike) -> float:
-        """The torque, N m. The native part calls this for all but arrays of ``float32``."""
-        return float(numbers("action", "a torque in N m, as an array of shape (1,)", action, (1,), error=InvalidAction)[0])
+        """The torque, N m. The native part calls this for all but arrays of one ``float32``."""
+        rule = "a torque in N m, as an array of shape (1,)"
+        torque = float(numbers("action", rule, action, (1,), error=InvalidAction)[0])
+        if math.isnan(torque):
+            raise InvalidAction(f"action must be {rule}, got {action!r}")
+        return torque
 
 
 class AcrobotV0Env(AcrobotEnv):

@@ -199,6 +199,8 @@ class Parameters:
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
         for name in _NAMES:
             setattr(self, name, parameters.get(name, getattr(self, name)))
+        for name, space in self._spaces().items():
+            setattr(self, name, space)
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""

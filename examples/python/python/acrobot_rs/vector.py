@@ -51,7 +51,11 @@ class NativeVectorEnv(VectorEnv[Floats, NDArray[Any], np.ndarray]):
             raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
         if threads is None:
             threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-        require(Integral, "an integer", num_envs=num_envs, max_episode_steps=max_episode_steps, threads=threads)
+        counts = {"num_envs": num_envs, "max_episode_steps": max_episode_steps, "threads": threads}
+        require(Integral, "an integer", **counts)
+        for name, count in counts.items():
+            if not 0 < count < 2**32:
+                raise ValueError(f"{name} must be an integer from 1 to {2**32 - 1}, got {count}")
         mode = AutoresetMode(autoreset_mode)
         native = Batch(num_envs, str(self.np_random_seed), max_episode_steps, mode.value, engine, continuous, threads)
         self.autoreset_mode = mode
@@ -153,9 +157,6 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
     :class:`acrobot_rs.LogUniform` or :class:`acrobot_rs.Normal`, from which each reset draws. Reading it gives what was set,
     different values as an array, and :meth:`get_parameter` what each environment has. ``book_or_nips`` cannot be drawn.
 
-    With ``gymnasium_episodes=True`` environments are computed and seeded as in ``SyncVectorEnv`` of Gymnasium's
-    ``Acrobot-v1``. All results are bit-identical to its results where those of :class:`acrobot_rs.AcrobotEnv` are.
-
     >>> import gymnasium as gym
     >>> import acrobot_rs
     >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024, autoreset_mode="SameStep")
@@ -169,7 +170,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    _CHOSEN = ("autoreset_mode", "copy", "info_parameters", "num_envs")
+    _CHOSEN = ("autoreset_mode", "copy", "info_parameters", "max_episode_steps", "num_envs")
 
     def __init__(
         self,
@@ -194,8 +195,9 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
                 observation. ``Disabled``: a ``reset`` of all, or one with a ``"reset_mask"``, must reset an environment whose
                 episode has ended before the next step.
             copy: Whether each call returns observations in a new array. Otherwise all calls return the same array.
-            gymnasium_episodes: Whether to play Gymnasium's own episodes: computed in ``float64``, environment ``i`` seeded
-                with ``seed + i``, and rewards as ``float64``. Steps then take longer.
+            gymnasium_episodes: Whether to play the episodes of Gymnasium's ``Acrobot-v1`` in ``SyncVectorEnv``: computed in
+                ``float64``, environment ``i`` seeded with ``seed + i``, and rewards as ``float64``. All results are
+                bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are. Steps take longer.
             threads: The threads that compute a step; ``None``: as many as the process has cores. They change no bit. More
                 than one is faster only for more than 16,384 environments, or 1,024 with ``gymnasium_episodes``.
             info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
@@ -216,11 +218,9 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
         engine = "gymnasium" if gymnasium_episodes else "fast"
         native = self._make(num_envs, max_episode_steps, autoreset_mode, engine, self._CONTINUOUS, threads)
         super().__init__(native, render_mode, parameters)
-        self._max_episode_steps = max_episode_steps
+        self.max_episode_steps = max_episode_steps
         self._gymnasium_episodes = gymnasium_episodes
         self.copy = copy
-        for name, space in self._spaces().items():
-            setattr(self, name, space)
         self._observations = None if copy else self._empty()
         self._made = True
 
@@ -228,11 +228,6 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
         single = super()._spaces()
         batched = {name: batch_space(space, self.num_envs) for name, space in single.items()}
         return {f"single_{name}": space for name, space in single.items()} | batched
-
-    @property
-    def max_episode_steps(self) -> int:
-        """The steps after which an episode is truncated. Read-only: chosen when the environments are made."""
-        return self._max_episode_steps
 
     def reset(self, *, seed: Seed = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment.
