@@ -6,8 +6,6 @@
 
 Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in Gymnasium's own environment.
 Fails if a seed has not learnt after a million steps.
-
-Step counts differ between CPUs, because XLA rounds differently on them.
 """
 
 import argparse

@@ -19,12 +19,7 @@ Seed = int | list[int | None] | tuple[int | None, ...] | None
 
 
 def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset_mask",)) -> tuple[float, float]:
-    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1.
-
-    Raises:
-        ValueError: If a bound is not a finite number in the range of float32, if low is above high, or if the options have
-            another key, except ``others``.
-    """
+    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1."""
     check_keys(options, ("low", "high", *others))
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning

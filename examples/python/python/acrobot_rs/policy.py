@@ -1,7 +1,6 @@
 """Saves a trained perceptron for the crate ``examples/policy``, which plays it on a microcontroller or in a browser.
 
-:func:`save` takes a model of Stable-Baselines3 (PPO, A2C, DQN) or sb3-contrib (QR-DQN), or a ``torch.nn.Sequential``, and compares the file's
-actions with the model's. :func:`write` takes arrays. Neither needs torch to be installed beside the model.
+:func:`save` takes a model and compares the file's actions with the model's. :func:`write` takes arrays. Neither needs torch beside the model.
 """
 
 from __future__ import annotations
@@ -68,7 +67,8 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
     """Write a model's greedy or mean policy. Means and deviations of ``VecNormalize`` become part of the first layer.
 
     Args:
-        model: A model of PPO, A2C, DQN or QR-DQN with ``MlpPolicy``, or a ``torch.nn.Sequential`` of linear layers, tanh and ReLU.
+        model: A model of Stable-Baselines3 (PPO, A2C, DQN) or sb3-contrib (QR-DQN) with ``MlpPolicy``, or a ``torch.nn.Sequential`` of linear
+            layers, tanh and ReLU.
         path: The file.
         observations: On which the file's actions are compared with the model's: an array of shape ``(n, 6)``. Default: 2,000 of random episodes.
         torque_limit: The largest torque, N m, of a ``Sequential`` with one output.

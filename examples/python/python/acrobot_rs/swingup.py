@@ -81,17 +81,14 @@ class AcrobotSwingupEnv(gymnasium.Env[Floats, Floats]):
         self._native.set_states(numbers("state", "four finite numbers", state, (4,)).astype(np.float64).reshape(1, 4))
         self._ready = True
 
-    def _observation(self) -> Floats:
-        observations = np.empty((1, 6), np.float32)
-        self._native.observe(observations)
-        return observations[0]
-
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode at rest, with both angles drawn uniformly from -pi to pi. There are no options."""
         arrays.check_keys(options, ())
         super().reset(seed=plain_seed(seed))
         self.state = np.array([*self.np_random.uniform(-np.pi, np.pi, 2), 0.0, 0.0])
-        return self._observation(), {}
+        observations = np.empty((1, 6), np.float32)
+        self._native.observe(observations)
+        return observations[0], {}
 
     def step(self, action: ArrayLike) -> tuple[Floats, float, bool, bool, dict[str, Any]]:
         """Apply an action for 0.01 s.
