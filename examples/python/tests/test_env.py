@@ -16,6 +16,7 @@ import pytest
 from acrobot_rs.parameters import _NAMES
 from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
+from vectors import rejects
 
 V1, V0, CONTINUOUS = "acrobot_rs/Acrobot-v1", "acrobot_rs/Acrobot-v0", "acrobot_rs/AcrobotContinuous-v0"
 
@@ -139,10 +140,8 @@ def test_invalid_actions_are_rejected(kind, message, action):
     env = kind()
     env.torque_noise_max = 0.5
     env.reset(seed=1)
-    before = pickle.dumps(env)
-    with pytest.raises(InvalidAction, match=message):
+    with rejects(env, InvalidAction, message):
         env.step(action)
-    assert pickle.dumps(env) == before
 
 
 @pytest.mark.parametrize("action", [2, np.int64(2), np.uint8(2), np.array(2)])
@@ -168,12 +167,10 @@ def test_actions_can_be_integers_of_any_type(env, action):
 )
 def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error):
     for value in values:
-        before = getattr(env, name)
-        with pytest.raises(error, match=f"^{name}.* must "):
+        with rejects(env, error, f"^{name}.* must "):
             setattr(env, name, value)
         with pytest.raises(error, match=f"^{name}.* must "):
             type("Changed", (acrobot_rs.AcrobotEnv,), {name: value})
-        assert getattr(env, name) == before
 
 
 @pytest.mark.parametrize(
@@ -183,10 +180,8 @@ def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error
      *(({key: -0.2}, rf"the keys of options must be among \['low', 'high'\], got '{key}'") for key in ("lo", "reset_mask"))],
 )  # fmt: skip
 def test_invalid_options_are_rejected(env, options, message):
-    state, rng = env.state, env.np_random.bit_generator.state
-    with pytest.raises(ValueError, match=message):
+    with rejects(env, ValueError, message):
         env.reset(seed=1, options=options)
-    assert (env.state == state).all() and env.np_random.bit_generator.state == rng
 
 
 def test_the_first_step_needs_a_reset():

@@ -12,6 +12,7 @@ import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
+from vectors import rejects
 
 HAS_SB3 = importlib.util.find_spec("stable_baselines3") is not None
 
@@ -155,12 +156,11 @@ def test_a_range_is_for_all_environments():
         envs.set_attr("dt", drawn, indices=indices)
         envs.reset()
         assert envs.envs.dt == drawn and len(set(envs.get_attr("dt"))) == 3
-        before = envs.envs._native.__getstate__()
         for value, some in [(0.3, [0]), (0.3, 1), (drawn, [0]), (drawn, [0, 2])]:
-            with pytest.raises(ValueError, match="dt must be set in all environments, if it is or will be drawn, got"):
+            with rejects(envs.envs, ValueError, "dt must be set in all environments, if it is or will be drawn, got"):
                 envs.set_attr("dt", value, indices=some)
         envs.set_attr("dt", 0.3, indices=[])
-        assert envs.envs.dt == drawn and envs.envs._native.__getstate__() == before
+        assert envs.envs.dt == drawn
         envs.set_attr("dt", 0.2, indices=indices)
         assert envs.envs.dt == 0.2 and envs.get_attr("dt") == [0.2] * 3
     with pytest.raises(ValueError, match="dt must be set in all environments, if it is or will be drawn"):
@@ -187,8 +187,6 @@ def test_misuse_is_rejected():
     envs = make(2)
     envs.reset()
     for _ in range(2):
-        before = envs.envs._native.__getstate__()
-        with pytest.raises(gymnasium.error.NoAsyncCallError, match="call step_async with the actions before each step_wait"):
+        with rejects(envs.envs, gymnasium.error.NoAsyncCallError, "call step_async with the actions before each step_wait"):
             envs.step_wait()
-        assert envs.envs._native.__getstate__() == before
         envs.step([0, 1])

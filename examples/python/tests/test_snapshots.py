@@ -8,6 +8,7 @@ import pytest
 from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env, AcrobotVectorEnv, LogUniform, Normal, Uniform
 from acrobot_rs.parameters import _NAMES
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
+from vectors import rejects
 
 SINGLE = (AcrobotEnv, AcrobotV0Env, AcrobotContinuousEnv)
 #: Vector environments: the type, the mode, the noise and other arguments.
@@ -91,9 +92,8 @@ def test_damaged_snapshots_are_rejected(kind, damage, message):
     env.state = [0.0, 0.0, 0.0, 0.25] if kind is AcrobotEnv else [[0.0, 0.0, 0.0, 0.25]] * 3
     good = env._native.__getstate__()
     assert damage(good) != good
-    with pytest.raises(ValueError, match=message):
+    with rejects(env, ValueError, message):
         env._native.__setstate__(damage(good))
-    assert env._native.__getstate__() == good
 
 
 def test_a_damaged_state_beyond_float32_is_one_of_float64():

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gymnasium.error import InvalidAction, ResetNeeded
 from gymnasium.utils.env_checker import check_env
+from vectors import rejects
 
 NAMES = ["acrobot_rs/AcrobotSwingup-v0", "acrobot_rs/AcrobotSwingupSparse-v0"]
 RECORDED = np.loadtxt(Path(__file__).parents[3] / "tests/data/swingup.txt")
@@ -116,17 +117,14 @@ def test_wrong_input_is_rejected():
     with pytest.raises(ResetNeeded, match="call reset"):
         env.step([0.0])
     env.reset(seed=0)
-    before = env.state
     for action in 0.5, [0.5, 0.5], [np.nan], ["x"]:
-        with pytest.raises(InvalidAction, match="action must be"):
+        with rejects(env, InvalidAction, "action must be"):
             env.step(action)
-    with pytest.raises(ValueError, match="state must be four finite numbers"):
-        env.state = [1.0, 2.0]
-    with pytest.raises(ValueError, match="finite"):
-        env.state = [np.nan, 0.0, 0.0, 0.0]
-    with pytest.raises(ValueError, match="keys of options"):
+    for state in [1.0, 2.0], [np.nan, 0.0, 0.0, 0.0]:
+        with rejects(env, ValueError, "finite"):
+            env.state = state
+    with rejects(env, ValueError, "keys of options"):
         env.reset(options={"low": 0.0})
-    assert np.array_equal(env.state, before)
     with pytest.raises(ValueError, match="render_mode must be"):
         acrobot_rs.AcrobotSwingupEnv(render_mode="human")
 

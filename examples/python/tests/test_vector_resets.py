@@ -13,7 +13,7 @@ import pytest
 from acrobot_rs.arrays import reset_mask, warn_of_other_sines
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode
-from vectors import MODES, assert_equal, different, make_vec, pair
+from vectors import MODES, assert_equal, different, make_vec, pair, rejects
 
 
 def test_streams_are_the_seed_s_children_whatever_the_number_of_environments():
@@ -35,14 +35,12 @@ def test_rejected_seeds_and_bounds_change_nothing():
     single = acrobot_rs.AcrobotEnv()
     for each in (single, envs):
         assert (each.reset(seed=np.uint8(255))[0] == each.reset(seed=255)[0]).all()
-    before = envs._native.__getstate__(), envs.np_random_seed, envs.np_random.bit_generator.state
     bad_seeds = (-1, "4", 4.0, True, np.True_, 10**5000)
     bad_options = ({"low": 1, "high": 0}, {"high": np.inf}, {"lo": 1}, {"low": 1, "reset_mask": [True, False]})
     for seed in (*bad_seeds, [1], (1,) * 3, *([1, bad] for bad in bad_seeds), None):
         for options in bad_options if seed is None else ({},):
-            with pytest.raises((ValueError, gymnasium.error.Error)):
+            with rejects(envs, (ValueError, gymnasium.error.Error)):
                 envs.reset(seed=seed or 1, options=options)
-            assert (envs._native.__getstate__(), envs.np_random_seed, envs.np_random.bit_generator.state) == before
 
 
 @pytest.mark.parametrize(
@@ -54,10 +52,10 @@ def test_invalid_masks_are_rejected_with_the_errors_of_sync_vector_env(mask, err
     theirs, ours = pair(2)
     with pytest.raises((error, AssertionError)):  # the latter with Gymnasium 1.1
         theirs.reset(seed=1, options={"reset_mask": mask and np.array(mask)})
-    before, options = ours._native.__getstate__(), {"reset_mask": mask}
-    with pytest.raises(error, match=r"reset_mask must (be an array of bool|have shape \(2,\)|have a true element), got"):
+    options = {"reset_mask": mask}
+    with rejects(ours, error, r"reset_mask must (be an array of bool|have shape \(2,\)|have a true element), got"):
         ours.reset(seed=1, options=options)
-    assert ours._native.__getstate__() == before and options == {"reset_mask": mask}
+    assert options == {"reset_mask": mask}
 
 
 def test_a_mask_selects_the_environments_to_seed_and_reset():
@@ -181,7 +179,5 @@ def test_without_autoreset_an_ended_episode_must_be_reset():
         assert not envs.step(np.array([0, 1, 2]))[3].any()
     for _ in range(4):
         ours.step([0, 1, 2])
-    before = ours._native.__getstate__()
-    with pytest.raises(ResetNeeded, match="the episode of environment 0 has ended; reset it before the next step"):
+    with rejects(ours, ResetNeeded, "the episode of environment 0 has ended; reset it before the next step"):
         ours.step([0, 1, 2])
-    assert ours._native.__getstate__() == before

@@ -1,5 +1,7 @@
-"""What the tests of vector environments share."""
+"""What the tests of environments share."""
 
+import contextlib
+import pickle
 import warnings
 
 import gymnasium
@@ -40,6 +42,15 @@ def assert_equal(one, other):
         np.testing.assert_array_equal(a, b)
     # Lists, because NumPy does not compare arrays of arrays.
     np.testing.assert_equal(*({key: list(value) for key, value in each[-1].items()} for each in (one, other)))
+
+
+@contextlib.contextmanager
+def rejects(env, error, message=None):
+    """Expects an error, and that nothing changes."""
+    before = pickle.dumps(env)
+    with pytest.raises(error, match=message):
+        yield
+    assert pickle.dumps(env) == before
 
 
 def reset_ended(envs, ended):
