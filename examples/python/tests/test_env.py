@@ -119,14 +119,14 @@ def test_a_window_shows_each_reset_and_step(monkeypatch):
     assert pygame.quit.called and env.unwrapped.screen is None and not env.unwrapped.isopen
 
 
-DISCRETE = "action must be an integer from 0 to 2, got "
+DISCRETE = "action must be an integer from 0 to 3, got "
 TORQUE = r"action must be a torque in N m, as an array of shape \(1,\), got "
 
 
 @pytest.mark.parametrize(
     ("kind", "message", "action"),
     [*((acrobot_rs.AcrobotEnv, DISCRETE, action) for action in (
-        3, -1, 256, 2**70, np.array([1]), np.array([1, 2]), [1], np.True_, np.array(True), np.timedelta64(1), iter([1]))),
+        4, -1, 256, 2**70, np.array([1]), np.array([1, 2]), [1], np.True_, np.array(True), np.timedelta64(1), iter([1]))),
      *((acrobot_rs.AcrobotContinuousEnv, TORQUE, action) for action in (
         1, np.float32(1.0), ["1"], [], [1.0, 1.0], [[1.0]], [None], [np.nan], np.float32([np.nan]), np.zeros((1, 1), np.float32),
         np.zeros(2, np.float32), np.zeros(0, np.float32), np.zeros((), np.float32), {0: 0.5}, collections.UserDict({0: 0.5}),
@@ -137,8 +137,7 @@ TORQUE = r"action must be a torque in N m, as an array of shape \(1,\), got "
         1.0, "1", None, b"\1", bytearray(b"\1"), {1}, {1: 1}, 1j, iter([0.5])))],
 )  # fmt: skip
 def test_invalid_actions_are_rejected(kind, message, action):
-    env = kind()
-    env.torque_noise_max = 0.5
+    env = kind(AVAIL_TORQUE=[-1, 0, 1, 2], torque_noise_max=0.5)
     env.reset(seed=1)
     with rejects(env, InvalidAction, message):
         env.step(action)
@@ -192,30 +191,23 @@ def test_the_first_step_needs_a_reset():
 
 
 @pytest.mark.parametrize("steps", [0, 1])
-def test_elements_of_the_state_can_be_assigned_as_in_gymnasium(steps):
-    ours, theirs = acrobot_rs.AcrobotEnv(), gymnasium.make("Acrobot-v1").unwrapped
-    for env in (ours, theirs):
-        env.reset(seed=4)
-        for _ in range(steps):
-            env.step(2)
-        assert env.state is env.state
-        assert env.state.dtype == (np.float64 if steps else np.float32)
-        env.state[0] = 0.3
-        env.state[1:] += [0.1, 0.2, 0.3]
-        before = env.state
-        if env is ours:  # before the step, which reads them too
-            twin = pickle.loads(pickle.dumps(env))
-        env.step(0)
-        before[0] = 7.0  # no longer the state
-    assert ours.state.tobytes() == theirs.state.tobytes()
-    twin.step(0)
-    assert twin.state.tobytes() == theirs.state.tobytes()
-    ours.state[1] = np.nan
-    for call in (lambda: ours.step(0), lambda: pickle.dumps(ours)):
+def test_elements_of_the_state_can_be_assigned(env, steps):
+    """`test_parity.py` compares with Gymnasium."""
+    for _ in range(steps):
+        env.step(2)
+    assert env.state is env.state
+    env.state[1:] += [0.1, 0.2, 0.3]
+    twin, before = pickle.loads(pickle.dumps(env)), env.state  # before the step, which reads the elements too
+    for each in (env, twin):
+        each.step(0)
+    before[0] = 7.0  # no longer the state
+    assert twin.state.tobytes() == env.state.tobytes()
+    env.state[1] = np.nan
+    for call in (lambda: env.step(0), lambda: pickle.dumps(env)):
         with pytest.raises(ValueError, match="theta2 must be a finite number of rad, got NaN"):
             call()
-    ours.state[1] = 0.0
-    ours.step(0)
+    env.state[1] = 0.0
+    env.step(0)
 
 
 def test_the_state_can_be_set_from_any_four_numbers(env):
@@ -225,8 +217,7 @@ def test_the_state_can_be_set_from_any_four_numbers(env):
     assert env.state.dtype == np.float32 and list(env.state) == [0.0, 2.0, 4.0, 6.0]
     env.state = (1, 2, 3, 4)
     assert env.state.dtype == np.float64 and list(env.state) == [1.0, 2.0, 3.0, 4.0]
-    others = (["1", "2", "3", "4"], [True] * 4, bytearray(4), {1: 1}, np.ones(4, complex), np.zeros(4, "M8[s]"))
-    for state in ([1, 2, 3], "abcd", None, [[1], [2, 3]], 5.0, np.zeros((4, 1)), [0.0, 0.0, 0.0, np.nan], *others):
+    for state in ([1, 2, 3], "abcd", None, [[1], [2, 3]], 5.0, np.zeros((4, 1)), [0.0, 0.0, 0.0, np.nan], [True] * 4):
         with pytest.raises(ValueError, match="state must be .*four .*numbers, got |^dtheta2 must "):
             env.state = state
     assert list(env.state) == [1.0, 2.0, 3.0, 4.0]
@@ -340,22 +331,6 @@ def test_values_cannot_change_in_place(env):
     mass[...], torques[0] = 3.0, 0.0
     for each in (env, changed, changed()):
         assert each.LINK_MASS_1 == 2.0 and each.AVAIL_TORQUE == (-2.0, 0.0, 2.0)
-
-
-@pytest.mark.parametrize("count", [1, 2, 5, 300])
-def test_any_number_of_torques(count):
-    torques = np.linspace(-2, 2, count).tolist()
-    ours = type("Ours", (acrobot_rs.AcrobotEnv,), {"AVAIL_TORQUE": torques})()
-    theirs = gymnasium.make("Acrobot-v1").unwrapped
-    theirs.AVAIL_TORQUE = torques
-    assert ours.action_space == gymnasium.spaces.Discrete(count)
-    for env in (ours, theirs):
-        env.reset(seed=1)
-        for action in range(count):
-            env.step(action)
-    assert ours.state.tobytes() == theirs.state.tobytes()
-    with pytest.raises(InvalidAction, match=f"action must be an integer from 0 to {count - 1}, got {count}"):
-        ours.step(count)
 
 
 @pytest.mark.parametrize("torques", [[-1.0, 0.0, 1.0], [0.5, -3.0, 2.0]])

@@ -92,16 +92,6 @@ def test_seeds_and_copies_repeat():
         assert np.array_equal(play(twin, 10), expected)
 
 
-def test_threads_change_no_bit():
-    count = 40_003
-    actions = np.random.default_rng(0).uniform(-1, 1, (5, count, 1))
-    plays = []
-    for threads in (1, 3, None):
-        envs = acrobot_rs.AcrobotSwingupVectorEnv(count, 3, autoreset_mode="SameStep", threads=threads)
-        plays.append([envs.reset(seed=1)[0], *(envs.step(each)[:4] for each in actions), envs.state])
-    np.testing.assert_equal(plays, [plays[0]] * 3)
-
-
 def test_an_action_beyond_1_acts_as_1():
     env = acrobot_rs.AcrobotSwingupEnv()
     states = []
