@@ -31,10 +31,7 @@
 // GitHub at the page's end. The first definition counts. A page whose examples need a feature is not tested without it.
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
-#[cfg_attr(
-    any(not(doctest), all(feature = "std", feature = "serde")),
-    doc = include_str!("../docs/rust.md")
-)]
+#[cfg_attr(any(not(doctest), feature = "std"), doc = include_str!("../docs/rust.md"))]
 pub mod rust {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
