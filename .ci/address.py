@@ -16,6 +16,7 @@ URL = re.compile(r"https://github\.com/[\w-]+/[\w.-]+")
 PLACES = {
     "Cargo.toml": [('readme = "README.md"\n', 'readme = "README.md"\nrepository = "URL"\n')],
     "CITATION.cff": [("license:\n", 'repository-code: "URL"\nlicense:\n')],
+    "CONTRIBUTING.md": [("(REPOSITORY)", "(URL)")],
     "README.md": [
         ("# acrobot\n", "# acrobot\n\n[![checks](URL/actions/workflows/ci.yml/badge.svg)](URL/actions/workflows/ci.yml)\n"),
         ("In a package beside a clone of this repository, `cargo add acrobot --path ../acrobot` adds the\ncrate; after publication, `cargo add acrobot`.",
