@@ -24,7 +24,7 @@
 //! ```
 //!
 //! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c), [in a browser](guide::wasm)
-//! or [in Python](guide::python). The [guide] has a page for each subject.
+//! or [in Python](guide::python).
 //!
 //! # What everybody uses
 //!
@@ -35,6 +35,19 @@
 //! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques. Both can be set at any time.
 //! - [`ResetOptions`] has what a reset may choose: the seed, and the bounds of the initial state.
 //! - [`Error`] names a rejected value, its unit and the rule. Nothing has changed then.
+//!
+//! # Modules
+//!
+//! - [`physics`]: the model alone, [`Pendulum`](physics::Pendulum), and [`control`](physics::control), from the
+//!   linearization to a regulator.
+//! - [`batch`]: many acrobots at once, with SIMD and on all cores.
+//! - [`numpy`]: NumPy's seeds and random numbers, as Gymnasium draws them.
+//! - [`trajectory`]: the last steps in fixed memory, as CSV.
+//! - `render` (feature `graphics`): drawing, on a display or into memory.
+//! - `env` (feature `std`): Gymnasium's `make`, spaces, wrappers and render modes.
+//! - [`arithmetic`]: the types that decide the bits, and the trait to write another one.
+//! - [`guide`]: pages on firmware, C, browsers, Python, control, parity, accuracy, determinism, the equations, speed and
+//!   learning.
 //!
 //! # Features
 //!
