@@ -164,8 +164,8 @@ def attack():
 def write(coefficients, at_target):
     numbers = iter(f"{x:.6g}" if "." in f"{x:.6g}" else f"{x:.6g}.0" for x in coefficients)
 
-    def array(length, *inner):
-        return "[" + ", ".join(array(*inner) if inner else next(numbers) for _ in range(length)) + "]"
+    def array(length):
+        return f"[f64; {length}] = [{', '.join(itertools.islice(numbers, length))}]"
 
     FILE.write_text(f"""//! The function P of bound.rs, written by certificate.py.
 
@@ -174,11 +174,11 @@ pub const AT_TARGET: f64 = {at_target:.6g};
 /// The largest increase of P by a step, with a margin: a proof of less needs more boxes.
 pub const UNIT: f64 = {UNIT};
 /// The factors of r, r², r³, r⁴ and 1 / r.
-pub const RADIAL: [f64; 5] = {array(5)};
-/// The factors of products of two, for each power of 1 / r, and for each cosine.
-pub const QUADRATIC: [[[f64; 10]; 4]; 3] = {array(3, 4, 10)};
-/// The factors of products of four, for each power of 1 / r.
-pub const QUARTIC: [[f64; 35]; 3] = {array(3, 35)};
+pub const RADIAL: {array(5)};
+/// The factors of the ten products of two, for each of three powers of 1 / r, and for each of four cosines.
+pub const QUADRATIC: {array(120)};
+/// The factors of the 35 products of four, for each power of 1 / r.
+pub const QUARTIC: {array(105)};
 """)
     subprocess.run(["rustfmt", FILE], check=True)
 

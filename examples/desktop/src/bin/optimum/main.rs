@@ -18,7 +18,7 @@ use acrobot::{Acrobot, State};
 use anyhow::bail;
 use clap::Parser;
 use desktop::write;
-use indicatif::ProgressBar;
+use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 
 mod beam;
@@ -29,9 +29,8 @@ mod table;
 mod taylor;
 mod values;
 
-use beam::Beam;
-use sequences::{load, reaches, text};
-use values::{Stepper, Values};
+use sequences::{load, text};
+use values::Values;
 
 /// Finds short sequences of actions to the goal, compares policies with them, and proves a bound.
 #[derive(Parser)]
@@ -41,17 +40,11 @@ enum Options {
         /// States that are followed at the same time.
         #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..))]
         width: u32,
-        /// Cells per rad and per rad/s. The search follows only one state of each cell.
-        #[arg(long, default_value_t = 10.0)]
-        fineness: f32,
         #[arg(long, value_name = "FILE", default_value = FILE)]
         file: PathBuf,
     },
     /// Prints the mean returns of policies, of the sequences and of the bound.
-    Table {
-        #[arg(long, value_name = "FILE", default_value = FILE)]
-        file: PathBuf,
-    },
+    Table,
     /// Proves the bound.
     Bound,
 }
@@ -59,17 +52,13 @@ enum Options {
 const FILE: &str = "tests/data/optimum.txt";
 /// The initial states are those of the seeds from 0 on.
 const SEEDS: u32 = 1000;
-/// No sequence is longer.
+/// No shortest sequence is longer.
 const DEPTH: usize = 100;
 
 fn main() -> anyhow::Result<()> {
     match Options::parse() {
-        Options::Search {
-            width,
-            fineness,
-            file,
-        } => search(width, fineness, &file),
-        Options::Table { file } => table::print(&load(&file)?),
+        Options::Search { width, file } => search(width as usize, &file),
+        Options::Table => table::print(&load(Path::new(FILE))?),
         Options::Bound => bound::prove(),
     }
 }
@@ -84,29 +73,18 @@ fn mean_return(steps: f64) -> f64 {
     1.0 - steps / f64::from(SEEDS)
 }
 
-fn search(width: u32, fineness: f32, file: &Path) -> anyhow::Result<()> {
+fn search(width: usize, file: &Path) -> anyhow::Result<()> {
     let mut known = if file.exists() {
         load(file)?
     } else {
         vec![Vec::new(); SEEDS as usize]
     };
     let values = Values::compute();
-    let progress = ProgressBar::new(SEEDS.into());
-    let found = (0..SEEDS).into_par_iter().map(|seed| {
-        let mut beam = Beam {
-            width: width as usize,
-            fineness,
-            values: &values,
-            stepper: Stepper::default(),
-        };
+    let found = (0..SEEDS).into_par_iter().progress().map(|seed| {
         let depth = known[seed as usize].len().checked_sub(1).unwrap_or(DEPTH);
-        let state = initial(seed.into());
-        let path = beam.search(state.cast(), depth, |path| reaches(state, path));
-        progress.inc(1);
-        path
+        beam::search(&values, width, initial(seed.into()), depth)
     });
     let found: Vec<_> = found.collect();
-    progress.finish_and_clear();
     let shorter = found.iter().flatten().count();
     for (known, found) in known.iter_mut().zip(found) {
         *known = found.unwrap_or(std::mem::take(known));
@@ -116,12 +94,7 @@ fn search(width: u32, fineness: f32, file: &Path) -> anyhow::Result<()> {
     }
     write(file, text(&known))?;
     let steps: usize = known.iter().map(Vec::len).sum();
-    let states = (0..SEEDS).map(|seed| initial(seed.into()).cast());
-    let values: f64 = states.map(|state| f64::from(values.at(&state))).sum();
-    println!(
-        "{shorter} shorter sequences; the mean return is {:.3}, and {:.3} by the values of the grid",
-        mean_return(steps as f64),
-        mean_return(values)
-    );
+    let mean = mean_return(steps as f64);
+    println!("{shorter} shorter sequences; the mean return is {mean:.3}");
     Ok(())
 }

@@ -49,13 +49,12 @@ fn parse(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
 
 /// The text of the file.
 pub fn text(sequences: &[Vec<Action>]) -> String {
-    let lines = sequences.iter().map(|sequence| {
-        let signs = sequence.iter().map(|&action| SIGNS[action as usize]);
-        signs.chain(['\n']).collect::<String>()
-    });
-    HEAD.chars()
-        .chain(lines.collect::<String>().chars())
-        .collect()
+    let mut text = HEAD.to_string();
+    for sequence in sequences {
+        text.extend(sequence.iter().map(|&action| SIGNS[action as usize]));
+        text.push('\n');
+    }
+    text
 }
 
 /// Whether the last action reaches the goal, and none before, in `Reference`.

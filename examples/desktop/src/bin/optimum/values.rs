@@ -9,12 +9,12 @@ use acrobot::{Action, Fast, State};
 use indicatif::ProgressIterator;
 use rayon::prelude::*;
 
+use crate::DEPTH;
+
 /// Points of the grid in θ1, θ2, θ̇1 and θ̇1 + θ̇2. The angles are cyclic.
 pub const SHAPE: [usize; 4] = [60, 60, 51, 51];
 /// The largest velocities of the grid, rad/s. Shortest paths stay within.
 const REACH: [f32; 2] = [5.0, 8.0];
-/// Each sweep takes one more step into account, and no shortest path has more.
-const SWEEPS: usize = 100;
 /// States with the same angles.
 const PLANE: usize = SHAPE[2] * SHAPE[3];
 
@@ -26,7 +26,8 @@ impl Values {
     pub fn compute() -> Self {
         let mut values = Self(vec![0.0; SHAPE.iter().product()]);
         let planes = SHAPE[0] * SHAPE[1];
-        for _ in (0..SWEEPS).progress() {
+        // Each sweep takes one more step into account.
+        for _ in (0..DEPTH).progress() {
             // The mirror image of a state has its value, so half of the planes are enough.
             let half = (0..=planes / 2 + SHAPE[1]).into_par_iter();
             let swept = half.map_init(Stepper::default, |stepper, plane| {
