@@ -22,8 +22,6 @@ pub struct Search {
     beam: [Node; 2 * BEAM],
     /// The shortest known path to the goal from the state of the next choice.
     plan: Option<Path>,
-    choices: u32,
-    steps: u64,
 }
 
 /// The actions that the search tries, as bits.
@@ -50,10 +48,9 @@ impl Path {
 
     /// The actions after the first.
     fn rest(self) -> Option<Self> {
-        let len = self.len.checked_sub(1)?;
-        (len > 0).then_some(Self {
+        (self.len > 1).then(|| Self {
             actions: self.actions >> 1,
-            len,
+            len: self.len - 1,
         })
     }
 }
@@ -72,18 +69,11 @@ impl Default for Search {
             model: Pendulum::hanging(),
             beam: [Node::default(); 2 * BEAM],
             plan: None,
-            choices: 0,
-            steps: 0,
         }
     }
 }
 
 impl Search {
-    /// The steps of the model for an action, on average.
-    pub fn steps_per_choice(&self) -> u64 {
-        self.steps / u64::from(self.choices.max(1))
-    }
-
     /// The first action of the best path found now or before, of up to `depth` actions. `value` estimates the negative
     /// number of steps from a state to the goal.
     pub fn choose(
@@ -92,18 +82,12 @@ impl Search {
         depth: u32,
         value: impl Fn(&State<f32>) -> f32,
     ) -> Action {
-        self.choices += 1;
-        let path = match (self.plan, self.best(state, depth, value)) {
-            (Some(plan), (found, true)) if found.len < plan.len => found,
-            (Some(plan), _) => plan,
-            (None, (found, is_goal)) => {
-                if !is_goal {
-                    return found.first();
-                }
-                found
-            }
-        };
-        self.plan = path.rest();
+        let (found, is_goal) = self.best(state, depth, value);
+        if is_goal && self.plan.is_none_or(|plan| found.len < plan.len) {
+            self.plan = Some(found);
+        }
+        let path = self.plan.unwrap_or(found);
+        self.plan = self.plan.and_then(Path::rest);
         path.first()
     }
 
@@ -129,7 +113,6 @@ impl Search {
                     .set_state(parent.state)
                     .and_then(|()| model.step(model.params().torque(ACTIONS[action])))
                     .expect("finite states and torques");
-                self.steps += 1;
                 node.path = parent.path.then(action);
                 if reached {
                     return (node.path, true);

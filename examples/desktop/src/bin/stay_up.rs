@@ -14,7 +14,7 @@
 use std::array::from_fn;
 
 use acrobot::arithmetic::{Arithmetic, Swingup};
-use acrobot::batch::{Autoreset, StepBuffers, VecBatch};
+use acrobot::batch::VecBatch;
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::control::{Lqr, difference, discretize, lqr};
 use acrobot::physics::{Pendulum, bound};
@@ -67,15 +67,13 @@ struct Planner {
 
 impl Planner {
     fn new(seed: u64) -> anyhow::Result<Self> {
-        let mut batch = VecBatch::new(SeedSequence::new(seed), TRIES)?;
-        batch.set_autoreset(Autoreset::Disabled);
         let model = Pendulum::<Task>::new(Params::<f32, _>::SWINGUP, State::UPRIGHT)?;
         let weights = from_fn(|i| from_fn(|j| f32::from(u8::from(i == j))));
         Ok(Self {
             regulator: lqr(&discretize(&model, 0.0)?, &weights, 1.0)?,
             upright: model.energy(),
             model,
-            batch,
+            batch: VecBatch::new(SeedSequence::new(seed), TRIES)?,
             plan: [[0.0, SPREAD]; TORQUES],
             rng: Pcg64::new(seed),
         })
@@ -128,14 +126,11 @@ impl Planner {
     fn worth(&mut self, state: State<f32>, tried: &[[f32; TORQUES]]) -> anyhow::Result<Vec<f32>> {
         self.batch.reset_to(&[state; TRIES])?;
         let mut worth = vec![0.0; TRIES];
-        let (mut rewards, mut terminated, mut truncated) =
-            (vec![0.0; TRIES], vec![false; TRIES], vec![false; TRIES]);
         for k in 0..TORQUES {
             let torques: Vec<f32> = tried.iter().map(|sequence| sequence[k]).collect();
             for _ in 0..HOLD {
-                let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
-                (*self.batch).step(&torques, buffers)?;
-                for (worth, reward) in worth.iter_mut().zip(&rewards) {
+                let results = self.batch.step(&torques)?;
+                for (worth, reward) in worth.iter_mut().zip(&results.rewards) {
                     *worth += reward;
                 }
             }

@@ -3,53 +3,47 @@
 mod swing_up;
 
 use std::env::consts::EXE_EXTENSION;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::sync::atomic::{AtomicU32, Ordering};
-use std::{env, fs};
+use std::process::{Command, Output};
 
-/// An empty folder in which programs run, removed when the test ends.
+/// An empty folder in which the programs of a test run.
 struct Folder(PathBuf);
 
 impl Folder {
-    fn new() -> Self {
-        static NUMBER: AtomicU32 = AtomicU32::new(0);
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let folder = env::temp_dir().join(format!("acrobot-{}-{number}", std::process::id()));
-        // A killed test with the same process id may have left one.
+    fn new(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir(&folder).unwrap();
         Self(folder)
     }
 
-    /// A program and its arguments, separated by spaces.
-    fn command(&self, line: &str) -> Command {
+    /// Runs a program with arguments, separated by spaces.
+    fn run(&self, line: &str) -> Output {
         let mut words = line.split(' ');
         // All programs are in one folder.
         let program = Path::new(env!("CARGO_BIN_EXE_swing_up"))
             .with_file_name(words.next().unwrap())
             .with_extension(EXE_EXTENSION);
         let mut command = Command::new(program);
-        command.args(words).current_dir(&self.0);
-        command
+        command.args(words).current_dir(&self.0).output().unwrap()
     }
 
     /// What a program prints.
     fn printed(&self, line: &str) -> String {
-        let output = self.command(line).output().unwrap();
+        let output = self.run(line);
         let errors = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{line}: {errors}");
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// The error message of a program that must fail, and print nothing else.
-    fn rejected(&self, line: &str) -> String {
-        let output = self.command(line).output().unwrap();
-        assert!(
-            !output.status.success() && output.stdout.is_empty(),
-            "{line}"
-        );
-        String::from_utf8(output.stderr).unwrap()
+    /// Runs a program that must fail with this reason, and print nothing else.
+    #[track_caller]
+    fn assert_rejects(&self, line: &str, reason: &str) {
+        let output = self.run(line);
+        assert!(!output.status.success() && output.stdout.is_empty());
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert!(errors.contains(reason), "{line}: {errors}");
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -68,16 +62,10 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 /// The pictures of the README and of docs/embedded.md.
 #[test]
 fn pictures_are_those_of_the_pages() {
-    let folder = Folder::new();
+    let folder = Folder::new("pictures");
     folder.printed("episode");
     folder.printed("episode --balance --out balance.svg --definition balance.txt");
     for name in ["episode.svg", "balance.svg", "balance.txt"] {
@@ -87,25 +75,21 @@ fn pictures_are_those_of_the_pages() {
     }
 }
 
-/// Commands, and a part of the error message of each.
-const REJECTED: [(&str, &str); 10] = [
-    ("optimum search --width 0", "0 is not in 1.."),
-    ("optimum table --file none.txt", "Error: none.txt"),
-    ("swing_up --plan 129", "129 is not in 1..=128"),
-    ("swing_up --load none.bin", "Error: none.bin"),
-    ("episode --seed 4x2", "got 'x' as character 2"),
-    ("episode --out no/a.svg", "Error: cannot write no/a.svg"),
-    ("stay_up --episodes 0", "0 is not in 1.."),
-    ("trace 013", "an action must be 0, 1 or 2"),
-    ("swing_up --load /dev/zero", "weights must"),
-    ("swing_up --steps 1 --episodes 1", "cannot be used with"),
-];
-
 #[test]
 fn bad_arguments_are_rejected_with_a_reason() {
-    let folder = Folder::new();
-    for (line, reason) in REJECTED {
-        let errors = folder.rejected(line);
-        assert!(errors.contains(reason), "{line}: {errors}");
+    let folder = Folder::new("rejected");
+    for (line, reason) in [
+        ("optimum search --width 0", "0 is not in 1.."),
+        ("optimum table", "Error: tests/data/optimum.txt"),
+        ("swing_up --plan 129", "129 is not in 1..=128"),
+        ("swing_up --load none.bin", "Error: none.bin"),
+        ("episode --seed 4x2", "got 'x' as character 2"),
+        ("episode --out no/a.svg", "Error: cannot write no/a.svg"),
+        ("stay_up --episodes 0", "0 is not in 1.."),
+        ("trace 013", "an action must be 0, 1 or 2"),
+        ("swing_up --load /dev/zero", "weights must"),
+        ("swing_up --steps 1 --episodes 1", "cannot be used with"),
+    ] {
+        folder.assert_rejects(line, reason);
     }
 }

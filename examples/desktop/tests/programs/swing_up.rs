@@ -1,7 +1,5 @@
 //! `swing_up` learns, and saves and loads its weights.
 
-use std::fs;
-
 use super::Folder;
 
 /// The figures of the line that `--quiet` prints: the episode that solved the task, the greedy policy's mean and
@@ -27,7 +25,7 @@ impl Folder {
 
 #[test]
 fn swing_up_learns_the_same_from_the_same_seed() {
-    let folder = Folder::new();
+    let folder = Folder::new("learns");
     let [one, two] = ["one", "two"].map(|name| {
         let line = folder.swing_up(&format!("--quiet --episodes 300 --seed 1 --save {name}"));
         (line, folder.read(name))
@@ -54,7 +52,7 @@ fn swing_up_learns_the_same_from_the_same_seed() {
 /// Learning must improve on this baseline by more than chance.
 #[test]
 fn swing_up_is_better_than_torque_against_the_velocity() {
-    let folder = Folder::new();
+    let folder = Folder::new("baseline");
     let output = folder.swing_up("--seed 42");
     let row = |policy: &str| -> [f64; 3] {
         let row = output.lines().find_map(|line| line.strip_prefix(policy));
@@ -79,7 +77,7 @@ fn swing_up_is_better_than_torque_against_the_velocity() {
 
 #[test]
 fn swing_up_draws_its_results() {
-    let folder = Folder::new();
+    let folder = Folder::new("draws");
     let [one, other] = [1, 2].map(|seed| {
         folder.swing_up(&format!("--episodes 100 --seed {seed}"));
         ["learning_curve.svg", "values.svg", "swing_up.svg"].map(|name| folder.svg(name))
@@ -92,7 +90,7 @@ fn swing_up_draws_its_results() {
 /// Each of the evaluations comes after the first episode that ends beyond another 2,000 steps.
 #[test]
 fn swing_up_evaluates_during_a_budget_of_steps() {
-    let folder = Folder::new();
+    let folder = Folder::new("evaluates");
     let output = folder.swing_up("--quiet --steps 7000 --evaluate 2000 --seed 1");
     let lines: Vec<&str> = output.lines().collect();
     assert_eq!(lines.len(), 4, "{output}");
@@ -107,22 +105,17 @@ fn swing_up_evaluates_during_a_budget_of_steps() {
     assert_eq!(lines[3], alone.trim_end());
 }
 
-/// The learner's own tests damage every byte.
+/// Each memory has its slots. The learner's own tests damage every byte.
 #[test]
 fn swing_up_rejects_weights_of_another_learner() {
-    let folder = Folder::new();
+    let folder = Folder::new("weights");
     folder.swing_up("--quiet --episodes 3 --save weights");
-    let rejects = |arguments: &str, reason: &str| {
-        let line = format!("swing_up --load weights --save out {arguments}");
-        let errors = folder.rejected(line.trim_end());
-        assert!(errors.contains(reason), "{errors}");
+    for (memory, bytes) in [("16k", 11284), ("32k", 23572)] {
+        let line = format!("swing_up --load weights --save out --memory {memory}");
+        folder.assert_rejects(
+            &line,
+            &format!("weights must have {bytes} bytes, got 49172"),
+        );
         assert!(!folder.path("out").exists());
-    };
-    // Each memory has its slots.
-    rejects("--memory 16k", "weights must have 11284 bytes, got 49172");
-    rejects("--memory 32k", "weights must have 23572 bytes, got 49172");
-    let mut bytes = folder.read("weights");
-    bytes[30_000] ^= 2;
-    fs::write(folder.path("weights"), bytes).unwrap();
-    rejects("", "damaged weights: ");
+    }
 }

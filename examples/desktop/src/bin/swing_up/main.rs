@@ -15,12 +15,12 @@
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
 //! This is the baseline.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::{Action, State};
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use desktop::search::Search;
 use desktop::{Returns, animation, bang_bang, evaluate, load, write};
 use indicatif::{ProgressBar, ProgressIterator, ProgressStyle};
@@ -36,8 +36,8 @@ use pictures::svg;
 #[command(allow_negative_numbers = true)]
 struct Options {
     /// Memory in KiB for all that the learner keeps.
-    #[arg(long, value_enum, default_value_t = Size::K64)]
-    memory: Size,
+    #[arg(long, default_value = "64k", value_parser = ["16k", "32k", "64k"])]
+    memory: String,
     /// Episodes of learning. The step size falls until the last one.
     #[arg(long, default_value_t = 2000, conflicts_with = "steps")]
     episodes: u32,
@@ -59,22 +59,9 @@ struct Options {
     /// Also plays a beam search over the learnt values, which looks so many steps ahead.
     #[arg(long, value_name = "STEPS", conflicts_with = "quiet", value_parser = clap::value_parser!(u32).range(1..=128))]
     plan: Option<u32>,
-    /// Folder for the pictures.
-    #[arg(long, value_name = "FOLDER", default_value = ".")]
-    pictures: PathBuf,
     /// Prints only one line, and draws nothing.
     #[arg(long)]
     quiet: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Size {
-    #[value(name = "16k")]
-    K16,
-    #[value(name = "32k")]
-    K32,
-    #[value(name = "64k")]
-    K64,
 }
 
 impl Options {
@@ -89,10 +76,10 @@ const EVALUATION: u32 = 1000;
 
 fn main() -> anyhow::Result<()> {
     let options = Options::parse();
-    match options.memory {
-        Size::K16 => run(&options, Memory16::EMPTY),
-        Size::K32 => run(&options, Memory32::EMPTY),
-        Size::K64 => run(&options, Memory64::EMPTY),
+    match options.memory.as_str() {
+        "16k" => run(&options, Memory16::EMPTY),
+        "32k" => run(&options, Memory32::EMPTY),
+        _ => run(&options, Memory64::EMPTY),
     }
 }
 
@@ -144,11 +131,6 @@ fn run<const S: usize, const T: usize, const N: usize>(
             search.choose(*state, depth, |state| learner.value(state))
         });
         row("planned", planned);
-        println!(
-            "the search takes {} bytes, and {} steps of the model per action",
-            size_of::<Search>(),
-            search.steps_per_choice()
-        );
     }
     println!();
     draw(&learner, &returns, options)
@@ -161,9 +143,8 @@ fn draw<const S: usize, const T: usize>(
     options: &Options,
 ) -> anyhow::Result<()> {
     let save = |name: &str, svg: String, content: &str| {
-        let path = options.pictures.join(name);
-        write(&path, svg)?;
-        println!("{}: {content}", path.display());
+        write(Path::new(name), svg)?;
+        println!("{name}: {content}");
         anyhow::Ok(())
     };
     if !returns.is_empty() {
@@ -201,18 +182,14 @@ fn train<const S: usize, const T: usize>(
     options: &Options,
 ) -> Vec<f32> {
     let mut env = training(options.seed.clone());
-    let (length, unit) = match options.budget() {
-        Budget::Episodes(episodes) => (u64::from(episodes), "episodes"),
-        Budget::Steps(steps) => (u64::from(steps), "steps"),
-    };
+    let (Budget::Episodes(length) | Budget::Steps(length)) = options.budget();
     let bar = if options.quiet {
         ProgressBar::hidden()
     } else {
-        ProgressBar::new(length)
+        ProgressBar::new(length.into())
     };
-    let template = format!("{{msg}}{{elapsed}} {{wide_bar}} {{pos}}/{{len}} {unit}");
-    let style = ProgressStyle::with_template(&template).expect("a valid template");
-    bar.set_style(style);
+    let style = ProgressStyle::with_template("{msg}{elapsed} {wide_bar} {pos}/{len}");
+    bar.set_style(style.expect("a valid template"));
 
     // A hundred charts in all, because drawing one takes as long as several steps.
     let period = length.div_ceil(100).max(1);
@@ -222,8 +199,8 @@ fn train<const S: usize, const T: usize>(
         let before = steps;
         steps += env.elapsed();
         done = match options.budget() {
-            Budget::Episodes(_) => returns.len() as u64,
-            Budget::Steps(_) => u64::from(steps),
+            Budget::Episodes(_) => returns.len() as u32,
+            Budget::Steps(_) => steps,
         };
         if let Some(every) = options.evaluate
             && steps / every > before / every
@@ -236,7 +213,7 @@ fn train<const S: usize, const T: usize>(
             charted = done / period;
             bar.set_message(curve::chart(&returns));
         }
-        bar.set_position(done.min(length));
+        bar.set_position(done.min(length).into());
     }
     bar.finish();
     returns
