@@ -152,7 +152,7 @@ fn draw<const S: usize, const T: usize>(
         let content = format!("the returns of {} episodes", returns.len());
         save("learning_curve.svg", curve, &content)?;
     }
-    let values = svg((780, 720), |area| {
+    let values = svg((680, 720), |area| {
         pictures::draw_values(area, |state| learner.value(state))
     })?;
     save("values.svg", values, "the learnt values of states at rest")?;
