@@ -18,8 +18,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use acrobot::Action;
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::{Action, State};
 use clap::Parser;
 use desktop::search::Search;
 use desktop::{Returns, animation, bang_bang, evaluate, load, write};
@@ -160,10 +160,10 @@ fn draw<const S: usize, const T: usize>(
     let mut env = evaluation(&options.seed);
     let mut states = Vec::new();
     play(&mut env, |state| {
-        states.push(State::from(<[f32; 4]>::from(*state).map(f64::from)));
+        states.push(state.cast());
         learner.greedy(state)
     });
-    states.push(State::from(<[f32; 4]>::from(env.state()).map(f64::from)));
+    states.push(env.state().cast());
     let content = format!("a greedy episode, {} steps", env.elapsed());
     save(
         "swing_up.svg",
