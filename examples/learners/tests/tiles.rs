@@ -10,9 +10,6 @@ use learners::TileCoder;
 /// come two for each of four pairs.
 type Few = TileCoder<1408, 16>;
 
-/// Eight, ten, four and eight intervals, and tilings over triples, too.
-type Many = TileCoder<6144, 52>;
-
 /// The bounds of the state.
 const BOUNDS: [f32; 4] = [PI, PI, 1.125 * PI, 2.25 * PI];
 
@@ -94,7 +91,7 @@ fn velocities_beyond_a_bound_count_as_the_bound_and_every_slot_is_in_the_table()
 /// With 65,536 slots each tile has its own. Random slots would leave 24 % of those of 3,600 tiles in 6,144 slots shared.
 #[test]
 fn hashing_spreads_the_tiles() {
-    let (tiles, slots) = (TileCoder::<65536, 52>::new(), Many::new());
+    let (tiles, slots) = (TileCoder::<65536, 52>::new(), TileCoder::<6144, 52>::new());
     let mut rng = Pcg64::new(3);
     let mut used = [(); 2].map(|()| vec![BTreeSet::new(); 52]);
     for _ in 0..100_000 {

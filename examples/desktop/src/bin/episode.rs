@@ -87,7 +87,7 @@ fn balance(rng: Pcg64) -> Result<Vec<State>, ControlError> {
     for step in 0..STEPS {
         let state = machine.state();
         if step % STEPS_PER_FRAME == 0 {
-            states.push(State::from(<[f32; 4]>::from(state).map(f64::from)));
+            states.push(state.cast());
         }
         machine.step_torque(controller.decide(state)?)?;
     }

@@ -113,7 +113,6 @@ fn quartic(mut factors: &[f64], pairs: &[TaylorModel; 10]) -> TaylorModel {
 }
 
 /// The numbers of the statement.
-#[derive(Clone, Copy)]
 struct Bound {
     /// P of the target.
     at_target: f64,

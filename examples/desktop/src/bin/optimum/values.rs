@@ -127,21 +127,15 @@ fn is_goal(state: &State<f32>) -> bool {
     -state.theta1.cos() - (state.theta1 + state.theta2).cos() > 1.0
 }
 
+/// The states that a batch steps at a time.
+const LANES: usize = 512;
+
 /// Steps many states at once.
-pub struct Stepper {
-    batch: VecBatch<Fast>,
-    states: Vec<State<f32>>,
-    actions: Vec<Action>,
-}
+pub struct Stepper(VecBatch<Fast>);
 
 impl Default for Stepper {
-    /// Steps 512 states at a time.
     fn default() -> Self {
-        Self {
-            batch: VecBatch::new(SeedSequence::new(0), 512).expect("lanes"),
-            states: vec![State::default(); 512],
-            actions: vec![Action::Zero; 512],
-        }
+        Self(VecBatch::new(SeedSequence::new(0), LANES).expect("lanes"))
     }
 }
 
@@ -153,16 +147,16 @@ impl Stepper {
         action: Action,
         mut to: impl FnMut(usize, State<f32>, bool),
     ) {
-        let lanes = self.states.len();
-        self.actions.fill(action);
-        for (chunk, states) in states.chunks(lanes).enumerate() {
-            self.states[..states.len()].copy_from_slice(states);
-            self.batch.reset_to(&self.states).expect("finite states");
-            let results = self.batch.step(&self.actions).expect("valid actions");
+        let Self(batch) = self;
+        for (chunk, states) in states.chunks(LANES).enumerate() {
+            let mut lanes = [State::default(); LANES];
+            lanes[..states.len()].copy_from_slice(states);
+            batch.reset_to(&lanes).expect("finite states");
+            let results = batch.step(&[action; LANES]).expect("valid actions");
             let reached = results.terminated[..states.len()].to_vec();
             for (i, reached) in reached.into_iter().enumerate() {
-                let next = self.batch.state(i).expect("a lane");
-                to(chunk * lanes + i, next, reached);
+                let next = batch.state(i).expect("a lane");
+                to(chunk * LANES + i, next, reached);
             }
         }
     }

@@ -9,7 +9,7 @@
 //! `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for which the mean return of episodes
 //! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
 //! states that it was not trained on, and K of these missed the goal. The time of learning goes to stderr. With `--evaluate N` a line `steps M greedy_mean R`
-//! for every N steps comes before. Without `--quiet` it draws the learning curve, the values and the last greedy
+//! for every N steps comes before. Without `--quiet` it draws the learning curve, the values and a greedy
 //! episode. With `--plan 60` it also plays a beam search on the model over the learnt values.
 //!
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
@@ -18,8 +18,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use acrobot::Action;
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::{Action, State};
 use clap::Parser;
 use desktop::search::Search;
 use desktop::{Returns, animation, bang_bang, evaluate, load, write};
@@ -152,23 +152,19 @@ fn draw<const S: usize, const T: usize>(
         let content = format!("the returns of {} episodes", returns.len());
         save("learning_curve.svg", curve, &content)?;
     }
-    let values = svg((780, 720), |area| {
+    let values = svg((680, 720), |area| {
         pictures::draw_values(area, |state| learner.value(state))
     })?;
     save("values.svg", values, "the learnt values of states at rest")?;
 
     let mut env = evaluation(&options.seed);
-    for _ in 1..EVALUATION {
-        // The generator draws only initial states, so these resets lead to the last episode.
-        env.reset();
-    }
     let mut states = Vec::new();
     play(&mut env, |state| {
-        states.push(State::from(<[f32; 4]>::from(*state).map(f64::from)));
+        states.push(state.cast());
         learner.greedy(state)
     });
-    states.push(State::from(<[f32; 4]>::from(env.state()).map(f64::from)));
-    let content = format!("the last greedy episode, {} steps", env.elapsed());
+    states.push(env.state().cast());
+    let content = format!("a greedy episode, {} steps", env.elapsed());
     save(
         "swing_up.svg",
         animation::svg(&states, animation::DELAY),

@@ -1,7 +1,6 @@
 //! Pictures of the learning curve, the learnt values and an episode.
 
 use std::f32::consts::PI;
-use std::ops::Range;
 
 use acrobot::physics::Pendulum;
 use acrobot::{Fast, Params, REWARD_THRESHOLD, State};
@@ -104,31 +103,22 @@ pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> anyhow::R
     let at = |i: usize| ((i as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0) * PI;
     let cells = (0..SIDE * SIDE).map(|i| {
         let (theta1, theta2) = (at(i / SIDE), at(i % SIDE));
-        let rest = State {
-            theta1,
-            theta2,
-            ..State::default()
-        };
+        let rest = State::from([theta1, theta2, 0.0, 0.0]);
         let pendulum = Pendulum::<Fast>::new(Params::DEFAULT, rest).expect("the angles are finite");
         let value = (pendulum.tip_height() <= 1.0).then(|| f64::from(value(&rest)));
         (f64::from(theta1), f64::from(theta2), value)
     });
     let cells: Vec<_> = cells.collect();
     let values = || cells.iter().filter_map(|&(.., value)| value);
-    let tens = |value: f64| value / 10.0;
-    let least = tens(values().fold(f64::INFINITY, f64::min)).floor() * 10.0;
-    let most = tens(values().fold(f64::NEG_INFINITY, f64::max)).ceil() * 10.0;
-    let range = least..most.max(least + 10.0);
+    let least = values().fold(f64::INFINITY, f64::min);
+    let most = values().fold(least + 1.0, f64::max);
 
-    let body = area
-        .titled("Learnt values of the acrobot at rest", TITLE)?
-        .titled(
-            "the higher action value; grey: the tip is above the target height",
-            NAME,
-        )?;
-    let (map, bar) = body.split_horizontally(660);
+    let title = "Learnt values at rest: minus the steps to the goal";
+    let colors =
+        format!("from {least:.1} (dark) to {most:.1} (bright); grey: above the target height");
+    let body = area.titled(title, TITLE)?.titled(&colors, NAME)?;
     let pi = f64::from(PI);
-    let mut chart = ChartBuilder::on(&map)
+    let mut chart = ChartBuilder::on(&body)
         .margin(10)
         .x_label_area_size(44)
         .y_label_area_size(52)
@@ -147,40 +137,9 @@ pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> anyhow::R
         .draw()?;
     let half = pi / SIDE as f64;
     chart.draw_series(cells.iter().map(|&(x, y, value)| {
-        let color = value.map_or(RGBColor(190, 190, 190), |value| color(value, &range));
+        let color = |value| ViridisRGB.get_color_normalized(value, least, most);
+        let color = value.map_or(RGBColor(190, 190, 190), color);
         Rectangle::new([(x - half, y - half), (x + half, y + half)], color.filled())
     }))?;
-    draw_bar(&bar, &range, "value (minus the steps to the goal)")
-}
-
-/// Draws the colours of a range, with a name and labels.
-fn draw_bar(area: &Area, range: &Range<f64>, name: &str) -> anyhow::Result<()> {
-    const SHADES: u32 = 60;
-    let mut chart = ChartBuilder::on(area)
-        .margin(10)
-        .margin_bottom(54)
-        .y_label_area_size(60)
-        .build_cartesian_2d(0.0..1.0, range.clone())?;
-    chart
-        .configure_mesh()
-        .disable_mesh()
-        .disable_x_axis()
-        .label_style(LABEL)
-        .axis_desc_style(NAME)
-        .y_desc(name)
-        .y_label_formatter(&|value| format!("{value:.0}"))
-        .draw()?;
-    let height = (range.end - range.start) / f64::from(SHADES);
-    chart.draw_series((0..SHADES).map(|shade| {
-        let from = range.start + f64::from(shade) * height;
-        Rectangle::new(
-            [(0.0, from), (1.0, from + height)],
-            color(from, range).filled(),
-        )
-    }))?;
     Ok(())
-}
-
-fn color(value: f64, range: &Range<f64>) -> RGBColor {
-    ViridisRGB.get_color_normalized(value, range.start, range.end)
 }
