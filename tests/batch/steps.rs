@@ -9,32 +9,8 @@ use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, StepResul
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::Dynamics;
 use acrobot::{Action, Fast, Params, Portable, State};
-use common::twins::{LEVELS, MODES, Twins};
+use common::twins::{MODES, Twins};
 use common::{bits, params_range};
-
-/// Tries every SIMD level, and in the last batch acrobots whose parameters each reset draws.
-#[test]
-fn a_thousand_acrobots_equal_single_ones_for_ten_thousand_steps() {
-    // With optimization the larger numbers take seconds.
-    let (len, steps) = match cfg!(debug_assertions) {
-        true => (100, 600),
-        false => (1000, 10_000),
-    };
-    fn play<const N: usize>(mut twins: Twins<Fast, N>, steps: u32) {
-        for level in LEVELS {
-            println!("{N} lanes, {level:?}, available: {}", level.is_available());
-            twins.batch.set_simd_level(level);
-            twins.reset(42.into());
-            twins.swing(steps);
-        }
-    }
-    play(Twins::<_, 3>::new(len, Autoreset::NextStep), steps);
-    play(Twins::<_, 16>::new(len, Autoreset::NextStep), steps);
-    let mut drawn = Twins::<_, 16>::with_own_params(len, Autoreset::NextStep);
-    let range = params_range(Dynamics::Book);
-    drawn.batch.set_params_range(Some(range)).unwrap();
-    play(drawn, steps);
-}
 
 #[test]
 fn every_arithmetic_and_simd_level_equals_single_acrobots() {

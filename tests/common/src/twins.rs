@@ -3,11 +3,11 @@
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, SimdLevel, StepBuffers, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{ParamsOf, ResetBounds};
+use acrobot::physics::{Dynamics, FrictionOf, ParamsOf, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Observation, Params, ResetOptions, State, Step, TimeLimit};
 use bits::against;
 
-use crate::bits;
+use crate::{AnyFriction, bits, params_range};
 
 pub const MODES: [Autoreset; 3] = [
     Autoreset::NextStep,
@@ -204,20 +204,31 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         }
     }
 
-    /// Plays with every SIMD level. Initial states are far outside of the bounds, and there is noise.
-    pub fn at_every_level() {
+    /// Plays with every SIMD level, with shared parameters and with drawn ones. Initial states are far outside of the bounds,
+    /// and there is noise.
+    pub fn at_every_level()
+    where
+        FrictionOf<A>: AnyFriction<A::Scalar>,
+    {
+        let range = params_range(Dynamics::Book);
         for level in LEVELS {
-            let mut twins = Self::new(37, Autoreset::SameStep);
-            twins.batch.set_simd_level(level);
-            twins.swing(200);
-            twins.set_params(Params {
+            let mut shared = Self::new(37, Autoreset::SameStep);
+            let mut drawn = Self::with_own_params(37, Autoreset::NextStep);
+            drawn.batch.set_params_range(Some(range)).unwrap();
+            for twins in [&mut shared, &mut drawn] {
+                twins.batch.set_simd_level(level);
+                twins.swing(200);
+            }
+            shared.set_params(Params {
                 torque_noise: Real::from_f64(0.5),
-                ..twins.batch.params_of(0).unwrap()
+                ..shared.batch.params_of(0).unwrap()
             });
-            twins.set_bounds(-100.0, 100.0);
-            // After an episode's end the links turn over, which wraps angles.
-            twins.batch.set_autoreset(Autoreset::Disabled);
-            twins.swing(200);
+            for twins in [&mut shared, &mut drawn] {
+                twins.set_bounds(-100.0, 100.0);
+                // After an episode's end the links turn over, which wraps angles.
+                twins.batch.set_autoreset(Autoreset::Disabled);
+                twins.swing(200);
+            }
         }
     }
 }
