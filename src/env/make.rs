@@ -73,10 +73,8 @@ pub type DynEnv = dyn Env<
 pub fn acrobot_v1<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, Observation<6>>>, Error> {
-    Ok(TimeLimit::v1(AcrobotEnv::new(
-        options.params,
-        options.render_mode,
-    )?))
+    let env = AcrobotEnv::new(options.params, options.render_mode)?;
+    Ok(TimeLimit::v1(env))
 }
 
 /// `Acrobot-v0`: observations with the angles, and 200 steps.
@@ -87,10 +85,8 @@ pub fn acrobot_v1<A: Arithmetic>(
 pub fn acrobot_v0<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, Observation<4>>>, Error> {
-    Ok(TimeLimit::v0(AcrobotEnv::new(
-        options.params,
-        options.render_mode,
-    )?))
+    let env = AcrobotEnv::new(options.params, options.render_mode)?;
+    Ok(TimeLimit::v0(env))
 }
 
 impl fmt::Debug for DynEnv {
