@@ -186,7 +186,6 @@ impl AsMut<[f32]> for DynObservation {
 }
 
 /// An environment with its types erased to those of [`DynEnv`].
-#[derive(Clone)]
 struct Erased<E>(E);
 
 impl<E, O> Env for Erased<E>
@@ -227,22 +226,4 @@ where
     }
 
     forward!(unobserved self, self.0);
-}
-
-#[cfg(test)]
-mod tests {
-    use core::num::NonZeroU32;
-
-    use super::*;
-    use crate::env::check_env;
-
-    #[test]
-    fn erased_environments_keep_the_contract() {
-        // Miri takes a thousand times as long.
-        let limit = NonZeroU32::new(if cfg!(miri) { 30 } else { 500 }).unwrap();
-        let v0 = AcrobotEnv::<Fast, Observation<4>>::default();
-        let v1 = AcrobotEnv::<Portable, Observation<6>>::default();
-        check_env(&Erased(TimeLimit::new(v0, limit)), 1).unwrap();
-        check_env(&Erased(TimeLimit::new(v1, limit)), 1).unwrap();
-    }
 }
