@@ -39,8 +39,7 @@ impl Action {
     /// [`Pcg64`](crate::numpy::Pcg64) with the seed given to `action_space.seed`.
     #[inline]
     pub fn sample<R: Rng + ?Sized>(rng: &mut R) -> Self {
-        const THREE: NonZeroU32 = NonZeroU32::new(3).unwrap();
-        match integers(rng, THREE) {
+        match integers(rng, const { NonZeroU32::new(3).unwrap() }) {
             0 => Self::Negative,
             1 => Self::Zero,
             _ => Self::Positive,

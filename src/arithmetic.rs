@@ -236,12 +236,9 @@ macro_rules! damped {
             const DEFAULT: Model<Self> = match Self::TASK {
                 Task::Acrobot => Model::UNDAMPED,
                 Task::Swingup | Task::SwingupSparse => {
-                    const PARAMS: Params<$scalar, Viscous<$scalar>> =
-                        Params::<$scalar, Viscous<$scalar>>::SWINGUP;
-                    Model {
-                        params: PARAMS,
-                        constants: $constants::<$scalar>::new(&PARAMS, [1.0, 0.25, 0.25]),
-                    }
+                    let params = Params::<$scalar, Viscous<$scalar>>::SWINGUP;
+                    let constants = $constants::<$scalar>::new(&params, [1.0, 0.25, 0.25]);
+                    Model { params, constants }
                 }
             };
 

@@ -12,8 +12,6 @@ use crate::observation::Observation;
 use crate::physics::{ParamsOf, State, Task};
 use crate::reset_options::ResetOptions;
 
-const V0: NonZeroU32 = NonZeroU32::new(200).unwrap();
-
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they reach the limit. It
 /// does not change `terminated`. Steps after the end continue, with `truncated` true.
 ///
@@ -56,7 +54,7 @@ impl<E> TimeLimit<E> {
     /// Truncates episodes after 200 steps, as `Acrobot-v0` does.
     #[must_use]
     pub const fn v0(inner: E) -> Self {
-        Self::new(inner, V0)
+        Self::new(inner, const { NonZeroU32::new(200).unwrap() })
     }
 
     /// The number of steps after which episodes are truncated.

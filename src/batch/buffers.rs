@@ -69,13 +69,11 @@ impl<'a> StepBuffers<'a> {
         check_length("rewards", self.rewards.len(), len)?;
         check_length("terminated", self.terminated.len(), len)?;
         check_length("truncated", self.truncated.len(), len)?;
-        for (name, rows) in [
-            ("observations", &self.observations),
-            ("final_observations", &self.final_observations),
-        ] {
-            if let Some(rows) = rows {
-                check_length(name, rows.len(), len)?;
-            }
+        if let Some(rows) = &self.observations {
+            check_length("observations", rows.len(), len)?;
+        }
+        if let Some(rows) = &self.final_observations {
+            check_length("final_observations", rows.len(), len)?;
         }
         Ok(())
     }

@@ -102,10 +102,7 @@ where
 
     let (before, after) = actions.split_at(first.steps.len() / 2);
     let mut original = env.clone();
-    original.reset_with_seed(seed);
-    for action in before {
-        original.step(action.clone());
-    }
+    play(&mut original, Some(seed), before)?;
     let mut copy = original.clone();
     let mut rendered = original.clone();
     let expected = follow(&mut original, after)?;

@@ -185,13 +185,16 @@ impl std::str::FromStr for SeedSequence {
             let (len, limit) = (text.len(), LIMIT);
             return Err(crate::Error::SeedTooLong { len, limit });
         }
+        let malformed = |found, position| Err(crate::Error::MalformedSeed { found, position });
+        if text.is_empty() {
+            return malformed(None, 1);
+        }
         let mut words = std::vec::Vec::new();
         for (found, position) in text.chars().zip(1..) {
-            let malformed = crate::Error::MalformedSeed {
-                found: Some(found),
-                position,
+            let Some(digit) = found.to_digit(10) else {
+                return malformed(Some(found), position);
             };
-            let mut carry = u64::from(found.to_digit(10).ok_or(malformed)?);
+            let mut carry = u64::from(digit);
             for word in &mut words {
                 carry += u64::from(*word) * 10;
                 *word = carry as u32;
@@ -200,12 +203,6 @@ impl std::str::FromStr for SeedSequence {
             if carry != 0 {
                 words.push(carry as u32);
             }
-        }
-        if text.is_empty() {
-            return Err(crate::Error::MalformedSeed {
-                found: None,
-                position: 1,
-            });
         }
         Ok(Self::from_words(&words))
     }

@@ -6,7 +6,7 @@
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::{Dynamics, Params};
-use crate::math::{Real, SinCos};
+use crate::math::SinCos;
 
 /// The constants of a form of the equations, computed from parameters.
 pub trait FromParams<S>: Sized {
@@ -80,37 +80,6 @@ for_f32_and_f64! {
                 sixth_dt: dt / 6.0,
             }
         }
-    }
-}
-
-impl<S: Real> Common<S> {
-    pub(super) fn mass_matrix(&self, params: &Params<S, impl Copy>, cos2: S) -> [[S; 2]; 2] {
-        let Params {
-            length1: l1,
-            mass1: m1,
-            mass2: m2,
-            center_of_mass1: lc1,
-            inertia1,
-            ..
-        } = *params;
-        let upper = m1 * (lc1 * lc1) + inertia1 + m2 * (l1 * l1);
-        let coupling = self.coupling * cos2;
-        let d2 = self.link2 + coupling;
-        [[upper + coupling + d2, d2], [d2, self.link2]]
-    }
-
-    pub(super) fn energy(
-        &self,
-        params: &Params<S, impl Copy>,
-        [dtheta1, dtheta2]: [S; 2],
-        sin_cos: [SinCos<S>; 2],
-    ) -> S {
-        let [[m11, m12], [_, m22]] = self.mass_matrix(params, sin_cos[1].1);
-        let momentum1 = m11 * dtheta1 + m12 * dtheta2;
-        let momentum2 = m12 * dtheta1 + m22 * dtheta2;
-        let kinetic = S::HALF * (momentum1 * dtheta1 + momentum2 * dtheta2);
-        let [(_, cos1), (_, cos_sum)] = directions(sin_cos);
-        kinetic - self.gravity1 * cos1 - self.gravity2 * cos_sum
     }
 }
 

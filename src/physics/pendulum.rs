@@ -197,9 +197,14 @@ impl<A: Arithmetic> Pendulum<A> {
     #[must_use]
     pub fn energy(&self) -> A::Scalar {
         let [_, _, dtheta1, dtheta2] = self.y;
-        let Model { params, constants } = &self.model;
-        let common = A::Form::common(constants);
-        common.energy(params, [dtheta1, dtheta2], self.sin_cos())
+        let sin_cos = self.sin_cos();
+        let [[m11, m12], [_, m22]] = self.mass_matrix_for(sin_cos[1].1);
+        let momentum1 = m11 * dtheta1 + m12 * dtheta2;
+        let momentum2 = m12 * dtheta1 + m22 * dtheta2;
+        let kinetic = A::Scalar::from_f64(0.5) * (momentum1 * dtheta1 + momentum2 * dtheta2);
+        let common = A::Form::common(&self.model.constants);
+        let [(_, cos1), (_, cos_sum)] = common::directions(sin_cos);
+        kinetic - common.gravity1 * cos1 - common.gravity2 * cos_sum
     }
 
     /// The mass matrix M at the state, kg m². The kinetic energy is θ̇ᵀ M θ̇ / 2. M is symmetric and positive definite.
@@ -207,8 +212,17 @@ impl<A: Arithmetic> Pendulum<A> {
     #[must_use]
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
         let [_, (_, cos2)] = self.sin_cos();
+        self.mass_matrix_for(cos2)
+    }
+
+    fn mass_matrix_for(&self, cos2: A::Scalar) -> [[A::Scalar; 2]; 2] {
         let Model { params, constants } = &self.model;
-        A::Form::common(constants).mass_matrix(params, cos2)
+        let (l1, lc1) = (params.length1, params.center_of_mass1);
+        let upper = params.mass1 * (lc1 * lc1) + params.inertia1 + params.mass2 * (l1 * l1);
+        let common = A::Form::common(constants);
+        let coupling = common.coupling * cos2;
+        let d2 = common.link2 + coupling;
+        [[upper + coupling + d2, d2], [d2, common.link2]]
     }
 
     /// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the right and y up.

@@ -7,7 +7,7 @@ use std::vec::Vec;
 use embedded_graphics_core::Pixel;
 use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{OriginDimensions, Point, Size};
-use embedded_graphics_core::pixelcolor::{BinaryColor, Rgb888, RgbColor};
+use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 use super::{Figure, Theme};
 
@@ -116,46 +116,26 @@ impl DrawTarget for Frame {
 pub(crate) fn text(figure: &Figure) -> String {
     const COLUMNS: usize = 40;
     const LINES: usize = 20;
+    /// The bit of each dot in a code point, by row and column within a character.
+    const BITS: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
-    /// The dots of the characters, as the low bits of their code points.
-    struct Dots([[u8; COLUMNS]; LINES]);
-
-    impl OriginDimensions for Dots {
-        fn size(&self) -> Size {
-            Size::new(2 * COLUMNS as u32, 4 * LINES as u32)
-        }
-    }
-
-    impl DrawTarget for Dots {
-        type Color = BinaryColor;
-        type Error = Infallible;
-
-        fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(
-            &mut self,
-            pixels: I,
-        ) -> Result<(), Infallible> {
-            /// The bit of each dot, by row and column within a character.
-            const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
-            for Pixel(point, color) in pixels {
-                let (x, y) = (point.x as usize, point.y as usize);
-                let character = self.0.get_mut(y / 4).and_then(|line| line.get_mut(x / 2));
-                let bit = BITS.get(y % 4).and_then(|row| row.get(x % 2));
-                if let (Some(character), Some(bit)) = (character, bit)
-                    && color.is_on()
-                {
-                    *character |= bit;
+    let mut frame = Frame::new(2 * COLUMNS as u32, 4 * LINES as u32);
+    let Ok(()) = figure.draw(&mut frame, &Theme::MONOCHROME.map(Rgb888::from));
+    let is_on = |x, y| frame.bytes.get(3 * (2 * COLUMNS * y + x)) == Some(&255);
+    let character = |line, column| {
+        let mut dots = 0;
+        for (y, row) in (4 * line..).zip(BITS) {
+            for (x, bit) in (2 * column..).zip(row) {
+                if is_on(x, y) {
+                    dots |= bit;
                 }
             }
-            Ok(())
         }
-    }
-
-    let mut dots = Dots([[0; COLUMNS]; LINES]);
-    let Ok(()) = figure.draw(&mut dots, &Theme::MONOCHROME);
-    let line = |line: [u8; COLUMNS]| -> String {
-        line.into_iter()
-            .filter_map(|bits| char::from_u32(0x2800 + u32::from(bits)))
-            .collect()
+        char::from_u32(0x2800 + dots)
     };
-    dots.0.map(line).join("\n")
+    let lines: [String; LINES] = core::array::from_fn(|line| {
+        let characters = (0..COLUMNS).filter_map(|column| character(line, column));
+        characters.collect()
+    });
+    lines.join("\n")
 }

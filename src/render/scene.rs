@@ -50,7 +50,10 @@ impl Figure {
         };
         // If the line moved, pixels change across the whole width.
         let changed = if old.line == new.line {
-            old.bounds_with(&new)
+            Rectangle::with_corners(
+                old.corners[0].component_min(new.corners[0]),
+                old.corners[1].component_max(new.corners[1]),
+            )
         } else {
             area
         };
@@ -130,15 +133,6 @@ impl Scene {
             }),
             arrow: room.then(|| arrow(elbow, 0.3 * metre, f32::from(figure.torque))),
         })
-    }
-
-    /// A rectangle around the parts of both scenes.
-    fn bounds_with(&self, other: &Self) -> Rectangle {
-        let ([first, last], [other_first, other_last]) = (self.corners, other.corners);
-        Rectangle::with_corners(
-            first.component_min(other_first),
-            last.component_max(other_last),
-        )
     }
 
     fn color<C: PixelColor>(&self, point: Point, theme: &Theme<C>) -> C {
