@@ -122,6 +122,8 @@ fn live_changes_reach_through_every_wrapper() {
         [1.0, 2.0]
     );
     assert_eq!(erased.unwrapped().figure(), Figure::new(typed.unwrapped()));
+    erased.unwrapped_mut().set_state(State::UPRIGHT).unwrap();
+    assert!(erased.step(Action::Zero).terminated);
 }
 
 /// The boxes that `make` returns can be wrapped and borrowed like any environment.
