@@ -99,6 +99,6 @@ int main(void)
     for (unsigned seed = 0; seed < sizeof FAST / sizeof FAST[0]; seed++) {
         CHECK(episode(seed) == FAST[seed]);
     }
-    CHECK(batch_of_twenty() == SHARED_PARAMS);
+    CHECK(batch_of_twenty() == BATCHES[0]);
     return report("bits");
 }
