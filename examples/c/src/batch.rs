@@ -7,7 +7,7 @@ use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, Params, ResetOptions};
 
-use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, unknown};
+use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, array, change, check, check_apart, fits, get, optional, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
@@ -280,7 +280,7 @@ pub unsafe extern "C" fn acrobot_batch_set_autoreset(
             ACROBOT_AUTORESET_NEXT_STEP => Autoreset::NextStep,
             ACROBOT_AUTORESET_SAME_STEP => Autoreset::SameStep,
             ACROBOT_AUTORESET_DISABLED => Autoreset::Disabled,
-            other => return Err(unknown("autoreset", other, "0, 1 or 2")),
+            other => return Err(Rejected::number("autoreset", other.into(), "", "0, 1 or 2")),
         });
         Ok(())
     })
@@ -319,8 +319,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
     get(batch, params, |placed| {
-        let params = placed.batch.params_of(0).unwrap_or(Params::DEFAULT);
-        Ok((&params).into())
+        Ok(placed.batch.params_of(0).unwrap_or(Params::DEFAULT).into())
     })
 }
 

@@ -94,12 +94,11 @@ pub struct acrobot_state_t {
 
 impl From<State<f32>> for acrobot_state_t {
     fn from(state: State<f32>) -> Self {
-        let [theta1, theta2, dtheta1, dtheta2] = state.into();
         Self {
-            theta1,
-            theta2,
-            dtheta1,
-            dtheta2,
+            theta1: state.theta1,
+            theta2: state.theta2,
+            dtheta1: state.dtheta1,
+            dtheta2: state.dtheta2,
         }
     }
 }
@@ -172,8 +171,8 @@ macro_rules! same_params {
     };
 }
 
-impl From<&Params<f32>> for acrobot_params_t {
-    fn from(params: &Params<f32>) -> Self {
+impl From<Params<f32>> for acrobot_params_t {
+    fn from(params: Params<f32>) -> Self {
         let dynamics = match params.dynamics {
             Dynamics::Nips => ACROBOT_DYNAMICS_NIPS,
             _ => ACROBOT_DYNAMICS_BOOK,
@@ -190,13 +189,11 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
         let dynamics = match params.dynamics {
             ACROBOT_DYNAMICS_BOOK => Dynamics::Book,
             ACROBOT_DYNAMICS_NIPS => Dynamics::Nips,
-            other => return Err(unknown("dynamics", other, "0 (book) or 1 (NIPS)")),
+            other => {
+                let rule = "0 (book) or 1 (NIPS)";
+                return Err(Rejected::number("dynamics", other.into(), "", rule));
+            }
         };
         Ok(same_params!(Params, params, dynamics, friction))
     }
-}
-
-/// Rejects a number that none of the constants has.
-pub fn unknown(name: &'static str, number: c_int, rule: &'static str) -> Rejected {
-    Rejected::number(name, number.into(), "", rule)
 }

@@ -158,7 +158,7 @@ pub unsafe extern "C" fn acrobot_params(
     acrobot: *const acrobot_t,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    get(acrobot, params, |acrobot| Ok(acrobot.params().into()))
+    get(acrobot, params, |acrobot| Ok((*acrobot.params()).into()))
 }
 
 /// Sets the parameters for the next steps. The state does not change. `error` may be null.
