@@ -24,7 +24,6 @@ pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
 /// An observation: six floats without padding, in Gymnasium's order.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct acrobot_observation_t {
     /// Cosine of the angle of link 1.
     pub cos_theta1: f32,
@@ -55,7 +54,6 @@ impl From<Observation> for acrobot_observation_t {
 
 /// The result of a step.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct acrobot_step_t {
     /// The observation of the new state.
     pub observation: acrobot_observation_t,

@@ -118,7 +118,6 @@ pub unsafe fn get<H: Holder, T>(
 }
 
 /// The addresses of an argument, to find out whether arguments overlap.
-#[derive(Clone, Copy)]
 pub struct Span {
     start: usize,
     bytes: usize,
@@ -136,8 +135,8 @@ impl Span {
         Self::new(array.cast::<T>(), array.len())
     }
 
-    fn overlaps(self, other: Self) -> bool {
-        let contains = |one: Self, start: usize| start.wrapping_sub(one.start) < one.bytes;
+    fn overlaps(&self, other: &Self) -> bool {
+        let contains = |one: &Self, start: usize| start.wrapping_sub(one.start) < one.bytes;
         contains(self, other.start) || contains(other, self.start)
     }
 }
@@ -146,7 +145,7 @@ impl Span {
 pub fn check_apart(spans: &[Span]) -> Result<(), Rejected> {
     let mut rest = spans.iter();
     while let Some(span) = rest.next() {
-        if rest.clone().any(|other| span.overlaps(*other)) {
+        if rest.clone().any(|other| span.overlaps(other)) {
             return Err(ACROBOT_ERROR_OVERLAP.into());
         }
     }

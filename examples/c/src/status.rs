@@ -7,7 +7,6 @@ use acrobot::physics::control::ControlError;
 
 /// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub enum acrobot_status_t {
     /// The function has done its work.
     ACROBOT_OK = 0,
