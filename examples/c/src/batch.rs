@@ -33,7 +33,7 @@ pub const ACROBOT_AUTORESET_SAME_STEP: c_int = 1;
 pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 
 /// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
-/// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
+/// not move or copy it.
 #[repr(align(64))]
 pub struct acrobot_batch_t {
     _header: [u8; HEADER],
@@ -158,9 +158,8 @@ pub unsafe extern "C" fn acrobot_batch_init(
     })
 }
 
-/// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
-/// elements, one for each acrobot. No array may overlap another one, the batch or `results`. If one action is rejected,
-/// no acrobot steps, but `terminated` and `truncated` become false.
+/// Applies an action to each acrobot for one dt. `actions` and the arrays of `results` have `count` elements, one for
+/// each acrobot. If one action is rejected, no acrobot steps, but `terminated` and `truncated` become false.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_step(
     batch: *mut acrobot_batch_t,

@@ -17,8 +17,7 @@ pub const ACROBOT_SIZE: usize = 224;
 pub const ACROBOT_ALIGN: usize = 16;
 
 /// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
-/// call acrobot_init before any other function. It contains no pointer, so you may copy and move it. There is nothing
-/// to free.
+/// call acrobot_init before any other function. It contains no pointer, so you may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
@@ -96,8 +95,7 @@ pub unsafe extern "C" fn acrobot_step(
     })
 }
 
-/// Applies any finite torque, N m, for one dt: for controllers. The `torques` of the parameters do not limit it. `error`
-/// may be null.
+/// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it. `error` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step_torque(
     acrobot: *mut acrobot_t,
