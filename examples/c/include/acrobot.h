@@ -110,19 +110,14 @@ typedef struct ACROBOT_ALIGNED(16) acrobot_t {
   uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
 
-// An observation: six floats without padding, in Gymnasium's order.
+// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine of each angle of the
+// acrobot_state_t, and its angular velocities, rad/s.
 typedef struct acrobot_observation_t {
-  // Cosine of the angle of link 1.
   float cos_theta1;
-  // Sine of the angle of link 1.
   float sin_theta1;
-  // Cosine of the angle of link 2.
   float cos_theta2;
-  // Sine of the angle of link 2.
   float sin_theta2;
-  // Angular velocity of link 1, rad/s.
   float dtheta1;
-  // Angular velocity of link 2 relative to link 1, rad/s.
   float dtheta2;
 } acrobot_observation_t;
 

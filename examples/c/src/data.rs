@@ -22,20 +22,15 @@ pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 /// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is not conserved.
 pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
-/// An observation: six floats without padding, in Gymnasium's order.
+/// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine of each angle of the
+/// acrobot_state_t, and its angular velocities, rad/s.
 #[repr(C)]
 pub struct acrobot_observation_t {
-    /// Cosine of the angle of link 1.
     pub cos_theta1: f32,
-    /// Sine of the angle of link 1.
     pub sin_theta1: f32,
-    /// Cosine of the angle of link 2.
     pub cos_theta2: f32,
-    /// Sine of the angle of link 2.
     pub sin_theta2: f32,
-    /// Angular velocity of link 1, rad/s.
     pub dtheta1: f32,
-    /// Angular velocity of link 2 relative to link 1, rad/s.
     pub dtheta2: f32,
 }
 
