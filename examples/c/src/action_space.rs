@@ -5,7 +5,7 @@ use core::ptr;
 use acrobot::Action;
 use acrobot::numpy::Pcg64;
 
-use crate::memory::{Holder, change, check, fits};
+use crate::memory::{Holder, change, check};
 use crate::status::{acrobot_status_t, status};
 
 /// The bytes of an acrobot_action_space_t.
@@ -22,8 +22,6 @@ impl Holder for acrobot_action_space_t {
 
     const TAG: u32 = u32::from_le_bytes(*b"acts");
 }
-
-const _: () = fits::<acrobot_action_space_t>();
 
 /// Gymnasium's `action_space.seed(seed)`.
 #[unsafe(no_mangle)]

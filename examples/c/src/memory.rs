@@ -45,7 +45,11 @@ pub trait Holder: Sized {
             tag: Self::TAG,
             value,
         };
-        // A holder is at least as large and as aligned as the tagged value.
+        // Does not compile if the holder is too small or not aligned enough on this target.
+        const {
+            assert!(size_of::<Tagged<Self>>() <= size_of::<Self>());
+            assert!(align_of::<Tagged<Self>>() <= align_of::<Self>());
+        }
         this.cast::<Tagged<Self>>().write(tagged);
         Ok(())
     }
@@ -75,12 +79,6 @@ pub trait Holder: Sized {
 pub struct Tagged<T: Holder> {
     tag: u32,
     value: T::Value,
-}
-
-/// Does not compile if the holder is too small or not aligned enough on this target.
-pub const fn fits<T: Holder>() {
-    assert!(size_of::<Tagged<T>>() <= size_of::<T>());
-    assert!(align_of::<Tagged<T>>() <= align_of::<T>());
 }
 
 /// Changes a holder's value. Writes the call's result, and why a number was rejected, unless these pointers are null.
