@@ -1,12 +1,12 @@
 // Gymnasium's Acrobot in C and C++: one acrobot, or a batch, in single precision and with the limit of 500 steps.
 //
-// - You provide the memory. No function allocates, and there is nothing to free.
+// - You provide the memory, and may reuse it at any time. No function allocates, and there is nothing to free.
 // - No function aborts or has global state. A function that can fail returns an acrobot_status_t. Unless it is
 //   ACROBOT_OK, no acrobot has changed, and results are as before the call if the function's comment says nothing else.
 // - A pointer must be null or point to what its type says. The functions report pointers that are null or misaligned,
 //   and zeroed memory that no acrobot_init has seen. They cannot detect a pointer to freed memory.
-// - The arguments of a call must not overlap. The functions report a result or error that would overwrite the acrobot or
-//   the batch, and arrays that overlap.
+// - The arguments of a call, and arrays of a struct, must not overlap. The functions report a result or error that would
+//   overwrite the acrobot or the batch, and arrays that overlap.
 // - Threads and interrupts may use different acrobots at the same time. Sharing one takes a lock.
 
 
@@ -101,29 +101,23 @@ typedef enum acrobot_status_t {
 } acrobot_status_t;
 
 // A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
-// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
+// not move or copy it.
 typedef struct acrobot_batch_t acrobot_batch_t;
 
 // One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
-// call acrobot_init before any other function. It contains no pointer, so you may copy and move it. There is nothing
-// to free.
+// call acrobot_init before any other function. It contains no pointer, so you may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) acrobot_t {
   uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
 
-// An observation: six floats without padding, in Gymnasium's order.
+// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine of each angle of the
+// acrobot_state_t, and its angular velocities, rad/s.
 typedef struct acrobot_observation_t {
-  // Cosine of the angle of link 1.
   float cos_theta1;
-  // Sine of the angle of link 1.
   float sin_theta1;
-  // Cosine of the angle of link 2.
   float cos_theta2;
-  // Sine of the angle of link 2.
   float sin_theta2;
-  // Angular velocity of link 1, rad/s.
   float dtheta1;
-  // Angular velocity of link 2 relative to link 1, rad/s.
   float dtheta2;
 } acrobot_observation_t;
 
@@ -200,8 +194,7 @@ typedef struct acrobot_params_t {
   int dynamics;
 } acrobot_params_t;
 
-// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
-// nothing to free.
+// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) acrobot_action_space_t {
   uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
 } acrobot_action_space_t;
@@ -256,8 +249,7 @@ enum acrobot_status_t acrobot_step(struct acrobot_t *acrobot,
                                    int action,
                                    struct acrobot_step_t *step);
 
-// Applies any finite torque, N m, for one dt: for controllers. The `torques` of the parameters do not limit it. `error`
-// may be null.
+// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it. `error` may be null.
 enum acrobot_status_t acrobot_step_torque(struct acrobot_t *acrobot,
                                           float torque,
                                           struct acrobot_step_t *step,
@@ -293,8 +285,7 @@ enum acrobot_status_t acrobot_energy(const struct acrobot_t *acrobot, float *ene
 // The height of the tip above the fixed joint, m.
 enum acrobot_status_t acrobot_tip_height(const struct acrobot_t *acrobot, float *height);
 
-// The deviation of the state from `target`, which must be finite. Angles are wrapped to ±π, so it is continuous
-// upright.
+// The deviation of the state from a finite `target`. Angles are wrapped to ±π, so it is continuous upright.
 enum acrobot_status_t acrobot_deviation(const struct acrobot_t *acrobot,
                                         const struct acrobot_state_t *target,
                                         struct acrobot_state_t *deviation);
@@ -334,9 +325,8 @@ enum acrobot_status_t acrobot_batch_init(void *memory,
                                          uint64_t seed,
                                          struct acrobot_batch_t **batch);
 
-// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
-// elements, one for each acrobot. No array may overlap another one, the batch or `results`. If one action is rejected,
-// no acrobot steps, but `terminated` and `truncated` become false.
+// Applies an action to each acrobot for one dt. `actions` and the arrays of `results` have `count` elements, one for
+// each acrobot. If one action is rejected, no acrobot steps, but `terminated` and `truncated` become false.
 enum acrobot_status_t acrobot_batch_step(struct acrobot_batch_t *batch,
                                          const uint8_t *actions,
                                          const struct acrobot_batch_results_t *results,

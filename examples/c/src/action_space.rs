@@ -5,14 +5,13 @@ use core::ptr;
 use acrobot::Action;
 use acrobot::numpy::Pcg64;
 
-use crate::memory::{Holder, change, check, fits};
+use crate::memory::{Holder, change, check};
 use crate::status::{acrobot_status_t, status};
 
 /// The bytes of an acrobot_action_space_t.
 pub const ACROBOT_ACTION_SPACE_SIZE: usize = 64;
 
-/// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it. There is
-/// nothing to free.
+/// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_action_space_t {
     bytes: [u8; ACROBOT_ACTION_SPACE_SIZE],
@@ -23,8 +22,6 @@ impl Holder for acrobot_action_space_t {
 
     const TAG: u32 = u32::from_le_bytes(*b"acts");
 }
-
-const _: () = fits::<acrobot_action_space_t>();
 
 /// Gymnasium's `action_space.seed(seed)`.
 #[unsafe(no_mangle)]

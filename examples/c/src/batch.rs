@@ -7,8 +7,8 @@ use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::{Fast, Params, ResetOptions};
 
-use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, unknown};
-use crate::memory::{Holder, Span, array, change, check, check_apart, fits, get, optional, read};
+use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t};
+use crate::memory::{Holder, Span, array, change, check, check_apart, get, optional, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The alignment of the memory for a batch, bytes.
@@ -33,7 +33,7 @@ pub const ACROBOT_AUTORESET_SAME_STEP: c_int = 1;
 pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 
 /// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
-/// not move or copy it. There is nothing to free: when you no longer need the batch, use the memory for something else.
+/// not move or copy it.
 #[repr(align(64))]
 pub struct acrobot_batch_t {
     _header: [u8; HEADER],
@@ -83,7 +83,6 @@ impl Holder for acrobot_batch_t {
 }
 
 const _: () = {
-    fits::<acrobot_batch_t>();
     assert!(align_of::<acrobot_batch_t>() == ACROBOT_BATCH_ALIGN);
     assert!(align_of::<LanesBlock>() <= ACROBOT_BATCH_ALIGN);
     assert!(size_of::<LanesBlock>() == BLOCK);
@@ -158,9 +157,8 @@ pub unsafe extern "C" fn acrobot_batch_init(
     })
 }
 
-/// Applies an action to each acrobot for one dt. `actions`, and each array of `results` that is not null, has `count`
-/// elements, one for each acrobot. No array may overlap another one, the batch or `results`. If one action is rejected,
-/// no acrobot steps, but `terminated` and `truncated` become false.
+/// Applies an action to each acrobot for one dt. `actions` and the arrays of `results` have `count` elements, one for
+/// each acrobot. If one action is rejected, no acrobot steps, but `terminated` and `truncated` become false.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_step(
     batch: *mut acrobot_batch_t,
@@ -280,7 +278,7 @@ pub unsafe extern "C" fn acrobot_batch_set_autoreset(
             ACROBOT_AUTORESET_NEXT_STEP => Autoreset::NextStep,
             ACROBOT_AUTORESET_SAME_STEP => Autoreset::SameStep,
             ACROBOT_AUTORESET_DISABLED => Autoreset::Disabled,
-            other => return Err(unknown("autoreset", other, "0, 1 or 2")),
+            other => return Err(Rejected::number("autoreset", other.into(), "", "0, 1 or 2")),
         });
         Ok(())
     })
@@ -319,8 +317,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
     get(batch, params, |placed| {
-        let params = placed.batch.params_of(0).unwrap_or(Params::DEFAULT);
-        Ok((&params).into())
+        Ok(placed.batch.params_of(0).unwrap_or(Params::DEFAULT).into())
     })
 }
 

@@ -9,8 +9,7 @@ use crate::memory::{change, check, get, read};
 use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
-/// The deviation of the state from `target`, which must be finite. Angles are wrapped to ±π, so it is continuous
-/// upright.
+/// The deviation of the state from a finite `target`. Angles are wrapped to ±π, so it is continuous upright.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_deviation(
     acrobot: *const acrobot_t,

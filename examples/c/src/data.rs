@@ -22,21 +22,15 @@ pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 /// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is not conserved.
 pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
-/// An observation: six floats without padding, in Gymnasium's order.
+/// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine of each angle of the
+/// acrobot_state_t, and its angular velocities, rad/s.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct acrobot_observation_t {
-    /// Cosine of the angle of link 1.
     pub cos_theta1: f32,
-    /// Sine of the angle of link 1.
     pub sin_theta1: f32,
-    /// Cosine of the angle of link 2.
     pub cos_theta2: f32,
-    /// Sine of the angle of link 2.
     pub sin_theta2: f32,
-    /// Angular velocity of link 1, rad/s.
     pub dtheta1: f32,
-    /// Angular velocity of link 2 relative to link 1, rad/s.
     pub dtheta2: f32,
 }
 
@@ -55,7 +49,6 @@ impl From<Observation> for acrobot_observation_t {
 
 /// The result of a step.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub struct acrobot_step_t {
     /// The observation of the new state.
     pub observation: acrobot_observation_t,
@@ -94,12 +87,11 @@ pub struct acrobot_state_t {
 
 impl From<State<f32>> for acrobot_state_t {
     fn from(state: State<f32>) -> Self {
-        let [theta1, theta2, dtheta1, dtheta2] = state.into();
         Self {
-            theta1,
-            theta2,
-            dtheta1,
-            dtheta2,
+            theta1: state.theta1,
+            theta2: state.theta2,
+            dtheta1: state.dtheta1,
+            dtheta2: state.dtheta2,
         }
     }
 }
@@ -172,8 +164,8 @@ macro_rules! same_params {
     };
 }
 
-impl From<&Params<f32>> for acrobot_params_t {
-    fn from(params: &Params<f32>) -> Self {
+impl From<Params<f32>> for acrobot_params_t {
+    fn from(params: Params<f32>) -> Self {
         let dynamics = match params.dynamics {
             Dynamics::Nips => ACROBOT_DYNAMICS_NIPS,
             _ => ACROBOT_DYNAMICS_BOOK,
@@ -190,13 +182,11 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
         let dynamics = match params.dynamics {
             ACROBOT_DYNAMICS_BOOK => Dynamics::Book,
             ACROBOT_DYNAMICS_NIPS => Dynamics::Nips,
-            other => return Err(unknown("dynamics", other, "0 (book) or 1 (NIPS)")),
+            other => {
+                let rule = "0 (book) or 1 (NIPS)";
+                return Err(Rejected::number("dynamics", other.into(), "", rule));
+            }
         };
         Ok(same_params!(Params, params, dynamics, friction))
     }
-}
-
-/// Rejects a number that none of the constants has.
-pub fn unknown(name: &'static str, number: c_int, rule: &'static str) -> Rejected {
-    Rejected::number(name, number.into(), "", rule)
 }

@@ -45,7 +45,11 @@ pub trait Holder: Sized {
             tag: Self::TAG,
             value,
         };
-        // A holder is at least as large and as aligned as the tagged value.
+        // Does not compile if the holder is too small or not aligned enough on this target.
+        const {
+            assert!(size_of::<Tagged<Self>>() <= size_of::<Self>());
+            assert!(align_of::<Tagged<Self>>() <= align_of::<Self>());
+        }
         this.cast::<Tagged<Self>>().write(tagged);
         Ok(())
     }
@@ -75,12 +79,6 @@ pub trait Holder: Sized {
 pub struct Tagged<T: Holder> {
     tag: u32,
     value: T::Value,
-}
-
-/// Does not compile if the holder is too small or not aligned enough on this target.
-pub const fn fits<T: Holder>() {
-    assert!(size_of::<Tagged<T>>() <= size_of::<T>());
-    assert!(align_of::<Tagged<T>>() <= align_of::<T>());
 }
 
 /// Changes a holder's value. Writes the call's result, and why a number was rejected, unless these pointers are null.
@@ -118,7 +116,6 @@ pub unsafe fn get<H: Holder, T>(
 }
 
 /// The addresses of an argument, to find out whether arguments overlap.
-#[derive(Clone, Copy)]
 pub struct Span {
     start: usize,
     bytes: usize,
@@ -136,8 +133,8 @@ impl Span {
         Self::new(array.cast::<T>(), array.len())
     }
 
-    fn overlaps(self, other: Self) -> bool {
-        let contains = |one: Self, start: usize| start.wrapping_sub(one.start) < one.bytes;
+    fn overlaps(&self, other: &Self) -> bool {
+        let contains = |one: &Self, start: usize| start.wrapping_sub(one.start) < one.bytes;
         contains(self, other.start) || contains(other, self.start)
     }
 }
@@ -146,7 +143,7 @@ impl Span {
 pub fn check_apart(spans: &[Span]) -> Result<(), Rejected> {
     let mut rest = spans.iter();
     while let Some(span) = rest.next() {
-        if rest.clone().any(|other| span.overlaps(*other)) {
+        if rest.clone().any(|other| span.overlaps(other)) {
             return Err(ACROBOT_ERROR_OVERLAP.into());
         }
     }

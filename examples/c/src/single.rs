@@ -7,7 +7,7 @@ use acrobot::physics::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t};
-use crate::memory::{Holder, change, check, fits, get, read};
+use crate::memory::{Holder, change, check, get, read};
 use crate::status::{acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The bytes of an acrobot_t: the most that any target needs.
@@ -17,8 +17,7 @@ pub const ACROBOT_SIZE: usize = 224;
 pub const ACROBOT_ALIGN: usize = 16;
 
 /// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
-/// call acrobot_init before any other function. It contains no pointer, so you may copy and move it. There is nothing
-/// to free.
+/// call acrobot_init before any other function. It contains no pointer, so you may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
@@ -30,10 +29,7 @@ impl Holder for acrobot_t {
     const TAG: u32 = u32::from_le_bytes(*b"acro");
 }
 
-const _: () = {
-    fits::<acrobot_t>();
-    assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
-};
+const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
 /// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
 /// starts from scratch.
@@ -96,8 +92,7 @@ pub unsafe extern "C" fn acrobot_step(
     })
 }
 
-/// Applies any finite torque, N m, for one dt: for controllers. The `torques` of the parameters do not limit it. `error`
-/// may be null.
+/// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it. `error` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step_torque(
     acrobot: *mut acrobot_t,
@@ -158,7 +153,7 @@ pub unsafe extern "C" fn acrobot_params(
     acrobot: *const acrobot_t,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    get(acrobot, params, |acrobot| Ok(acrobot.params().into()))
+    get(acrobot, params, |acrobot| Ok((*acrobot.params()).into()))
 }
 
 /// Sets the parameters for the next steps. The state does not change. `error` may be null.

@@ -1,13 +1,12 @@
 //! What functions return, and why a number was rejected.
 
-use core::ffi::{CStr, c_char, c_int};
+use core::ffi::{c_char, c_int};
 
 use acrobot::Error;
 use acrobot::physics::control::ControlError;
 
 /// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 #[repr(C)]
-#[derive(Clone, Copy)]
 pub enum acrobot_status_t {
     /// The function has done its work.
     ACROBOT_OK = 0,
@@ -151,20 +150,19 @@ fn text<const N: usize>(texts: [&str; 3]) -> [c_char; N] {
 /// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
-    const TEXTS: [&CStr; 11] = [
-        c"no error",
-        c"a pointer is null",
-        c"a pointer is not aligned",
-        c"the memory is too small",
-        c"the memory is not initialized",
-        c"the batch was moved",
-        c"the action is not 0, 1 or 2",
-        c"a number is out of range",
-        c"the count is 0 or not that of the batch",
-        c"there is no acrobot with this index",
-        c"two arguments overlap",
-    ];
-    let index = usize::try_from(status).unwrap_or(usize::MAX);
-    let text = TEXTS.get(index).copied();
-    text.unwrap_or(c"unknown status").as_ptr()
+    let text = match status {
+        0 => c"no error",
+        1 => c"a pointer is null",
+        2 => c"a pointer is not aligned",
+        3 => c"the memory is too small",
+        4 => c"the memory is not initialized",
+        5 => c"the batch was moved",
+        6 => c"the action is not 0, 1 or 2",
+        7 => c"a number is out of range",
+        8 => c"the count is 0 or not that of the batch",
+        9 => c"there is no acrobot with this index",
+        10 => c"two arguments overlap",
+        _ => c"unknown status",
+    };
+    text.as_ptr()
 }

@@ -25,13 +25,6 @@ static inline int report(const char *name)
     return failures == 0 ? 0 : 1;
 }
 
-static inline void copy(void *to, const void *from, size_t size)
-{
-    for (size_t i = 0; i < size; i++) {
-        ((uint8_t *)to)[i] = ((const uint8_t *)from)[i];
-    }
-}
-
 // Also compares the bytes between fields, which nothing writes; valgrind.supp excuses that in this function alone.
 __attribute__((noinline, unused)) static bool same(const void *left, const void *right, size_t size)
 {

@@ -7,22 +7,20 @@ static acrobot_t acrobot; // env = gym.make("Acrobot-v1")
 
 int main(void)
 {
-    acrobot_observation_t observation;
     acrobot_step_t step;
     uint32_t steps = 0;
     acrobot_status_t status = acrobot_init(&acrobot, 0);
 
     if (status == ACROBOT_OK) {
-        status = acrobot_reset_with_seed(&acrobot, 42, &observation); // env.reset(seed=42)
+        status = acrobot_reset_with_seed(&acrobot, 42, &step.observation); // env.reset(seed=42)
     }
     while (status == ACROBOT_OK) {
         // Torque against the velocity of link 1.
-        int action = observation.dtheta1 > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
+        int action = step.observation.dtheta1 > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
         status = acrobot_step(&acrobot, action, &step);
         if (status == ACROBOT_OK && (step.terminated || step.truncated)) {
             break;
         }
-        observation = step.observation;
     }
     if (status == ACROBOT_OK) {
         status = acrobot_elapsed(&acrobot, &steps);
