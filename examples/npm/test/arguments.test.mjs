@@ -36,9 +36,7 @@ const SNAPSHOT = new Acrobot({ seed: 3, params: PARAMS }).snapshot();
 /** A use of an object as an argument: what the object is, the use, and what it changes. */
 const USES = [
   { given: [2, 2, 2], kind: "batch", use: (batch, actions) => batch.step(actions) },
-  { given: { length: 3, 0: 2, 1: 2, 2: 2 }, kind: "batch", use: (batch, actions) => batch.step(actions) },
   { given: Uint8Array.of(2, 2, 2), kind: "batch", use: (batch, actions) => batch.step(actions) },
-  { given: Float64Array.of(2, 2, 2), kind: "batch", use: (batch, actions) => batch.step(actions) },
   { given: PARAMS, kind: "batch", use: (batch, params) => batch.setParams(params) },
   { given: PARAMS, kind: "acrobot", use: (acrobot, params) => acrobot.setParams(params) },
   { given: [true, 0, 1], kind: "batch", use: (batch, mask) => batch.resetMasked(mask) },
@@ -94,17 +92,10 @@ test("each property is read once, so that what is checked is what is used", () =
     use(make(kind), proxy(given, (name) => reads.set(name, (reads.get(name) ?? 0) + 1)));
     assert.deepEqual([...reads].filter(([name, count]) => count > 1), [], use);
   }
-  // The second read would give an object, whose conversion runs code.
-  const torques = [-2, 0, 2];
-  let reads = 0;
-  Object.defineProperty(torques, 1, { get: () => (reads++ ? { valueOf: grow } : 0) });
-  const acrobot = new Acrobot();
-  acrobot.setParams({ torques });
-  assert.deepEqual(acrobot.params.torques, [-2, 0, 2]);
   // The message has the value that was rejected.
   const values = [NaN, 1];
   const state = { ...STATE, get theta1() { return values.shift(); } };
-  assert.throws(() => (acrobot.state = state), { message: "theta1 must be a finite number of rad, got NaN" });
+  assert.throws(() => (new Acrobot().state = state), { message: "theta1 must be a finite number of rad, got NaN" });
 });
 
 test("options whose getters use the package make the same acrobots", () => {
