@@ -30,11 +30,11 @@ let bytesView = new Uint8Array();
 
 /** The memory for six numbers. Like every view of the module's memory, it has length 0 once that memory has grown. */
 export function numbers() {
-  if (numbersView.length === 0) numbersView = new Float32Array(wasm().memory.buffer, wasm().numbers(), 6);
+  if (numbersView.length === 0) numbersView = new Float32Array(wasm().memory.buffer, wasm().bytes(), 6);
   return numbersView;
 }
 
-/** The memory for 256 bytes. */
+/** The same memory, as 256 bytes. */
 export function bytes() {
   if (bytesView.length === 0) bytesView = new Uint8Array(wasm().memory.buffer, wasm().bytes(), 256);
   return bytesView;

@@ -19,75 +19,68 @@ pub fn keep<T>(value: T) -> Option<Box<T>> {
     }
 }
 
-/// A state, the energy and the tip's height, or an observation.
-const NUMBERS_LEN: usize = 6;
-/// The longest seed, 64 words of 4 bytes. Snapshots and error texts are shorter.
-const BYTES_LEN: usize = 256;
+/// The longest seed, in words of 32 bits. Snapshots, error texts and six numbers are shorter.
+const LEN: usize = 64;
 
 thread_local! {
-    static NUMBERS: Cell<[f32; NUMBERS_LEN]> = const { Cell::new([0.0; NUMBERS_LEN]) };
-    static BYTES: Cell<[u8; BYTES_LEN]> = const { Cell::new([0; BYTES_LEN]) };
+    static WORDS: Cell<[u32; LEN]> = const { Cell::new([0; LEN]) };
 }
 
-/// The address of numbers that JavaScript reads and writes between calls.
-#[unsafe(no_mangle)]
-pub extern "C" fn numbers() -> *const f32 {
-    NUMBERS.with(Cell::as_ptr).cast()
-}
-
-/// The address of bytes that JavaScript reads and writes between calls.
+/// The address of numbers or bytes that JavaScript reads and writes between calls.
 #[unsafe(no_mangle)]
 pub extern "C" fn bytes() -> *const u8 {
-    BYTES.with(Cell::as_ptr).cast()
+    WORDS.with(Cell::as_ptr).cast()
 }
 
 pub fn get_state() -> State<f32> {
-    let [theta1, theta2, dtheta1, dtheta2, ..] = NUMBERS.get();
+    let [theta1, theta2, dtheta1, dtheta2, ..] = WORDS.get().map(f32::from_bits);
     State::from([theta1, theta2, dtheta1, dtheta2])
 }
 
-fn set<T>(cells: &Cell<[T]>, values: impl IntoIterator<Item = T>) -> usize {
-    let pairs = cells.as_slice_of_cells().iter().zip(values);
-    pairs.map(|(cell, value)| cell.set(value)).count()
+fn set(values: impl IntoIterator<Item = u32>) {
+    WORDS.with(|words| {
+        let words: &Cell<[u32]> = words;
+        for (word, value) in words.as_slice_of_cells().iter().zip(values) {
+            word.set(value);
+        }
+    });
 }
 
 pub fn set_numbers<const N: usize>(values: [f32; N]) {
-    NUMBERS.with(|cells| set(cells, values));
+    set(values.map(f32::to_bits));
 }
 
 /// Writes bytes and returns their count.
 pub fn set_bytes(values: impl IntoIterator<Item = u8>) -> usize {
-    BYTES.with(|cells| set(cells, values))
+    let mut bytes = [0; 4 * LEN];
+    let pairs = bytes.iter_mut().zip(values);
+    let len = pairs.map(|(byte, value)| *byte = value).count();
+    set(bytes.as_chunks().0.iter().copied().map(u32::from_le_bytes));
+    len
 }
 
 /// Writes parameters or a snapshot in the format of postcard, and returns the length.
 pub fn save(value: &impl serde::Serialize) -> usize {
-    let mut bytes = [0; BYTES_LEN];
+    let mut bytes = [0; 4 * LEN];
     let saved = postcard::to_slice(value, &mut bytes);
     saved.map_or(0, |saved| set_bytes(saved.iter().copied()))
 }
 
 /// The seed in the first `words` 32-bit words. The lowest word is first.
 pub fn seed(words: usize) -> SeedSequence {
-    let bytes = BYTES.get();
-    let mut seed = [0; BYTES_LEN / 4];
-    for (word, bytes) in seed.iter_mut().zip(bytes.as_chunks().0).take(words) {
-        *word = u32::from_le_bytes(*bytes);
-    }
-    // Leading zeros do not count.
-    SeedSequence::from_words(&seed)
+    SeedSequence::from_words(WORDS.get().get(..words).unwrap_or_default())
 }
 
 /// Loads what [`save`] writes from the first of `len` bytes. Returns it with the number of its bytes, or `None` if they are invalid.
 pub fn load<T: serde::de::DeserializeOwned>(len: usize) -> Option<(T, usize)> {
-    let bytes = BYTES.get();
-    let (value, rest) = postcard::take_from_bytes(bytes.get(..len)?).ok()?;
+    let bytes = WORDS.get().map(u32::to_le_bytes);
+    let (value, rest) = postcard::take_from_bytes(bytes.as_flattened().get(..len)?).ok()?;
     Some((value, len - rest.len()))
 }
 
 /// The parameters that JavaScript has written as [`save`] writes them.
 pub fn get_params() -> Params<f32> {
-    load(BYTES_LEN).map_or(Params::DEFAULT, |(params, _)| params)
+    load(4 * LEN).map_or(Params::DEFAULT, |(params, _)| params)
 }
 
 /// 0, or the length of the reason for which numbers are rejected: name, rule and unit, a line each. JavaScript has the

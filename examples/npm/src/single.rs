@@ -86,11 +86,6 @@ pub extern "C" fn acrobot_save(env: &Env) -> usize {
 /// Loads the snapshot in the first `len` bytes. Returns false and changes nothing if it is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_load(env: &mut Env, len: usize) -> bool {
-    match memory::load(len) {
-        Some((loaded, used)) if used == len => {
-            *env = loaded;
-            true
-        }
-        _ => false,
-    }
+    let loaded = memory::load(len).filter(|(_, used)| *used == len);
+    loaded.map(|(loaded, _)| *env = loaded).is_some()
 }

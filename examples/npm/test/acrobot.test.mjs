@@ -131,8 +131,6 @@ test("invalid arguments of draw are rejected with the value and the rule, and no
 test("states and parameters are frozen copies, and a random action is any", () => {
   const acrobot = new Acrobot();
   for (const copy of [acrobot.state, acrobot.params, acrobot.params.torques]) assert.ok(Object.isFrozen(copy));
-  assert.throws(() => (acrobot.state.theta1 = 1), TypeError);
-  assert.throws(() => (acrobot.params.torques[0] = 1), TypeError);
   const actions = Array.from({ length: 100 }, () => acrobot.sample());
   assert.deepEqual([...new Set(actions)].sort(), [0, 1, 2]);
 });
@@ -292,10 +290,8 @@ test("after free, every use throws, and other acrobots continue", () => {
   assert.throws(() => acrobot.step(1), /freed/);
   assert.deepEqual(third.snapshot(), new Acrobot({ seed: 3 }).snapshot());
   assert.deepEqual(other.snapshot(), before);
-  if (Symbol.dispose) {
-    third[Symbol.dispose]();
-    assert.throws(() => third.step(1), /freed/);
-  }
+  third[Symbol.dispose]();
+  assert.throws(() => third.step(1), /freed/);
 });
 
 test("a method rejects what is no acrobot, whose address it would not have", () => {

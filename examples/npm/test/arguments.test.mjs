@@ -36,9 +36,7 @@ const SNAPSHOT = new Acrobot({ seed: 3, params: PARAMS }).snapshot();
 /** A use of an object as an argument: what the object is, the use, and what it changes. */
 const USES = [
   { given: [2, 2, 2], kind: "batch", use: (batch, actions) => batch.step(actions) },
-  { given: { length: 3, 0: 2, 1: 2, 2: 2 }, kind: "batch", use: (batch, actions) => batch.step(actions) },
   { given: Uint8Array.of(2, 2, 2), kind: "batch", use: (batch, actions) => batch.step(actions) },
-  { given: Float64Array.of(2, 2, 2), kind: "batch", use: (batch, actions) => batch.step(actions) },
   { given: PARAMS, kind: "batch", use: (batch, params) => batch.setParams(params) },
   { given: PARAMS, kind: "acrobot", use: (acrobot, params) => acrobot.setParams(params) },
   { given: [true, 0, 1], kind: "batch", use: (batch, mask) => batch.resetMasked(mask) },
@@ -48,6 +46,9 @@ const USES = [
   { given: SNAPSHOT, kind: "acrobot", use: (acrobot, snapshot) => acrobot.restore(snapshot) },
 ];
 
+/** The uses, each with the ways to `wrap` the object so that reading it acts. The elements of a typed array have no getters. */
+const CASES = USES.flatMap((use) => (ArrayBuffer.isView(use.given) ? [proxy] : [acting, proxy]).map((wrap) => ({ ...use, wrap })));
+
 const make = (kind) => (kind === "batch" ? new Batch({ seed: 1, count: 3 }) : new Acrobot({ seed: 1 }));
 /** All that can be seen of an acrobot or a batch, which this steps. */
 function seen(of) {
@@ -55,19 +56,16 @@ function seen(of) {
   const numbers = [...Array(of.count).keys()];
   return [of.params, numbers.map((i) => of.state(i)), of.step(numbers.map((i) => i % 3))];
 }
-const hostile = (given, act) => [...(ArrayBuffer.isView(given) ? [] : [acting(given, act)]), proxy(given, act)];
 
 test("an argument that frees what gets it is rejected, and changes no other acrobot", () => {
   const others = () => [new Acrobot({ seed: 1 }), ...Array.from({ length: 40 }, (_, i) => 40 - i).map((count) => new Batch({ seed: 1, count }))];
-  for (const { given, kind, use } of USES) {
-    for (const index of [0, 1]) {
-      const one = make(kind);
-      let found;
-      // Others get the memory.
-      const argument = hostile(given, () => (one.free(), (found ??= others()))).at(index - 1);
-      assert.throws(() => use(one, argument), { name: "Error", message: `the ${kind} has been freed` });
-      assert.deepEqual(found.map(seen), others().map(seen));
-    }
+  for (const { given, kind, use, wrap } of CASES) {
+    const one = make(kind);
+    let found;
+    // Others get the memory.
+    const argument = wrap(given, () => (one.free(), (found ??= others())));
+    assert.throws(() => use(one, argument), { name: "Error", message: `the ${kind} has been freed` });
+    assert.deepEqual(found.map(seen), others().map(seen));
   }
 });
 
@@ -76,15 +74,13 @@ test("an argument that uses what gets it, and makes the memory grow, acts before
     of.setParams({ gravity: of.params.gravity / 2 });
     of.step(of.count ? [0, 0, 0] : 0);
   };
-  for (const { given, kind, use } of USES) {
-    for (const index of [0, 1]) {
-      const [one, other] = [make(kind), make(kind)];
-      let acts = 0;
-      use(one, hostile(given, () => (acts++, act(one), grow())).at(index - 1));
-      for (let i = 0; i < acts; i++) act(other);
-      use(other, given);
-      assert.deepEqual(seen(one), seen(other), use);
-    }
+  for (const { given, kind, use, wrap } of CASES) {
+    const [one, other] = [make(kind), make(kind)];
+    let acts = 0;
+    use(one, wrap(given, () => (acts++, act(one), grow())));
+    for (let i = 0; i < acts; i++) act(other);
+    use(other, given);
+    assert.deepEqual(seen(one), seen(other), use);
   }
 });
 
@@ -94,17 +90,10 @@ test("each property is read once, so that what is checked is what is used", () =
     use(make(kind), proxy(given, (name) => reads.set(name, (reads.get(name) ?? 0) + 1)));
     assert.deepEqual([...reads].filter(([name, count]) => count > 1), [], use);
   }
-  // The second read would give an object, whose conversion runs code.
-  const torques = [-2, 0, 2];
-  let reads = 0;
-  Object.defineProperty(torques, 1, { get: () => (reads++ ? { valueOf: grow } : 0) });
-  const acrobot = new Acrobot();
-  acrobot.setParams({ torques });
-  assert.deepEqual(acrobot.params.torques, [-2, 0, 2]);
   // The message has the value that was rejected.
   const values = [NaN, 1];
   const state = { ...STATE, get theta1() { return values.shift(); } };
-  assert.throws(() => (acrobot.state = state), { message: "theta1 must be a finite number of rad, got NaN" });
+  assert.throws(() => (new Acrobot().state = state), { message: "theta1 must be a finite number of rad, got NaN" });
 });
 
 test("options whose getters use the package make the same acrobots", () => {
@@ -123,12 +112,10 @@ test("errors of the caller's own code pass through, and nothing changes", () => 
   const act = () => {
     throw new SyntaxError("own");
   };
-  for (const { given, kind, use } of USES) {
-    for (const argument of hostile(given, act)) {
-      const one = make(kind);
-      assert.throws(() => use(one, argument), { name: "SyntaxError", message: "own" });
-      assert.deepEqual(seen(one), seen(make(kind)));
-    }
+  for (const { given, kind, use, wrap } of CASES) {
+    const one = make(kind);
+    assert.throws(() => use(one, wrap(given, act)), { name: "SyntaxError", message: "own" });
+    assert.deepEqual(seen(one), seen(make(kind)));
   }
 });
 

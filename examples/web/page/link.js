@@ -48,8 +48,5 @@ export function decodeRun(hash) {
     if (fields.has(name)) params[name] = parseNumber(fields.get(name));
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
-  if (!["book", "nips"].includes(params.dynamics)) {
-    throw new Error(`dynamics must be book or nips, got "${params.dynamics}"`);
-  }
   return { seed: parseSeed(fields.get("seed") ?? "42"), params, actions: decodeActions(fields.get("actions") ?? "") };
 }

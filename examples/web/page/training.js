@@ -61,7 +61,6 @@ export function trainingPanel(learner, { ready, drive }) {
     worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
     worker.onerror = ({ message }) => stop(`The training failed: ${message}`);
     worker.onmessage = ({ data }) => {
-      if (data.failed) return stop(`The training failed: ${data.failed}`);
       for (const value of data.returns) {
         returns.push(value);
         sum += value - (returns[returns.length - 1 - WINDOW] ?? 0);

@@ -5,7 +5,7 @@ import { Learner } from "./acrobot-rs/policies.js";
 /** The time between two reports, ms. */
 const PERIOD = 150;
 
-function train({ seed, episodes }) {
+onmessage = ({ data: { seed, episodes } }) => {
   const learner = new Learner({ episodes, seed });
   let returns = [];
   let reported = performance.now();
@@ -16,13 +16,5 @@ function train({ seed, episodes }) {
       returns = [];
       reported = performance.now();
     }
-  }
-}
-
-onmessage = ({ data }) => {
-  try {
-    train(data);
-  } catch (error) {
-    postMessage({ failed: String(error) });
   }
 };

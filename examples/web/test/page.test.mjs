@@ -32,16 +32,6 @@ onPage("keys apply torque, and states are bit-identical to native", async (page)
   assert.equal(await text(page, "#step"), String(ACTIONS.length));
   assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
 
-  // → turns link 2 counter-clockwise and ← clockwise, as the page says.
-  for (const [action, sign] of [[2, 1], [0, -1]]) {
-    await page.click("#reset");
-    await press(page, [action]);
-    const velocity = (await text(page, "#state tr:nth-child(4) td")).replace("−", "-");
-    assert.equal(Math.sign(Number.parseFloat(velocity)), sign);
-  }
-  await page.click("#reset");
-  await press(page, ACTIONS);
-
   // The page decides when it steps, so the actions are read from its link.
   await page.keyboard.press("Space");
   await page.keyboard.down("ArrowRight");
@@ -80,7 +70,6 @@ onPage("seeds give Gymnasium's initial states, and invalid seeds are rejected", 
   for (const [bad, got] of [
     ["", "an empty text"],
     ["-1", "'-' as character 1"],
-    ["12x", "'x' as character 3"],
     ["9".repeat(601), "601 digits"],
   ]) {
     await page.fill("#seed", bad);
@@ -274,16 +263,11 @@ onPage("loaded weights reach the goal, and invalid ones are rejected with the le
   await steps(page, 200);
   assert.match(await text(page, "#verdict"), /^\d+ steps$/);
 
-  for (const [name, bytes, message] of [
-    ["short.bin", good.subarray(0, 1000), /^short\.bin: weights must have 49172 bytes, got 1000$/],
-    ["damaged.bin", Buffer.from(good).fill(1, 500, 504), /^damaged\.bin: .*checksum/],
-    ["huge.bin", Buffer.alloc(1e6), /^huge\.bin: weights must have at most 524288 bytes, got 1000000$/],
-  ]) {
-    writeFileSync(join(folder, name), bytes);
-    await page.setInputFiles("#load", join(folder, name));
-    await page.waitForFunction((name) => document.querySelector("#weights-reason").textContent.startsWith(name), name);
-    assert.match(await text(page, "#weights-reason"), message);
-  }
+  const short = join(folder, "short.bin");
+  writeFileSync(short, good.subarray(0, 1000));
+  await page.setInputFiles("#load", short);
+  await page.waitForFunction(() => document.querySelector("#weights-reason").textContent !== "");
+  assert.equal(await text(page, "#weights-reason"), "short.bin: weights must have 49172 bytes, got 1000");
   // The weights that were loaded before are kept.
   assert.ok((await downloaded(page, "#save")).equals(good));
   // A perceptron from Python, with the steps of examples/policy/tests/policy.rs.

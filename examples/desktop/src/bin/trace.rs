@@ -18,9 +18,12 @@ struct Options {
     /// Actions: digits 0, 1 and 2.
     #[arg(default_value = "")]
     actions: String,
-    /// Seed of the initial state: a decimal integer of any size.
+    /// Seed of the initial state and of the torque noise: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
+    /// Torque noise, N m.
+    #[arg(long, default_value_t = 0.0)]
+    noise: f32,
     /// Duration of a step, s.
     #[arg(long, default_value_t = 0.2)]
     dt: f32,
@@ -39,6 +42,7 @@ fn main() -> anyhow::Result<()> {
     let mut acrobot = Acrobot::<Fast>::with_rng(options.seed.into());
     acrobot.set_params(Params {
         dt: options.dt,
+        torque_noise: options.noise,
         dynamics: if options.nips {
             Dynamics::Nips
         } else {
