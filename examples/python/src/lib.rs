@@ -15,7 +15,7 @@ use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyType};
+use pyo3::types::PyBytes;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -162,9 +162,6 @@ fn render<'py>(
 
 /// The version of this package's snapshots. The crate's snapshots, which they contain, have their own version.
 const VERSION: u32 = 1;
-
-/// What `__reduce__` returns: the type, no arguments of `new`, and the argument of `__setstate__`.
-type Reduced<'py> = (Bound<'py, PyType>, (), Bound<'py, PyBytes>);
 
 /// Serializes a snapshot, for pickle.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {
