@@ -106,14 +106,10 @@ fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
 fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     match name {
         "AVAIL_TORQUE" => {
-            if let Ok(count) = value.len()
-                && count != 3
-            {
-                return Err(PyValueError::new_err(must_be(
-                    name,
-                    "3 numbers, such as [-2, 0, 2]",
-                    count,
-                )));
+            let count = value.len().unwrap_or(3); // without a length, it is no sequence
+            if count != 3 {
+                let message = must_be(name, "3 numbers, such as [-2, 0, 2]", count);
+                return Err(PyValueError::new_err(message));
             }
             params.torques = convert(name, "a sequence of 3 numbers", value)?;
         }
