@@ -18,7 +18,7 @@ use pyo3::types::PyBytes;
 use crate::draws::Distribution;
 use crate::engine::{Engine, Inputs, memory, with_batch};
 use crate::pool::Pool;
-use crate::{Reduced, fields, load, must_be, rejected, render, save, unknown, with};
+use crate::{fields, load, must_be, rejected, render, save, with};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -46,11 +46,7 @@ impl Batch {
         let mode = match mode {
             "NextStep" => Autoreset::NextStep,
             "SameStep" => Autoreset::SameStep,
-            "Disabled" => Autoreset::Disabled,
-            other => {
-                let rule = r#""NextStep", "SameStep" or "Disabled""#;
-                return Err(unknown("autoreset_mode", rule, other));
-            }
+            _ => Autoreset::Disabled,
         };
         let mut engine = Engine::new(engine, num_envs.get() as usize, parse(seed)?)?;
         with_batch!(&mut engine, many => {
@@ -188,7 +184,7 @@ impl Batch {
     }
 
     /// Steps, and writes the observations into an array. Releases Python's lock meanwhile. The environment converts the
-    /// actions that are in another type or shape, or rejects them.
+    /// actions that are in another type or shape, or rejects them. Returns rewards, terminated and truncated.
     #[pyo3(signature = (env, actions, observations, finals=None))]
     fn step<'py>(
         slf: &Bound<'py, Self>,
@@ -196,7 +192,7 @@ impl Batch {
         actions: &Bound<'py, PyAny>,
         mut observations: PyReadwriteArray2<'py, f32>,
         mut finals: Option<PyReadwriteArray2<'py, f32>>,
-    ) -> PyResult<Results<'py>> {
+    ) -> PyResult<impl IntoPyObject<'py>> {
         let py = slf.py();
         let (len, continuous) = {
             let this = alone(slf)?;
@@ -284,7 +280,7 @@ impl Batch {
     }
 
     /// Every protocol of pickle calls this, and `copy.deepcopy`. `__setstate__` replaces the smallest batch.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
         Ok((slf.get_type(), (), Self::__getstate__(slf)?))
     }
 
@@ -302,13 +298,6 @@ impl Batch {
         Ok(())
     }
 }
-
-/// Rewards, terminated and truncated.
-type Results<'py> = (
-    Bound<'py, PyArray1<f32>>,
-    Bound<'py, PyArray1<bool>>,
-    Bound<'py, PyArray1<bool>>,
-);
 
 /// The only access to a batch. Only its steps and resets let other threads run.
 fn alone<'py>(batch: &Bound<'py, Batch>) -> PyResult<PyRefMut<'py, Batch>> {

@@ -21,16 +21,15 @@ impl Distribution {
     /// That of an object in Python.
     pub fn of(drawn: &Bound<'_, PyAny>) -> PyResult<Self> {
         let number = |name| drawn.getattr(name)?.extract();
-        Ok(
-            match drawn.getattr("_KIND")?.extract::<String>()?.as_str() {
-                "Normal" => Self::Normal {
-                    mean: number("mean")?,
-                    std: number("std")?,
-                },
-                "LogUniform" => Self::LogUniform,
-                _ => Self::Uniform,
+        let kind: String = drawn.getattr("_KIND")?.extract()?;
+        Ok(match kind.as_str() {
+            "Normal" => Self::Normal {
+                mean: number("mean")?,
+                std: number("std")?,
             },
-        )
+            "LogUniform" => Self::LogUniform,
+            _ => Self::Uniform,
+        })
     }
 
     /// Draws with the same bits on all machines.

@@ -15,7 +15,7 @@ use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyType};
+use pyo3::types::PyBytes;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -106,14 +106,10 @@ fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
 fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     match name {
         "AVAIL_TORQUE" => {
-            if let Ok(count) = value.len()
-                && count != 3
-            {
-                return Err(PyValueError::new_err(must_be(
-                    name,
-                    "3 numbers, such as [-2, 0, 2]",
-                    count,
-                )));
+            let count = value.len().unwrap_or(3); // without a length, it is no sequence
+            if count != 3 {
+                let message = must_be(name, "3 numbers, such as [-2, 0, 2]", count);
+                return Err(PyValueError::new_err(message));
             }
             params.torques = convert(name, "a sequence of 3 numbers", value)?;
         }
@@ -162,9 +158,6 @@ fn render<'py>(
 
 /// The version of this package's snapshots. The crate's snapshots, which they contain, have their own version.
 const VERSION: u32 = 1;
-
-/// What `__reduce__` returns: the type, no arguments of `new`, and the argument of `__setstate__`.
-type Reduced<'py> = (Bound<'py, PyType>, (), Bound<'py, PyBytes>);
 
 /// Serializes a snapshot, for pickle.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {

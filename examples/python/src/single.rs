@@ -8,16 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
-use crate::{InvalidAction, Reduced, convert, load, must_be, rejected, render, save, shown, with};
-
-/// What `Env.step` returns: observation, reward, terminated, truncated and info.
-type Step<'py> = (
-    Bound<'py, PyArray1<f32>>,
-    f64,
-    bool,
-    bool,
-    Bound<'py, PyDict>,
-);
+use crate::{InvalidAction, convert, load, must_be, rejected, render, save, shown, with};
 
 /// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
 #[pyclass(module = "acrobot_rs._native")]
@@ -124,12 +115,13 @@ impl Acrobot {
         Ok(())
     }
 
-    /// Steps by an action of the environment, whose generator draws the noise.
+    /// Steps by an action of the environment, whose generator draws the noise. Returns what `Env.step` does: observation,
+    /// reward, terminated, truncated and info.
     fn step<'py>(
         slf: &Bound<'py, Self>,
         env: &Bound<'py, PyAny>,
         action: &Bound<'py, PyAny>,
-    ) -> PyResult<Step<'py>> {
+    ) -> PyResult<impl IntoPyObject<'py>> {
         let py = slf.py();
         let continuous = slf.try_borrow()?.inner.continuous;
         // The conversion can be Python code.
@@ -163,7 +155,7 @@ impl Acrobot {
         };
         Ok((
             observation,
-            step.reward.into(),
+            f64::from(step.reward),
             step.terminated,
             false,
             PyDict::new(py),
@@ -177,7 +169,7 @@ impl Acrobot {
     }
 
     /// Every protocol of pickle calls this.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
         let state = slf.try_borrow_mut()?.__getstate__(slf.py())?;
         Ok((slf.get_type(), (), state))
     }

@@ -284,60 +284,45 @@ def test_only_large_steps_start_threads():
     assert run.stdout.split() == ["0", "3"], run.stderr
 
 
-def step_in_a_child(envs, connection):
-    connection.send(envs.step(np.zeros(envs.num_envs, np.int64))[0])
-
-
 @pytest.mark.skipif("fork" not in multiprocessing.get_all_start_methods(), reason="needs fork")
 @pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 @pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning")
 def test_threads_in_a_forked_process():
     """A child has none of its parent's threads. Waiting for them would take forever."""
-    envs = make_vec(40_000, threads=2)
+    envs, actions = make_vec(40_000, threads=2), np.zeros(40_000, np.int64)
     envs.reset(seed=1)
-    envs.step(np.zeros(envs.num_envs, np.int64))
+    envs.step(actions)
     ours, theirs = multiprocessing.Pipe()
-    child = multiprocessing.get_context("fork").Process(target=step_in_a_child, args=(envs, theirs))
+    child = multiprocessing.get_context("fork").Process(target=lambda: theirs.send(envs.step(actions)[0]))
     child.start()
     try:
         assert ours.poll(30), "the child hangs"
-        assert (ours.recv() == envs.step(np.zeros(envs.num_envs, np.int64))[0]).all()
+        assert (ours.recv() == envs.step(actions)[0]).all()
     finally:
         child.kill()
         child.join()
 
 
-#: So many that a step takes long enough for other calls meanwhile.
-MANY = 500_000
-
-
-@contextlib.contextmanager
-def stepping(envs):
-    """While another thread steps these environments."""
-    envs.reset()
-    with ThreadPoolExecutor(1) as executor:
-        step = executor.submit(envs.step, np.ones(envs.num_envs, np.int64))
-        with contextlib.suppress(RuntimeError):
-            while not step.done():
-                len(envs._native)  # fails as soon as the step is under way
-        yield
-        assert not step.done(), "more environments are necessary"
-        step.result()
-
-
-BUSY = "^another thread is stepping or resetting an environment; change parameters and call methods between its steps$"
-
-
 def test_a_call_during_a_step_is_rejected_and_changes_nothing():
-    envs = acrobot_rs.AcrobotVectorEnv(MANY, gymnasium_episodes=True, render_mode="ansi")
-    states, actions = np.zeros((MANY, 4)), np.ones(MANY, np.int64)
+    count = 500_000  # so many that a step takes long enough for another call
+    envs = acrobot_rs.AcrobotVectorEnv(count, gymnasium_episodes=True, render_mode="ansi")
+    states, actions = np.zeros((count, 4)), np.ones(count, np.int64)
     calls = [
         *(lambda: envs.state, lambda: setattr(envs, "state", states), lambda: envs.elapsed_steps, lambda: envs.render()),
         *(lambda: setattr(envs, "dt", 0.1), lambda: setattr(envs, "dt", Uniform(0.1, 0.2)), lambda: setattr(envs, "dt", [0.1])),
         *(lambda: envs.step(actions), envs.reset, lambda: envs._native.seed(["1"])),
         *(lambda: pickle.dumps(envs), lambda: copy.deepcopy(envs), lambda: envs._native.__setstate__(b"")),
     ]
+    busy = "^another thread is stepping or resetting an environment; change parameters and call methods between its steps$"
     for call in calls:
-        with stepping(envs), pytest.raises(RuntimeError, match=BUSY):
-            call()
+        envs.reset()
+        with ThreadPoolExecutor(1) as executor:
+            step = executor.submit(envs.step, actions)
+            with contextlib.suppress(RuntimeError):
+                while not step.done():
+                    len(envs._native)  # fails as soon as the step is under way
+            with pytest.raises(RuntimeError, match=busy):
+                call()
+            assert not step.done(), "more environments are necessary"
+        step.result()
         assert envs.dt == 0.2 and (envs.elapsed_steps == 1).all()

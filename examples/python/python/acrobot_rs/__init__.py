@@ -41,22 +41,17 @@ __all__ = [
 ]
 __version__ = version("acrobot-rs")
 
-for _name, _kind, _vector_kind, _steps in (
-    ("Acrobot-v1", "AcrobotEnv", "AcrobotVectorEnv", 500),
-    ("AcrobotContinuous-v0", "AcrobotContinuousEnv", "AcrobotContinuousVectorEnv", 500),
-    ("Acrobot-v0", "AcrobotV0Env", None, 200),
+for _kind, _id, _steps, _threshold in (
+    ("Acrobot", "Acrobot-v1", 500, -100.0),
+    ("AcrobotContinuous", "AcrobotContinuous-v0", 500, -100.0),
+    ("AcrobotV0", "Acrobot-v0", 200, -100.0),
+    ("AcrobotSwingup", "AcrobotSwingup-v0", 1000, None),
+    ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", 1000, None),
 ):
     register(
-        id=f"acrobot_rs/{_name}",
-        entry_point=f"acrobot_rs.env:{_kind}",
-        vector_entry_point=_vector_kind and f"acrobot_rs.vector:{_vector_kind}",
-        reward_threshold=-100.0,
+        id=f"acrobot_rs/{_id}",
+        entry_point=f"acrobot_rs:{_kind}Env",
+        vector_entry_point=f"acrobot_rs:{_kind}VectorEnv" if f"{_kind}VectorEnv" in __all__ else None,
+        reward_threshold=_threshold,
         max_episode_steps=_steps,
-    )
-for _kind in ("AcrobotSwingup", "AcrobotSwingupSparse"):
-    register(
-        id=f"acrobot_rs/{_kind}-v0",
-        entry_point=f"acrobot_rs.swingup:{_kind}Env",
-        vector_entry_point=f"acrobot_rs.swingup:{_kind}VectorEnv",
-        max_episode_steps=1000,
     )

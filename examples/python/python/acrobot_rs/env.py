@@ -7,7 +7,6 @@ from typing import Any
 
 import gymnasium
 import numpy as np
-from gymnasium import spaces
 from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
@@ -76,8 +75,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array", "ansi"], "render_fps": 15}
 
     _native: Acrobot
-    #: Whether the observation is the state itself, as in ``Acrobot-v0``.
-    _ANGLES = False
 
     def __init__(self, render_mode: str | None = None, **parameters: Any) -> None:
         """Make an environment. Reset it before its first step.
@@ -139,15 +136,14 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         low, high = reset_bounds(options, ())
         super().reset(seed=plain_seed(seed))
         # Gymnasium rounds initial states to float32.
-        state = self.np_random.uniform(low, high, 4).astype(np.float32)
-        self._native.state = state
+        s = self.np_random.uniform(low, high, 4).astype(np.float32)
+        self._native.state = s
         if self.render_mode == "human":
             self.render()
-        return self._observe(state), {}
-
-    def _observe(self, s: NDArray[np.float32]) -> NDArray[np.float32]:
-        """The observation of an initial state, by Gymnasium's calls of NumPy, whose float32 sines are its own."""
-        return np.array([np.cos(s[0]), np.sin(s[0]), np.cos(s[1]), np.sin(s[1]), s[2], s[3]], dtype=np.float32)
+        if self._ANGLES:
+            return s, {}
+        # Gymnasium's calls of NumPy, whose float32 sines are its own.
+        return np.array([np.cos(s[0]), np.sin(s[0]), np.cos(s[1]), np.sin(s[1]), s[2], s[3]], dtype=np.float32), {}
 
     def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
@@ -246,11 +242,3 @@ class AcrobotV0Env(AcrobotEnv):
     """
 
     _ANGLES = True
-
-    @property
-    def _observation_space(self) -> spaces.Box[np.float32]:
-        high = np.array([np.pi, np.pi, *self._highest_velocities], dtype=np.float32)
-        return spaces.Box(-high, high, dtype=np.float32)
-
-    def _observe(self, s: NDArray[np.float32]) -> NDArray[np.float32]:
-        return s

@@ -166,6 +166,8 @@ class Parameters:
     _native: Acrobot | Batch
     #: Whether actions are torques.
     _CONTINUOUS = False
+    #: Whether the observation is the state itself, as in ``Acrobot-v0``.
+    _ANGLES = False
     #: What cannot change after the construction.
     _CHOSEN = ()
     #: Whether the construction has ended.
@@ -208,8 +210,20 @@ class Parameters:
         return _fixed(name, value)
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
-        """All spaces, by the names of their attributes."""
-        return {"action_space": self._action_space, "observation_space": self._observation_space}
+        """All spaces, by the names of their attributes. Here those of a single environment."""
+        lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
+        actions: spaces.Space[Any]
+        if self._CONTINUOUS:
+            largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
+            low, high = np.clip([np.min(lows), np.max(highs)], -largest, largest).tolist()
+            actions = spaces.Box(low, high, (1,), np.float32)
+        else:
+            actions = spaces.Discrete(np.shape(lows)[-1])
+        # After a step, or after a reset with the default bounds of 0.1, rad/s.
+        velocities = (np.max(getattr(bound, "high", bound)) for bound in (self.MAX_VEL_1, self.MAX_VEL_2))
+        others = [np.pi] * 2 if self._ANGLES else [1.0] * 4
+        highest = np.array([*others, *(max(each, 0.1) for each in velocities)], dtype=np.float32)
+        return {"action_space": actions, "observation_space": spaces.Box(-highest, highest, dtype=np.float32)}
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a parameter and set it."""
@@ -252,27 +266,6 @@ class Parameters:
             "render returns None, because the environment was made without a render mode. Make it with one: "
             f'gymnasium.make("{self.spec.id if self.spec else "acrobot_rs/Acrobot-v1"}", render_mode="rgb_array")'
         )
-
-    @property
-    def _highest_velocities(self) -> list[float]:
-        """The largest velocities after a step, or after a reset with the default bounds of 0.1, rad/s."""
-        bounds = (getattr(bound, "high", bound) for bound in (self.MAX_VEL_1, self.MAX_VEL_2))
-        return [max(float(np.max(bound)), 0.1) for bound in bounds]
-
-    @property
-    def _action_space(self) -> spaces.Space[Any]:
-        """That of a single environment."""
-        lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
-        if self._CONTINUOUS:
-            largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
-            low, high = np.clip([np.min(lows), np.max(highs)], -largest, largest).tolist()
-            return spaces.Box(low, high, (1,), np.float32)
-        return spaces.Discrete(np.shape(lows)[-1])
-
-    @property
-    def _observation_space(self) -> spaces.Box[np.float32]:
-        high = np.array([1.0, 1.0, 1.0, 1.0, *self._highest_velocities], dtype=np.float32)
-        return spaces.Box(-high, high, dtype=np.float32)
 
 
 _NAMES = tuple(name for name in Parameters.__annotations__ if hasattr(Parameters, name))

@@ -58,9 +58,7 @@ class AcrobotVecEnv(VecEnv):
         """Begin all episodes, with the seeds of :meth:`seed` and the options of ``set_options``, if there are new ones."""
         if any(options != self._options[0] for options in self._options):
             raise ValueError("options must be the same for all environments")
-        # Without seeds the streams continue.
-        seeds = self._seeds if any(seed is not None for seed in self._seeds) else None
-        observations, _ = self.envs.reset(seed=seeds, options=dict(self._options[0]))
+        observations, _ = self.envs.reset(seed=self._seeds, options=dict(self._options[0]))
         self._reset_seeds()
         self._reset_options()
         return observations
