@@ -27,7 +27,7 @@ struct Options {
     #[arg(long, value_name = "FILE", default_value = "episode.svg")]
     out: PathBuf,
     /// Also writes the picture as a definition for Markdown, because rustdoc's pages have no files beside them.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", requires = "balance")]
     definition: Option<PathBuf>,
 }
 

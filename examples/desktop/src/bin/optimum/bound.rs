@@ -197,7 +197,7 @@ pub fn prove() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// No policy reaches the goal in fewer steps from this state. None if it is in the target, of which the argument says nothing.
+/// The bound: from this state no policy reaches the goal in fewer steps. `None` in the target, where the proof gives no bound.
 pub fn least_steps(state: State) -> Option<u32> {
     let [theta1, theta2, dtheta1, dtheta2] = state.into();
     let y = [theta1, theta1 + theta2, dtheta1, dtheta1 + dtheta2].map(TaylorModel::from);
