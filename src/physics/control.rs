@@ -5,6 +5,7 @@
 //! acrobot upright with [a regulator](crate::guide::control).
 
 mod discretize;
+mod double;
 mod error;
 mod inverse_dynamics;
 mod linearize;

@@ -195,6 +195,17 @@ def models(rng):
         yield "any", a, b, (q + q.T) / 2, decades(rng, -12, 8)
 
 
+def wide_models(rng):
+    """Models whose numbers span up to 24 decades, half of them zeros in many."""
+    for number in range(100):
+        spread = 2 + number % 11
+        sparse = lambda size, kept: (rng.random(size) < kept) * decades(rng, -spread / 2, spread / 2, size)
+        a = rng.normal(size=(4, 4)) * sparse((4, 4), 0.7)
+        a *= decades(rng, -1, 0.5) / max(1.0, np.abs(np.linalg.eigvals(a)).max())
+        b = rng.normal(size=4) * sparse(4, 0.8) ** 2
+        yield "wide", a, b, np.diag(decades(rng, -spread, spread, 4)), decades(rng, -spread, spread)
+
+
 def case(rng, number, p):
     dynamics = ["book", "nips"][number % 2]
     y, torque, accelerations = rng.uniform(-STATES, STATES), rng.uniform(-5, 5), rng.uniform(-20, 20, 2)
@@ -231,7 +242,7 @@ def main():
         lines.append(f"continuous {texts(*exactly(derivative, *digits[:2], mpmath.mpf(float(torque)), dynamics))}")
         lines.append(f"discrete {texts(*exactly(step, *digits[:2], mpmath.mpf(float(torque)), dynamics))}")
         lines.append(f"motion {texts(*exact_motion(*digits, dynamics))}")
-    for kind, *model in models(rng):
+    for kind, *model in [*models(rng), *wide_models(np.random.default_rng(6))]:
         given = [np.float32(x) for x in model]
         gain, _ = regulator(*(x.astype(float) for x in given))
         numbers = " ".join(str(x) for array in given for x in np.ravel(array))

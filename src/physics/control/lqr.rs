@@ -1,8 +1,9 @@
 //! The linear-quadratic regulator of a discrete model.
 
+use super::double::{Double, widen};
 use super::matrix::{
-    Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, dot, eliminate, identity,
-    inner, largest, product, scale, symmetrize, transpose,
+    Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, diagonal, dot, eliminate,
+    identity, inner, largest, product, scale, symmetrize, transpose,
 };
 use super::{ControlError, DiscreteModel};
 use crate::error::Range;
@@ -70,14 +71,15 @@ impl<A: Arithmetic> Pendulum<A> {
 /// `q` weights the deviation of the state: it is symmetric and positive semidefinite, by rows, in 1/rad², s/rad² and
 /// s²/rad². `r` weights the torque, in 1/(N m)²; above 0. Only their ratio matters for the gain.
 ///
-/// Both scalars are computed in `f64`. The residual of the Riccati equation says how large the error of the gain is; above
-/// 1e-9 of the largest element it is an error. The acrobot has a gain, upright and hanging, for each `dt` from 0.002 to
-/// 0.05 s and each ratio of `q` to `r` from 1e-8 to 1e8.
+/// Both scalars are computed in `f64`. An error of the gain above 1e-9 of its largest element is
+/// an error. The acrobot has a gain, upright and hanging, for each `dt` from 0.002 to 0.05 s and
+/// each ratio of `q` to `r` from 1e-8 to 1e8.
 ///
-/// The structured doubling algorithm (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin and C.-S. Wang, *Structure-Preserving
-/// Algorithms for Periodic Discrete-Time Algebraic Riccati Equations*, 2004) finds a gain, and Newton's method (G. A.
-/// Hewer, *An Iterative Technique for the Computation of the Steady State Gains for the Discrete Optimal Regulator*,
-/// 1971) makes it exact up to rounding.
+/// The structured doubling algorithm (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin and C.-S. Wang,
+/// *Structure-Preserving Algorithms for Periodic Discrete-Time Algebraic Riccati Equations*, 2004)
+/// finds a gain, and Newton's method (G. A. Hewer, *An Iterative Technique for the Computation of
+/// the Steady State Gains for the Discrete Optimal Regulator*, 1971), with residuals in twice the
+/// digits of `f64`, makes it exact up to rounding.
 ///
 /// ```
 /// use acrobot::physics::control::{DiscreteModel, lqr};
@@ -103,7 +105,8 @@ impl<A: Arithmetic> Pendulum<A> {
 ///   shows.
 /// - [`ControlError::NotDetectable`] if `q` does not weight a motion that persists: it would need more than 2⁴⁰ steps to
 ///   vanish.
-/// - [`ControlError::IllConditioned`] if the estimated error of the gain is above 1e-9 of its largest element.
+/// - [`ControlError::IllConditioned`] if the error of the gain can be above 1e-9 of its largest
+///   element.
 pub fn lqr<S: Real>(
     model: &DiscreteModel<S>,
     q: &[[S; 4]; 4],
@@ -118,7 +121,7 @@ pub fn lqr<S: Real>(
     check_semidefinite(&q, 16.0 * S::EPSILON.to_f64())?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
 
-    let (gain, cost_to_go) = regulator(&a, &b, &q, r)?;
+    let (gain, cost_to_go) = Problem { a, b, q, r }.solve()?;
     let regulator = Lqr {
         gain: gain.map(S::from_f64),
         cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)),
@@ -128,101 +131,61 @@ pub fn lqr<S: Real>(
     Ok(regulator)
 }
 
-/// How often the number of steps is doubled before deviations that have not vanished count as persistent.
+/// How often the number of steps is doubled before deviations that have not vanished count as
+/// persistent.
 const DOUBLINGS: u32 = 40;
-/// Newton's method converges quadratically, but first it may halve a gain that is too large by many decades.
+/// Newton's method converges quadratically, but first it may halve a gain that is too large by many
+/// decades.
 const NEWTON_ITERATIONS: u32 = 60;
-/// The largest estimated error of a gain, relative to its largest element. An estimate can be too small, so this is a
-/// tenth of the error that the tests allow.
+/// The largest error of a gain, relative to its largest element.
 const TOLERANCE: f64 = 1e-9;
 
-/// A model and its weights, in coordinates y in which the torque changes one number only: where R is small, P b would
-/// otherwise be a difference of large numbers.
+/// A model and its weights.
 struct Problem {
     a: Matrix,
     b: [f64; 4],
     q: Matrix,
     r: f64,
-    /// y = t x for the state x.
-    t: Matrix,
 }
 
 /// K and P.
 type Solution = ([f64; 4], Matrix);
 
-fn regulator(a: &Matrix, b: &[f64; 4], q: &Matrix, r: f64) -> Result<Solution, ControlError> {
-    let cost_unit = r.max(largest(q.as_flattened())); // so that no cost overflows
-    let problem = Problem::new(a, b, q, r, 1.0 / cost_unit);
-    let (gain, mut cost) = problem.solve()?;
-    cost = congruence(&cost, &problem.t);
-    scale(&mut cost, cost_unit);
-    Ok((apply(&transpose(&problem.t), &gain), cost))
-}
-
-/// The number of the state that the torque changes most, as a unit vector, and its element of `b`. The rows and columns
-/// of `a` say how the units of the numbers compare.
-fn pivot(a: &Matrix, b: &[f64; 4]) -> ([f64; 4], f64) {
-    let size = |row: &[f64; 4]| row.iter().fold(f64::MIN_POSITIVE, |sum, x| sum + x.abs());
-    let mut chosen = ([0.0; 4], 1.0);
-    let mut most = 0.0;
-    for (((unit, &b_i), row), column) in identity().into_iter().zip(b).zip(a).zip(&transpose(a)) {
-        let share = b_i / largest(b);
-        let effect = share * share * (size(column) / size(row));
-        if effect > most {
-            (chosen, most) = ((unit, b_i), effect);
-        }
-    }
-    chosen
-}
-
 impl Problem {
-    #[inline(never)]
-    fn new(a: &Matrix, b: &[f64; 4], q: &Matrix, r: f64, weight: f64) -> Self {
-        let (unit, pivot) = pivot(a, b);
-        // x = basis y, where the column of the pivot is b / pivot.
-        let mut column = *b;
-        add_scaled(&mut column, -pivot, &unit);
-        let mut basis = identity();
-        add_outer(&mut basis, 1.0 / pivot, &column, &unit);
-        let mut problem = Self {
-            a: product(a, &basis),
-            b: unit.map(|x| x * pivot),
-            q: congruence(q, &basis),
-            r: r * weight,
-            t: identity(),
-        };
-        add_outer(&mut problem.t, -1.0 / pivot, &column, &unit);
-        problem.a = product(&problem.t, &problem.a);
-        scale(&mut problem.q, weight);
-        problem
-    }
-
-    fn solve(&self) -> Result<Solution, ControlError> {
-        let solution = self.solve_from(&self.q, self.r);
-        if solution.is_ok() {
-            return solution;
+    /// In units of torque and cost in which the largest elements of B and of the weights are
+    /// between 1 and 2, so that nothing overflows. The units are powers of 2 and change no digit.
+    fn solve(mut self) -> Result<Solution, ControlError> {
+        let torque_unit = power_of_2(largest(&self.b));
+        self.b = self.b.map(|x| x / torque_unit);
+        self.r = self.r / torque_unit / torque_unit;
+        let most = largest(self.q.as_flattened());
+        let cost_unit = power_of_2(self.r.max(most));
+        if most > 0.0 && most / cost_unit < 1e-250 {
+            return Err(ControlError::IllConditioned { error: 1.0 }); // costs would underflow
         }
-        // Where these weights give no gain that stabilizes, because Q does not weight a motion that grows or R is extreme,
-        // others do.
-        let weight = match largest(self.q.as_flattened()) {
-            0.0 => 1.0,
-            weight => weight,
-        };
-        let mut q = identity();
-        scale(&mut q, weight);
-        self.solve_from(&q, self.r.max(weight * inner(&self.b, &self.b)))
+        self.r /= cost_unit;
+        self.q = self.q.map(|row| row.map(|x| x / cost_unit));
+
+        // Where these weights give no gain that stabilizes, because Q does not weight a motion that
+        // grows or R is extreme, others do.
+        let (gain, mut cost) = self
+            .solve_from(&self.q, self.r)
+            .or_else(|_| self.solve_from(&identity(), inner(&self.b, &self.b)))?;
+        scale(&mut cost, cost_unit);
+        Ok((gain.map(|x| x / torque_unit), cost))
     }
 
     /// The solution, beginning with the gain for other weights.
     fn solve_from(&self, q: &Matrix, r: f64) -> Result<Solution, ControlError> {
-        let gain = self.double(q, r).ok_or(ControlError::NotStabilizable)?;
-        self.refine(gain)
+        let gain = self.double(q, r);
+        self.refine(gain.ok_or(ControlError::NotStabilizable)?)
     }
 
     /// K for the weights `q` and `r`, by the doubling algorithm. Rounding can make it wrong.
     ///
-    /// With A, G = B Bᵀ / R and P = Q for one step, the iteration computes the same for twice as many steps:
-    /// P + Aᵀ P W⁻¹ A, G + A W⁻¹ G Aᵀ and A W⁻¹ A, where W = 1 + G P. A vanishes as the closed loop does.
+    /// With A, G = B Bᵀ / R and P = Q for one step, the iteration computes the same for twice as
+    /// many steps: P + Aᵀ P W⁻¹ A, G + A W⁻¹ G Aᵀ and A W⁻¹ A, where W = 1 + G P. A vanishes as the
+    /// closed loop does.
     #[inline(never)]
     fn double(&self, q: &Matrix, r: f64) -> Option<[f64; 4]> {
         let (mut a, mut p, mut g) = (self.a, *q, [[0.0; 4]; 4]);
@@ -246,54 +209,126 @@ impl Problem {
             add(&mut p, 1.0, &change);
             a = product(&a, &w_a);
             if has_vanished(&a) {
-                return Some(self.gain(&p, r).0);
+                return Some(self.gain(&widen(&p), r).0);
             }
         }
         None
     }
 
-    /// The best gain for the next step, if P is the cost after it, and how much it weights the torque.
-    fn gain(&self, p: &Matrix, r: f64) -> ([f64; 4], f64) {
-        let p_b = apply(p, &self.b);
-        let weight = r + inner(&self.b, &p_b);
-        (apply(&transpose(&self.a), &p_b).map(|x| x / weight), weight)
+    /// The best gain for the next step, if P is the cost after it, and how much it weights the
+    /// torque.
+    #[inline(never)]
+    fn gain(&self, p: &Matrix<Double>, r: f64) -> ([f64; 4], f64) {
+        let b = self.b.map(Double::from);
+        let p_b = p.map(|row| dot(row, b));
+        let weight = f64::from(Double::from(r) + dot(b, p_b));
+        let columns = transpose(&widen(&self.a));
+        (columns.map(|a| f64::from(dot(a, p_b)) / weight), weight)
     }
 
-    /// The solution near a gain that stabilizes, by Newton's method. It alternates between the cost of a gain and the
-    /// gain that is best for this cost.
+    /// The solution near a gain that stabilizes, by Newton's method. It alternates between the cost
+    /// of a gain and the gain that is best for this cost. The residual of a cost has twice the
+    /// digits of `f64`, so each iteration corrects the rounding of the one before.
     #[inline(never)]
     fn refine(&self, mut gain: [f64; 4]) -> Result<Solution, ControlError> {
-        let (mut change, mut noise) = (f64::INFINITY, f64::INFINITY);
+        let mut cost = [[Double::default(); 4]; 4];
+        let [mut change, mut before, mut error] = [f64::INFINITY; 3];
         for _ in 0..NEWTON_ITERATIONS {
-            let (mut closed, mut stage) = (self.a, self.q);
-            add_outer(&mut closed, -1.0, &self.b, &gain);
-            add_outer(&mut stage, self.r, &gain, &gain);
-            let Some(cost) = lyapunov(&closed, &stage) else {
-                if noise < change {
-                    // The gain approaches one that lets a motion persist.
+            let (closed, residual) = self.residual(&gain, &cost);
+            let Some(missing) = lyapunov(&closed, &residual) else {
+                // By halves the gain approaches one that lets a motion persist.
+                if (0.25..0.75).contains(&(change / before)) {
                     return Err(ControlError::NotDetectable);
                 }
                 break;
             };
-            // What the residual of the equation adds to the cost, and thereby to the gain.
-            add(&mut stage, 1.0, &congruence(&cost, &closed));
-            add(&mut stage, -1.0, &cost);
-            let Some(missing) = lyapunov(&closed, &stage) else {
-                break;
-            };
+            let elements = cost.as_flattened_mut().iter_mut();
+            for (x, missing) in elements.zip(missing.as_flattened()) {
+                *x = *x + Double::from(*missing);
+            }
             let (better, weight) = self.gain(&cost, self.r);
-            let missing = apply(&transpose(&closed), &apply(&missing, &self.b));
-            noise = largest(&missing) / weight;
             add_scaled(&mut gain, -1.0, &better);
-            change = largest(&gain);
+            (before, change) = (change, largest(&gain));
             gain = better;
-            if change.max(noise) <= TOLERANCE * largest(&gain) {
-                return Ok((gain, cost));
+
+            let (size, rounded) = (largest(&gain), cost.map(|row| row.map(f64::from)));
+            // A motion without a cost persists, whatever the powers of the closed loop look like.
+            let squares = congruence(&rounded, &self.a);
+            let terms = diagonal(&squares).into_iter().zip(diagonal(&rounded));
+            let mut terms = terms.zip(diagonal(&missing));
+            let is_cost =
+                terms.all(|((x, y), missing)| missing.abs() <= TOLERANCE * (x.abs() + y.abs()));
+            error = if is_cost { change / size } else { 1.0 };
+            if is_cost && change <= 16.0 * f64::EPSILON * size {
+                error = self.rounding(&gain, &rounded, &closed, weight) / size;
+                if size == 0.0 || error <= TOLERANCE {
+                    return Ok((gain, rounded));
+                }
+                break;
             }
         }
-        Err(ControlError::IllConditioned {
-            error: change.max(noise) / largest(&gain),
+        Err(match error {
+            f64::INFINITY => ControlError::NotStabilizable, // the first gain did not stabilize
+            _ => ControlError::IllConditioned { error },
         })
+    }
+
+    /// A − B Kᵀ, and what the equation P = (A − B Kᵀ)ᵀ P (A − B Kᵀ) + Q + R K Kᵀ lacks on its left.
+    #[inline(never)]
+    fn residual(&self, gain: &[f64; 4], p: &Matrix<Double>) -> (Matrix, Matrix) {
+        let gain = gain.map(Double::from);
+        let mut closed = widen(&self.a);
+        for (row, &b) in closed.iter_mut().zip(&self.b) {
+            for (x, k) in row.iter_mut().zip(gain) {
+                *x = *x + Double::from(-b) * k;
+            }
+        }
+        let columns = transpose(&closed);
+        let p_closed = columns.map(|column| p.map(|row| dot(row, column)));
+        let mut residual = self.q;
+        for (((row, column), p), k) in residual.iter_mut().zip(columns).zip(p).zip(gain) {
+            let r_k = Double::from(self.r) * k;
+            for (((x, p_column), p), k) in row.iter_mut().zip(p_closed).zip(p).zip(gain) {
+                let stage = Double::from(*x) + r_k * k;
+                *x = f64::from(dot(column, p_column) + stage + *p * Double::from(-1.0));
+            }
+        }
+        symmetrize(&mut residual);
+        (closed.map(|row| row.map(f64::from)), residual)
+    }
+
+    /// A bound of the error that the rounding of `Double` leaves in a gain.
+    ///
+    /// The rounding N of the residual has |N_ij| ≤ s_i s_j, because |P_ij|² ≤ P_ii P_jj. So N is
+    /// between −4 diag(s²) and 4 diag(s²), and the error of P between the costs ∓L of these two
+    /// stages. Then |xᵀ error y|² ≤ xᵀ L x · yᵀ L y, whatever the units of the state.
+    fn rounding(&self, gain: &[f64; 4], cost: &Matrix, closed: &Matrix, weight: f64) -> f64 {
+        /// 2⁻¹⁰², times 64 for the number of operations and the factor 4.
+        const ROUNDING: f64 = 1.0 / (1_u128 << 96) as f64;
+        let p = diagonal(cost).map(f64::abs);
+        let size = |x: [f64; 4]| ROUNDING * dot(x.map(|x| x * x), p);
+        let by_a = transpose(&self.a).map(size);
+        let by_b = size(self.b);
+        let mut stage = [[0.0; 4]; 4];
+        let elements = stage.as_flattened_mut().iter_mut().step_by(5);
+        for ((((x, k), p), q), a) in elements.zip(gain).zip(p).zip(diagonal(&self.q)).zip(by_a) {
+            *x = ROUNDING * (p + q + self.r * k * k) + a + k * k * by_b;
+        }
+        let Some(missing) = lyapunov(closed, &stage) else {
+            return f64::INFINITY;
+        };
+        let by_b = by_b + inner(&self.b, &apply(&missing, &self.b));
+        let after = diagonal(&congruence(&missing, closed));
+        let sums = after.into_iter().zip(by_a).map(|(x, a)| x + a);
+        (sums.fold(0.0, f64::max) * by_b).sqrt() / weight
+    }
+}
+
+/// The largest power of 2 up to a positive number; 1 for 0.
+fn power_of_2(x: f64) -> f64 {
+    match f64::from_bits(x.to_bits() & f64::INFINITY.to_bits()) {
+        0.0 => 1.0,
+        power => power,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Algebra of 4×4 matrices, without indices that could be out of bounds.
 
 use core::mem::swap;
+use core::ops::{Add, Mul};
 
 use super::ControlError;
 use crate::math::Real;
@@ -18,7 +19,14 @@ pub fn identity<S: Real>() -> Matrix<S> {
     ]
 }
 
-pub fn dot<S: Real>([x1, x2, x3, x4]: [S; 4], [y1, y2, y3, y4]: [S; 4]) -> S {
+pub fn diagonal<S: Copy>(m: &Matrix<S>) -> [S; 4] {
+    [m[0][0], m[1][1], m[2][2], m[3][3]]
+}
+
+pub fn dot<S>([x1, x2, x3, x4]: [S; 4], [y1, y2, y3, y4]: [S; 4]) -> S
+where
+    S: Add<Output = S> + Mul<Output = S>,
+{
     x1 * y1 + x2 * y2 + x3 * y3 + x4 * y4
 }
 
