@@ -3,9 +3,9 @@
 use core::arch::asm;
 
 const PAINT: u32 = 0xa5c3_9617;
-const WORDS: usize = 1024;
+const WORDS: usize = 2048;
 
-/// The bytes of stack that `run` takes, or `None` if it takes all that is painted, 4 KiB.
+/// The bytes of stack that `run` takes, or `None` if it takes all that is painted, 8 KiB.
 #[inline(never)]
 pub fn depth(run: impl FnOnce()) -> Option<usize> {
     // The paint begins below this function's own frame.

@@ -9,11 +9,19 @@ use super::matrix::Matrix;
 /// A sum or a product of two such numbers has an error of at most 2⁻¹⁰² times the sum, or the product, of their absolute
 /// values (M. Joldes, J.-M. Muller and V. Popescu, *Tight and Rigorous Error Bounds for Basic Building Blocks of
 /// Double-Word Arithmetic*, 2017), while nothing overflows or underflows.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Double(f64, f64);
 
+pub const MINUS_ONE: Double = Double(-1.0, 0.0);
+
+#[inline(never)] // saves flash
 pub fn widen(m: &Matrix) -> Matrix<Double> {
     m.map(|row| row.map(Double::from))
+}
+
+#[inline(never)]
+pub fn narrow(m: &Matrix<Double>) -> Matrix {
+    m.map(|row| row.map(f64::from))
 }
 
 impl From<f64> for Double {
@@ -31,7 +39,7 @@ impl From<Double> for f64 {
 impl Add for Double {
     type Output = Self;
 
-    #[inline(never)] // saves flash
+    #[inline(never)]
     fn add(self, other: Self) -> Self {
         // The rounding error of the sum, which is an `f64` (D. Knuth).
         let sum = self.0 + other.0;

@@ -1,6 +1,6 @@
 //! The linear-quadratic regulator of a discrete model.
 
-use super::double::{Double, widen};
+use super::double::{Double, MINUS_ONE, narrow, widen};
 use super::matrix::{
     Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, diagonal, dot, eliminate,
     identity, inner, largest, product, scale, symmetrize, transpose,
@@ -164,7 +164,7 @@ impl Problem {
             return Err(ControlError::IllConditioned { error: 1.0 }); // costs would underflow
         }
         self.r /= cost_unit;
-        self.q = self.q.map(|row| row.map(|x| x / cost_unit));
+        scale(&mut self.q, 1.0 / cost_unit);
 
         // Where these weights give no gain that stabilizes, because Q does not weight a motion that
         // grows or R is extreme, others do.
@@ -175,19 +175,20 @@ impl Problem {
         Ok((gain.map(|x| x / torque_unit), cost))
     }
 
-    /// The solution, beginning with the gain for other weights.
+    /// The solution, beginning with that for other weights.
     fn solve_from(&self, q: &Matrix, r: f64) -> Result<Solution, ControlError> {
-        let gain = self.double(q, r);
-        self.refine(gain.ok_or(ControlError::NotStabilizable)?)
+        let start = self.double(q, r);
+        self.refine(start.ok_or(ControlError::NotStabilizable)?)
     }
 
-    /// K for the weights `q` and `r`, by the doubling algorithm. Rounding can make it wrong.
+    /// K and P for the weights `q` and `r`, by the doubling algorithm. Rounding can make them
+    /// wrong.
     ///
     /// With A, G = B Bᵀ / R and P = Q for one step, the iteration computes the same for twice as
     /// many steps: P + Aᵀ P W⁻¹ A, G + A W⁻¹ G Aᵀ and A W⁻¹ A, where W = 1 + G P. A vanishes as the
     /// closed loop does.
     #[inline(never)]
-    fn double(&self, q: &Matrix, r: f64) -> Option<[f64; 4]> {
+    fn double(&self, q: &Matrix, r: f64) -> Option<Solution> {
         let (mut a, mut p, mut g) = (self.a, *q, [[0.0; 4]; 4]);
         add_outer(&mut g, 1.0 / r, &self.b, &self.b);
         for _ in 0..DOUBLINGS {
@@ -209,7 +210,7 @@ impl Problem {
             add(&mut p, 1.0, &change);
             a = product(&a, &w_a);
             if has_vanished(&a) {
-                return Some(self.gain(&widen(&p), r).0);
+                return Some((self.gain(&widen(&p), r).0, p));
             }
         }
         None
@@ -220,18 +221,18 @@ impl Problem {
     #[inline(never)]
     fn gain(&self, p: &Matrix<Double>, r: f64) -> ([f64; 4], f64) {
         let b = self.b.map(Double::from);
-        let p_b = p.map(|row| dot(row, b));
-        let weight = f64::from(Double::from(r) + dot(b, p_b));
-        let columns = transpose(&widen(&self.a));
-        (columns.map(|a| f64::from(dot(a, p_b)) / weight), weight)
+        let p_b = apply(p, &b);
+        let weight = f64::from(Double::from(r) + inner(&b, &p_b));
+        let gain = apply(&transpose(&widen(&self.a)), &p_b);
+        (gain.map(|x| f64::from(x) / weight), weight)
     }
 
-    /// The solution near a gain that stabilizes, by Newton's method. It alternates between the cost
+    /// The solution near one whose gain stabilizes, by Newton's method. It alternates between the cost
     /// of a gain and the gain that is best for this cost. The residual of a cost has twice the
     /// digits of `f64`, so each iteration corrects the rounding of the one before.
     #[inline(never)]
-    fn refine(&self, mut gain: [f64; 4]) -> Result<Solution, ControlError> {
-        let mut cost = [[Double::default(); 4]; 4];
+    fn refine(&self, (mut gain, cost): Solution) -> Result<Solution, ControlError> {
+        let mut cost = widen(&cost);
         let [mut change, mut before, mut error] = [f64::INFINITY; 3];
         for _ in 0..NEWTON_ITERATIONS {
             let (closed, residual) = self.residual(&gain, &cost);
@@ -251,24 +252,19 @@ impl Problem {
             (before, change) = (change, largest(&gain));
             gain = better;
 
-            let (size, rounded) = (largest(&gain), cost.map(|row| row.map(f64::from)));
-            // A motion without a cost persists, whatever the powers of the closed loop look like.
-            let squares = congruence(&rounded, &self.a);
-            let terms = diagonal(&squares).into_iter().zip(diagonal(&rounded));
-            let mut terms = terms.zip(diagonal(&missing));
-            let is_cost =
-                terms.all(|((x, y), missing)| missing.abs() <= TOLERANCE * (x.abs() + y.abs()));
-            error = if is_cost { change / size } else { 1.0 };
-            if is_cost && change <= 16.0 * f64::EPSILON * size {
-                error = self.rounding(&gain, &rounded, &closed, weight) / size;
-                if size == 0.0 || error <= TOLERANCE {
+            let size = largest(&gain);
+            error = change / size;
+            if change <= 16.0 * f64::EPSILON * size {
+                let rounded = narrow(&cost);
+                let rounding = self.rounding(&gain, &rounded, &missing, &closed) / weight;
+                error = rounding / size;
+                if error <= TOLERANCE || size == 0.0 && rounding.is_finite() {
                     return Ok((gain, rounded));
                 }
-                break;
             }
         }
         Err(match error {
-            f64::INFINITY => ControlError::NotStabilizable, // the first gain did not stabilize
+            f64::INFINITY => ControlError::NotStabilizable, // no gain gave a cost
             _ => ControlError::IllConditioned { error },
         })
     }
@@ -276,51 +272,50 @@ impl Problem {
     /// A − B Kᵀ, and what the equation P = (A − B Kᵀ)ᵀ P (A − B Kᵀ) + Q + R K Kᵀ lacks on its left.
     #[inline(never)]
     fn residual(&self, gain: &[f64; 4], p: &Matrix<Double>) -> (Matrix, Matrix) {
-        let gain = gain.map(Double::from);
-        let mut closed = widen(&self.a);
-        for (row, &b) in closed.iter_mut().zip(&self.b) {
-            for (x, k) in row.iter_mut().zip(gain) {
-                *x = *x + Double::from(-b) * k;
-            }
+        let [b, gain] = [&self.b, gain].map(|x| x.map(Double::from));
+        let mut columns = transpose(&widen(&self.a));
+        for (column, k) in columns.iter_mut().zip(gain) {
+            add_scaled(column, k * MINUS_ONE, &b);
         }
-        let columns = transpose(&closed);
-        let p_closed = columns.map(|column| p.map(|row| dot(row, column)));
-        let mut residual = self.q;
-        for (((row, column), p), k) in residual.iter_mut().zip(columns).zip(p).zip(gain) {
-            let r_k = Double::from(self.r) * k;
-            for (((x, p_column), p), k) in row.iter_mut().zip(p_closed).zip(p).zip(gain) {
-                let stage = Double::from(*x) + r_k * k;
-                *x = f64::from(dot(column, p_column) + stage + *p * Double::from(-1.0));
-            }
+        let mut residual = widen(&self.q);
+        for (((row, p_row), k), column) in residual.iter_mut().zip(p).zip(gain).zip(&columns) {
+            add_scaled(row, Double::from(self.r) * k, &gain);
+            add_scaled(row, MINUS_ONE, p_row);
+            add_scaled(row, Double::from(1.0), &apply(&columns, &apply(p, column)));
         }
+        let mut residual = narrow(&residual);
         symmetrize(&mut residual);
-        (closed.map(|row| row.map(f64::from)), residual)
+        (transpose(&narrow(&columns)), residual)
     }
 
-    /// A bound of the error that the rounding of `Double` leaves in a gain.
+    /// A bound of the error that the rounding of `Double` leaves in a gain, times the weight of the
+    /// torque; infinite if the cost still changes.
     ///
     /// The rounding N of the residual has |N_ij| ≤ s_i s_j, because |P_ij|² ≤ P_ii P_jj. So N is
-    /// between −4 diag(s²) and 4 diag(s²), and the error of P between the costs ∓L of these two
-    /// stages. Then |xᵀ error y|² ≤ xᵀ L x · yᵀ L y, whatever the units of the state.
-    fn rounding(&self, gain: &[f64; 4], cost: &Matrix, closed: &Matrix, weight: f64) -> f64 {
+    /// between −4 diag(s²) and 4 diag(s²), and the error E of P between −L and L, if L is the cost
+    /// of the latter. Then |xᵀ E y|² ≤ xᵀ L x · yᵀ L y, whatever the units of the state.
+    #[inline(never)]
+    fn rounding(&self, gain: &[f64; 4], p: &Matrix, missing: &Matrix, closed: &Matrix) -> f64 {
         /// 2⁻¹⁰², times 64 for the number of operations and the factor 4.
         const ROUNDING: f64 = 1.0 / (1_u128 << 96) as f64;
-        let p = diagonal(cost).map(f64::abs);
-        let size = |x: [f64; 4]| ROUNDING * dot(x.map(|x| x * x), p);
-        let by_a = transpose(&self.a).map(size);
+        let p = diagonal(p).map(f64::abs);
+        let size = |x: [f64; 4]| inner(&x.map(|x| x * x), &p);
         let by_b = size(self.b);
         let mut stage = [[0.0; 4]; 4];
+        let terms = p.iter().zip(transpose(&self.a)).zip(gain);
         let elements = stage.as_flattened_mut().iter_mut().step_by(5);
-        for ((((x, k), p), q), a) in elements.zip(gain).zip(p).zip(diagonal(&self.q)).zip(by_a) {
-            *x = ROUNDING * (p + q + self.r * k * k) + a + k * k * by_b;
+        for ((x, ((p, a), k)), missing) in elements.zip(terms).zip(diagonal(missing)) {
+            let terms = p + size(a) + k * k * by_b;
+            // A motion without a cost persists, whatever the powers of the closed loop look like.
+            if missing.abs() > TOLERANCE * terms {
+                return f64::INFINITY;
+            }
+            *x = ROUNDING * terms;
         }
-        let Some(missing) = lyapunov(closed, &stage) else {
+        let Some(cost) = lyapunov(closed, &stage) else {
             return f64::INFINITY;
         };
-        let by_b = by_b + inner(&self.b, &apply(&missing, &self.b));
-        let after = diagonal(&congruence(&missing, closed));
-        let sums = after.into_iter().zip(by_a).map(|(x, a)| x + a);
-        (sums.fold(0.0, f64::max) * by_b).sqrt() / weight
+        (largest(&diagonal(&cost)) * inner(&self.b, &apply(&cost, &self.b))).sqrt()
     }
 }
 

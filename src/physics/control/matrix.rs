@@ -50,21 +50,42 @@ pub fn check_finite<S: Real>(name: &'static str, elements: &[S]) -> Result<(), C
     }
 }
 
-// From here on all is `f64`. What is not inlined saves flash where each operation is a call.
+// What is not inlined saves flash where each operation is a call.
 
 /// x · y.
 #[inline(never)]
-pub fn inner(x: &[f64; 4], y: &[f64; 4]) -> f64 {
+pub fn inner<S>(x: &[S; 4], y: &[S; 4]) -> S
+where
+    S: Copy + Add<Output = S> + Mul<Output = S>,
+{
     dot(*x, *y)
 }
 
 /// x += h y.
 #[inline(never)]
-pub fn add_scaled(x: &mut [f64; 4], h: f64, y: &[f64; 4]) {
+pub fn add_scaled<S>(x: &mut [S; 4], h: S, y: &[S; 4])
+where
+    S: Copy + Add<Output = S> + Mul<Output = S>,
+{
     for (x, y) in x.iter_mut().zip(y) {
-        *x += h * y;
+        *x = *x + h * *y;
     }
 }
+
+/// m x.
+#[inline(never)]
+pub fn apply<S>(m: &Matrix<S>, x: &[S; 4]) -> [S; 4]
+where
+    S: Copy + Add<Output = S> + Mul<Output = S>,
+{
+    let mut result = *x;
+    for (result, row) in result.iter_mut().zip(m) {
+        *result = inner(row, x);
+    }
+    result
+}
+
+// From here on all is `f64`.
 
 /// m += h x yᵀ.
 #[inline(never)]
@@ -88,16 +109,6 @@ pub fn scale(m: &mut Matrix, h: f64) {
     for x in m.as_flattened_mut() {
         *x *= h;
     }
-}
-
-/// m x.
-#[inline(never)]
-pub fn apply(m: &Matrix, x: &[f64; 4]) -> [f64; 4] {
-    let mut result = [0.0; 4];
-    for (result, row) in result.iter_mut().zip(m) {
-        *result = inner(row, x);
-    }
-    result
 }
 
 /// x y.
