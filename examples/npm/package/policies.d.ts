@@ -45,8 +45,8 @@ export class Perceptron {
   act(acrobot: { readonly observation: ArrayLike<number> }): Action;
 }
 
-/** As that of `acrobot-rs`, for the module of `Learner` and `Perceptron`. */
+/** Like that of `acrobot-rs`, for the module of `Learner` and `Perceptron`. */
 export function moduleBytes(): Uint8Array;
 
-/** As that of `acrobot-rs`, before the first `Learner` or `Perceptron`. */
+/** Like that of `acrobot-rs`, before the first `Learner` or `Perceptron`. */
 export function setModule(module: object): void;
