@@ -86,6 +86,9 @@ test("the programs of the documentation run in Node.js and print what they say",
     writeFileSync(join(folder, `program${i}.mjs`), program);
     assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));
   });
+  const required = 'const { Acrobot } = require("acrobot-rs"); console.log(Acrobot.name);';
+  // From Node.js 20.19 on.
+  if (process.features.require_module) assert.equal(run("node", ["--eval", required]), "Acrobot\n");
 });
 
 test("types pass tsc --strict, with the newest TypeScript and with 5.2", () => {
