@@ -18,7 +18,8 @@ for (const file of ["package/package.json", "../../LICENSE-APACHE", "../../LICEN
 for (const entry of ["index", "policies"]) {
   const types = readFileSync(`package/${entry}.d.ts`, "utf8");
   writeFileSync(`dist/${entry}.d.ts`, types);
-  // For TypeScript's CommonJS: `require` loads the same module, but the compiler wants types with another name.
+  // For CommonJS: a file that loads the same module, and its types.
+  writeFileSync(`dist/${entry}.cjs`, `module.exports = require("./${entry}.js");\n`);
   writeFileSync(`dist/${entry}.d.cts`, types.replace('"./index.js"', '"./index.cjs"'));
 }
 bundle("dist");

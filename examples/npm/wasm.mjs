@@ -41,7 +41,10 @@ export function bundle(folder) {
     const module = compile(library);
     // A string, because all bundlers and servers pass strings on unchanged, and a constructor can decode it without waiting.
     const deflated = deflateRawSync(module, { level: 9, memLevel: 9 }).toString("base64");
-    const values = [`--define:LENGTH=${module.length}`, `--define:MODULE=${JSON.stringify(deflated)}`];
+    const exports = WebAssembly.Module.exports(new WebAssembly.Module(module));
+    const names = exports.map(({ name }) => name).join();
+    const constants = Object.entries({ LENGTH: module.length, MODULE: deflated, EXPORTS: names });
+    const values = constants.map(([name, value]) => `--define:${name}=${JSON.stringify(value)}`);
     // Names stay, for messages and debuggers.
     const options = ["--bundle", "--format=esm", "--target=es2022", "--minify-whitespace", "--minify-syntax", "--log-level=warning"];
     run("node_modules/.bin/esbuild", [`package/${file}`, `--outfile=${resolve(folder, file)}`, ...options, ...values]);

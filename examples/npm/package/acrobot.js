@@ -13,6 +13,11 @@ function observation() {
 }
 
 export class Acrobot extends Kept {
+  /** Bundlers rename classes. */
+  static get name() {
+    return "Acrobot";
+  }
+
   /** The action of the last step, for its picture. */
   #action = 1;
 

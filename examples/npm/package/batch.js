@@ -2,10 +2,11 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, SHOWN, addressOf, elements, isAction, keep, readParams, readState, sample, writeParams, writeState,
+  ACTION, Kept, PARAMS_LENGTH, SHOWN, addressOf, elements, isAction, keep, readChanges, readParams,
+  readState, sample, writeParams, writeState,
 } from "./kept.js";
 import { seal, unseal } from "./snapshot.js";
-import { accept, bytes, checked, invalid, positive, wasm, writeSeed } from "./wasm.js";
+import { accept, bytes, checked, invalid, isBytes, positive, wasm, writeSeed } from "./wasm.js";
 
 /** The results, and what JavaScript writes, in the order of the module's addresses: type, and number of elements of an acrobot. */
 const ARRAYS = {
@@ -21,12 +22,19 @@ const ARRAYS = {
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
 /** What a batch's snapshot begins with after its length, in the format of postcard: the header, and the bounds −0.1 and 0.1 as doubles. */
-const BATCH = [...new TextEncoder().encode("\x05batch\x01\x04fast"), ...new Uint8Array(Float64Array.of(-0.1, 0.1).buffer)];
+const BATCH = [
+  ...Array.from("\x05batch\x01\x04fast", (letter) => letter.charCodeAt(0)),
+  ...new Uint8Array(Float64Array.of(-0.1, 0.1).buffer),
+];
 
 /** An integer in seven bits a byte, the lowest first. The highest bit of each byte says whether more follow. */
 const varint = (value) => (value < 128 ? [value] : [(value % 128) | 128, ...varint(Math.floor(value / 128))]);
 
 export class Batch extends Kept {
+  static get name() {
+    return "Batch";
+  }
+
   #count;
   #settings;
   /** The addresses of the arrays. */
@@ -54,7 +62,7 @@ export class Batch extends Kept {
     this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams });
     this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
     try {
-      this.setParams(params);
+      super.setParams(params);
       this.#copy(...this.#names);
     } catch (error) {
       this.free();
@@ -135,8 +143,8 @@ export class Batch extends Kept {
 
   step(actions) {
     let given = actions;
-    // The elements of a plain Uint8Array are bytes, so the module can check them.
-    if (!ArrayBuffer.isView(actions) || !(actions instanceof Uint8Array) || actions.byteLength !== this.#count) {
+    // The module can check bytes.
+    if (!isBytes(actions) || actions.byteLength !== this.#count) {
       // Reading others can run code that frees the batch or makes the module's memory grow, so they are read first.
       given = elements("actions", actions, this.#count, isAction, ACTION);
     }
@@ -168,6 +176,28 @@ export class Batch extends Kept {
     return wasm().batch_elapsed(this.#addressFor(index), index) >>> 0;
   }
 
+  setParams(changes) {
+    if (!this.#settings.ownParams) return super.setParams(changes);
+    const given = readChanges(changes);
+    const address = this.#address;
+    const before = new Uint8Array(this.#count * PARAMS_LENGTH);
+    const part = (index) => before.subarray(index * PARAMS_LENGTH, (index + 1) * PARAMS_LENGTH);
+    let index = 0;
+    try {
+      for (; index < this.#count; index++) {
+        wasm().batch_params(address, index);
+        part(index).set(bytes().subarray(0, PARAMS_LENGTH));
+        writeParams("batch", address, index, given, "batch_set_params_of");
+      }
+    } catch (error) {
+      while (index > 0) {
+        bytes().set(part(--index));
+        wasm().batch_set_params_of(address, index);
+      }
+      throw error;
+    }
+  }
+
   paramsOf(index) {
     return readParams("batch", this.#addressFor(index), index);
   }
@@ -175,7 +205,8 @@ export class Batch extends Kept {
   setParamsOf(index, changes) {
     this.#addressFor(index);
     if (!this.#settings.ownParams) throw new Error("a batch must be made with ownParams for parameters of each acrobot");
-    writeParams(changes, () => this.paramsOf(index), () => wasm().batch_set_params_of(this.#address, index));
+    const given = readChanges(changes);
+    writeParams("batch", this.#address, index, given, "batch_set_params_of");
   }
 
   #header() {
@@ -187,8 +218,10 @@ export class Batch extends Kept {
   snapshot() {
     const address = this.#address;
     const members = Array.from({ length: this.#count }, (_, i) => bytes().slice(0, wasm().batch_save(address, i)));
+    const rust = seal([this.#header(), ...members]);
+    if (this.#settings.autoreset !== "Disabled") return rust;
     this.#copy();
-    return seal([this.#header(), ...members, this.#settings.autoreset === "Disabled" ? this.#views.ended : []]);
+    return seal([rust, this.#views.ended]);
   }
 
   static restore(snapshot) {
@@ -226,10 +259,12 @@ export class Batch extends Kept {
       if (length === 0) return false;
       at += length;
     }
-    const ended = content.subarray(at);
-    if (ended.length !== (this.#settings.autoreset === "Disabled" ? this.#count : 0) || ended.some((flag) => flag > 1)) return false;
-    this.#copy();
-    this.#views.ended.set(ended);
+    if (this.#settings.autoreset === "Disabled") {
+      const ended = content.subarray(at + 4);
+      if (ended.length !== this.#count || ended.some((flag) => flag > 1)) return false;
+      this.#copy();
+      this.#views.ended.set(ended);
+    } else if (at !== content.length) return false;
     this.#observe();
     return true;
   }

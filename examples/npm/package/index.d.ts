@@ -214,10 +214,17 @@ export class Batch extends Kept {
   /** Changes parameters of one acrobot, if the batch has `ownParams`. `setParams` changes those of all. */
   setParamsOf(index: number, changes: Readonly<Partial<Params>>): void;
   /**
-   * Settings, parameters, states, steps and random numbers, in about 130 bytes for each acrobot: Rust's `VecBatch<Fast>` in postcard
-   * with CRC-32, before which with "Disabled" `ended` stands. One of Rust with own parameters or other reset bounds cannot be restored.
+   * Settings, parameters, states, steps and random numbers, in about 130 bytes for each acrobot:
+   * Rust's `VecBatch<Fast>` in postcard with CRC-32. With "Disabled", `ended` and a CRC-32 follow.
+   * One of Rust cannot be restored if it has "Disabled", a range of parameters or other reset bounds.
    */
   snapshot(): Uint8Array;
   /** Draws an acrobot, without an arrow. */
   draw(context: Context, index: number, options?: DrawOptions): void;
 }
+
+/** The WebAssembly module inside this file, for a program that compiles it elsewhere. */
+export function moduleBytes(): Uint8Array;
+
+/** Takes the compiled `WebAssembly.Module` before the first acrobot, where code may not compile. */
+export function setModule(module: object): void;

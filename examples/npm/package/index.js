@@ -2,3 +2,4 @@
 
 export { Acrobot } from "./acrobot.js";
 export { Batch } from "./batch.js";
+export { moduleBytes, setModule } from "./wasm.js";

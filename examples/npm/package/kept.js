@@ -8,7 +8,13 @@ const NUMBERS = [
   "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2", "gravity", "dt",
   "maxVelocity1", "maxVelocity2", "torques", "torqueNoise",
 ];
+/** The names of the sixteen numbers. */
+const TORQUES = ["torques[0]", "torques[1]", "torques[2]"];
+const SLOTS = NUMBERS.flatMap((name) => (name === "torques" ? TORQUES : name));
 const DYNAMICS = ["book", "nips"];
+/** The byte of the dynamics, behind the numbers. */
+const DYNAMICS_AT = 64;
+export const PARAMS_LENGTH = 65;
 export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
 export const isAction = (action) => action === 0 || action === 1 || action === 2;
@@ -41,34 +47,43 @@ export function elements(what, array, count, isValid, rule) {
 /** The parameters of acrobot `index` in postcard's format: sixteen numbers, and a byte for the dynamics. A single one ignores the index. */
 export function readParams(kind, address, index) {
   wasm()[`${kind}_params`](address, index);
-  const values = [...new Float32Array(bytes().slice(0, 64).buffer)];
+  const values = [...numbers()];
   const next = (name) => (name === "torques" ? Object.freeze(values.splice(0, 3)) : values.shift());
   const params = Object.fromEntries(NUMBERS.map((name) => [name, next(name)]));
-  return Object.freeze({ ...params, dynamics: DYNAMICS[bytes()[64]] });
+  return Object.freeze({ ...params, dynamics: DYNAMICS[bytes()[DYNAMICS_AT]] });
 }
 
-/** Calls `read` for the old parameters, and `set` for new ones, after the changes, whose properties can run code of the caller. */
-export function writeParams(changes, read, set) {
+/** Changed parameters by their names, as `SLOTS` has them. Reading them can run code of the caller. */
+export function readChanges(changes) {
   const given = checked("params", changes, [...NUMBERS, "dynamics"]);
   if ("torques" in given) {
     const { torques } = given;
+    delete given.torques;
     if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques, []);
-    given.torques = [0, 1, 2].map((i) => torques[i]);
+    TORQUES.forEach((name, i) => (given[name] = torques[i]));
   }
-  const params = { ...read(), ...given };
-  const { torques, dynamics } = params;
-  if (!DYNAMICS.includes(dynamics)) throw invalid('dynamics must be "book" or "nips"', dynamics, []);
-  const values = NUMBERS.flatMap((name) => {
-    const of = name === "torques" ? torques : [params[name]];
-    for (const value of of) if (typeof value !== "number") throw invalid(`${name} must be a number`, value);
-    return of;
-  });
-  bytes().set([...new Uint8Array(Float32Array.from(values).buffer), DYNAMICS.indexOf(dynamics)]);
-  accept(set(), (name) => (name.startsWith("torques") ? torques[name.at(-2)] : params[name]));
+  for (const [name, value] of Object.entries(given)) {
+    if (name === "dynamics") {
+      if (!DYNAMICS.includes(value)) throw invalid('dynamics must be "book" or "nips"', value, []);
+    } else if (typeof value !== "number") throw invalid(`${name} must be a number`, value);
+  }
+  return given;
 }
 
-/** Frees what the program has forgotten to free. */
-const registry = new FinalizationRegistry(({ kind, address }) => wasm()[`${kind}_free`](address));
+/** Changes what `readChanges` returns in the parameters of acrobot `index`, by a function of the module. */
+export function writeParams(kind, address, index, given, set = `${kind}_set_params`) {
+  wasm()[`${kind}_params`](address, index);
+  for (const [name, value] of Object.entries(given)) {
+    if (name === "dynamics") bytes()[DYNAMICS_AT] = DYNAMICS.indexOf(value);
+    else numbers()[SLOTS.indexOf(name)] = value;
+  }
+  const length = wasm()[set](address, index);
+  accept(length, (name) => given[name] ?? readParams(kind, address, index)[name]);
+}
+
+/** Frees what the program has forgotten to free, if the engine says when. */
+const free = ({ kind, address }) => wasm()[`${kind}_free`](address);
+const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(free);
 
 /** A property that only this package can read. */
 export const SHOWN = Symbol("shown");
@@ -89,7 +104,7 @@ export class Kept {
       if (address === 0) throw new RangeError(`acrobots must fit into WebAssembly's memory of at most 4 GiB, got ${count} more`);
       kept.#kind = kind;
       kept.#address = address;
-      registry.register(kept, { kind, address }, kept);
+      registry?.register(kept, { kind, address }, kept);
     };
     addressOf = (kept) => {
       if (kept.#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
@@ -97,19 +112,24 @@ export class Kept {
     };
   }
 
+  /** Vue makes no proxy of an object with this property. A proxy has no private fields. */
+  get __v_skip() {
+    return true;
+  }
+
   get params() {
     return readParams(this.#kind, addressOf(this), 0);
   }
 
   setParams(changes) {
-    const set = () => wasm()[`${this.#kind}_set_params`](addressOf(this));
-    writeParams(changes, () => readParams(this.#kind, addressOf(this), 0), set);
+    const given = readChanges(changes);
+    writeParams(this.#kind, addressOf(this), 0, given);
   }
 
   free() {
     if (this.#address === 0) return;
-    registry.unregister(this);
-    wasm()[`${this.#kind}_free`](this.#address);
+    registry?.unregister(this);
+    free({ kind: this.#kind, address: this.#address });
     this.#address = 0;
   }
 

@@ -44,3 +44,9 @@ export class Perceptron {
   /** The action with the highest score, or of the torque's sign. */
   act(acrobot: { readonly observation: ArrayLike<number> }): Action;
 }
+
+/** Like that of `acrobot-rs`, for the module of `Learner` and `Perceptron`. */
+export function moduleBytes(): Uint8Array;
+
+/** Like that of `acrobot-rs`, before the first `Learner` or `Perceptron`. */
+export function setModule(module: object): void;

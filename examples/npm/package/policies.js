@@ -1,12 +1,17 @@
 // Policies, and a learner in a separate module. policies.d.ts describes the interface.
 
-import { checked, instantiate, invalid, positive, seedWords } from "./wasm.js";
+import {
+  checked, copied, decoded, instantiate, invalid, invalidSingle, positive, seedWords,
+} from "./wasm.js";
 
-/** Numbers of an object. `what` names the object in the error for one that is not finite. */
+export { moduleBytes, setModule } from "./wasm.js";
+
+/** Numbers of an object, finite in single precision. `what` names the object in an error. */
 const finite = (what, object, ...names) =>
   names.map((name) => {
     const number = object?.[name];
-    if (!Number.isFinite(number)) throw invalid(`${what}.${name} must be a finite number`, number);
+    const valid = typeof number === "number" && Number.isFinite(Math.fround(number));
+    if (!valid) throw invalidSingle(`${what}.${name} must be a finite number`, number);
     return number;
   });
 
@@ -41,12 +46,12 @@ class Instance {
 
   /** Calls one of the module's two functions that load, with a file in the buffer. */
   load(what, file, call) {
-    if (!(file instanceof Uint8Array)) throw invalid(`${what} must be a Uint8Array`, file, []);
-    const { length } = file;
+    const copy = copied(what, file);
+    const { length } = copy;
     if (length > BUFFER) throw new RangeError(`${what} must have at most ${BUFFER} bytes, got ${length}`);
-    this.bytes(length).set(file);
+    this.bytes(length).set(copy);
     const reason = call(length);
-    if (reason !== 0) throw new RangeError(new TextDecoder().decode(this.bytes(reason)));
+    if (reason !== 0) throw new RangeError(decoded(this.bytes(reason)));
   }
 }
 
@@ -60,6 +65,14 @@ export class Learner {
     this.#module = new Instance();
     this.#module.bytes(4 * words.length).set(new Uint8Array(Uint32Array.from(words).buffer));
     this.#module.exports.begin(episodes, words.length);
+  }
+
+  static get name() {
+    return "Learner";
+  }
+
+  get __v_skip() {
+    return true;
   }
 
   train(...others) {
@@ -85,6 +98,14 @@ export class Perceptron {
 
   constructor(file) {
     this.#module.load("the policy", file, this.#module.exports.load_perceptron);
+  }
+
+  static get name() {
+    return "Perceptron";
+  }
+
+  get __v_skip() {
+    return true;
   }
 
   act(acrobot) {

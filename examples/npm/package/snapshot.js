@@ -1,6 +1,6 @@
 // The checksum and the header of a snapshot.
 
-import { invalid } from "./wasm.js";
+import { copied } from "./wasm.js";
 
 /** CRC-32 as in zlib. postcard's `crc32` functions append it to a snapshot, too. */
 function checksum(bytes) {
@@ -27,10 +27,7 @@ export function seal(parts) {
 
 /** A snapshot without its checksum. */
 export function unseal(snapshot) {
-  if (!(snapshot instanceof Uint8Array)) throw invalid("the snapshot must be a Uint8Array", snapshot, []);
-  // A copy, because other threads may write shared memory, and a proxy can run code.
-  const copy = new Uint8Array(snapshot.length);
-  for (let i = 0; i < copy.length; i++) copy[i] = snapshot[i];
+  const copy = copied("the snapshot", snapshot);
   const content = copy.subarray(0, -4);
   if (copy.length < 4 || new DataView(copy.buffer).getUint32(content.length, true) !== checksum(content)) {
     throw new RangeError(`the snapshot must have the bytes of snapshot(), got ${copy.length} bytes with another checksum`);
@@ -40,7 +37,9 @@ export function unseal(snapshot) {
 
 /** The header of a snapshot: two texts after their lengths, with the version between them. */
 export function header(bytes) {
-  const text = (start) => new TextDecoder().decode(bytes.subarray(start + 1, start + 1 + bytes[start]));
+  const text = (at) => String.fromCharCode(...bytes.subarray(at + 1, at + 1 + bytes[at]));
   const version = 1 + bytes[0];
-  return `"${text(0)}", version ${bytes[version]}, arithmetic "${text(version + 1)}"`;
+  const words = `"${text(0)}", version ${bytes[version]}, arithmetic "${text(version + 1)}"`;
+  const isHeader = /^"\w+", version \d+, arithmetic "\w+"$/.test(words);
+  return isHeader ? words : `${bytes.length} other bytes`;
 }

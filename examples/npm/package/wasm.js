@@ -2,14 +2,31 @@
 
 import { inflate } from "./inflate.js";
 
-/* global LENGTH, MODULE: wasm.mjs defines the module's length in bytes, and the module in DEFLATE and base64. */
+/*
+ * global LENGTH, MODULE, EXPORTS: wasm.mjs defines the module's length in bytes, the module in DEFLATE
+ * and base64, and the names of its exports.
+ */
 
 let compiled;
+
+export function moduleBytes() {
+  return inflate(Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0)), LENGTH);
+}
+
+export function setModule(module) {
+  if (Object.prototype.toString.call(module) !== "[object WebAssembly.Module]") {
+    throw invalid("module must be a WebAssembly.Module", module, []);
+  }
+  const names = WebAssembly.Module.exports(module).map(({ name }) => name).join();
+  const rule = "module must be compiled from the moduleBytes() of this version";
+  if (names !== EXPORTS) throw new TypeError(`${rule}, got one that exports ${names}`);
+  compiled = module;
+}
 
 /** The functions of a new instance. A content security policy rejects the module, or in WebKit its instance. */
 export function instantiate() {
   try {
-    compiled ??= new WebAssembly.Module(inflate(Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0)), LENGTH));
+    compiled ??= new WebAssembly.Module(moduleBytes());
     return new WebAssembly.Instance(compiled).exports;
   } catch (cause) {
     if (cause instanceof RangeError) throw cause; // no memory
@@ -18,19 +35,26 @@ export function instantiate() {
   }
 }
 
-let exports;
+// Bundlers to CommonJS do not rename a variable `exports`.
+let shared;
 
 /** The functions of the one instance that all acrobots share. */
 export function wasm() {
-  return (exports ??= instantiate());
+  return (shared ??= instantiate());
 }
 
 let numbersView = new Float32Array();
 let bytesView = new Uint8Array();
 
-/** The memory for six numbers. Like every view of the module's memory, it has length 0 once that memory has grown. */
+/**
+ * The memory for sixteen numbers. Like every view of the module's memory, it has length 0 once that
+ * memory has grown.
+ */
 export function numbers() {
-  if (numbersView.length === 0) numbersView = new Float32Array(wasm().memory.buffer, wasm().bytes(), 6);
+  if (numbersView.length === 0) {
+    const { memory, bytes } = wasm();
+    numbersView = new Float32Array(memory.buffer, bytes(), 16);
+  }
   return numbersView;
 }
 
@@ -40,14 +64,41 @@ export function bytes() {
   return bytesView;
 }
 
+/** A text of the module. jsdom has no TextDecoder. */
+export function decoded(utf8) {
+  const codes = Array.from(utf8, (byte) => `%${byte.toString(16).padStart(2, "0")}`);
+  return decodeURIComponent(codes.join(""));
+}
+
+/** The type of a typed array of any realm, or undefined for other values. */
+const TypedArray = Object.getPrototypeOf(Uint8Array.prototype);
+const { get: typeOf } = Object.getOwnPropertyDescriptor(TypedArray, Symbol.toStringTag);
+
+/** Whether a value is a Uint8Array and no proxy of one. Its elements are bytes. */
+export const isBytes = (value) => typeOf.call(value) === "Uint8Array";
+
+/** A copy of a Uint8Array: other threads may write shared memory, and a proxy can run code. */
+export function copied(what, given) {
+  const valid = isBytes(given) || given instanceof Uint8Array;
+  if (!valid) throw invalid(`${what} must be a Uint8Array`, given, []);
+  const copy = new Uint8Array(given.length);
+  for (let i = 0; i < copy.length; i++) copy[i] = given[i];
+  return copy;
+}
+
 /** A value in an error message. */
 function shown(value) {
   if (typeof value === "function") return "a function";
   if (typeof value === "bigint") return `${value}n`;
+  if (Object.is(value, -0)) return "-0";
   if (typeof value !== "string" && Object(value) !== value) return String(value);
   const tag = Object.prototype.toString.call(value);
+  // JSON has neither NaN and infinity, nor -0 and undefined.
+  const isMarked = (each) => typeof each === "number" || each === undefined;
+  const marked = (_, each) => (isMarked(each) ? `\0${shown(each)}\0` : each);
   try {
-    const text = / (Object|Array|String)]/.test(tag) ? JSON.stringify(value) : tag;
+    const json = () => JSON.stringify(value, marked).replace(/"\\u0000(.*?)\\u0000"/g, "$1");
+    const text = / (Object|Array|String)]/.test(tag) ? json() : tag;
     return text.length > 80 ? `${text.slice(0, 80)}…` : text;
   } catch {
     return tag; // a cycle, a BigInt
@@ -55,8 +106,16 @@ function shown(value) {
 }
 
 /** The error for a value outside its range, which has one of these types, or of another type. */
-export function invalid(rule, value, types = ["number"]) {
-  return new (types.includes(typeof value) ? RangeError : TypeError)(`${rule}, got ${shown(value)}`);
+export function invalid(rule, value, types = ["number"], note = "") {
+  const Type = types.includes(typeof value) ? RangeError : TypeError;
+  return new Type(`${rule}, got ${shown(value)}${note}`);
+}
+
+/** The error for a number whose single precision is outside its range, or for another value. */
+export function invalidSingle(rule, value) {
+  const single = typeof value === "number" ? Math.fround(value) : value;
+  const lost = Number.isFinite(value) && value !== 0 && (single === 0 || !Number.isFinite(single));
+  return invalid(rule, value, ["number"], lost ? `, which is ${single} in single precision` : "");
 }
 
 /**
@@ -99,10 +158,7 @@ export function writeSeed(seed) {
 /** Throws if the module has rejected numbers: then `length` is that of the reason. `valueOf` returns the number with a name. */
 export function accept(length, valueOf) {
   if (length === 0) return;
-  const [name, rule, unit] = new TextDecoder().decode(bytes().slice(0, length)).split("\n");
+  const [name, rule, unit] = decoded(bytes().slice(0, length)).split("\n");
   const camel = name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
-  const value = valueOf(camel);
-  const rounded = Math.fround(value);
-  const lost = Number.isFinite(value) && value !== 0 && (rounded === 0 || !Number.isFinite(rounded));
-  throw new RangeError(`${camel} must be ${rule} ${unit}, got ${value}${lost ? `, which is ${rounded} in single precision` : ""}`);
+  throw invalidSingle(`${camel} must be ${rule} ${unit}`, valueOf(camel));
 }

@@ -7,6 +7,7 @@ import { inspect } from "node:util";
 
 import { ACTIONS, bits as bitsOf, trace } from "../../web/test/native.mjs";
 import { Acrobot, Batch } from "../dist/index.js";
+import { Learner } from "../dist/policies.js";
 import { sealed } from "./module.mjs";
 
 const bits = ({ state }) => bitsOf(Object.values(state));
@@ -58,8 +59,11 @@ test("parameters act as natively", () => {
   const params = { ...numbers, torques: [-3, 0.25, 4], dynamics: "nips" };
   acrobot.setParams(params);
   assert.deepEqual(acrobot.params, params);
-  acrobot.setParams({ gravity: 0 });
-  assert.deepEqual(acrobot.params, { ...params, gravity: 0 });
+  for (const gravity of [0, -0]) {
+    acrobot.setParams({ gravity });
+    assert.deepEqual(acrobot.params, { ...params, gravity });
+    assert.deepEqual(Acrobot.restore(acrobot.snapshot()).params, { ...params, gravity });
+  }
 });
 
 test("reset, limit, state, energy and height are the crate's", () => {
@@ -179,6 +183,10 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
     [() => acrobot.setParams({ length1: 1e-60 }), "RangeError", "length1 must be finite and above 0 m, got 1e-60, which is 0 in single precision"],
     [() => acrobot.setParams({ torques: [0, NaN, 1] }), "RangeError", "torques[1] must be a finite number of N m, got NaN"],
     [() => acrobot.setParams({ torques: [0, 1] }), "TypeError", "torques must be an array of 3 numbers, got [0,1]"],
+    [() => acrobot.setParams({ torques: [-0, NaN, undefined, [-Infinity], "NaN"] }), "TypeError", 'torques must be an array of 3 numbers, got [-0,NaN,undefined,[-Infinity],"NaN"]'],
+    [() => acrobot.setParams({ dt: -0 }), "RangeError", "dt must be finite and above 0 s, got -0"],
+    [() => acrobot.setParams({ mass1: { kg: NaN } }), "TypeError", 'mass1 must be a number, got {"kg":NaN}'],
+    [() => new Acrobot({ maxSteps: -0 }), "RangeError", `${MAX_STEPS}-0`],
     [() => acrobot.setParams({ torques: 1 }), "TypeError", "torques must be an array of 3 numbers, got 1"],
     [() => acrobot.setParams({ dynamics: "Nips" }), "TypeError", 'dynamics must be "book" or "nips", got "Nips"'],
     [() => acrobot.setParams({ mass: 1 }), "TypeError", /^params must be among length1, .*dynamics, got mass$/],
@@ -299,4 +307,7 @@ test("a method rejects what is no acrobot, whose address it would not have", () 
   for (const wrong of [{}, new Batch({ count: 1 }), new Proxy(new Acrobot(), {}), new base(), Reflect.construct(base, ["acrobot", 4096], Acrobot)]) {
     assert.throws(() => Acrobot.prototype.step.call(wrong, 1), TypeError);
   }
+  // Vue's proxies leave objects with this property alone.
+  const kinds = [new Acrobot(), new Batch({ count: 1 }), new Learner()];
+  assert.ok(kinds.every((each) => each.__v_skip));
 });

@@ -133,12 +133,37 @@ test("acrobots with own parameters have the bits of acrobots alone, also after a
       for (const each of [batch, resumed]) assert.deepEqual(each.state(i), others[i].state);
     }
   }
+  // Parameters that a change does not name stay those of each acrobot.
+  batch.setParams({ dt: 0.1, torques: [-2, 0, 2] });
+  others.forEach((other, i) => {
+    other.setParams({ dt: 0.1, torques: [-2, 0, 2] });
+    assert.deepEqual(batch.paramsOf(i), other.params);
+  });
+  batch.setParamsOf(COUNT - 1, { centerOfMass1: 0 });
+  const all = () => others.map((_, i) => batch.paramsOf(i));
+  const changed = all();
+  assert.throws(() => batch.setParams({ inertia1: 0 }), /^RangeError: inertia1 must be above 0 kg m²/);
+  assert.deepEqual(all(), changed);
   const before = batch.paramsOf(3);
   assert.throws(() => batch.setParamsOf(3, { mass1: -1 }), /^RangeError: mass1 must be finite and above 0 kg, got -1$/);
   assert.throws(() => batch.setParamsOf(COUNT, { mass1: 1 }), /index must be/);
   assert.deepEqual(batch.paramsOf(3), before);
   assert.throws(() => new Batch(OPTIONS).setParamsOf(0, { mass1: 2 }), /must be made with ownParams/);
   assert.throws(() => new Batch({ ...OPTIONS, ownParams: 1 }), /^TypeError: ownParams must be true or false, got 1$/);
+});
+
+test('with "Disabled" a snapshot is that of Rust, then `ended`, each with a checksum', () => {
+  const make = (autoreset) => new Batch({ ...OPTIONS, autoreset });
+  const [batch, other] = ["Disabled", "NextStep"].map(make);
+  const rust = Buffer.from(other.snapshot().subarray(0, -4));
+  assert.equal(rust[30], 0);
+  rust[30] = 2; // the mode
+  const ended = Buffer.alloc(COUNT);
+  assert.deepEqual(Buffer.from(batch.snapshot()), sealed(Buffer.concat([sealed(rust), ended])));
+  // One of Rust does not have `ended`.
+  for (const wrong of [sealed(rust), sealed(Buffer.concat([sealed(rust), ended.fill(2)]))]) {
+    assert.throws(() => Batch.restore(wrong), /^RangeError: the snapshot must be a valid one of a batch/);
+  }
 });
 
 test("a batch's snapshot has the bytes of Rust's postcard, and any other is rejected", () => {

@@ -7,6 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
+import { createContext, runInContext } from "node:vm";
 
 import { buildSync } from "esbuild";
 
@@ -63,8 +64,11 @@ async function open(html, play = () => {}) {
 test("the package has at most 120 KB and these files", () => {
   const [{ name, files, unpackedSize }] = JSON.parse(run("npm", ["pack", "--json", "--dry-run", join(here, "dist")]));
   const paths = files.map(({ path }) => path).sort();
-  const entries = ["index", "policies"].flatMap((entry) => [`${entry}.d.cts`, `${entry}.d.ts`, `${entry}.js`]);
-  assert.deepEqual(paths, ["LICENSE-APACHE", "LICENSE-MIT", "README.md", ...entries.slice(0, 3), "package.json", ...entries.slice(3)]);
+  const entries = ["index", "policies"].flatMap((entry) =>
+    ["cjs", "d.cts", "d.ts", "js"].map((type) => `${entry}.${type}`),
+  );
+  const others = ["LICENSE-APACHE", "LICENSE-MIT", "README.md", "package.json"];
+  assert.deepEqual(paths, [...others, ...entries].sort());
   assert.ok(unpackedSize <= 120_000, `the package must have at most 120,000 bytes, got ${unpackedSize}`);
   assert.equal(name, "acrobot-rs");
 });
@@ -82,6 +86,9 @@ test("the programs of the documentation run in Node.js and print what they say",
     writeFileSync(join(folder, `program${i}.mjs`), program);
     assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));
   });
+  const required = 'const { Acrobot } = require("acrobot-rs"); console.log(Acrobot.name);';
+  // From Node.js 20.19 on.
+  if (process.features.require_module) assert.equal(run("node", ["--eval", required]), "Acrobot\n");
 });
 
 test("types pass tsc --strict, with the newest TypeScript and with 5.2", () => {
@@ -107,17 +114,70 @@ test("types pass tsc --strict, with the newest TypeScript and with 5.2", () => {
   for (const tsc of [newest, oldest]) assert.equal(run("node", [tsc, ...server]), "");
 });
 
-test("bundles of every format run in Node.js and in a browser", async () => {
+test("no linter of packages has a warning", () => {
+  const packed = join(here, `acrobot-rs-${version}.tgz`);
+  const lint = (name, ...options) => run(join(here, "node_modules/.bin", name), [packed, ...options]);
+  assert.match(lint("publint", "--strict"), /All good!/);
+  assert.match(lint("attw", "--format", "ascii"), /No problems found/);
+});
+
+/** A bundle of a program for es2020, which has no top-level await; Vite 6 and others compile for it. */
+const bundled = (contents, format, minify) => {
+  const stdin = { contents, resolveDir: folder };
+  const options = { stdin, bundle: true, format, minify, target: "es2020", globalName: "bundle" };
+  return buildSync({ ...options, write: false }).outputFiles[0].text;
+};
+
+test("bundles of every format run in Node.js and in a browser, with the classes' names", async () => {
+  const names = `
+    import { Batch } from "acrobot-rs";
+    import { Learner, Perceptron } from "acrobot-rs/policies";
+    console.log([Acrobot, Batch, Learner, Perceptron].map(({ name }) => name).join());`;
   for (const format of ["esm", "cjs", "iife"]) {
-    const outfile = join(folder, `bundle-${format}.${format === "esm" ? "mjs" : "cjs"}`);
-    // es2020 has no top-level await; Vite 6 and others compile for it.
-    buildSync({ entryPoints: [join(folder, "program0.mjs")], bundle: true, format, target: "es2020", minify: true, outfile });
-    assert.equal(run("node", [outfile]).trim(), printed(PROGRAMS[0]));
+    for (const minify of [false, true]) {
+      const path = join(folder, `bundle.${format === "esm" ? "mjs" : "cjs"}`);
+      writeFileSync(path, bundled(PROGRAMS[0] + names, format, minify));
+      const lines = [printed(PROGRAMS[0]), "Acrobot,Batch,Learner,Perceptron", ""];
+      assert.deepEqual(run("node", [path]).split("\n"), lines);
+    }
   }
-  cpSync(join(folder, "bundle-iife.cjs"), join(folder, "bundle.js"));
+  writeFileSync(join(folder, "bundle.js"), bundled(PROGRAMS[0], "iife", true));
   const page = (sources) => `<meta http-equiv="content-security-policy" content="script-src ${sources}"><script src="bundle.js"></script>`;
   assert.deepEqual(await open(page("'self' 'wasm-unsafe-eval'")), [printed(PROGRAMS[0])]);
   await assert.rejects(open(page("'self'")), /acrobot-rs needs WebAssembly with simd128, and 'wasm-unsafe-eval'/);
+});
+
+test("another realm, with few globals and without compilation, takes a compiled module", () => {
+  const program = 'export * from "acrobot-rs"; export * as policies from "acrobot-rs/policies";';
+  const context = createContext({ atob }, { codeGeneration: { wasm: false } });
+  runInContext("delete globalThis.FinalizationRegistry", context);
+  const own = runInContext(`${bundled(program, "iife", false)}; bundle`, context);
+  const { Acrobot, Batch, moduleBytes, policies, setModule } = own;
+  assert.throws(() => new Acrobot(), { message: /^acrobot-rs needs WebAssembly .*: .*disallowed/ });
+  const modules = [own, policies].map(({ moduleBytes }) => new WebAssembly.Module(moduleBytes()));
+  const message = "module must be a WebAssembly.Module, got [object Uint8Array]";
+  assert.throws(() => setModule(moduleBytes()), { message });
+  const other = /^module must be compiled from the moduleBytes\(\) of this version, got .*begin/;
+  assert.throws(() => setModule(modules[1]), { message: other });
+  setModule(modules[0]);
+  policies.setModule(modules[1]);
+
+  const acrobot = new Acrobot({ seed: 42 });
+  while (!acrobot.step(policies.bangBang(acrobot)).terminated);
+  assert.equal(acrobot.elapsed, 94);
+  acrobot.restore(Buffer.from(new Acrobot({ seed: 42 }).snapshot()));
+  assert.equal(acrobot.elapsed, 0);
+  assert.deepEqual([...new Batch({ count: 2 }).step(Uint8Array.of(0, 2)).rewards], [-1, -1]);
+  const gravity = "gravity must be a finite number of m/s², got NaN";
+  assert.throws(() => acrobot.setParams({ gravity: NaN }), { message: gravity });
+  const batch = new Batch({ count: 1 }).snapshot();
+  assert.throws(() => acrobot.restore(batch), { message: /arithmetic "fast", got \d+ other bytes$/ });
+  const policy = readFileSync(join(root, "examples/policy/policy.bin"));
+  assert.equal(new policies.Perceptron(policy).act(acrobot), 2);
+  const learner = new policies.Learner({ seed: 1 });
+  learner.load(Buffer.from(learner.save()));
+  assert.throws(() => learner.load(policy), { message: /^weights must begin with the bytes TILE$/ });
+  acrobot.free();
 });
 
 /** Waits until a canvas shows another picture. */

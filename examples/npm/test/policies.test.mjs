@@ -65,6 +65,7 @@ test("invalid weights are rejected with the native message, as other invalid arg
     [() => learner.load(new Uint8Array(1e6)), "RangeError", "weights must have at most 524288 bytes, got 1000000"],
     [() => learner.load([...good]), "TypeError", /^weights must be a Uint8Array, got \[.*…$/],
     [() => learner.act({ state: { theta1: NaN } }), "RangeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got NaN"],
+    [() => learner.act({ state: { theta1: 1e300 } }), "RangeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got 1e+300, which is Infinity in single precision"],
     [() => learner.train(10), "TypeError", "train() must have no arguments, got 10"],
     ...[undefined, {}, new Batch({ count: 1 }), new Acrobot().observation].flatMap((wrong) => [
       [() => learner.act(wrong), "TypeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got undefined"],

@@ -1,5 +1,6 @@
 // Compiles with `tsc --strict`: valid uses have types, and others are errors.
 
+import { moduleBytes, setModule } from "acrobot-rs";
 import { Acrobot, Batch, type Action, type BatchStep, type Context, type Options, type Params, type State, type Step } from "acrobot-rs";
 import { Learner, bangBang, energyLaw, uprightEnergy } from "acrobot-rs/policies";
 
@@ -35,6 +36,8 @@ batch.setState(0, acrobot.state);
 const copied: Batch = Batch.restore(batch.snapshot());
 const mode: "NextStep" | "SameStep" | "Disabled" = copied.settings.autoreset;
 
+setModule(new WebAssembly.Module(Uint8Array.from(moduleBytes())));
+
 export function draw(onPage: CanvasRenderingContext2D, offscreen: OffscreenCanvasRenderingContext2D, other: Context) {
   acrobot.draw(onPage);
   acrobot.draw(offscreen, { size: 100, colors: { link: "#08c" } });
@@ -57,6 +60,8 @@ new Acrobot({ sed: 1 });
 acrobot.setParams({ mass: 1 });
 // @ts-expect-error
 acrobot.energy = 1;
+// @ts-expect-error
+setModule("acrobot.wasm");
 // @ts-expect-error
 acrobot.restore([1, 2]);
 // @ts-expect-error

@@ -1,7 +1,7 @@
 // One episode: its seed, parameters, actions and states.
 
 import { Acrobot } from "./acrobot-rs/index.js";
-import { LIMIT } from "./settings.js";
+import { LIMIT, textOf } from "./settings.js";
 
 export class Game {
   acrobot = new Acrobot();
@@ -111,7 +111,7 @@ export class Game {
 /** The shortest decimal that rounds to the same number in single precision. */
 export function shortest(number) {
   for (let digits = 1; ; digits++) {
-    const text = String(Number(number.toPrecision(digits)));
+    const text = number === 0 ? textOf(number) : String(Number(number.toPrecision(digits)));
     if (digits === 17 || Math.fround(Number(text)) === number) return text;
   }
 }

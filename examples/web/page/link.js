@@ -1,6 +1,6 @@
 // A run in an address, after the #: seed, parameters that differ from Gymnasium's, and actions.
 
-import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed } from "./settings.js";
+import { DEFAULTS, LIMIT, PARAMETERS, parseNumber, parseSeed, textOf } from "./settings.js";
 
 /** Fills the last byte, which has room for four actions. No action has this number. */
 const PADDING = 3;
@@ -31,7 +31,7 @@ export function decodeActions(text) {
 export function encodeRun({ seed, params, actions }) {
   const fields = new URLSearchParams({ seed });
   for (const [name, value] of Object.entries(params)) {
-    if (value !== DEFAULTS[name]) fields.set(name, value);
+    if (value !== DEFAULTS[name]) fields.set(name, textOf(value));
   }
   if (actions.length > 0) fields.set("actions", encodeActions(actions));
   return `#${fields}`;
@@ -44,8 +44,12 @@ export function decodeRun(hash) {
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
   if (unknown !== undefined) throw new Error(`names in the link must be ${known.join(", ")}, got "${unknown}"`);
   const params = { ...DEFAULTS };
-  for (const { name } of PARAMETERS) {
-    if (fields.has(name)) params[name] = parseNumber(fields.get(name));
+  for (const { name, unit } of PARAMETERS) {
+    const text = fields.get(name);
+    if (text === null) continue;
+    params[name] = parseNumber(text);
+    const rule = `${name} must be a finite number of ${unit}`;
+    if (!Number.isFinite(params[name])) throw new Error(`${rule}, got ${text || "an empty text"}`);
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
   return { seed: parseSeed(fields.get("seed") ?? "42"), params, actions: decodeActions(fields.get("actions") ?? "") };

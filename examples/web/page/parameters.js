@@ -2,7 +2,7 @@
 // rejected.
 
 import { minus } from "./plot.js";
-import { DEFAULTS, PARAMETERS, parseNumber } from "./settings.js";
+import { DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -35,7 +35,8 @@ export function parametersPanel(get, set) {
     const reason = field.querySelector(".reason");
     const change = () => {
       attempt(text, reason, () => set({ ...get(), [name]: parseNumber(text.value) }));
-      reason.textContent = reason.textContent.replace(/NaN$/, () => text.value.trim() || "an empty text");
+      const given = text.value.trim() || "an empty text";
+      reason.textContent = reason.textContent.replace(/(NaN|−?Infinity)$/, () => given);
     };
     slider.oninput = () => {
       text.value = slider.value;
@@ -46,7 +47,7 @@ export function parametersPanel(get, set) {
       change();
     };
     return () => {
-      slider.value = text.value = get()[name];
+      slider.value = text.value = textOf(get()[name]);
       attempt(text, reason, () => {});
     };
   });

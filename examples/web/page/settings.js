@@ -29,6 +29,9 @@ export function parseSeed(text) {
   return BigInt(digits);
 }
 
+/** A number as text, which has the sign of a zero. */
+export const textOf = (number) => (Object.is(number, -0) ? "-0" : String(number));
+
 /** The number in a text, or NaN if the text is not a number. */
 export function parseNumber(text) {
   return text.trim() === "" ? NaN : Number(text);

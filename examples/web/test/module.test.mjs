@@ -13,7 +13,7 @@ import { ACTIONS } from "./native.mjs";
 const CONTEXT = new Proxy({ canvas: { width: 1, height: 1 } }, { get: (target, name) => target[name] ?? (() => {}) });
 
 test("numbers are written with the fewest digits that keep single precision", () => {
-  for (const text of ["0", "0.1", "-0.054791212", "3.1415927", "1e-7", "16777216"]) {
+  for (const text of ["0", "-0", "0.1", "-0.054791212", "3.1415927", "1e-7", "16777216"]) {
     assert.equal(shortest(Math.fround(Number(text))), text);
   }
 });
@@ -70,10 +70,18 @@ test("an invalid link is rejected with the reason", () => {
     ["#seed=4&actions=wAAA", /^action 1 must be 0, 1 or 2, got 3$/],
     [`#seed=4&actions=${"A".repeat(700)}`, /^actions must be at most 500, got 2100$/],
     ["#seed=-4", /^seed must be .*, got '-' as character 1$/],
+    ["#seed=4&dt=1e999", /^dt must be a finite number of s, got 1e999$/],
+    ["#seed=4&gravity=g", /^gravity must be a finite number of m\/s², got g$/],
+    ["#seed=4&mass1=", /^mass1 must be a finite number of kg, got an empty text$/],
     ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
   ]) {
     assert.throws(() => decodeRun(bad), { message });
   }
+});
+
+test("a link keeps the sign of a zero", () => {
+  const run = { seed: 4n, params: { ...DEFAULTS, gravity: -0 }, actions: [2] };
+  assert.deepEqual(decodeRun(encodeRun(run)), run);
 });
 
 test("any link is replayed or is rejected with the reason", () => {

@@ -142,7 +142,7 @@ onPage("parameters change the physics as in the crate, and invalid ones are reje
   const state = await shownBits(page);
   assert.deepEqual(state, trace("42", ACTIONS, "--dt", "0.05", "--nips").at(-1));
 
-  for (const [value, got] of [["-0.1", "−0.1"], ["0", "0"], ["abc", "abc"], [" ", "an empty text"], ["1e999", "Infinity"]]) {
+  for (const [value, got] of [["-0.1", "−0.1"], ["0", "0"], ["abc", "abc"], [" ", "an empty text"], ["1e999", "1e999"]]) {
     await page.fill("#dt", value);
     assert.equal(await text(page, "#dt-reason"), `dt must be finite and above 0 s, got ${got}`);
   }

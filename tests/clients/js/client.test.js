@@ -1,0 +1,28 @@
+// Jest, as CommonJS, and Vitest run this in jsdom: some globals are missing, and Node.js's bytes are those of another realm.
+
+import { Acrobot } from "acrobot-rs";
+import { Learner, bangBang } from "acrobot-rs/policies";
+import { isProxy, reactive, ref } from "vue";
+
+test("an episode has as many steps as Gymnasium's", () => {
+  const acrobot = new Acrobot({ seed: 42 });
+  while (!acrobot.step(bangBang(acrobot)).terminated);
+  expect(acrobot.elapsed).toBe(94);
+});
+
+test("Node.js's bytes are a snapshot, and errors have texts", () => {
+  const acrobot = new Acrobot({ seed: 42 });
+  const bytes = Buffer.from(acrobot.snapshot());
+  acrobot.step(2);
+  acrobot.restore(bytes);
+  expect(acrobot.elapsed).toBe(0);
+  const message = "gravity must be a finite number of m/s², got NaN";
+  expect(() => acrobot.setParams({ gravity: NaN })).toThrow(message);
+});
+
+test("Vue leaves acrobots and learners alone", () => {
+  const acrobot = ref(new Acrobot({ seed: 42 }));
+  const { learner } = reactive({ learner: new Learner({ episodes: 1, seed: 1 }) });
+  expect([acrobot.value, learner].map(isProxy)).toEqual([false, false]);
+  expect(learner.act(acrobot.value)).toBeLessThan(3);
+});
