@@ -172,6 +172,16 @@ impl<S: Real, F: Friction<S, Of<S> = F>> Params<S, F> {
         })
     }
 
+    /// Whether all bits are the same. `==` takes −0 for 0.
+    pub(crate) fn same(&self, other: &Self) -> bool {
+        let [bits, other_bits] = [self, other].map(|params| {
+            let numbers = params.fields().into_iter().map(|(_, x, ..)| x);
+            let friction = friction::fields(&params.friction).map(|(_, x)| x);
+            numbers.chain(friction).map(|x| x.to_f64().to_bits())
+        });
+        self.dynamics == other.dynamics && bits.eq(other_bits)
+    }
+
     /// The same parameters, for a form of the equations without friction.
     #[must_use]
     #[inline]
@@ -182,7 +192,7 @@ impl<S: Real, F: Friction<S, Of<S> = F>> Params<S, F> {
 
 impl<S: Copy, F: Copy> Params<S, F> {
     /// The name, value, unit and range of each number.
-    pub(super) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
+    pub(crate) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
         use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
 
         let [negative, zero, positive] = self.torques;
