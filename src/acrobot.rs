@@ -19,6 +19,7 @@ pub const REWARD_THRESHOLD: f32 = -100.0;
 /// `O` is the type of the observation, `I` that of further information, such as the `Info` of an `Env`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Step<O = Observation, I = ()> {
     /// The observation of the new state.
     pub observation: O,

@@ -1,6 +1,7 @@
 //! Observations: the six numbers of `Acrobot-v1`, or the four of `Acrobot-v0`.
 
 use core::f32::consts::PI;
+use core::ops::Deref;
 
 use crate::arithmetic::Arithmetic;
 use crate::math::{Real, SinCos};
@@ -26,6 +27,7 @@ use crate::physics::{State, Task, directions};
 ///
 /// let [cos_theta1, ..] = seen.to_array();
 /// assert!(cos_theta1 > 0.99);
+/// assert_eq!(seen[4], seen.dtheta1());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -38,10 +40,31 @@ impl<const N: usize> Observation<N> {
     pub const fn to_array(self) -> [f32; N] {
         self.0
     }
+
+    /// The numbers, to borrow.
+    #[must_use]
+    #[inline]
+    pub const fn as_slice(&self) -> &[f32] {
+        &self.0
+    }
 }
 
 macro_rules! accessors {
     ($($N:literal: $($index:literal $name:ident $doc:literal),*;)*) => {$(
+        #[cfg(feature = "serde")]
+        impl serde::Serialize for Observation<$N> {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                self.0.serialize(serializer)
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl<'de> serde::Deserialize<'de> for Observation<$N> {
+            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+                serde::Deserialize::deserialize(from).map(Self)
+            }
+        }
+
         impl Observation<$N> {
             $(
                 #[doc = $doc]
@@ -115,6 +138,23 @@ impl<const N: usize> From<[f32; N]> for Observation<N> {
     #[inline]
     fn from(numbers: [f32; N]) -> Self {
         Self(numbers)
+    }
+}
+
+impl<const N: usize> From<Observation<N>> for [f32; N] {
+    #[inline]
+    fn from(observation: Observation<N>) -> Self {
+        observation.0
+    }
+}
+
+impl<const N: usize> Deref for Observation<N> {
+    type Target = [f32; N];
+
+    /// The numbers, so that `observation[4]` and `observation.iter()` work as for an array.
+    #[inline]
+    fn deref(&self) -> &[f32; N] {
+        &self.0
     }
 }
 
