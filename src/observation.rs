@@ -31,6 +31,17 @@ use crate::physics::{State, Task, directions};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(
+        transparent,
+        bound(
+            serialize = "[f32; N]: serde::Serialize",
+            deserialize = "[f32; N]: serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct Observation<const N: usize = 6>([f32; N]);
 
 impl<const N: usize> Observation<N> {
@@ -51,20 +62,6 @@ impl<const N: usize> Observation<N> {
 
 macro_rules! accessors {
     ($($N:literal: $($index:literal $name:ident $doc:literal),*;)*) => {$(
-        #[cfg(feature = "serde")]
-        impl serde::Serialize for Observation<$N> {
-            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                self.0.serialize(serializer)
-            }
-        }
-
-        #[cfg(feature = "serde")]
-        impl<'de> serde::Deserialize<'de> for Observation<$N> {
-            fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-                serde::Deserialize::deserialize(from).map(Self)
-            }
-        }
-
         impl Observation<$N> {
             $(
                 #[doc = $doc]

@@ -115,19 +115,7 @@ impl Figure {
         Self::of(acrobot.pendulum())
     }
 
-    /// The figure of a pendulum, without a torque. A state alone is that of a pendulum:
-    ///
-    /// ```
-    /// use acrobot::physics::Pendulum;
-    /// use acrobot::render::Figure;
-    /// use acrobot::{Acrobot, Fast, Params};
-    ///
-    /// let acrobot = Acrobot::<Fast>::new(42);
-    /// let state = acrobot.state(); // or one that was recorded
-    /// let figure = Figure::of(&Pendulum::<Fast>::new(Params::DEFAULT, state)?);
-    /// assert_eq!(figure, Figure::new(&acrobot));
-    /// # Ok::<(), acrobot::Error>(())
-    /// ```
+    /// The figure of a pendulum, without a torque. For a state alone make its pendulum: `Pendulum::new(params, state)?`.
     #[must_use]
     pub fn of<A: Arithmetic>(pendulum: &Pendulum<A>) -> Self {
         let narrow = |x: A::Scalar| x.to_f64() as f32;

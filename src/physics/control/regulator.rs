@@ -8,22 +8,8 @@ use crate::physics::{Arithmetic, Pendulum};
 const LARGEST: f64 = 0.01;
 
 impl<A: Arithmetic> Pendulum<A> {
-    /// The [regulator](lqr) that holds the pendulum in its state, which must be in equilibrium under `torque`, N m.
-    ///
-    /// ```
-    /// use acrobot::physics::Pendulum;
-    /// use acrobot::physics::control::{discretize, lqr};
-    /// use acrobot::{Params, Portable, State};
-    ///
-    /// let mut pendulum = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
-    /// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
-    /// let regulator = pendulum.regulator(0.0, &q, 1.0)?;
-    /// assert_eq!(regulator, lqr(&discretize(&pendulum, 0.0)?, &q, 1.0)?);
-    ///
-    /// pendulum.set_state(State { theta2: 1.0, ..State::UPRIGHT })?;
-    /// assert!(pendulum.regulator(0.0, &q, 1.0).is_err()); // it would fall
-    /// # Ok::<(), acrobot::physics::control::ControlError>(())
-    /// ```
+    /// The [regulator](lqr) that holds the pendulum in its state, which must be in equilibrium under `torque`, N m:
+    /// [an example](crate::guide::control).
     ///
     /// # Errors
     ///
