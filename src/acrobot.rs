@@ -19,6 +19,7 @@ pub const REWARD_THRESHOLD: f32 = -100.0;
 /// `O` is the type of the observation, `I` that of further information, such as the `Info` of an `Env`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Step<O = Observation, I = ()> {
     /// The observation of the new state.
     pub observation: O,
@@ -129,7 +130,9 @@ impl<A: Arithmetic> Acrobot<A> {
 }
 
 impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
-    /// An acrobot with the default parameters, in an initial state drawn from `rng`.
+    /// An acrobot with the default parameters, in an initial state drawn from `rng`: any generator of
+    /// [`rand_core`](crate::rand_core) 0.10, which rand 0.10 uses. One of rand 0.9 needs [an
+    /// adapter](crate::guide::rust#generators).
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {
         let state = A::TASK.draw(A::TASK.reset_bounds(), &mut rng).cast();

@@ -124,6 +124,7 @@ pub trait Env {
 
 /// Further information from a reset or a step: Gymnasium's `info`. Acrobot itself adds none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Info {
     /// Statistics of the episode that this step ended, if [`RecordEpisodeStatistics`] records them.
     pub episode: Option<EpisodeStatistics>,
@@ -131,6 +132,7 @@ pub struct Info {
 
 /// Statistics of one episode.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EpisodeStatistics {
     /// The sum of its rewards.
     pub episode_return: f32,

@@ -112,5 +112,8 @@ pub use arithmetic::{Fast, Portable};
 pub use error::Error;
 pub use observation::Observation;
 pub use physics::{Params, State};
+/// The traits of generators, in the version of this crate: 0.10.
+#[doc(no_inline)]
+pub use rand_core;
 pub use reset_options::ResetOptions;
 pub use time_limit::TimeLimit;

@@ -1,6 +1,7 @@
 //! Observations: the six numbers of `Acrobot-v1`, or the four of `Acrobot-v0`.
 
 use core::f32::consts::PI;
+use core::ops::Deref;
 
 use crate::arithmetic::Arithmetic;
 use crate::math::{Real, SinCos};
@@ -26,9 +27,21 @@ use crate::physics::{State, Task, directions};
 ///
 /// let [cos_theta1, ..] = seen.to_array();
 /// assert!(cos_theta1 > 0.99);
+/// assert_eq!(seen[4], seen.dtheta1());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(
+        transparent,
+        bound(
+            serialize = "[f32; N]: serde::Serialize",
+            deserialize = "[f32; N]: serde::Deserialize<'de>"
+        )
+    )
+)]
 pub struct Observation<const N: usize = 6>([f32; N]);
 
 impl<const N: usize> Observation<N> {
@@ -37,6 +50,13 @@ impl<const N: usize> Observation<N> {
     #[inline]
     pub const fn to_array(self) -> [f32; N] {
         self.0
+    }
+
+    /// The numbers, to borrow.
+    #[must_use]
+    #[inline]
+    pub const fn as_slice(&self) -> &[f32] {
+        &self.0
     }
 }
 
@@ -115,6 +135,23 @@ impl<const N: usize> From<[f32; N]> for Observation<N> {
     #[inline]
     fn from(numbers: [f32; N]) -> Self {
         Self(numbers)
+    }
+}
+
+impl<const N: usize> From<Observation<N>> for [f32; N] {
+    #[inline]
+    fn from(observation: Observation<N>) -> Self {
+        observation.0
+    }
+}
+
+impl<const N: usize> Deref for Observation<N> {
+    type Target = [f32; N];
+
+    /// The numbers, so that `observation[4]` and `observation.iter()` work as for an array.
+    #[inline]
+    fn deref(&self) -> &[f32; N] {
+        &self.0
     }
 }
 

@@ -35,7 +35,7 @@ pub(crate) use frame::text;
 
 use crate::acrobot::Acrobot;
 use crate::arithmetic::{Arithmetic, Real};
-use crate::physics::directions;
+use crate::physics::{Pendulum, directions};
 
 /// The colours of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,9 +112,15 @@ impl Figure {
     /// The figure of an acrobot, without a torque.
     #[must_use]
     pub fn new<A: Arithmetic, R>(acrobot: &Acrobot<A, R>) -> Self {
+        Self::of(acrobot.pendulum())
+    }
+
+    /// The figure of a pendulum, without a torque. For a state alone make its pendulum: `Pendulum::new(params, state)?`.
+    #[must_use]
+    pub fn of<A: Arithmetic>(pendulum: &Pendulum<A>) -> Self {
         let narrow = |x: A::Scalar| x.to_f64() as f32;
-        let sin_cos = acrobot.pendulum().sin_cos();
-        let params = acrobot.params();
+        let sin_cos = pendulum.sin_cos();
+        let params = pendulum.params();
         let reach = params.length1 + params.length2 + A::Scalar::from_f64(0.2);
         let part = |x| narrow(x / reach);
         Self {

@@ -11,6 +11,8 @@ use acrobot::{
     State, Step, TimeLimit,
 };
 use common::{Repeating, bits, in_every_arithmetic};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
 
@@ -330,4 +332,37 @@ fn acrobots_can_begin_with_parameters() {
         ..heavy
     };
     assert!(Acrobot::<Portable>::with_params(42, without_mass).is_err());
+}
+
+/// A program that expects an array or a slice finds one.
+#[test]
+fn observations_are_arrays_and_are_stored() {
+    fn check<const N: usize>(seen: Observation<N>)
+    where
+        Observation<N>: Serialize + DeserializeOwned,
+    {
+        let numbers = <[f32; N]>::from(seen);
+        assert_eq!(numbers, seen.to_array());
+        assert_eq!(numbers, seen.as_slice());
+        assert_eq!((numbers[3], N), (seen[3], seen.len()));
+        assert!(numbers.iter().eq(seen.iter()));
+        assert_eq!(Observation::from(numbers), seen);
+
+        let json = serde_json::to_string(&seen).unwrap();
+        assert_eq!(json, serde_json::to_string(seen.as_slice()).unwrap());
+        assert_eq!(serde_json::from_str::<Observation<N>>(&json).unwrap(), seen);
+        let bytes = postcard::to_stdvec(&seen).unwrap();
+        assert_eq!(bytes.len(), 4 * N);
+        assert_eq!(postcard::from_bytes(&bytes), Ok(seen));
+    }
+    const HIGHEST: &[f32] = Observation::HIGH.as_slice();
+    assert_eq!(HIGHEST.len(), 6);
+
+    let mut acrobot = Acrobot::<Fast>::new(42);
+    let step = acrobot.step(Action::Positive);
+    check(step.observation);
+    check(Observation::<4>::from(acrobot.state()));
+    let json = serde_json::to_string(&step).unwrap();
+    assert_eq!(serde_json::from_str::<Step>(&json).unwrap(), step);
+    assert!(serde_json::from_str::<Observation>("[0,0,0,0]").is_err());
 }

@@ -208,7 +208,7 @@ fn a_link_of_almost_no_length_is_not_drawn() {
 
 #[test]
 fn a_frame_ignores_pixels_outside_it() {
-    let mut frame = Frame::new(3, 2);
+    let mut frame = Frame::new(3, 2).unwrap();
     let white = Theme::GYMNASIUM.background;
     let around = [(-1, 0), (3, 0), (0, -1), (0, 2)].map(|(x, y)| Pixel(Point::new(x, y), white));
     frame.draw_iter(around).unwrap();
@@ -222,7 +222,7 @@ fn a_frame_ignores_pixels_outside_it() {
 #[test]
 fn empty_frames_keep_their_size() {
     for (width, height) in [(0, 10), (10, 0), (0, 0), (0, u32::MAX), (u32::MAX, 0)] {
-        let mut frame = Frame::new(width, height);
+        let mut frame = Frame::new(width, height).unwrap();
         assert_eq!((frame.width(), frame.height()), (width, height));
         assert_eq!(frame.size(), Size::new(width, height));
         assert!(frame.bytes().is_empty());
@@ -235,8 +235,14 @@ fn empty_frames_keep_their_size() {
 }
 
 #[test]
-#[should_panic(expected = "capacity overflow")]
-fn a_frame_too_large_for_memory_panics() {
-    // Three bytes for each pixel are slightly more than 2⁶⁴.
-    let _ = Frame::new(u32::MAX, 1_431_655_766);
+fn a_frame_too_large_for_memory_is_rejected() {
+    // Three bytes for each pixel are slightly more than 2⁶⁴, and then less than 2⁶³, which no machine has.
+    for (height, pixels) in [
+        (1_431_655_766, "6148914692668173000"),
+        (500_000_000, "2147483647500000000"),
+    ] {
+        let error = Frame::new(u32::MAX, height).unwrap_err();
+        let message = "width × height must be small enough for the memory, in pixels";
+        assert_eq!(error.to_string(), format!("{message}, got {pixels}"));
+    }
 }

@@ -6,11 +6,12 @@ use std::fmt::Debug;
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Reference};
 use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{Dynamics, Lean, ResetBounds};
+use acrobot::physics::{Dynamics, Lean, ParamsRange, ResetBounds, Viscous};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use crc::{CRC_32_ISCSI, Crc};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 type Limited = TimeLimit<Acrobot<Portable>>;
 
@@ -129,6 +130,52 @@ fn snapshots_of_version_1_stay_readable() {
         stored(batch(), &mut lines),
     ];
     assert_eq!(found.concat(), file);
+}
+
+/// No field has a default: a snapshot without it is rejected by its name, also within a batch.
+#[test]
+fn every_missing_field_is_an_error() {
+    /// The pointer to the parent of each field in `value`, and the field's name.
+    fn fields(value: &Value, at: &str) -> Vec<(String, String)> {
+        let mut found = Vec::new();
+        for (name, inner) in value.as_object().into_iter().flatten() {
+            found.push((at.to_owned(), name.clone()));
+            found.extend(fields(inner, &format!("{at}/{name}")));
+        }
+        for (i, inner) in value.as_array().into_iter().flatten().enumerate() {
+            found.extend(fields(inner, &format!("{at}/{i}")));
+        }
+        found
+    }
+    fn check<T: Serialize + DeserializeOwned + Debug>(saved: &T, count: usize) {
+        let whole = serde_json::to_value(saved).unwrap();
+        let fields = fields(&whole, "");
+        assert_eq!(fields.len(), count);
+        for (at, name) in fields {
+            let mut value = whole.clone();
+            let parent = value.pointer_mut(&at).unwrap().as_object_mut();
+            parent.unwrap().remove(&name);
+            let error = serde_json::from_value::<T>(value).unwrap_err().to_string();
+            let expected = format!("missing field `{name}`");
+            assert!(error.contains(&expected), "{at}/{name}: {error}");
+        }
+    }
+    fn batch<A: Arithmetic>() -> VecBatch<A> {
+        let mut batch = VecBatch::with_own_params(SeedSequence::new(1), 2).unwrap();
+        let params = batch.params_of(0).unwrap();
+        let range = ParamsRange::new(params, params).unwrap();
+        batch.set_params_range(Some(range)).unwrap();
+        batch
+    }
+    check(&busy(), 33);
+    check(&TimeLimit::v1(Acrobot::<Damped<Fast>>::new(0)), 36);
+    check(&batch::<Fast>(), 96);
+    check(&batch::<Damped<Portable>>(), 108);
+    let friction = Viscous {
+        joint1: 0.5,
+        joint2: 0.25,
+    };
+    check(&Params::<f64>::DEFAULT.with_friction(friction), 18);
 }
 
 /// The error of loading `text` with `to` in place of `from`.

@@ -182,4 +182,5 @@ fn pictures_are_those_of_acrobots() {
     let mut acrobot = Acrobot::<Fast>::new(0);
     acrobot.set_state(swingup.state()).unwrap();
     assert_eq!(Figure::new(&swingup), Figure::new(&acrobot));
+    assert_eq!(Figure::of(swingup.pendulum()), Figure::new(&acrobot));
 }

@@ -71,7 +71,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         member.state.validate()?;
         self.block_of(index)?;
         match &self.settings.parameters {
-            Parameters::Shared(model) if model.params == member.params => {}
+            Parameters::Shared(model) if model.params.same(&member.params) => {}
             _ => self.set_params_of(index, member.params)?,
         }
         let (blocks, generators, lane_params) = self.storage.slices_mut();

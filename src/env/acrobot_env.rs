@@ -163,7 +163,7 @@ pub trait DynAcrobot {
     ///
     /// # Errors
     ///
-    /// Those of [`Acrobot::set_state`].
+    /// Those of [`Acrobot::set_state`], for the state as given and as rounded.
     fn set_state(&mut self, state: State) -> Result<(), crate::Error>;
 
     /// The parameters, converted to `f64` exactly.
@@ -186,7 +186,9 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
     }
 
     fn set_state(&mut self, state: State) -> Result<(), crate::Error> {
-        Self::set_state(self, state.cast())
+        state.validate()?;
+        let fields = state.fields().map(|(name, value, _)| (name, value));
+        Self::set_state(self, state.cast()).map_err(|error| as_given(error, &fields))
     }
 
     fn params(&self) -> Params {
@@ -196,10 +198,32 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
     fn set_params(&mut self, params: Params) -> Result<(), crate::Error> {
         params.validate()?;
         let friction = Self::params(self).friction;
+        let fields = params.fields().map(|(name, value, ..)| (name, value));
         Self::set_params(self, params.cast().with_friction(friction))
+            .map_err(|error| as_given(error, &fields))
     }
 
     fn figure(&self) -> Figure {
         Figure::new(self)
+    }
+}
+
+/// The error of a number that is valid as `given`, and not after it was rounded to `f32`.
+fn as_given(error: crate::Error, given: &[(&'static str, f64)]) -> crate::Error {
+    let (name, rounded, unit) = match error {
+        crate::Error::OutOfRange {
+            name, value, unit, ..
+        } => (name, value, unit),
+        crate::Error::NoInertia { name, value } => (name, value, "kg m²"),
+        _ => return error,
+    };
+    match given.iter().find(|(other, _)| *other == name) {
+        Some(&(_, value)) if value != rounded => crate::Error::OutOfRange {
+            name,
+            value,
+            unit,
+            rule: "within its range as f32, in",
+        },
+        _ => error,
     }
 }

@@ -140,6 +140,7 @@ fn make_in<A: Arithmetic>(id: &str, options: Options) -> Result<Box<DynEnv>, Err
 
 /// The observation of either version.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DynObservation {
     /// Four numbers, in `Acrobot-v0`.
     V0(Observation<4>),

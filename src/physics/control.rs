@@ -11,6 +11,7 @@ mod inverse_dynamics;
 mod linearize;
 mod lqr;
 mod matrix;
+mod regulator;
 
 pub use discretize::{DiscreteModel, discretize};
 pub use error::ControlError;

@@ -34,7 +34,7 @@ pub enum Dynamics {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Params<S = f64, F = Frictionless> {
     /// Length of link 1, m; above 0.
     pub length1: S,
@@ -73,14 +73,9 @@ pub struct Params<S = f64, F = Frictionless> {
     /// [`Viscous`](super::Viscous).
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "takes_no_memory")
+        serde(skip_serializing_if = "snapshot::takes_no_memory")
     )]
     pub friction: F,
-}
-
-#[cfg(feature = "serde")]
-fn takes_no_memory<F>(_: &F) -> bool {
-    size_of::<F>() == 0
 }
 
 impl<S: Real, F: Default> Default for Params<S, F> {
@@ -177,6 +172,16 @@ impl<S: Real, F: Friction<S, Of<S> = F>> Params<S, F> {
         })
     }
 
+    /// Whether all bits are the same. `==` takes −0 for 0.
+    pub(crate) fn same(&self, other: &Self) -> bool {
+        let [bits, other_bits] = [self, other].map(|params| {
+            let numbers = params.fields().into_iter().map(|(_, x, ..)| x);
+            let friction = friction::fields(&params.friction).map(|(_, x)| x);
+            numbers.chain(friction).map(|x| x.to_f64().to_bits())
+        });
+        self.dynamics == other.dynamics && bits.eq(other_bits)
+    }
+
     /// The same parameters, for a form of the equations without friction.
     #[must_use]
     #[inline]
@@ -187,7 +192,7 @@ impl<S: Real, F: Friction<S, Of<S> = F>> Params<S, F> {
 
 impl<S: Copy, F: Copy> Params<S, F> {
     /// The name, value, unit and range of each number.
-    pub(super) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
+    pub(crate) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
         use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
 
         let [negative, zero, positive] = self.torques;
@@ -268,6 +273,67 @@ for_f32_and_f64! {
                 return Err(Error::NoInertia { name, value });
             }
             Ok(())
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+mod snapshot {
+    use serde::de::{Deserialize, Deserializer, Error};
+
+    use super::{Dynamics, Params};
+
+    pub fn takes_no_memory<F>(_: &F) -> bool {
+        size_of::<F>() == 0
+    }
+
+    type Loaded<S, F> = Params<S, Option<F>>;
+
+    /// Friction may be missing here: only its type tells whether a snapshot has it.
+    #[derive(serde::Deserialize)]
+    #[serde(rename = "Params", remote = "Loaded")]
+    struct Stored<S, F> {
+        length1: S,
+        length2: S,
+        mass1: S,
+        mass2: S,
+        center_of_mass1: S,
+        center_of_mass2: S,
+        inertia1: S,
+        inertia2: S,
+        gravity: S,
+        dt: S,
+        max_velocity1: S,
+        max_velocity2: S,
+        torques: [S; 3],
+        torque_noise: S,
+        dynamics: Dynamics,
+        #[serde(
+            default,
+            deserialize_with = "some",
+            bound(deserialize = "F: Deserialize<'de>")
+        )]
+        friction: Option<F>,
+    }
+
+    fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+        from: D,
+    ) -> Result<Option<T>, D::Error> {
+        T::deserialize(from).map(Some)
+    }
+
+    impl<'de, S, F> Deserialize<'de> for Params<S, F>
+    where
+        S: Copy + Deserialize<'de>,
+        F: Copy + Default + Deserialize<'de>,
+    {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            let params = Stored::<S, F>::deserialize(deserializer)?;
+            let none = F::default();
+            let missing = takes_no_memory(&none).then_some(none);
+            let friction = params.friction.or(missing);
+            let friction = friction.ok_or_else(|| D::Error::missing_field("friction"))?;
+            Ok(params.zip(&params, |x, _| x, friction))
         }
     }
 }

@@ -10,6 +10,7 @@ use embedded_graphics_core::geometry::{OriginDimensions, Point, Size};
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 use super::{Figure, Theme};
+use crate::error::Error;
 
 /// A picture of RGB bytes: Gymnasium's `rgb_array`, and an embedded-graphics target.
 ///
@@ -42,25 +43,41 @@ impl Frame {
     /// The figure in Gymnasium's size and colours: 500 × 500 pixels.
     #[must_use]
     pub fn of(figure: &Figure) -> Self {
-        let mut frame = Self::new(SIZE, SIZE);
+        let mut frame = Self::black(SIZE, SIZE);
         let Ok(()) = figure.draw(&mut frame, &Theme::GYMNASIUM);
         frame
     }
 
     /// A black frame of this size in pixels.
     ///
-    /// # Panics
+    /// # Errors
     ///
-    /// If it takes more than `isize::MAX` bytes. If the allocator has too little memory, the process aborts, as with
-    /// any `Vec`.
-    #[must_use]
-    pub fn new(width: u32, height: u32) -> Self {
+    /// [`Error::OutOfRange`] for a frame that does not fit into memory.
+    pub fn new(width: u32, height: u32) -> Result<Self, Error> {
         let pixels = (width as usize).saturating_mul(height as usize);
-        let bytes = std::vec![0; pixels.saturating_mul(3)];
-        Self {
+        let len = pixels.saturating_mul(3);
+        let mut bytes = Vec::new();
+        let reserved = bytes.try_reserve_exact(len);
+        reserved.map_err(|_| Error::OutOfRange {
+            name: "width × height",
+            value: f64::from(width) * f64::from(height),
+            unit: "pixels",
+            rule: "small enough for the memory, in",
+        })?;
+        bytes.resize(len, 0);
+        Ok(Self {
             width,
             height,
             bytes,
+        })
+    }
+
+    /// As [`new`](Self::new), for a size that is known to be small.
+    fn black(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            bytes: std::vec![0; 3 * (width * height) as usize],
         }
     }
 
@@ -119,7 +136,7 @@ pub(crate) fn text(figure: &Figure) -> String {
     /// The bit of each dot in a code point, by row and column within a character.
     const BITS: [[u32; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
-    let mut frame = Frame::new(2 * COLUMNS as u32, 4 * LINES as u32);
+    let mut frame = Frame::black(2 * COLUMNS as u32, 4 * LINES as u32);
     let Ok(()) = figure.draw(&mut frame, &Theme::MONOCHROME.map(Rgb888::from));
     let is_on = |x, y| frame.bytes.get(3 * (2 * COLUMNS * y + x)) == Some(&255);
     let character = |line, column| {

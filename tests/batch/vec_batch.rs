@@ -3,7 +3,7 @@
 use acrobot::batch::{Autoreset, Batch, Block, StepBuffers, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
-use acrobot::{Fast, ResetOptions};
+use acrobot::{Error, Fast, Params, ResetOptions};
 
 /// The owning batch steps as the one that borrows its memory.
 #[test]
@@ -108,5 +108,26 @@ fn a_replaced_member_is_reset_with_its_own_parameters() {
     for (i, member) in pending.into_iter().enumerate() {
         batch.set_member(i, member).unwrap();
         assert_eq!(batch.member(i), expected.member(i));
+    }
+}
+
+/// Where all share their parameters, a member's must have the same bits: a batch has no other zero to keep.
+#[test]
+fn a_member_with_another_zero_than_all_share_is_rejected() {
+    let with_gravity = |gravity| {
+        let mut batch = VecBatch::<Fast>::new(SeedSequence::new(3), 2).unwrap();
+        let params = Params {
+            gravity,
+            ..Params::DEFAULT
+        };
+        batch.set_params(params).unwrap();
+        batch
+    };
+    for gravity in [0.0, -0.0] {
+        let mut batch = with_gravity(gravity);
+        let own = batch.member(0).unwrap();
+        batch.set_member(1, own).unwrap();
+        let other = with_gravity(-gravity).member(0).unwrap();
+        assert_eq!(batch.set_member(1, other), Err(Error::SharedParams));
     }
 }

@@ -1,10 +1,12 @@
 //! The tables of docs/control.md: what a regulator holds upright.
 
+use std::f64::consts::PI;
+
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::control::{Lqr, discretize, lqr};
+use acrobot::physics::control::{Lqr, discretize, inverse_dynamics, lqr};
 use acrobot::physics::{Pendulum, bound};
 use acrobot::{Fast, Params, Portable, State};
-use common::assert_says;
+use common::{assert_says, in_every_arithmetic};
 
 use crate::cast;
 use crate::regulators::diagonal;
@@ -17,10 +19,9 @@ fn regulated<A: Arithmetic>(
 ) -> (Pendulum<A>, Lqr<A::Scalar>) {
     let params = params.cast().with_friction(Default::default());
     let pendulum = Pendulum::new(params, target.cast()).unwrap();
-    let model = discretize(&pendulum, A::Scalar::ZERO).unwrap();
     let q = diagonal([weight; 4]).map(cast);
-    let regulator = lqr(&model, &q, Real::from_f64(1.0)).unwrap();
-    (pendulum, regulator)
+    let regulator = pendulum.regulator(A::Scalar::ZERO, &q, Real::from_f64(1.0));
+    (pendulum, regulator.unwrap())
 }
 
 /// The default parameters with this `dt`.
@@ -104,4 +105,47 @@ fn single_precision_loses_upright_what_the_docs_say() {
     });
     println!("{}", rows.join("\n"));
     assert_says("docs/control.md", &rows.join("\n"));
+}
+
+/// A regulator holds equilibria only, also bent ones, which need a torque.
+#[test]
+fn a_regulator_needs_an_equilibrium() {
+    fn check<A: Arithmetic>() {
+        let q = diagonal([1.0; 4]).map(cast);
+        let regulate = |state: State, torque| {
+            let torque = A::Scalar::from_f64(torque);
+            let params = Params::<f64>::DEFAULT
+                .cast()
+                .with_friction(Default::default());
+            let pendulum = Pendulum::<A>::new(params, state.cast()).unwrap();
+            let regulator = pendulum.regulator(torque, &q, Real::from_f64(1.0));
+            let model = discretize(&pendulum, torque).unwrap();
+            let of_any_model = lqr(&model, &q, Real::from_f64(1.0)).unwrap();
+            assert!(regulator.is_err() || regulator == Ok(of_any_model));
+            regulator.map(drop).map_err(|error| error.to_string())
+        };
+        // Link 2 hangs, and the centre of mass is above the fixed joint.
+        let theta1 = PI - 0.2;
+        let bent = State::from([theta1, -(3.0 * theta1.sin()).asin() - theta1, 0.0, 0.0]);
+        let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, bent).unwrap();
+        let [_, torque] = inverse_dynamics(&pendulum, [0.0; 2]).unwrap().torques;
+        assert!(torque.abs() > 2.0);
+        for (state, torque) in [(State::HANGING, 0.0), (State::UPRIGHT, 0.0), (bent, torque)] {
+            assert!(regulate(state, torque).is_ok(), "{state:?}");
+            let rule = "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 rad/s², got ";
+            let moving = State {
+                dtheta2: 0.25,
+                ..state
+            };
+            assert_eq!(regulate(moving, torque), Err(format!("{rule}0.25")));
+            let pushed = regulate(state, torque + 0.1).unwrap_err();
+            assert!(pushed.starts_with(rule), "{pushed}");
+            let leaning = State {
+                theta1: state.theta1 + 0.1,
+                ..state
+            };
+            assert!(regulate(leaning, torque).unwrap_err().starts_with(rule));
+        }
+    }
+    in_every_arithmetic!(check);
 }

@@ -123,6 +123,9 @@ impl From<ControlError> for Rejected {
     fn from(error: ControlError) -> Self {
         match error {
             ControlError::Invalid(error) => error.into(),
+            ControlError::NotInEquilibrium { rate } => {
+                Self::number("target", rate, "", "in equilibrium without a torque")
+            }
             // Not another status: each firmware would contain its text.
             _ => {
                 let rule = "finite; target, dt, gravity and weights allow no regulator";

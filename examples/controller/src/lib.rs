@@ -13,7 +13,7 @@
 
 #![no_std]
 
-use acrobot::physics::control::{ControlError, Lqr, difference, discretize, lqr};
+use acrobot::physics::control::{ControlError, Lqr, difference};
 use acrobot::physics::{Pendulum, State, bound};
 use acrobot::{Error, Fast, Params};
 
@@ -67,7 +67,7 @@ impl Controller {
             ..params
         };
         Ok(Self {
-            regulator: lqr(&discretize(&machine, 0.0)?, &weights, 1.0)?,
+            regulator: machine.regulator(0.0, &weights, 1.0)?,
             upright: machine.energy(),
             model: Pendulum::new(ahead, State::UPRIGHT)?,
             limit,

@@ -34,6 +34,11 @@ pub enum ControlError {
         /// The largest absolute value that remains after the elimination of all positive pivots.
         value: f64,
     },
+    /// The state of a regulator is not an equilibrium under the torque.
+    NotInEquilibrium {
+        /// The first velocity that is not 0, rad/s, or acceleration that is above 0.01 rad/s².
+        rate: f64,
+    },
     /// The torque does not reach a motion of the model that grows or persists, so no regulator makes it vanish.
     NotStabilizable,
     /// The weights do not see a motion of the model that persists, so the best regulator lets it persist.
@@ -59,6 +64,10 @@ impl fmt::Display for ControlError {
             Self::NotSemidefinite { name, value } => write!(
                 f,
                 "{name} must be positive semidefinite, got {value} after the elimination of its positive pivots"
+            ),
+            Self::NotInEquilibrium { rate } => write!(
+                f,
+                "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 rad/s², got {rate}"
             ),
             Self::NotStabilizable => write!(
                 f,

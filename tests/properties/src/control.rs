@@ -154,9 +154,12 @@ fn moderate_pendulums_can_be_held_upright() {
                 };
                 let one = A::Scalar::from_f64(1.0);
                 let q = from_fn(|i| from_fn(|j| if i == j { one } else { zero }));
-                let Ok(regulator) = lqr(&model, &q, A::Scalar::from_f64(r)) else {
+                let r = A::Scalar::from_f64(r);
+                let Ok(regulator) = lqr(&model, &q, r) else {
                     return;
                 };
+                // Rounding leaves upright an equilibrium.
+                assert_eq!(pendulum.regulator(zero, &q, r), Ok(regulator));
                 // In f64, where rounding hides less, the powers of the closed loop vanish too.
                 let [gain, b] = [regulator.gain, model.b].map(|row| row.map(Real::to_f64));
                 let mut closed: [[f64; 4]; 4] =

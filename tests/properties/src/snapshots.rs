@@ -1,5 +1,6 @@
 //! Snapshots of any acrobot resume to the same bits, and are harmless when damaged.
 
+use acrobot::arithmetic::Damped;
 use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
@@ -49,9 +50,10 @@ fn snapshots_resume_to_the_same_bits() {
             }
         });
     }
-    // One arithmetic for each scalar: the others have other names only.
+    // One arithmetic for each scalar, and one with friction: the others have other names only.
     check::<Portable>();
     check::<Fast>();
+    check::<Damped<Fast>>();
 }
 
 #[test]

@@ -12,7 +12,7 @@ use acrobot::{Acrobot, Action, Error, Fast, Observation, Params, Portable, State
 use proptest::prelude::*;
 
 use crate::given::{Range, Tested, acrobot, action, holds, number, params, reset_bounds, state};
-use common::{distance, in_every_arithmetic};
+use common::{assert_says, distance, in_every_arithmetic};
 
 fn assert_seen<A: Arithmetic>(acrobot: &Acrobot<A>, observation: Observation) {
     assert_eq!(observation, acrobot.observation());
@@ -163,6 +163,19 @@ fn mirrored_steps_are_mirror_images() {
     check::<Portable>(1e16);
     check::<Fast>(5e5);
     check::<Micro>(5e5);
+    let limits = "if no angle within the step is beyond 5e5 rad, in `Portable` 1e16 rad";
+    assert_says("docs/numbers.md", limits);
+
+    // The limit is necessary: these angles are beyond that of `Micro`'s table, 8.2e5 rad.
+    let differs = |theta1| {
+        let state = State::from([theta1, 0.5, 1.0, -2.0]);
+        let mut left = acrobot::<Micro>(Params::DEFAULT, state, 0);
+        let mut right = acrobot::<Micro>(Params::DEFAULT, mirror(state), 0);
+        left.step(Action::Positive);
+        right.step(Action::Negative);
+        left.state() != mirror(right.state())
+    };
+    assert!((1..1000).any(|i| differs(1e6 + 1e3 * i as f32)));
 }
 
 /// `Host` computes cos(x − π/2) as Gymnasium does, so its mirror images differ by rounding.

@@ -116,6 +116,7 @@ fn control<A: Arithmetic>() {
         return;
     };
     let weights = [(); 4].map(|()| [(); 4].map(|()| number()));
+    let _ = black_box(pendulum.regulator(number(), &weights, number()));
     if let Ok(regulator) = black_box(lqr(&model, &weights, number())) {
         black_box(difference::<A>(pendulum.state(), state()));
         black_box(regulator.torque(pendulum.deviation(state())));

@@ -1,0 +1,33 @@
+//! The regulator of an equilibrium.
+
+use super::{ControlError, Lqr, discretize, lqr};
+use crate::math::Real;
+use crate::physics::{Arithmetic, Pendulum};
+
+/// The largest acceleration in equilibrium, rad/s². Rounding upright is far below.
+const LARGEST: f64 = 0.01;
+
+impl<A: Arithmetic> Pendulum<A> {
+    /// The [regulator](lqr) that holds the pendulum in its state, which must be in equilibrium under `torque`, N m:
+    /// [an example](crate::guide::control).
+    ///
+    /// # Errors
+    ///
+    /// [`ControlError::NotInEquilibrium`] for a velocity that is not 0 or an acceleration above 0.01 rad/s², and those of
+    /// [`discretize`] and [`lqr`].
+    pub fn regulator(
+        &self,
+        torque: A::Scalar,
+        q: &[[A::Scalar; 4]; 4],
+        r: A::Scalar,
+    ) -> Result<Lqr<A::Scalar>, ControlError> {
+        let model = discretize(self, torque)?;
+        let rates = self.derivative(torque).map(Real::to_f64);
+        for (rate, largest) in rates.into_iter().zip([0.0, 0.0, LARGEST, LARGEST]) {
+            if !(-largest..=largest).contains(&rate) {
+                return Err(ControlError::NotInEquilibrium { rate });
+            }
+        }
+        lqr(&model, q, r)
+    }
+}
