@@ -132,7 +132,8 @@ fn a_regulator_needs_an_equilibrium() {
         assert!(torque.abs() > 2.0);
         for (state, torque) in [(State::HANGING, 0.0), (State::UPRIGHT, 0.0), (bent, torque)] {
             assert!(regulate(state, torque).is_ok(), "{state:?}");
-            let rule = "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 rad/s², got ";
+            let rule = "the state must be in equilibrium, with velocities of 0 and accelerations \
+                of at most 0.01 rad/s², got ";
             let moving = State {
                 dtheta2: 0.25,
                 ..state
