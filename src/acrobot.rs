@@ -130,8 +130,8 @@ impl<A: Arithmetic> Acrobot<A> {
 }
 
 impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
-    /// An acrobot with the default parameters, in an initial state drawn from `rng`: any generator of
-    /// [`rand_core`](crate::rand_core) 0.10, which rand 0.10 uses. One of rand 0.9 needs [an
+    /// An acrobot with the default parameters, in an initial state drawn from `rng`: a generator of
+    /// [`rand_core`](crate::rand_core) 0.10, as those of rand 0.10. One of rand 0.9 needs [an
     /// adapter](crate::guide::rust#generators).
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {

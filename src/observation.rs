@@ -146,11 +146,11 @@ impl<const N: usize> From<Observation<N>> for [f32; N] {
 }
 
 impl<const N: usize> Deref for Observation<N> {
-    type Target = [f32; N];
+    type Target = [f32];
 
-    /// The numbers, so that `observation[4]` and `observation.iter()` work as for an array.
+    /// The numbers, so that `observation[4]` and `observation.iter()` work as for a slice.
     #[inline]
-    fn deref(&self) -> &[f32; N] {
+    fn deref(&self) -> &[f32] {
         &self.0
     }
 }

@@ -115,7 +115,8 @@ impl Figure {
         Self::of(acrobot.pendulum())
     }
 
-    /// The figure of a pendulum, without a torque. For a state alone make its pendulum: `Pendulum::new(params, state)?`.
+    /// The figure of a pendulum, without a torque. For a state alone make its pendulum:
+    /// `Pendulum::new(params, state)?`.
     #[must_use]
     pub fn of<A: Arithmetic>(pendulum: &Pendulum<A>) -> Self {
         let narrow = |x: A::Scalar| x.to_f64() as f32;

@@ -236,7 +236,7 @@ fn empty_frames_keep_their_size() {
 
 #[test]
 fn a_frame_too_large_for_memory_is_rejected() {
-    // Three bytes for each pixel are slightly more than 2⁶⁴, and then less than 2⁶³, which no machine has.
+    // Slightly more than 2⁶⁴ bytes, and then less than 2⁶³, which no machine has.
     for (height, pixels) in [
         (1_431_655_766, "6148914692668173000"),
         (500_000_000, "2147483647500000000"),

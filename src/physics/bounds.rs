@@ -7,8 +7,9 @@ use crate::math::{Numbers, Real};
 ///
 /// [`Gymnasium`](super::Gymnasium) subtracts turn by turn, up to 64 turns, and takes the remainder beyond.
 /// [`Lean`](super::Lean) subtracts the rounded number of turns at once; its error is at most the spacing of `f32` at
-/// `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero; in the lean form up to 2²² turns in `f32`
-/// and 2⁵¹ in `f64`, because it counts no more. An infinite angle or NaN gives NaN.
+/// `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero; in the lean form
+/// up to 2²² turns in `f32` and 2⁵¹ in `f64`, because it counts no more. An infinite angle or NaN
+/// gives NaN.
 ///
 /// ```
 /// use acrobot::physics::wrap;

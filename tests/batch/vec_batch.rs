@@ -111,7 +111,7 @@ fn a_replaced_member_is_reset_with_its_own_parameters() {
     }
 }
 
-/// Where all share their parameters, a member's must have the same bits: a batch has no other zero to keep.
+/// Where all share their parameters, a member's must have the same bits.
 #[test]
 fn a_member_with_another_zero_than_all_share_is_rejected() {
     let with_gravity = |gravity| {

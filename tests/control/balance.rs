@@ -124,15 +124,16 @@ fn a_regulator_needs_an_equilibrium() {
             assert!(regulator.is_err() || regulator == Ok(of_any_model));
             regulator.map(drop).map_err(|error| error.to_string())
         };
-        // Link 2 hangs, and the centre of mass is above the fixed joint.
-        let theta1 = PI - 0.2;
-        let bent = State::from([theta1, -(3.0 * theta1.sin()).asin() - theta1, 0.0, 0.0]);
+        // Link 2 is horizontal, and link 1 leans to the other side.
+        let theta1 = PI - f64::asin(1.0 / 3.0);
+        let bent = State::from([theta1, -PI / 2.0 - theta1, 0.0, 0.0]);
         let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, bent).unwrap();
         let [_, torque] = inverse_dynamics(&pendulum, [0.0; 2]).unwrap().torques;
         assert!(torque.abs() > 2.0);
         for (state, torque) in [(State::HANGING, 0.0), (State::UPRIGHT, 0.0), (bent, torque)] {
             assert!(regulate(state, torque).is_ok(), "{state:?}");
-            let rule = "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 rad/s², got ";
+            let rule = "the state must be in equilibrium, with velocities of 0 and accelerations \
+                of at most 0.01 rad/s², got ";
             let moving = State {
                 dtheta2: 0.25,
                 ..state

@@ -67,7 +67,8 @@ impl fmt::Display for ControlError {
             ),
             Self::NotInEquilibrium { rate } => write!(
                 f,
-                "the state must be in equilibrium, with velocities of 0 and accelerations of at most 0.01 rad/s², got {rate}"
+                "the state must be in equilibrium, with velocities of 0 and accelerations of at \
+                most 0.01 rad/s², got {rate}"
             ),
             Self::NotStabilizable => write!(
                 f,

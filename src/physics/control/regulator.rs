@@ -8,13 +8,13 @@ use crate::physics::{Arithmetic, Pendulum};
 const LARGEST: f64 = 0.01;
 
 impl<A: Arithmetic> Pendulum<A> {
-    /// The [regulator](lqr) that holds the pendulum in its state, which must be in equilibrium under `torque`, N m:
-    /// [an example](crate::guide::control).
+    /// The [regulator](lqr) that holds the pendulum in its state, which must be in equilibrium
+    /// under `torque`, N m: [an example](crate::guide::control).
     ///
     /// # Errors
     ///
-    /// [`ControlError::NotInEquilibrium`] for a velocity that is not 0 or an acceleration above 0.01 rad/s², and those of
-    /// [`discretize`] and [`lqr`].
+    /// [`ControlError::NotInEquilibrium`] for a velocity that is not 0 or an acceleration above
+    /// 0.01 rad/s², and those of [`discretize`] and [`lqr`].
     pub fn regulator(
         &self,
         torque: A::Scalar,
