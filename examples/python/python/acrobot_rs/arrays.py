@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import difflib
 import functools
 import math
 import reprlib
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from numbers import Integral
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
+from gymnasium import logger
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 from gymnasium.error import Error
 from numpy.typing import NDArray
@@ -18,21 +20,29 @@ from numpy.typing import NDArray
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 
 
-def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset_mask",)) -> tuple[float, float]:
+#: The options of ``reset``. Not all environments have all.
+_OPTIONS = ("low", "high", "reset_mask", "state")
+
+
+def reset_bounds(options: dict[str, Any] | None, known: tuple[str, ...]) -> tuple[float, float]:
     """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1."""
-    check_keys(options, ("low", "high", *others))
+    check_keys(options, known)
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
     if not (abs(low) <= largest and abs(high) <= largest):
         raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
+    if options and "state" in options and ("low" in options or "high" in options):
+        raise ValueError(f"options must have either state or low and high, got {list(options)}")
     return low, high
 
 
 def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
-    """Reject other options of ``reset``."""
+    """Reject options of ``reset`` that other environments here have, and misspelt ones. Others belong to other programs."""
     for key in options or ():
-        if key not in known:
-            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}")
+        near = difflib.get_close_matches(key.lower(), _OPTIONS, n=1, cutoff=0.52) if isinstance(key, str) else []
+        if near and key not in known:
+            meant = f"; did you mean {near[0]!r}?" if near[0] in known else ""
+            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}{meant}")
 
 
 def render_mode(mode: str | None, metadata: dict[str, Any]) -> str | None:
@@ -136,6 +146,34 @@ def _digits(seed: Any) -> str | None:
     """The digits of a seed. `str` rejects more than 4,300."""
     plain = plain_seed(seed)
     return None if plain is None else str(plain)
+
+
+def warn_of_no_render_mode(spec: Any) -> None:
+    """Warn that ``render`` returns ``None``."""
+    logger.warn(
+        "render returns None, because the environment was made without a render mode. Make it with one: "
+        f'gymnasium.make("{spec.id if spec else "acrobot_rs/Acrobot-v1"}", render_mode="rgb_array")'
+    )
+
+
+#: What programs read of Gymnasium's environments, but ours do not have, and what to use.
+_INSTEAD = {
+    "_dsdt": "the equations are in Rust: assign state and call step",
+    "_get_ob": "use the observations that reset and step return",
+    "_terminal": "use terminated, which step returns",
+    "actions_num": "use action_space",
+    "envs": "use get_attr and set_attr, or elements of state",
+}
+
+
+class Hints:
+    """Says what to use instead of an attribute of Gymnasium's environments."""
+
+    if not TYPE_CHECKING:  # a checker would take all names as attributes
+
+        def __getattr__(self, name: str) -> NoReturn:
+            hint = f"; {_INSTEAD[name]}" if name in _INSTEAD else ""
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}{hint}", name=name, obj=self)
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:
