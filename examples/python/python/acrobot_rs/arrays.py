@@ -156,24 +156,29 @@ def warn_of_no_render_mode(spec: Any) -> None:
     )
 
 
-#: What programs read of Gymnasium's environments, but ours do not have, and what to use.
-_INSTEAD = {
-    "_dsdt": "the equations are in Rust: assign state and call step",
-    "_get_ob": "use the observations that reset and step return",
-    "_terminal": "use terminated, which step returns",
-    "actions_num": "use action_space",
-    "envs": "use get_attr and set_attr, or elements of state",
-}
+class Missing:
+    """An attribute of Gymnasium's environments that ours do not have. It is no ``__getattr__``, which slows all attributes."""
+
+    def __init__(self, use: str) -> None:
+        self._use = use
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, env: object, kind: type) -> NoReturn:
+        """Say what to use instead."""
+        raise AttributeError(f"{kind.__name__} has no attribute {self._name!r}; {self._use}")
 
 
 class Hints:
-    """Says what to use instead of an attribute of Gymnasium's environments."""
+    """Says what to use instead of what programs read of Gymnasium's environments."""
 
-    if not TYPE_CHECKING:  # a checker would take all names as attributes
-
-        def __getattr__(self, name: str) -> NoReturn:
-            hint = f"; {_INSTEAD[name]}" if name in _INSTEAD else ""
-            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}{hint}", name=name, obj=self)
+    if not TYPE_CHECKING:  # a checker says that they do not exist
+        _dsdt = Missing("the equations are in Rust: assign state and call step")
+        _get_ob = Missing("use the observations that reset and step return")
+        _terminal = Missing("use terminated, which step returns")
+        actions_num = Missing("use action_space")
+        envs = Missing("use get_attr and set_attr, or rows of state")
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

@@ -158,16 +158,18 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         """
         low, high = reset_bounds(options, ("low", "high", "state"))
         seed = plain_seed(seed)
-        is_given = "state" in (options := options or {})
-        if is_given:
-            self.state = options["state"]
+        given = None
+        if options is not None and "state" in options:
+            rule = "four finite numbers in the range of float32"
+            given = numbers("state", rule, options["state"], (4,))
+            with np.errstate(over="ignore"):
+                if not np.isfinite(given.astype(np.float32)).all():
+                    raise ValueError(f"state must be {rule}, got {given}")
         super().reset(seed=seed)
-        # Gymnasium rounds initial states to float32.
+        # Gymnasium rounds initial states to float32, but not those of others.
         s = self.np_random.uniform(low, high, 4).astype(np.float32)
-        if is_given:
-            s = np.array(self.state, np.float32)
-        else:
-            self._native.state = s
+        self.state = s if given is None else given
+        s = s if given is None else given.astype(np.float32)
         if self.render_mode == "human":
             self.render()
         if self._ANGLES:

@@ -31,17 +31,18 @@ class Alone:
     """Rejects a step or a reset beside that of another thread."""
 
     def __init__(self) -> None:
-        self._lock = threading.RLock()
+        lock = threading.RLock()
+        self._acquire, self._release = lock.acquire, lock.release
 
     def __enter__(self) -> None:
-        if not self._lock.acquire(blocking=False):
+        if not self._acquire(False):
             raise RuntimeError(
                 "another thread is stepping or resetting an environment; "
                 "change parameters and call methods between its steps"
             )
 
-    def __exit__(self, *_: object) -> None:
-        self._lock.release()
+    def __exit__(self, kind: object, error: object, trace: object) -> None:
+        self._release()
 
     def __reduce__(self) -> tuple[type[Alone], tuple[()]]:
         """A copy of the environment has its own lock."""
@@ -138,7 +139,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         self._check_open()
         options = options or {}
         mask = arrays.reset_mask(options, self.num_envs)
-        states = self._finite(self._each(options["state"])) if "state" in options else None
+        states = None
+        if "state" in options:
+            states = arrays.finite_states(self._each(options["state"]), self.num_envs, np.float32)
         child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
         if seeds is not None and mask is not None:
             seeds = [each if some else None for each, some in zip(seeds, mask, strict=True)]
@@ -216,12 +219,10 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
     @state.setter
     def state(self, states: ArrayLike) -> None:
-        finite = self._finite(states)
+        dtype = np.float64 if self._gymnasium_episodes else np.float32
+        finite = arrays.finite_states(states, self.num_envs, dtype)
         with self._alone:
             self._native.set_states(finite)
-
-    def _finite(self, states: ArrayLike) -> NDArray[np.float64]:
-        return arrays.finite_states(states, self.num_envs, np.float64 if self._gymnasium_episodes else np.float32)
 
     def _each(self, states: Any) -> Any:
         """A state for each environment, if there is one for all."""

@@ -230,7 +230,7 @@ class Parameters(arrays.Hints):
     def _check_names(cls) -> None:
         """Reject attributes of this class, and of those that it inherits from, that would have no effect."""
         for base in cls.__mro__:
-            for name, value in vars(base).items() if base is not Parameters else ():
+            for name, value in vars(base).items() if base not in (Parameters, arrays.Hints) else ():
                 if name in _IGNORED or not callable(value):
                     _reject_ignored(cls, name)
 
