@@ -143,8 +143,9 @@ impl Batch {
         Ok(())
     }
 
-    /// Resets all acrobots, or those that the mask selects, to initial states within these bounds, or to given states, which
-    /// are finite. With a seed, each acrobot that is reset first takes the stream of its child.
+    /// Resets all acrobots, or those that the mask selects, to initial states within these bounds,
+    /// or to given states, which are finite. With a seed, each acrobot that is reset first takes the
+    /// stream of its child.
     fn reset(
         slf: &Bound<'_, Self>,
         seed: Option<&str>,
@@ -171,7 +172,8 @@ impl Batch {
                         Some(mask) => many.batch.deref_mut().reset_masked(mask, options)?,
                         None => many.batch.deref_mut().reset_with(options),
                     }
-                    for (index, state) in states.unwrap_or_default().as_chunks::<4>().0.iter().enumerate() {
+                    let states = states.unwrap_or_default().as_chunks::<4>().0;
+                    for (index, state) in states.iter().enumerate() {
                         if is_reset(index) {
                             many.batch.set_state(index, State::from(*state).cast())?;
                         }

@@ -1,4 +1,4 @@
-"""mypy and pyright accept the code of docs/python.md, and programs that set parameters as it says, and reject wrong ones."""
+"""mypy and pyright accept the code of docs/python.md and what parameters can be, not the rest."""
 
 import re
 import subprocess
@@ -16,14 +16,17 @@ env = acrobot_rs.AcrobotEnv(LINK_MASS_1=2, AVAIL_TORQUE=[-1, 1], book_or_nips="n
 env.state = [0.0, 0.1, 0.2, 0.3]
 env.dt, env.AVAIL_TORQUE = env.dt / 2, np.array([-1.0, 1.0])
 acrobot_rs.AcrobotEnv.dt = 0.1
-envs = acrobot_rs.AcrobotContinuousVectorEnv(2, None, LINK_MASS_1=[1.0, 2.0], gravity=Uniform(9, 10), AVAIL_TORQUE=Uniform([-1, 0, 1], [-2, 0, 2]))
+masses = [1.0, 2.0]
+envs = acrobot_rs.AcrobotContinuousVectorEnv(2, None, LINK_MASS_1=masses, gravity=Uniform(9, 10))
+envs.AVAIL_TORQUE = Uniform([-2, 0, 1], [-1, 0, 2])
 envs.gravity = Uniform(9, 10)
 envs.dt, envs.LINK_MOI, envs.book_or_nips = np.array([0.1, 0.2]), LogUniform(1, 2), ["book", "nips"]
 envs.MAX_VEL_1, envs.AVAIL_TORQUE = Normal(9.0, 1.0, 8.0, 10.0), [[-1, 0, 1], [-2, 0, 2]]
 envs.state = np.zeros((2, 4))
 swingups = acrobot_rs.AcrobotSwingupVectorEnv(2, copy=False)
 swingups.state = [[0.0] * 4] * 2
-print(envs.state.shape, envs.elapsed_steps.sum(), envs.get_parameter("dt").mean(), swingups.get_attr("state"))
+print(envs.state.shape, envs.elapsed_steps.sum(), envs.get_parameter("dt").mean())
+print(swingups.get_attr("state"))
 
 
 class Heavy(acrobot_rs.AcrobotVectorEnv):
@@ -44,15 +47,28 @@ acrobot_rs.AcrobotVectorEnv(2).gravity = None
 """
 
 
-@pytest.mark.parametrize("checker", [["mypy", "--strict", "--ignore-missing-imports", "--no-error-summary"], ["pyright", "--pythonpath", sys.executable]], ids=lambda each: each[0])
+@pytest.mark.parametrize(
+    "checker",
+    [
+        ["mypy", "--strict", "--ignore-missing-imports", "--no-error-summary"],
+        ["pyright", "--pythonpath", sys.executable],
+    ],
+    ids=lambda each: each[0],
+)
 def test_checkers(checker, tmp_path):
     pytest.importorskip(checker[0])
     page = (ROOT / "docs/python.md").read_text()
     blocks = re.findall(r"^```py(?:thon)?\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    texts = {"page.py": "# pyright: reportMissingImports=false\n" + "\n".join(blocks), "program.py": PROGRAM, "wrong.py": WRONG}
+    texts = {
+        "page.py": "# pyright: reportMissingImports=false\n" + "\n".join(blocks),
+        "program.py": PROGRAM,
+        "wrong.py": WRONG,
+    }
     for name, text in texts.items():
         (tmp_path / name).write_text(text)
-    run = subprocess.run([sys.executable, "-m", *checker, *texts], cwd=tmp_path, capture_output=True, text=True)
+    run = subprocess.run(
+        [sys.executable, "-m", *checker, *texts], cwd=tmp_path, capture_output=True, text=True
+    )
     errors = re.findall(r"(\w+\.py):(\d+):.*error", run.stdout)
     assert {name for name, _ in errors} == {"wrong.py"}, run.stdout + run.stderr
     assert {int(line) for _, line in errors} == set(range(4, 1 + WRONG.count("\n"))), run.stdout

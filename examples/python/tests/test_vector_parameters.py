@@ -57,7 +57,8 @@ def test_the_number_given_is_in_the_message(number):
             values = [[-1.0, 0.0, number], [[-1.0, 0.0, 1.0], [number, 0.0, 1.0], [-1.0, 0.0, 1.0]],
                       Uniform([-1.0, 0.0, 1.0], [1.0, 1.0, number])]  # fmt: skip
         else:
-            values = [number, [1.0, number, 1.0], Uniform(*sorted([1.0, number])), LogUniform(*sorted([1.0, number]))]
+            bounds = sorted([1.0, number])
+            values = [number, [1.0, number, 1.0], Uniform(*bounds), LogUniform(*bounds)]
         for value in values:
             with rejects(envs, ValueError, f"^{name}.* must be .*, got {shown}$"):
                 setattr(envs, name, value)
@@ -234,5 +235,6 @@ def test_subclasses_can_draw_parameters():
     with pytest.raises(ValueError, match="MAX_VEL_1 must "):
         type("Wrong", (Random,), {"MAX_VEL_1": Uniform(-1.0, 2.0)})
     single = acrobot_rs.AcrobotEnv()
-    with pytest.raises(TypeError, match="LINK_MASS_1 must be a number, because only gymnasium.make_vec draws .*, got Uniform"):
+    message = "LINK_MASS_1 must be a number, because only gymnasium.make_vec draws .*, got Uniform"
+    with pytest.raises(TypeError, match=message):
         single.LINK_MASS_1 = Uniform(1.0, 2.0)

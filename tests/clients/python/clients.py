@@ -1,16 +1,18 @@
-"""Runs other people's programs end to end with our environments, and with Gymnasium's in their place: results must have the
-same types and shapes. `bash .ci/jobs/clients-python` installs the programs that `requirements.txt` beside this file pins.
+"""Runs other people's programs end to end with our environments, and with Gymnasium's in their place.
+
+The results of both must have the same types and shapes. `bash .ci/jobs/clients-python` installs the
+programs, which `requirements.txt` beside this file pins.
 """
 
 import os
 import sys
 import tempfile
 
-import acrobot_rs  # registers our environments
+import acrobot_rs
 import gymnasium as gym
-import numpy as np
+from acrobot_rs.sb3 import AcrobotVecEnv
 
-#: Gymnasium's environment, and ours with the same kinds of actions.
+#: Gymnasium's environment, and ours with the same kind of actions.
 PAIRS = [
     ("Acrobot-v1", "acrobot_rs/Acrobot-v1"),
     ("Pendulum-v1", "acrobot_rs/AcrobotContinuous-v0"),
@@ -22,7 +24,8 @@ def many(name, count, mode):
     """A vector environment. Gymnasium's takes the mode elsewhere."""
     if name.startswith("acrobot_rs/"):
         return gym.make_vec(name, num_envs=count, autoreset_mode=mode)
-    return gym.make_vec(name, num_envs=count, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode})
+    kwargs = {"autoreset_mode": mode}
+    return gym.make_vec(name, num_envs=count, vectorization_mode="sync", vector_kwargs=kwargs)
 
 
 def torchrl(name):
@@ -36,22 +39,25 @@ def torchrl(name):
 
 
 def skrl(name):
-    """PPO of skrl's runner, which chooses the wrapper by the classes."""
+    """PPO of skrl's runner, with the wrapper that skrl chooses by the classes."""
     from skrl.envs.wrappers.torch import wrap_env
     from skrl.utils.runner.torch import Runner
 
     env = wrap_env(many(name, 3, "NextStep"), verbose=False)
-    network = [{"name": "net", "input": "OBSERVATIONS", "layers": [8], "activations": "tanh"}]
-    actor = "CategoricalMixin" if isinstance(env.action_space, gym.spaces.Discrete) else "GaussianMixin"
-    runner = Runner(env, {
+    discrete = isinstance(env.action_space, gym.spaces.Discrete)
+    layers = [{"name": "net", "input": "OBSERVATIONS", "layers": [8], "activations": "tanh"}]
+    policy = {"class": "CategoricalMixin" if discrete else "GaussianMixin", "output": "ACTIONS"}
+    value = {"class": "DeterministicMixin", "output": "ONE"}
+    models = {"policy": policy | {"network": layers}, "value": value | {"network": layers}}
+    no_files = {"write_interval": 0, "checkpoint_interval": 0}
+    configuration = {
         "seed": 1,
-        "models": {"separate": True, "policy": {"class": actor, "network": network, "output": "ACTIONS"},
-                   "value": {"class": "DeterministicMixin", "network": network, "output": "ONE"}},
+        "models": {"separate": True, **models},
         "memory": {"class": "RandomMemory", "memory_size": -1},
-        "agent": {"class": "PPO", "rollouts": 16, "experiment": {"write_interval": 0, "checkpoint_interval": 0}},
+        "agent": {"class": "PPO", "rollouts": 16, "experiment": no_files},
         "trainer": {"class": "SequentialTrainer", "timesteps": 64, "disable_progressbar": True},
-    })  # fmt: skip
-    runner.run()
+    }
+    Runner(env, configuration).run()
     return type(env).__name__, env.num_envs
 
 
@@ -65,21 +71,21 @@ def tianshou(name):
     buffer = VectorReplayBuffer(300, 3)
     collector = Collector(RandomActionPolicy(envs.action_space[0]), envs, buffer)
     collector.reset()
-    stats = collector.collect(n_step=300, random=True)
-    return stats.n_collected_steps, buffer.rew.shape, sorted(set(stats.lens.tolist()))
+    collected = collector.collect(n_step=300, random=True)
+    return collected.n_collected_steps, buffer.rew.shape, set(collected.lens.tolist())
 
 
 def stable_baselines3(name):
     """PPO learns, and its policy is evaluated."""
-    from acrobot_rs.sb3 import AcrobotVecEnv
     from stable_baselines3 import PPO
     from stable_baselines3.common.env_util import make_vec_env
     from stable_baselines3.common.evaluation import evaluate_policy
     from stable_baselines3.common.vec_env import VecMonitor
 
     def learn(envs):
-        model = PPO("MlpPolicy", envs, n_steps=64, batch_size=64, n_epochs=1, seed=1, device="cpu").learn(512)
-        _, lengths = evaluate_policy(model, gym.make(name, max_episode_steps=20), 2, warn=False, return_episode_rewards=True)
+        model = PPO("MlpPolicy", envs, n_steps=64, n_epochs=1, seed=1, device="cpu").learn(512)
+        env = gym.make(name, max_episode_steps=20)
+        _, lengths = evaluate_policy(model, env, 2, warn=False, return_episode_rewards=True)
         return model.num_timesteps, lengths
 
     result = learn(make_vec_env(name, 4))
@@ -101,39 +107,41 @@ def minari(name):
                 pass
         env.create_dataset("clients/test-v0", eval_env=name)
         data = load_dataset("clients/test-v0")
-        again = data.recover_environment()
-        first = data[0].observations[0]
-        return data.total_episodes, data.total_steps, (again.reset(seed=1)[0] == first).all(), type(first)
+        first = data.recover_environment().reset(seed=1)[0]
+        return data.total_episodes, data.total_steps, (data[0].observations[0] == first).all()
 
 
-def statistics(name):
-    """Gymnasium's own wrappers around many environments with masked resets."""
-    from gymnasium.wrappers.vector import ClipReward, DictInfoToList, NormalizeObservation, RecordEpisodeStatistics
+def wrappers(name):
+    """Gymnasium's own, around many environments."""
+    from gymnasium.wrappers import vector
 
-    envs = DictInfoToList(NormalizeObservation(ClipReward(RecordEpisodeStatistics(many(name, 3, "NextStep")), -1.0, 1.0)))
+    envs = vector.RecordEpisodeStatistics(many(name, 3, "NextStep"))
+    envs = vector.DictInfoToList(vector.NormalizeObservation(vector.ClipReward(envs, -1.0, 1.0)))
     envs.reset(seed=1)
-    envs.action_space.seed(1)
     steps = [envs.step(envs.action_space.sample()) for _ in range(1100)]
-    lengths = {int(info["episode"]["l"]) for *_, infos in steps for info in infos if "episode" in info}
-    return steps[0][0].dtype, bool(lengths)
+    episodes = [info["episode"] for *_, infos in steps for info in infos if "episode" in info]
+    return [each.dtype for each in steps[0][2:4]], bool(episodes)
 
 
 def main():
     """Runs the clients that the command names, or all."""
-    clients = {each.__name__: each for each in (torchrl, skrl, tianshou, stable_baselines3, minari, statistics)}
+    clients = (torchrl, skrl, tianshou, stable_baselines3, minari, wrappers)
     failed = 0
-    for name in sys.argv[1:] or clients:
-        for theirs, ours in PAIRS:
+    for client in clients:
+        if sys.argv[1:] and client.__name__ not in sys.argv:
+            continue
+        for names in PAIRS:
             results = []
-            for each in (theirs, ours):
+            for name in names:
                 try:
-                    results.append(clients[name](each))
-                except Exception as error:  # noqa: BLE001 — one client's failure must not hide another's
-                    results.append(f"{type(error).__name__}: {error}")
-            same = results[0] == results[1] and not isinstance(results[0], str)
+                    results.append(client(name))
+                except Exception as error:  # the other programs run all the same
+                    results.append(f"{name}: {type(error).__name__}: {error}")
+            same = results[0] == results[1]
             failed += not same
-            print(f"{name:18} {ours:32} {'passed' if same else f'FAILED: {results[1]}, {theirs}: {results[0]}'}", flush=True)
-    print(f"acrobot_rs {acrobot_rs.__version__}, NumPy {np.__version__}, Gymnasium {gym.__version__}: {failed} failed")
+            verdict = "passed" if same else f"FAILED: {results}"
+            print(f"{client.__name__:18} {names[1]:32} {verdict}", flush=True)
+    print(f"acrobot_rs {acrobot_rs.__version__}, Gymnasium {gym.__version__}: {failed} failed")
     sys.exit(failed > 0)
 
 

@@ -37,9 +37,13 @@ def reset_bounds(options: dict[str, Any] | None, known: tuple[str, ...]) -> tupl
 
 
 def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
-    """Reject options of ``reset`` that other environments here have, and misspelt ones. Others belong to other programs."""
+    """Reject misspelt options of ``reset``, and those that only other environments here have.
+
+    Keys that resemble none of them belong to other programs.
+    """
     for key in options or ():
-        near = difflib.get_close_matches(key.lower(), _OPTIONS, n=1, cutoff=0.52) if isinstance(key, str) else []
+        name = key.lower() if isinstance(key, str) else ""
+        near = difflib.get_close_matches(name, _OPTIONS, n=1, cutoff=0.52)
         if near and key not in known:
             meant = f"; did you mean {near[0]!r}?" if near[0] in known else ""
             raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}{meant}")
@@ -151,13 +155,16 @@ def _digits(seed: Any) -> str | None:
 def warn_of_no_render_mode(spec: Any) -> None:
     """Warn that ``render`` returns ``None``."""
     logger.warn(
-        "render returns None, because the environment was made without a render mode. Make it with one: "
-        f'gymnasium.make("{spec.id if spec else "acrobot_rs/Acrobot-v1"}", render_mode="rgb_array")'
+        "render returns None, because the environment was made without a render mode. "
+        f'Make it with one: gymnasium.make("{spec.id if spec else "acrobot_rs/Acrobot-v1"}", render_mode="rgb_array")'
     )
 
 
 class Missing:
-    """An attribute of Gymnasium's environments that ours do not have. It is no ``__getattr__``, which slows all attributes."""
+    """An attribute of Gymnasium's environments that ours do not have.
+
+    It is no ``__getattr__``, which slows all attributes.
+    """
 
     def __init__(self, use: str) -> None:
         self._use = use

@@ -98,7 +98,11 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         torque_noise_max: float
         book_or_nips: Equations
 
-    def __init__(self, render_mode: str | None = None, **parameters: Unpack[Arguments[float, Torques, Equations]]) -> None:
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        **parameters: Unpack[Arguments[float, Torques, Equations]],
+    ) -> None:
         """Make an environment. Reset it before its first step.
 
         An unknown render mode is rejected by ``render``, because ``gymnasium.make`` only warns of it.
@@ -136,8 +140,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     @state.setter
     def state(self, state: ArrayLike) -> None:
         array = numbers("state", "four finite numbers", state, (4,))
+        dtype = np.float32 if array.dtype == np.float32 else np.float64
         with np.errstate(over="ignore"):
-            self._native.state = np.array(array, dtype=np.float32 if array.dtype == np.float32 else np.float64)
+            self._native.state = np.array(array, dtype)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -146,15 +151,16 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
         Args:
             seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its stream continues.
-            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by default -0.1 and 0.1. Or
-                ``"state"``, the initial state itself, which replaces the drawn one.
+            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by
+                default -0.1 and 0.1. Or ``"state"``, the initial state itself, which replaces the
+                drawn one.
 
         Returns:
             The observation of the initial state, and an empty info.
 
         Raises:
-            ValueError: If a number is not finite, if low is above high, or if another key resembles one of these. Nothing
-                changes then.
+            ValueError: If a number is not finite, if low is above high, or if another key resembles
+                one of these. Nothing changes then.
         """
         low, high = reset_bounds(options, ("low", "high", "state"))
         seed = plain_seed(seed)

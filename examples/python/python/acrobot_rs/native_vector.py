@@ -20,7 +20,8 @@ from acrobot_rs.parameters import Drawn, _hint
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
-#: What ``get_attr`` and ``call`` know, with the parameters. ``set_attr`` knows the parameters and ``state``.
+#: What ``get_attr`` and ``call`` know, with the parameters. ``set_attr`` knows the parameters and
+#: ``state``.
 _ATTRIBUTES = (
     *("action_space", "elapsed_steps", "max_episode_steps", "metadata", "observation_space"),
     *("render", "render_mode", "spec", "state"),
@@ -89,16 +90,24 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
         require(bool, "True or False", copy=copy)
         if threads is None:
-            threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+            threads = (
+                len(os.sched_getaffinity(0))
+                if hasattr(os, "sched_getaffinity")
+                else os.cpu_count() or 1
+            )
         limit = 2**32 - 1 if max_episode_steps is None else max_episode_steps
         counts = {"num_envs": num_envs, "max_episode_steps": limit, "threads": threads}
         require(Integral, "an integer", **counts)
         for name, count in counts.items():
             if not 0 < count < 2**32:
                 no_limit = ", or None for no limit" if name == "max_episode_steps" else ""
-                raise ValueError(f"{name} must be an integer from 1 to {2**32 - 1}{no_limit}, got {count}")
+                raise ValueError(
+                    f"{name} must be an integer from 1 to {2**32 - 1}{no_limit}, got {count}"
+                )
         mode = AutoresetMode(autoreset_mode)
-        native = Batch(num_envs, str(self.np_random_seed), limit, mode.value, engine, continuous, threads)
+        native = Batch(
+            num_envs, str(self.np_random_seed), limit, mode.value, engine, continuous, threads
+        )
         self._alone = Alone()
         self.autoreset_mode = mode
         self.metadata = {**self.metadata, "autoreset_mode": mode}
@@ -110,30 +119,37 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
         return native
 
-    def reset(self, *, seed: Seed = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
+    def reset(
+        self, *, seed: Seed = None, options: dict[str, Any] | None = None
+    ) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment.
 
         Args:
-            seed: An integer of at least 0 with at most 4,300 digits. Its children seed the environments' streams; with
-                ``gymnasium_episodes``, ``seed + i`` seeds environment ``i``. Or a list with an integer or ``None`` for each
-                environment: its element seeds environment ``i`` as it seeds a single one. Where the seed is ``None`` the
-                stream continues. A list does not change ``np_random``.
-            options: ``"reset_mask"``: an array of ``bool`` of shape ``(num_envs,)``; environments whose element is false are
-                neither seeded nor reset. ``"state"``: the initial states, of shape ``(num_envs, 4)``, or ``(4,)`` for the
-                same one in all: theta1, theta2 (rad) and their velocities (rad/s). They replace the drawn ones, so streams
-                and drawn parameters are as without them. In ``Acrobot-v1``, ``"low"`` and ``"high"``: the bounds of these
-                initial states, rad and rad/s; by default -0.1 and 0.1. Autoresets ignore all options.
+            seed: An integer of at least 0 with at most 4,300 digits. Its children seed the
+                environments' streams; with ``gymnasium_episodes``, ``seed + i`` seeds environment
+                ``i``. Or a list with an integer or ``None`` for each environment: its element seeds
+                environment ``i`` as it seeds a single one. Where the seed is ``None`` the stream
+                continues. A list does not change ``np_random``.
+            options: ``"reset_mask"``: an array of ``bool`` of shape ``(num_envs,)``; environments
+                whose element is false are neither seeded nor reset. ``"state"``: the initial
+                states, of shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all: theta1,
+                theta2 (rad) and their velocities (rad/s). They replace the drawn ones, so streams
+                and drawn parameters are as without them. In ``Acrobot-v1``, ``"low"`` and
+                ``"high"``: the bounds of these initial states, rad and rad/s; by default -0.1 and
+                0.1. Autoresets ignore all options.
 
         Returns:
-            The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty without ``info_parameters``.
+            The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
+            without ``info_parameters``.
 
         Raises:
             TypeError: If the mask is not an array of ``bool``. Nothing changes then.
-            ValueError: If a number is not finite, if low is above high, if the mask has another shape or no true element, if
-                the states or the list of seeds have another length, or if another key resembles one of these. Nothing
-                changes then.
+            ValueError: If a number is not finite, if low is above high, if the mask has another
+                shape or no true element, if the states or the list of seeds have another length, or
+                if another key resembles one of these. Nothing changes then.
             gymnasium.error.Error: If a seed is not an integer of at least 0. Nothing changes then.
-            RuntimeError: If another thread is stepping or resetting the environments. Nothing changes then.
+            RuntimeError: If another thread is stepping or resetting the environments. Nothing
+                changes then.
         """
         low, high = self._bounds(options)
         self._check_open()
@@ -160,24 +176,28 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 self._observe_initial_states(observations, self.elapsed_steps == 0)
             return observations, self._parameter_infos()
 
-    def step(self, actions: ArrayLike) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
+    def step(
+        self, actions: ArrayLike
+    ) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
         """Step each environment. Other Python threads can run meanwhile.
 
         Args:
             actions: An element of ``action_space``, as an array or a list.
 
         Returns:
-            Observations, of shape ``(num_envs, 6)``; rewards; where the goal was reached; where the limit of steps was
-            reached; and infos. In mode ``SameStep``, if an episode ended, they have ``"final_obs"`` and ``"final_info"`` as
-            in ``SyncVectorEnv``. They have the ``info_parameters`` of the new states.
+            Observations, of shape ``(num_envs, 6)``; rewards; where the goal was reached; where the
+            limit of steps was reached; and infos. In mode ``SameStep``, if an episode ended, they
+            have ``"final_obs"`` and ``"final_info"`` as in ``SyncVectorEnv``. They have the
+            ``info_parameters`` of the new states.
 
         Raises:
-            gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the array. No environment steps
-                then.
-            gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an episode has ended and its
-                environment was not reset. No environment steps then.
+            gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the
+                array. No environment steps then.
+            gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an
+                episode has ended and its environment was not reset. No environment steps then.
             gymnasium.error.ClosedEnvironmentError: After ``close``.
-            RuntimeError: If another thread is stepping or resetting the environments. No environment steps then.
+            RuntimeError: If another thread is stepping or resetting the environments. No
+                environment steps then.
         """
         with self._alone:
             self._check_ready()
@@ -204,14 +224,16 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
     @property
     def state(self) -> NDArray[np.floating[Any]]:
-        """theta1, theta2 (rad) and their velocities (rad/s) of each environment, of shape ``(num_envs, 4)``: a read-only copy.
+        """theta1, theta2 (rad) and their velocities (rad/s) of each: a read-only ``(num_envs, 4)``.
 
-        To set the states, assign an array of this shape. To set some, change rows of ``state.copy()`` and assign it. Episodes
-        and numbers of steps continue: ``reset(options={"state": states})`` begins episodes instead. In mode ``NextStep`` the
-        next step resets the ended episodes all the same.
+        To set the states, assign an array of this shape. To set some, change rows of
+        ``state.copy()`` and assign it. Episodes and numbers of steps continue:
+        ``reset(options={"state": states})`` begins episodes instead. In mode ``NextStep`` the next
+        step resets the ended episodes all the same.
 
         Raises:
-            ValueError: If the shape is another one, or if a number is not finite. No state changes then.
+            ValueError: If the shape is another one, or if a number is not finite. No state changes
+                then.
         """
         states = np.empty((self.num_envs, 4), np.float64)
         self._native.states(states)
@@ -239,7 +261,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """The value of an attribute for each environment, or the results of its method ``render``.
 
         Args:
-            name: A parameter, ``"state"``, ``"elapsed_steps"`` or another attribute that the error message lists.
+            name: A parameter, ``"state"``, ``"elapsed_steps"`` or another attribute that the error
+                message lists.
             *args: The arguments of the method.
             **kwargs: The keyword arguments of the method.
 
@@ -249,7 +272,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         self._check_open()
         known = (*_ATTRIBUTES, *self._PARAMETERS)
         if name not in known:
-            raise AttributeError(f"the environments have no attribute {name!r}; they have {', '.join(known)}")
+            raise AttributeError(
+                f"the environments have no attribute {name!r}; they have {', '.join(known)}"
+            )
         if name in ("action_space", "observation_space"):
             name = f"single_{name}"
         if name == "render":
@@ -266,7 +291,10 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         return self.call(name)
 
     def get_parameter(self, name: str) -> NDArray[Any]:
-        """A parameter of each environment: a new array of shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``."""
+        """A parameter of each environment, as a new array.
+
+        It has the shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``.
+        """
         self._check_open()
         if name not in self._PARAMETERS:
             raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name)}")
@@ -289,13 +317,14 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
         Args:
             name: A parameter or ``"state"``.
-            values: One value for all environments, or a list, tuple or array with a value for each. A parameter can also
-                be drawn, for example an :class:`acrobot_rs.Uniform`.
+            values: One value for all environments, or a list, tuple or array with a value for each.
+                A parameter can also be drawn, for example an :class:`acrobot_rs.Uniform`.
 
         Raises:
             AttributeError: If the name is neither a parameter nor ``"state"``.
             TypeError: If a value is of a wrong type. Nothing changes then.
-            ValueError: If a value is invalid, or if a list has another length. Nothing changes then.
+            ValueError: If a value is invalid, or if a list has another length. Nothing changes
+                then.
         """
         self._check_open()
         known = ("state", *self._PARAMETERS)
@@ -304,7 +333,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         setattr(self, name, self._each(values) if name == "state" else values)
 
     def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
-        """For each environment an array of shape ``(500, 500, 3)`` or a text, depending on the render mode.
+        """For each environment an array of shape ``(500, 500, 3)`` or a text, as the mode says.
 
         Without a render mode, warns and returns ``None``.
         """
@@ -338,7 +367,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         return np.empty((self.num_envs, 6), np.float32)
 
     def _observe_initial_states(self, observations: Floats, which: Bools) -> None:
-        """Write the observations of initial states. Gymnasium computes their sines with NumPy in ``float32``."""
+        """Write the observations of initial states, whose sines are NumPy's in ``float32``."""
         if which.any():
             angles = self.state[which, :2].astype(np.float32)
             cosines, sines = np.cos(angles), np.sin(angles)

@@ -99,7 +99,8 @@ def _from_json(value: Any) -> Any:
     kinds = {"Uniform": Uniform, "LogUniform": LogUniform, "Normal": Normal}
     if not (isinstance(value, dict) and value.get("kind") in kinds):
         return value
-    return kinds[value["kind"]](**{name: number for name, number in value.items() if name != "kind"})
+    numbers = {name: number for name, number in value.items() if name != "kind"}
+    return kinds[value["kind"]](**numbers)
 
 
 def _fixed(name: str, value: Any) -> Any:
@@ -132,7 +133,7 @@ def _hint(name: str, others: tuple[str, ...] = ()) -> str:
     return f"did you mean {meant}?" if meant else f"it has {', '.join(names)}"
 
 
-#: What a parameter of a single environment, and of many, can be. Reading gives floats, tuples, arrays or draws.
+#: What parameters can be: of a single environment, besides floats, and of many.
 Torques = Sequence[float] | NDArray[Any]
 Equations = Literal["book", "nips"]
 Each = float | Sequence[float] | NDArray[Any] | Drawn
@@ -234,7 +235,9 @@ class Parameters(arrays.Hints):
                 if name in _IGNORED or not callable(value):
                     _reject_ignored(cls, name)
 
-    def __init__(self, native: Acrobot | Batch, render_mode: str | None, parameters: Mapping[str, Any]) -> None:
+    def __init__(
+        self, native: Acrobot | Batch, render_mode: str | None, parameters: Mapping[str, Any]
+    ) -> None:
         """Pass the parameters to the native part: these, and those of the class, which may have changed."""
         self._check_names()
         for name in parameters.keys() - set(_NAMES):
@@ -283,7 +286,8 @@ class Parameters(arrays.Hints):
                 self._check_name(name)
                 super().__setattr__(name, value)
                 return
-            before = self._spaces() if self._made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2") else {}
+            changes_spaces = self._made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2")
+            before = self._spaces() if changes_spaces else {}
             super().__setattr__(name, self._pass(name, value))
             for space, new in self._spaces().items() if before else ():
                 current = getattr(self, space)

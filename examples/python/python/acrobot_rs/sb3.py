@@ -93,12 +93,12 @@ class AcrobotVecEnv(VecEnv):
         return observations, rewards.astype(np.float32, copy=False), ended, each
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
-        """The value of an attribute for each of these environments. See :meth:`acrobot_rs.AcrobotVectorEnv.call`."""
+        """The value of an attribute for each of these. See :meth:`NativeVectorEnv.call`."""
         values = self.envs.get_attr(attr_name)
         return [values[index] for index in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
-        """Set a parameter or the state of these environments. See :meth:`acrobot_rs.AcrobotVectorEnv.set_attr`.
+        """Set a parameter or the state of these environments. See :meth:`NativeVectorEnv.set_attr`.
 
         Raises:
             ValueError: If a parameter is or will be drawn, and these are not all environments. Nothing changes then.

@@ -141,7 +141,9 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv, VectorEnv[Floats, NDArray[Any], n
     ) -> None:
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
         self.render_mode = arrays.render_mode(render_mode, self.metadata)
-        self._native = self._make(num_envs, max_episode_steps, autoreset_mode, copy, self._ENGINE, True, threads)
+        self._native = self._make(
+            num_envs, max_episode_steps, autoreset_mode, copy, self._ENGINE, True, threads
+        )
         self.single_action_space, self.single_observation_space = _spaces()
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -150,12 +152,16 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv, VectorEnv[Floats, NDArray[Any], n
         arrays.check_keys(options, ("reset_mask", "state"))
         return -np.pi, np.pi
 
-    def step(self, actions: ArrayLike) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
-        """Step each environment, as :class:`acrobot_rs.AcrobotVectorEnv` does. No state ends an episode."""
+    def step(
+        self, actions: ArrayLike
+    ) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
+        """Step each environment. Actions are from -1 to 1, and no state ends an episode."""
         return super().step(_torques("actions", actions, (self.num_envs, 1)))
 
 
-class AcrobotSwingupSparseVectorEnv(AcrobotSwingupVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
+class AcrobotSwingupSparseVectorEnv(
+    AcrobotSwingupVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
+):
     """Many :class:`AcrobotSwingupSparseEnv`."""
 
     _ENGINE = "swingup_sparse"

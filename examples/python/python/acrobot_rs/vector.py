@@ -69,7 +69,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
 
         Args:
             num_envs: The number of environments, at least 1.
-            max_episode_steps: The steps after which an episode is truncated, at least 1, or ``None`` for no limit.
+            max_episode_steps: The steps after which an episode is truncated, at least 1. With
+                ``None`` there is no limit below 2**32 - 1.
             render_mode: ``None``, ``"rgb_array"`` or ``"ansi"``.
             autoreset_mode: ``NextStep``: the step after an episode's end resets, ignores its action and returns a reward of 0.
                 ``SameStep``: the step that ends an episode also resets, and ``infos["final_obs"]`` has the episode's last
@@ -97,7 +98,9 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         if gymnasium_episodes:
             arrays.warn_of_other_sines()
         engine = "gymnasium" if gymnasium_episodes else "fast"
-        native = self._make(num_envs, max_episode_steps, autoreset_mode, copy, engine, self._CONTINUOUS, threads)
+        native = self._make(
+            num_envs, max_episode_steps, autoreset_mode, copy, engine, self._CONTINUOUS, threads
+        )
         super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
         self._made = True
