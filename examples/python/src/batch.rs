@@ -143,32 +143,42 @@ impl Batch {
         Ok(())
     }
 
-    /// Resets all acrobots, or those that the mask selects, to initial states within these bounds. With a seed, each
-    /// acrobot that is reset first takes the stream of its child.
+    /// Resets all acrobots, or those that the mask selects, to initial states within these bounds,
+    /// or to given states, which are finite. With a seed, each acrobot that is reset first takes the
+    /// stream of its child.
     fn reset(
         slf: &Bound<'_, Self>,
         seed: Option<&str>,
         low: f64,
         high: f64,
         mask: Option<PyReadonlyArray1<'_, bool>>,
+        states: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<()> {
         let options = ResetOptions {
             seed: seed.map(parse).transpose()?,
             bounds: Some(ResetBounds::new(low, high).map_err(rejected)?),
         };
         let mask = mask.as_ref().map(|mask| mask.as_slice()).transpose()?;
+        let states = states
+            .as_ref()
+            .map(|states| states.as_slice())
+            .transpose()?;
         let engine = &mut alone(slf)?.engine;
+        let is_reset = |index: usize| mask.is_none_or(|mask| mask[index]);
         slf.py()
             .detach(|| {
-                with_batch!(engine, many => match mask {
-                    Some(mask) => {
-                        many.batch.deref_mut().reset_masked(mask, options)?;
-                        many.draw(|_, index| mask[index])
+                with_batch!(engine, many => {
+                    match mask {
+                        Some(mask) => many.batch.deref_mut().reset_masked(mask, options)?,
+                        None => many.batch.deref_mut().reset_with(options),
                     }
-                    None => {
-                        many.batch.deref_mut().reset_with(options);
-                        many.draw(|_, _| true)
+                    let states = states.unwrap_or_default().as_chunks::<4>().0;
+                    for (index, state) in states.iter().enumerate() {
+                        if is_reset(index) {
+                            many.batch.set_state(index, State::from(*state).cast())?;
+                        }
                     }
+                    many.draw(|_, index| is_reset(index))
                 })
             })
             .map_err(rejected)

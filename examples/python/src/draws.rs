@@ -21,7 +21,7 @@ impl Distribution {
     /// That of an object in Python.
     pub fn of(drawn: &Bound<'_, PyAny>) -> PyResult<Self> {
         let number = |name| drawn.getattr(name)?.extract();
-        let kind: String = drawn.getattr("_KIND")?.extract()?;
+        let kind: String = drawn.getattr("kind")?.extract()?;
         Ok(match kind.as_str() {
             "Normal" => Self::Normal {
                 mean: number("mean")?,

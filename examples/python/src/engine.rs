@@ -10,12 +10,12 @@ use acrobot::{Error, Fast, Params, Portable, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
-use pyo3::exceptions::PyMemoryError;
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::draws::{Distribution, Draws};
-use crate::{InvalidAction, must_be, rejected, unknown, with};
+use crate::{InvalidAction, NUMBERS, must_be, rejected, unknown, with};
 
 /// Actions (0, 1 or 2), or torques, N m.
 #[derive(FromPyObject)]
@@ -143,6 +143,7 @@ impl<A: Arithmetic> Many<A> {
         let mut draws = self.draws.clone();
         let [lows, highs] = draws.ends(self.params(0));
         let bounds = [with(lows, name, &low)?, with(highs, name, &high)?];
+        Self::check_range(bounds)?;
         draws.bounds = bounds.map(|bound| bound.cast::<A::Scalar>().cast());
         draws.distributions.insert(name.to_owned(), distribution);
         Ok(draws)
@@ -150,8 +151,29 @@ impl<A: Arithmetic> Many<A> {
 
     /// Checks the parameters of an acrobot, with all that these draws can make of them.
     pub fn check(&self, params: Params, draws: &Draws) -> PyResult<()> {
-        let [low, high] = draws.ends(params).map(|end| end.cast::<A::Scalar>());
-        ParamsRange::new(low, high).map(drop).map_err(rejected)
+        Self::check_range(draws.ends(params))
+    }
+
+    fn check_range(ends: [Params; 2]) -> PyResult<()> {
+        let [low, high] = ends.map(|end| end.cast::<A::Scalar>());
+        ParamsRange::new(low, high).map(drop).map_err(|error| {
+            // Names the number given, not the 0 or the infinity that it becomes.
+            let message = error.to_string();
+            let lost = ends.iter().find_map(|end| {
+                NUMBERS.iter().find_map(|(name, own, field)| {
+                    let given = *field(&mut { *end });
+                    let held = A::Scalar::from_f64(given).to_f64();
+                    let is_lost =
+                        given.is_finite() && (held.is_infinite() || held == 0.0 && given != 0.0);
+                    (is_lost && message.starts_with(own)).then_some((name, given))
+                })
+            });
+            let Some((name, given)) = lost else {
+                return rejected(error);
+            };
+            let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
+            PyValueError::new_err(must_be(name, rule, format_args!("{given:?}")))
+        })
     }
 
     /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of resets. Gives each acrobot
@@ -160,7 +182,12 @@ impl<A: Arithmetic> Many<A> {
         for each in params {
             self.check(*each, &draws)?;
         }
-        let own = !draws.distributions.is_empty() || params.iter().any(|each| *each != params[0]);
+        let bits = |params: &Params| {
+            let numbers = NUMBERS.map(|(.., field)| field(&mut { *params }).to_bits());
+            (params.dynamics, numbers)
+        };
+        let own = !draws.distributions.is_empty()
+            || params.iter().any(|each| bits(each) != bits(&params[0]));
         if own && !self.own {
             self.batch = self.owning()?;
             self.own = true;

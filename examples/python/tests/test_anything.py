@@ -47,7 +47,9 @@ BOUNDS = st.lists(NUMBERS | TORQUES, min_size=2, max_size=4) | st.just([0.5, 1.5
 DRAWN = st.builds(lambda kind, args: attempt(kind, *args), st.sampled_from([Uniform, LogUniform, Normal]), BOUNDS)
 MANY = st.one_of(VALUES, st.lists(VALUES, max_size=4), DRAWN)
 MASKS = st.lists(st.booleans(), max_size=4) | ARRAYS
-OPTIONS = st.none() | st.dictionaries(st.sampled_from(["low", "high", "reset_mask"]), MASKS | NUMBERS | ANYTHING)
+STATES = st.lists(NUMBERS, min_size=4, max_size=4)
+KEYS = st.sampled_from(["low", "high", "reset_mask", "state", "state"]) | st.text() | st.integers()
+OPTIONS = st.none() | st.dictionaries(KEYS, MASKS | NUMBERS | STATES | st.lists(STATES, max_size=4) | ANYTHING)
 MODES = st.sampled_from(["NextStep", "SameStep", "Disabled"])
 SEEDS = st.none() | st.integers(0, 2**200) | ANYTHING
 FEW = st.integers(1, 4)
@@ -104,7 +106,7 @@ def set_element(env, index, value):
     st.sampled_from([acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env, acrobot_rs.AcrobotContinuousEnv]),
     st.sampled_from([None, "ansi", "ansi", "ansi", "rgb_array"]),
     calls(
-        *(SEEDS, VALUES, st.lists(NUMBERS, min_size=4, max_size=4) | ANYTHING),
+        *(SEEDS, VALUES, STATES | ANYTHING),
         (set_element, st.integers(0, 3), NUMBERS | ANYTHING),
         (
             lambda env, action: env.step(action)[0],
@@ -120,7 +122,7 @@ def test_a_single_environment(kind, mode, sequence):
     *(FEW, FEW, MODES, st.booleans(), st.booleans()),
     calls(
         *(SEEDS | st.lists(SEEDS, max_size=4), MANY),
-        st.lists(st.lists(NUMBERS, min_size=4, max_size=4), max_size=4) | ANYTHING,
+        st.lists(STATES, max_size=4) | ANYTHING,
         (acrobot_rs.AcrobotVectorEnv.set_attr, NAMES | st.just("state") | st.text(), MANY),
         (lambda envs, action: envs.step([action] * envs.num_envs)[0], st.integers(0, 2)),
         (lambda envs, actions: envs.step(actions)[0], st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING),

@@ -6,6 +6,7 @@ import multiprocessing
 import pickle
 import subprocess
 import sys
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -70,6 +71,24 @@ def test_invalid_actions_are_rejected(kind, actions):
     envs.reset(seed=1)
     with rejects(envs, InvalidAction, r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number)"):
         envs.step(actions)
+
+
+@pytest.mark.parametrize("number", [2**64 - 1, 2**63, 3])
+def test_the_action_given_is_in_the_message(number):
+    """Not what it becomes as int64."""
+    envs = make_vec(3)
+    envs.reset(seed=1)
+    with rejects(envs, InvalidAction, rf"actions\[1\] must be .*, got {number}$"):
+        envs.step(np.array([2, number, number], np.uint64))
+
+
+def test_torques_beyond_float32_act_as_the_bound():
+    """Without a warning of NumPy's."""
+    envs, twin = AcrobotContinuousVectorEnv(2), AcrobotContinuousVectorEnv(2)
+    for each, torques in ((envs, [[1e300], [-3.5e38]]), (twin, [[1.0], [-1.0]])):
+        each.reset(seed=1)
+        each.step(torques)
+    assert (envs.state == twin.state).all()
 
 
 @pytest.mark.parametrize(
@@ -303,9 +322,11 @@ def test_threads_in_a_forked_process():
         child.join()
 
 
-def test_a_call_during_a_step_is_rejected_and_changes_nothing():
+@pytest.mark.parametrize("copies", [True, False])
+def test_a_call_during_a_step_is_rejected_and_changes_nothing(copies):
     count = 500_000  # so many that a step takes long enough for another call
-    envs = acrobot_rs.AcrobotVectorEnv(count, gymnasium_episodes=True, render_mode="ansi")
+    kwargs = {"gymnasium_episodes": True, "render_mode": "ansi", "copy": copies}
+    envs = acrobot_rs.AcrobotVectorEnv(count, **kwargs)
     states, actions = np.zeros((count, 4)), np.ones(count, np.int64)
     calls = [
         *(lambda: envs.state, lambda: setattr(envs, "state", states), lambda: envs.elapsed_steps, lambda: envs.render()),
@@ -326,3 +347,52 @@ def test_a_call_during_a_step_is_rejected_and_changes_nothing():
             assert not step.done(), "more environments are necessary"
         step.result()
         assert envs.dt == 0.2 and (envs.elapsed_steps == 1).all()
+
+
+@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotVectorEnv, acrobot_rs.AcrobotSwingupVectorEnv])
+@pytest.mark.parametrize("copies", [True, False])
+@pytest.mark.parametrize("call", ["step", "reset", "seed", "seeds", "mask", "state"])
+def test_a_step_or_reset_beside_a_step_changes_nothing(kind, copies, call):
+    """Neither seeds nor observations that all calls share."""
+    envs = kind(3, copy=copies, autoreset_mode="Disabled")
+    envs.reset(seed=1)
+    actions = np.full(envs.action_space.shape, 1)
+    calls = {
+        "step": lambda: envs.step(actions),
+        "reset": envs.reset,
+        "seed": lambda: envs.reset(seed=2),
+        "seeds": lambda: envs.reset(seed=[2] * 3),
+        "mask": lambda: envs.reset(seed=[2] * 3, options={"reset_mask": np.ones(3, bool)}),
+        "state": lambda: envs.reset(seed=2, options={"state": np.zeros(4)}),
+    }
+    twin = copy.deepcopy(envs)
+    expected = twin.step(actions)
+    stepping, release = threading.Event(), threading.Event()
+
+    class Slow:
+        """Stops a step after its part in Rust."""
+
+        def step(self, *arguments):
+            results = envs_native.step(*arguments)
+            stepping.set()
+            release.wait(30)
+            return results
+
+        def __getattr__(self, name):
+            return getattr(envs_native, name)
+
+    envs_native, envs._native = envs._native, Slow()
+    with ThreadPoolExecutor(1) as executor:
+        step = executor.submit(envs.step, actions)
+        assert stepping.wait(30)
+        before = envs_native.__getstate__(), envs.np_random_seed
+        try:
+            with pytest.raises(RuntimeError, match="^another thread is stepping or resetting"):
+                calls[call]()
+            assert before == (envs_native.__getstate__(), envs.np_random_seed)
+        finally:
+            release.set()
+        for one, other in zip(step.result()[:4], expected[:4], strict=True):
+            np.testing.assert_array_equal(one, other)
+    envs._native = envs_native
+    assert envs_native.__getstate__() == twin._native.__getstate__()

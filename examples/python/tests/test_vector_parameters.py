@@ -45,6 +45,38 @@ def test_a_rejected_parameter_changes_nothing(name, value, error, message, gymna
                 attempt(envs, name, value)
 
 
+@pytest.mark.parametrize("number", [1e300, 3.5e38, 1e-300])
+def test_the_number_given_is_in_the_message(number):
+    """Not the infinity or the 0 that it becomes in float32."""
+    envs = make_vec(3)
+    shown = str(number).replace("+", "")
+    for name in ("dt", "LINK_MASS_1", "LINK_LENGTH_2", "AVAIL_TORQUE"):
+        if name == "AVAIL_TORQUE":
+            if number < 1.0:
+                continue  # becomes 0, which is valid
+            values = [[-1.0, 0.0, number], [[-1.0, 0.0, 1.0], [number, 0.0, 1.0], [-1.0, 0.0, 1.0]],
+                      Uniform([-1.0, 0.0, 1.0], [1.0, 1.0, number])]  # fmt: skip
+        else:
+            bounds = sorted([1.0, number])
+            values = [number, [1.0, number, 1.0], Uniform(*bounds), LogUniform(*bounds)]
+        for value in values:
+            with rejects(envs, ValueError, f"^{name}.* must be .*, got {shown}$"):
+                setattr(envs, name, value)
+    with rejects(envs, ValueError, "^LINK_MOI must .*, got 1e300$"):
+        envs.LINK_MOI = 1e300
+
+
+def test_zeros_of_both_signs_are_different_values():
+    for gymnasium_episodes in (False, True):
+        envs = make_vec(2, gymnasium_episodes=gymnasium_episodes)
+        for zeros in ([0.0, -0.0], [-0.0, 0.0], [-0.0, -0.0], [0.0, 0.0]):
+            envs.gravity = zeros
+            assert (np.signbit(envs.get_parameter("gravity")) == np.signbit(zeros)).all()
+            native = np.empty((2, 1))
+            envs._native.get("gravity", native)
+            assert (np.signbit(native[:, 0]) == np.signbit(zeros)).all()
+
+
 #: All parameters whose bounds each have one number and no other draws, in the order of their draws.
 UNIFORM = (
     *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"),
@@ -202,5 +234,7 @@ def test_subclasses_can_draw_parameters():
     assert len(set(envs.get_attr("MAX_VEL_1"))) == 50
     with pytest.raises(ValueError, match="MAX_VEL_1 must "):
         type("Wrong", (Random,), {"MAX_VEL_1": Uniform(-1.0, 2.0)})
-    with pytest.raises(TypeError, match="LINK_MASS_1 must be a number, got Uniform"):
-        acrobot_rs.AcrobotEnv().LINK_MASS_1 = Uniform(1.0, 2.0)
+    single = acrobot_rs.AcrobotEnv()
+    message = "LINK_MASS_1 must be a number, because only gymnasium.make_vec draws .*, got Uniform"
+    with pytest.raises(TypeError, match=message):
+        single.LINK_MASS_1 = Uniform(1.0, 2.0)

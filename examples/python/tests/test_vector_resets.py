@@ -132,7 +132,7 @@ def test_gymnasium_s_episodes_bit_identically(mode, noise):
             mask = ended | (np.arange(6) % 3 == step % 3)
             options, twins = options | {"reset_mask": mask}, options | {"reset_mask": mask}
             assert_equal(theirs.reset(seed=step, options=options), ours.reset(seed=step, options=twins))
-            assert options == twins, "the mask is removed"
+            assert "reset_mask" in twins, "no option is removed"
     assert (ends > 20).all()
     ours.dt = 0.1
     assert ours.dt == 0.1 and ours.get_attr("dt") == (0.1,) * 6

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import difflib
 import functools
 import math
 import reprlib
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from numbers import Integral
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
+from gymnasium import logger
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 from gymnasium.error import Error
 from numpy.typing import NDArray
@@ -18,21 +20,33 @@ from numpy.typing import NDArray
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 
 
-def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset_mask",)) -> tuple[float, float]:
+#: The options of ``reset``. Not all environments have all.
+_OPTIONS = ("low", "high", "reset_mask", "state")
+
+
+def reset_bounds(options: dict[str, Any] | None, known: tuple[str, ...]) -> tuple[float, float]:
     """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1."""
-    check_keys(options, ("low", "high", *others))
+    check_keys(options, known)
     low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
     if not (abs(low) <= largest and abs(high) <= largest):
         raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
+    if options and "state" in options and ("low" in options or "high" in options):
+        raise ValueError(f"options must have either state or low and high, got {list(options)}")
     return low, high
 
 
 def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
-    """Reject other options of ``reset``."""
+    """Reject misspelt options of ``reset``, and those that only other environments here have.
+
+    Keys that resemble none of them belong to other programs.
+    """
     for key in options or ():
-        if key not in known:
-            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}")
+        name = key.lower() if isinstance(key, str) else ""
+        near = difflib.get_close_matches(name, _OPTIONS, n=1, cutoff=0.52)
+        if near and key not in known:
+            meant = f"; did you mean {near[0]!r}?" if near[0] in known else ""
+            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}{meant}")
 
 
 def render_mode(mode: str | None, metadata: dict[str, Any]) -> str | None:
@@ -136,6 +150,42 @@ def _digits(seed: Any) -> str | None:
     """The digits of a seed. `str` rejects more than 4,300."""
     plain = plain_seed(seed)
     return None if plain is None else str(plain)
+
+
+def warn_of_no_render_mode(spec: Any) -> None:
+    """Warn that ``render`` returns ``None``."""
+    logger.warn(
+        "render returns None, because the environment was made without a render mode. "
+        f'Make it with one: gymnasium.make("{spec.id if spec else "acrobot_rs/Acrobot-v1"}", render_mode="rgb_array")'
+    )
+
+
+class Missing:
+    """An attribute of Gymnasium's environments that ours do not have.
+
+    It is no ``__getattr__``, which slows all attributes.
+    """
+
+    def __init__(self, use: str) -> None:
+        self._use = use
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, env: object, kind: type) -> NoReturn:
+        """Say what to use instead."""
+        raise AttributeError(f"{kind.__name__} has no attribute {self._name!r}; {self._use}")
+
+
+class Hints:
+    """Says what to use instead of what programs read of Gymnasium's environments."""
+
+    if not TYPE_CHECKING:  # a checker says that they do not exist
+        _dsdt = Missing("the equations are in Rust: assign state and call step")
+        _get_ob = Missing("use the observations that reset and step return")
+        _terminal = Missing("use terminated, which step returns")
+        actions_num = Missing("use action_space")
+        envs = Missing("use get_attr and set_attr, or rows of state")
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
+from acrobot_rs import arrays
 from acrobot_rs._native import Acrobot
 from acrobot_rs.arrays import numbers, plain_seed, reset_bounds
 from acrobot_rs.parameters import Parameters
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from acrobot_rs.parameters import Arguments, Equations, Torques
 
 
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
@@ -76,7 +82,27 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     _native: Acrobot
 
-    def __init__(self, render_mode: str | None = None, **parameters: Any) -> None:
+    if TYPE_CHECKING:  # Many environments accept more.
+        dt: float
+        LINK_LENGTH_1: float
+        LINK_LENGTH_2: float
+        LINK_MASS_1: float
+        LINK_MASS_2: float
+        LINK_COM_POS_1: float
+        LINK_COM_POS_2: float
+        LINK_MOI: float
+        gravity: float
+        MAX_VEL_1: float
+        MAX_VEL_2: float
+        AVAIL_TORQUE: Torques
+        torque_noise_max: float
+        book_or_nips: Equations
+
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        **parameters: Unpack[Arguments[float, Torques, Equations]],
+    ) -> None:
         """Make an environment. Reset it before its first step.
 
         An unknown render mode is rejected by ``render``, because ``gymnasium.make`` only warns of it.
@@ -114,7 +140,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     @state.setter
     def state(self, state: ArrayLike) -> None:
         array = numbers("state", "four finite numbers", state, (4,))
-        self._native.state = np.array(array, dtype=np.float32 if array.dtype == np.float32 else np.float64)
+        dtype = np.float32 if array.dtype == np.float32 else np.float64
+        with np.errstate(over="ignore"):
+            self._native.state = np.array(array, dtype)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -123,21 +151,31 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
         Args:
             seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its stream continues.
-            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by default -0.1 and 0.1. No
-                other key.
+            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by
+                default -0.1 and 0.1. Or ``"state"``, the initial state itself, which replaces the
+                drawn one.
 
         Returns:
             The observation of the initial state, and an empty info.
 
         Raises:
-            ValueError: If a bound is not a finite number, if low is above high, or if a key is unknown. Nothing changes
-                then.
+            ValueError: If a number is not finite, if low is above high, or if another key resembles
+                one of these. Nothing changes then.
         """
-        low, high = reset_bounds(options, ())
-        super().reset(seed=plain_seed(seed))
-        # Gymnasium rounds initial states to float32.
+        low, high = reset_bounds(options, ("low", "high", "state"))
+        seed = plain_seed(seed)
+        given = None
+        if options is not None and "state" in options:
+            rule = "four finite numbers in the range of float32"
+            given = numbers("state", rule, options["state"], (4,))
+            with np.errstate(over="ignore"):
+                if not np.isfinite(given.astype(np.float32)).all():
+                    raise ValueError(f"state must be {rule}, got {given}")
+        super().reset(seed=seed)
+        # Gymnasium rounds initial states to float32, but not those of others.
         s = self.np_random.uniform(low, high, 4).astype(np.float32)
-        self._native.state = s
+        self.state = s if given is None else given
+        s = s if given is None else given.astype(np.float32)
         if self.render_mode == "human":
             self.render()
         if self._ANGLES:
@@ -176,7 +214,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             gymnasium.error.DependencyNotInstalled: If ``"human"`` does not find pygame.
         """
         if self.render_mode is None:
-            self._warn_of_no_render_mode()
+            arrays.warn_of_no_render_mode(self.spec)
             return None
         if self.render_mode != "human":
             return self._native.render(self.render_mode)

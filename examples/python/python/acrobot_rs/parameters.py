@@ -9,11 +9,12 @@ import functools
 import inspect
 import math
 import re
-from collections.abc import Sequence
-from typing import Any, ClassVar, Literal
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
 import numpy as np
-from gymnasium import logger, spaces
+from gymnasium import spaces
+from numpy.typing import NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Acrobot, Batch
@@ -35,12 +36,15 @@ class Drawn:
 
     low: Any
     high: Any
-    _KIND: ClassVar[str]
+    #: The name of the class, which the JSON of a ``gymnasium.envs.registration.EnvSpec`` needs.
+    kind: str
 
     def __post_init__(self) -> None:
         """Check the numbers, and keep them as Python's."""
         for name, value in list(vars(self).items()):
-            is_row = self._KIND == "Uniform" and (isinstance(value, list | tuple) or np.ndim(value) > 0)
+            if name == "kind":
+                continue
+            is_row = self.kind == "Uniform" and (isinstance(value, list | tuple) or np.ndim(value) > 0)
             rule = "three finite numbers" if is_row else "a finite number"
             array = numbers(name, rule, value, (3,) if is_row else (), error=TypeError)
             if not np.isfinite(array).all():
@@ -48,9 +52,9 @@ class Drawn:
             object.__setattr__(self, name, tuple(map(float, array)) if is_row else float(array))
         if np.shape(self.low) != np.shape(self.high) or np.greater(self.low, self.high).any():
             raise ValueError(f"low must be at most high, and of the same length, got {self}")
-        if self._KIND == "LogUniform" and self.low <= 0:
+        if self.kind == "LogUniform" and self.low <= 0:
             raise ValueError(f"low must be above 0, got {self}")
-        if self._KIND == "Normal" and not (self.std > 0 and self.low <= self.mean <= self.high):
+        if self.kind == "Normal" and not (self.std > 0 and self.low <= self.mean <= self.high):
             raise ValueError(f"std must be above 0, and mean from low to high, got {self}")
 
 
@@ -64,7 +68,7 @@ class Uniform(Drawn):
 
     low: Any
     high: Any
-    _KIND = "Uniform"
+    kind: str = dataclasses.field(default="Uniform", init=False, repr=False)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -73,7 +77,7 @@ class LogUniform(Drawn):
 
     low: float
     high: float
-    _KIND = "LogUniform"
+    kind: str = dataclasses.field(default="LogUniform", init=False, repr=False)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,7 +91,16 @@ class Normal(Drawn):
     std: float
     low: float
     high: float
-    _KIND = "Normal"
+    kind: str = dataclasses.field(default="Normal", init=False, repr=False)
+
+
+def _from_json(value: Any) -> Any:
+    """A draw, if the value is what the JSON of a spec has for it."""
+    kinds = {"Uniform": Uniform, "LogUniform": LogUniform, "Normal": Normal}
+    if not (isinstance(value, dict) and value.get("kind") in kinds):
+        return value
+    numbers = {name: number for name, number in value.items() if name != "kind"}
+    return kinds[value["kind"]](**numbers)
 
 
 def _fixed(name: str, value: Any) -> Any:
@@ -120,7 +133,40 @@ def _hint(name: str, others: tuple[str, ...] = ()) -> str:
     return f"did you mean {meant}?" if meant else f"it has {', '.join(names)}"
 
 
-class Parameters:
+#: What parameters can be: of a single environment, besides floats, and of many.
+Torques = Sequence[float] | NDArray[Any]
+Equations = Literal["book", "nips"]
+Each = float | Sequence[float] | NDArray[Any] | Drawn
+EachTorques = Torques | Sequence[Sequence[float]] | Drawn
+EachEquations = Equations | Sequence[str] | NDArray[Any]
+
+if TYPE_CHECKING:
+    from typing_extensions import TypedDict
+
+    _Number = TypeVar("_Number")
+    _Torques = TypeVar("_Torques")
+    _Equations = TypeVar("_Equations")
+
+    class Arguments(TypedDict, Generic[_Number, _Torques, _Equations], total=False):
+        """Parameters as arguments."""
+
+        dt: _Number
+        LINK_LENGTH_1: _Number
+        LINK_LENGTH_2: _Number
+        LINK_MASS_1: _Number
+        LINK_MASS_2: _Number
+        LINK_COM_POS_1: _Number
+        LINK_COM_POS_2: _Number
+        LINK_MOI: _Number
+        gravity: _Number
+        MAX_VEL_1: _Number
+        MAX_VEL_2: _Number
+        AVAIL_TORQUE: _Torques
+        torque_noise_max: _Number
+        book_or_nips: _Equations
+
+
+class Parameters(arrays.Hints):
     """The parameters of the physics, with Gymnasium's names. Set them as arguments, on an environment or in a subclass.
 
     A value is checked immediately and acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError``
@@ -129,33 +175,33 @@ class Parameters:
     """
 
     #: Duration of one step, s; above 0.
-    dt: float = 0.2
+    dt: Each = 0.2
     #: Length of link 1, m; above 0.
-    LINK_LENGTH_1: float = 1.0
+    LINK_LENGTH_1: Each = 1.0
     #: Length of link 2, m; above 0. It changes pictures only: neither the equations of motion nor the goal contain it.
-    LINK_LENGTH_2: float = 1.0
+    LINK_LENGTH_2: Each = 1.0
     #: Mass of link 1, kg; above 0.
-    LINK_MASS_1: float = 1.0
+    LINK_MASS_1: Each = 1.0
     #: Mass of link 2, kg; above 0.
-    LINK_MASS_2: float = 1.0
+    LINK_MASS_2: Each = 1.0
     #: Distance of link 1's centre of mass from its joint, m; 0 or more.
-    LINK_COM_POS_1: float = 0.5
+    LINK_COM_POS_1: Each = 0.5
     #: Distance of link 2's centre of mass from its joint, m; 0 or more.
-    LINK_COM_POS_2: float = 0.5
+    LINK_COM_POS_2: Each = 0.5
     #: Moment of inertia of each link about its centre of mass, kg m²; 0 or more.
-    LINK_MOI: float = 1.0
+    LINK_MOI: Each = 1.0
     #: Acceleration of gravity, m/s², downwards; finite. Gymnasium's environment has no name for it.
-    gravity: float = 9.8
+    gravity: Each = 9.8
     #: Bound of link 1's velocity after a step, rad/s; above 0.
-    MAX_VEL_1: float = 4 * math.pi
+    MAX_VEL_1: Each = 4 * math.pi
     #: Bound of link 2's velocity, relative to link 1, after a step, rad/s; above 0.
-    MAX_VEL_2: float = 9 * math.pi
+    MAX_VEL_2: Each = 9 * math.pi
     #: Torques of the actions 0, 1 and 2, N m. A single environment may have another number of actions.
-    AVAIL_TORQUE: Sequence[float] = (-1.0, 0.0, 1.0)
+    AVAIL_TORQUE: EachTorques = (-1.0, 0.0, 1.0)
     #: Each step adds a uniform draw from [-torque_noise_max, torque_noise_max) to the torque, N m; 0 or more. 0 draws nothing.
-    torque_noise_max: float = 0.0
+    torque_noise_max: Each = 0.0
     #: The equations of motion: those of Sutton and Barto's book, or those printed in the 1996 paper.
-    book_or_nips: Literal["book", "nips"] = "book"
+    book_or_nips: EachEquations = "book"
 
     #: The width and the height of pictures, in pixels. It cannot be changed.
     SCREEN_DIM = 500
@@ -185,27 +231,34 @@ class Parameters:
     def _check_names(cls) -> None:
         """Reject attributes of this class, and of those that it inherits from, that would have no effect."""
         for base in cls.__mro__:
-            for name, value in vars(base).items() if base is not Parameters else ():
+            for name, value in vars(base).items() if base not in (Parameters, arrays.Hints) else ():
                 if name in _IGNORED or not callable(value):
                     _reject_ignored(cls, name)
 
-    def __init__(self, native: Acrobot | Batch, render_mode: str | None, parameters: dict[str, Any]) -> None:
+    def __init__(
+        self, native: Acrobot | Batch, render_mode: str | None, parameters: Mapping[str, Any]
+    ) -> None:
         """Pass the parameters to the native part: these, and those of the class, which may have changed."""
         self._check_names()
         for name in parameters.keys() - set(_NAMES):
             arguments = inspect.signature(type(self)).parameters.values()
             others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)
-            raise TypeError(f"{type(self).__name__} has no argument {name}; {_hint(name, others)}")
+            # Other programs, such as torchrl, look for Python's words.
+            words = f"{type(self).__name__}.__init__() got an unexpected keyword argument {name!r}"
+            raise TypeError(f"{words}; {_hint(name, others)}")
         self._native = native
         self.render_mode = arrays.render_mode(render_mode, self.metadata)
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
         for name in _NAMES:
-            setattr(self, name, parameters.get(name, getattr(self, name)))
+            setattr(self, name, _from_json(parameters.get(name, getattr(self, name))))
         for name, space in self._spaces().items():
             setattr(self, name, space)
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
+        if isinstance(value, Drawn):
+            rule = "a number, because only gymnasium.make_vec draws parameters, also with num_envs=1"
+            raise TypeError(f"{name} must be {rule}, got {value!r}")
         self._native.set(name, value)
         return _fixed(name, value)
 
@@ -225,20 +278,23 @@ class Parameters:
         highest = np.array([*others, *(max(each, 0.1) for each in velocities)], dtype=np.float32)
         return {"action_space": actions, "observation_space": spaces.Box(-highest, highest, dtype=np.float32)}
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        """Check a parameter and set it."""
-        if name not in _NAMES:
-            self._check_name(name)
-            super().__setattr__(name, value)
-            return
-        before = self._spaces() if self._made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2") else {}
-        super().__setattr__(name, self._pass(name, value))
-        for space, new in self._spaces().items() if before else ():
-            current = getattr(self, space)
-            # Another space is a user's.
-            if current == before[space] != new:
-                new.seed(int(current.np_random.integers(2**32)))
-                super().__setattr__(space, new)
+    if not TYPE_CHECKING:  # a checker would accept all names
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            """Check a parameter and set it."""
+            if name not in _NAMES:
+                self._check_name(name)
+                super().__setattr__(name, value)
+                return
+            changes_spaces = self._made and name in ("AVAIL_TORQUE", "MAX_VEL_1", "MAX_VEL_2")
+            before = self._spaces() if changes_spaces else {}
+            super().__setattr__(name, self._pass(name, value))
+            for space, new in self._spaces().items() if before else ():
+                current = getattr(self, space)
+                # Another space is a user's.
+                if current == before[space] != new:
+                    new.seed(int(current.np_random.integers(2**32)))
+                    super().__setattr__(space, new)
 
     def _check_name(self, name: str) -> None:
         """Reject the assignment of an attribute that would have no effect. A subclass may have other attributes."""
@@ -260,12 +316,6 @@ class Parameters:
     def __copy__(self) -> Parameters:
         """As ``copy.deepcopy``: two objects with the same states would be no copies."""
         return copy.deepcopy(self)
-
-    def _warn_of_no_render_mode(self) -> None:
-        logger.warn(
-            "render returns None, because the environment was made without a render mode. Make it with one: "
-            f'gymnasium.make("{self.spec.id if self.spec else "acrobot_rs/Acrobot-v1"}", render_mode="rgb_array")'
-        )
 
 
 _NAMES = tuple(name for name in Parameters.__annotations__ if hasattr(Parameters, name))

@@ -11,18 +11,18 @@ from typing import Any
 import gymnasium
 import numpy as np
 from gymnasium.error import NoAsyncCallError
-from gymnasium.vector import AutoresetMode
+from gymnasium.vector import AutoresetMode, VectorEnv
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from acrobot_rs.parameters import Drawn
-from acrobot_rs.vector import AcrobotVectorEnv
+from acrobot_rs.native_vector import NativeVectorEnv
 
 Indices = int | Iterable[int] | None
 
 
 class AcrobotVecEnv(VecEnv):
-    """An :class:`acrobot_rs.AcrobotVectorEnv`, or its continuous kind, as Stable-Baselines3's ``VecEnv``.
+    """A vector environment of this package, of either task, as Stable-Baselines3's ``VecEnv``.
 
     Its results are those of ``DummyVecEnv``: a step that ends an episode also resets, and the environment's info has
     ``"terminal_observation"`` and ``"TimeLimit.truncated"``. Returns of episodes are logged by Stable-Baselines3's
@@ -36,17 +36,17 @@ class AcrobotVecEnv(VecEnv):
     (64, 6)
     """
 
-    def __init__(self, envs: AcrobotVectorEnv) -> None:
+    def __init__(self, envs: VectorEnv[Any, Any, Any]) -> None:
         """Take environments over.
 
         Args:
             envs: Environments with ``autoreset_mode="SameStep"``.
 
         Raises:
-            TypeError: If they are no :class:`AcrobotVectorEnv`.
+            TypeError: If they are not of this package.
             ValueError: If they have another autoreset mode.
         """
-        if not isinstance(getattr(envs, "unwrapped", None), AcrobotVectorEnv):
+        if not isinstance(envs, NativeVectorEnv):
             raise TypeError(f"AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got {type(envs).__name__}")
         if envs.autoreset_mode is not AutoresetMode.SAME_STEP:
             raise ValueError(f'autoreset_mode must be "SameStep", got "{envs.autoreset_mode.value}"')
@@ -93,12 +93,12 @@ class AcrobotVecEnv(VecEnv):
         return observations, rewards.astype(np.float32, copy=False), ended, each
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
-        """The value of an attribute for each of these environments. See :meth:`AcrobotVectorEnv.call`."""
+        """The value of an attribute for each of these. See :meth:`NativeVectorEnv.call`."""
         values = self.envs.get_attr(attr_name)
         return [values[index] for index in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
-        """Set a parameter or the state of these environments. See :meth:`AcrobotVectorEnv.set_attr`.
+        """Set a parameter or the state of these environments. See :meth:`NativeVectorEnv.set_attr`.
 
         Raises:
             ValueError: If a parameter is or will be drawn, and these are not all environments. Nothing changes then.

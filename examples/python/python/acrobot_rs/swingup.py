@@ -8,14 +8,14 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 from gymnasium.error import InvalidAction, ResetNeeded
-from gymnasium.vector import AutoresetMode
+from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Batch
-from acrobot_rs.arrays import Seed, numbers, plain_seed, read_only
-from acrobot_rs.vector import Bools, Floats, NativeVectorEnv
+from acrobot_rs.arrays import numbers, plain_seed, read_only
+from acrobot_rs.native_vector import Bools, Floats, NativeVectorEnv
 
 #: The torque of an action of 1, N m.
 _TORQUE = 2.0
@@ -114,7 +114,7 @@ class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
     _ENGINE = "swingup_sparse"
 
 
-class AcrobotSwingupVectorEnv(NativeVectorEnv):
+class AcrobotSwingupVectorEnv(NativeVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """Many :class:`AcrobotSwingupEnv`, computed in ``float32``, bit-identically on every machine.
 
     Actions have the shape ``(num_envs, 1)``. Environment ``i`` draws from the ``i``-th child of the seed, as in
@@ -133,43 +133,35 @@ class AcrobotSwingupVectorEnv(NativeVectorEnv):
     def __init__(
         self,
         num_envs: int = 1,
-        max_episode_steps: int = 1000,
+        max_episode_steps: int | None = 1000,
         render_mode: str | None = None,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
+        copy: bool = True,
         threads: int | None = 1,
     ) -> None:
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
         self.render_mode = arrays.render_mode(render_mode, self.metadata)
-        self._native = self._make(num_envs, max_episode_steps, autoreset_mode, self._ENGINE, True, threads)
+        self._native = self._make(
+            num_envs, max_episode_steps, autoreset_mode, copy, self._ENGINE, True, threads
+        )
         self.single_action_space, self.single_observation_space = _spaces()
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
 
-    def reset(self, *, seed: Seed = None, options: dict[str, Any] | None = None) -> tuple[Floats, dict[str, Any]]:
-        """Begin an episode in each environment, or in those of ``options["reset_mask"]``."""
-        arrays.check_keys(options, ("reset_mask",))
-        return self._reset(seed, options, -np.pi, np.pi), {}
+    def _bounds(self, options: dict[str, Any] | None) -> tuple[float, float]:
+        arrays.check_keys(options, ("reset_mask", "state"))
+        return -np.pi, np.pi
 
-    def step(self, actions: ArrayLike) -> tuple[Floats, Floats, Bools, Bools, dict[str, Any]]:
-        """Step each environment. In mode ``SameStep``, ``infos["final_obs"]`` has the last observations of ended episodes.
-
-        Raises:
-            gymnasium.error.InvalidAction: If the actions have another shape, or are no numbers. No environment steps then.
-            gymnasium.error.ResetNeeded: Before the first reset, and in mode ``Disabled`` after an episode's end.
-        """
-        torques = _torques("actions", actions, (self.num_envs, 1))
-        observations, rewards, terminated, truncated, finals = self._step(torques)
-        infos = {} if finals is None else arrays.final_infos(finals, truncated, {})
-        return observations, rewards, terminated, truncated, infos
-
-    def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
-        """A picture or a text for each environment, depending on the render mode."""
-        if self.render_mode is None:
-            return None
-        return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
+    def step(
+        self, actions: ArrayLike
+    ) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
+        """Step each environment. Actions are from -1 to 1, and no state ends an episode."""
+        return super().step(_torques("actions", actions, (self.num_envs, 1)))
 
 
-class AcrobotSwingupSparseVectorEnv(AcrobotSwingupVectorEnv):
+class AcrobotSwingupSparseVectorEnv(
+    AcrobotSwingupVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
+):
     """Many :class:`AcrobotSwingupSparseEnv`."""
 
     _ENGINE = "swingup_sparse"

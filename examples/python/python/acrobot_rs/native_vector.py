@@ -1,0 +1,374 @@
+"""What the vector environments of both tasks share."""
+
+from __future__ import annotations
+
+import os
+import threading
+from numbers import Integral
+from typing import Any
+
+import numpy as np
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
+from gymnasium.vector import AutoresetMode, VectorEnv
+from numpy.typing import ArrayLike, NDArray
+
+from acrobot_rs import arrays
+from acrobot_rs._native import Batch
+from acrobot_rs.arrays import Seed, read_only, require
+from acrobot_rs.parameters import Drawn, _hint
+
+Floats = NDArray[np.float32]
+Bools = NDArray[np.bool_]
+
+#: What ``get_attr`` and ``call`` know, with the parameters. ``set_attr`` knows the parameters and
+#: ``state``.
+_ATTRIBUTES = (
+    *("action_space", "elapsed_steps", "max_episode_steps", "metadata", "observation_space"),
+    *("render", "render_mode", "spec", "state"),
+)
+
+
+class Alone:
+    """Rejects a step or a reset beside that of another thread."""
+
+    def __init__(self) -> None:
+        lock = threading.RLock()
+        self._acquire, self._release = lock.acquire, lock.release
+
+    def __enter__(self) -> None:
+        if not self._acquire(False):
+            raise RuntimeError(
+                "another thread is stepping or resetting an environment; "
+                "change parameters and call methods between its steps"
+            )
+
+    def __exit__(self, kind: object, error: object, trace: object) -> None:
+        self._release()
+
+    def __reduce__(self) -> tuple[type[Alone], tuple[()]]:
+        """A copy of the environment has its own lock."""
+        with self:
+            return Alone, ()
+
+
+class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray]):
+    """What the vector environments of both tasks share."""
+
+    num_envs: int
+    max_episode_steps: int | None
+    autoreset_mode: AutoresetMode
+    #: Whether each call returns observations in a new array.
+    copy: bool
+    #: Parameters that infos have.
+    info_parameters: tuple[str, ...] = ()
+    #: The names of the parameters.
+    _PARAMETERS: tuple[str, ...] = ()
+
+    _native: Batch
+    #: Whether states and rewards are ``float64``.
+    _gymnasium_episodes = False
+    #: Whether it was reset and not closed.
+    _ready = False
+    #: Without autoreset: the environments that must be reset before the next step.
+    _ended: Bools | None
+    #: The array that all calls return, or ``None`` if each returns a new one.
+    _observations: Floats | None
+
+    def _make(
+        self,
+        num_envs: int,
+        max_episode_steps: int | None,
+        autoreset_mode: Any,
+        copy: bool,
+        engine: str,
+        continuous: bool,
+        threads: int | None,
+    ) -> Batch:
+        """The native part. Checks its arguments and keeps them."""
+        modes = [mode.value for mode in AutoresetMode]
+        if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
+            raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
+        require(bool, "True or False", copy=copy)
+        if threads is None:
+            threads = (
+                len(os.sched_getaffinity(0))
+                if hasattr(os, "sched_getaffinity")
+                else os.cpu_count() or 1
+            )
+        limit = 2**32 - 1 if max_episode_steps is None else max_episode_steps
+        counts = {"num_envs": num_envs, "max_episode_steps": limit, "threads": threads}
+        require(Integral, "an integer", **counts)
+        for name, count in counts.items():
+            if not 0 < count < 2**32:
+                no_limit = ", or None for no limit" if name == "max_episode_steps" else ""
+                raise ValueError(
+                    f"{name} must be an integer from 1 to {2**32 - 1}{no_limit}, got {count}"
+                )
+        mode = AutoresetMode(autoreset_mode)
+        native = Batch(
+            num_envs, str(self.np_random_seed), limit, mode.value, engine, continuous, threads
+        )
+        self._alone = Alone()
+        self.autoreset_mode = mode
+        self.metadata = {**self.metadata, "autoreset_mode": mode}
+        self.num_envs = num_envs
+        self.max_episode_steps = max_episode_steps
+        self.copy = copy
+        self._observations = None if copy else self._empty()
+        self._same_step = mode is AutoresetMode.SAME_STEP
+        self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
+        return native
+
+    def reset(
+        self, *, seed: Seed = None, options: dict[str, Any] | None = None
+    ) -> tuple[Floats, dict[str, Any]]:
+        """Begin an episode in each environment.
+
+        Args:
+            seed: An integer of at least 0 with at most 4,300 digits. Its children seed the
+                environments' streams; with ``gymnasium_episodes``, ``seed + i`` seeds environment
+                ``i``. Or a list with an integer or ``None`` for each environment: its element seeds
+                environment ``i`` as it seeds a single one. Where the seed is ``None`` the stream
+                continues. A list does not change ``np_random``.
+            options: ``"reset_mask"``: an array of ``bool`` of shape ``(num_envs,)``; environments
+                whose element is false are neither seeded nor reset. ``"state"``: the initial
+                states, of shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all: theta1,
+                theta2 (rad) and their velocities (rad/s). They replace the drawn ones, so streams
+                and drawn parameters are as without them. In ``Acrobot-v1``, ``"low"`` and
+                ``"high"``: the bounds of these initial states, rad and rad/s; by default -0.1 and
+                0.1. Autoresets ignore all options.
+
+        Returns:
+            The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
+            without ``info_parameters``.
+
+        Raises:
+            TypeError: If the mask is not an array of ``bool``. Nothing changes then.
+            ValueError: If a number is not finite, if low is above high, if the mask has another
+                shape or no true element, if the states or the list of seeds have another length, or
+                if another key resembles one of these. Nothing changes then.
+            gymnasium.error.Error: If a seed is not an integer of at least 0. Nothing changes then.
+            RuntimeError: If another thread is stepping or resetting the environments. Nothing
+                changes then.
+        """
+        low, high = self._bounds(options)
+        self._check_open()
+        options = options or {}
+        mask = arrays.reset_mask(options, self.num_envs)
+        states = None
+        if "state" in options:
+            states = arrays.finite_states(self._each(options["state"]), self.num_envs, np.float32)
+        child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
+        if seeds is not None and mask is not None:
+            seeds = [each if some else None for each, some in zip(seeds, mask, strict=True)]
+        with self._alone:
+            if seeds is not None:
+                self._native.seed(seeds)
+            self._native.reset(child_of, low, high, mask, states)
+            if not isinstance(seed, list | tuple):
+                super().reset(seed=arrays.plain_seed(seed))
+            if self._ended is not None:
+                self._ended[slice(None) if mask is None else mask] = False
+            self._ready = True
+            observations = self._empty() if self._observations is None else self._observations
+            self._native.observe(observations)
+            if self._gymnasium_episodes:
+                self._observe_initial_states(observations, self.elapsed_steps == 0)
+            return observations, self._parameter_infos()
+
+    def step(
+        self, actions: ArrayLike
+    ) -> tuple[Floats, NDArray[np.floating[Any]], Bools, Bools, dict[str, Any]]:
+        """Step each environment. Other Python threads can run meanwhile.
+
+        Args:
+            actions: An element of ``action_space``, as an array or a list.
+
+        Returns:
+            Observations, of shape ``(num_envs, 6)``; rewards; where the goal was reached; where the
+            limit of steps was reached; and infos. In mode ``SameStep``, if an episode ended, they
+            have ``"final_obs"`` and ``"final_info"`` as in ``SyncVectorEnv``. They have the
+            ``info_parameters`` of the new states.
+
+        Raises:
+            gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the
+                array. No environment steps then.
+            gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an
+                episode has ended and its environment was not reset. No environment steps then.
+            gymnasium.error.ClosedEnvironmentError: After ``close``.
+            RuntimeError: If another thread is stepping or resetting the environments. No
+                environment steps then.
+        """
+        with self._alone:
+            self._check_ready()
+            last = self._parameter_infos() if self._same_step else {}
+            observations = self._empty() if self._observations is None else self._observations
+            finals = self._empty() if self._same_step else None
+            rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
+            if self._ended is not None:
+                np.logical_or(terminated, truncated, out=self._ended)
+            infos = self._parameter_infos()
+            if finals is not None:
+                infos |= arrays.final_infos(finals, terminated | truncated, last)
+            if not self._gymnasium_episodes:
+                return observations, rewards, terminated, truncated, infos
+            if self._same_step:
+                self._observe_initial_states(observations, terminated | truncated)
+            elif self._ended is None:
+                self._observe_initial_states(observations, (rewards == 0) & ~terminated)
+            return observations, rewards.astype(np.float64), terminated, truncated, infos
+
+    def _bounds(self, options: dict[str, Any] | None) -> tuple[float, float]:
+        """Check the keys of ``options``. The bounds of initial states, rad and rad/s."""
+        raise NotImplementedError
+
+    @property
+    def state(self) -> NDArray[np.floating[Any]]:
+        """theta1, theta2 (rad) and their velocities (rad/s) of each: a read-only ``(num_envs, 4)``.
+
+        To set the states, assign an array of this shape. To set some, change rows of
+        ``state.copy()`` and assign it. Episodes and numbers of steps continue:
+        ``reset(options={"state": states})`` begins episodes instead. In mode ``NextStep`` the next
+        step resets the ended episodes all the same.
+
+        Raises:
+            ValueError: If the shape is another one, or if a number is not finite. No state changes
+                then.
+        """
+        states = np.empty((self.num_envs, 4), np.float64)
+        self._native.states(states)
+        return read_only(states if self._gymnasium_episodes else states.astype(np.float32))
+
+    @state.setter
+    def state(self, states: ArrayLike) -> None:
+        dtype = np.float64 if self._gymnasium_episodes else np.float32
+        finite = arrays.finite_states(states, self.num_envs, dtype)
+        with self._alone:
+            self._native.set_states(finite)
+
+    def _each(self, states: Any) -> Any:
+        """A state for each environment, if there is one for all."""
+        return np.tile(states, (self.num_envs, 1)) if np.shape(states) == (4,) else states
+
+    @property
+    def elapsed_steps(self) -> NDArray[np.int64]:
+        """The number of steps of each environment's episode, of shape ``(num_envs,)``."""
+        elapsed = np.empty(self.num_envs, np.int64)
+        self._native.elapsed(elapsed)
+        return read_only(elapsed)
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """The value of an attribute for each environment, or the results of its method ``render``.
+
+        Args:
+            name: A parameter, ``"state"``, ``"elapsed_steps"`` or another attribute that the error
+                message lists.
+            *args: The arguments of the method.
+            **kwargs: The keyword arguments of the method.
+
+        Raises:
+            AttributeError: If the name is unknown.
+        """
+        self._check_open()
+        known = (*_ATTRIBUTES, *self._PARAMETERS)
+        if name not in known:
+            raise AttributeError(
+                f"the environments have no attribute {name!r}; they have {', '.join(known)}"
+            )
+        if name in ("action_space", "observation_space"):
+            name = f"single_{name}"
+        if name == "render":
+            frames = self.render(*args, **kwargs)
+            return (None,) * self.num_envs if frames is None else frames
+        value = getattr(self, name)
+        if name in self._PARAMETERS and isinstance(value, Drawn | np.ndarray):
+            values = self.get_parameter(name).tolist()
+            return tuple(map(tuple, values) if name == "AVAIL_TORQUE" else values)
+        return tuple(value) if name in ("state", "elapsed_steps") else (value,) * self.num_envs
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """The value of an attribute for each environment. As :meth:`call`."""
+        return self.call(name)
+
+    def get_parameter(self, name: str) -> NDArray[Any]:
+        """A parameter of each environment, as a new array.
+
+        It has the shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``.
+        """
+        self._check_open()
+        if name not in self._PARAMETERS:
+            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name)}")
+        value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
+        if not isinstance(value, Drawn):
+            return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
+        rows = np.empty((self.num_envs, 3 if is_row else 1))
+        self._native.get(name, rows)
+        return rows if is_row else rows[:, 0]
+
+    def _parameter_infos(self) -> dict[str, Any]:
+        """The parameters that infos have, as SyncVectorEnv collects the infos of environments."""
+        if not self.info_parameters:
+            return {}
+        infos = {name: self.get_parameter(name) for name in self.info_parameters}
+        return infos | {f"_{name}": np.ones(self.num_envs, np.bool_) for name in infos}
+
+    def set_attr(self, name: str, values: Any) -> None:
+        """Set a parameter or the state.
+
+        Args:
+            name: A parameter or ``"state"``.
+            values: One value for all environments, or a list, tuple or array with a value for each.
+                A parameter can also be drawn, for example an :class:`acrobot_rs.Uniform`.
+
+        Raises:
+            AttributeError: If the name is neither a parameter nor ``"state"``.
+            TypeError: If a value is of a wrong type. Nothing changes then.
+            ValueError: If a value is invalid, or if a list has another length. Nothing changes
+                then.
+        """
+        self._check_open()
+        known = ("state", *self._PARAMETERS)
+        if name not in known:
+            raise AttributeError(f"set_attr cannot set {name!r}; it can set {', '.join(known)}")
+        setattr(self, name, self._each(values) if name == "state" else values)
+
+    def render(self) -> tuple[NDArray[np.uint8] | str, ...] | None:
+        """For each environment an array of shape ``(500, 500, 3)`` or a text, as the mode says.
+
+        Without a render mode, warns and returns ``None``.
+        """
+        self._check_open()
+        if self.render_mode is None:
+            arrays.warn_of_no_render_mode(self.spec)
+            return None
+        if not self._ready:
+            raise ResetNeeded("the environments have no states yet; call reset before render")
+        return tuple(self._native.render(index, self.render_mode) for index in range(self.num_envs))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        """Called by ``close``. Later calls raise ``ClosedEnvironmentError``."""
+        self._ready = False
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError("the environments were closed; make new ones")
+
+    def _check_ready(self) -> None:
+        if not self._ready:
+            self._check_open()
+            raise ResetNeeded("the environments have no states yet; call reset before step")
+        if self._ended is not None and self._ended.any():
+            raise ResetNeeded(
+                f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; "
+                'reset it before the next step, with options={"reset_mask": terminated | truncated}'
+            )
+
+    def _empty(self) -> Floats:
+        return np.empty((self.num_envs, 6), np.float32)
+
+    def _observe_initial_states(self, observations: Floats, which: Bools) -> None:
+        """Write the observations of initial states, whose sines are NumPy's in ``float32``."""
+        if which.any():
+            angles = self.state[which, :2].astype(np.float32)
+            cosines, sines = np.cos(angles), np.sin(angles)
+            observations[which, :4] = np.stack([cosines, sines], axis=2).reshape(-1, 4)

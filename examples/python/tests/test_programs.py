@@ -1,0 +1,279 @@
+"""Other people's programs find in our environments what they read of Gymnasium's.
+
+`tests/clients/python` runs such programs.
+"""
+
+import copy
+import json
+
+import acrobot_rs
+import gymnasium
+import numpy as np
+import pytest
+from acrobot_rs import LogUniform, Normal, Uniform
+from gymnasium.envs.registration import EnvSpec
+from gymnasium.error import ResetNeeded
+from gymnasium.vector import VectorEnv
+from gymnasium.wrappers.vector import RecordEpisodeStatistics
+from vectors import rejects
+
+SINGLES = [name for name in gymnasium.registry if name.startswith("acrobot_rs/")]
+VECTORS = [name for name in SINGLES if gymnasium.spec(name).vector_entry_point]
+pytestmark = pytest.mark.filterwarnings("ignore:.*(out of date|infinity)")
+vectors = pytest.mark.parametrize("name", VECTORS)
+
+
+def make(name, **kwargs):
+    return gymnasium.make_vec(name, num_envs=3, vectorization_mode="vector_entry_point", **kwargs)
+
+
+def test_all_tasks_have_vector_environments():
+    assert len(SINGLES) == 5 and len(VECTORS) == 4
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *(acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotContinuousEnv, acrobot_rs.AcrobotSwingupEnv),
+        *(acrobot_rs.AcrobotVectorEnv, acrobot_rs.AcrobotSwingupVectorEnv),
+    ],
+)
+def test_an_unknown_argument_is_rejected_in_python_s_words(kind):
+    """torchrl recognises them."""
+    with pytest.raises(
+        TypeError,
+        match=rf"{kind.__name__}.__init__\(\) got an unexpected keyword argument 'frameskip'",
+    ):
+        kind(frameskip=1)
+
+
+@vectors
+def test_gymnasium_s_class_is_a_direct_base(name):
+    """skrl looks at nothing else."""
+    assert VectorEnv in type(make(name)).__bases__
+
+
+@vectors
+@pytest.mark.parametrize("mode", ["NextStep", "SameStep", "Disabled"])
+def test_recorded_episodes_have_their_lengths_and_returns(name, mode):
+    """Also if they begin at different times, with masks."""
+    if mode == "SameStep" and gymnasium.__version__.startswith("1.1."):
+        pytest.skip("its wrapper does not count the first step after a reset in a step")
+    envs = RecordEpisodeStatistics(make(name, autoreset_mode=mode, max_episode_steps=10))
+    envs.reset(seed=1)
+    begins, lengths, returns, total = np.zeros(3, int), [], [], np.zeros(3)
+    waiting = np.zeros(3, bool)
+    for step in range(1, 60):
+        _, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
+        total = np.where(waiting, 0.0, total + rewards)
+        begins[waiting] = step
+        ended = terminated | truncated
+        for index in np.flatnonzero(ended):
+            lengths.append((infos["episode"]["l"][index], step - begins[index]))
+            returns.append((infos["episode"]["r"][index], total[index]))
+        if mode == "SameStep":
+            begins[ended], total[ended] = step, 0.0
+        waiting = ended & (mode == "NextStep")
+        mask = (ended if mode == "Disabled" else np.zeros(3, bool)) | (
+            np.arange(3) == (step // 4 if step in (4, 8) else 3)
+        )
+        if mask.any():
+            envs.reset(options={"reset_mask": mask.copy()})
+            begins[mask], total[mask], waiting[mask] = step, 0.0, False
+    assert len(lengths) > 12 and len({begin for begin in begins.tolist()}) == 3
+    np.testing.assert_array_equal(*np.transpose(lengths))
+    np.testing.assert_allclose(*np.transpose(returns), rtol=1e-6)
+
+
+@vectors
+def test_options_are_not_changed(name):
+    envs = make(name)
+    options = {
+        "reset_mask": np.array([True, False, True]),
+        "state": np.zeros(4),
+        "minari_autoseed": False,
+    }
+    before = copy.deepcopy(options)
+    envs.reset(seed=1, options=options)
+    np.testing.assert_equal(options, before)
+
+
+@pytest.mark.parametrize(
+    ("maker", "name"),
+    [*((gymnasium.make, name) for name in SINGLES), *((make, name) for name in VECTORS)],
+)
+def test_options_of_other_programs_pass_and_misspelt_ones_do_not(maker, name):
+    """Minari's collector passes its own key on."""
+    env = maker(name)
+    expected = env.reset(seed=1)[0]
+    others = {
+        "minari_autoseed": False,
+        "x_init": 1.0,
+        "seed": 3,
+        "goal_cell": (0, 0),
+        "video": True,
+        ("a", "b"): None,
+    }
+    np.testing.assert_array_equal(env.reset(seed=1, options=others)[0], expected)
+    keys = {"mask": "reset_mask", "reset_masks": "reset_mask", "initial_state": "state"}
+    for key, near in (keys | {"states": "state", "State": "state", "lo": "low", "HIGH": "high"}).items():
+        hint = rf"got '{key}'(; did you mean '{near}'\?)?$"
+        with rejects(env, ValueError, rf"the keys of options must be among \[.*\], {hint}"):
+            env.reset(seed=2, options={key: None})
+
+
+@pytest.mark.parametrize("name", SINGLES)
+def test_specs_make_the_same_environment_again(name):
+    """Also from their JSON, which data sets store."""
+    for spec in (spec := gymnasium.make(name).spec, EnvSpec.from_json(spec.to_json())):
+        assert (spec.make().reset(seed=1)[0] == gymnasium.make(name).reset(seed=1)[0]).all()
+    if name in VECTORS:
+        envs = make(name, max_episode_steps=7, autoreset_mode="Disabled", copy=False)
+        for spec in (spec := envs.spec, EnvSpec.from_json(spec.to_json())):
+            twin = gymnasium.make_vec(spec)
+            assert (twin.reset(seed=1)[0] == envs.reset(seed=1)[0]).all()
+            for attribute in (
+                "num_envs",
+                "max_episode_steps",
+                "autoreset_mode",
+                "copy",
+                "render_mode",
+                "metadata",
+            ):
+                assert getattr(twin, attribute) == getattr(envs, attribute)
+
+
+def test_specs_have_draws_also_as_json():
+    draws = {
+        "LINK_MASS_1": Uniform(0.8, 1.2),
+        "LINK_MASS_2": LogUniform(0.8, 1.2),
+        "gravity": Normal(9.8, 0.1, 9.0, 10.0),
+        "AVAIL_TORQUE": Uniform([-2, 0, 1], [-1, 0, 2]),
+    }
+    envs = make("acrobot_rs/Acrobot-v1", **draws)
+    twin = gymnasium.make_vec(EnvSpec.from_json(envs.spec.to_json()))
+    for name, draw in draws.items():
+        assert getattr(twin, name) == draw and type(getattr(twin, name)) is type(draw)
+    for bad in (
+        {"kind": "Uniform"},
+        {"low": 1.0, "high": 2.0},
+        {"kind": "Drawn", "low": 1.0, "high": 2.0},
+    ):
+        with pytest.raises(TypeError, match="LINK_MASS_1 must be a number, got"):
+            envs.LINK_MASS_1 = json.loads(json.dumps(bad))
+
+
+@vectors
+def test_attributes_of_each_environment(name):
+    """Trainers and adapters read them."""
+    envs = make(name, render_mode="ansi", copy=False, max_episode_steps=20)
+    first, _ = envs.reset(seed=1)
+    assert (
+        envs.copy is False
+        and envs.max_episode_steps == 20
+        and envs.step(envs.action_space.sample())[0] is first
+    )
+    for get in (envs.call, envs.get_attr):
+        assert get("max_episode_steps") == (20,) * 3 and get("elapsed_steps") == (1,) * 3
+        assert np.array_equal(get("state"), envs.state) and get("render") == envs.render()
+        assert (
+            get("action_space") == (envs.single_action_space,) * 3
+            and get("render_mode") == ("ansi",) * 3
+        )
+        with pytest.raises(AttributeError, match="no attribute 'length'; they have .*state"):
+            get("length")
+    envs.set_attr("state", [0.1, 0.2, 0.3, 0.4])
+    assert (envs.state == np.float32([0.1, 0.2, 0.3, 0.4])).all()
+    with pytest.raises(AttributeError, match="cannot set 'length'; it can set state"):
+        envs.set_attr("length", 1.0)
+    with pytest.warns(UserWarning, match="without a render mode"):
+        assert make(name).render() is None
+
+
+@pytest.mark.parametrize(
+    "kind", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotVectorEnv, acrobot_rs.AcrobotSwingupVectorEnv]
+)
+def test_what_tutorials_read_says_what_to_use(kind):
+    env = kind()
+    for name, use in [
+        ("_terminal", "terminated"),
+        ("_get_ob", "observations"),
+        ("_dsdt", "state"),
+        ("actions_num", "action_space"),
+    ]:
+        with pytest.raises(
+            AttributeError, match=f"{kind.__name__} has no attribute '{name}'; .*{use}"
+        ):
+            getattr(env, name)
+        assert not hasattr(env, name)
+
+
+@vectors
+def test_episodes_begin_in_given_states(name):
+    """A planner copies a state into all, and begins again where episodes have ended."""
+    envs, twin = (make(name, autoreset_mode="Disabled", max_episode_steps=2) for _ in range(2))
+    states = np.random.default_rng(0).uniform(-1, 1, (3, 4)).astype(np.float32)
+    observations, infos = envs.reset(seed=1, options={"state": states})
+    twin.reset(seed=1)
+    twin.state = states
+    assert (envs.state == states).all() and infos == {} and (envs.elapsed_steps == 0).all()
+    actions = envs.action_space.sample()
+    for _ in range(2):
+        for one, other in zip(envs.step(actions)[:4], twin.step(actions)[:4], strict=True):
+            np.testing.assert_array_equal(one, other)
+    with pytest.raises(ResetNeeded):
+        envs.step(actions)
+    before = envs.state
+    envs.reset(options={"state": states[1], "reset_mask": np.array([True, False, True])})
+    assert (
+        envs.state == [states[1], before[1], states[1]]
+    ).all() and envs.elapsed_steps.tolist() == [0, 2, 0]
+    envs.reset(options={"state": states[2]})
+    assert (envs.state == states[2]).all() and (envs.elapsed_steps == 0).all()
+    envs.step(actions)
+    for bad in ([1.0] * 3, [[1.0] * 4] * 2, "x", None, [[0, 0, 0, np.nan]] * 3, [0, 0, 0, 1e39]):
+        with rejects(
+            envs, ValueError, r"state.* must be (numbers of shape \(3, 4\)|a finite number), got"
+        ):
+            envs.reset(seed=2, options={"state": bad})
+
+
+@pytest.mark.parametrize(
+    "name", ["acrobot_rs/Acrobot-v1", "acrobot_rs/AcrobotContinuous-v0", "acrobot_rs/Acrobot-v0"]
+)
+def test_a_single_episode_begins_in_a_given_state(name):
+    env, twin = (
+        gymnasium.make(name, torque_noise_max=0.1),
+        gymnasium.make(name, torque_noise_max=0.1),
+    )
+    state = np.array([1.0, -2.0, 3.0, 0.1])
+    observation, _ = env.reset(seed=1, options={"state": state})
+    twin.reset(seed=1)
+    twin.unwrapped.state = state
+    assert (env.unwrapped.state == state).all() and env.unwrapped.state.dtype == np.float64
+    assert (
+        observation in env.observation_space and (observation[-2:] == np.float32(state[2:])).all()
+    )
+    action = env.action_space.sample()
+    assert (env.step(action)[0] == twin.step(action)[0]).all()
+    if name == "acrobot_rs/Acrobot-v1":
+        envs = gymnasium.make_vec(name, num_envs=1, gymnasium_episodes=True)
+        assert (envs.reset(options={"state": state})[0] == observation).all()
+    for options in (
+        {"state": [1.0] * 3},
+        {"state": None},
+        {"state": [np.nan] * 4},
+        {"state": state, "low": -1.0},
+    ):
+        with rejects(env.unwrapped, ValueError, "^(state|options|theta1) must "):
+            env.unwrapped.reset(seed=2, options=options)
+
+
+@vectors
+def test_without_a_limit_no_episode_is_truncated(name):
+    envs = make(name, max_episode_steps=None, autoreset_mode="SameStep")
+    envs.reset(seed=1)
+    assert envs.max_episode_steps is None and envs.get_attr("max_episode_steps") == (None,) * 3
+    idle = np.full(envs.action_space.shape, 0 if envs.action_space.dtype == np.float32 else 1)
+    assert not any(envs.step(idle)[3].any() for _ in range(1200))
+    assert (envs.elapsed_steps == 1200).all()

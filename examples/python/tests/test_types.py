@@ -1,0 +1,74 @@
+"""mypy and pyright accept the code of docs/python.md and what parameters can be, not the rest."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+from test_docs import ROOT
+
+PROGRAM = """\
+import acrobot_rs
+import numpy as np
+from acrobot_rs import LogUniform, Normal, Uniform
+
+env = acrobot_rs.AcrobotEnv(LINK_MASS_1=2, AVAIL_TORQUE=[-1, 1], book_or_nips="nips")
+env.state = [0.0, 0.1, 0.2, 0.3]
+env.dt, env.AVAIL_TORQUE = env.dt / 2, np.array([-1.0, 1.0])
+acrobot_rs.AcrobotEnv.dt = 0.1
+masses = [1.0, 2.0]
+envs = acrobot_rs.AcrobotContinuousVectorEnv(2, None, LINK_MASS_1=masses, gravity=Uniform(9, 10))
+envs.AVAIL_TORQUE = Uniform([-2, 0, 1], [-1, 0, 2])
+envs.gravity = Uniform(9, 10)
+envs.dt, envs.LINK_MOI, envs.book_or_nips = np.array([0.1, 0.2]), LogUniform(1, 2), ["book", "nips"]
+envs.MAX_VEL_1, envs.AVAIL_TORQUE = Normal(9.0, 1.0, 8.0, 10.0), [[-1, 0, 1], [-2, 0, 2]]
+envs.state = np.zeros((2, 4))
+swingups = acrobot_rs.AcrobotSwingupVectorEnv(2, copy=False)
+swingups.state = [[0.0] * 4] * 2
+print(envs.state.shape, envs.elapsed_steps.sum(), envs.get_parameter("dt").mean())
+print(swingups.get_attr("state"))
+
+
+class Heavy(acrobot_rs.AcrobotVectorEnv):
+    LINK_MASS_1 = 2.0
+    LINK_MASS_2 = Uniform(1.0, 2.0)
+"""
+WRONG = """\
+import acrobot_rs
+
+env = acrobot_rs.AcrobotEnv()
+env.dt = "fast"
+env.dt = acrobot_rs.Uniform(0.1, 0.2)
+env.LINK_MAS_1 = 1.0
+print(env._terminal)
+acrobot_rs.AcrobotEnv(frameskip=4)
+acrobot_rs.AcrobotVectorEnv(2, dt="fast")
+acrobot_rs.AcrobotVectorEnv(2).gravity = None
+"""
+
+
+@pytest.mark.parametrize(
+    "checker",
+    [
+        ["mypy", "--strict", "--ignore-missing-imports", "--no-error-summary"],
+        ["pyright", "--pythonpath", sys.executable],
+    ],
+    ids=lambda each: each[0],
+)
+def test_checkers(checker, tmp_path):
+    pytest.importorskip(checker[0])
+    page = (ROOT / "docs/python.md").read_text()
+    blocks = re.findall(r"^```py(?:thon)?\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    texts = {
+        "page.py": "# pyright: reportMissingImports=false\n" + "\n".join(blocks),
+        "program.py": PROGRAM,
+        "wrong.py": WRONG,
+    }
+    for name, text in texts.items():
+        (tmp_path / name).write_text(text)
+    run = subprocess.run(
+        [sys.executable, "-m", *checker, *texts], cwd=tmp_path, capture_output=True, text=True
+    )
+    errors = re.findall(r"(\w+\.py):(\d+):.*error", run.stdout)
+    assert {name for name, _ in errors} == {"wrong.py"}, run.stdout + run.stderr
+    assert {int(line) for _, line in errors} == set(range(4, 1 + WRONG.count("\n"))), run.stdout
