@@ -1,12 +1,12 @@
-//! A batch of one of six arithmetics.
+//! A batch of one of four arithmetics.
 
 use std::ops::DerefMut;
 
 use acrobot::arithmetic::{Arithmetic, Host, Real, Swingup, SwingupSparse};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{FrictionOf, ParamsRange};
-use acrobot::{Error, Fast, Params, Portable, State};
+use acrobot::physics::{ParamsRange, Task};
+use acrobot::{Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
@@ -15,9 +15,12 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::draws::{Distribution, Draws};
-use crate::{InvalidAction, must_be, rejected, unknown, with};
+use crate::{
+    InvalidAction, Params, invalid, must_be, params_from, params_of, rejected, torque_of, unknown,
+    with,
+};
 
-/// Actions (0, 1 or 2), or torques, N m.
+/// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
 #[derive(FromPyObject)]
 pub enum Inputs<'py> {
     Actions(PyReadonlyArray1<'py, i64>),
@@ -47,20 +50,15 @@ pub enum Engine {
     Host(Many<Host>),
     Swingup(Many<Swingup<Fast>>),
     SwingupSparse(Many<SwingupSparse<Fast>>),
-    /// In `f64`.
-    ExactSwingup(Many<Swingup<Portable>>),
-    ExactSwingupSparse(Many<SwingupSparse<Portable>>),
 }
 
 impl Engine {
     pub fn new(name: &str, len: usize, seed: SeedSequence) -> PyResult<Self> {
         Ok(match name {
-            "fast" => Self::Fast(Many::new(len, seed)?),
+            "acrobot" => Self::Fast(Many::new(len, seed)?),
             "gymnasium" => Self::Host(Many::new(len, seed)?),
             "swingup" => Self::Swingup(Many::new(len, seed)?),
             "swingup_sparse" => Self::SwingupSparse(Many::new(len, seed)?),
-            "exact_swingup" => Self::ExactSwingup(Many::new(len, seed)?),
-            "exact_swingup_sparse" => Self::ExactSwingupSparse(Many::new(len, seed)?),
             other => return Err(unknown("engine", "the name of an engine", other)),
         })
     }
@@ -74,8 +72,6 @@ macro_rules! with_batch {
             $crate::engine::Engine::Host($many) => $result,
             $crate::engine::Engine::Swingup($many) => $result,
             $crate::engine::Engine::SwingupSparse($many) => $result,
-            $crate::engine::Engine::ExactSwingup($many) => $result,
-            $crate::engine::Engine::ExactSwingupSparse($many) => $result,
         }
     };
 }
@@ -111,20 +107,16 @@ impl<A: Arithmetic> Many<A> {
     }
 
     pub fn params(&self, index: usize) -> Params {
-        self.batch
-            .params_of(index)
-            .unwrap_or_default()
-            .without_friction()
-            .cast()
+        params_from::<A>(&self.batch.params_of(index).unwrap_or_default())
     }
 
     pub fn state(&self, index: usize) -> State {
         self.batch.state(index).unwrap_or_default().cast()
     }
 
-    /// The friction of all acrobots, which nothing changes.
-    fn friction(&self) -> FrictionOf<A> {
-        self.batch.params_of(0).unwrap_or_default().friction
+    /// The parameters with one of them changed.
+    pub fn with(&self, params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+        with(A::TASK, params, name, value)
     }
 
     /// The parameters of all acrobots, or one for all if they share them.
@@ -142,16 +134,17 @@ impl<A: Arithmetic> Many<A> {
     ) -> PyResult<Draws> {
         let mut draws = self.draws.clone();
         let [lows, highs] = draws.ends(self.params(0));
-        let bounds = [with(lows, name, &low)?, with(highs, name, &high)?];
-        draws.bounds = bounds.map(|bound| bound.cast::<A::Scalar>().cast());
+        let bounds = [self.with(lows, name, &low)?, self.with(highs, name, &high)?];
+        draws.bounds = bounds.map(|bound| params_from::<A>(&params_of::<A>(bound)));
         draws.distributions.insert(name.to_owned(), distribution);
         Ok(draws)
     }
 
     /// Checks the parameters of an acrobot, with all that these draws can make of them.
     pub fn check(&self, params: Params, draws: &Draws) -> PyResult<()> {
-        let [low, high] = draws.ends(params).map(|end| end.cast::<A::Scalar>());
-        ParamsRange::new(low, high).map(drop).map_err(rejected)
+        let [low, high] = draws.ends(params).map(params_of::<A>);
+        let checked = ParamsRange::new(low, high).map(drop);
+        checked.map_err(|error| invalid(A::TASK, error))
     }
 
     /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of resets. Gives each acrobot
@@ -165,16 +158,14 @@ impl<A: Arithmetic> Many<A> {
             self.batch = self.owning()?;
             self.own = true;
         }
-        let friction = self.friction();
         for index in 0..if self.own { self.batch.len() } else { 1 } {
-            let params = params.get(index).unwrap_or(&params[0]).cast();
-            let params = params.with_friction(friction);
+            let params = params_of::<A>(*params.get(index).unwrap_or(&params[0]));
             if self.own {
                 self.batch.set_params_of(index, params)
             } else {
                 self.batch.set_params(params)
             }
-            .map_err(rejected)?;
+            .map_err(|error| invalid(A::TASK, error))?;
         }
         self.draws = draws;
         Ok(())
@@ -186,14 +177,12 @@ impl<A: Arithmetic> Many<A> {
         if self.draws.distributions.is_empty() {
             return Ok(());
         }
-        let friction = self.friction();
         for index in 0..self.batch.len() {
             if were_reset(&self.batch, index) {
                 let params = self.params(index);
                 let rng = &mut self.batch.generators_mut()[index];
                 let drawn = self.draws.draw(params, rng);
-                let drawn = drawn.cast().with_friction(friction);
-                self.batch.set_params_of(index, drawn)?;
+                self.batch.set_params_of(index, params_of::<A>(drawn))?;
             }
         }
         Ok(())
@@ -239,9 +228,13 @@ impl<A: Arithmetic> Many<A> {
                     |torque| !torque.is_nan(),
                     |index, torque| {
                         let (low, high) = if self.own { bounds(index) } else { first };
-                        A::Scalar::from_f64(f64::from(torque).max(low).min(high))
+                        A::Scalar::from_f64(torque_of(A::TASK, torque.into(), low, high))
                     },
-                    "a number, N m",
+                    if A::TASK == Task::Acrobot {
+                        "a number, N m"
+                    } else {
+                        "a number from -1 to 1"
+                    },
                 )
             }
         }

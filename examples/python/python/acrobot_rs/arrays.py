@@ -18,10 +18,12 @@ from numpy.typing import NDArray
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 
 
-def reset_bounds(options: dict[str, Any] | None, others: Iterable[str] = ("reset_mask",)) -> tuple[float, float]:
-    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1."""
+def reset_bounds(
+    options: dict[str, Any] | None, bound: float, others: Iterable[str] = ("reset_mask",)
+) -> tuple[float, float]:
+    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or ``-bound`` and ``bound``."""
     check_keys(options, ("low", "high", *others))
-    low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
+    low, high = maybe_parse_reset_bounds(options, -bound, bound)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
     if not (abs(low) <= largest and abs(high) <= largest):
         raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")

@@ -85,7 +85,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             TypeError: If a parameter is unknown or of a wrong type.
             ValueError: If a parameter is invalid.
         """
-        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS), None, parameters)
+        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS, self._TASK), None, parameters)
         self.render_mode = render_mode
         # The window, by the names of Gymnasium's environment.
         self.screen: Any = None
@@ -133,17 +133,22 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             ValueError: If a bound is not a finite number, if low is above high, or if a key is unknown. Nothing changes
                 then.
         """
-        low, high = reset_bounds(options, ())
+        low, high = reset_bounds(options, self._BOUND, ())
         super().reset(seed=plain_seed(seed))
+        observation = self._begin(low, high)
+        if self.render_mode == "human":
+            self.render()
+        return observation, {}
+
+    def _begin(self, low: float, high: float) -> NDArray[np.float32]:
+        """Draw an initial state, and observe it."""
         # Gymnasium rounds initial states to float32.
         s = self.np_random.uniform(low, high, 4).astype(np.float32)
         self._native.state = s
-        if self.render_mode == "human":
-            self.render()
         if self._ANGLES:
-            return s, {}
+            return s
         # Gymnasium's calls of NumPy, whose float32 sines are its own.
-        return np.array([np.cos(s[0]), np.sin(s[0]), np.cos(s[1]), np.sin(s[1]), s[2], s[3]], dtype=np.float32), {}
+        return np.array([np.cos(s[0]), np.sin(s[0]), np.cos(s[1]), np.sin(s[1]), s[2], s[3]], dtype=np.float32)
 
     def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
@@ -226,8 +231,8 @@ class AcrobotContinuousEnv(AcrobotEnv):
     _CONTINUOUS = True
 
     def _torque(self, action: ArrayLike) -> float:
-        """The torque, N m. The native part calls this for all but arrays of one ``float32``."""
-        rule = "a torque in N m, as an array of shape (1,)"
+        """The number in an action. The native part calls this for all but arrays of one ``float32``."""
+        rule = f"{self._ACTION}, as an array of shape (1,)"
         torque = float(numbers("action", rule, action, (1,), error=InvalidAction)[0])
         if math.isnan(torque):
             raise InvalidAction(f"action must be {rule}, got {action!r}")

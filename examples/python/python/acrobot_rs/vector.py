@@ -17,15 +17,15 @@ from numpy.typing import ArrayLike, NDArray
 from acrobot_rs import arrays
 from acrobot_rs._native import Batch
 from acrobot_rs.arrays import Seed, numbers, read_only, require
-from acrobot_rs.parameters import _NAMES, Drawn, Parameters, _fixed, _hint
+from acrobot_rs.parameters import Drawn, Parameters, _fixed, _hint
 
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
-#: What ``get_attr`` and ``call`` know. ``set_attr`` knows the parameters and ``state``.
+#: What ``get_attr`` and ``call`` know beside the parameters. ``set_attr`` knows the parameters and ``state``.
 _ATTRIBUTES = (
     *("action_space", "elapsed_steps", "max_episode_steps", "metadata", "observation_space"),
-    *("render", "render_mode", "spec", "state", *_NAMES),
+    *("render", "render_mode", "spec", "state"),
 )
 
 
@@ -209,13 +209,13 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
             MemoryError: If the environments do not fit into memory.
         """
         require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
-        for name in (each for each in info_parameters if each not in _NAMES):
-            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {_hint(str(name))}")
+        for name in (each for each in info_parameters if each not in self._NAMES):
+            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {_hint(str(name), self._NAMES)}")
         self.info_parameters = tuple(info_parameters)
         require(bool, "True or False", copy=copy, gymnasium_episodes=gymnasium_episodes)
         if gymnasium_episodes:
             arrays.warn_of_other_sines()
-        engine = "gymnasium" if gymnasium_episodes else "fast"
+        engine = "gymnasium" if gymnasium_episodes else self._TASK
         native = self._make(num_envs, max_episode_steps, autoreset_mode, engine, self._CONTINUOUS, threads)
         super().__init__(native, render_mode, parameters)
         self.max_episode_steps = max_episode_steps
@@ -251,7 +251,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
                 element, or if the list of seeds has another length. Nothing changes then.
             gymnasium.error.Error: If a seed is not an integer of at least 0. Nothing changes then.
         """
-        observations = self._reset(seed, options, *arrays.reset_bounds(options))
+        observations = self._reset(seed, options, *arrays.reset_bounds(options, self._BOUND))
         if self._gymnasium_episodes:
             self._observe_initial_states(observations, self.elapsed_steps == 0)
         return observations, self._parameter_infos()
@@ -299,12 +299,12 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
             AttributeError: If the name is unknown.
         """
         self._check_open()
-        if name not in _ATTRIBUTES:
-            raise AttributeError(f"the environments have no attribute {name!r}; they have {', '.join(_ATTRIBUTES)}")
+        if name not in (names := (*_ATTRIBUTES, *self._NAMES)):
+            raise AttributeError(f"the environments have no attribute {name!r}; they have {', '.join(names)}")
         if name in ("action_space", "observation_space"):
             name = f"single_{name}"
         value = getattr(self, name)
-        if name in _NAMES and isinstance(value, Drawn | np.ndarray):
+        if name in self._NAMES and isinstance(value, Drawn | np.ndarray):
             values = self.get_parameter(name).tolist()
             return tuple(map(tuple, values) if name == "AVAIL_TORQUE" else values)
         if name == "render":
@@ -319,8 +319,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
     def get_parameter(self, name: str) -> NDArray[Any]:
         """A parameter of each environment: a new array of shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``."""
         self._check_open()
-        if name not in _NAMES:
-            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name)}")
+        if name not in self._NAMES:
+            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name, self._NAMES)}")
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
@@ -349,8 +349,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
             ValueError: If a value is invalid, or if a list has another length. Nothing changes then.
         """
         self._check_open()
-        if name not in (*_NAMES, "state"):
-            raise AttributeError(f"set_attr cannot set {name!r}; it can set state, {', '.join(_NAMES)}")
+        if name not in (*self._NAMES, "state"):
+            raise AttributeError(f"set_attr cannot set {name!r}; it can set state, {', '.join(self._NAMES)}")
         if name == "state" and np.shape(values) == (4,):
             values = np.tile(values, (self.num_envs, 1))
         setattr(self, name, values)
