@@ -64,6 +64,14 @@ def test_a_vector_environment_is_as_near(name):
     assert not terminated.any() and not truncated.any()
 
 
+def test_the_observation_space_contains_all_observations():
+    envs = AcrobotSwingupVectorEnv(num_envs=1024, MAX_VEL_1=1e-3)
+    envs.action_space.seed(1)
+    for seed in range(300):
+        assert envs.observation_space.contains(envs.reset(seed=seed)[0])
+        assert envs.observation_space.contains(envs.step(envs.action_space.sample())[0])
+
+
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.filterwarnings("ignore:.*infinity")
 def test_gymnasiums_checks(name):

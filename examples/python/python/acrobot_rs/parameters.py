@@ -225,23 +225,23 @@ class Parameters:
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
         """All spaces, by the names of their attributes. Here those of a single environment."""
-        lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
+        low, high, *velocities = self._limits()
         actions: spaces.Space[Any]
         if self._CONTINUOUS:
-            low, high = self._action_bounds(np.min(lows), np.max(highs))
             actions = spaces.Box(low, high, (1,), np.float32)
         else:
-            actions = spaces.Discrete(np.shape(lows)[-1])
-        # After a step, or after a reset with the default bounds of 0.1, rad/s. A bound of 1e30 is none.
-        velocities = (np.max(getattr(bound, "high", bound)) for bound in (self.MAX_VEL_1, self.MAX_VEL_2))
+            actions = spaces.Discrete(np.shape(getattr(self.AVAIL_TORQUE, "low", self.AVAIL_TORQUE))[-1])
         others = [np.pi] * 2 if self._ANGLES else [1.0] * 4
-        highest = np.array([*others, *(max(each, 0.1) if each < 1e30 else np.inf for each in velocities)], dtype=np.float32)
+        highest = np.array([*others, *velocities], dtype=np.float32)
         return {"action_space": actions, "observation_space": spaces.Box(-highest, highest, dtype=np.float32)}
 
-    def _action_bounds(self, low: float, high: float) -> tuple[float, float]:
-        """The bounds of continuous actions. Here those of torques, N m."""
+    def _limits(self) -> tuple[float, float, float, float]:
+        """The least and the largest continuous action, and the largest velocities, rad/s, in the spaces."""
+        lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
         largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
-        return max(low, -largest), min(high, largest)
+        # After a step, or after a reset with the default bounds of 0.1, rad/s.
+        first, second = (max(np.max(getattr(bound, "high", bound)), 0.1) for bound in (self.MAX_VEL_1, self.MAX_VEL_2))
+        return max(np.min(lows), -largest), min(np.max(highs), largest), first, second
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a parameter and set it."""

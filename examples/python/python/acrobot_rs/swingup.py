@@ -18,7 +18,7 @@ from acrobot_rs.vector import AcrobotContinuousVectorEnv
 class Swingup(Parameters):
     """The parameters of the swing-up: :class:`Parameters` with dm_control's values, and those of this class.
 
-    ``AVAIL_TORQUE`` has the torques of the actions: the smallest is that of -1, and the largest that of 1.
+    The largest number in ``AVAIL_TORQUE`` is the torque of the action 1, and the smallest that of -1. The spaces do not change.
     """
 
     #: Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more.
@@ -46,10 +46,12 @@ class Swingup(Parameters):
     @property
     def LINK_MOI(self) -> float:  # type: ignore[override]
         """Each link has its own."""
-        raise AttributeError(f"{type(self).__name__} has no parameter LINK_MOI; {_hint('LINK_MOI', self._NAMES)}")
+        raise AttributeError(
+            f"{type(self).__name__} has no parameter LINK_MOI; {_hint('LINK_MOI', self._NAMES)}"
+        )
 
-    def _action_bounds(self, low: float, high: float) -> tuple[float, float]:
-        return -1.0, 1.0
+    def _limits(self) -> tuple[float, float, float, float]:
+        return -1.0, 1.0, math.inf, math.inf
 
 
 class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
@@ -118,7 +120,15 @@ class AcrobotSwingupVectorEnv(Swingup, AcrobotContinuousVectorEnv):
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
         self._check_arguments(parameters)  # gymnasium_episodes is none
         super().__init__(
-            num_envs, max_episode_steps, render_mode, autoreset_mode, copy, False, threads, info_parameters, **parameters
+            num_envs,
+            max_episode_steps,
+            render_mode,
+            autoreset_mode,
+            copy,
+            False,
+            threads,
+            info_parameters,
+            **parameters,
         )
 
 
