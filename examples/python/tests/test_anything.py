@@ -123,17 +123,21 @@ def test_a_single_environment(kind, mode, sequence):
 
 
 @given(
-    *(FEW, FEW, MODES, st.booleans(), st.booleans()),
+    *(FEW, FEW, MODES, st.booleans(), st.sampled_from([False, True, None])),
     calls(
         *(SEEDS | st.lists(SEEDS, max_size=4), MANY),
         st.lists(st.lists(NUMBERS, min_size=4, max_size=4), max_size=4) | ANYTHING,
         (acrobot_rs.AcrobotVectorEnv.set_attr, NAMES | st.just("state") | st.text(), MANY),
-        (lambda envs, action: envs.step([action] * envs.num_envs)[0], st.integers(0, 2)),
+        (lambda envs, action: envs.step(np.full(envs.action_space.shape, action))[0], st.integers(0, 2)),
         (lambda envs, actions: envs.step(actions)[0], st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING),
     ),
 )
 def test_a_vector_environment(num_envs, limit, autoreset, copy, gymnasium_episodes, sequence):
-    play(acrobot_rs.AcrobotVectorEnv(num_envs, limit, "ansi", autoreset, copy, gymnasium_episodes), sequence)
+    arguments = (num_envs, limit, "ansi", autoreset, copy)
+    if gymnasium_episodes is None:
+        play(acrobot_rs.AcrobotSwingupVectorEnv(*arguments), sequence)
+    else:
+        play(acrobot_rs.AcrobotVectorEnv(*arguments, gymnasium_episodes), sequence)
 
 
 @given(FEW | ANYTHING, FEW | ANYTHING, ANYTHING, MODES | ANYTHING)
