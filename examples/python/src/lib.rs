@@ -52,8 +52,9 @@ fn params_from<A: Arithmetic>(params: &ParamsOf<A>) -> Params {
     params.with_friction(Viscous { joint1, joint2 })
 }
 
-/// The torque of a continuous action, N m, which is within the smallest and the largest torque. Gymnasium's task has torques as
-/// actions. In a swing-up the action 1 is the largest torque, −1 the smallest and 0 none.
+/// The torque of a continuous action, N m, which is within the smallest and the largest torque.
+/// Gymnasium's task has torques as actions. In a swing-up the action 1 is the largest torque, −1 the
+/// smallest and 0 none.
 fn torque_of(task: Task, action: f64, low: f64, high: f64) -> f64 {
     let torque = match task {
         Task::Acrobot => action,
@@ -68,7 +69,7 @@ fn torque_of(task: Task, action: f64, low: f64, high: f64) -> f64 {
 /// A number among the parameters: Python's name, the crate's, and its field.
 type Number = (&'static str, &'static str, fn(&mut Params) -> &mut f64);
 
-/// In the order of draws. Gymnasium has one moment of inertia for both links, and a swing-up one for each.
+/// In the order of draws. Gymnasium has one moment of inertia for both links, a swing-up two.
 const NUMBERS: [Number; 20] = [
     ("LINK_LENGTH_1", "length1", |p| &mut p.length1),
     ("LINK_LENGTH_2", "length2", |p| &mut p.length2),

@@ -128,7 +128,10 @@ def test_a_single_environment(kind, mode, sequence):
         *(SEEDS | st.lists(SEEDS, max_size=4), MANY),
         st.lists(st.lists(NUMBERS, min_size=4, max_size=4), max_size=4) | ANYTHING,
         (acrobot_rs.AcrobotVectorEnv.set_attr, NAMES | st.just("state") | st.text(), MANY),
-        (lambda envs, action: envs.step(np.full(envs.action_space.shape, action))[0], st.integers(0, 2)),
+        (
+            lambda envs, action: envs.step(np.full(envs.action_space.shape, action))[0],
+            st.integers(0, 2),
+        ),
         (lambda envs, actions: envs.step(actions)[0], st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING),
     ),
 )

@@ -64,7 +64,8 @@ def test_the_swing_up_is_taken_too():
     envs.reset()
     envs.set_attr("FRICTION_1", 0.2, 1)
     assert envs.get_attr("FRICTION_1") == [0.05, 0.2]
-    assert [envs.step(np.ones((2, 1)))[2].tolist() for _ in range(3)] == [[False] * 2] * 2 + [[True] * 2]
+    ends = [envs.step(np.ones((2, 1)))[2].tolist() for _ in range(3)]
+    assert ends == [[False] * 2] * 2 + [[True] * 2]
 
 
 def test_steps_are_those_of_the_vector_environment():

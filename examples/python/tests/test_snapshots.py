@@ -10,7 +10,11 @@ from acrobot_rs.swingup import AcrobotSwingupEnv, AcrobotSwingupSparseEnv, Acrob
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from vectors import rejects
 
-SINGLE = (AcrobotEnv, AcrobotV0Env, AcrobotContinuousEnv, AcrobotSwingupEnv, AcrobotSwingupSparseEnv)
+SINGLE = (
+    *(AcrobotEnv, AcrobotV0Env, AcrobotContinuousEnv),
+    *(AcrobotSwingupEnv, AcrobotSwingupSparseEnv),
+)
+DRAWN = {"FRICTION_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}
 #: Vector environments: the type, the mode, the noise and other arguments.
 VECTOR = (
     (AcrobotVectorEnv, "NextStep", 0.3),
@@ -19,7 +23,7 @@ VECTOR = (
     (AcrobotContinuousVectorEnv, "NextStep", Uniform(0.0, 0.3)),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gymnasium_episodes": True, "copy": False}),
     (AcrobotVectorEnv, "SameStep", LogUniform(0.1, 0.3), {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}),
-    (AcrobotSwingupVectorEnv, "SameStep", 0.1, {"FRICTION_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}),
+    (AcrobotSwingupVectorEnv, "SameStep", 0.1, DRAWN),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]}),
 )
 

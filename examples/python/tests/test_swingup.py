@@ -30,7 +30,12 @@ def test_steps_are_dm_controls(name):
     env = gym.make(name).unwrapped
     rewards = RECORDED[:, 15 if name == NAMES[0] else 16]
     for before, action, after, seen, expected in zip(
-        ours(RECORDED[:, :4]), RECORDED[:, 4:5], ours(RECORDED[:, 5:9]), RECORDED[:, 9:15], rewards, strict=True
+        ours(RECORDED[:, :4]),
+        RECORDED[:, 4:5],
+        ours(RECORDED[:, 5:9]),
+        RECORDED[:, 9:15],
+        rewards,
+        strict=True,
     ):
         env.state = before
         observation, reward, terminated, truncated, _ = env.step(action)
@@ -49,7 +54,9 @@ def test_an_action_is_not_rounded(number):
     env.state = ours(np.array([0.3, -0.5, 0.7, -1.1]))
     for action in 0.1, -0.7, 1 / 3:
         env.step([number(action)])
-    expected = ours(np.array([0.3243404730465862, -0.5419455946447316, 0.9135917678870124, -1.6651809763179526]))
+    expected = ours(
+        np.array([0.3243404730465862, -0.5419455946447316, 0.9135917678870124, -1.6651809763179526])
+    )
     assert np.abs((env.state - expected + np.pi) % (2 * np.pi) - np.pi).max() < 1e-12
 
 
@@ -84,7 +91,11 @@ def test_episodes_begin_at_rest_anywhere_and_last_1000_steps():
     envs = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=400, autoreset_mode="SameStep")
     envs.reset(seed=3)
     states = envs.state
-    assert (states[:, 2:] == 0).all() and np.abs(states[:, :2]).max() > 3.1 and np.abs(states[:, :2]).max() <= np.float32(np.pi)
+    assert (
+        (states[:, 2:] == 0).all()
+        and np.abs(states[:, :2]).max() > 3.1
+        and np.abs(states[:, :2]).max() <= np.float32(np.pi)
+    )
     assert np.abs(states[:, :2].mean(axis=0)).max() < 0.4
     env = gym.make(NAMES[0])
     env.reset(seed=3)
@@ -150,12 +161,20 @@ def test_no_state_before_a_reset():
     env = AcrobotSwingupEnv()
     assert env.state is None
     env.reset(seed=1, options={"low": -0.2, "high": 0.1})
-    assert env.state.dtype == np.float64 and (env.state[:2] >= -0.2).all() and (env.state[:2] <= 0.1).all()
+    assert (
+        env.state.dtype == np.float64
+        and (env.state[:2] >= -0.2).all()
+        and (env.state[:2] <= 0.1).all()
+    )
     env.state[2] = 3.0
     assert env.step([0.0])[0][4] == pytest.approx(3.0, abs=0.2)
     envs = AcrobotSwingupVectorEnv(500)
     envs.reset(seed=1, options={"low": -0.2, "high": 0.1})
-    assert -0.2 <= envs.state[:, :2].min() < -0.19 and 0.09 < envs.state[:, :2].max() <= 0.1 and not envs.state[:, 2:].any()
+    assert (
+        -0.2 <= envs.state[:, :2].min() < -0.19
+        and 0.09 < envs.state[:, :2].max() <= 0.1
+        and not envs.state[:, 2:].any()
+    )
 
 
 @BOTH
@@ -163,8 +182,16 @@ def test_no_state_before_a_reset():
     ("error", "arguments", "message"),
     [
         (ValueError, {"dt": 0.0}, "dt must be finite and above 0 s, got 0"),
-        (ValueError, {"LINK_MOI_2": -1.0}, "LINK_MOI_2 must be finite and at least 0 kg m², got -1"),
-        (ValueError, {"FRICTION_1": -1e-3}, "FRICTION_1 must be finite and at least 0 N m s/rad, got -0.001"),
+        (
+            ValueError,
+            {"LINK_MOI_2": -1.0},
+            "LINK_MOI_2 must be finite and at least 0 kg m², got -1",
+        ),
+        (
+            ValueError,
+            {"FRICTION_1": -1e-3},
+            "FRICTION_1 must be finite and at least 0 N m s/rad, got -0.001",
+        ),
         (TypeError, {"FRICTION_2": "x"}, "FRICTION_2 must be a number, got 'x'"),
         (TypeError, {"LINK_MOI": 1.0}, "LINK_MOI.*; did you mean LINK_MOI_[12]"),
         (TypeError, {"friction1": 1.0}, "friction1.*; did you mean FRICTION_1"),
@@ -208,11 +235,19 @@ def test_the_default_parameters_are_those_of_rust():
 
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_each_parameter_changes_both_environments_alike(name):
-    changed = {"book_or_nips": "nips", "AVAIL_TORQUE": [-1.0, 3.0, 0.5], "MAX_VEL_1": 1.0, "MAX_VEL_2": 1.0}.get(name, 0.2)
+    changed = {
+        "book_or_nips": "nips",
+        "AVAIL_TORQUE": [-1.0, 3.0, 0.5],
+        "MAX_VEL_1": 1.0,
+        "MAX_VEL_2": 1.0,
+    }.get(name, 0.2)
     states = []
     for value in getattr(AcrobotSwingupEnv, name), changed:
         env, envs = AcrobotSwingupEnv(**{name: value}), AcrobotSwingupVectorEnv(3, **{name: value})
-        assert env.observation_space == envs.single_observation_space and env.action_space == envs.single_action_space
+        assert (
+            env.observation_space == envs.single_observation_space
+            and env.action_space == envs.single_action_space
+        )
         env.reset(seed=2)
         envs.reset(seed=2)
         for each, shape in (env, (4,)), (envs, (3, 4)):
@@ -231,7 +266,14 @@ def test_each_parameter_changes_both_environments_alike(name):
 def test_actions_are_parts_of_the_largest_and_the_smallest_torque():
     env, twin = AcrobotSwingupEnv(AVAIL_TORQUE=[-1.0, 3.0]), AcrobotSwingupEnv()
     assert env.action_space == twin.action_space
-    for action, torque in (1.0, 3.0), (0.25, 0.75), (0.0, 0.0), (-0.5, -0.5), (-1.0, -1.0), (-np.inf, -1.0):
+    for action, torque in (
+        (1.0, 3.0),
+        (0.25, 0.75),
+        (0.0, 0.0),
+        (-0.5, -0.5),
+        (-1.0, -1.0),
+        (-np.inf, -1.0),
+    ):
         twin.AVAIL_TORQUE = [-4.0, 4.0]
         env.state = twin.state = [1.0, 0.0, 0.0, 0.0]
         env.step([action])
@@ -248,12 +290,19 @@ def test_resets_draw_parameters():
     )  # fmt: skip
     first = envs.reset(seed=1)[1]
     assert first["FRICTION_1"].min() < 0.01 and first["FRICTION_1"].max() > 0.09
-    assert first["LINK_MOI_1"].min() < 0.06 and (first["LINK_MOI_2"] == AcrobotSwingupEnv.LINK_MOI_2).all()
-    assert (envs.get_parameter("FRICTION_2") == np.linspace(0, 0.1, 300)).all() and envs.get_attr("dt") == (0.01,) * 300
+    assert (
+        first["LINK_MOI_1"].min() < 0.06
+        and (first["LINK_MOI_2"] == AcrobotSwingupEnv.LINK_MOI_2).all()
+    )
+    assert (envs.get_parameter("FRICTION_2") == np.linspace(0, 0.1, 300)).all() and envs.get_attr(
+        "dt"
+    ) == (0.01,) * 300
     actions = envs.action_space.sample()
     assert envs.observation_space.contains(envs.step(actions)[0])
     last = envs.step(actions)[4]
-    assert (last["final_info"]["FRICTION_1"] == first["FRICTION_1"]).all() and (last["FRICTION_1"] != first["FRICTION_1"]).all()
+    assert (last["final_info"]["FRICTION_1"] == first["FRICTION_1"]).all() and (
+        last["FRICTION_1"] != first["FRICTION_1"]
+    ).all()
     envs.set_attr("FRICTION_1", 0.3)
     assert envs.FRICTION_1 == 0.3 and envs.gravity == 9.81
 

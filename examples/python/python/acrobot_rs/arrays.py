@@ -21,7 +21,7 @@ Seed = int | list[int | None] | tuple[int | None, ...] | None
 def reset_bounds(
     options: dict[str, Any] | None, bound: float, others: Iterable[str] = ("reset_mask",)
 ) -> tuple[float, float]:
-    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or ``-bound`` and ``bound``."""
+    """The bounds of initial states, rad and rad/s: the options, or ``-bound`` and ``bound``."""
     check_keys(options, ("low", "high", *others))
     low, high = maybe_parse_reset_bounds(options, -bound, bound)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning

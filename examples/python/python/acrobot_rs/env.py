@@ -148,7 +148,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         if self._ANGLES:
             return s
         # Gymnasium's calls of NumPy, whose float32 sines are its own.
-        return np.array([np.cos(s[0]), np.sin(s[0]), np.cos(s[1]), np.sin(s[1]), s[2], s[3]], dtype=np.float32)
+        first, second = (np.cos(s[0]), np.sin(s[0])), (np.cos(s[1]), np.sin(s[1]))
+        return np.array([*first, *second, *s[2:]], dtype=np.float32)
 
     def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
@@ -231,7 +232,7 @@ class AcrobotContinuousEnv(AcrobotEnv):
     _CONTINUOUS = True
 
     def _torque(self, action: ArrayLike) -> float:
-        """The number in an action. The native part calls this for all but arrays of one ``float32``."""
+        """The number in an action that is no array of one ``float32``, for the native part."""
         rule = f"{self._ACTION}, as an array of shape (1,)"
         torque = float(numbers("action", rule, action, (1,), error=InvalidAction)[0])
         if math.isnan(torque):

@@ -185,8 +185,10 @@ class Parameters:
         super().__init_subclass__(**kwargs)
         for name, value in list(vars(cls).items()):
             if name in cls._NAMES:
-                is_drawn = isinstance(value, Drawn)
-                Batch(engine=cls._TASK).set_drawn(name, value) if is_drawn else Acrobot(task=cls._TASK).set(name, value)
+                if isinstance(value, Drawn):
+                    Batch(engine=cls._TASK).set_drawn(name, value)
+                else:
+                    Acrobot(task=cls._TASK).set(name, value)
                 setattr(cls, name, _fixed(name, value))
         cls._check_names()
 
@@ -216,7 +218,8 @@ class Parameters:
         for name in parameters.keys() - set(self._NAMES):
             arguments = inspect.signature(type(self)).parameters.values()
             others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)
-            raise TypeError(f"{type(self).__name__} has no argument {name}; {_hint(name, (*others, *self._NAMES))}")
+            hint = _hint(name, (*others, *self._NAMES))
+            raise TypeError(f"{type(self).__name__} has no argument {name}; {hint}")
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
@@ -230,17 +233,19 @@ class Parameters:
         if self._CONTINUOUS:
             actions = spaces.Box(low, high, (1,), np.float32)
         else:
-            actions = spaces.Discrete(np.shape(getattr(self.AVAIL_TORQUE, "low", self.AVAIL_TORQUE))[-1])
+            torques = getattr(self.AVAIL_TORQUE, "low", self.AVAIL_TORQUE)
+            actions = spaces.Discrete(np.shape(torques)[-1])
         others = [np.pi] * 2 if self._ANGLES else [1.0] * 4
         highest = np.array([*others, *velocities], dtype=np.float32)
         return {"action_space": actions, "observation_space": spaces.Box(-highest, highest, dtype=np.float32)}
 
     def _limits(self) -> tuple[float, float, float, float]:
-        """The least and the largest continuous action, and the largest velocities, rad/s, in the spaces."""
-        lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
+        """What the spaces contain: actions from one number to another, and velocities, rad/s."""
+        lows, highs = (getattr(self.AVAIL_TORQUE, each, self.AVAIL_TORQUE) for each in ("low", "high"))
         largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
+        velocities = (np.max(getattr(each, "high", each)) for each in (self.MAX_VEL_1, self.MAX_VEL_2))
         # After a step, or after a reset with the default bounds of 0.1, rad/s.
-        first, second = (max(np.max(getattr(bound, "high", bound)), 0.1) for bound in (self.MAX_VEL_1, self.MAX_VEL_2))
+        first, second = (max(each, self._BOUND) for each in velocities)
         return max(np.min(lows), -largest), min(np.max(highs), largest), first, second
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -287,5 +292,5 @@ class Parameters:
         )
 
 
-_NAMES = tuple(name for name in Parameters.__annotations__ if hasattr(Parameters, name) and not name.startswith("_"))
-Parameters._NAMES = _NAMES
+_PUBLIC = (name for name in Parameters.__annotations__ if not name.startswith("_"))
+_NAMES = Parameters._NAMES = tuple(name for name in _PUBLIC if hasattr(Parameters, name))

@@ -127,7 +127,8 @@ def _largest_torque(envs: Any) -> float:
     """The torque of the action 1 in the environments of a swing-up, N m."""
     what = "the model has no environment"
     if envs is not None:
-        torques = {abs(each) for all in envs.get_attr("AVAIL_TORQUE") for each in (min(all), max(all))}
+        every = envs.get_attr("AVAIL_TORQUE")
+        torques = {abs(extreme(each)) for each in every for extreme in (min, max)}
         if len(torques) == 1:
             return float(torques.pop())
         what = f"the largest in AVAIL_TORQUE differ: {sorted(torques)}"

@@ -16,9 +16,10 @@ from acrobot_rs.vector import AcrobotContinuousVectorEnv
 
 
 class Swingup(Parameters):
-    """The parameters of the swing-up: :class:`Parameters` with dm_control's values, and those of this class.
+    """The parameters of the swing-up: those of the first task with dm_control's values, and others.
 
-    The largest number in ``AVAIL_TORQUE`` is the torque of the action 1, and the smallest that of -1. The spaces do not change.
+    The largest number in ``AVAIL_TORQUE`` is the torque of the action 1, and the smallest that of
+    -1. The spaces do not change.
     """
 
     #: Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more.
@@ -57,15 +58,17 @@ class Swingup(Parameters):
 class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
     """dm_control's ``acrobot-swingup``, step by step within the rounding of ``float64``.
 
-    The action is an array of one number from -1 to 1: a torque of up to 2 N m between the links, for 0.01 s. A number beyond
-    acts as the nearest bound. Both joints have friction.
+    The action is an array of one number from -1 to 1: a torque of up to 2 N m between the links,
+    for 0.01 s. A number beyond acts as the nearest bound. Both joints have friction.
 
-    The observation, ``float32`` of shape ``(6,)``, has the sines of both links' angles from upright, their cosines, and the
-    velocities of theta1 and theta2, rad/s: dm_control's ``orientations`` and ``velocity``.
+    The observation, ``float32`` of shape ``(6,)``, has the sines of both links' angles from
+    upright, their cosines, and the velocities of theta1 and theta2, rad/s: dm_control's
+    ``orientations`` and ``velocity``.
 
-    The reward is 1 up to 0.2 m from the target, 2 m above the joint, and falls to 0.1 at 1.2 m. An episode begins anywhere at
-    rest: both angles are drawn from -pi to pi, or from ``options["low"]`` to ``options["high"]`` of ``reset``, rad. No state
-    ends it; ``gymnasium.make`` truncates it after 1,000 steps.
+    The reward is 1 up to 0.2 m from the target, 2 m above the joint, and falls to 0.1 at 1.2 m. An
+    episode begins anywhere at rest: both angles are drawn from -pi to pi, or from
+    ``options["low"]`` to ``options["high"]`` of ``reset``, rad. No state ends it;
+    ``gymnasium.make`` truncates it after 1,000 steps.
 
     All else is as in :class:`acrobot_rs.AcrobotEnv`. The parameters are those of :class:`Swingup`.
 
@@ -94,12 +97,12 @@ class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
 class AcrobotSwingupVectorEnv(Swingup, AcrobotContinuousVectorEnv):
     """Many :class:`AcrobotSwingupEnv`, computed in ``float32``, bit-identically on every machine.
 
-    Actions have the shape ``(num_envs, 1)``. All else is as in :class:`acrobot_rs.AcrobotVectorEnv`, without
-    ``gymnasium_episodes``. The parameters are those of :class:`Swingup`.
+    Actions have the shape ``(num_envs, 1)``. All else is as in :class:`acrobot_rs.AcrobotVectorEnv`,
+    without ``gymnasium_episodes``. The parameters are those of :class:`Swingup`.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
-    >>> envs = gym.make_vec("acrobot_rs/AcrobotSwingup-v0", num_envs=1024, FRICTION_1=acrobot_rs.Uniform(0.0, 0.1))
+    >>> envs = gym.make_vec("acrobot_rs/AcrobotSwingup-v0", num_envs=1024, FRICTION_1=0.1)
     >>> envs.reset(seed=42)[0].shape
     (1024, 6)
     """

@@ -22,7 +22,7 @@ from acrobot_rs.parameters import Drawn, Parameters, _fixed, _hint
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
-#: What ``get_attr`` and ``call`` know beside the parameters. ``set_attr`` knows the parameters and ``state``.
+#: What ``get_attr`` and ``call`` know beside the parameters. ``set_attr`` knows these and ``state``.
 _ATTRIBUTES = (
     *("action_space", "elapsed_steps", "max_episode_steps", "metadata", "observation_space"),
     *("render", "render_mode", "spec", "state"),
@@ -210,7 +210,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv):
         """
         require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
         for name in (each for each in info_parameters if each not in self._NAMES):
-            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {_hint(str(name), self._NAMES)}")
+            hint = _hint(str(name), self._NAMES)
+            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {hint}")
         self.info_parameters = tuple(info_parameters)
         require(bool, "True or False", copy=copy, gymnasium_episodes=gymnasium_episodes)
         if gymnasium_episodes:
