@@ -59,6 +59,15 @@ def make(num_envs, **kwargs):
     return AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(num_envs, autoreset_mode="SameStep", **kwargs))
 
 
+def test_the_swing_up_is_taken_too():
+    envs = AcrobotVecEnv(acrobot_rs.AcrobotSwingupVectorEnv(2, 3, autoreset_mode="SameStep"))
+    envs.reset()
+    envs.set_attr("FRICTION_1", 0.2, 1)
+    assert envs.get_attr("FRICTION_1") == [0.05, 0.2]
+    ends = [envs.step(np.ones((2, 1)))[2].tolist() for _ in range(3)]
+    assert ends == [[False] * 2] * 2 + [[True] * 2]
+
+
 def test_steps_are_those_of_the_vector_environment():
     """With the infos of DummyVecEnv."""
     envs, twin = make(8, max_episode_steps=90), acrobot_rs.AcrobotVectorEnv(8, 90, autoreset_mode="SameStep")

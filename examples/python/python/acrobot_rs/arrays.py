@@ -24,10 +24,12 @@ Seed = int | list[int | None] | tuple[int | None, ...] | None
 _OPTIONS = ("low", "high", "reset_mask", "state")
 
 
-def reset_bounds(options: dict[str, Any] | None, known: tuple[str, ...]) -> tuple[float, float]:
-    """The bounds of initial states, rad and rad/s: ``options["low"]`` and ``options["high"]``, or -0.1 and 0.1."""
-    check_keys(options, known)
-    low, high = maybe_parse_reset_bounds(options, -0.1, 0.1)
+def reset_bounds(
+    options: dict[str, Any] | None, bound: float, *others: str
+) -> tuple[float, float]:
+    """The bounds of initial states, rad and rad/s: the options, or ``-bound`` and ``bound``."""
+    check_keys(options, ("low", "high", "state", *others))
+    low, high = maybe_parse_reset_bounds(options, -bound, bound)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
     if not (abs(low) <= largest and abs(high) <= largest):
         raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")

@@ -61,10 +61,10 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
     copy: bool
     #: Parameters that infos have.
     info_parameters: tuple[str, ...] = ()
-    #: The names of the parameters.
-    _PARAMETERS: tuple[str, ...] = ()
 
     _native: Batch
+    _NAMES: tuple[str, ...]
+    _BOUND: float
     #: Whether states and rewards are ``float64``.
     _gymnasium_episodes = False
     #: Whether it was reset and not closed.
@@ -134,9 +134,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 whose element is false are neither seeded nor reset. ``"state"``: the initial
                 states, of shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all: theta1,
                 theta2 (rad) and their velocities (rad/s). They replace the drawn ones, so streams
-                and drawn parameters are as without them. In ``Acrobot-v1``, ``"low"`` and
-                ``"high"``: the bounds of these initial states, rad and rad/s; by default -0.1 and
-                0.1. Autoresets ignore all options.
+                and drawn parameters are as without them. ``"low"`` and ``"high"``: the bounds of
+                these initial states, rad and rad/s; by default -0.1 and 0.1, in a swing-up -pi and
+                pi. Autoresets ignore all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
@@ -151,7 +151,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             RuntimeError: If another thread is stepping or resetting the environments. Nothing
                 changes then.
         """
-        low, high = self._bounds(options)
+        low, high = arrays.reset_bounds(options, self._BOUND, "reset_mask")
         self._check_open()
         options = options or {}
         mask = arrays.reset_mask(options, self.num_envs)
@@ -218,10 +218,6 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 self._observe_initial_states(observations, (rewards == 0) & ~terminated)
             return observations, rewards.astype(np.float64), terminated, truncated, infos
 
-    def _bounds(self, options: dict[str, Any] | None) -> tuple[float, float]:
-        """Check the keys of ``options``. The bounds of initial states, rad and rad/s."""
-        raise NotImplementedError
-
     @property
     def state(self) -> NDArray[np.floating[Any]]:
         """theta1, theta2 (rad) and their velocities (rad/s) of each: a read-only ``(num_envs, 4)``.
@@ -270,7 +266,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             AttributeError: If the name is unknown.
         """
         self._check_open()
-        known = (*_ATTRIBUTES, *self._PARAMETERS)
+        known = (*_ATTRIBUTES, *self._NAMES)
         if name not in known:
             raise AttributeError(
                 f"the environments have no attribute {name!r}; they have {', '.join(known)}"
@@ -281,7 +277,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             frames = self.render(*args, **kwargs)
             return (None,) * self.num_envs if frames is None else frames
         value = getattr(self, name)
-        if name in self._PARAMETERS and isinstance(value, Drawn | np.ndarray):
+        if name in self._NAMES and isinstance(value, Drawn | np.ndarray):
             values = self.get_parameter(name).tolist()
             return tuple(map(tuple, values) if name == "AVAIL_TORQUE" else values)
         return tuple(value) if name in ("state", "elapsed_steps") else (value,) * self.num_envs
@@ -296,8 +292,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         It has the shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``.
         """
         self._check_open()
-        if name not in self._PARAMETERS:
-            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name)}")
+        if name not in self._NAMES:
+            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name, self._NAMES)}")
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
@@ -327,7 +323,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 then.
         """
         self._check_open()
-        known = ("state", *self._PARAMETERS)
+        known = ("state", *self._NAMES)
         if name not in known:
             raise AttributeError(f"set_attr cannot set {name!r}; it can set {', '.join(known)}")
         setattr(self, name, self._each(values) if name == "state" else values)
