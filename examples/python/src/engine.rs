@@ -151,12 +151,16 @@ impl<A: Arithmetic> Many<A> {
         ParamsRange::new(low, high).map(drop).map_err(|error| {
             // Names the number given, not the 0 or the infinity that it becomes.
             let message = error.to_string();
-            let named = NUMBERS.iter().filter(|number| is_named(A::TASK, number, &message));
+            let named = NUMBERS
+                .iter()
+                .filter(|number| is_named(A::TASK, number, &message));
             let lost = named.flat_map(|(name, _, field)| {
-                ends.map(|mut end| (name, *field(&mut end))).into_iter().find(|(_, given)| {
-                    let held = A::Scalar::from_f64(*given).to_f64();
-                    given.is_finite() && (held.is_infinite() || held == 0.0 && *given != 0.0)
-                })
+                ends.map(|mut end| (name, *field(&mut end)))
+                    .into_iter()
+                    .find(|(_, given)| {
+                        let held = A::Scalar::from_f64(*given).to_f64();
+                        given.is_finite() && (held.is_infinite() || held == 0.0 && *given != 0.0)
+                    })
             });
             let Some((name, given)) = lost.into_iter().next() else {
                 return invalid(A::TASK, error);

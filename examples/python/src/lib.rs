@@ -118,7 +118,9 @@ fn is_named(task: Task, (pythons, name, _): &Number, message: &str) -> bool {
 /// The same for parameters of a task: the message begins with Python's name of one.
 fn invalid(task: Task, error: impl std::error::Error) -> PyErr {
     let message = error.to_string();
-    let number = NUMBERS.iter().find(|number| is_named(task, number, &message));
+    let number = NUMBERS
+        .iter()
+        .find(|number| is_named(task, number, &message));
     PyValueError::new_err(match number {
         Some((pythons, name, _)) => message.replacen(name, pythons, 1),
         None => message,
