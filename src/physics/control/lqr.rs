@@ -3,7 +3,7 @@
 use super::double::{Double, MINUS_ONE, narrow, widen};
 use super::matrix::{
     Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, diagonal, dot, eliminate,
-    identity, inner, largest, product, scale, symmetrize, transpose,
+    identity, inner, largest, product, scale, spread, symmetrize, transpose,
 };
 use super::{ControlError, DiscreteModel};
 use crate::error::Range;
@@ -243,9 +243,8 @@ impl Problem {
                 }
                 break;
             };
-            let elements = cost.as_flattened_mut().iter_mut();
-            for (x, missing) in elements.zip(missing.as_flattened()) {
-                *x = *x + Double::from(*missing);
+            for (row, missing) in cost.iter_mut().zip(&widen(&missing)) {
+                add_scaled(row, Double::from(1.0), missing);
             }
             let (better, weight) = self.gain(&cost, self.r);
             add_scaled(&mut gain, -1.0, &better);
@@ -298,24 +297,21 @@ impl Problem {
     fn rounding(&self, gain: &[f64; 4], p: &Matrix, missing: &Matrix, closed: &Matrix) -> f64 {
         /// 2⁻¹⁰², times 64 for the number of operations and the factor 4.
         const ROUNDING: f64 = 1.0 / (1_u128 << 96) as f64;
-        let p = diagonal(p).map(f64::abs);
-        let size = |x: [f64; 4]| inner(&x.map(|x| x * x), &p);
-        let by_b = size(self.b);
-        let mut stage = [[0.0; 4]; 4];
-        let terms = p.iter().zip(transpose(&self.a)).zip(gain);
-        let elements = stage.as_flattened_mut().iter_mut().step_by(5);
-        for ((x, ((p, a), k)), missing) in elements.zip(terms).zip(diagonal(missing)) {
-            let terms = p + size(a) + k * k * by_b;
-            // A motion without a cost persists, whatever the powers of the closed loop look like.
-            if missing.abs() > TOLERANCE * terms {
-                return f64::INFINITY;
+        let p = spread(diagonal(p).map(f64::abs));
+        let mut terms = congruence(&p, &self.a);
+        add(&mut terms, 1.0, &p);
+        add_outer(&mut terms, inner(&self.b, &apply(&p, &self.b)), gain, gain);
+        let terms = diagonal(&terms);
+        // A motion without a cost persists, whatever the powers of the closed loop look like.
+        let mut parts = diagonal(missing).into_iter().zip(terms);
+        let is_cost = parts.all(|(missing, terms)| missing.abs() <= TOLERANCE * terms);
+        match lyapunov(closed, &spread(terms)) {
+            Some(l) if is_cost => {
+                let squared = largest(&diagonal(&l)) * inner(&self.b, &apply(&l, &self.b));
+                ROUNDING * squared.sqrt()
             }
-            *x = ROUNDING * terms;
+            _ => f64::INFINITY,
         }
-        let Some(cost) = lyapunov(closed, &stage) else {
-            return f64::INFINITY;
-        };
-        (largest(&diagonal(&cost)) * inner(&self.b, &apply(&cost, &self.b))).sqrt()
     }
 }
 

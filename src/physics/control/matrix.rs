@@ -111,6 +111,21 @@ pub fn scale(m: &mut Matrix, h: f64) {
     }
 }
 
+/// The matrix with this diagonal and zeros.
+#[inline(never)]
+pub fn spread(diagonal: [f64; 4]) -> Matrix {
+    let mut result = [[0.0; 4]; 4];
+    for (x, y) in result
+        .as_flattened_mut()
+        .iter_mut()
+        .step_by(5)
+        .zip(diagonal)
+    {
+        *x = y;
+    }
+    result
+}
+
 /// x y.
 #[inline(never)]
 pub fn product(x: &Matrix, y: &Matrix) -> Matrix {
