@@ -3,7 +3,7 @@
 use core::f32::consts::PI;
 
 use crate::arithmetic::Arithmetic;
-use crate::math::{Real, SinCos};
+use crate::math::{Numbers, Real, SinCos};
 use crate::physics::{State, Task, directions};
 
 /// What an agent sees: `N` numbers in Gymnasium's order.
@@ -97,6 +97,8 @@ impl Observation<6> {
             // From upright, where this crate's angles are from hanging.
             Task::Swingup | Task::SwingupSparse => {
                 let [(sin1, cos1), (sin_sum, cos_sum)] = directions(sin_cos);
+                // A sum of two products can be beyond 1 by a rounding.
+                let [sin_sum, cos_sum] = [sin_sum, cos_sum].map(|x| x.bound(Real::from_f64(1.0)));
                 [-sin1, -sin_sum, -cos1, -cos_sum, dtheta1, dtheta2]
             }
         };

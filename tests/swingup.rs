@@ -3,6 +3,8 @@
 use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference, Swingup, SwingupSparse};
+use acrobot::batch::VecBatch;
+use acrobot::numpy::SeedSequence;
 use acrobot::physics::{Pendulum, Viscous};
 use acrobot::render::Figure;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
@@ -110,6 +112,40 @@ fn episodes_follow_dm_controls() {
         pendulum.step(step.torque).unwrap();
         assert!(distance(pendulum.state(), step.after) < 1e-11, "{number}");
     }
+}
+
+/// Where a link points up, down or aside, a rounding can lead beyond 1. Alone and in a batch.
+fn orientations_within_1<A: Arithmetic>() {
+    let within = |seen: &[f32; 6]| {
+        let [sin1, sin_sum, cos1, cos_sum, ..] = *seen;
+        let lengths = [sin1.hypot(cos1), sin_sum.hypot(cos_sum)];
+        assert!(lengths.iter().all(|x| (x - 1.0).abs() < 3e-6), "{seen:?}");
+        assert!(seen[..4].iter().all(|x| x.abs() <= 1.0), "{seen:?}");
+    };
+    let mut acrobot = Acrobot::<A>::new(0);
+    let mut batch = VecBatch::<A>::new(SeedSequence::new(1), 20_000).unwrap();
+    for index in 0..batch.len() {
+        let drawn = batch.state(index).unwrap();
+        let aside = f64::from(index as u32 % 8) * (PI / 2.0) - drawn.theta1.to_f64();
+        let theta2 = Real::from_f64(aside);
+        let state = State { theta2, ..drawn };
+        batch.set_state(index, state).unwrap();
+        acrobot.set_state(state).unwrap();
+        within(&acrobot.observation().to_array());
+    }
+    batch.observations().iter().for_each(within);
+    let results = batch.step(&vec![Action::Zero; 20_000]).unwrap();
+    results.observations.iter().for_each(within);
+}
+
+#[test]
+fn orientations_are_within_1() {
+    orientations_within_1::<Swingup<Reference>>();
+    orientations_within_1::<Swingup<Host>>();
+    orientations_within_1::<Swingup<Portable>>();
+    orientations_within_1::<Swingup<Fast>>();
+    orientations_within_1::<Swingup<Micro>>();
+    orientations_within_1::<SwingupSparse<Fast>>();
 }
 
 #[test]

@@ -18,7 +18,7 @@ use pyo3::types::PyBytes;
 use crate::draws::Distribution;
 use crate::engine::{Engine, Inputs, memory, with_batch};
 use crate::pool::Pool;
-use crate::{fields, load, must_be, rejected, render, save, with};
+use crate::{fields, load, must_be, rejected, render, save};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -33,7 +33,7 @@ pub struct Batch {
 impl Batch {
     #[new]
     #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed="0", max_episode_steps=NonZeroU32::MAX, mode="NextStep",
-        engine="fast", continuous=false, threads=NonZeroU32::MIN))]
+        engine="acrobot", continuous=false, threads=NonZeroU32::MIN))]
     fn new(
         num_envs: NonZeroU32,
         seed: &str,
@@ -71,7 +71,7 @@ impl Batch {
         with_batch!(&mut this.engine, many => {
             let mut draws = many.draws.clone();
             draws.distributions.remove(name);
-            let each = many.all_params().into_iter().map(|params| with(params, name, value));
+            let each = many.all_params().into_iter().map(|params| many.with(params, name, value));
             many.change(&each.collect::<PyResult<Vec<_>>>()?, draws)
         })
     }
@@ -104,7 +104,7 @@ impl Batch {
             let mut draws = many.draws.clone();
             draws.distributions.remove(name);
             let each = values.iter().enumerate().map(|(index, value)| {
-                let params = with(many.params(index), name, value);
+                let params = many.with(many.params(index), name, value);
                 let checked = params.and_then(|params| many.check(params, &draws).map(|()| params));
                 checked.map_err(|error| indexed(value.py(), error, index))
             });

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use acrobot::Params;
 use acrobot::numpy::{Pcg64, uniform};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{NUMBERS, fields};
+use crate::{NUMBERS, Params, fields};
 
 /// How a parameter is drawn between its bounds, between which the mean must be.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -58,7 +57,7 @@ impl Distribution {
 /// The parameters that each reset draws.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Draws {
-    /// By Gymnasium's names of the parameters.
+    /// By Python's names of the parameters.
     pub distributions: BTreeMap<String, Distribution>,
     /// The bounds of these parameters. The others have no meaning.
     pub bounds: [Params; 2],
@@ -76,15 +75,18 @@ impl Draws {
         })
     }
 
-    /// Draws in the order of Gymnasium's names in `NUMBERS`.
+    /// Draws in the order of `NUMBERS`.
     pub fn draw(&self, mut params: Params, rng: &mut Pcg64) -> Params {
         let [mut low, mut high] = self.bounds;
         for (name, own, field) in &NUMBERS {
-            if let Some(how) = self.distributions.get(*name).filter(|_| *own != "inertia2") {
-                *field(&mut params) = how.draw(rng, *field(&mut low), *field(&mut high));
+            if let Some(how) = self.distributions.get(*name) {
+                *field(&mut params) = if (*name, *own) == ("LINK_MOI", "inertia2") {
+                    params.inertia1 // of both links
+                } else {
+                    how.draw(rng, *field(&mut low), *field(&mut high))
+                };
             }
         }
-        params.inertia2 = params.inertia1; // Gymnasium has one
         params
     }
 }

@@ -1,23 +1,26 @@
-//! A batch of one of six arithmetics.
+//! A batch of one of four arithmetics.
 
 use std::ops::DerefMut;
 
 use acrobot::arithmetic::{Arithmetic, Host, Real, Swingup, SwingupSparse};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{FrictionOf, ParamsRange};
-use acrobot::{Error, Fast, Params, Portable, State};
+use acrobot::physics::{ParamsRange, Task};
+use acrobot::{Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyMemoryError, PyValueError};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::draws::{Distribution, Draws};
-use crate::{InvalidAction, NUMBERS, must_be, rejected, unknown, with};
+use crate::{
+    InvalidAction, NUMBERS, Params, invalid, must_be, params_from, params_of, rejected, renamed,
+    torque_of, unknown, with,
+};
 
-/// Actions (0, 1 or 2), or torques, N m.
+/// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
 #[derive(FromPyObject)]
 pub enum Inputs<'py> {
     Actions(PyReadonlyArray1<'py, i64>),
@@ -47,20 +50,15 @@ pub enum Engine {
     Host(Many<Host>),
     Swingup(Many<Swingup<Fast>>),
     SwingupSparse(Many<SwingupSparse<Fast>>),
-    /// In `f64`.
-    ExactSwingup(Many<Swingup<Portable>>),
-    ExactSwingupSparse(Many<SwingupSparse<Portable>>),
 }
 
 impl Engine {
     pub fn new(name: &str, len: usize, seed: SeedSequence) -> PyResult<Self> {
         Ok(match name {
-            "fast" => Self::Fast(Many::new(len, seed)?),
+            "acrobot" => Self::Fast(Many::new(len, seed)?),
             "gymnasium" => Self::Host(Many::new(len, seed)?),
             "swingup" => Self::Swingup(Many::new(len, seed)?),
             "swingup_sparse" => Self::SwingupSparse(Many::new(len, seed)?),
-            "exact_swingup" => Self::ExactSwingup(Many::new(len, seed)?),
-            "exact_swingup_sparse" => Self::ExactSwingupSparse(Many::new(len, seed)?),
             other => return Err(unknown("engine", "the name of an engine", other)),
         })
     }
@@ -74,8 +72,6 @@ macro_rules! with_batch {
             $crate::engine::Engine::Host($many) => $result,
             $crate::engine::Engine::Swingup($many) => $result,
             $crate::engine::Engine::SwingupSparse($many) => $result,
-            $crate::engine::Engine::ExactSwingup($many) => $result,
-            $crate::engine::Engine::ExactSwingupSparse($many) => $result,
         }
     };
 }
@@ -111,20 +107,16 @@ impl<A: Arithmetic> Many<A> {
     }
 
     pub fn params(&self, index: usize) -> Params {
-        self.batch
-            .params_of(index)
-            .unwrap_or_default()
-            .without_friction()
-            .cast()
+        params_from::<A>(&self.batch.params_of(index).unwrap_or_default())
     }
 
     pub fn state(&self, index: usize) -> State {
         self.batch.state(index).unwrap_or_default().cast()
     }
 
-    /// The friction of all acrobots, which nothing changes.
-    fn friction(&self) -> FrictionOf<A> {
-        self.batch.params_of(0).unwrap_or_default().friction
+    /// The parameters with one of them changed.
+    pub fn with(&self, params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+        with(A::TASK, params, name, value)
     }
 
     /// The parameters of all acrobots, or one for all if they share them.
@@ -142,9 +134,9 @@ impl<A: Arithmetic> Many<A> {
     ) -> PyResult<Draws> {
         let mut draws = self.draws.clone();
         let [lows, highs] = draws.ends(self.params(0));
-        let bounds = [with(lows, name, &low)?, with(highs, name, &high)?];
+        let bounds = [self.with(lows, name, &low)?, self.with(highs, name, &high)?];
         Self::check_range(bounds)?;
-        draws.bounds = bounds.map(|bound| bound.cast::<A::Scalar>().cast());
+        draws.bounds = bounds.map(|bound| params_from::<A>(&params_of::<A>(bound)));
         draws.distributions.insert(name.to_owned(), distribution);
         Ok(draws)
     }
@@ -155,24 +147,22 @@ impl<A: Arithmetic> Many<A> {
     }
 
     fn check_range(ends: [Params; 2]) -> PyResult<()> {
-        let [low, high] = ends.map(|end| end.cast::<A::Scalar>());
+        let [low, high] = ends.map(params_of::<A>);
         ParamsRange::new(low, high).map(drop).map_err(|error| {
-            // Names the number given, not the 0 or the infinity that it becomes.
-            let message = error.to_string();
-            let lost = ends.iter().find_map(|end| {
-                NUMBERS.iter().find_map(|(name, own, field)| {
-                    let given = *field(&mut { *end });
+            let mut message = error.to_string();
+            for (_, own, field) in &NUMBERS {
+                for mut end in ends {
+                    let given = *field(&mut end);
                     let held = A::Scalar::from_f64(given).to_f64();
-                    let is_lost =
-                        given.is_finite() && (held.is_infinite() || held == 0.0 && given != 0.0);
-                    (is_lost && message.starts_with(own)).then_some((name, given))
-                })
-            });
-            let Some((name, given)) = lost else {
-                return rejected(error);
-            };
-            let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
-            PyValueError::new_err(must_be(name, rule, format_args!("{given:?}")))
+                    let is_lost = held.is_infinite() || held == 0.0 && given != 0.0;
+                    // Names the number given, not the infinity or the 0 that it becomes.
+                    if is_lost && given.is_finite() && message.starts_with(own) {
+                        let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
+                        message = must_be(own, rule, format_args!("{given:?}"));
+                    }
+                }
+            }
+            renamed(A::TASK, message)
         })
     }
 
@@ -192,16 +182,14 @@ impl<A: Arithmetic> Many<A> {
             self.batch = self.owning()?;
             self.own = true;
         }
-        let friction = self.friction();
         for index in 0..if self.own { self.batch.len() } else { 1 } {
-            let params = params.get(index).unwrap_or(&params[0]).cast();
-            let params = params.with_friction(friction);
+            let params = params_of::<A>(*params.get(index).unwrap_or(&params[0]));
             if self.own {
                 self.batch.set_params_of(index, params)
             } else {
                 self.batch.set_params(params)
             }
-            .map_err(rejected)?;
+            .map_err(|error| invalid(A::TASK, error))?;
         }
         self.draws = draws;
         Ok(())
@@ -213,14 +201,12 @@ impl<A: Arithmetic> Many<A> {
         if self.draws.distributions.is_empty() {
             return Ok(());
         }
-        let friction = self.friction();
         for index in 0..self.batch.len() {
             if were_reset(&self.batch, index) {
                 let params = self.params(index);
                 let rng = &mut self.batch.generators_mut()[index];
                 let drawn = self.draws.draw(params, rng);
-                let drawn = drawn.cast().with_friction(friction);
-                self.batch.set_params_of(index, drawn)?;
+                self.batch.set_params_of(index, params_of::<A>(drawn))?;
             }
         }
         Ok(())
@@ -266,9 +252,13 @@ impl<A: Arithmetic> Many<A> {
                     |torque| !torque.is_nan(),
                     |index, torque| {
                         let (low, high) = if self.own { bounds(index) } else { first };
-                        A::Scalar::from_f64(f64::from(torque).max(low).min(high))
+                        A::Scalar::from_f64(torque_of(A::TASK, torque.into(), low, high))
                     },
-                    "a number, N m",
+                    if A::TASK == Task::Acrobot {
+                        "a number, N m"
+                    } else {
+                        "a number from -1 to 1"
+                    },
                 )
             }
         }

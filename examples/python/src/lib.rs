@@ -8,10 +8,10 @@ mod single;
 
 use std::fmt::Display;
 
-use acrobot::arithmetic::Host;
+use acrobot::arithmetic::{Arithmetic, Host, Real};
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::physics::Dynamics;
-use acrobot::{Observation, Params, State};
+use acrobot::physics::{Dynamics, Friction, FrictionOf, ParamsOf, Task, Viscous};
+use acrobot::{Observation, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -29,11 +29,48 @@ mod _native {
     use super::single::Acrobot;
 }
 
-/// A number among the parameters: Gymnasium's name, the crate's, and its field.
+/// The parameters of any task. Friction is 0 where there is none.
+type Params = acrobot::Params<f64, Viscous<f64>>;
+
+/// The parameters in an arithmetic.
+fn params_of<A: Arithmetic>(params: Params) -> ParamsOf<A> {
+    let Viscous { joint1, joint2 } = params.friction;
+    let mut coefficients = [joint1, joint2].map(A::Scalar::from_f64).into_iter();
+    let none = FrictionOf::<A>::default();
+    let friction = FrictionOf::<A>::zip(none, none, |zero: A::Scalar, _| {
+        coefficients.next().unwrap_or(zero)
+    });
+    let params = params.without_friction().cast();
+    params.with_friction(friction)
+}
+
+/// The parameters of an arithmetic. Conversions from `f32` and back are exact.
+fn params_from<A: Arithmetic>(params: &ParamsOf<A>) -> Params {
+    let coefficients = FrictionOf::<A>::coefficients::<A::Scalar>(&params.friction);
+    let [joint1, joint2] = coefficients.unwrap_or_default().map(Real::to_f64);
+    let params = params.without_friction().cast();
+    params.with_friction(Viscous { joint1, joint2 })
+}
+
+/// The torque of a continuous action, N m, which is within the smallest and the largest torque.
+/// Gymnasium's task has torques as actions. In a swing-up the action 1 is the largest torque, −1 the
+/// smallest and 0 none.
+fn torque_of(task: Task, action: f64, low: f64, high: f64) -> f64 {
+    let torque = match task {
+        Task::Acrobot => action,
+        _ => match action.clamp(-1.0, 1.0) {
+            action if action < 0.0 => action * -low,
+            action => action * high,
+        },
+    };
+    torque.max(low).min(high)
+}
+
+/// A number among the parameters: Python's name, the crate's, and its field.
 type Number = (&'static str, &'static str, fn(&mut Params) -> &mut f64);
 
-/// In the order of draws. Gymnasium has one moment of inertia for both links.
-const NUMBERS: [Number; 16] = [
+/// In the order of draws. Gymnasium has one moment of inertia for both links, a swing-up two.
+const NUMBERS: [Number; 20] = [
     ("LINK_LENGTH_1", "length1", |p| &mut p.length1),
     ("LINK_LENGTH_2", "length2", |p| &mut p.length2),
     ("LINK_MASS_1", "mass1", |p| &mut p.mass1),
@@ -46,6 +83,8 @@ const NUMBERS: [Number; 16] = [
     }),
     ("LINK_MOI", "inertia1", |p| &mut p.inertia1),
     ("LINK_MOI", "inertia2", |p| &mut p.inertia2),
+    ("LINK_MOI_1", "inertia1", |p| &mut p.inertia1),
+    ("LINK_MOI_2", "inertia2", |p| &mut p.inertia2),
     ("gravity", "gravity", |p| &mut p.gravity),
     ("dt", "dt", |p| &mut p.dt),
     ("MAX_VEL_1", "max_velocity1", |p| &mut p.max_velocity1),
@@ -54,21 +93,32 @@ const NUMBERS: [Number; 16] = [
     ("AVAIL_TORQUE", "torques", |p| &mut p.torques[1]),
     ("AVAIL_TORQUE", "torques", |p| &mut p.torques[2]),
     ("torque_noise_max", "torque_noise", |p| &mut p.torque_noise),
+    ("FRICTION_1", "friction.joint1", |p| &mut p.friction.joint1),
+    ("FRICTION_2", "friction.joint2", |p| &mut p.friction.joint2),
 ];
 
-/// The fields of a parameter by Gymnasium's name.
+/// The fields of a parameter by Python's name.
 fn fields(name: &str) -> impl Iterator<Item = fn(&mut Params) -> &mut f64> {
     let named = NUMBERS.iter().filter(move |(known, ..)| *known == name);
     named.map(|(.., field)| *field)
 }
 
-/// Turns an error of the crate into a `ValueError` with its message, which begins with Gymnasium's name of a parameter.
+/// Turns an error of the crate into a `ValueError` with its message.
 fn rejected(error: impl std::error::Error) -> PyErr {
-    let message = error.to_string();
-    let renamed = NUMBERS.iter().find_map(|(gymnasiums, name, _)| {
+    PyValueError::new_err(error.to_string())
+}
+
+/// The same for parameters of a task: the message begins with Python's name of one.
+fn invalid(task: Task, error: impl std::error::Error) -> PyErr {
+    renamed(task, error.to_string())
+}
+
+fn renamed(task: Task, message: String) -> PyErr {
+    let renamed = NUMBERS.iter().find_map(|(pythons, name, _)| {
         let rest = message.strip_prefix(name)?;
-        let whole = rest.starts_with([' ', '[']);
-        whole.then(|| format!("{gymnasiums}{rest}"))
+        let known = *pythons != "LINK_MOI" || task == Task::Acrobot;
+        let whole = known && rest.starts_with([' ', '[']);
+        whole.then(|| format!("{pythons}{rest}"))
     });
     PyValueError::new_err(renamed.unwrap_or(message))
 }
@@ -102,8 +152,8 @@ fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
     PyValueError::new_err(must_be(name, rule, format_args!("{got:?}")))
 }
 
-/// The parameters with one of them changed.
-fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+/// The parameters of a task with one of them changed.
+fn with(task: Task, mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     match name {
         "AVAIL_TORQUE" => {
             let count = value.len().unwrap_or(3); // without a length, it is no sequence
@@ -126,7 +176,7 @@ fn with(mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Pa
             fields(name).for_each(|field| *field(&mut params) = number);
         }
     }
-    params.validate().map_err(rejected)?;
+    params.validate().map_err(|error| invalid(task, error))?;
     Ok(params)
 }
 
@@ -142,7 +192,8 @@ fn render<'py>(
         "ansi" => RenderMode::Ansi,
         other => return Err(unknown("render_mode", r#""rgb_array" or "ansi""#, other)),
     };
-    let mut env = AcrobotEnv::<Host, Observation>::new(params, mode).map_err(rejected)?;
+    let mut env =
+        AcrobotEnv::<Host, Observation>::new(params.without_friction(), mode).map_err(rejected)?;
     env.unwrapped_mut().set_state(state).map_err(rejected)?;
     match env.render().map_err(rejected)? {
         Rendering::Frame(frame) => {

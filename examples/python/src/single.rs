@@ -1,14 +1,20 @@
-//! The single environment: one acrobot, bit-identical to Gymnasium's.
+//! The single environments: one acrobot, bit-identical to Gymnasium's, or dm_control's swing-up.
 
-use acrobot::arithmetic::Host;
-use acrobot::{Observation, Params, State};
+use acrobot::arithmetic::{Arithmetic, Host, Swingup, SwingupSparse};
+use acrobot::physics::Task;
+use acrobot::{Observation, Portable, State, Step};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
-use crate::{InvalidAction, convert, load, must_be, rejected, render, save, shown, with};
+use crate::{
+    InvalidAction, Params, convert, invalid, load, must_be, params_from, params_of, rejected,
+    render, save, shown, torque_of, unknown, with,
+};
+
+pyo3::import_exception!(gymnasium.error, ResetNeeded);
 
 /// One acrobot: its parameters and its state. Random numbers come from the environment's generator.
 #[pyclass(module = "acrobot_rs._native")]
@@ -16,6 +22,70 @@ pub struct Acrobot {
     inner: Inner,
     /// The array that Python has as the state, since the last step. Its elements can be assigned.
     lent: Option<Py<PyAny>>,
+}
+
+/// An acrobot of a task.
+#[derive(Clone, Serialize, Deserialize)]
+enum One {
+    Acrobot(acrobot::Acrobot<Host>),
+    Swingup(acrobot::Acrobot<Swingup<Portable>>),
+    SwingupSparse(acrobot::Acrobot<SwingupSparse<Portable>>),
+}
+
+/// Does something with the acrobot, whatever its task.
+macro_rules! with_one {
+    ($one:expr, $acrobot:ident => $result:expr) => {
+        match $one {
+            One::Acrobot($acrobot) => $result,
+            One::Swingup($acrobot) => $result,
+            One::SwingupSparse($acrobot) => $result,
+        }
+    };
+}
+
+impl One {
+    fn new(task: &str) -> PyResult<Self> {
+        Ok(match task {
+            "acrobot" => Self::Acrobot(acrobot::Acrobot::new(0)),
+            "swingup" => Self::Swingup(acrobot::Acrobot::new(0)),
+            "swingup_sparse" => Self::SwingupSparse(acrobot::Acrobot::new(0)),
+            other => return Err(unknown("task", "the name of a task", other)),
+        })
+    }
+
+    fn task(&self) -> Task {
+        fn of<A: Arithmetic>(_: &acrobot::Acrobot<A>) -> Task {
+            A::TASK
+        }
+        with_one!(self, acrobot => of(acrobot))
+    }
+
+    fn params(&self) -> Params {
+        fn of<A: Arithmetic>(acrobot: &acrobot::Acrobot<A>) -> Params {
+            params_from::<A>(acrobot.params())
+        }
+        with_one!(self, acrobot => of(acrobot))
+    }
+
+    fn set_params(&mut self, params: Params) -> PyResult<()> {
+        fn set<A: Arithmetic>(acrobot: &mut acrobot::Acrobot<A>, params: Params) -> PyResult<()> {
+            let set = acrobot.set_params(params_of::<A>(params));
+            set.map_err(|error| invalid(A::TASK, error))
+        }
+        with_one!(self, acrobot => set(acrobot, params))
+    }
+
+    fn state(&self) -> State {
+        with_one!(self, acrobot => acrobot.state())
+    }
+
+    fn set_state(&mut self, state: State) -> PyResult<()> {
+        with_one!(self, acrobot => acrobot.set_state(state)).map_err(rejected)
+    }
+
+    fn step(&mut self, torque: f64) -> PyResult<Step> {
+        with_one!(self, acrobot => acrobot.step_torque(torque)).map_err(rejected)
+    }
 }
 
 /// What a snapshot contains.
@@ -26,7 +96,7 @@ struct Inner {
     /// Whether actions are torques.
     continuous: bool,
     /// Without noise and with the default torques: the crate has three.
-    acrobot: acrobot::Acrobot<Host>,
+    acrobot: One,
     torques: Vec<f64>,
     noise: f64,
     /// Whether the state was set or reset: Gymnasium's environment has none before the first reset.
@@ -46,29 +116,32 @@ impl Inner {
         }
         let params = Params {
             torque_noise: self.noise,
-            ..*self.acrobot.params()
+            ..self.acrobot.params()
         };
-        params.validate().map_err(rejected)
+        params
+            .validate()
+            .map_err(|error| invalid(self.acrobot.task(), error))
     }
 }
 
 #[pymethods]
 impl Acrobot {
     #[new]
-    #[pyo3(signature = (angles = false, continuous = false))]
-    fn new(angles: bool, continuous: bool) -> Self {
-        Self {
+    #[pyo3(signature = (angles = false, continuous = false, task = "acrobot"))]
+    fn new(angles: bool, continuous: bool, task: &str) -> PyResult<Self> {
+        let acrobot = One::new(task)?;
+        Ok(Self {
             inner: Inner {
                 angles,
                 continuous,
-                acrobot: acrobot::Acrobot::new(0),
-                torques: Params::<f64>::DEFAULT.torques.into(),
+                torques: acrobot.params().torques.into(),
+                acrobot,
                 noise: 0.0,
                 started: false,
                 single: false,
             },
             lent: None,
-        }
+        })
     }
 
     fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -77,8 +150,8 @@ impl Acrobot {
             "AVAIL_TORQUE" => inner.torques = convert(name, "a sequence of numbers", value)?,
             "torque_noise_max" => inner.noise = convert(name, "a number", value)?,
             _ => {
-                let params = with(*inner.acrobot.params(), name, value)?;
-                inner.acrobot.set_params(params).map_err(rejected)?;
+                let params = with(inner.acrobot.task(), inner.acrobot.params(), name, value)?;
+                inner.acrobot.set_params(params)?;
             }
         }
         inner.validate()?;
@@ -108,11 +181,16 @@ impl Acrobot {
     #[setter]
     fn set_state(&mut self, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let (state, single) = read(state)?;
-        self.inner.acrobot.set_state(state).map_err(rejected)?;
+        self.inner.acrobot.set_state(state)?;
         self.inner.started = true;
         self.inner.single = single;
         self.lent = None;
         Ok(())
+    }
+
+    fn observation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
+        let observation = with_one!(&self.inner.acrobot, acrobot => acrobot.observation());
+        PyArray1::from_slice(py, observation.as_ref())
     }
 
     /// Steps by an action of the environment, whose generator draws the noise. Returns what `Env.step` does: observation,
@@ -129,7 +207,10 @@ impl Acrobot {
         let mut this = slf.try_borrow_mut()?;
         if !this.inner.started {
             let message = "the environment has no state yet; call reset before step";
-            return Err(PyAssertionError::new_err(message));
+            return Err(match this.inner.acrobot.task() {
+                Task::Acrobot => PyAssertionError::new_err(message), // as Gymnasium's
+                _ => ResetNeeded::new_err(message),
+            });
         }
         this.read_lent(py)?;
         let mut torque = match number {
@@ -144,7 +225,7 @@ impl Acrobot {
             torque += draw;
             this = slf.try_borrow_mut()?;
         }
-        let step = this.inner.acrobot.step_torque(torque).map_err(rejected)?;
+        let step = this.inner.acrobot.step(torque)?;
         this.lent = None;
         this.inner.single = false;
         let observation = if this.inner.angles {
@@ -165,7 +246,7 @@ impl Acrobot {
     fn render<'py>(&mut self, py: Python<'py>, mode: &str) -> PyResult<Bound<'py, PyAny>> {
         self.read_lent(py)?;
         let acrobot = &self.inner.acrobot;
-        render(py, *acrobot.params(), acrobot.state(), mode)
+        render(py, acrobot.params(), acrobot.state(), mode)
     }
 
     /// Every protocol of pickle calls this.
@@ -196,7 +277,7 @@ impl Acrobot {
     fn read_lent(&mut self, py: Python<'_>) -> PyResult<()> {
         if let Some(lent) = &self.lent {
             let (state, _) = read(lent.bind(py))?;
-            self.inner.acrobot.set_state(state).map_err(rejected)?;
+            self.inner.acrobot.set_state(state)?;
         }
         Ok(())
     }
@@ -212,16 +293,16 @@ impl Acrobot {
         })
     }
 
-    /// A torque within the smallest and the largest of the torques.
-    fn clipped(&self, torque: f64) -> f64 {
+    /// The torque of a continuous action, N m.
+    fn clipped(&self, action: f64) -> f64 {
         let torques = &self.inner.torques;
         let low = torques.iter().copied().fold(f64::INFINITY, f64::min);
         let high = torques.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        torque.clamp(low, high)
+        torque_of(self.inner.acrobot.task(), action, low, high)
     }
 }
 
-/// The torque of a continuous action, N m. The environment converts or rejects all but an array of one `f32`.
+/// A continuous action. The environment converts or rejects all but an array of one `f32`.
 fn number(env: &Bound<'_, PyAny>, action: &Bound<'_, PyAny>) -> PyResult<f64> {
     if let Ok(array) = action.cast::<PyArray1<f32>>()
         && array.len() == 1

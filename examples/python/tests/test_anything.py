@@ -10,6 +10,7 @@ import gymnasium
 import numpy as np
 from acrobot_rs import LogUniform, Normal, Uniform
 from acrobot_rs.parameters import _NAMES
+from acrobot_rs.swingup import Swingup
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
@@ -39,7 +40,7 @@ ANYTHING = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.sampled_from(["low", "high"]), inner),
     max_leaves=4,
 )
-NAMES = st.sampled_from(_NAMES)
+NAMES = st.sampled_from(tuple(dict.fromkeys((*_NAMES, *Swingup._NAMES))))
 TORQUES = st.lists(NUMBERS, min_size=3, max_size=3)
 VALUES = st.one_of(NUMBERS, TORQUES, st.sampled_from(["book", "nips"]), ANYTHING)
 #: Also valid ones.
@@ -103,7 +104,12 @@ def set_element(env, index, value):
 
 
 @given(
-    st.sampled_from([acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env, acrobot_rs.AcrobotContinuousEnv]),
+    st.sampled_from(
+        [
+            *(acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env),
+            *(acrobot_rs.AcrobotContinuousEnv, acrobot_rs.AcrobotSwingupEnv),
+        ]
+    ),
     st.sampled_from([None, "ansi", "ansi", "ansi", "rgb_array"]),
     calls(
         *(SEEDS, VALUES, STATES | ANYTHING),
@@ -119,17 +125,24 @@ def test_a_single_environment(kind, mode, sequence):
 
 
 @given(
-    *(FEW, FEW, MODES, st.booleans(), st.booleans()),
+    *(FEW, FEW, MODES, st.booleans(), st.sampled_from([False, True, None])),
     calls(
         *(SEEDS | st.lists(SEEDS, max_size=4), MANY),
         st.lists(STATES, max_size=4) | ANYTHING,
         (acrobot_rs.AcrobotVectorEnv.set_attr, NAMES | st.just("state") | st.text(), MANY),
-        (lambda envs, action: envs.step([action] * envs.num_envs)[0], st.integers(0, 2)),
+        (
+            lambda envs, action: envs.step(np.full(envs.action_space.shape, action))[0],
+            st.integers(0, 2),
+        ),
         (lambda envs, actions: envs.step(actions)[0], st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING),
     ),
 )
 def test_a_vector_environment(num_envs, limit, autoreset, copy, gymnasium_episodes, sequence):
-    play(acrobot_rs.AcrobotVectorEnv(num_envs, limit, "ansi", autoreset, copy, gymnasium_episodes), sequence)
+    arguments = (num_envs, limit, "ansi", autoreset, copy)
+    if gymnasium_episodes is None:
+        play(acrobot_rs.AcrobotSwingupVectorEnv(*arguments), sequence)
+    else:
+        play(acrobot_rs.AcrobotVectorEnv(*arguments, gymnasium_episodes), sequence)
 
 
 @given(FEW | ANYTHING, FEW | ANYTHING, ANYTHING, MODES | ANYTHING)

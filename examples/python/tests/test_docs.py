@@ -8,7 +8,10 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/python.md", "examples/python/README.md"])
+PAGES = ["README.md", "docs/python.md", "docs/swingup.md", "examples/python/README.md"]
+
+
+@pytest.mark.parametrize("name", PAGES)
 def test_code_runs_and_prints_what_its_comments_say(name, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     page = ROOT / name

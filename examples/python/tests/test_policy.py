@@ -4,6 +4,7 @@ import struct
 import types
 import zlib
 
+import acrobot_rs
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -43,8 +44,14 @@ class GELU:
     pass
 
 
+class Dropout:
+    training = True
+
+
 class Model:
     """A model of Stable-Baselines3: `kind` names its network."""
+
+    envs, seen = None, acrobot_rs.AcrobotEnv().observation_space
 
     def __init__(self, kind, modules, space=gym.spaces.Discrete(3), quantiles=1, normalize=None):
         networks = {
@@ -52,18 +59,33 @@ class Model:
             "dqn": {"q_net": types.SimpleNamespace(q_net=modules)},
             "qrdqn": {"quantile_net": types.SimpleNamespace(quantile_net=modules, n_quantiles=quantiles)},
         }
-        self.policy = types.SimpleNamespace(action_space=space, **networks[kind])
+        spaces = {"action_space": space, "observation_space": self.seen}
+        self.policy = types.SimpleNamespace(**spaces, **networks[kind])
         self.modules, self.quantiles, self.normalize = modules, quantiles, normalize
 
     def get_vec_normalize_env(self):
         return self.normalize
+
+    def get_env(self):
+        return self.envs
 
     def predict(self, x, deterministic):
         assert deterministic
         for module in self.modules:
             x = module(x)
         scores = x.reshape(len(x), self.quantiles, -1).mean(1)
-        return scores if scores.shape[1] == 1 else scores.argmax(1), None
+        if scores.shape[1] > 1:
+            return scores.argmax(1), None
+        return np.clip(scores, self.policy.action_space.low, self.policy.action_space.high), None
+
+
+class SwingupModel(Model):
+    seen = acrobot_rs.AcrobotSwingupEnv().observation_space
+
+    def __init__(self, torques=None):
+        super().__init__("ppo", [Linear(6, 4), Tanh(), Linear(4, 1)], gym.spaces.Box(-1, 1, (1,)))
+        if torques is not None:
+            self.envs = acrobot_rs.AcrobotSwingupVectorEnv(2, AVAIL_TORQUE=torques)
 
 
 class Normalize:
@@ -113,11 +135,36 @@ def test_the_mean_of_a_continuous_policy_is_a_torque(tmp_path):
     assert read(tmp_path / "p")[0] == (b"MLP1", 1, 6, 2.5, [(4, 1, 0), (1, 0, 0)])
 
 
+@pytest.mark.parametrize(
+    ("torques", "given", "limit"),
+    [([-2, 0, 2], None, 2.0), ([-3, 3, 1], None, 3.0), (None, 5.0, 5.0), ([-2, 0, 2], 0.5, 0.5)],
+)
+def test_an_action_of_a_swing_up_becomes_a_torque(torques, given, limit, tmp_path):
+    model = SwingupModel(torques)
+    policy.save(model, tmp_path / "p", torque_limit=given)
+    head, numbers = read(tmp_path / "p")
+    assert head == (b"MLP1", 1, 6, limit, [(4, 1, 0), (1, 0, 0)])
+    last = np.append(model.modules[-1].bias, model.modules[-1].weight)
+    np.testing.assert_allclose(numbers[-5:], limit * last, rtol=1e-6)
+
+
+def overflowing():
+    """1e30 times 1e30 is beyond float32, and infinity less infinity is no number."""
+    model = Model("dqn", [Linear(6, 2), Linear(2, 3)])
+    model.modules[0].weight[:], model.modules[1].weight[:] = 1e30, [[1e30, -1e30]] * 3
+    return model
+
+
 def test_clipped_observations_are_warned_of(tmp_path):
     normalize = Normalize()
     normalize.clip_obs = 10.0
     with pytest.warns(UserWarning, match="VecNormalize clips extreme observations"):
         policy.save(Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "p", np.zeros((1, 6)))
+    normalize.clip_obs = 0.5
+    normalize.normalize_obs = lambda x: np.clip(Normalize().normalize_obs(x), -0.5, 0.5)
+    message = "they differ on .* clips extreme observations, at clip_obs=0.5, and the file does not"
+    with pytest.warns(UserWarning), pytest.raises(ValueError, match=message):
+        policy.save(Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "q")
 
 
 @pytest.mark.parametrize(
@@ -132,8 +179,22 @@ def test_clipped_observations_are_warned_of(tmp_path):
         (ValueError, "the activation of layer 0 must be one of", lambda p: policy.write(p, [(np.ones((3, 6)), np.ones(3), "elu")])),
         (ValueError, "the numbers of layer 0 must be finite", lambda p: policy.write(p, [(np.full((3, 6), np.nan), np.ones(3), "none")])),
         (ValueError, "torque_limit must be finite and above 0 N m", lambda p: policy.write(p, [(np.ones((1, 6)), np.ones(1), "none")], -1)),
+        (ValueError, "torque_limit must be .* above 0 N m in float32, got 1e-50",
+         lambda p: policy.write(p, [(np.ones((1, 6)), np.ones(1), "none")], 1e-50)),
+        (ValueError, "the numbers of layer 0 must be finite",
+         lambda p: policy.write(p, [(np.full((3, 6), 1e300), np.ones(3), "none")])),
+        (ValueError, "outputs of the file must be finite; they are not on .* of 2000",
+         lambda p: policy.save(overflowing(), p)),
+        (ValueError, "it has Dropout in training mode",
+         lambda p: policy.save([Linear(6, 3), Dropout()], p)),
+        (ValueError, "torque_limit must be .* the model has no environment",
+         lambda p: policy.save(SwingupModel(), p)),
+        (ValueError, r"torque_limit must be .* differ: \[1.0, 2.0\]",
+         lambda p: policy.save(SwingupModel([[-1, 0, 1], [-2, 0, 2]]), p)),
+        (ValueError, "bounds of the action space must be .*opposite, got -1.0 and 2.0",
+         lambda p: policy.save(Model("ppo", [Linear(6, 1)], gym.spaces.Box(-1, 2, (1,))), p)),
     ],
-)
+)  # fmt: skip
 def test_other_models_are_rejected(error, message, save, tmp_path):
     with pytest.raises(error, match=message):
         save(tmp_path / "p")

@@ -59,6 +59,15 @@ def make(num_envs, **kwargs):
     return AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(num_envs, autoreset_mode="SameStep", **kwargs))
 
 
+def test_the_swing_up_is_taken_too():
+    envs = AcrobotVecEnv(acrobot_rs.AcrobotSwingupVectorEnv(2, 3, autoreset_mode="SameStep"))
+    envs.reset()
+    envs.set_attr("FRICTION_1", 0.2, 1)
+    assert envs.get_attr("FRICTION_1") == [0.05, 0.2]
+    ends = [envs.step(np.ones((2, 1)))[2].tolist() for _ in range(3)]
+    assert ends == [[False] * 2] * 2 + [[True] * 2]
+
+
 def test_steps_are_those_of_the_vector_environment():
     """With the infos of DummyVecEnv."""
     envs, twin = make(8, max_episode_steps=90), acrobot_rs.AcrobotVectorEnv(8, 90, autoreset_mode="SameStep")
@@ -177,22 +186,6 @@ def test_infos_have_the_parameters_of_the_episode():
         infos = envs.step(np.ones(3, int))[3]
         assert [info["dt"] for info in infos] == before
         assert (envs.get_attr("dt") != before) == ended
-
-
-def test_the_swing_up_too():
-    envs = AcrobotVecEnv(acrobot_rs.AcrobotSwingupVectorEnv(3, 2, autoreset_mode="SameStep"))
-    twin = gymnasium.make("acrobot_rs/AcrobotSwingup-v0")
-    envs.seed(5)
-    observations = envs.reset()
-    for row, seed in zip(observations, (5, 6, 7), strict=True):
-        np.testing.assert_allclose(row, twin.reset(seed=seed)[0], atol=1e-5)
-    envs.set_attr("state", [0.1, 0.0, 0.0, 0.0])
-    assert (np.array(envs.get_attr("state")) == np.float32([0.1, 0.0, 0.0, 0.0])).all()
-    assert not envs.step(np.zeros((3, 1), np.float32))[2].any()
-    _, rewards, ended, infos = envs.step(np.zeros((3, 1), np.float32))
-    assert ended.all() and rewards.shape == (3,)
-    for info in infos:
-        assert info["TimeLimit.truncated"] and info["terminal_observation"].shape == (6,)
 
 
 def test_misuse_is_rejected():

@@ -6,11 +6,15 @@ import pickle
 import numpy as np
 import pytest
 from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env, AcrobotVectorEnv, LogUniform, Normal, Uniform
-from acrobot_rs.parameters import _NAMES
+from acrobot_rs.swingup import AcrobotSwingupEnv, AcrobotSwingupSparseEnv, AcrobotSwingupVectorEnv
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from vectors import rejects
 
-SINGLE = (AcrobotEnv, AcrobotV0Env, AcrobotContinuousEnv)
+SINGLE = (
+    *(AcrobotEnv, AcrobotV0Env, AcrobotContinuousEnv),
+    *(AcrobotSwingupEnv, AcrobotSwingupSparseEnv),
+)
+DRAWN = {"FRICTION_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}
 #: Vector environments: the type, the mode, the noise and other arguments.
 VECTOR = (
     (AcrobotVectorEnv, "NextStep", 0.3),
@@ -19,6 +23,7 @@ VECTOR = (
     (AcrobotContinuousVectorEnv, "NextStep", Uniform(0.0, 0.3)),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gymnasium_episodes": True, "copy": False}),
     (AcrobotVectorEnv, "SameStep", LogUniform(0.1, 0.3), {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}),
+    (AcrobotSwingupVectorEnv, "SameStep", 0.1, DRAWN),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]}),
 )
 
@@ -60,7 +65,7 @@ def test_copies_continue_bit_identically(kind, again):
     twin = again(envs)
     assert twin._native.__getstate__() == envs._native.__getstate__()
     np.testing.assert_equal(play(envs, 300), play(twin, 300))
-    for name in _NAMES:
+    for name in envs._NAMES:
         np.testing.assert_equal(getattr(envs, name), getattr(twin, name))
     again(kind[0]())  # also before the first reset
 

@@ -10,7 +10,6 @@ import numpy as np
 from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs import arrays
 from acrobot_rs._native import Acrobot
 from acrobot_rs.arrays import numbers, plain_seed, reset_bounds
 from acrobot_rs.parameters import Parameters
@@ -111,7 +110,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             TypeError: If a parameter is unknown or of a wrong type.
             ValueError: If a parameter is invalid.
         """
-        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS), None, parameters)
+        super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS, self._TASK), None, parameters)
         self.render_mode = render_mode
         # The window, by the names of Gymnasium's environment.
         self.screen: Any = None
@@ -162,7 +161,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             ValueError: If a number is not finite, if low is above high, or if another key resembles
                 one of these. Nothing changes then.
         """
-        low, high = reset_bounds(options, ("low", "high", "state"))
+        low, high = reset_bounds(options, self._BOUND, ("low", "high", "state"))
         seed = plain_seed(seed)
         given = None
         if options is not None and "state" in options:
@@ -172,16 +171,22 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
                 if not np.isfinite(given.astype(np.float32)).all():
                     raise ValueError(f"state must be {rule}, got {given}")
         super().reset(seed=seed)
-        # Gymnasium rounds initial states to float32, but not those of others.
+        observation = self._begin(low, high, given)
+        if self.render_mode == "human":
+            self.render()
+        return observation, {}
+
+    def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
+        """Draw an initial state, which a given one replaces, and observe it."""
+        # Gymnasium rounds initial states to float32.
         s = self.np_random.uniform(low, high, 4).astype(np.float32)
         self.state = s if given is None else given
         s = s if given is None else given.astype(np.float32)
-        if self.render_mode == "human":
-            self.render()
         if self._ANGLES:
-            return s, {}
+            return s
         # Gymnasium's calls of NumPy, whose float32 sines are its own.
-        return np.array([np.cos(s[0]), np.sin(s[0]), np.cos(s[1]), np.sin(s[1]), s[2], s[3]], dtype=np.float32), {}
+        first, second = (np.cos(s[0]), np.sin(s[0])), (np.cos(s[1]), np.sin(s[1]))
+        return np.array([*first, *second, *s[2:]], dtype=np.float32)
 
     def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
@@ -214,7 +219,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             gymnasium.error.DependencyNotInstalled: If ``"human"`` does not find pygame.
         """
         if self.render_mode is None:
-            arrays.warn_of_no_render_mode(self.spec)
+            self._warn_of_no_render_mode()
             return None
         if self.render_mode != "human":
             return self._native.render(self.render_mode)
@@ -264,8 +269,8 @@ class AcrobotContinuousEnv(AcrobotEnv):
     _CONTINUOUS = True
 
     def _torque(self, action: ArrayLike) -> float:
-        """The torque, N m. The native part calls this for all but arrays of one ``float32``."""
-        rule = "a torque in N m, as an array of shape (1,)"
+        """The number in an action that is no array of one ``float32``, for the native part."""
+        rule = f"{self._ACTION}, as an array of shape (1,)"
         torque = float(numbers("action", rule, action, (1,), error=InvalidAction)[0])
         if math.isnan(torque):
             raise InvalidAction(f"action must be {rule}, got {action!r}")

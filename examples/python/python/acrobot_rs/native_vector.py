@@ -62,7 +62,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
     #: Parameters that infos have.
     info_parameters: tuple[str, ...] = ()
     #: The names of the parameters.
-    _PARAMETERS: tuple[str, ...] = ()
+    _NAMES: tuple[str, ...]
 
     _native: Batch
     #: Whether states and rewards are ``float64``.
@@ -134,9 +134,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 whose element is false are neither seeded nor reset. ``"state"``: the initial
                 states, of shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all: theta1,
                 theta2 (rad) and their velocities (rad/s). They replace the drawn ones, so streams
-                and drawn parameters are as without them. In ``Acrobot-v1``, ``"low"`` and
-                ``"high"``: the bounds of these initial states, rad and rad/s; by default -0.1 and
-                0.1. Autoresets ignore all options.
+                and drawn parameters are as without them. Or ``"low"`` and ``"high"``: the bounds of
+                the drawn ones, rad and rad/s, by default -0.1 and 0.1; in the swing-up those of the
+                angles, by default -pi and pi. Autoresets ignore all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
@@ -270,7 +270,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             AttributeError: If the name is unknown.
         """
         self._check_open()
-        known = (*_ATTRIBUTES, *self._PARAMETERS)
+        known = (*_ATTRIBUTES, *self._NAMES)
         if name not in known:
             raise AttributeError(
                 f"the environments have no attribute {name!r}; they have {', '.join(known)}"
@@ -281,7 +281,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             frames = self.render(*args, **kwargs)
             return (None,) * self.num_envs if frames is None else frames
         value = getattr(self, name)
-        if name in self._PARAMETERS and isinstance(value, Drawn | np.ndarray):
+        if name in self._NAMES and isinstance(value, Drawn | np.ndarray):
             values = self.get_parameter(name).tolist()
             return tuple(map(tuple, values) if name == "AVAIL_TORQUE" else values)
         return tuple(value) if name in ("state", "elapsed_steps") else (value,) * self.num_envs
@@ -296,8 +296,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         It has the shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``.
         """
         self._check_open()
-        if name not in self._PARAMETERS:
-            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name)}")
+        if name not in self._NAMES:
+            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name, self._NAMES)}")
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
@@ -327,7 +327,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 then.
         """
         self._check_open()
-        known = ("state", *self._PARAMETERS)
+        known = ("state", *self._NAMES)
         if name not in known:
             raise AttributeError(f"set_attr cannot set {name!r}; it can set {', '.join(known)}")
         setattr(self, name, self._each(values) if name == "state" else values)
@@ -339,7 +339,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         self._check_open()
         if self.render_mode is None:
-            arrays.warn_of_no_render_mode(self.spec)
+            self._warn_of_no_render_mode()
             return None
         if not self._ready:
             raise ResetNeeded("the environments have no states yet; call reset before render")

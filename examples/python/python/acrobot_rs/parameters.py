@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
 import numpy as np
-from gymnasium import spaces
+from gymnasium import logger, spaces
 from numpy.typing import NDArray
 
 from acrobot_rs import arrays
@@ -110,11 +110,12 @@ def _fixed(name: str, value: Any) -> Any:
     return tuple(map(float, value)) if name == "AVAIL_TORQUE" else float(value)
 
 
-def _reject_ignored(cls: type, name: str) -> None:
+def _reject_ignored(cls: type[Parameters], name: str) -> None:
     if name in _IGNORED:
         raise TypeError(f"{name} would have no effect on {cls.__name__}; {_IGNORED[name]}")
-    if name not in _NAMES and not name.startswith("_") and _near(name, _NAMES, 0.8):
-        raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name)}")
+    names = cls._NAMES
+    if name not in names and not name.startswith("_") and _near(name, names, 0.8):
+        raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name, names)}")
 
 
 @functools.cache
@@ -125,9 +126,8 @@ def _near(name: str, names: tuple[str, ...], cutoff: float) -> str | None:
     return lower[close[0]] if close else None
 
 
-def _hint(name: str, others: tuple[str, ...] = ()) -> str:
-    """What an unknown name may mean: a parameter, or one of other names."""
-    names = (*others, *_NAMES)
+def _hint(name: str, names: tuple[str, ...]) -> str:
+    """What an unknown name may mean: one of these names."""
     bound = re.search("(?i)torque_?(max|limit)|(max|limit)_?torque", name)
     meant = "AVAIL_TORQUE" if bound else _near(name, names, 0.5)
     return f"did you mean {meant}?" if meant else f"it has {', '.join(names)}"
@@ -164,6 +164,14 @@ if TYPE_CHECKING:
         AVAIL_TORQUE: _Torques
         torque_noise_max: _Number
         book_or_nips: _Equations
+
+    class SwingupArguments(Arguments[_Number, _Torques, _Equations], total=False):
+        """Those of the swing-up."""
+
+        LINK_MOI_1: _Number
+        LINK_MOI_2: _Number
+        FRICTION_1: _Number
+        FRICTION_2: _Number
 
 
 class Parameters(arrays.Hints):
@@ -210,8 +218,16 @@ class Parameters(arrays.Hints):
     spec: Any
     render_mode: str | None
     _native: Acrobot | Batch
-    #: Whether actions are torques.
+    #: The names of the parameters.
+    _NAMES: tuple[str, ...] = ()
+    #: The task, by its name in Rust.
+    _TASK = "acrobot"
+    #: The default bound of initial states, rad and rad/s.
+    _BOUND = 0.1
+    #: Whether actions are numbers in a ``Box``.
     _CONTINUOUS = False
+    #: What a continuous action is.
+    _ACTION = "a torque in N m"
     #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
     #: What cannot change after the construction.
@@ -222,8 +238,11 @@ class Parameters(arrays.Hints):
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         for name, value in list(vars(cls).items()):
-            if name in _NAMES:
-                Batch().set_drawn(name, value) if isinstance(value, Drawn) else Acrobot().set(name, value)
+            if name in cls._NAMES:
+                if isinstance(value, Drawn):
+                    Batch(engine=cls._TASK).set_drawn(name, value)
+                else:
+                    Acrobot(task=cls._TASK).set(name, value)
                 setattr(cls, name, _fixed(name, value))
         cls._check_names()
 
@@ -231,7 +250,9 @@ class Parameters(arrays.Hints):
     def _check_names(cls) -> None:
         """Reject attributes of this class, and of those that it inherits from, that would have no effect."""
         for base in cls.__mro__:
-            for name, value in vars(base).items() if base not in (Parameters, arrays.Hints) else ():
+            # A class with names defines the parameters.
+            ours = base is arrays.Hints or "_NAMES" in vars(base)
+            for name, value in vars(base).items() if not ours else ():
                 if name in _IGNORED or not callable(value):
                     _reject_ignored(cls, name)
 
@@ -240,19 +261,24 @@ class Parameters(arrays.Hints):
     ) -> None:
         """Pass the parameters to the native part: these, and those of the class, which may have changed."""
         self._check_names()
-        for name in parameters.keys() - set(_NAMES):
-            arguments = inspect.signature(type(self)).parameters.values()
-            others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)
-            # Other programs, such as torchrl, look for Python's words.
-            words = f"{type(self).__name__}.__init__() got an unexpected keyword argument {name!r}"
-            raise TypeError(f"{words}; {_hint(name, others)}")
+        self._check_arguments(parameters)
         self._native = native
         self.render_mode = arrays.render_mode(render_mode, self.metadata)
         # LINK_MOI, which may be 0 with some centres of mass only, comes after them.
-        for name in _NAMES:
+        for name in self._NAMES:
             setattr(self, name, _from_json(parameters.get(name, getattr(self, name))))
         for name, space in self._spaces().items():
             setattr(self, name, space)
+
+    def _check_arguments(self, parameters: Mapping[str, Any]) -> None:
+        """Reject arguments that are no parameters."""
+        for name in parameters.keys() - set(self._NAMES):
+            arguments = inspect.signature(type(self)).parameters.values()
+            others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)
+            hint = _hint(name, (*others, *self._NAMES))
+            # Other programs, such as torchrl, look for Python's words.
+            words = f"{type(self).__name__}.__init__() got an unexpected keyword argument {name!r}"
+            raise TypeError(f"{words}; {hint}")
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
@@ -264,25 +290,33 @@ class Parameters(arrays.Hints):
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
         """All spaces, by the names of their attributes. Here those of a single environment."""
-        lows, highs = (getattr(self.AVAIL_TORQUE, bound, self.AVAIL_TORQUE) for bound in ("low", "high"))
+        low, high, *velocities = self._limits()
         actions: spaces.Space[Any]
         if self._CONTINUOUS:
-            largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
-            low, high = np.clip([np.min(lows), np.max(highs)], -largest, largest).tolist()
             actions = spaces.Box(low, high, (1,), np.float32)
         else:
-            actions = spaces.Discrete(np.shape(lows)[-1])
-        # After a step, or after a reset with the default bounds of 0.1, rad/s.
-        velocities = (np.max(getattr(bound, "high", bound)) for bound in (self.MAX_VEL_1, self.MAX_VEL_2))
+            torques = getattr(self.AVAIL_TORQUE, "low", self.AVAIL_TORQUE)
+            actions = spaces.Discrete(np.shape(torques)[-1])
         others = [np.pi] * 2 if self._ANGLES else [1.0] * 4
-        highest = np.array([*others, *(max(each, 0.1) for each in velocities)], dtype=np.float32)
+        highest = np.array([*others, *velocities], dtype=np.float32)
         return {"action_space": actions, "observation_space": spaces.Box(-highest, highest, dtype=np.float32)}
+
+    def _limits(self) -> tuple[float, float, float, float]:
+        """What the spaces contain: actions from one number to another, and velocities, rad/s."""
+        torque: Any = self.AVAIL_TORQUE
+        lows, highs = (getattr(torque, each, torque) for each in ("low", "high"))
+        largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
+        bounds: tuple[Any, ...] = (self.MAX_VEL_1, self.MAX_VEL_2)
+        velocities = (np.max(getattr(each, "high", each)) for each in bounds)
+        # After a step, or after a reset with the default bounds of 0.1, rad/s.
+        first, second = (max(each, self._BOUND) for each in velocities)
+        return max(np.min(lows), -largest), min(np.max(highs), largest), first, second
 
     if not TYPE_CHECKING:  # a checker would accept all names
 
         def __setattr__(self, name: str, value: Any) -> None:
             """Check a parameter and set it."""
-            if name not in _NAMES:
+            if name not in self._NAMES:
                 self._check_name(name)
                 super().__setattr__(name, value)
                 return
@@ -304,11 +338,11 @@ class Parameters(arrays.Hints):
         _reject_ignored(cls, name)
         is_ours = cls.__module__.startswith("acrobot_rs.") and self._made
         if is_ours and not (name.startswith("_") or name in vars(self) or hasattr(cls, name)):
-            raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name)}")
+            raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name, cls._NAMES)}")
 
     def __delattr__(self, name: str) -> None:
         """Set a parameter back to the value of its class."""
-        if name in _NAMES:
+        if name in self._NAMES:
             setattr(self, name, getattr(type(self), name))
         else:
             super().__delattr__(name)
@@ -317,5 +351,13 @@ class Parameters(arrays.Hints):
         """As ``copy.deepcopy``: two objects with the same states would be no copies."""
         return copy.deepcopy(self)
 
+    def _warn_of_no_render_mode(self) -> None:
+        call = f'gymnasium.make("{self.spec.id}", ' if self.spec else f"{type(self).__name__}("
+        logger.warn(
+            "render returns None, because the environment was made without a render mode. Make it with one: "
+            f'{call}render_mode="rgb_array")'
+        )
 
-_NAMES = tuple(name for name in Parameters.__annotations__ if hasattr(Parameters, name))
+
+_PUBLIC = (name for name in Parameters.__annotations__ if not name.startswith("_"))
+_NAMES = Parameters._NAMES = tuple(name for name in _PUBLIC if hasattr(Parameters, name))

@@ -40,7 +40,8 @@ def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None 
 def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
     inputs, head, body = 6, b"", b""
     for i, (weights, biases, activation) in enumerate(layers):
-        weights, biases = np.asarray(weights, "<f4"), np.asarray(biases, "<f4")
+        with np.errstate(over="ignore"):
+            weights, biases = np.asarray(weights, "<f4"), np.asarray(biases, "<f4")
         outputs = len(biases) if biases.ndim == 1 else 0
         if not 1 <= outputs < 2**16 or weights.shape != (outputs, inputs):
             rule = f"weights of shape (outputs, {inputs}) and biases of shape (outputs,)"
@@ -57,8 +58,10 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
     if inputs != (3 if scores else 1) or not 1 <= len(layers) < 256:
         raise ValueError(f"the last layer must have {'3 outputs, or 1 with a torque_limit' if scores else '1 output'}, got {inputs}")
     limit = 0.0 if torque_limit is None else float(torque_limit)
-    if not scores and not 0 < limit <= np.finfo(np.float32).max:
-        raise ValueError(f"torque_limit must be finite and above 0 N m, got {torque_limit}")
+    # Up to 2^-150 it is 0 in float32.
+    if not scores and not 2.0**-150 < limit <= np.finfo(np.float32).max:
+        rule = "finite and above 0 N m in float32"
+        raise ValueError(f"torque_limit must be {rule}, got {torque_limit}")
     content = struct.pack("<4sBBHf", b"MLP1", len(layers), not scores, 6, limit) + head + body
     return content + struct.pack("<I", zlib.crc32(content))
 
@@ -71,31 +74,65 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
             layers, tanh and ReLU.
         path: The file.
         observations: On which the file's actions are compared with the model's: an array of shape ``(n, 6)``. Default: 2,000 of random episodes.
-        torque_limit: The largest torque, N m, of a ``Sequential`` with one output.
+        torque_limit: The largest torque, N m, of a ``Sequential`` with one output. Of a model of
+            Stable-Baselines3, the torque of its largest action. By default this is the action
+            itself, and in a swing-up the largest in its environment's ``AVAIL_TORQUE``.
 
     Raises:
         TypeError: If the model, or a layer, is of another kind.
-        ValueError: If a shape or a number is wrong, or if the file's actions would differ from the model's. No file is written then.
+        ValueError: If a shape or a number is wrong, if the file's actions would differ from the
+            model's or its outputs would not be finite, or if a ``Sequential`` has Dropout in
+            training mode. No file is written then.
     """
     policy = getattr(model, "policy", None)
     if policy is None and not isinstance(model, Iterable):
         raise TypeError(f"model must be one of Stable-Baselines3 or a torch.nn.Sequential, got {model!r}")
     modules, quantiles = (model, 1) if policy is None else _modules_of(policy)
     layers = _layers(modules, quantiles)
+    if policy is None and any(type(each).__name__ == "Dropout" and each.training for each in model):
+        what = "it has Dropout in training mode; call model.eval() before"
+        raise ValueError(f"the model must be in evaluation mode: {what}")
+    is_swingup = policy is not None and bool(np.isinf(policy.observation_space.high).any())
+    scale, note = 1, ""
     if policy is not None and isinstance(policy.action_space, gym.spaces.Box):
-        torque_limit = float(policy.action_space.high[0])
+        low, high = float(policy.action_space.low[0]), float(policy.action_space.high[0])
+        if not 0 < high == -low < np.inf:
+            rule = "finite and opposite"
+            raise ValueError(f"the bounds of the action space must be {rule}, got {low} and {high}")
+        if torque_limit is None:
+            torque_limit = _largest_torque(model.get_env()) if is_swingup else high
+        scale = torque_limit / high
+        weights, biases, activation = layers[-1]
+        layers[-1] = (weights * scale, biases * scale, activation)
     normalize = model.get_vec_normalize_env() if policy is not None else None
     if normalize is not None and normalize.norm_obs:
         mean, deviation = normalize.obs_rms.mean, np.sqrt(normalize.obs_rms.var + normalize.epsilon)
-        bounds = np.array([1, 1, 1, 1, 4 * np.pi, 9 * np.pi])
+        bounds = policy.observation_space.high
         if ((bounds + abs(mean)) / deviation > normalize.clip_obs).any():
-            warnings.warn("VecNormalize clips extreme observations, and the file does not", stacklevel=2)
+            clip = f"at clip_obs={normalize.clip_obs:g}"
+            note = f"VecNormalize clips extreme observations, {clip}, and the file does not"
+            warnings.warn(note, stacklevel=2)
         weights, biases, activation = layers[0]
         layers[0] = (weights / deviation, biases - weights @ (mean / deviation), activation)
     content = _content(layers, torque_limit)
-    seen = _observations() if observations is None else np.asarray(observations, np.float32)
-    _compare(layers, seen, _expected(model, policy, normalize, modules, seen), torque_limit)
+    if observations is None:
+        observations = _observations("AcrobotSwingup-v0" if is_swingup else "Acrobot-v1")
+    seen = np.asarray(observations, np.float32)
+    expected = scale * _expected(model, policy, normalize, modules, seen)
+    _compare(layers, seen, expected, torque_limit, note)
     Path(path).write_bytes(content)
+
+
+def _largest_torque(envs: Any) -> float:
+    """The torque of the action 1 in the environments of a swing-up, N m."""
+    what = "the model has no environment"
+    if envs is not None:
+        every = envs.get_attr("AVAIL_TORQUE")
+        torques = {abs(extreme(each)) for each in every for extreme in (min, max)}
+        if len(torques) == 1:
+            return float(torques.pop())
+        what = f"the largest in AVAIL_TORQUE differ: {sorted(torques)}"
+    raise ValueError(f"torque_limit must be the torque of the action 1, N m, because {what}")
 
 
 def _modules_of(policy: Any) -> tuple[list[Any], int]:
@@ -134,8 +171,8 @@ def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
     return layers
 
 
-def _observations() -> NDArray[np.float32]:
-    envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=20)
+def _observations(task: str) -> NDArray[np.float32]:
+    envs = gym.make_vec(f"acrobot_rs/{task}", num_envs=20)
     envs.action_space.seed(1)
     return np.concatenate([envs.reset(seed=1)[0], *(envs.step(envs.action_space.sample())[0].copy() for _ in range(99))])
 
@@ -151,11 +188,21 @@ def _expected(model: Any, policy: Any, normalize: Any, modules: Any, seen: NDArr
     return outputs if outputs.shape[1] == 1 else outputs.argmax(1)
 
 
-def _compare(layers: list[Layer], seen: NDArray[np.float32], expected: NDArray[Any], torque_limit: float | None) -> None:
+def _compare(
+    layers: list[Layer],
+    seen: NDArray[np.float32],
+    expected: NDArray[Any],
+    torque_limit: float | None,
+    note: str,
+) -> None:
     x: NDArray[Any] = seen
     for weights, biases, activation in layers:
-        x = x @ np.asarray(weights, np.float32).T + np.asarray(biases, np.float32)
+        with np.errstate(all="ignore"):
+            x = x @ np.asarray(weights, np.float32).T + np.asarray(biases, np.float32)
         x = np.tanh(x) if activation == "tanh" else np.maximum(x, 0) if activation == "relu" else x
+    if wrong := (~np.isfinite(x)).any(1).sum():
+        where = f"they are not on {wrong} of {len(seen)} observations"
+        raise ValueError(f"the outputs of the file must be finite; {where}")
     if torque_limit is None:
         # Scores that differ by a rounding are a tie.
         chosen = np.take_along_axis(x, expected.reshape(-1, 1), 1)[:, 0]
@@ -163,4 +210,5 @@ def _compare(layers: list[Layer], seen: NDArray[np.float32], expected: NDArray[A
     else:
         differ = abs(np.clip(x[:, 0], -torque_limit, torque_limit) - np.clip(expected[:, 0], -torque_limit, torque_limit)) > 1e-4 * torque_limit
     if differ.any():
-        raise ValueError(f"the file's actions must be those of the model; they differ on {differ.sum()} of {len(seen)} observations")
+        where = f"they differ on {differ.sum()} of {len(seen)} observations{note and '. '}{note}"
+        raise ValueError(f"the file's actions must be those of the model; {where}")

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from acrobot_rs import arrays
 from acrobot_rs.arrays import numbers, read_only, require
 from acrobot_rs.native_vector import Floats, NativeVectorEnv
-from acrobot_rs.parameters import _NAMES, Drawn, Parameters, _fixed, _hint
+from acrobot_rs.parameters import Drawn, Parameters, _fixed, _hint
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -50,7 +50,6 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    _PARAMETERS = _NAMES
     _CHOSEN = ("autoreset_mode", "copy", "info_parameters", "max_episode_steps", "num_envs")
 
     def __init__(
@@ -91,13 +90,14 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             MemoryError: If the environments do not fit into memory.
         """
         require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
-        for name in (each for each in info_parameters if each not in _NAMES):
-            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {_hint(str(name))}")
+        for name in (each for each in info_parameters if each not in self._NAMES):
+            hint = _hint(str(name), self._NAMES)
+            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {hint}")
         self.info_parameters = tuple(info_parameters)
         require(bool, "True or False", gymnasium_episodes=gymnasium_episodes)
         if gymnasium_episodes:
             arrays.warn_of_other_sines()
-        engine = "gymnasium" if gymnasium_episodes else "fast"
+        engine = "gymnasium" if gymnasium_episodes else self._TASK
         native = self._make(
             num_envs, max_episode_steps, autoreset_mode, copy, engine, self._CONTINUOUS, threads
         )
@@ -111,7 +111,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         return {f"single_{name}": space for name, space in single.items()} | batched
 
     def _bounds(self, options: dict[str, Any] | None) -> tuple[float, float]:
-        return arrays.reset_bounds(options, ("low", "high", "reset_mask", "state"))
+        return arrays.reset_bounds(options, self._BOUND, ("low", "high", "reset_mask", "state"))
 
     def _pass(self, name: str, value: Any) -> Any:
         with self._alone:
