@@ -10,13 +10,13 @@ use acrobot::{Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyMemoryError, PyValueError};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::draws::{Distribution, Draws};
 use crate::{
-    InvalidAction, NUMBERS, Params, invalid, is_named, must_be, params_from, params_of, rejected,
+    InvalidAction, NUMBERS, Params, invalid, must_be, params_from, params_of, rejected, renamed,
     torque_of, unknown, with,
 };
 
@@ -149,24 +149,20 @@ impl<A: Arithmetic> Many<A> {
     fn check_range(ends: [Params; 2]) -> PyResult<()> {
         let [low, high] = ends.map(params_of::<A>);
         ParamsRange::new(low, high).map(drop).map_err(|error| {
-            // Names the number given, not the 0 or the infinity that it becomes.
-            let message = error.to_string();
-            let named = NUMBERS
-                .iter()
-                .filter(|number| is_named(A::TASK, number, &message));
-            let lost = named.flat_map(|(name, _, field)| {
-                ends.map(|mut end| (name, *field(&mut end)))
-                    .into_iter()
-                    .find(|(_, given)| {
-                        let held = A::Scalar::from_f64(*given).to_f64();
-                        given.is_finite() && (held.is_infinite() || held == 0.0 && *given != 0.0)
-                    })
-            });
-            let Some((name, given)) = lost.into_iter().next() else {
-                return invalid(A::TASK, error);
-            };
-            let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
-            PyValueError::new_err(must_be(name, rule, format_args!("{given:?}")))
+            let mut message = error.to_string();
+            for (_, own, field) in &NUMBERS {
+                for mut end in ends {
+                    let given = *field(&mut end);
+                    let held = A::Scalar::from_f64(given).to_f64();
+                    let is_lost = held.is_infinite() || held == 0.0 && given != 0.0;
+                    // Names the number given, not the infinity or the 0 that it becomes.
+                    if is_lost && given.is_finite() && message.starts_with(own) {
+                        let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
+                        message = must_be(own, rule, format_args!("{given:?}"));
+                    }
+                }
+            }
+            renamed(A::TASK, message)
         })
     }
 

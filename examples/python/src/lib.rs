@@ -108,23 +108,19 @@ fn rejected(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// Whether a message of the crate begins with the name of this number. `LINK_MOI` is of one task.
-fn is_named(task: Task, (pythons, name, _): &Number, message: &str) -> bool {
-    let rest = message.strip_prefix(name);
-    (*pythons != "LINK_MOI" || task == Task::Acrobot)
-        && rest.is_some_and(|rest| rest.starts_with([' ', '[']))
-}
-
 /// The same for parameters of a task: the message begins with Python's name of one.
 fn invalid(task: Task, error: impl std::error::Error) -> PyErr {
-    let message = error.to_string();
-    let number = NUMBERS
-        .iter()
-        .find(|number| is_named(task, number, &message));
-    PyValueError::new_err(match number {
-        Some((pythons, name, _)) => message.replacen(name, pythons, 1),
-        None => message,
-    })
+    renamed(task, error.to_string())
+}
+
+fn renamed(task: Task, message: String) -> PyErr {
+    let renamed = NUMBERS.iter().find_map(|(pythons, name, _)| {
+        let rest = message.strip_prefix(name)?;
+        let known = *pythons != "LINK_MOI" || task == Task::Acrobot;
+        let whole = known && rest.starts_with([' ', '[']);
+        whole.then(|| format!("{pythons}{rest}"))
+    });
+    PyValueError::new_err(renamed.unwrap_or(message))
 }
 
 /// An error message in the form of the crate's.

@@ -238,9 +238,7 @@ def test_episodes_begin_in_given_states(name):
             envs.reset(seed=2, options={"state": bad})
 
 
-@pytest.mark.parametrize(
-    "name", ["acrobot_rs/Acrobot-v1", "acrobot_rs/AcrobotContinuous-v0", "acrobot_rs/Acrobot-v0"]
-)
+@pytest.mark.parametrize("name", SINGLES)
 def test_a_single_episode_begins_in_a_given_state(name):
     env, twin = (
         gymnasium.make(name, torque_noise_max=0.1),

@@ -188,22 +188,6 @@ def test_infos_have_the_parameters_of_the_episode():
         assert (envs.get_attr("dt") != before) == ended
 
 
-def test_the_swing_up_too():
-    envs = AcrobotVecEnv(acrobot_rs.AcrobotSwingupVectorEnv(3, 2, autoreset_mode="SameStep"))
-    twin = gymnasium.make("acrobot_rs/AcrobotSwingup-v0")
-    envs.seed(5)
-    observations = envs.reset()
-    for row, seed in zip(observations, (5, 6, 7), strict=True):
-        np.testing.assert_allclose(row, twin.reset(seed=seed)[0], atol=1e-5)
-    envs.set_attr("state", [0.1, 0.0, 0.0, 0.0])
-    assert (np.array(envs.get_attr("state")) == np.float32([0.1, 0.0, 0.0, 0.0])).all()
-    assert not envs.step(np.zeros((3, 1), np.float32))[2].any()
-    _, rewards, ended, infos = envs.step(np.zeros((3, 1), np.float32))
-    assert ended.all() and rewards.shape == (3,)
-    for info in infos:
-        assert info["TimeLimit.truncated"] and info["terminal_observation"].shape == (6,)
-
-
 def test_misuse_is_rejected():
     with pytest.raises(ValueError, match='autoreset_mode must be "SameStep", got "NextStep"'):
         AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(2))

@@ -1,4 +1,4 @@
-"""mypy and pyright accept the code of docs/python.md and what parameters can be, not the rest."""
+"""mypy and pyright accept the code of the guide and what parameters can be, and not the rest."""
 
 import re
 import subprocess
@@ -23,7 +23,9 @@ envs.gravity = Uniform(9, 10)
 envs.dt, envs.LINK_MOI, envs.book_or_nips = np.array([0.1, 0.2]), LogUniform(1, 2), ["book", "nips"]
 envs.MAX_VEL_1, envs.AVAIL_TORQUE = Normal(9.0, 1.0, 8.0, 10.0), [[-1, 0, 1], [-2, 0, 2]]
 envs.state = np.zeros((2, 4))
-swingups = acrobot_rs.AcrobotSwingupVectorEnv(2, copy=False)
+swingup = acrobot_rs.AcrobotSwingupEnv(FRICTION_1=0.1)
+swingup.dt, swingup.LINK_MOI_1 = swingup.dt / 2, 0.2
+swingups = acrobot_rs.AcrobotSwingupVectorEnv(2, copy=False, FRICTION_1=Uniform(0.0, 0.1))
 swingups.state = [[0.0] * 4] * 2
 print(envs.state.shape, envs.elapsed_steps.sum(), envs.get_parameter("dt").mean())
 print(swingups.get_attr("state"))
@@ -44,6 +46,8 @@ print(env._terminal)
 acrobot_rs.AcrobotEnv(frameskip=4)
 acrobot_rs.AcrobotVectorEnv(2, dt="fast")
 acrobot_rs.AcrobotVectorEnv(2).gravity = None
+acrobot_rs.AcrobotSwingupEnv(FRICTION=0.1)
+acrobot_rs.AcrobotSwingupVectorEnv(2, FRICTION_1="much")
 """
 
 
@@ -57,13 +61,11 @@ acrobot_rs.AcrobotVectorEnv(2).gravity = None
 )
 def test_checkers(checker, tmp_path):
     pytest.importorskip(checker[0])
-    page = (ROOT / "docs/python.md").read_text()
-    blocks = re.findall(r"^```py(?:thon)?\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    texts = {
-        "page.py": "# pyright: reportMissingImports=false\n" + "\n".join(blocks),
-        "program.py": PROGRAM,
-        "wrong.py": WRONG,
-    }
+    texts = {"program.py": PROGRAM, "wrong.py": WRONG}
+    for name in ("python", "swingup"):
+        page = (ROOT / f"docs/{name}.md").read_text()
+        blocks = re.findall(r"^```py(?:thon)?\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+        texts[f"{name}.py"] = "\n".join(["# pyright: reportMissingImports=false", *blocks])
     for name, text in texts.items():
         (tmp_path / name).write_text(text)
     run = subprocess.run(

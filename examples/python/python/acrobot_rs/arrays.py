@@ -12,7 +12,6 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
-from gymnasium import logger
 from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 from gymnasium.error import Error
 from numpy.typing import NDArray
@@ -25,10 +24,10 @@ _OPTIONS = ("low", "high", "reset_mask", "state")
 
 
 def reset_bounds(
-    options: dict[str, Any] | None, bound: float, *others: str
+    options: dict[str, Any] | None, bound: float, known: tuple[str, ...]
 ) -> tuple[float, float]:
     """The bounds of initial states, rad and rad/s: the options, or ``-bound`` and ``bound``."""
-    check_keys(options, ("low", "high", "state", *others))
+    check_keys(options, known)
     low, high = maybe_parse_reset_bounds(options, -bound, bound)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
     if not (abs(low) <= largest and abs(high) <= largest):
@@ -152,14 +151,6 @@ def _digits(seed: Any) -> str | None:
     """The digits of a seed. `str` rejects more than 4,300."""
     plain = plain_seed(seed)
     return None if plain is None else str(plain)
-
-
-def warn_of_no_render_mode(spec: Any) -> None:
-    """Warn that ``render`` returns ``None``."""
-    logger.warn(
-        "render returns None, because the environment was made without a render mode. "
-        f'Make it with one: gymnasium.make("{spec.id if spec else "acrobot_rs/Acrobot-v1"}", render_mode="rgb_array")'
-    )
 
 
 class Missing:

@@ -10,7 +10,6 @@ import numpy as np
 from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs import arrays
 from acrobot_rs._native import Acrobot
 from acrobot_rs.arrays import numbers, plain_seed, reset_bounds
 from acrobot_rs.parameters import Parameters
@@ -162,7 +161,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             ValueError: If a number is not finite, if low is above high, or if another key resembles
                 one of these. Nothing changes then.
         """
-        low, high = reset_bounds(options, self._BOUND)
+        low, high = reset_bounds(options, self._BOUND, ("low", "high", "state"))
         seed = plain_seed(seed)
         given = None
         if options is not None and "state" in options:
@@ -172,20 +171,17 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
                 if not np.isfinite(given.astype(np.float32)).all():
                     raise ValueError(f"state must be {rule}, got {given}")
         super().reset(seed=seed)
-        state = self._drawn(low, high)
-        self.state = state if given is None else given
+        observation = self._begin(low, high, given)
         if self.render_mode == "human":
             self.render()
-        return self._observation(), {}
+        return observation, {}
 
-    def _drawn(self, low: float, high: float) -> NDArray[np.floating[Any]]:
-        """Draw an initial state."""
-        # Gymnasium rounds initial states to float32, but not those of others.
-        return self.np_random.uniform(low, high, 4).astype(np.float32)
-
-    def _observation(self) -> NDArray[np.float32]:
-        """Observe an initial state."""
-        s = np.array(self.state, dtype=np.float32)
+    def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
+        """Draw an initial state, which a given one replaces, and observe it."""
+        # Gymnasium rounds initial states to float32.
+        s = self.np_random.uniform(low, high, 4).astype(np.float32)
+        self.state = s if given is None else given
+        s = s if given is None else given.astype(np.float32)
         if self._ANGLES:
             return s
         # Gymnasium's calls of NumPy, whose float32 sines are its own.
@@ -223,7 +219,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             gymnasium.error.DependencyNotInstalled: If ``"human"`` does not find pygame.
         """
         if self.render_mode is None:
-            arrays.warn_of_no_render_mode(self.spec)
+            self._warn_of_no_render_mode()
             return None
         if self.render_mode != "human":
             return self._native.render(self.render_mode)

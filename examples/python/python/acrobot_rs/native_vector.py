@@ -61,10 +61,11 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
     copy: bool
     #: Parameters that infos have.
     info_parameters: tuple[str, ...] = ()
-
-    _native: Batch
+    #: The names of the parameters.
     _NAMES: tuple[str, ...]
     _BOUND: float
+
+    _native: Batch
     #: Whether states and rewards are ``float64``.
     _gymnasium_episodes = False
     #: Whether it was reset and not closed.
@@ -134,9 +135,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 whose element is false are neither seeded nor reset. ``"state"``: the initial
                 states, of shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all: theta1,
                 theta2 (rad) and their velocities (rad/s). They replace the drawn ones, so streams
-                and drawn parameters are as without them. ``"low"`` and ``"high"``: the bounds of
-                these initial states, rad and rad/s; by default -0.1 and 0.1, in a swing-up -pi and
-                pi. Autoresets ignore all options.
+                and drawn parameters are as without them. Or ``"low"`` and ``"high"``: the bounds of
+                the drawn ones, rad and rad/s, by default -0.1 and 0.1; in the swing-up those of the
+                angles, by default -pi and pi. Autoresets ignore all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
@@ -151,7 +152,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             RuntimeError: If another thread is stepping or resetting the environments. Nothing
                 changes then.
         """
-        low, high = arrays.reset_bounds(options, self._BOUND, "reset_mask")
+        known = ("low", "high", "reset_mask", "state")
+        low, high = arrays.reset_bounds(options, self._BOUND, known)
         self._check_open()
         options = options or {}
         mask = arrays.reset_mask(options, self.num_envs)
@@ -335,7 +337,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         self._check_open()
         if self.render_mode is None:
-            arrays.warn_of_no_render_mode(self.spec)
+            self._warn_of_no_render_mode()
             return None
         if not self._ready:
             raise ResetNeeded("the environments have no states yet; call reset before render")

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar
 
 import numpy as np
-from gymnasium import spaces
+from gymnasium import logger, spaces
 from numpy.typing import NDArray
 
 from acrobot_rs import arrays
@@ -165,6 +165,14 @@ if TYPE_CHECKING:
         torque_noise_max: _Number
         book_or_nips: _Equations
 
+    class SwingupArguments(Arguments[_Number, _Torques, _Equations], total=False):
+        """Those of the swing-up."""
+
+        LINK_MOI_1: _Number
+        LINK_MOI_2: _Number
+        FRICTION_1: _Number
+        FRICTION_2: _Number
+
 
 class Parameters(arrays.Hints):
     """The parameters of the physics, with Gymnasium's names. Set them as arguments, on an environment or in a subclass.
@@ -243,8 +251,8 @@ class Parameters(arrays.Hints):
         """Reject attributes of this class, and of those that it inherits from, that would have no effect."""
         for base in cls.__mro__:
             # A class with names defines the parameters.
-            defines = "_NAMES" in vars(base) or base is arrays.Hints
-            for name, value in () if defines else vars(base).items():
+            ours = base is arrays.Hints or "_NAMES" in vars(base)
+            for name, value in vars(base).items() if not ours else ():
                 if name in _IGNORED or not callable(value):
                     _reject_ignored(cls, name)
 
@@ -267,9 +275,10 @@ class Parameters(arrays.Hints):
         for name in parameters.keys() - set(self._NAMES):
             arguments = inspect.signature(type(self)).parameters.values()
             others = tuple(each.name for each in arguments if each.kind is not each.VAR_KEYWORD)
+            hint = _hint(name, (*others, *self._NAMES))
             # Other programs, such as torchrl, look for Python's words.
             words = f"{type(self).__name__}.__init__() got an unexpected keyword argument {name!r}"
-            raise TypeError(f"{words}; {_hint(name, (*others, *self._NAMES))}")
+            raise TypeError(f"{words}; {hint}")
 
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
@@ -294,9 +303,11 @@ class Parameters(arrays.Hints):
 
     def _limits(self) -> tuple[float, float, float, float]:
         """What the spaces contain: actions from one number to another, and velocities, rad/s."""
-        lows, highs = (getattr(self.AVAIL_TORQUE, each, self.AVAIL_TORQUE) for each in ("low", "high"))
+        torque: Any = self.AVAIL_TORQUE
+        lows, highs = (getattr(torque, each, torque) for each in ("low", "high"))
         largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
-        velocities = (np.max(getattr(each, "high", each)) for each in (self.MAX_VEL_1, self.MAX_VEL_2))
+        bounds: tuple[Any, ...] = (self.MAX_VEL_1, self.MAX_VEL_2)
+        velocities = (np.max(getattr(each, "high", each)) for each in bounds)
         # After a step, or after a reset with the default bounds of 0.1, rad/s.
         first, second = (max(each, self._BOUND) for each in velocities)
         return max(np.min(lows), -largest), min(np.max(highs), largest), first, second
@@ -339,6 +350,13 @@ class Parameters(arrays.Hints):
     def __copy__(self) -> Parameters:
         """As ``copy.deepcopy``: two objects with the same states would be no copies."""
         return copy.deepcopy(self)
+
+    def _warn_of_no_render_mode(self) -> None:
+        call = f'gymnasium.make("{self.spec.id}", ' if self.spec else f"{type(self).__name__}("
+        logger.warn(
+            "render returns None, because the environment was made without a render mode. Make it with one: "
+            f'{call}render_mode="rgb_array")'
+        )
 
 
 _PUBLIC = (name for name in Parameters.__annotations__ if not name.startswith("_"))

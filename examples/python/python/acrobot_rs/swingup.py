@@ -12,8 +12,13 @@ from numpy.typing import NDArray
 
 from acrobot_rs.env import AcrobotContinuousEnv
 from acrobot_rs.native_vector import Floats
-from acrobot_rs.parameters import Each, Parameters, _hint
+from acrobot_rs.parameters import Each, EachTorques, Parameters, _hint
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from acrobot_rs.parameters import EachEquations, Equations, SwingupArguments, Torques
 
 
 class Swingup(Parameters):
@@ -31,11 +36,11 @@ class Swingup(Parameters):
     FRICTION_1: Each = 0.05
     #: Viscous friction of the joint between the links, N m s/rad; 0 or more.
     FRICTION_2: Each = 0.05
-    gravity = 9.81
-    dt = 0.01
-    MAX_VEL_1 = 1e30
-    MAX_VEL_2 = 1e30
-    AVAIL_TORQUE = (-2.0, 0.0, 2.0)
+    gravity: Each = 9.81
+    dt: Each = 0.01
+    MAX_VEL_1: Each = 1e30
+    MAX_VEL_2: Each = 1e30
+    AVAIL_TORQUE: EachTorques = (-2.0, 0.0, 2.0)
 
     _NAMES = (
         *(name for name in Parameters._NAMES if name != "LINK_MOI"),
@@ -89,11 +94,21 @@ class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
         LINK_MOI_2: float
         FRICTION_1: float
         FRICTION_2: float
+        gravity: float
+        dt: float
+        MAX_VEL_1: float
+        MAX_VEL_2: float
+        AVAIL_TORQUE: Torques
 
-    def _drawn(self, low: float, high: float) -> NDArray[np.floating[Any]]:
-        return np.array([*self.np_random.uniform(low, high, 2), 0.0, 0.0])
+        def __init__(
+            self,
+            render_mode: str | None = None,
+            **parameters: Unpack[SwingupArguments[float, Torques, Equations]],
+        ) -> None: ...
 
-    def _observation(self) -> NDArray[np.float32]:
+    def _begin(self, low: float, high: float, given: NDArray[Any] | None) -> NDArray[np.float32]:
+        drawn = np.array([*self.np_random.uniform(low, high, 2), 0.0, 0.0])
+        self.state = drawn if given is None else given
         return self._native.observation()
 
 
@@ -129,7 +144,7 @@ class AcrobotSwingupVectorEnv(
         copy: bool = True,
         threads: int | None = 1,
         info_parameters: Sequence[str] = (),
-        **parameters: Any,
+        **parameters: Unpack[SwingupArguments[Each, EachTorques, EachEquations]],
     ) -> None:
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
         self._check_arguments(parameters)  # gymnasium_episodes is none
