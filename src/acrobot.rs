@@ -312,14 +312,11 @@ mod snapshot {
     use serde::de::{Deserialize, Deserializer, Error};
     use serde::ser::{Serialize, Serializer};
 
-    use super::{Acrobot, Arithmetic, Pcg64, Pendulum, State};
-    use crate::physics::FrictionOf;
-    use crate::snapshot::{Header, Subject};
-
-    impl<A: Arithmetic, R> Subject for Acrobot<A, R> {
-        const NAME: &'static str = "acrobot";
-        type Arithmetic = A;
-    }
+    use super::Acrobot;
+    use crate::arithmetic::Arithmetic;
+    use crate::numpy::Pcg64;
+    use crate::physics::{FrictionOf, Pendulum, State};
+    use crate::snapshot::Header;
 
     #[derive(serde::Serialize, serde::Deserialize)]
     #[serde(rename = "Acrobot")]
@@ -332,7 +329,7 @@ mod snapshot {
 
     impl<A: Arithmetic> Acrobot<A> {
         /// The largest size of a snapshot in postcard's format, bytes, without a checksum: of a buffer in firmware.
-        pub const MAX_SNAPSHOT_SIZE: usize = Header::<Self>::SIZE
+        pub const MAX_SNAPSHOT_SIZE: usize = Header::<A, false>::SIZE
             + 16 * size_of::<A::Scalar>() // the parameters, their dynamics and their friction
             + 1
             + size_of::<FrictionOf<A>>()
@@ -343,7 +340,7 @@ mod snapshot {
     impl<A: Arithmetic, R: Serialize> Serialize for Acrobot<A, R> {
         fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
             Snapshot {
-                snapshot: Header::<Self>::NEW,
+                snapshot: Header::<A, false>::NEW,
                 params: *self.params(),
                 state: self.state(),
                 rng: &self.rng,
@@ -355,7 +352,7 @@ mod snapshot {
     impl<'de, A: Arithmetic, R: Deserialize<'de>> Deserialize<'de> for Acrobot<A, R> {
         /// Rejects what `set_params` and `set_state` reject.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot::<Header<Self>, _, _, _> {
+            let Snapshot::<Header<A, false>, _, _, _> {
                 params, state, rng, ..
             } = Snapshot::deserialize(deserializer)?;
             let pendulum = Pendulum::new(params, state).map_err(D::Error::custom)?;

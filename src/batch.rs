@@ -51,6 +51,7 @@ use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{Model, ParamsOf, ParamsRangeOf, ResetBounds, State};
 use buffers::{check_length, take_mut};
 use settings::{Parameters, Settings};
+use storage::SlicesMut;
 use work::Work;
 
 /// Many acrobots, each with its own stream of random numbers.
@@ -107,7 +108,11 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// generators, and one [`LaneParams`] for each block or none. The last block may be partly filled.
     pub fn new(seed: impl Into<SeedSequence>, mut storage: S) -> Result<Self, Error> {
         const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
-        let (blocks, generators, lane_params) = storage.slices_mut();
+        let SlicesMut {
+            blocks,
+            generators,
+            lane_params,
+        } = storage.slices_mut();
         if generators.is_empty() {
             return Err(Error::EmptyBatch);
         }
@@ -137,8 +142,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "no batch is empty")]
     pub fn len(&self) -> usize {
-        let (_, generators, _) = self.storage.slices();
-        generators.len()
+        self.storage.slices().generators.len()
     }
 
     /// Applies an action or a torque to each acrobot for one dt: the numbers 0, 1 and 2, [`Action`](crate::Action)s, or
@@ -183,12 +187,12 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         let inputs = I::inputs(inputs);
         inputs.check(self.len())?;
         buffers.check(self.len())?;
-        let (blocks, generators, lane_params) = self.storage.slices_mut();
+        let slices = self.storage.slices_mut();
         Ok(Work {
             settings: &self.settings,
-            blocks,
-            generators,
-            lane_params,
+            blocks: slices.blocks,
+            generators: slices.generators,
+            lane_params: slices.lane_params,
             inputs,
             buffers,
         })
@@ -201,8 +205,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// [`Error::WrongLength`] unless there is one element for each acrobot.
     pub fn observe(&self, mut observations: &mut [[f32; 6]]) -> Result<(), Error> {
         check_length("observations", observations.len(), self.len())?;
-        let (blocks, ..) = self.storage.slices();
-        for block in blocks {
+        for block in self.storage.slices().blocks {
             block.observe(&mut observations);
         }
         Ok(())
@@ -210,8 +213,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 
     /// The generators, one for each acrobot, to draw from them or to replace them.
     pub fn generators_mut(&mut self) -> &mut [Pcg64] {
-        let (_, generators, _) = self.storage.slices_mut();
-        generators
+        self.storage.slices_mut().generators
     }
 
     /// The number of steps of acrobot `index` since its last reset, if there is one.
@@ -236,27 +238,26 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     pub fn set_state(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
         self.block_of(index)?;
-        if let Some(block) = self.storage.slices_mut().0.get_mut(index / N) {
+        if let Some(block) = self.storage.slices_mut().blocks.get_mut(index / N) {
             block.set_state(index % N, state);
         }
         Ok(())
     }
 
     fn block_of(&self, index: usize) -> Result<&Block<A, N>, Error> {
-        let (blocks, generators, _) = self.storage.slices();
-        let len = generators.len();
-        let block = blocks.get(index / N).filter(|_| index < len);
+        let (slices, len) = (self.storage.slices(), self.len());
+        let block = slices.blocks.get(index / N).filter(|_| index < len);
         block.ok_or(Error::NoSuchIndex { index, len })
     }
 
     /// The parameters of acrobot `index`, if there is one.
     #[must_use]
     pub fn params_of(&self, index: usize) -> Option<ParamsOf<A>> {
-        let (_, generators, lane_params) = self.storage.slices();
-        generators.get(index)?;
+        let slices = self.storage.slices();
+        slices.generators.get(index)?;
         match &self.settings.parameters {
             Parameters::Shared(model) => Some(model.params),
-            Parameters::Own(_) => Some(lane_params.get(index / N)?.get(index % N)),
+            Parameters::Own(_) => Some(slices.lane_params.get(index / N)?.get(index % N)),
         }
     }
 
@@ -268,7 +269,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;
         let model = Model::new(params);
-        let (.., lane_params) = self.storage.slices_mut();
+        let lane_params = self.storage.slices_mut().lane_params;
         lane_params.fill(LaneParams::shared(&model));
         if let Parameters::Shared(shared) = &mut self.settings.parameters {
             *shared = model;
@@ -285,7 +286,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     pub fn set_params_of(&mut self, index: usize, params: ParamsOf<A>) -> Result<(), Error> {
         params.validate()?;
         self.block_of(index)?;
-        let (.., lane_params) = self.storage.slices_mut();
+        let lane_params = self.storage.slices_mut().lane_params;
         let own = lane_params.get_mut(index / N).ok_or(Error::SharedParams)?;
         own.set(index % N, params);
         Ok(())
@@ -375,8 +376,8 @@ fn each_block<A: Arithmetic, const N: usize>(
         Option<&mut LaneParams<A, N>>,
     ),
 > {
-    let (blocks, mut generators, lane_params) = storage.slices_mut();
-    let mut lane_params = lane_params.iter_mut();
-    let blocks = blocks.iter_mut();
+    let slices = storage.slices_mut();
+    let (mut generators, mut lane_params) = (slices.generators, slices.lane_params.iter_mut());
+    let blocks = slices.blocks.iter_mut();
     blocks.map(move |block| (block, take_mut(&mut generators, N), lane_params.next()))
 }

@@ -53,7 +53,7 @@ mod task;
 
 pub use bounds::{bound, wrap};
 pub(crate) use common::directions;
-pub(crate) use equations::{Arithmetic, Form, Model};
+pub(crate) use equations::{Form, Model};
 pub use equations::{FrictionOf, ParamsOf, ParamsRangeOf};
 pub use friction::{Friction, Frictionless, Viscous};
 pub(crate) use gymnasium::Constants as GymnasiumConstants;

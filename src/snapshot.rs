@@ -36,15 +36,9 @@ const VERSION: u32 = 1;
 /// ```
 const LIMIT: usize = 16;
 
-/// A type that has snapshots.
-pub(crate) trait Subject {
-    const NAME: &'static str;
-    type Arithmetic: Arithmetic;
-}
-
-/// The first field of a snapshot of a `T`. Zero-sized: its contents are constants, checked when loaded. Binary formats
-/// have no field names, so only the header tells which type a snapshot is of.
-pub(crate) struct Header<T>(PhantomData<T>);
+/// The first field of a snapshot of an acrobot or a batch. Zero-sized: its contents are constants, checked when loaded.
+/// Binary formats have no field names, so only the header tells which type a snapshot is of.
+pub(crate) struct Header<A, const BATCH: bool>(PhantomData<A>);
 
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Header")]
@@ -65,35 +59,32 @@ impl<Text: fmt::Debug> fmt::Display for Fields<Text> {
     }
 }
 
-impl<T> Header<T> {
+impl<A: Arithmetic, const BATCH: bool> Header<A, BATCH> {
     pub(crate) const NEW: Self = Self(PhantomData);
-}
 
-impl<T: Subject> Header<T> {
     /// The size in postcard's format, bytes: two texts after their lengths, and the version. Each is below 128, so one byte.
-    pub(crate) const SIZE: usize = 3 + T::NAME.len() + T::Arithmetic::NAME.len();
+    pub(crate) const SIZE: usize = 3 + Self::FIELDS.of.len() + A::NAME.len();
 
     const FIELDS: Fields<&'static str> = {
-        let arithmetic = T::Arithmetic::NAME;
         assert!(
-            arithmetic.len() <= LIMIT,
+            A::NAME.len() <= LIMIT,
             "an arithmetic's NAME must have at most 16 bytes"
         );
         Fields {
-            of: T::NAME,
+            of: if BATCH { "batch" } else { "acrobot" },
             version: VERSION,
-            arithmetic,
+            arithmetic: A::NAME,
         }
     };
 }
 
-impl<T: Subject> Serialize for Header<T> {
+impl<A: Arithmetic, const BATCH: bool> Serialize for Header<A, BATCH> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Self::FIELDS.serialize(serializer)
     }
 }
 
-impl<'de, T: Subject> Deserialize<'de> for Header<T> {
+impl<'de, A: Arithmetic, const BATCH: bool> Deserialize<'de> for Header<A, BATCH> {
     /// Rejects any other header.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let found: Fields<String<LIMIT>> = Fields::deserialize(deserializer).map_err(|error| {

@@ -1,5 +1,5 @@
-//! The architecture: a module imports only from modules above it in ARCHITECTURE.md's table, and no files import each
-//! other.
+//! The architecture: a module imports only from modules above it in ARCHITECTURE.md's table, each import names the file
+//! that defines the item, and no files import each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -44,8 +44,8 @@ fn paths(code: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// The file to which a path in `file` leads: the one that defines the item, otherwise that of the module.
-fn target(sources: &BTreeMap<PathBuf, String>, file: &Path, path: &Path) -> Option<PathBuf> {
+/// The module that a path in `file` names, and the file that defines the item, otherwise that of the module.
+fn target(sources: &BTreeMap<PathBuf, String>, file: &Path, path: &Path) -> Option<[PathBuf; 2]> {
     path.iter().nth(1)?; // not the path in `pub(super)`
     let path = match path.iter().next()?.to_str()? {
         "crate" => path.strip_prefix("crate").ok()?.to_owned(),
@@ -59,7 +59,8 @@ fn target(sources: &BTreeMap<PathBuf, String>, file: &Path, path: &Path) -> Opti
     let files = sources.iter().filter(|(_, code)| defines(code));
     let homes = files.filter(|(home, _)| home.starts_with(module));
     let home = homes.min_by_key(|(home, _)| home.iter().count());
-    Some(home.map_or(module, |(home, _)| home).to_owned())
+    let home = home.map_or(module, |(home, _)| home);
+    Some([module, home].map(Path::to_owned))
 }
 
 #[test]
@@ -96,7 +97,13 @@ fn imports_go_one_way() {
         exported.retain(|path| words(&own).any(|word| path.ends_with(word)));
         let all = paths(&own).into_iter().chain(exported);
         let found = all.filter_map(|path| target(&sources, file, &path));
-        let found: BTreeSet<_> = found.filter(|to| to != file && row(to).is_some()).collect();
+        let found: Vec<_> = found.filter(|[_, home]| home != file).collect();
+        // Through a parent or the root, which only re-export, one does not see where an import leads.
+        let is_hidden = |[module, home]: &&[PathBuf; 2]| module != home && file.starts_with(module);
+        let hidden = found.iter().find(is_hidden);
+        assert_eq!(hidden, None, "{file:?} imports through a parent");
+        let found = found.into_iter().map(|[_, home]| home);
+        let found: BTreeSet<_> = found.filter(|to| row(to).is_some()).collect();
         assert!(row(file).is_some(), "ARCHITECTURE.md has no {file:?}");
         let below = found.iter().find(|import| row(import) > row(file));
         assert_eq!(below, None, "{file:?} imports from below");

@@ -1,9 +1,11 @@
 //! `N` acrobots side by side, and their step.
 
+use super::buffers::StepBuffers;
 use super::buffers::{set, take_mut};
 use super::inputs::Inputs;
+use super::lane_params::LaneParams;
+use super::settings::Autoreset;
 use super::settings::{Parameters, Settings};
-use super::{Autoreset, LaneParams, StepBuffers};
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Numbers, Real, SinCos};
 use crate::numpy::{Pcg64, uniform};

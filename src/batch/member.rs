@@ -1,8 +1,9 @@
 //! One acrobot of a batch, to save and to load.
 
+use super::Batch;
 use super::buffers::take_mut;
 use super::settings::Parameters;
-use super::{Batch, Storage};
+use super::storage::{SlicesMut, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
@@ -45,7 +46,6 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// Acrobot `index`, if there is one.
     #[must_use]
     pub fn member(&self, index: usize) -> Option<Member<A>> {
-        let (_, generators, _) = self.storage.slices();
         let block = self.block_of(index).ok()?;
         let (elapsed, reset_pending) = block.progress(index % N)?;
         Some(Member {
@@ -53,7 +53,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
             state: block.state(index % N)?,
             elapsed,
             reset_pending,
-            rng: generators.get(index)?.clone(),
+            rng: self.storage.slices().generators.get(index)?.clone(),
         })
     }
 
@@ -74,7 +74,11 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
             Parameters::Shared(model) if model.params.same(&member.params) => {}
             _ => self.set_params_of(index, member.params)?,
         }
-        let (blocks, generators, lane_params) = self.storage.slices_mut();
+        let SlicesMut {
+            blocks,
+            generators,
+            lane_params,
+        } = self.storage.slices_mut();
         let mut generators = generators.get_mut(index - index % N..);
         let generators = take_mut(generators.get_or_insert_default(), N);
         if let (Some(block), Some(rng)) = (blocks.get_mut(index / N), generators.get_mut(index % N))

@@ -1,7 +1,8 @@
 //! Resets of all acrobots of a batch, or of some.
 
 use super::buffers::check_length;
-use super::{Batch, Storage, each_block};
+use super::storage::Storage;
+use super::{Batch, each_block};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::physics::State;
@@ -62,8 +63,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         check_length("states", states.len(), self.len())?;
         states.iter().try_for_each(State::validate)?;
         let mut states = states.iter();
-        let (blocks, ..) = self.storage.slices_mut();
-        for block in blocks {
+        for block in self.storage.slices_mut().blocks {
             for (lane, state) in states.by_ref().take(N).enumerate() {
                 block.begin_episode(lane, *state);
             }

@@ -8,22 +8,25 @@ use heapless::Vec;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeSeq, Serializer};
 
+use super::Batch;
 use super::buffers::check_length;
+use super::member::Member;
+use super::settings::Autoreset;
 use super::settings::Parameters;
+use super::storage::Storage;
 #[cfg(feature = "alloc")]
 use super::vec_batch::VecBatch;
-use super::{Autoreset, Batch, Member, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::SeedSequence;
 use crate::physics::{ParamsOf, ParamsRange, ResetBounds};
-use crate::snapshot::{Header, Subject};
+use crate::snapshot::Header;
 
 /// The settings. The parameters that all acrobots share are those of each member.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Settings", bound = "")]
 struct Settings<A: Arithmetic> {
-    snapshot: Header<Self>,
+    snapshot: Header<A, true>,
     low: f64,
     high: f64,
     limit: NonZeroU32,
@@ -32,11 +35,6 @@ struct Settings<A: Arithmetic> {
     own_params: bool,
     /// Both ends of the range, or nothing.
     params_range: Vec<ParamsOf<A>, 2>,
-}
-
-impl<A: Arithmetic> Subject for Settings<A> {
-    const NAME: &'static str = "batch";
-    type Arithmetic = A;
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Serialize for Batch<A, S, N> {

@@ -1,6 +1,7 @@
 //! The memory of a batch.
 
-use super::{Block, LaneParams};
+use super::block::Block;
+use super::lane_params::LaneParams;
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
 
@@ -26,42 +27,77 @@ use crate::numpy::Pcg64;
 /// batch.set_params_of(49, Params { mass1: 1.2, ..Params::DEFAULT })?;
 /// # Ok::<(), acrobot::Error>(())
 /// ```
-pub trait Storage<A: Arithmetic, const N: usize> {
-    /// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters: one
-    /// [`LaneParams`] for each block, or none where acrobots share their parameters.
-    fn slices(&self) -> (&[Block<A, N>], &[Pcg64], &[LaneParams<A, N>]);
+pub trait Storage<A: Arithmetic, const N: usize>: SealedStorage<A, N> {}
 
-    /// The same slices, to change their elements.
-    fn slices_mut(&mut self) -> (&mut [Block<A, N>], &mut [Pcg64], &mut [LaneParams<A, N>]);
+impl<A: Arithmetic, S: SealedStorage<A, N>, const N: usize> Storage<A, N> for S {}
+
+/// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters: one [`LaneParams`]
+/// for each block, or none where acrobots share their parameters.
+#[derive(Debug)]
+pub struct Slices<'a, A: Arithmetic, const N: usize> {
+    pub blocks: &'a [Block<A, N>],
+    pub generators: &'a [Pcg64],
+    pub lane_params: &'a [LaneParams<A, N>],
 }
 
-impl<A, B, G, const N: usize> Storage<A, N> for (B, G)
+/// The same slices, to change their elements.
+#[derive(Debug)]
+pub struct SlicesMut<'a, A: Arithmetic, const N: usize> {
+    pub blocks: &'a mut [Block<A, N>],
+    pub generators: &'a mut [Pcg64],
+    pub lane_params: &'a mut [LaneParams<A, N>],
+}
+
+/// What only this crate uses of a [`Storage`], and only it implements.
+pub trait SealedStorage<A: Arithmetic, const N: usize> {
+    fn slices(&self) -> Slices<'_, A, N>;
+
+    fn slices_mut(&mut self) -> SlicesMut<'_, A, N>;
+}
+
+impl<A, B, G, const N: usize> SealedStorage<A, N> for (B, G)
 where
     A: Arithmetic,
     B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
 {
-    fn slices(&self) -> (&[Block<A, N>], &[Pcg64], &[LaneParams<A, N>]) {
-        (self.0.as_ref(), self.1.as_ref(), &[])
+    fn slices(&self) -> Slices<'_, A, N> {
+        Slices {
+            blocks: self.0.as_ref(),
+            generators: self.1.as_ref(),
+            lane_params: &[],
+        }
     }
 
-    fn slices_mut(&mut self) -> (&mut [Block<A, N>], &mut [Pcg64], &mut [LaneParams<A, N>]) {
-        (self.0.as_mut(), self.1.as_mut(), &mut [])
+    fn slices_mut(&mut self) -> SlicesMut<'_, A, N> {
+        SlicesMut {
+            blocks: self.0.as_mut(),
+            generators: self.1.as_mut(),
+            lane_params: &mut [],
+        }
     }
 }
 
-impl<A, B, G, P, const N: usize> Storage<A, N> for (B, G, P)
+impl<A, B, G, P, const N: usize> SealedStorage<A, N> for (B, G, P)
 where
     A: Arithmetic,
     B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
     P: AsRef<[LaneParams<A, N>]> + AsMut<[LaneParams<A, N>]>,
 {
-    fn slices(&self) -> (&[Block<A, N>], &[Pcg64], &[LaneParams<A, N>]) {
-        (self.0.as_ref(), self.1.as_ref(), self.2.as_ref())
+    fn slices(&self) -> Slices<'_, A, N> {
+        Slices {
+            blocks: self.0.as_ref(),
+            generators: self.1.as_ref(),
+            lane_params: self.2.as_ref(),
+        }
     }
 
-    fn slices_mut(&mut self) -> (&mut [Block<A, N>], &mut [Pcg64], &mut [LaneParams<A, N>]) {
-        (self.0.as_mut(), self.1.as_mut(), self.2.as_mut())
+    fn slices_mut(&mut self) -> SlicesMut<'_, A, N> {
+        SlicesMut {
+            blocks: self.0.as_mut(),
+            generators: self.1.as_mut(),
+            lane_params: self.2.as_mut(),
+        }
     }
 }

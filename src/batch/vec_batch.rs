@@ -3,7 +3,11 @@
 use alloc::vec::Vec;
 use core::ops::{Deref, DerefMut};
 
-use super::{Batch, Block, Input, LaneParams, StepBuffers};
+use super::Batch;
+use super::block::Block;
+use super::buffers::StepBuffers;
+use super::inputs::Input;
+use super::lane_params::LaneParams;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};

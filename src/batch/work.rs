@@ -2,10 +2,12 @@
 
 use core::hint::black_box;
 
+use super::block::Block;
+use super::buffers::StepBuffers;
 use super::buffers::take_mut;
 use super::inputs::Inputs;
+use super::lane_params::LaneParams;
 use super::settings::{Parameters, Settings};
-use super::{Block, LaneParams, StepBuffers};
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
 
@@ -51,8 +53,8 @@ impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
         }
     }
 
-    /// Splits off the first `blocks` blocks. Unlike `split_at`, it cannot panic, whatever lengths a user's
-    /// [`Storage`](super::Storage) has.
+    /// Splits off the first `blocks` blocks. Unlike `split_at`, it cannot panic, whatever lengths the
+    /// parts of a [`Storage`](super::Storage) have.
     #[cfg(feature = "rayon")]
     pub(super) fn take(&mut self, blocks: usize) -> Work<'a, A, N> {
         let acrobots = blocks * N;

@@ -3,7 +3,10 @@
 use core::fmt;
 use core::marker::PhantomData;
 
-use super::{BoxSpace, DiscreteSpace, Env, Error, Info, RenderMode, Rendering};
+use super::error::Error;
+use super::rendering::{RenderMode, Rendering};
+use super::space::{BoxSpace, DiscreteSpace};
+use super::{Env, Info};
 use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
@@ -68,7 +71,7 @@ impl<A: Arithmetic, O: ObservationKind> AcrobotEnv<A, O> {
     /// # Errors
     ///
     /// Those of [`Params::validate`], for the parameters as given and as rounded to `A`'s scalar.
-    pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, crate::Error> {
+    pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, crate::error::Error> {
         let mut env = Self {
             render_mode,
             ..Self::default()
@@ -164,7 +167,7 @@ pub trait DynAcrobot {
     /// # Errors
     ///
     /// Those of [`Acrobot::set_state`], for the state as given and as rounded.
-    fn set_state(&mut self, state: State) -> Result<(), crate::Error>;
+    fn set_state(&mut self, state: State) -> Result<(), crate::error::Error>;
 
     /// The parameters, converted to `f64` exactly.
     fn params(&self) -> Params;
@@ -174,7 +177,7 @@ pub trait DynAcrobot {
     /// # Errors
     ///
     /// Those of [`Acrobot::set_params`], for the parameters as given and as rounded.
-    fn set_params(&mut self, params: Params) -> Result<(), crate::Error>;
+    fn set_params(&mut self, params: Params) -> Result<(), crate::error::Error>;
 
     /// The figure to draw.
     fn figure(&self) -> Figure;
@@ -185,7 +188,7 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
         Self::state(self).cast()
     }
 
-    fn set_state(&mut self, state: State) -> Result<(), crate::Error> {
+    fn set_state(&mut self, state: State) -> Result<(), crate::error::Error> {
         state.validate()?;
         let fields = state.fields().map(|(name, value, _)| (name, value));
         Self::set_state(self, state.cast()).map_err(|error| as_given(error, &fields))
@@ -195,7 +198,7 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
         Self::params(self).without_friction().cast()
     }
 
-    fn set_params(&mut self, params: Params) -> Result<(), crate::Error> {
+    fn set_params(&mut self, params: Params) -> Result<(), crate::error::Error> {
         params.validate()?;
         let friction = Self::params(self).friction;
         let fields = params.fields().map(|(name, value, ..)| (name, value));
@@ -209,16 +212,16 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
 }
 
 /// The error of a number that is valid as `given`, and not after it was rounded to `f32`.
-fn as_given(error: crate::Error, given: &[(&'static str, f64)]) -> crate::Error {
+fn as_given(error: crate::error::Error, given: &[(&'static str, f64)]) -> crate::error::Error {
     let (name, rounded, unit) = match error {
-        crate::Error::OutOfRange {
+        crate::error::Error::OutOfRange {
             name, value, unit, ..
         } => (name, value, unit),
-        crate::Error::NoInertia { name, value } => (name, value, "kg m²"),
+        crate::error::Error::NoInertia { name, value } => (name, value, "kg m²"),
         _ => return error,
     };
     match given.iter().find(|(other, _)| *other == name) {
-        Some(&(_, value)) if value != rounded => crate::Error::OutOfRange {
+        Some(&(_, value)) if value != rounded => crate::error::Error::OutOfRange {
             name,
             value,
             unit,

@@ -5,7 +5,8 @@ use std::format;
 use std::string::String;
 use std::vec::Vec;
 
-use super::{Env, Info, Space};
+use super::space::Space;
+use super::{Env, Info};
 use crate::acrobot::Step;
 use crate::numpy::Pcg64;
 

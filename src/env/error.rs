@@ -14,7 +14,7 @@ pub enum Error {
     /// The function of a [`Display`](super::Display) renders on that display.
     DisplayBusy,
     /// A parameter was rejected.
-    Invalid(crate::Error),
+    Invalid(crate::error::Error),
 }
 
 impl fmt::Display for Error {
@@ -46,8 +46,8 @@ impl core::error::Error for Error {
     }
 }
 
-impl From<crate::Error> for Error {
-    fn from(error: crate::Error) -> Self {
+impl From<crate::error::Error> for Error {
+    fn from(error: crate::error::Error) -> Self {
         Self::Invalid(error)
     }
 }

@@ -4,10 +4,12 @@ use core::fmt;
 use std::boxed::Box;
 use std::string::String;
 
+use super::acrobot_env::{AcrobotEnv, DynAcrobot};
+use super::error::Error;
+use super::rendering::{RenderMode, Rendering};
+use super::space::{BoxSpace, DiscreteSpace};
 use super::wrapper::forward;
-use super::{
-    AcrobotEnv, BoxSpace, DiscreteSpace, DynAcrobot, Env, Error, Info, RenderMode, Rendering,
-};
+use super::{Env, Info};
 use crate::acrobot::Step;
 use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Reference};

@@ -7,7 +7,7 @@ use std::string::String;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
 
-use super::Error;
+use super::error::Error;
 use crate::acrobot::Acrobot;
 use crate::arithmetic::Arithmetic;
 use crate::render::{self, Figure, Frame};

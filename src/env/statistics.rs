@@ -3,8 +3,10 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
+use super::error::Error;
+use super::rendering::Rendering;
 use super::wrapper::forward;
-use super::{Env, EpisodeStatistics, Error, Info, Rendering};
+use super::{Env, EpisodeStatistics, Info};
 use crate::acrobot::Step;
 use crate::reset_options::ResetOptions;
 

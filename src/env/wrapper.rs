@@ -2,7 +2,9 @@
 
 use std::boxed::Box;
 
-use super::{Env, Error, Info, Rendering};
+use super::error::Error;
+use super::rendering::Rendering;
+use super::{Env, Info};
 use crate::acrobot::Step;
 use crate::reset_options::ResetOptions;
 use crate::time_limit::TimeLimit;

@@ -5,7 +5,7 @@ use core::fmt;
 
 use rand_core::{Rng, SeedableRng, TryRng};
 
-use super::SeedSequence;
+use super::seed_sequence::SeedSequence;
 
 /// NumPy's `PCG64`, the generator of every Gymnasium environment and space: `rand_pcg`'s PCG XSL-RR 128/64, seeded
 /// through a [`SeedSequence`]. Like NumPy, it takes two 32-bit draws from one 64-bit draw.

@@ -169,7 +169,7 @@ impl From<u64> for SeedSequence {
 
 #[cfg(feature = "std")]
 impl std::str::FromStr for SeedSequence {
-    type Err = crate::Error;
+    type Err = crate::error::Error;
 
     /// The sequence of a decimal integer with up to 4300 digits, as many as Python's `int` parses by default. For a
     /// larger one: [`from_words`](Self::from_words).
@@ -183,9 +183,10 @@ impl std::str::FromStr for SeedSequence {
         const LIMIT: usize = 4300;
         if text.len() > LIMIT {
             let (len, limit) = (text.len(), LIMIT);
-            return Err(crate::Error::SeedTooLong { len, limit });
+            return Err(crate::error::Error::SeedTooLong { len, limit });
         }
-        let malformed = |found, position| Err(crate::Error::MalformedSeed { found, position });
+        let malformed =
+            |found, position| Err(crate::error::Error::MalformedSeed { found, position });
         if text.is_empty() {
             return malformed(None, 1);
         }

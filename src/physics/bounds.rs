@@ -1,30 +1,41 @@
 //! The bounds of a state: angles are wrapped, velocities are clamped.
 
-use super::{Arithmetic, Form};
 use crate::math::{Numbers, Real};
 
-/// The angle `x`, rad, wrapped to \[−π, π\] by whole turns, as a step of `A` wraps it.
+/// The angle `x`, rad, wrapped to \[−π, π\] by whole turns.
 ///
-/// [`Gymnasium`](super::Gymnasium) subtracts turn by turn, up to 64 turns, and takes the remainder beyond.
-/// [`Lean`](super::Lean) subtracts the rounded number of turns at once; its error is at most the spacing of `f32` at
-/// `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero; in the lean form
-/// up to 2²² turns in `f32` and 2⁵¹ in `f64`, because it counts no more. An infinite angle or NaN
-/// gives NaN.
+/// Subtracts the rounded number of turns at once, as a step of the form [`Lean`](super::Lean) does. Its error in `f32`
+/// is at most the spacing of `f32` at `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero, up
+/// to 2²² turns in `f32` and 2⁵¹ in `f64`, because it counts no more. An infinite angle or NaN gives NaN.
+///
+/// A step of the form [`Gymnasium`](super::Gymnasium) subtracts turn by turn, up to 64 turns, and takes the remainder
+/// beyond. Beyond one turn its last digits differ.
 ///
 /// ```
 /// use acrobot::physics::wrap;
-/// use acrobot::{Fast, Portable};
 ///
-/// assert_eq!(wrap::<Portable>(4.0), 4.0 - core::f64::consts::TAU);
-/// assert_eq!(wrap::<Fast>(4.0), 4.0 - core::f32::consts::TAU);
-/// assert!(wrap::<Fast>(1e30).abs() <= core::f32::consts::PI);
-/// assert_eq!(wrap::<Portable>(-1e16), -wrap::<Portable>(1e16));
-/// assert_ne!(wrap::<Portable>(-1e17), -wrap::<Portable>(1e17)); // beyond 2⁵¹ turns
+/// assert_eq!(wrap(4.0_f64), 4.0 - core::f64::consts::TAU);
+/// assert_eq!(wrap(4.0_f32), 4.0 - core::f32::consts::TAU);
+/// assert!(wrap(1e30_f32).abs() <= core::f32::consts::PI);
+/// assert_eq!(wrap(-1e16), -wrap(1e16_f64));
+/// assert_ne!(wrap(-1e17), -wrap(1e17_f64)); // beyond 2⁵¹ turns
 /// ```
 #[must_use]
 #[inline]
-pub fn wrap<A: Arithmetic>(x: A::Scalar) -> A::Scalar {
-    A::Form::wrap(x)
+pub fn wrap<S: Real>(x: S) -> S {
+    wrap_each(x)
+}
+
+/// As [`wrap`], of one angle or of many.
+#[inline(always)]
+pub(super) fn wrap_each<S: Real, V: Numbers<S>>(x: V) -> V {
+    let turns = x * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
+    let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
+    // The bound is for angles so large that neighbouring numbers are more than a turn apart. An angle within ±π
+    // does not change, even where its turns round to ±1.
+    x.zip(turned.bound(V::splat(S::PI)), |x, turned| {
+        if x.abs() <= S::PI { x } else { turned }
+    })
 }
 
 /// `x` clamped to \[−`limit`, `limit`\], for a `limit` of at least 0. NaN stays NaN.

@@ -5,7 +5,7 @@
 
 use core::ops::{Add, Mul, Neg, Sub};
 
-use super::{Dynamics, Params};
+use super::params::{Dynamics, Params};
 use crate::math::SinCos;
 
 /// The constants of a form of the equations, computed from parameters.

@@ -4,6 +4,7 @@
 //! parameters. All functions work in `f32` and `f64`, and with both [`Dynamics`](super::Dynamics). The guide holds the
 //! acrobot upright with [a regulator](crate::guide::control).
 
+mod deviation;
 mod discretize;
 mod double;
 mod error;
@@ -13,8 +14,9 @@ mod lqr;
 mod matrix;
 mod regulator;
 
+pub use deviation::difference;
 pub use discretize::{DiscreteModel, discretize};
 pub use error::ControlError;
 pub use inverse_dynamics::{Forces, inverse_dynamics, velocities};
 pub use linearize::{ContinuousModel, linearize};
-pub use lqr::{Lqr, difference, lqr};
+pub use lqr::{Lqr, lqr};

@@ -5,7 +5,9 @@ use core::fmt;
 
 use super::common::Common;
 use super::friction::Friction;
-use super::{Params, ParamsRange, Task};
+use super::params::Params;
+use super::params_range::ParamsRange;
+use super::task::Task;
 use crate::math::{Numbers, Real, SinCos};
 
 /// A scalar, its sines and the form of the equations: they determine every bit of a result.

@@ -3,8 +3,9 @@
 use core::marker::PhantomData;
 
 use super::common::{Common, FromParams};
+use super::equations::{Arithmetic, Form, Model};
 use super::friction::{Friction, Frictionless, resist};
-use super::{Arithmetic, Form, Model, Params};
+use super::params::Params;
 use crate::math::{Numbers, Real, SinCos};
 
 /// The equations as Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.

@@ -2,9 +2,11 @@
 
 use core::marker::PhantomData;
 
+use super::bounds::wrap_each;
 use super::common::{Common, FromParams};
+use super::equations::{Arithmetic, Form, Model};
 use super::friction::{Friction, Frictionless, resist};
-use super::{Arithmetic, Form, Model, Params};
+use super::params::Params;
 use crate::math::{Numbers, Real, SinCos};
 
 /// The equations solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.
@@ -138,13 +140,7 @@ where
     /// Subtracts the rounded number of turns at once.
     #[inline(always)]
     fn wrap<V: Numbers<S>>(x: V) -> V {
-        let turns = x * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
-        let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
-        // The bound is for angles so large that neighbouring numbers are more than a turn apart. An angle within ±π
-        // does not change, even where its turns round to ±1.
-        x.zip(turned.bound(V::splat(S::PI)), |x, turned| {
-            if x.abs() <= S::PI { x } else { turned }
-        })
+        wrap_each(x)
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! The parameters, in SI units, and their ranges.
 
-use super::friction::{self, Friction, Frictionless};
+use super::friction::{self, Friction, Frictionless, Viscous};
 use crate::action::Action;
 use crate::error::{Error, Range};
 use crate::math::Real;
@@ -274,6 +274,34 @@ for_f32_and_f64! {
             }
             Ok(())
         }
+    }
+}
+
+/// The moment of inertia of a capsule of 1 kg about an axis across its centre, kg m². The centres of its hemispheres are 1 m
+/// apart. As in MuJoCo, its mass is spread evenly over its volume.
+const fn inertia_of_capsule(radius: f64) -> f64 {
+    let (cylinder, sphere) = (1.0, 4.0 / 3.0 * radius);
+    let whole = cylinder + sphere;
+    let of_cylinder = (3.0 * radius * radius + 1.0) / 12.0;
+    let of_sphere = 0.4 * radius * radius + 0.25 + 0.375 * radius;
+    (cylinder * of_cylinder + sphere * of_sphere) / whole
+}
+
+for_f32_and_f64! {
+    impl Params<S, Viscous<S>> {
+        /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step of 0.01 s and
+        /// torques of ±2 N m. Its velocities have no bounds.
+        pub const SWINGUP: Self = Params::<S> {
+            inertia1: inertia_of_capsule(0.05) as S,
+            inertia2: inertia_of_capsule(0.049) as S,
+            gravity: 9.81,
+            dt: 0.01,
+            max_velocity1: 1e30,
+            max_velocity2: 1e30,
+            torques: [-2.0, 0.0, 2.0],
+            ..Params::<S>::DEFAULT
+        }
+        .with_friction(Viscous { joint1: 0.05, joint2: 0.05 });
     }
 }
 

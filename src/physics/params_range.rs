@@ -2,8 +2,8 @@
 
 use rand_core::Rng;
 
-use super::Params;
 use super::friction::{self, Friction, Frictionless};
+use super::params::Params;
 use crate::error::Error;
 use crate::math::Real;
 use crate::numpy::uniform;

@@ -1,7 +1,9 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
 use super::common;
-use super::{Arithmetic, Form, Model, ParamsOf, State, step};
+use super::equations::{Arithmetic, Form, Model, ParamsOf};
+use super::state::State;
+use super::step::step;
 use crate::error::{Error, Range};
 use crate::math::{Real, SinCos};
 

@@ -1,6 +1,9 @@
 //! The reward of a swing-up.
 
-use super::{Arithmetic, Params, Task, common};
+use super::common;
+use super::equations::Arithmetic;
+use super::params::Params;
+use super::task::Task;
 use crate::math::{Numbers, Real, SinCos};
 
 /// The reward of a swing-up: dm_control's `tolerance` of the distance from the tip to the target, 0.1^(d²) at d metres

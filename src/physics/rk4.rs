@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Mul};
 
-use super::{Arithmetic, Form, Model};
+use super::equations::{Arithmetic, Form, Model};
 use crate::math::{Numbers, Real, SinCos};
 
 /// The state \[θ1, θ2, θ̇1, θ̇2\] one dt after `y`, under a constant torque, N m. `sin_cos` are the sines and cosines of

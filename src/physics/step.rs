@@ -1,7 +1,8 @@
 //! One step, of one acrobot or of many side by side.
 
+use super::equations::{Arithmetic, Form, Model};
 use super::rk4::rk4;
-use super::{Arithmetic, Form, Model, Task};
+use super::task::Task;
 use crate::math::{Numbers, Real, SinCos};
 
 /// Advances `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 by one dt under a constant torque, N m.

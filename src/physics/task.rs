@@ -1,10 +1,10 @@
-//! The tasks: initial states, limits and parameters.
+//! The tasks: initial states and limits.
 
 use core::num::NonZeroU32;
 
 use rand_core::Rng;
 
-use super::{Params, ResetBounds, State, Viscous};
+use super::state::{ResetBounds, State};
 
 /// What an acrobot is to do. An [arithmetic](crate::arithmetic::Arithmetic::TASK) names its task.
 #[non_exhaustive]
@@ -46,33 +46,5 @@ impl Task {
             Self::Acrobot => bounds.draw(rng),
             Self::Swingup | Self::SwingupSparse => bounds.draw_at_rest(rng),
         }
-    }
-}
-
-/// The moment of inertia of a capsule of 1 kg about an axis across its centre, kg m². The centres of its hemispheres are 1 m
-/// apart. As in MuJoCo, its mass is spread evenly over its volume.
-const fn inertia_of_capsule(radius: f64) -> f64 {
-    let (cylinder, sphere) = (1.0, 4.0 / 3.0 * radius);
-    let whole = cylinder + sphere;
-    let of_cylinder = (3.0 * radius * radius + 1.0) / 12.0;
-    let of_sphere = 0.4 * radius * radius + 0.25 + 0.375 * radius;
-    (cylinder * of_cylinder + sphere * of_sphere) / whole
-}
-
-for_f32_and_f64! {
-    impl Params<S, Viscous<S>> {
-        /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step of 0.01 s and
-        /// torques of ±2 N m. Its velocities have no bounds.
-        pub const SWINGUP: Self = Params::<S> {
-            inertia1: inertia_of_capsule(0.05) as S,
-            inertia2: inertia_of_capsule(0.049) as S,
-            gravity: 9.81,
-            dt: 0.01,
-            max_velocity1: 1e30,
-            max_velocity2: 1e30,
-            torques: [-2.0, 0.0, 2.0],
-            ..Params::<S>::DEFAULT
-        }
-        .with_friction(Viscous { joint1: 0.05, joint2: 0.05 });
     }
 }

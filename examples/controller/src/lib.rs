@@ -81,7 +81,7 @@ impl Controller {
     ///
     /// A number of the state is not finite.
     pub fn decide(&mut self, state: State<f32>) -> Result<f32, Error> {
-        let x = difference::<Fast>(state, State::UPRIGHT);
+        let x = difference(state, State::UPRIGHT);
         self.model.set_state(state)?;
         self.holding = is_near(x) && (self.holding || self.catches()?);
         if self.holding {
@@ -98,7 +98,7 @@ impl Controller {
     fn catches(&self) -> Result<bool, Error> {
         let mut model = self.model.clone();
         for _ in 0..STEPS_AHEAD {
-            let x = difference::<Fast>(model.state(), State::UPRIGHT);
+            let x = difference(model.state(), State::UPRIGHT);
             if !is_near(x) {
                 return Ok(false);
             }

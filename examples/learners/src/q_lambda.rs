@@ -1,7 +1,7 @@
 //! Watkins's Q(λ) over whole episodes, from the last step to the first, with replay (Sutton & Barto 12.10; Lin 1992).
 
 use acrobot::physics::wrap;
-use acrobot::{Action, Fast, State};
+use acrobot::{Action, State};
 
 use crate::memory::{Memory, Next, Transition};
 use crate::task::Env;
@@ -207,7 +207,7 @@ fn best([negative, positive]: [f32; 2]) -> (bool, f32) {
 /// is not negative. Link 2's velocity in space tells more about it than the velocity of its joint.
 fn view(state: &State<f32>) -> ([f32; 4], bool) {
     let [theta1, theta2, dtheta1, dtheta2] = (*state).into();
-    let [theta1, theta2] = [theta1, theta2].map(wrap::<Fast>);
+    let [theta1, theta2] = [theta1, theta2].map(wrap);
     let seen = [theta1, theta2, dtheta1, dtheta1 + dtheta2];
     if dtheta1 < 0.0 {
         (seen.map(|x| -x), true)

@@ -1,6 +1,6 @@
 //! `f32` by two polynomials: for single-precision FPUs, WASM and SIMD.
 
-use crate::math::Numbers;
+use crate::math::lanes::Numbers;
 
 /// Cody-Waite reduction to the nearest multiple of π/2, then two polynomials. Two constants suffice: for
 /// |x| ≤ 64 the multiple has at most 6 bits and `PI_2_HIGH` has 18, so their product is exact.

@@ -1,11 +1,12 @@
 //! The derivatives of a step.
 
-use super::ControlError;
+use super::error::ControlError;
 use super::linearize::partials;
 use super::matrix::{check_finite, dot, identity, transpose};
 use crate::math::{Real, SinCos};
+use crate::physics::equations::{Arithmetic, Form, Model};
+use crate::physics::pendulum::{Pendulum, check_torque};
 use crate::physics::rk4::plus_scaled;
-use crate::physics::{Arithmetic, Form, Model, Pendulum, check_torque};
 
 /// The model x′ = A x + B u of one step about a state and a torque: x and x′ are the deviations before and after the
 /// step, \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u is that of the torque, N m.

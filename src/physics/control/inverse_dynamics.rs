@@ -1,11 +1,14 @@
 //! Forces from accelerations, and velocities of points.
 
-use super::ControlError;
+use super::error::ControlError;
 use super::matrix::check_finite;
 use crate::error::Range;
 use crate::math::Real;
 use crate::physics::common::directions;
-use crate::physics::{Arithmetic, Dynamics, Friction, FrictionOf, Pendulum};
+use crate::physics::equations::{Arithmetic, FrictionOf};
+use crate::physics::friction::Friction;
+use crate::physics::params::Dynamics;
+use crate::physics::pendulum::Pendulum;
 
 /// The torques and forces of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,12 @@
 //! The derivatives of the equations of motion.
 
-use super::ControlError;
+use super::error::ControlError;
 use super::matrix::check_finite;
 use crate::math::{Real, SinCos};
 use crate::physics::common::{Common, directions};
-use crate::physics::{Arithmetic, Form, Friction, FrictionOf, Model, Pendulum, check_torque};
+use crate::physics::equations::{Arithmetic, Form, FrictionOf, Model};
+use crate::physics::friction::Friction;
+use crate::physics::pendulum::{Pendulum, check_torque};
 
 /// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
 /// rad/s, and u that from the torque, N m.

@@ -1,14 +1,14 @@
 //! The linear-quadratic regulator of a discrete model.
 
+use super::discretize::DiscreteModel;
 use super::double::{Double, MINUS_ONE, narrow, widen};
+use super::error::ControlError;
 use super::matrix::{
     Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, diagonal, dot, eliminate,
     identity, inner, largest, product, scale, spread, symmetrize, transpose,
 };
-use super::{ControlError, DiscreteModel};
 use crate::error::Range;
 use crate::math::Real;
-use crate::physics::{Arithmetic, Pendulum, State, wrap};
 
 /// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one with the least sum of
 /// xᵀ Q x + R u² over all steps.
@@ -24,45 +24,11 @@ pub struct Lqr<S = f64> {
 
 impl<S: Real> Lqr<S> {
     /// The torque −K x, N m, for a deviation x from the state of the linearization, rad and rad/s: see
-    /// [`Pendulum::deviation`]. Add the torque of the linearization if it is not 0. [`bound`](crate::physics::bound) limits
+    /// [`Pendulum::deviation`](crate::physics::Pendulum::deviation). Add the torque of the linearization if it is not 0. [`bound`](crate::physics::bound) limits
     /// it to that of a motor.
     #[must_use]
     pub fn torque(&self, x: [S; 4]) -> S {
         -dot(self.gain, x)
-    }
-}
-
-/// The deviation of `state` from `target`, rad and rad/s. The differences of the angles are wrapped to \[−π, π\], so
-/// that it is continuous upright, where θ1 jumps from π to −π. Velocities near the limit of the scalar can overflow.
-///
-/// ```
-/// use acrobot::physics::control::difference;
-/// use acrobot::{Portable, State};
-///
-/// let beyond = State { theta1: -3.0, ..State::UPRIGHT };
-/// let x = difference::<Portable>(beyond, State::UPRIGHT);
-/// assert!((x[0] - 0.14159).abs() < 1e-5);
-/// ```
-#[must_use]
-pub fn difference<A: Arithmetic>(
-    state: State<A::Scalar>,
-    target: State<A::Scalar>,
-) -> [A::Scalar; 4] {
-    // Wrapped first, so that no difference overflows.
-    let between = |x, y| wrap::<A>(wrap::<A>(x) - wrap::<A>(y));
-    [
-        between(state.theta1, target.theta1),
-        between(state.theta2, target.theta2),
-        state.dtheta1 - target.dtheta1,
-        state.dtheta2 - target.dtheta2,
-    ]
-}
-
-impl<A: Arithmetic> Pendulum<A> {
-    /// The [`difference`] of the state from `target`, rad and rad/s.
-    #[must_use]
-    pub fn deviation(&self, target: State<A::Scalar>) -> [A::Scalar; 4] {
-        difference::<A>(self.state(), target)
     }
 }
 

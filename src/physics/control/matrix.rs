@@ -3,7 +3,7 @@
 use core::mem::swap;
 use core::ops::{Add, Mul};
 
-use super::ControlError;
+use super::error::ControlError;
 use crate::math::Real;
 
 /// Rows.

@@ -1,8 +1,11 @@
 //! The regulator of an equilibrium.
 
-use super::{ControlError, Lqr, discretize, lqr};
+use super::discretize::discretize;
+use super::error::ControlError;
+use super::lqr::{Lqr, lqr};
 use crate::math::Real;
-use crate::physics::{Arithmetic, Pendulum};
+use crate::physics::equations::Arithmetic;
+use crate::physics::pendulum::Pendulum;
 
 /// The largest acceleration in equilibrium, rad/s². Rounding upright is far below.
 const LARGEST: f64 = 0.01;

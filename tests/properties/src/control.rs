@@ -174,7 +174,7 @@ fn moderate_pendulums_can_be_held_upright() {
                     .iter()
                     .fold(0.0_f64, |most, x| most.max(x.abs()));
                 assert!(largest < 0.1, "{regulator:?} {largest}");
-                let error = difference::<A>(pendulum.state(), target);
+                let error = difference(pendulum.state(), target);
                 assert_eq!(error, [zero; 4]);
             },
         );

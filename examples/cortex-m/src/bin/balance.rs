@@ -65,7 +65,7 @@ impl Episode {
 
         self.machine.step_torque(torque)?;
         self.ticks += 1;
-        let [theta1, theta2, ..] = difference::<Fast>(self.machine.state(), State::UPRIGHT);
+        let [theta1, theta2, ..] = difference(self.machine.state(), State::UPRIGHT);
         let deviation = theta1.abs().max(theta2.abs());
         if deviation > 0.1 {
             (self.held, self.error) = (0, 0.0);

@@ -105,7 +105,7 @@ fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Contr
         let _ = black_box(lqr(black_box(&model), &weights, one));
     });
     print("torque", &mut || {
-        let x = difference::<A>(black_box(pendulum.state()), State::UPRIGHT);
+        let x = difference(black_box(pendulum.state()), State::UPRIGHT);
         black_box(regulator.torque(x));
     });
     print("inverse_dynamics", &mut || {

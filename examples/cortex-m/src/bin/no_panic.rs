@@ -101,7 +101,7 @@ fn pendulum<A: Arithmetic>() {
         }
         let _ = black_box(pendulum.set_state(state()));
     }
-    black_box(wrap::<A>(number()));
+    black_box(wrap::<A::Scalar>(number()));
 }
 
 /// What a controller needs.
@@ -118,7 +118,7 @@ fn control<A: Arithmetic>() {
     let weights = [(); 4].map(|()| [(); 4].map(|()| number()));
     let _ = black_box(pendulum.regulator(number(), &weights, number()));
     if let Ok(regulator) = black_box(lqr(&model, &weights, number())) {
-        black_box(difference::<A>(pendulum.state(), state()));
+        black_box(difference(pendulum.state(), state()));
         black_box(regulator.torque(pendulum.deviation(state())));
     }
 }

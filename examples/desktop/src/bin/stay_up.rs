@@ -81,14 +81,14 @@ impl Planner {
 
     /// The regulator's cost to go.
     fn cost(&self, state: State<f32>) -> f32 {
-        let x = difference::<Task>(state, State::UPRIGHT);
+        let x = difference(state, State::UPRIGHT);
         let dot = |a: [f32; 4], b: [f32; 4]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
         dot(self.regulator.cost_to_go.map(|row| dot(row, x)), x)
     }
 
     /// The torque that holds the acrobot upright, if it is near enough.
     fn hold(&self, state: State<f32>) -> Option<f32> {
-        let x = difference::<Task>(state, State::UPRIGHT);
+        let x = difference(state, State::UPRIGHT);
         let torque = bound(self.regulator.torque(x), LIMIT);
         (self.cost(state) < LITTLE).then_some(torque)
     }

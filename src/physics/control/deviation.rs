@@ -1,0 +1,38 @@
+//! The deviation of a state from another one.
+
+use crate::math::Real;
+use crate::physics::bounds::wrap;
+use crate::physics::equations::Arithmetic;
+use crate::physics::pendulum::Pendulum;
+use crate::physics::state::State;
+
+/// The deviation of `state` from `target`, rad and rad/s. The differences of the angles are wrapped to \[−π, π\], so
+/// that it is continuous upright, where θ1 jumps from π to −π. Velocities near the limit of the scalar can overflow.
+///
+/// ```
+/// use acrobot::physics::control::difference;
+/// use acrobot::State;
+///
+/// let beyond = State { theta1: -3.0, ..State::UPRIGHT };
+/// let x: [f64; 4] = difference(beyond, State::UPRIGHT);
+/// assert!((x[0] - 0.14159).abs() < 1e-5);
+/// ```
+#[must_use]
+pub fn difference<S: Real>(state: State<S>, target: State<S>) -> [S; 4] {
+    // Wrapped first, so that no difference overflows.
+    let between = |x, y| wrap(wrap(x) - wrap(y));
+    [
+        between(state.theta1, target.theta1),
+        between(state.theta2, target.theta2),
+        state.dtheta1 - target.dtheta1,
+        state.dtheta2 - target.dtheta2,
+    ]
+}
+
+impl<A: Arithmetic> Pendulum<A> {
+    /// The [`difference`] of the state from `target`, rad and rad/s.
+    #[must_use]
+    pub fn deviation(&self, target: State<A::Scalar>) -> [A::Scalar; 4] {
+        difference(self.state(), target)
+    }
+}
