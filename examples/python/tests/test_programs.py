@@ -231,7 +231,8 @@ def test_episodes_begin_in_given_states(name):
     envs.reset(options={"state": states[2]})
     assert (envs.state == states[2]).all() and (envs.elapsed_steps == 0).all()
     envs.step(actions)
-    for bad in ([1.0] * 3, [[1.0] * 4] * 2, "x", None, [[0, 0, 0, np.nan]] * 3, [0, 0, 0, 1e39]):
+    for bad in ([1.0] * 3, [[1.0] * 4] * 2, "x", None, [[0, 0, 0, np.nan]] * 3, [0, 0, 0, 1e39],
+                [[1.0], [1.0, 2.0]], bytearray(4)):
         with rejects(
             envs, ValueError, r"state.* must be (numbers of shape \(3, 4\)|a finite number), got"
         ):

@@ -246,7 +246,11 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
     def _each(self, states: Any) -> Any:
         """A state for each environment, if there is one for all."""
-        return np.tile(states, (self.num_envs, 1)) if np.shape(states) == (4,) else states
+        try:
+            one = arrays.numbers("state", "four numbers", states, (4,))
+        except ValueError:
+            return states
+        return np.tile(one, (self.num_envs, 1))
 
     @property
     def elapsed_steps(self) -> NDArray[np.int64]:
