@@ -120,6 +120,9 @@ def test_options_of_other_programs_pass_and_misspelt_ones_do_not(maker, name):
         hint = rf"got '{key}'(; did you mean '{near}'\?)?$"
         with rejects(env, ValueError, rf"the keys of options must be among \[.*\], {hint}"):
             env.reset(seed=2, options={key: None})
+    for options in ([("low", -1.0)], "low", 5):
+        with rejects(env, TypeError, "options must be a dict or None, got"):
+            env.reset(seed=2, options=options)
 
 
 @pytest.mark.parametrize("name", SINGLES)

@@ -144,7 +144,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             without ``info_parameters``.
 
         Raises:
-            TypeError: If the mask is not an array of ``bool``. Nothing changes then.
+            TypeError: If the mask is not an array of ``bool``, or options are not a ``dict``.
+                Nothing changes then.
             ValueError: If a number is not finite, if low is above high, if the mask has another
                 shape or no true element, if the states or the list of seeds have another length, or
                 if another key resembles one of these. Nothing changes then.
