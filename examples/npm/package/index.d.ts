@@ -216,7 +216,8 @@ export class Batch extends Kept {
   /**
    * Settings, parameters, states, steps and random numbers, in about 130 bytes for each acrobot:
    * Rust's `VecBatch<Fast>` in postcard with CRC-32. With "Disabled", `ended` and a CRC-32 follow.
-   * One of Rust cannot be restored if it has "Disabled", a range of parameters or other reset bounds.
+   * A snapshot made in Rust cannot be restored if its batch has "Disabled", a range of parameters or
+   * other reset bounds.
    */
   snapshot(): Uint8Array;
   /** Draws an acrobot, without an arrow. */

@@ -191,6 +191,16 @@ def test_clipped_observations_are_warned_of(tmp_path):
          lambda p: policy.save(SwingupModel(), p)),
         (ValueError, r"torque_limit must be .* differ: \[1.0, 2.0\]",
          lambda p: policy.save(SwingupModel([[-1, 0, 1], [-2, 0, 2]]), p)),
+        (ValueError, r"torque_limit must be .* differ: \[-5.0, 5.0\]",
+         lambda p: policy.save(SwingupModel([5, 5, 5]), p)),
+        *((ValueError, "torque_limit must be finite and above 0 N m",
+           lambda p, limit=limit: policy.save(SwingupModel(), p, torque_limit=limit))
+          for limit in (np.nan, np.inf, 1e39, -2.0)),
+        (TypeError, "torque_limit must be a number of N m, got '1'",
+         lambda p: policy.save(SwingupModel(), p, torque_limit="1")),
+        *((ValueError, "observations must be finite numbers of shape .*, got",
+           lambda p, seen=seen: policy.save(Model("dqn", [Linear(6, 3)]), p, seen))
+          for seen in (np.zeros((0, 6)), np.zeros((5, 4)), np.zeros(6), np.full((3, 6), np.nan))),
         (ValueError, "bounds of the action space must be .*opposite, got -1.0 and 2.0",
          lambda p: policy.save(Model("ppo", [Linear(6, 1)], gym.spaces.Box(-1, 2, (1,))), p)),
     ],

@@ -120,6 +120,9 @@ def test_options_of_other_programs_pass_and_misspelt_ones_do_not(maker, name):
         hint = rf"got '{key}'(; did you mean '{near}'\?)?$"
         with rejects(env, ValueError, rf"the keys of options must be among \[.*\], {hint}"):
             env.reset(seed=2, options={key: None})
+    for options in ([("low", -1.0)], "low", 5):
+        with rejects(env, TypeError, "options must be a dict or None, got"):
+            env.reset(seed=2, options=options)
 
 
 @pytest.mark.parametrize("name", SINGLES)
@@ -231,7 +234,8 @@ def test_episodes_begin_in_given_states(name):
     envs.reset(options={"state": states[2]})
     assert (envs.state == states[2]).all() and (envs.elapsed_steps == 0).all()
     envs.step(actions)
-    for bad in ([1.0] * 3, [[1.0] * 4] * 2, "x", None, [[0, 0, 0, np.nan]] * 3, [0, 0, 0, 1e39]):
+    for bad in ([1.0] * 3, [[1.0] * 4] * 2, "x", None, [[0, 0, 0, np.nan]] * 3, [0, 0, 0, 1e39],
+                [[1.0], [1.0, 2.0]], bytearray(4)):
         with rejects(
             envs, ValueError, r"state.* must be (numbers of shape \(3, 4\)|a finite number), got"
         ):

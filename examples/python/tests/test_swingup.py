@@ -279,6 +279,11 @@ def test_actions_are_parts_of_the_largest_and_the_smallest_torque():
         env.step([action])
         twin.step([torque / 4.0])
         assert (env.state == twin.state).all()
+    env.AVAIL_TORQUE = [1.0, 3.0]
+    env.state = twin.state = [1.0, 0.0, 0.0, 0.0]
+    env.step([0.0])
+    twin.step([1.0 / 4.0])
+    assert (env.state == twin.state).all()
 
 
 def test_resets_draw_parameters():

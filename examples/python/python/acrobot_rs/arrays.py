@@ -42,6 +42,8 @@ def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
 
     Keys that resemble none of them belong to other programs.
     """
+    if not isinstance(options, Mapping | None):
+        raise TypeError(f"options must be a dict or None, got {options!r}")
     for key in options or ():
         name = key.lower() if isinstance(key, str) else ""
         near = difflib.get_close_matches(name, _OPTIONS, n=1, cutoff=0.52)

@@ -158,6 +158,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             The observation of the initial state, and an empty info.
 
         Raises:
+            TypeError: If options are not a ``dict``. Nothing changes then.
             ValueError: If a number is not finite, if low is above high, or if another key resembles
                 one of these. Nothing changes then.
         """

@@ -144,7 +144,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             without ``info_parameters``.
 
         Raises:
-            TypeError: If the mask is not an array of ``bool``. Nothing changes then.
+            TypeError: If the mask is not an array of ``bool``, or options are not a ``dict``.
+                Nothing changes then.
             ValueError: If a number is not finite, if low is above high, if the mask has another
                 shape or no true element, if the states or the list of seeds have another length, or
                 if another key resembles one of these. Nothing changes then.
@@ -246,7 +247,11 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
     def _each(self, states: Any) -> Any:
         """A state for each environment, if there is one for all."""
-        return np.tile(states, (self.num_envs, 1)) if np.shape(states) == (4,) else states
+        try:
+            one = arrays.numbers("state", "four numbers", states, (4,))
+        except ValueError:
+            return states
+        return np.tile(one, (self.num_envs, 1))
 
     @property
     def elapsed_steps(self) -> NDArray[np.int64]:

@@ -5,16 +5,20 @@
 
 from __future__ import annotations
 
+import reprlib
 import struct
 import warnings
 import zlib
 from collections.abc import Iterable, Sequence
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
+
+from acrobot_rs.arrays import require
 
 Layer = tuple[Any, Any, str]
 """Weights of shape ``(outputs, inputs)``, biases of shape ``(outputs,)``, and ``"none"``, ``"tanh"`` or ``"relu"``."""
@@ -57,13 +61,19 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
     scores = torque_limit is None
     if inputs != (3 if scores else 1) or not 1 <= len(layers) < 256:
         raise ValueError(f"the last layer must have {'3 outputs, or 1 with a torque_limit' if scores else '1 output'}, got {inputs}")
-    limit = 0.0 if torque_limit is None else float(torque_limit)
-    # Up to 2^-150 it is 0 in float32.
-    if not scores and not 2.0**-150 < limit <= np.finfo(np.float32).max:
-        rule = "finite and above 0 N m in float32"
-        raise ValueError(f"torque_limit must be {rule}, got {torque_limit}")
+    limit = 0.0 if torque_limit is None else _checked(torque_limit)
     content = struct.pack("<4sBBHf", b"MLP1", len(layers), not scores, 6, limit) + head + body
     return content + struct.pack("<I", zlib.crc32(content))
+
+
+def _checked(torque_limit: float) -> float:
+    require(Real, "a number of N m", torque_limit=torque_limit)
+    limit = float(torque_limit)
+    # Up to 2^-150 it is 0 in float32.
+    if not 2.0**-150 < limit <= float(np.finfo(np.float32).max):
+        rule = "finite and above 0 N m in float32"
+        raise ValueError(f"torque_limit must be {rule}, got {torque_limit}")
+    return limit
 
 
 def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None = None, torque_limit: float | None = None) -> None:
@@ -101,7 +111,7 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
             raise ValueError(f"the bounds of the action space must be {rule}, got {low} and {high}")
         if torque_limit is None:
             torque_limit = _largest_torque(model.get_env()) if is_swingup else high
-        scale = torque_limit / high
+        scale = _checked(torque_limit) / high
         weights, biases, activation = layers[-1]
         layers[-1] = (weights * scale, biases * scale, activation)
     normalize = model.get_vec_normalize_env() if policy is not None else None
@@ -118,6 +128,9 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
     if observations is None:
         observations = _observations("AcrobotSwingup-v0" if is_swingup else "Acrobot-v1")
     seen = np.asarray(observations, np.float32)
+    if seen.shape[1:] != (6,) or not seen.size or not np.isfinite(seen).all():
+        rule = "finite numbers of shape (n, 6)"
+        raise ValueError(f"observations must be {rule}, got {reprlib.repr(observations)}")
     expected = scale * _expected(model, policy, normalize, modules, seen)
     _compare(layers, seen, expected, torque_limit, note)
     Path(path).write_bytes(content)
@@ -128,10 +141,10 @@ def _largest_torque(envs: Any) -> float:
     what = "the model has no environment"
     if envs is not None:
         every = envs.get_attr("AVAIL_TORQUE")
-        torques = {abs(extreme(each)) for each in every for extreme in (min, max)}
+        torques = {torque for each in every for torque in (max(each), -min(each))}
         if len(torques) == 1:
             return float(torques.pop())
-        what = f"the largest in AVAIL_TORQUE differ: {sorted(torques)}"
+        what = f"largest and negated smallest of AVAIL_TORQUE differ: {sorted(torques)}"
     raise ValueError(f"torque_limit must be the torque of the action 1, N m, because {what}")
 
 
