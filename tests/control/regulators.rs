@@ -158,6 +158,20 @@ fn the_unit_of_the_weights_changes_no_digit() {
     }
 }
 
+/// Rounded to `f32`, the exact gain of a motion that grows by 1e9 a step no longer stops it.
+#[test]
+fn a_gain_that_rounding_makes_useless_is_an_error() {
+    fn found<S: Real>() -> Result<(), ControlError> {
+        let a = diagonal([1e9, 0.5, 0.4, 0.3]).map(cast::<S, 4>);
+        let b = cast([0.3, 0.0, 0.0, 0.0]);
+        let q = IDENTITY.map(cast);
+        lqr(&DiscreteModel { a, b }, &q, S::from_f64(1.0)).map(drop)
+    }
+    assert_eq!(found::<f64>(), Ok(()));
+    let error = f64::from(f32::EPSILON);
+    assert_eq!(found::<f32>(), Err(ControlError::IllConditioned { error }));
+}
+
 /// Motions that persist without a gain: their powers leave the range in which `f64` adds exactly.
 #[test]
 fn motions_that_the_torque_does_not_reach_have_no_gain() {

@@ -72,7 +72,7 @@ impl<S: Real> Lqr<S> {
 /// - [`ControlError::NotDetectable`] if `q` does not weight a motion that persists: it would need more than 2⁴⁰ steps to
 ///   vanish.
 /// - [`ControlError::IllConditioned`] if the error of the gain can be above 1e-9 of its largest
-///   element.
+///   element, or if deviations do not vanish with the gain that the scalar rounds.
 pub fn lqr<S: Real>(
     model: &DiscreteModel<S>,
     q: &[[S; 4]; 4],
@@ -87,13 +87,18 @@ pub fn lqr<S: Real>(
     check_semidefinite(&q, 16.0 * S::EPSILON.to_f64())?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
 
-    let (gain, cost_to_go) = Problem { a, b, q, r }.solve()?;
+    let problem = Problem { a, b, q, r };
+    let (gain, cost_to_go) = problem.solve()?;
     let regulator = Lqr {
         gain: gain.map(S::from_f64),
         cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)),
     };
     check_finite("gain", &regulator.gain)?;
     check_finite("cost_to_go", regulator.cost_to_go.as_flattened())?;
+    if !problem.is_stable(&regulator.gain.map(S::to_f64)) {
+        let error = S::EPSILON.to_f64();
+        return Err(ControlError::IllConditioned { error });
+    }
     Ok(regulator)
 }
 
@@ -107,6 +112,7 @@ const NEWTON_ITERATIONS: u32 = 60;
 const TOLERANCE: f64 = 1e-9;
 
 /// A model and its weights.
+#[derive(Clone, Copy)]
 struct Problem {
     a: Matrix,
     b: [f64; 4],
@@ -232,6 +238,12 @@ impl Problem {
             f64::INFINITY => ControlError::NotStabilizable, // no gain gave a cost
             _ => ControlError::IllConditioned { error },
         })
+    }
+
+    /// Whether deviations vanish with a gain that was rounded.
+    fn is_stable(&self, gain: &[f64; 4]) -> bool {
+        let (closed, _) = self.residual(gain, &widen(&[[0.0; 4]; 4]));
+        lyapunov(&closed, &identity()).is_some()
     }
 
     /// A − B Kᵀ, and what the equation P = (A − B Kᵀ)ᵀ P (A − B Kᵀ) + Q + R K Kᵀ lacks on its left.
