@@ -173,6 +173,10 @@ fn render<'py>(
         "ansi" => RenderMode::Ansi,
         other => return Err(unknown("render_mode", r#""rgb_array" or "ansi""#, other)),
     };
+    let params = Params {
+        friction: Default::default(), // which no picture shows
+        ..params
+    };
     let mut env = AcrobotEnv::<Host, Observation>::new(params, mode).map_err(rejected)?;
     env.unwrapped_mut().set_state(state).map_err(rejected)?;
     match env.render().map_err(rejected)? {
