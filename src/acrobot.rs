@@ -8,7 +8,9 @@ use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
 use crate::observation::Observation;
-use crate::physics::{Params, ParamsOf, Pendulum, ResetBounds, State, Task, check_torque, reward};
+use crate::physics::{
+    Params, Pendulum, ResetBounds, State, Task, check_torque, default_model, reward,
+};
 use crate::reset_options::ResetOptions;
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
@@ -108,7 +110,7 @@ impl<A: Arithmetic> Acrobot<A> {
     /// # Errors
     ///
     /// Those of [`Params::validate`].
-    pub fn with_params(seed: u64, params: ParamsOf<A>) -> Result<Self, Error> {
+    pub fn with_params(seed: u64, params: Params<A::Scalar>) -> Result<Self, Error> {
         let mut acrobot = Self::new(seed);
         acrobot.set_params(params)?;
         Ok(acrobot)
@@ -139,7 +141,7 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         let params = match A::TASK {
             // Built field by field: see `Params::default`.
             Task::Acrobot => Params::default(),
-            Task::Swingup | Task::SwingupSparse => A::DEFAULT.params,
+            Task::Swingup | Task::SwingupSparse => const { default_model::<A>().params },
         };
         Self::from_pendulum(Pendulum::new_unchecked(params, state), rng)
     }
@@ -264,7 +266,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     /// The parameters.
     #[must_use]
     #[inline]
-    pub fn params(&self) -> &ParamsOf<A> {
+    pub fn params(&self) -> &Params<A::Scalar> {
         self.pendulum.params()
     }
 
@@ -273,7 +275,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     /// # Errors
     ///
     /// Those of [`Params::validate`].
-    pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         self.pendulum.set_params(params)
     }
 
@@ -315,7 +317,7 @@ mod snapshot {
     use super::Acrobot;
     use crate::arithmetic::Arithmetic;
     use crate::numpy::Pcg64;
-    use crate::physics::{FrictionOf, Pendulum, State};
+    use crate::physics::{Pendulum, State};
     use crate::snapshot::Header;
 
     #[derive(serde::Serialize, serde::Deserialize)]
@@ -330,9 +332,8 @@ mod snapshot {
     impl<A: Arithmetic> Acrobot<A> {
         /// The largest size of a snapshot in postcard's format, bytes, without a checksum: of a buffer in firmware.
         pub const MAX_SNAPSHOT_SIZE: usize = Header::<A, false>::SIZE
-            + 16 * size_of::<A::Scalar>() // the parameters, their dynamics and their friction
+            + 18 * size_of::<A::Scalar>() // the parameters and their dynamics
             + 1
-            + size_of::<FrictionOf<A>>()
             + 4 * size_of::<A::Scalar>() // the state
             + Pcg64::MAX_SNAPSHOT_SIZE;
     }

@@ -8,7 +8,6 @@
 //!
 //! ```
 //! use acrobot::arithmetic::Arithmetic;
-//! use acrobot::physics::Lean;
 //! use acrobot::{Acrobot, Action};
 //!
 //! /// Sines from the microcontroller's table.
@@ -18,7 +17,6 @@
 //! impl Arithmetic for Table {
 //!     const NAME: &'static str = "table";
 //!     type Scalar = f32;
-//!     type Form = Lean;
 //!     fn sin_cos(x: f32) -> (f32, f32) {
 //! #       fn look_up(x: f32) -> f32 { libm::sinf(x) }
 //!         (look_up(x), look_up(x + core::f32::consts::FRAC_PI_2))
@@ -31,17 +29,14 @@
 
 use core::marker::PhantomData;
 
-use crate::error::Error;
 #[cfg(feature = "std")]
 use crate::math::sines::platform;
 use crate::math::sines::{self, correctly_rounded, polynomial, table};
-use crate::physics::{
-    Gymnasium, GymnasiumConstants, Lean, LeanConstants, Model, Params, Pendulum, State, Task,
-    Viscous,
-};
+use crate::physics::Task;
 
 pub use crate::math::{Numbers, Real};
-pub use crate::physics::equations::{Arithmetic, Form};
+pub use crate::physics::arithmetic::Arithmetic;
+pub use crate::physics::model::{Form, Modeled};
 
 /// `f64`, correctly rounded sines and cosines, and Gymnasium's expressions: the same bits on every target, defined by
 /// mathematics and not by a library.
@@ -65,7 +60,7 @@ pub struct Reference;
 impl Arithmetic for Reference {
     const NAME: &'static str = "reference";
     type Scalar = f64;
-    type Form = Gymnasium;
+    const FORM: Form = Form::Gymnasium;
 
     /// Sine and cosine, correctly rounded. NaN for infinity and NaN.
     #[inline]
@@ -90,7 +85,7 @@ pub struct Host;
 impl Arithmetic for Host {
     const NAME: &'static str = "host";
     type Scalar = f64;
-    type Form = Gymnasium;
+    const FORM: Form = Form::Gymnasium;
 
     #[inline]
     fn sin_cos(x: f64) -> (f64, f64) {
@@ -101,6 +96,8 @@ impl Arithmetic for Host {
     fn cos(x: f64) -> f64 {
         platform::cos(x)
     }
+
+    const SQUARES_IN_CONST: bool = false;
 
     #[inline(always)]
     fn square(x: f64) -> f64 {
@@ -119,7 +116,6 @@ pub struct Portable;
 impl Arithmetic for Portable {
     const NAME: &'static str = "portable";
     type Scalar = f64;
-    type Form = Lean;
 
     #[inline]
     fn sin_cos(x: f64) -> (f64, f64) {
@@ -141,7 +137,6 @@ pub struct Fast;
 impl Arithmetic for Fast {
     const NAME: &'static str = "fast";
     type Scalar = f32;
-    type Form = Lean;
 
     /// Sine and cosine with an error of at most 1.2e-7 (two units in the last place of 1) for |x| ≤ 64 rad. The largest
     /// error over all these `f32` is 1.17e-7 (`cargo test --release --test trigonometry`). For larger angles the error
@@ -166,7 +161,6 @@ pub struct Micro;
 impl Arithmetic for Micro {
     const NAME: &'static str = "micro";
     type Scalar = f32;
-    type Form = Lean;
 
     /// Sine and cosine with an error of at most 8e-7 for |x| ≤ π, and 4e-6 for |x| ≤ 64 rad
     /// (`cargo test --release --test trigonometry`). For larger angles the error is 2e-7 |x|.
@@ -182,16 +176,15 @@ impl Arithmetic for Micro {
     }
 }
 
-/// An arithmetic of this crate with [viscous friction](Viscous) of the joints. Its parameters have a field `friction`,
-/// which is 0 by default.
+/// An arithmetic with [viscous friction](crate::physics::Viscous) of the joints, which is 0 by default.
 ///
-/// It needs memory and instructions for friction, which the arithmetic itself does not. `TASK` is 0, or that of
+/// A step needs instructions for friction, which the arithmetic itself does not. `TASK` is 0, or that of
 /// [`Swingup`] and [`SwingupSparse`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Damped<A, const TASK: u8 = 0>(PhantomData<A>);
 
-/// dm_control's `acrobot-swingup` in an arithmetic of this crate: see [`Task::Swingup`], and [`Params::SWINGUP`] for its
+/// dm_control's `acrobot-swingup` in an arithmetic: see [`Task::Swingup`], and [`Params::SWINGUP`](crate::Params::SWINGUP) for its
 /// parameters.
 ///
 /// ```
@@ -212,101 +205,59 @@ pub type Swingup<A> = Damped<A, 1>;
 /// dm_control's `acrobot-swingup_sparse`: see [`Task::SwingupSparse`].
 pub type SwingupSparse<A> = Damped<A, 2>;
 
-macro_rules! damped {
-    ($(
-        $(#[$cfg:meta])?
-        $arithmetic:ident, $scalar:ident, $form:ident, $constants:ident,
-        [$damped:literal, $swingup:literal, $sparse:literal];
-    )*) => {$(
-        $(#[$cfg])?
-        impl<const TASK: u8> Arithmetic for Damped<$arithmetic, TASK> {
-            const NAME: &'static str = match Self::TASK {
-                Task::Acrobot => $damped,
-                Task::Swingup => $swingup,
-                Task::SwingupSparse => $sparse,
-            };
-            type Scalar = $scalar;
-            type Form = $form<Viscous<$scalar>>;
-            const TASK: Task = match TASK {
-                0 => Task::Acrobot,
-                1 => Task::Swingup,
-                2 => Task::SwingupSparse,
-                _ => panic!("TASK must be 0, 1 or 2"),
-            };
-            const DEFAULT: Model<Self> = match Self::TASK {
-                Task::Acrobot => Model::UNDAMPED,
-                Task::Swingup | Task::SwingupSparse => {
-                    let params = Params::<$scalar, Viscous<$scalar>>::SWINGUP;
-                    let constants = $constants::<$scalar>::new(&params, [1.0, 0.25, 0.25]);
-                    Model { params, constants }
-                }
-            };
+impl<A: Arithmetic, const TASK: u8> Damped<A, TASK> {
+    const PREFIX: &'static str = match TASK {
+        0 => "damped ",
+        1 => "swing ",
+        _ => "sparse ",
+    };
+    const LEN: usize = Self::PREFIX.len() + A::NAME.len();
 
-            #[inline]
-            fn sin_cos(x: $scalar) -> ($scalar, $scalar) {
-                $arithmetic::sin_cos(x)
-            }
-
-            #[inline(always)]
-            fn sin_cos_near<V: Numbers<$scalar>>(x: V) -> (V, V) {
-                $arithmetic::sin_cos_near(x)
-            }
-
-            #[inline]
-            fn cos(x: $scalar) -> $scalar {
-                $arithmetic::cos(x)
-            }
-
-            #[inline(always)]
-            fn square(x: $scalar) -> $scalar {
-                $arithmetic::square(x)
-            }
-        }
-    )*};
+    /// `PREFIX` and the name of `A`, then zeros.
+    const JOINED: [u8; 64] = {
+        let mut joined = [0; 64];
+        let (first, rest) = joined.split_at_mut(Self::PREFIX.len());
+        first.copy_from_slice(Self::PREFIX.as_bytes());
+        rest.split_at_mut(A::NAME.len())
+            .0
+            .copy_from_slice(A::NAME.as_bytes());
+        joined
+    };
 }
 
-damped! {
-    Reference, f64, Gymnasium, GymnasiumConstants, ["damped reference", "swing reference", "sparse reference"];
-    #[cfg(feature = "std")]
-    Host, f64, Gymnasium, GymnasiumConstants, ["damped host", "swing host", "sparse host"];
-    Portable, f64, Lean, LeanConstants, ["damped portable", "swing portable", "sparse portable"];
-    Fast, f32, Lean, LeanConstants, ["damped fast", "swing fast", "sparse fast"];
-    Micro, f32, Lean, LeanConstants, ["damped micro", "swing micro", "sparse micro"];
-}
+impl<A: Arithmetic, const TASK: u8> Arithmetic for Damped<A, TASK> {
+    const NAME: &'static str = match str::from_utf8(Self::JOINED.split_at(Self::LEN).0) {
+        Ok(name) => name,
+        Err(_) => panic!("both parts are UTF-8"),
+    };
+    type Scalar = A::Scalar;
+    const FORM: Form = A::FORM;
+    const HAS_FRICTION: bool = true;
+    const TASK: Task = match TASK {
+        0 => Task::Acrobot,
+        1 => Task::Swingup,
+        2 => Task::SwingupSparse,
+        _ => panic!("TASK must be 0, 1 or 2"),
+    };
+    const SQUARES_IN_CONST: bool = A::SQUARES_IN_CONST;
 
-// Not generic, because a `const fn` cannot calculate with a generic scalar. `Host` has none: it squares with the C library.
-macro_rules! const_new {
-    ($($arithmetic:ident, $scalar:ident, $constants:ident;)*) => {$(
-        impl Pendulum<$arithmetic> {
-            /// [`Pendulum::new`] in a `const`, so that a `static` needs no initialization.
-            ///
-            /// # Errors
-            ///
-            /// Those of [`Pendulum::new`].
-            pub const fn const_new(
-                params: Params<$scalar>,
-                state: State<$scalar>,
-            ) -> Result<Self, Error> {
-                if let Err(error) = params.check() {
-                    return Err(error);
-                }
-                if let Err(error) = state.check() {
-                    return Err(error);
-                }
-                let (l1, lc1, lc2) =
-                    (params.length1, params.center_of_mass1, params.center_of_mass2);
-                let constants = $constants::<$scalar>::new(&params, [l1 * l1, lc1 * lc1, lc2 * lc2]);
-                let State { theta1, theta2, dtheta1, dtheta2 } = state;
-                let y = [theta1, theta2, dtheta1, dtheta2];
-                Ok(Self::from_model(Model { params, constants }, y))
-            }
-        }
-    )*};
-}
+    #[inline]
+    fn sin_cos(x: A::Scalar) -> (A::Scalar, A::Scalar) {
+        A::sin_cos(x)
+    }
 
-const_new! {
-    Reference, f64, GymnasiumConstants;
-    Portable, f64, LeanConstants;
-    Fast, f32, LeanConstants;
-    Micro, f32, LeanConstants;
+    #[inline(always)]
+    fn sin_cos_near<V: Numbers<A::Scalar>>(x: V) -> (V, V) {
+        A::sin_cos_near(x)
+    }
+
+    #[inline]
+    fn cos(x: A::Scalar) -> A::Scalar {
+        A::cos(x)
+    }
+
+    #[inline(always)]
+    fn square(x: A::Scalar) -> A::Scalar {
+        A::square(x)
+    }
 }

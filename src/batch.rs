@@ -48,7 +48,7 @@ pub use vec_batch::{StepResults, VecBatch};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::physics::{Model, ParamsOf, ParamsRangeOf, ResetBounds, State};
+use crate::physics::{Params, ParamsRange, ResetBounds, State, check_params, default_model, model};
 use buffers::{check_length, take_mut};
 use settings::{Parameters, Settings};
 use storage::SlicesMut;
@@ -118,7 +118,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         }
         check_length("blocks", blocks.len(), generators.len().div_ceil(N))?;
         let parameters = if lane_params.is_empty() {
-            Parameters::Shared(A::DEFAULT)
+            Parameters::Shared(const { default_model::<A>() })
         } else {
             check_length("lane_params", lane_params.len(), blocks.len())?;
             lane_params.fill(LaneParams::default());
@@ -252,7 +252,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 
     /// The parameters of acrobot `index`, if there is one.
     #[must_use]
-    pub fn params_of(&self, index: usize) -> Option<ParamsOf<A>> {
+    pub fn params_of(&self, index: usize) -> Option<Params<A::Scalar>> {
         let slices = self.storage.slices();
         slices.generators.get(index)?;
         match &self.settings.parameters {
@@ -266,9 +266,9 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// # Errors
     ///
     /// Those of [`Params::validate`](crate::Params::validate).
-    pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
-        params.validate()?;
-        let model = Model::new(params);
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        check_params::<A>(&params)?;
+        let model = model::<A>(params);
         let lane_params = self.storage.slices_mut().lane_params;
         lane_params.fill(LaneParams::shared(&model));
         if let Parameters::Shared(shared) = &mut self.settings.parameters {
@@ -283,8 +283,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// Those of [`Params::validate`](crate::Params::validate), [`Error::NoSuchIndex`] for an index of at least
     /// [`len`](Self::len), and [`Error::SharedParams`] without memory for [`LaneParams`].
-    pub fn set_params_of(&mut self, index: usize, params: ParamsOf<A>) -> Result<(), Error> {
-        params.validate()?;
+    pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
+        check_params::<A>(&params)?;
         self.block_of(index)?;
         let lane_params = self.storage.slices_mut().lane_params;
         let own = lane_params.get_mut(index / N).ok_or(Error::SharedParams)?;
@@ -294,7 +294,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 
     /// The range from which each reset draws the acrobot's parameters.
     #[must_use]
-    pub fn params_range(&self) -> Option<&ParamsRangeOf<A>> {
+    pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
         match &self.settings.parameters {
             Parameters::Shared(_) => None,
             Parameters::Own(range) => range.as_ref(),
@@ -307,7 +307,11 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// # Errors
     ///
     /// [`Error::SharedParams`] for a range without memory for [`LaneParams`].
-    pub fn set_params_range(&mut self, range: Option<ParamsRangeOf<A>>) -> Result<(), Error> {
+    pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) -> Result<(), Error> {
+        if let Some(range) = &range {
+            check_params::<A>(range.low())?;
+            check_params::<A>(range.high())?;
+        }
         match &mut self.settings.parameters {
             Parameters::Own(own) => *own = range,
             Parameters::Shared(_) if range.is_none() => {}

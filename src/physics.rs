@@ -35,13 +35,15 @@ macro_rules! for_f32_and_f64 {
     };
 }
 
+pub(crate) mod arithmetic;
 mod bounds;
-mod common;
 pub mod control;
-pub(crate) mod equations;
+mod equations;
 mod friction;
+mod geometry;
 mod gymnasium;
 mod lean;
+pub(crate) mod model;
 mod params;
 mod params_range;
 mod pendulum;
@@ -51,15 +53,11 @@ mod state;
 mod step;
 mod task;
 
+pub(crate) use arithmetic::{check_params, default_model, model};
 pub use bounds::{bound, wrap};
-pub(crate) use common::directions;
-pub(crate) use equations::{Form, Model};
-pub use equations::{FrictionOf, ParamsOf, ParamsRangeOf};
-pub use friction::{Friction, Frictionless, Viscous};
-pub(crate) use gymnasium::Constants as GymnasiumConstants;
-pub use gymnasium::Gymnasium;
-pub(crate) use lean::Constants as LeanConstants;
-pub use lean::Lean;
+pub use friction::Viscous;
+pub(crate) use geometry::directions;
+pub(crate) use model::Model;
 pub use params::{Dynamics, Params};
 pub use params_range::ParamsRange;
 pub use pendulum::Pendulum;

@@ -17,7 +17,6 @@ const VERSION: u32 = 1;
 ///
 /// ```compile_fail,E0080
 /// use acrobot::arithmetic::Arithmetic;
-/// use acrobot::physics::Lean;
 /// use acrobot::{Acrobot, Fast};
 ///
 /// #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,7 +25,6 @@ const VERSION: u32 = 1;
 /// impl Arithmetic for Named {
 ///     const NAME: &'static str = "seventeen letters";
 ///     type Scalar = f32;
-///     type Form = Lean;
 ///     fn sin_cos(x: f32) -> (f32, f32) {
 ///         Fast::sin_cos(x)
 ///     }

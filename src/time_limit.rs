@@ -9,7 +9,7 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::physics::{ParamsOf, State, Task};
+use crate::physics::{Params, State, Task};
 use crate::reset_options::ResetOptions;
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they reach the limit. It
@@ -148,7 +148,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
     /// The parameters.
     #[must_use]
     #[inline]
-    pub fn params(&self) -> &ParamsOf<A> {
+    pub fn params(&self) -> &Params<A::Scalar> {
         self.inner.params()
     }
 
@@ -157,7 +157,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
     /// # Errors
     ///
     /// Those of [`Params::validate`](crate::Params::validate).
-    pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         self.inner.set_params(params)
     }
 }

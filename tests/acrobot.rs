@@ -1,10 +1,10 @@
 //! The environment's contract beyond its numbers: construction, resets, terminations, time limits, live changes,
 //! sizes and auto-traits.
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::control::ControlError;
-use acrobot::physics::{Dynamics, Gymnasium, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, Pendulum, ResetBounds};
 use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{
     Acrobot, Action, Error, Fast, Observation, Params, Portable, REWARD_THRESHOLD, ResetOptions,
@@ -45,7 +45,7 @@ struct AtTheTarget;
 impl Arithmetic for AtTheTarget {
     const NAME: &'static str = "at the target";
     type Scalar = f64;
-    type Form = Gymnasium;
+    const FORM: Form = Form::Gymnasium;
 
     fn sin_cos(_: f64) -> (f64, f64) {
         (0.0, -0.5)
@@ -222,11 +222,11 @@ fn acrobots_made_by_the_compiler_equal_those_made_at_run_time() {
         assert_eq!(made, set);
     }
     macro_rules! check_static {
-        ($($arithmetic:ident),*) => {$({
+        ($($arithmetic:ty),*) => {$({
             static HANGING: Acrobot<$arithmetic> = Acrobot::hanging(Pcg64::new(42));
             static GIVEN: Acrobot<$arithmetic> = {
                 let state = State { theta1: 2.5, theta2: -4.0, dtheta1: 3.0, dtheta2: -30.0 };
-                let params = Params {
+                let params = Params::<<$arithmetic as Arithmetic>::Scalar> {
                     length1: 0.7,
                     center_of_mass1: 0.3,
                     center_of_mass2: 0.6,
@@ -234,7 +234,7 @@ fn acrobots_made_by_the_compiler_equal_those_made_at_run_time() {
                     dynamics: Dynamics::Nips,
                     ..Params::DEFAULT
                 };
-                let Ok(pendulum) = Pendulum::<$arithmetic>::const_new(params, state) else {
+                let Ok(pendulum) = params.pendulum::<$arithmetic>(state) else {
                     panic!()
                 };
                 Acrobot::from_pendulum(pendulum, Pcg64::new(42))
@@ -245,7 +245,7 @@ fn acrobots_made_by_the_compiler_equal_those_made_at_run_time() {
     }
     static HOST: Acrobot<Host> = Acrobot::hanging(Pcg64::new(42));
     check(&HOST, State::default());
-    check_static!(Reference, Portable, Fast, Micro);
+    check_static!(Reference, Portable, Fast, Micro, Damped<Fast>);
 }
 
 /// A custom generator draws initial states and noise, in the order of the calls.

@@ -69,11 +69,7 @@ impl Run {
             dynamics: self.dynamics,
             ..Params::DEFAULT
         };
-        let mut pendulum = Pendulum::<A>::new(
-            params.cast().with_friction(Default::default()),
-            self.state.cast(),
-        )
-        .unwrap();
+        let mut pendulum = Pendulum::<A>::new(params.cast(), self.state.cast()).unwrap();
         let mut errors = Vec::new();
         let mut rows = self.after.iter().peekable();
         for (held, &torque) in (1..).zip(self.torques) {

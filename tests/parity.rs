@@ -72,7 +72,7 @@ fn single_steps<A: Arithmetic<Scalar = f64>>(exact: bool, tolerance: f64) {
     assert_eq!(steps.len(), 2600);
     for (number, step) in steps.into_iter().enumerate() {
         let mut acrobot = Acrobot::new(0);
-        let params = step.params.with_friction(Default::default());
+        let params = step.params;
         acrobot.set_params(params).unwrap();
         acrobot.set_state(step.state).unwrap();
         acrobot.step(step.action);

@@ -1,9 +1,11 @@
 //! The equations of motion are right: both forms agree with each other and with Lagrange's equations.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
-use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Dynamics, Frictionless, Gymnasium, ParamsOf, Pendulum, Viscous};
-use acrobot::{Params, Portable, State};
+use acrobot::batch::VecBatch;
+use acrobot::env::{AcrobotEnv, RenderMode};
+use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::{Dynamics, ParamsRange, Pendulum, Viscous};
+use acrobot::{Acrobot, Fast, Observation, Params, Portable, State, TimeLimit};
 
 /// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the lean one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,7 +14,7 @@ struct GymnasiumF64;
 impl Arithmetic for GymnasiumF64 {
     const NAME: &'static str = "gymnasium f64";
     type Scalar = f64;
-    type Form = Gymnasium;
+    const FORM: Form = Form::Gymnasium;
 
     fn sin_cos(x: f64) -> (f64, f64) {
         Portable::sin_cos(x)
@@ -57,7 +59,7 @@ fn relative(x: [f64; 2], y: [f64; 2]) -> f64 {
 }
 
 fn accelerations<A: Arithmetic<Scalar = f64>>(
-    params: &ParamsOf<A>,
+    params: &Params,
     state: &State,
     torque: f64,
 ) -> [f64; 2] {
@@ -204,7 +206,7 @@ fn the_books_equations_equal_lagranges() {
 /// M (θ̈ of the paper − θ̈ of the book) = (0, m2 l1 lc2 θ̇1² sin θ2).
 #[test]
 fn the_papers_equations_lack_one_term() {
-    fn check<A: Arithmetic<Scalar = f64>>(params: ParamsOf<A>, state: State, torque: f64) {
+    fn check<A: Arithmetic<Scalar = f64>>(params: Params, state: State, torque: f64) {
         let of = |dynamics| accelerations::<A>(&Params { dynamics, ..params }, &state, torque);
         let (book, nips) = (of(Dynamics::Book), of(Dynamics::Nips));
         let term = params.mass2
@@ -232,19 +234,15 @@ fn torques<A: Arithmetic<Scalar = f64>>(pendulum: &Pendulum<A>, [a, b]: [f64; 2]
 /// M (θ̈ with friction − θ̈ without) = −(b1 θ̇1, b2 θ̇2), in both forms of the equations.
 #[test]
 fn friction_resists_the_velocity_of_each_joint() {
-    fn check<A, Without>((params, state, torque): (Params, State, f64))
-    where
-        A: Arithmetic<Scalar = f64, Form: Form<f64, Friction = Viscous<f64>>>,
-        Without: Arithmetic<Scalar = f64, Form: Form<f64, Friction = Frictionless>>,
-    {
-        let without = accelerations::<Without>(&params, &state, torque);
+    fn check<A: Arithmetic<Scalar = f64>>((params, state, torque): (Params, State, f64)) {
+        let without = accelerations::<A>(&params, &state, torque);
         let friction = Viscous {
             joint1: 0.3,
             joint2: 0.7,
         };
-        let params = params.with_friction(friction);
-        let with = accelerations::<A>(&params, &state, torque);
-        let pendulum = Pendulum::<A>::new(params, state).unwrap();
+        let params = Params { friction, ..params };
+        let with = accelerations::<Damped<A>>(&params, &state, torque);
+        let pendulum = Pendulum::<Damped<A>>::new(params, state).unwrap();
         let [with, without] = [with, without].map(|x| torques(&pendulum, x));
         let resistance = [0.3 * state.dtheta1, 0.7 * state.dtheta2];
         let expected = [without[0] - resistance[0], without[1] - resistance[1]];
@@ -254,8 +252,9 @@ fn friction_resists_the_velocity_of_each_joint() {
     for (params, state, torque) in random_cases() {
         for dynamics in [Dynamics::Book, Dynamics::Nips] {
             let case = (Params { dynamics, ..params }, state, torque);
-            check::<Damped<Portable>, Portable>(case);
-            check::<Damped<Reference>, Reference>(case);
+            check::<Portable>(case);
+            check::<Reference>(case);
+            check::<GymnasiumF64>(case);
         }
     }
 }
@@ -266,8 +265,64 @@ fn invalid_friction_is_rejected() {
         joint1: 0.0,
         joint2: -0.1,
     };
-    let params = Params::DEFAULT.with_friction(friction);
+    let params = Params {
+        friction,
+        ..Params::DEFAULT
+    };
     let error = Pendulum::<Damped<Portable>>::new(params, State::HANGING).unwrap_err();
     let rule = "friction.joint2 must be finite and at least 0 N m s/rad, got -0.1";
     assert_eq!(error.to_string(), rule);
+}
+
+/// A step would ignore it.
+#[test]
+fn an_arithmetic_without_friction_rejects_it() {
+    let rule = "friction.joint2 must be 0 in an arithmetic without friction, in N m s/rad, got 0.5";
+    let friction = Viscous {
+        joint1: -0.0,
+        joint2: 0.5,
+    };
+    let (with, without) = (
+        Params {
+            friction,
+            ..Params::DEFAULT
+        },
+        Params::DEFAULT,
+    );
+    let range = ParamsRange::new(without, with).unwrap();
+    let mut pendulum = Pendulum::<Portable>::hanging();
+    let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(0));
+    let mut batch = VecBatch::<Portable>::with_own_params(SeedSequence::new(0), 2).unwrap();
+    let mut shared = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
+    let mut member = batch.member(0).unwrap();
+    member.params = with;
+    let before = (
+        pendulum.clone(),
+        acrobot.clone(),
+        batch.member(1),
+        batch.params_range().copied(),
+    );
+    for result in [
+        Pendulum::<Portable>::new(with, State::HANGING).map(drop),
+        with.pendulum::<Portable>(State::HANGING).map(drop),
+        pendulum.set_params(with),
+        Acrobot::<Reference>::with_params(0, with).map(drop),
+        acrobot.set_params(with),
+        acrobot.inner_mut().set_params(with),
+        shared.set_params(with),
+        batch.set_params(with),
+        batch.set_params_of(1, with),
+        batch.set_member(1, member),
+        batch.set_params_range(Some(range)),
+        AcrobotEnv::<Fast, Observation>::new(with, RenderMode::None).map(drop),
+    ] {
+        assert_eq!(result.unwrap_err().to_string(), rule);
+    }
+    let after = (
+        pendulum,
+        acrobot,
+        batch.member(1),
+        batch.params_range().copied(),
+    );
+    assert_eq!(after, before);
 }

@@ -40,7 +40,7 @@ fn step_errors<A: Arithmetic>() -> [Vec<f64>; 5] {
         |step: &RecordedStep| step.state.theta1.abs().max(step.state.theta2.abs()) <= PI;
     for step in recorded_steps().into_iter().filter(within_a_turn) {
         let mut acrobot = Acrobot::new(0);
-        let params = step.params.cast().with_friction(Default::default());
+        let params = step.params.cast();
         acrobot.set_params(params).unwrap();
         take(&mut acrobot, step.state, step.action, step.next);
     }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference, Swingup, SwingupSparse};
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{Pendulum, Viscous};
+use acrobot::physics::Pendulum;
 use acrobot::render::Figure;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use common::{distance, lines, numbers, text_of};
@@ -152,7 +152,7 @@ fn orientations_are_within_1() {
 fn the_model_is_mujocos() {
     let text = text_of("tests/data/swingup.txt");
     let inertias = lines(&text, "# inertias").next();
-    let params = Params::<f64, Viscous<f64>>::SWINGUP;
+    let params = Params::<f64>::SWINGUP;
     params.validate().unwrap();
     let mujocos = numbers(inertias.unwrap());
     let ours = [params.inertia1, params.inertia2];
@@ -162,8 +162,8 @@ fn the_model_is_mujocos() {
             .max((ours[1] - mujocos[1]).abs())
             < 1e-16
     );
-    let single = Params::<f32, Viscous<f32>>::SWINGUP;
-    assert_eq!(single.without_friction(), params.without_friction().cast());
+    let single = Params::<f32>::SWINGUP;
+    assert_eq!(single, params.cast());
 }
 
 /// With lengths so large that the distance from the target overflows, too.
@@ -172,7 +172,7 @@ fn rewards_are_finite_from_0_to_1() {
     for length2 in [1e-3, 1.0, 1e3, 1e30] {
         let params = Params {
             length2,
-            ..Params::<f32, Viscous<f32>>::SWINGUP
+            ..Params::<f32>::SWINGUP
         };
         let mut acrobot = Acrobot::<Swingup<Fast>>::with_params(1, params).unwrap();
         for _ in 0..200 {

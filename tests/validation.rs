@@ -1,10 +1,10 @@
 //! Promise 3: input out of range is rejected before anything changes. Extreme but valid input neither hangs nor panics
 //! nor gives NaN.
 
-use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::batch::{Batch, Block};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, Frictionless, ParamsRange, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, ParamsRange, Pendulum, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
 use common::{Repeating, in_every_arithmetic};
 
@@ -254,8 +254,10 @@ fn states_and_torques_that_are_not_finite_are_rejected() {
                 acrobot.set_state(state),
                 pendulum.set_state(state),
                 Pendulum::<Portable>::new(Params::DEFAULT, state).map(drop),
-                Pendulum::<Portable>::const_new(Params::DEFAULT, state).map(drop),
-                Pendulum::<Fast>::const_new(Params::DEFAULT, state.cast()).map(drop),
+                Params::<f64>::DEFAULT.pendulum::<Portable>(state).map(drop),
+                Params::<f32>::DEFAULT
+                    .pendulum::<Fast>(state.cast())
+                    .map(drop),
             ] {
                 assert_eq!(result.unwrap_err().to_string(), message);
             }
@@ -324,7 +326,7 @@ fn results_that_are_not_finite_keep_the_angles_and_stop() {
 /// The largest draw of a generator is rounded to the upper bound.
 #[test]
 fn draws_of_parameters_are_within_their_range() {
-    let range = common::params_range::<f32, Frictionless>(Dynamics::Book);
+    let range = common::params_range::<Damped<Fast>>(Dynamics::Book);
     assert_eq!(range.draw(&mut Repeating::new([u64::MAX])), *range.high());
     let mut rng = Pcg64::new(0);
     for _ in 0..1000 {

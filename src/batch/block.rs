@@ -181,7 +181,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         if !noise.all_within(Self::ZEROS) {
             add_noise(&mut torques.0, &noise.0, &self.reset_pending, generators);
         }
-        let terminated = step(model, &mut self.y, &mut self.sin_cos, torques);
+        let terminated = step::<A, _>(model, &mut self.y, &mut self.sin_cos, torques);
         let (mut rewards, mut truncated, mut ended) = ([-1.0; N], [false; N], [false; N]);
         let results = rewards.iter_mut().zip(&mut truncated).zip(&mut ended);
         for ((elapsed, terminated), ((reward, truncated), ended)) in

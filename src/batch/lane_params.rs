@@ -3,7 +3,7 @@
 use super::buffers::set;
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real};
-use crate::physics::{Dynamics, Form, Model, Params, ParamsOf};
+use crate::physics::{Dynamics, Model, Params, default_model, model};
 
 /// The memory for the parameters of `N` acrobots, where each has its own. The default is [`Params::DEFAULT`] for all.
 ///
@@ -11,45 +11,45 @@ use crate::physics::{Dynamics, Form, Model, Params, ParamsOf};
 /// use acrobot::Fast;
 /// use acrobot::batch::LaneParams;
 ///
-/// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 1728);
+/// assert_eq!(size_of::<LaneParams<Fast, 16>>(), 1984);
 /// ```
 // Aligned, because an SSE instruction can read only aligned numbers from memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct LaneParams<A: Arithmetic = Fast, const N: usize = 16> {
     /// Its `params.dynamics` says nothing: `nips` among the constants tells the equations of each lane.
-    pub(super) model: Model<A, Lanes<A::Scalar, N>>,
+    pub(super) model: Model<Lanes<A::Scalar, N>>,
 }
 
 impl<A: Arithmetic, const N: usize> Default for LaneParams<A, N> {
     fn default() -> Self {
-        Self::shared(&A::DEFAULT)
+        Self::shared(&const { default_model::<A>() })
     }
 }
 
 impl<A: Arithmetic, const N: usize> LaneParams<A, N> {
     /// The same model in all lanes.
     #[inline(always)]
-    pub(super) fn shared(model: &Model<A>) -> Self {
+    pub(super) fn shared(model: &Model<A::Scalar>) -> Self {
         let model = model.zip(model, |_, x| Lanes([x; N]));
         Self { model }
     }
 
     /// Replaces the parameters of a lane by valid ones.
-    pub(super) fn set(&mut self, lane: usize, params: ParamsOf<A>) {
+    pub(super) fn set(&mut self, lane: usize, params: Params<A::Scalar>) {
         let replace = |mut lanes: Lanes<_, N>, x| {
             set(&mut lanes.0, lane, x);
             lanes
         };
-        self.model = self.model.zip(&Model::new(params), replace);
+        self.model = self.model.zip(&model::<A>(params), replace);
     }
 
     /// The parameters of a lane below `N`.
-    pub(super) fn get(&self, lane: usize) -> ParamsOf<A> {
+    pub(super) fn get(&self, lane: usize) -> Params<A::Scalar> {
         let number = |lanes: Lanes<A::Scalar, N>, _| *lanes.0.get(lane).unwrap_or(&A::Scalar::ZERO);
-        let Model { params, constants } = self.model.zip(&A::DEFAULT, number);
+        let Model { params, constants } = self.model.zip(&const { default_model::<A>() }, number);
         Params {
-            dynamics: if A::Form::common(&constants).nips > A::Scalar::ZERO {
+            dynamics: if constants.nips > A::Scalar::ZERO {
                 Dynamics::Nips
             } else {
                 Dynamics::Book

@@ -7,7 +7,7 @@ use super::storage::{SlicesMut, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
-use crate::physics::{ParamsOf, State};
+use crate::physics::{Params, State, check_params};
 
 /// One acrobot of a batch, as plain data. With the `serde` feature it can be stored, without a version; a
 /// [whole batch](Batch#snapshots) has one.
@@ -31,7 +31,7 @@ use crate::physics::{ParamsOf, State};
 #[cfg_attr(feature = "serde", serde(bound = ""))]
 pub struct Member<A: Arithmetic> {
     /// The parameters.
-    pub params: ParamsOf<A>,
+    pub params: Params<A::Scalar>,
     /// The state.
     pub state: State<A::Scalar>,
     /// The number of steps since the last reset.
@@ -67,7 +67,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// number that is not finite, those of [`Params::validate`](crate::Params::validate), and [`Error::SharedParams`] for
     /// parameters other than those that all acrobots of this batch share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
-        member.params.validate()?;
+        check_params::<A>(&member.params)?;
         member.state.validate()?;
         self.block_of(index)?;
         match &self.settings.parameters {

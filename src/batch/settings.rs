@@ -3,7 +3,7 @@
 use core::num::NonZeroU32;
 
 use crate::arithmetic::Arithmetic;
-use crate::physics::{Model, ParamsRangeOf, ResetBounds};
+use crate::physics::{Model, ParamsRange, ResetBounds};
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
@@ -26,9 +26,9 @@ pub enum Autoreset {
 #[derive(Clone, Debug)]
 pub(super) enum Parameters<A: Arithmetic> {
     /// All have those of this model.
-    Shared(Model<A>),
+    Shared(Model<A::Scalar>),
     /// Each has its own, and a reset draws them if there is a range.
-    Own(Option<ParamsRangeOf<A>>),
+    Own(Option<ParamsRange<A::Scalar>>),
 }
 
 /// What all acrobots of a batch share.

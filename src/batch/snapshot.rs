@@ -19,7 +19,7 @@ use super::vec_batch::VecBatch;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::SeedSequence;
-use crate::physics::{ParamsOf, ParamsRange, ResetBounds};
+use crate::physics::{Params, ParamsRange, ResetBounds};
 use crate::snapshot::Header;
 
 /// The settings. The parameters that all acrobots share are those of each member.
@@ -34,7 +34,7 @@ struct Settings<A: Arithmetic> {
     /// Whether each acrobot has its own parameters.
     own_params: bool,
     /// Both ends of the range, or nothing.
-    params_range: Vec<ParamsOf<A>, 2>,
+    params_range: Vec<Params<A::Scalar>, 2>,
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Serialize for Batch<A, S, N> {

@@ -11,7 +11,7 @@ use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::observation::Observation;
-use crate::physics::{Params, ResetBounds, State};
+use crate::physics::{Params, ResetBounds, State, check_params};
 use crate::render::Figure;
 use crate::reset_options::ResetOptions;
 
@@ -122,7 +122,7 @@ impl<A: Arithmetic, O: ObservationKind> Env for AcrobotEnv<A, O> {
     }
 
     fn observation_space(&self) -> BoxSpace<O> {
-        O::space(&self.acrobot.params().without_friction().cast())
+        O::space(&self.acrobot.params().cast())
     }
 
     fn render(&mut self) -> Result<Rendering, Error> {
@@ -195,15 +195,13 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
     }
 
     fn params(&self) -> Params {
-        Self::params(self).without_friction().cast()
+        Self::params(self).cast()
     }
 
     fn set_params(&mut self, params: Params) -> Result<(), crate::error::Error> {
-        params.validate()?;
-        let friction = Self::params(self).friction;
+        check_params::<A>(&params)?;
         let fields = params.fields().map(|(name, value, ..)| (name, value));
-        Self::set_params(self, params.cast().with_friction(friction))
-            .map_err(|error| as_given(error, &fields))
+        Self::set_params(self, params.cast()).map_err(|error| as_given(error, &fields))
     }
 
     fn figure(&self) -> Figure {

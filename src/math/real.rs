@@ -58,13 +58,8 @@ macro_rules! impl_real {
     ($scalar:ident, $bits:ident, $sqrt:ident) => {
         impl sealed::Sealed for $scalar {
             const ONE: Self = 1.0;
-            const MINUS_ONE: Self = -1.0;
             const HALF: Self = 0.5;
             const EPSILON: Self = $scalar::EPSILON;
-            const GRAVITY: Self = 9.8;
-            const DT: Self = 0.2;
-            const MAX_VELOCITY1: Self = (4.0 * core::f64::consts::PI) as $scalar;
-            const MAX_VELOCITY2: Self = (9.0 * core::f64::consts::PI) as $scalar;
 
             #[inline]
             fn select([first, second, third]: [Self; 3], index: u8) -> Self {
@@ -158,23 +153,10 @@ pub(crate) mod sealed {
     /// Items of a scalar that only this crate uses.
     pub trait Sealed: Sized + Serde + Format {
         const ONE: Self;
-        const MINUS_ONE: Self;
         const HALF: Self;
 
         /// The distance from 1 to the next number.
         const EPSILON: Self;
-
-        /// Gymnasium's gravity, m/s².
-        const GRAVITY: Self;
-
-        /// Gymnasium's time step, s.
-        const DT: Self;
-
-        /// Gymnasium's bound of |θ̇1|, rad/s.
-        const MAX_VELOCITY1: Self;
-
-        /// Gymnasium's bound of |θ̇2|, rad/s.
-        const MAX_VELOCITY2: Self;
 
         /// The element with an index of 0 to 2, without a branch or an address that depends on the index.
         fn select(three: [Self; 3], index: u8) -> Self;

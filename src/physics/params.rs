@@ -1,6 +1,6 @@
 //! The parameters, in SI units, and their ranges.
 
-use super::friction::{self, Friction, Frictionless, Viscous};
+use super::friction::Viscous;
 use crate::action::Action;
 use crate::error::{Error, Range};
 use crate::math::Real;
@@ -34,8 +34,8 @@ pub enum Dynamics {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Params<S = f64, F = Frictionless> {
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Params<S = f64> {
     /// Length of link 1, m; above 0.
     pub length1: S,
     /// Length of link 2, m; above 0. Only [`positions`](super::Pendulum::positions), the tip's height and drawings use
@@ -69,78 +69,27 @@ pub struct Params<S = f64, F = Frictionless> {
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
-    /// The friction of the joints: [`Frictionless`], which takes no memory and is left out of snapshots, or
-    /// [`Viscous`](super::Viscous).
-    #[cfg_attr(
-        feature = "serde",
-        serde(skip_serializing_if = "snapshot::takes_no_memory")
-    )]
-    pub friction: F,
+    /// The friction of the joints. An arithmetic without friction rejects one that is not 0.
+    pub friction: Viscous<S>,
 }
 
-impl<S: Real, F: Default> Default for Params<S, F> {
-    /// [`Params::DEFAULT`] and no friction, built field by field: copying the constant would call `memcpy`, which takes 1 KB of flash
+impl<S: Real> Default for Params<S> {
+    /// [`Params::DEFAULT`], built field by field: copying the constant would call `memcpy`, which takes 1 KB of flash
     /// if nothing else calls it.
     #[inline]
     fn default() -> Self {
-        Params::<f64>::DEFAULT.cast().with_friction(F::default())
+        Params::<f64>::ACROBOT.cast()
     }
 }
 
 impl<S: Real> Params<S> {
-    /// The parameters of Gymnasium's `Acrobot-v1`, each rounded to the scalar.
-    pub const DEFAULT: Self = Self {
-        length1: S::ONE,
-        length2: S::ONE,
-        mass1: S::ONE,
-        mass2: S::ONE,
-        center_of_mass1: S::HALF,
-        center_of_mass2: S::HALF,
-        inertia1: S::ONE,
-        inertia2: S::ONE,
-        gravity: S::GRAVITY,
-        dt: S::DT,
-        max_velocity1: S::MAX_VELOCITY1,
-        max_velocity2: S::MAX_VELOCITY2,
-        torques: [S::MINUS_ONE, S::ZERO, S::ONE],
-        torque_noise: S::ZERO,
-        dynamics: Dynamics::Book,
-        friction: Frictionless,
-    };
-
     /// The same parameters in another scalar. Each number is rounded to the nearest.
     #[must_use]
     #[inline]
     pub fn cast<T: Real>(&self) -> Params<T> {
-        self.zip(self, |x, _| T::from_f64(x.to_f64()), Frictionless)
+        self.zip(self, |x, _| T::from_f64(x.to_f64()))
     }
 
-    /// The same parameters, for a form of the equations with friction.
-    #[must_use]
-    #[inline]
-    pub const fn with_friction<F>(self, friction: F) -> Params<S, F> {
-        Params {
-            length1: self.length1,
-            length2: self.length2,
-            mass1: self.mass1,
-            mass2: self.mass2,
-            center_of_mass1: self.center_of_mass1,
-            center_of_mass2: self.center_of_mass2,
-            inertia1: self.inertia1,
-            inertia2: self.inertia2,
-            gravity: self.gravity,
-            dt: self.dt,
-            max_velocity1: self.max_velocity1,
-            max_velocity2: self.max_velocity2,
-            torques: self.torques,
-            torque_noise: self.torque_noise,
-            dynamics: self.dynamics,
-            friction,
-        }
-    }
-}
-
-impl<S: Real, F: Friction<S, Of<S> = F>> Params<S, F> {
     /// The torque of an action, N m.
     #[must_use]
     #[inline]
@@ -164,38 +113,26 @@ impl<S: Real, F: Friction<S, Of<S> = F>> Params<S, F> {
     pub fn validate(&self) -> Result<(), Error> {
         // The casts change nothing: `S` is one of these two.
         match size_of::<S>() {
-            4 => self.without_friction().cast::<f32>().check(),
-            _ => self.without_friction().cast::<f64>().check(),
-        }?;
-        friction::fields(&self.friction).try_for_each(|(name, value)| {
-            Range::AtLeastZero.check(name, value.to_f64(), "N m s/rad")
-        })
+            4 => self.cast::<f32>().check(),
+            _ => self.cast::<f64>().check(),
+        }
     }
 
     /// Whether all bits are the same. `==` takes −0 for 0.
     pub(crate) fn same(&self, other: &Self) -> bool {
-        let [bits, other_bits] = [self, other].map(|params| {
-            let numbers = params.fields().into_iter().map(|(_, x, ..)| x);
-            let friction = friction::fields(&params.friction).map(|(_, x)| x);
-            numbers.chain(friction).map(|x| x.to_f64().to_bits())
-        });
-        self.dynamics == other.dynamics && bits.eq(other_bits)
-    }
-
-    /// The same parameters, for a form of the equations without friction.
-    #[must_use]
-    #[inline]
-    pub fn without_friction(&self) -> Params<S> {
-        self.zip(self, |x, _| x, Frictionless)
+        let [bits, other_bits] =
+            [self, other].map(|params| params.fields().map(|(_, x, ..)| x.to_f64().to_bits()));
+        self.dynamics == other.dynamics && bits == other_bits
     }
 }
 
-impl<S: Copy, F: Copy> Params<S, F> {
+impl<S: Copy> Params<S> {
     /// The name, value, unit and range of each number.
-    pub(crate) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 16] {
+    pub(crate) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 18] {
         use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
 
         let [negative, zero, positive] = self.torques;
+        let Viscous { joint1, joint2 } = self.friction;
         [
             ("length1", self.length1, "m", AboveZero),
             ("length2", self.length2, "m", AboveZero),
@@ -213,17 +150,18 @@ impl<S: Copy, F: Copy> Params<S, F> {
             ("torques[1]", zero, "N m", Finite),
             ("torques[2]", positive, "N m", Finite),
             ("torque_noise", self.torque_noise, "N m", AtLeastZero),
+            ("friction.joint1", joint1, "N m s/rad", AtLeastZero),
+            ("friction.joint2", joint2, "N m s/rad", AtLeastZero),
         ]
     }
 
     /// Applies `f` to each number and that of `other`, in the order of the fields. The dynamics are those of `self`.
     #[inline(always)]
-    pub(crate) fn zip<T: Copy, G: Copy, U, H>(
+    pub(crate) fn zip<T: Copy, U>(
         &self,
-        other: &Params<T, G>,
+        other: &Params<T>,
         mut f: impl FnMut(S, T) -> U,
-        friction: H,
-    ) -> Params<U, H> {
+    ) -> Params<U> {
         let ([negative, zero, positive], torques) = (self.torques, other.torques);
         Params {
             length1: f(self.length1, other.length1),
@@ -245,7 +183,10 @@ impl<S: Copy, F: Copy> Params<S, F> {
             ],
             torque_noise: f(self.torque_noise, other.torque_noise),
             dynamics: self.dynamics,
-            friction,
+            friction: Viscous {
+                joint1: f(self.friction.joint1, other.friction.joint1),
+                joint2: f(self.friction.joint2, other.friction.joint2),
+            },
         }
     }
 }
@@ -288,10 +229,29 @@ const fn inertia_of_capsule(radius: f64) -> f64 {
 }
 
 for_f32_and_f64! {
-    impl Params<S, Viscous<S>> {
-        /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step of 0.01 s and
-        /// torques of ±2 N m. Its velocities have no bounds.
-        pub const SWINGUP: Self = Params::<S> {
+    impl Params<S> {
+        /// See [`Params::DEFAULT`].
+        pub(super) const ACROBOT: Self = Self {
+            length1: 1.0,
+            length2: 1.0,
+            mass1: 1.0,
+            mass2: 1.0,
+            center_of_mass1: 0.5,
+            center_of_mass2: 0.5,
+            inertia1: 1.0,
+            inertia2: 1.0,
+            gravity: 9.8,
+            dt: 0.2,
+            max_velocity1: (4.0 * core::f64::consts::PI) as S,
+            max_velocity2: (9.0 * core::f64::consts::PI) as S,
+            torques: [-1.0, 0.0, 1.0],
+            torque_noise: 0.0,
+            dynamics: Dynamics::Book,
+            friction: Viscous { joint1: 0.0, joint2: 0.0 },
+        };
+
+        /// See [`Params::SWINGUP`].
+        pub(super) const CAPSULES: Self = Self {
             inertia1: inertia_of_capsule(0.05) as S,
             inertia2: inertia_of_capsule(0.049) as S,
             gravity: 9.81,
@@ -299,69 +259,8 @@ for_f32_and_f64! {
             max_velocity1: 1e30,
             max_velocity2: 1e30,
             torques: [-2.0, 0.0, 2.0],
-            ..Params::<S>::DEFAULT
-        }
-        .with_friction(Viscous { joint1: 0.05, joint2: 0.05 });
-    }
-}
-
-#[cfg(feature = "serde")]
-mod snapshot {
-    use serde::de::{Deserialize, Deserializer, Error};
-
-    use super::{Dynamics, Params};
-
-    pub fn takes_no_memory<F>(_: &F) -> bool {
-        size_of::<F>() == 0
-    }
-
-    type Loaded<S, F> = Params<S, Option<F>>;
-
-    /// Friction may be missing here: only its type tells whether a snapshot has it.
-    #[derive(serde::Deserialize)]
-    #[serde(rename = "Params", remote = "Loaded")]
-    struct Stored<S, F> {
-        length1: S,
-        length2: S,
-        mass1: S,
-        mass2: S,
-        center_of_mass1: S,
-        center_of_mass2: S,
-        inertia1: S,
-        inertia2: S,
-        gravity: S,
-        dt: S,
-        max_velocity1: S,
-        max_velocity2: S,
-        torques: [S; 3],
-        torque_noise: S,
-        dynamics: Dynamics,
-        #[serde(
-            default,
-            deserialize_with = "some",
-            bound(deserialize = "F: Deserialize<'de>")
-        )]
-        friction: Option<F>,
-    }
-
-    fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
-        from: D,
-    ) -> Result<Option<T>, D::Error> {
-        T::deserialize(from).map(Some)
-    }
-
-    impl<'de, S, F> Deserialize<'de> for Params<S, F>
-    where
-        S: Copy + Deserialize<'de>,
-        F: Copy + Default + Deserialize<'de>,
-    {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let params = Stored::<S, F>::deserialize(deserializer)?;
-            let none = F::default();
-            let missing = takes_no_memory(&none).then_some(none);
-            let friction = params.friction.or(missing);
-            let friction = friction.ok_or_else(|| D::Error::missing_field("friction"))?;
-            Ok(params.zip(&params, |x, _| x, friction))
-        }
+            friction: Viscous { joint1: 0.05, joint2: 0.05 },
+            ..Self::ACROBOT
+        };
     }
 }

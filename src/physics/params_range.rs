@@ -2,7 +2,6 @@
 
 use rand_core::Rng;
 
-use super::friction::{self, Friction, Frictionless};
 use super::params::Params;
 use crate::error::Error;
 use crate::math::Real;
@@ -27,26 +26,22 @@ use crate::numpy::uniform;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct ParamsRange<S = f64, F = Frictionless> {
-    low: Params<S, F>,
-    high: Params<S, F>,
+pub struct ParamsRange<S = f64> {
+    low: Params<S>,
+    high: Params<S>,
 }
 
-impl<S: Real, F: Friction<S, Of<S> = F>> ParamsRange<S, F> {
+impl<S: Real> ParamsRange<S> {
     /// The range from `low` to `high`. A parameter that is equal in both is fixed.
     ///
     /// # Errors
     ///
     /// Those of [`Params::validate`], [`Error::ReversedRange`] for a parameter whose `low` is above its `high`,
     /// [`Error::OutOfRange`] for a range so wide that its width is infinite, and [`Error::DifferentDynamics`].
-    pub fn new(low: Params<S, F>, high: Params<S, F>) -> Result<Self, Error> {
+    pub fn new(low: Params<S>, high: Params<S>) -> Result<Self, Error> {
         low.validate()?;
         high.validate()?;
-        let numbers = low.fields().into_iter().zip(high.fields());
-        let numbers = numbers.map(|((name, low, unit, _), (_, high, ..))| (name, low, high, unit));
-        let friction = friction::fields(&low.friction).zip(friction::fields(&high.friction));
-        let friction = friction.map(|((name, low), (_, high))| (name, low, high, "N m s/rad"));
-        for (name, low, high, unit) in numbers.chain(friction) {
+        for ((name, low, unit, _), (_, high, ..)) in low.fields().into_iter().zip(high.fields()) {
             let (low, high) = (low.to_f64(), high.to_f64());
             if low > high {
                 return Err(Error::ReversedRange {
@@ -74,26 +69,24 @@ impl<S: Real, F: Friction<S, Of<S> = F>> ParamsRange<S, F> {
 
     /// The lower bounds.
     #[must_use]
-    pub const fn low(&self) -> &Params<S, F> {
+    pub const fn low(&self) -> &Params<S> {
         &self.low
     }
 
     /// The upper bounds.
     #[must_use]
-    pub const fn high(&self) -> &Params<S, F> {
+    pub const fn high(&self) -> &Params<S> {
         &self.high
     }
 
     /// Draws each parameter uniformly, in the order of the fields of [`Params`]. A fixed one draws nothing.
-    pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Params<S, F> {
-        let mut draw = |low: S, high: S| {
+    pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Params<S> {
+        self.low.zip(&self.high, |low, high| {
             if low == high {
                 return low;
             }
             // At most `high`: `uniform` adds at most the exact width to `low`, and rounding keeps the order.
             S::from_f64(uniform(rng, low.to_f64(), high.to_f64()))
-        };
-        let drawn = self.low.zip(&self.high, &mut draw, Frictionless);
-        drawn.with_friction(F::zip(self.low.friction, self.high.friction, draw))
+        })
     }
 }

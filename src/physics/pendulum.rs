@@ -1,7 +1,11 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
-use super::common;
-use super::equations::{Arithmetic, Form, Model, ParamsOf};
+use super::arithmetic::{Arithmetic, check_params, default_model, model, no_friction};
+use super::equations;
+use super::friction::Viscous;
+use super::geometry;
+use super::model::Model;
+use super::params::Params;
 use super::state::State;
 use super::step::step;
 use crate::error::{Error, Range};
@@ -33,7 +37,7 @@ use crate::math::{Real, SinCos};
 pub struct Pendulum<A: Arithmetic> {
     /// θ1, θ2, θ̇1 and θ̇2.
     y: [A::Scalar; 4],
-    model: Model<A>,
+    model: Model<A::Scalar>,
     /// Sines and cosines of θ1 and θ2, for the observation and the next step.
     sin_cos: [SinCos<A::Scalar>; 2],
     /// Whether `sin_cos` is up to date. After a `const` it is not: sines cannot be computed there.
@@ -44,11 +48,11 @@ impl<A: Arithmetic> Pendulum<A> {
     /// A pendulum with the default parameters that hangs at rest.
     #[must_use]
     pub const fn hanging() -> Self {
-        Self::from_model(A::DEFAULT, [A::Scalar::ZERO; 4])
+        Self::from_model(const { default_model::<A>() }, [A::Scalar::ZERO; 4])
     }
 
     /// A pendulum with this model in a state that is known to be finite.
-    pub(crate) const fn from_model(model: Model<A>, y: [A::Scalar; 4]) -> Self {
+    pub(crate) const fn from_model(model: Model<A::Scalar>, y: [A::Scalar; 4]) -> Self {
         Self {
             model,
             y,
@@ -61,18 +65,19 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`](crate::Params::validate) and [`State::validate`].
-    pub fn new(params: ParamsOf<A>, state: State<A::Scalar>) -> Result<Self, Error> {
-        params.validate()?;
+    /// Those of [`Params::validate`] and [`State::validate`], and [`Error::OutOfRange`] for friction that is not 0 in an
+    /// arithmetic [without friction](Arithmetic::HAS_FRICTION).
+    pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
+        check_params::<A>(&params)?;
         state.validate()?;
         Ok(Self::new_unchecked(params, state))
     }
 
     /// As [`new`](Self::new), with parameters and a state that are known to be valid.
     #[inline]
-    pub(crate) fn new_unchecked(params: ParamsOf<A>, state: State<A::Scalar>) -> Self {
+    pub(crate) fn new_unchecked(params: Params<A::Scalar>, state: State<A::Scalar>) -> Self {
         Self {
-            model: Model::new(params),
+            model: model::<A>(params),
             sin_cos: sin_cos::<A>([state.theta1, state.theta2]),
             is_current: true,
             y: state.into(),
@@ -98,7 +103,7 @@ impl<A: Arithmetic> Pendulum<A> {
         if !self.is_current {
             self.compute_sines();
         }
-        let terminated = step(&self.model, &mut self.y, &mut self.sin_cos, torque);
+        let terminated = step::<A, A::Scalar>(&self.model, &mut self.y, &mut self.sin_cos, torque);
         (terminated, self.sin_cos)
     }
 
@@ -139,7 +144,7 @@ impl<A: Arithmetic> Pendulum<A> {
     /// The parameters.
     #[must_use]
     #[inline]
-    pub fn params(&self) -> &ParamsOf<A> {
+    pub fn params(&self) -> &Params<A::Scalar> {
         &self.model.params
     }
 
@@ -147,10 +152,11 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`](crate::Params::validate).
-    pub fn set_params(&mut self, params: ParamsOf<A>) -> Result<(), Error> {
-        params.validate()?;
-        self.model = Model::new(params);
+    /// Those of [`Params::validate`], and [`Error::OutOfRange`] for friction that is not 0 in an arithmetic
+    /// [without friction](Arithmetic::HAS_FRICTION).
+    pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
+        check_params::<A>(&params)?;
+        self.model = model::<A>(params);
         Ok(())
     }
 
@@ -167,7 +173,7 @@ impl<A: Arithmetic> Pendulum<A> {
 
     /// The derivative of the state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque between the links, N m.
     ///
-    /// [`Arithmetic::Form`] determines the order of evaluation, and [`Params::dynamics`](crate::Params::dynamics) the
+    /// [`Arithmetic::FORM`] determines the order of evaluation, and [`Params::dynamics`] the
     /// [equations](crate::guide::equations). A torque that is not finite gives what IEEE 754 gives.
     ///
     /// Your own integrator sets each state at which it needs the derivative. The constants stay cached:
@@ -188,7 +194,7 @@ impl<A: Arithmetic> Pendulum<A> {
     /// ```
     #[must_use]
     pub fn derivative(&self, torque: A::Scalar) -> [A::Scalar; 4] {
-        A::Form::derivative(&self.model, self.y, Some(self.sin_cos()), torque)
+        equations::derivative::<A, A::Scalar>(&self.model, self.y, Some(self.sin_cos()), torque)
     }
 
     /// The total mechanical energy of the state, J. The potential energy is 0 at the height of the fixed joint, so the
@@ -204,8 +210,8 @@ impl<A: Arithmetic> Pendulum<A> {
         let momentum1 = m11 * dtheta1 + m12 * dtheta2;
         let momentum2 = m12 * dtheta1 + m22 * dtheta2;
         let kinetic = A::Scalar::from_f64(0.5) * (momentum1 * dtheta1 + momentum2 * dtheta2);
-        let common = A::Form::common(&self.model.constants);
-        let [(_, cos1), (_, cos_sum)] = common::directions(sin_cos);
+        let common = &self.model.constants;
+        let [(_, cos1), (_, cos_sum)] = geometry::directions(sin_cos);
         kinetic - common.gravity1 * cos1 - common.gravity2 * cos_sum
     }
 
@@ -221,16 +227,15 @@ impl<A: Arithmetic> Pendulum<A> {
         let Model { params, constants } = &self.model;
         let (l1, lc1) = (params.length1, params.center_of_mass1);
         let upper = params.mass1 * (lc1 * lc1) + params.inertia1 + params.mass2 * (l1 * l1);
-        let common = A::Form::common(constants);
-        let coupling = common.coupling * cos2;
-        let d2 = common.link2 + coupling;
-        [[upper + coupling + d2, d2], [d2, common.link2]]
+        let coupling = constants.coupling * cos2;
+        let d2 = constants.link2 + coupling;
+        [[upper + coupling + d2, d2], [d2, constants.link2]]
     }
 
     /// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the right and y up.
     #[must_use]
     pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
-        common::positions(self.params(), self.sin_cos())
+        geometry::positions(self.params(), self.sin_cos())
     }
 
     /// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from −(l1 + l2) hanging to
@@ -242,7 +247,7 @@ impl<A: Arithmetic> Pendulum<A> {
     }
 
     #[inline]
-    pub(super) fn model(&self) -> &Model<A> {
+    pub(super) fn model(&self) -> &Model<A::Scalar> {
         &self.model
     }
 
@@ -250,6 +255,46 @@ impl<A: Arithmetic> Pendulum<A> {
     fn angles(&self) -> [A::Scalar; 2] {
         let [theta1, theta2, ..] = self.y;
         [theta1, theta2]
+    }
+}
+
+for_f32_and_f64! {
+    impl Params<S> {
+        /// [`Pendulum::new`] in a `const`, so that a `static` needs no initialization. `Host` has none: it squares with
+        /// the C library, and code that calls this for it does not compile:
+        ///
+        /// ```compile_fail,E0080
+        /// use acrobot::arithmetic::Host;
+        /// use acrobot::{Params, State};
+        ///
+        /// let pendulum = Params::<f64>::DEFAULT.pendulum::<Host>(State::HANGING);
+        /// ```
+        ///
+        /// # Errors
+        ///
+        /// Those of [`Pendulum::new`].
+        pub const fn pendulum<A: Arithmetic<Scalar = S>>(
+            self,
+            state: State<S>,
+        ) -> Result<Pendulum<A>, Error> {
+            const { assert!(A::SQUARES_IN_CONST, "a const cannot square as this arithmetic does") };
+            if let Err(error) = self.check() {
+                return Err(error);
+            }
+            let Viscous { joint1, joint2 } = self.friction;
+            if !A::HAS_FRICTION
+                && let Err(error) = no_friction([joint1 as f64, joint2 as f64])
+            {
+                return Err(error);
+            }
+            if let Err(error) = state.check() {
+                return Err(error);
+            }
+            let (l1, lc1, lc2) = (self.length1, self.center_of_mass1, self.center_of_mass2);
+            let model = Model::<S>::new(A::FORM, self, [l1 * l1, lc1 * lc1, lc2 * lc2]);
+            let State { theta1, theta2, dtheta1, dtheta2 } = state;
+            Ok(Pendulum::from_model(model, [theta1, theta2, dtheta1, dtheta2]))
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The reward of a swing-up.
 
-use super::common;
-use super::equations::Arithmetic;
+use super::arithmetic::Arithmetic;
+use super::geometry;
 use super::params::Params;
 use super::task::Task;
 use crate::math::{Numbers, Real, SinCos};
@@ -10,7 +10,7 @@ use crate::math::{Numbers, Real, SinCos};
 /// from its edge. None for Gymnasium's task, whose reward is −1 before the goal.
 #[inline(always)]
 pub(crate) fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
-    params: &Params<V, impl Copy>,
+    params: &Params<V>,
     sin_cos: [SinCos<V>; 2],
 ) -> Option<V> {
     const TARGET: f64 = 2.0;
@@ -21,7 +21,7 @@ pub(crate) fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         Task::Swingup => false,
         Task::SwingupSparse => true,
     };
-    let [_, [x, y]] = common::positions(params, sin_cos);
+    let [_, [x, y]] = geometry::positions(params, sin_cos);
     let below = number(TARGET) - y;
     let distance = (x * x + below * below).map(Real::sqrt);
     let beyond = distance - number(RADIUS);

@@ -2,7 +2,9 @@
 
 use core::ops::{Add, Mul};
 
-use super::equations::{Arithmetic, Form, Model};
+use super::arithmetic::Arithmetic;
+use super::equations::derivative;
+use super::model::{Form, Model};
 use crate::math::{Numbers, Real, SinCos};
 
 /// The state \[θ1, θ2, θ̇1, θ̇2\] one dt after `y`, under a constant torque, N m. `sin_cos` are the sines and cosines of
@@ -10,32 +12,31 @@ use crate::math::{Numbers, Real, SinCos};
 // No closure for the derivative: LLVM keeps a large one out of line, without the SIMD instructions of its caller.
 #[inline(always)]
 pub(super) fn rk4<A: Arithmetic, V: Numbers<A::Scalar>>(
-    model: &Model<A, V>,
+    model: &Model<V>,
     y: [V; 4],
     sin_cos: [SinCos<V>; 2],
     torque: V,
 ) -> [V; 4] {
-    let k1 = A::Form::derivative(model, y, Some(sin_cos), torque);
-    if A::Form::COMPACT {
-        compact(model, y, k1, torque)
-    } else {
-        classical(model, y, k1, torque)
+    let k1 = derivative::<A, V>(model, y, Some(sin_cos), torque);
+    match A::FORM {
+        Form::Lean => compact::<A, V>(model, y, k1, torque),
+        Form::Gymnasium => classical::<A, V>(model, y, k1, torque),
     }
 }
 
 /// Gymnasium's order of additions.
 #[inline(always)]
 fn classical<A: Arithmetic, V: Numbers<A::Scalar>>(
-    model: &Model<A, V>,
+    model: &Model<V>,
     y: [V; 4],
     k1: [V; 4],
     torque: V,
 ) -> [V; 4] {
-    let common = A::Form::common(&model.constants);
+    let common = &model.constants;
     let (half, dt, sixth) = (common.half_dt, model.params.dt, common.sixth_dt);
-    let k2 = A::Form::derivative(model, plus_scaled(y, half, k1), None, torque);
-    let k3 = A::Form::derivative(model, plus_scaled(y, half, k2), None, torque);
-    let k4 = A::Form::derivative(model, plus_scaled(y, dt, k3), None, torque);
+    let k2 = derivative::<A, V>(model, plus_scaled(y, half, k1), None, torque);
+    let k3 = derivative::<A, V>(model, plus_scaled(y, half, k2), None, torque);
+    let k4 = derivative::<A, V>(model, plus_scaled(y, dt, k3), None, torque);
     let [one, two] = [1.0, 2.0].map(|x| V::splat(A::Scalar::from_f64(x)));
     let sum = plus_scaled(plus_scaled(k1, two, k2), two, k3);
     plus_scaled(y, sixth, plus_scaled(sum, one, k4))
@@ -45,12 +46,12 @@ fn classical<A: Arithmetic, V: Numbers<A::Scalar>>(
 /// inlined only once, which saves flash.
 #[inline(always)]
 fn compact<A: Arithmetic, V: Numbers<A::Scalar>>(
-    model: &Model<A, V>,
+    model: &Model<V>,
     y: [V; 4],
     k1: [V; 4],
     torque: V,
 ) -> [V; 4] {
-    let common = A::Form::common(&model.constants);
+    let common = &model.constants;
     let sixth = common.sixth_dt;
     let third = sixth + sixth;
     let mut next = plus_scaled(y, sixth, k1);
@@ -58,7 +59,7 @@ fn compact<A: Arithmetic, V: Numbers<A::Scalar>>(
     let mut h = common.half_dt;
     let mut stage = 2;
     loop {
-        k = A::Form::derivative(model, plus_scaled(y, h, k), None, torque);
+        k = derivative::<A, V>(model, plus_scaled(y, h, k), None, torque);
         if stage == 4 {
             return plus_scaled(next, sixth, k);
         }

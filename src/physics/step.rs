@@ -1,6 +1,8 @@
 //! One step, of one acrobot or of many side by side.
 
-use super::equations::{Arithmetic, Form, Model};
+use super::arithmetic::Arithmetic;
+use super::equations::{reaches_goal, wrap};
+use super::model::Model;
 use super::rk4::rk4;
 use super::task::Task;
 use crate::math::{Numbers, Real, SinCos};
@@ -9,23 +11,23 @@ use crate::math::{Numbers, Real, SinCos};
 /// Returns whether the new state ends the task.
 #[inline(always)]
 pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
-    model: &Model<A, V>,
+    model: &Model<V>,
     y: &mut [V; 4],
     sin_cos: &mut [SinCos<V>; 2],
     torque: V,
 ) -> V::Mask {
     let angles = [y[0], y[1]];
-    *y = rk4(model, *y, *sin_cos, torque);
+    *y = rk4::<A, V>(model, *y, *sin_cos, torque);
     // One acrobot seldom leaves its bounds, so this is out of line, which saves flash. Among many lanes one often does.
     // There it is inlined, because a function out of line may not use the SIMD instructions of its caller.
     if !V::IS_ONE {
-        enforce_bounds(model, y, angles);
-    } else if !is_within_bounds(model, y) {
-        enforce_bounds_out_of_line(model, y, angles);
+        enforce_bounds::<A, V>(model, y, angles);
+    } else if !is_within_bounds::<A, V>(model, y) {
+        enforce_bounds_out_of_line::<A, V>(model, y, angles);
     }
     *sin_cos = [A::sin_cos_near(y[0]), A::sin_cos_near(y[1])];
     match A::TASK {
-        Task::Acrobot => A::Form::reaches_goal::<A, V>([y[0], y[1]], *sin_cos),
+        Task::Acrobot => reaches_goal::<A, V>([y[0], y[1]], *sin_cos),
         Task::Swingup | Task::SwingupSparse => V::splat(A::Scalar::ZERO).above(A::Scalar::ZERO),
     }
 }
@@ -33,7 +35,7 @@ pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
 /// Whether all angles are within ±π and all velocities within their bounds; false for NaN.
 #[inline(always)]
 fn is_within_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
-    model: &Model<A, V>,
+    model: &Model<V>,
     [theta1, theta2, dtheta1, dtheta2]: &[V; 4],
 ) -> bool {
     let pi = V::splat(A::Scalar::PI);
@@ -47,18 +49,18 @@ fn is_within_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
 
 #[inline(never)]
 fn enforce_bounds_out_of_line<A: Arithmetic, V: Numbers<A::Scalar>>(
-    model: &Model<A, V>,
+    model: &Model<V>,
     y: &mut [V; 4],
     angles: [V; 2],
 ) {
-    enforce_bounds(model, y, angles);
+    enforce_bounds::<A, V>(model, y, angles);
 }
 
 /// Wraps the angles and bounds the velocities. A result that is not finite becomes the angles before the step with
 /// zero velocities.
 #[inline(always)]
 fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
-    model: &Model<A, V>,
+    model: &Model<V>,
     y: &mut [V; 4],
     [before1, before2]: [V; 2],
 ) {
@@ -77,8 +79,8 @@ fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     }
     let [theta1, theta2, dtheta1, dtheta2] = *y;
     *y = [
-        A::Form::wrap(theta1),
-        A::Form::wrap(theta2),
+        wrap::<A, V>(theta1),
+        wrap::<A, V>(theta2),
         dtheta1.bound(model.params.max_velocity1),
         dtheta2.bound(model.params.max_velocity2),
     ];

@@ -183,7 +183,7 @@ fn rejected_changes_change_nothing() {
     };
     let mut other = member.clone();
     other.params = heavy;
-    let range = common::params_range(Dynamics::Book);
+    let range = common::params_range::<Fast>(Dynamics::Book);
     let shared = "a batch must have memory for the parameters of each acrobot";
     let mut rows = [[9.0; 6]; 4];
     for (result, message) in [

@@ -26,7 +26,7 @@ enum Kind {
 /// A batch in the middle of episodes, of which some have ended.
 fn running(kind: Kind, autoreset: Autoreset, noise: f32) -> Twins<Fast> {
     let mut rng = Pcg64::new(5);
-    let range = params_range(Dynamics::Nips);
+    let range = params_range::<Fast>(Dynamics::Nips);
     let mut draw = || Params {
         torque_noise: noise,
         ..range.draw(&mut rng)
@@ -263,7 +263,7 @@ fn snapshots_that_do_not_fit_into_the_memory_are_rejected() {
     different.set_params_of(2, heavy).unwrap();
     assert_eq!(load::<3>(&different, 0), shared);
     let mut drawn = three(true);
-    let range = params_range(Dynamics::Book);
+    let range = params_range::<Fast>(Dynamics::Book);
     drawn.set_params_range(Some(range)).unwrap();
     assert_eq!(load::<3>(&drawn, 0), shared);
 }
@@ -271,7 +271,7 @@ fn snapshots_that_do_not_fit_into_the_memory_are_rejected() {
 #[test]
 fn invalid_ranges_are_rejected() {
     let mut drawn = three(true);
-    let range = params_range(Dynamics::Book);
+    let range = params_range::<Fast>(Dynamics::Book);
     drawn.set_params_range(Some(range)).unwrap();
     let value = serde_json::to_value(&drawn).unwrap();
     let changed = |change: fn(&mut Vec<Value>)| {

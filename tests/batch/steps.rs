@@ -89,7 +89,7 @@ fn threads_change_no_bit() {
     let (seed, len) = (SeedSequence::new(3), 40_003);
     let shared = VecBatch::<Fast>::new(seed.clone(), len).unwrap();
     let mut own = VecBatch::with_own_params(seed, len).unwrap();
-    let range = params_range(Dynamics::Book);
+    let range = params_range::<Fast>(Dynamics::Book);
     own.set_params_range(Some(range)).unwrap();
     own.reset();
     for mut one in [shared, own] {

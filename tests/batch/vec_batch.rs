@@ -96,7 +96,7 @@ fn a_batch_that_does_not_fit_into_memory_is_rejected() {
 #[test]
 fn a_replaced_member_is_reset_with_its_own_parameters() {
     let mut batch = VecBatch::<Fast>::with_own_params(SeedSequence::new(3), 40).unwrap();
-    let range = common::params_range(Dynamics::Book);
+    let range = common::params_range::<Fast>(Dynamics::Book);
     batch.set_params_range(Some(range)).unwrap();
     batch.set_limit(1.try_into().unwrap());
     batch.step(&[1_u8; 40]).unwrap();

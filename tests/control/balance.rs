@@ -17,7 +17,7 @@ fn regulated<A: Arithmetic>(
     target: State,
     weight: f64,
 ) -> (Pendulum<A>, Lqr<A::Scalar>) {
-    let params = params.cast().with_friction(Default::default());
+    let params = params.cast();
     let pendulum = Pendulum::new(params, target.cast()).unwrap();
     let q = diagonal([weight; 4]).map(cast);
     let regulator = pendulum.regulator(A::Scalar::ZERO, &q, Real::from_f64(1.0));
@@ -114,9 +114,7 @@ fn a_regulator_needs_an_equilibrium() {
         let q = diagonal([1.0; 4]).map(cast);
         let regulate = |state: State, torque| {
             let torque = A::Scalar::from_f64(torque);
-            let params = Params::<f64>::DEFAULT
-                .cast()
-                .with_friction(Default::default());
+            let params = Params::<f64>::DEFAULT.cast();
             let pendulum = Pendulum::<A>::new(params, state.cast()).unwrap();
             let regulator = pendulum.regulator(torque, &q, Real::from_f64(1.0));
             let model = discretize(&pendulum, torque).unwrap();

@@ -6,9 +6,9 @@ mod regulators;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::physics::control::{Forces, discretize, inverse_dynamics, linearize, velocities};
-use acrobot::physics::{FrictionOf, Pendulum, Viscous};
+use acrobot::physics::{Pendulum, Viscous};
 use acrobot::{Fast, Params, Portable, State};
-use common::{AnyFriction, dynamics_of, lines, numbers, text_of};
+use common::{dynamics_of, lines, numbers, text_of};
 
 fn cast<T: Real, const N: usize>(x: [f64; N]) -> [T; N] {
     x.map(T::from_f64)
@@ -38,7 +38,7 @@ const DAMPED: usize = 80;
 
 /// A pendulum, a torque and accelerations of the recording, and what autograd computed for them.
 struct Case {
-    params: Params<f64, Viscous<f64>>,
+    params: Params,
     state: State,
     torque: f64,
     accelerations: [f64; 2],
@@ -92,17 +92,10 @@ fn cases(first: usize) -> Vec<Case> {
 }
 
 /// The largest error of each function over all cases, with the arithmetic `A`.
-fn errors<A: Arithmetic>(first: usize) -> [f64; 4]
-where
-    FrictionOf<A>: AnyFriction<A::Scalar>,
-{
+fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
     let mut worst = [0.0_f64; 4];
     for case in cases(first) {
-        let Viscous { joint1, joint2 } = case.params.friction;
-        let friction = AnyFriction::new(Real::from_f64(joint1), Real::from_f64(joint2));
-        let params = case.params.without_friction().cast();
-        let params = params.with_friction(friction);
-        let pendulum = Pendulum::<A>::new(params, case.state.cast()).unwrap();
+        let pendulum = Pendulum::<A>::new(case.params.cast(), case.state.cast()).unwrap();
         let torque = Real::from_f64(case.torque);
         let continuous = linearize(&pendulum, torque).unwrap();
         let discrete = discretize(&pendulum, torque).unwrap();

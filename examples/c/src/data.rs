@@ -159,7 +159,7 @@ macro_rules! same_params {
             torques: $params.torques,
             torque_noise: $params.torque_noise,
             dynamics: $dynamics,
-            $($friction: acrobot::physics::Frictionless,)?
+            $($friction: acrobot::physics::Viscous::default(),)?
         }
     };
 }

@@ -16,8 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::draws::{Distribution, Draws};
 use crate::{
-    InvalidAction, NUMBERS, Params, invalid, must_be, params_from, params_of, rejected, renamed,
-    torque_of, unknown, with,
+    InvalidAction, NUMBERS, Params, invalid, must_be, rejected, renamed, torque_of, unknown, with,
 };
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
@@ -107,7 +106,7 @@ impl<A: Arithmetic> Many<A> {
     }
 
     pub fn params(&self, index: usize) -> Params {
-        params_from::<A>(&self.batch.params_of(index).unwrap_or_default())
+        self.batch.params_of(index).unwrap_or_default().cast()
     }
 
     pub fn state(&self, index: usize) -> State {
@@ -136,7 +135,7 @@ impl<A: Arithmetic> Many<A> {
         let [lows, highs] = draws.ends(self.params(0));
         let bounds = [self.with(lows, name, &low)?, self.with(highs, name, &high)?];
         Self::check_range(bounds)?;
-        draws.bounds = bounds.map(|bound| params_from::<A>(&params_of::<A>(bound)));
+        draws.bounds = bounds.map(|bound| bound.cast::<A::Scalar>().cast());
         draws.distributions.insert(name.to_owned(), distribution);
         Ok(draws)
     }
@@ -147,7 +146,7 @@ impl<A: Arithmetic> Many<A> {
     }
 
     fn check_range(ends: [Params; 2]) -> PyResult<()> {
-        let [low, high] = ends.map(params_of::<A>);
+        let [low, high] = ends.map(|end| end.cast::<A::Scalar>());
         ParamsRange::new(low, high).map(drop).map_err(|error| {
             let mut message = error.to_string();
             for (_, own, field) in &NUMBERS {
@@ -183,7 +182,7 @@ impl<A: Arithmetic> Many<A> {
             self.own = true;
         }
         for index in 0..if self.own { self.batch.len() } else { 1 } {
-            let params = params_of::<A>(*params.get(index).unwrap_or(&params[0]));
+            let params = params.get(index).unwrap_or(&params[0]).cast();
             if self.own {
                 self.batch.set_params_of(index, params)
             } else {
@@ -206,7 +205,7 @@ impl<A: Arithmetic> Many<A> {
                 let params = self.params(index);
                 let rng = &mut self.batch.generators_mut()[index];
                 let drawn = self.draws.draw(params, rng);
-                self.batch.set_params_of(index, params_of::<A>(drawn))?;
+                self.batch.set_params_of(index, drawn.cast())?;
             }
         }
         Ok(())

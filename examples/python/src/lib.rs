@@ -8,10 +8,10 @@ mod single;
 
 use std::fmt::Display;
 
-use acrobot::arithmetic::{Arithmetic, Host, Real};
+use acrobot::arithmetic::Host;
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::physics::{Dynamics, Friction, FrictionOf, ParamsOf, Task, Viscous};
-use acrobot::{Observation, State};
+use acrobot::physics::{Dynamics, Task};
+use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -27,29 +27,6 @@ mod _native {
     use super::batch::Batch;
     #[pymodule_export]
     use super::single::Acrobot;
-}
-
-/// The parameters of any task. Friction is 0 where there is none.
-type Params = acrobot::Params<f64, Viscous<f64>>;
-
-/// The parameters in an arithmetic.
-fn params_of<A: Arithmetic>(params: Params) -> ParamsOf<A> {
-    let Viscous { joint1, joint2 } = params.friction;
-    let mut coefficients = [joint1, joint2].map(A::Scalar::from_f64).into_iter();
-    let none = FrictionOf::<A>::default();
-    let friction = FrictionOf::<A>::zip(none, none, |zero: A::Scalar, _| {
-        coefficients.next().unwrap_or(zero)
-    });
-    let params = params.without_friction().cast();
-    params.with_friction(friction)
-}
-
-/// The parameters of an arithmetic. Conversions from `f32` and back are exact.
-fn params_from<A: Arithmetic>(params: &ParamsOf<A>) -> Params {
-    let coefficients = FrictionOf::<A>::coefficients::<A::Scalar>(&params.friction);
-    let [joint1, joint2] = coefficients.unwrap_or_default().map(Real::to_f64);
-    let params = params.without_friction().cast();
-    params.with_friction(Viscous { joint1, joint2 })
 }
 
 /// The torque of a continuous action, N m, which is within the smallest and the largest torque.
@@ -192,8 +169,11 @@ fn render<'py>(
         "ansi" => RenderMode::Ansi,
         other => return Err(unknown("render_mode", r#""rgb_array" or "ansi""#, other)),
     };
-    let mut env =
-        AcrobotEnv::<Host, Observation>::new(params.without_friction(), mode).map_err(rejected)?;
+    let params = Params {
+        friction: Default::default(), // which no picture shows
+        ..params
+    };
+    let mut env = AcrobotEnv::<Host, Observation>::new(params, mode).map_err(rejected)?;
     env.unwrapped_mut().set_state(state).map_err(rejected)?;
     match env.render().map_err(rejected)? {
         Rendering::Frame(frame) => {

@@ -10,8 +10,8 @@ use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    InvalidAction, Params, convert, invalid, load, must_be, params_from, params_of, rejected,
-    render, save, shown, torque_of, unknown, with,
+    InvalidAction, Params, convert, invalid, load, must_be, rejected, render, save, shown,
+    torque_of, unknown, with,
 };
 
 pyo3::import_exception!(gymnasium.error, ResetNeeded);
@@ -62,14 +62,14 @@ impl One {
 
     fn params(&self) -> Params {
         fn of<A: Arithmetic>(acrobot: &acrobot::Acrobot<A>) -> Params {
-            params_from::<A>(acrobot.params())
+            acrobot.params().cast()
         }
         with_one!(self, acrobot => of(acrobot))
     }
 
     fn set_params(&mut self, params: Params) -> PyResult<()> {
         fn set<A: Arithmetic>(acrobot: &mut acrobot::Acrobot<A>, params: Params) -> PyResult<()> {
-            let set = acrobot.set_params(params_of::<A>(params));
+            let set = acrobot.set_params(params.cast());
             set.map_err(|error| invalid(A::TASK, error))
         }
         with_one!(self, acrobot => set(acrobot, params))

@@ -9,7 +9,7 @@ use std::path::Path;
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, ParamsOf, ParamsRange};
+use acrobot::physics::{Dynamics, ParamsRange};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 use serde::Serialize;
@@ -95,7 +95,7 @@ fn load<T: Snapshot>(bytes: &[u8]) {
 }
 
 /// Angles and velocities are within their bounds, so none is NaN.
-fn assert_settled<S: Real, F>(state: State<S>, params: &Params<S, F>) {
+fn assert_settled<S: Real>(state: State<S>, params: &Params<S>) {
     let limits = [S::PI, S::PI, params.max_velocity1, params.max_velocity2];
     for (x, limit) in <[S; 4]>::from(state).into_iter().zip(limits) {
         assert!(-limit <= x && x <= limit, "{state:?}");
@@ -195,7 +195,7 @@ fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, N>) {
 impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, N> {
     fn sample() -> Self {
         let seed = SeedSequence::new(42);
-        let low = ParamsOf::<A>::default();
+        let low = Params::<A::Scalar>::default();
         let mut high = low;
         high.torque_noise = A::Scalar::from_f64(0.5);
         let batch = if N < 4 {

@@ -1,8 +1,8 @@
 //! The deviation of a state from another one.
 
 use crate::math::Real;
+use crate::physics::arithmetic::Arithmetic;
 use crate::physics::bounds::wrap;
-use crate::physics::equations::Arithmetic;
 use crate::physics::pendulum::Pendulum;
 use crate::physics::state::State;
 

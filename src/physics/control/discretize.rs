@@ -4,7 +4,8 @@ use super::error::ControlError;
 use super::linearize::partials;
 use super::matrix::{check_finite, dot, identity, transpose};
 use crate::math::{Real, SinCos};
-use crate::physics::equations::{Arithmetic, Form, Model};
+use crate::physics::arithmetic::Arithmetic;
+use crate::physics::model::Model;
 use crate::physics::pendulum::{Pendulum, check_torque};
 use crate::physics::rk4::plus_scaled;
 
@@ -49,7 +50,7 @@ pub fn discretize<A: Arithmetic>(
 ) -> Result<DiscreteModel<A::Scalar>, ControlError> {
     check_torque(torque)?;
     let model = pendulum.model();
-    let common = A::Form::common(&model.constants);
+    let common = &model.constants;
     let (half, dt, sixth) = (common.half_dt, model.params.dt, common.sixth_dt);
     let third = sixth + sixth;
     let before = Sensitive {
@@ -57,13 +58,13 @@ pub fn discretize<A: Arithmetic>(
         by_state: identity(),
         by_torque: [A::Scalar::ZERO; 4],
     };
-    let mut k = rates(model, &before, pendulum.sin_cos(), torque);
+    let mut k = rates::<A>(model, &before, pendulum.sin_cos(), torque);
     let mut after = before.plus_scaled(sixth, &k);
     // The other stages of the Runge-Kutta step.
     for (h, weight) in [(half, third), (half, third), (dt, sixth)] {
         let x = before.plus_scaled(h, &k);
         let [theta1, theta2, ..] = x.y;
-        k = rates(model, &x, [theta1, theta2].map(A::sin_cos_near), torque);
+        k = rates::<A>(model, &x, [theta1, theta2].map(A::sin_cos_near), torque);
         after = after.plus_scaled(weight, &k);
     }
     let model = DiscreteModel {
@@ -101,12 +102,13 @@ impl<S: Real> Sensitive<S> {
 /// the first, and its exact derivatives. `sin_cos` are the sines and cosines of θ1 and θ2.
 #[inline(never)] // saves flash: it is called in two places
 fn rates<A: Arithmetic>(
-    model: &Model<A>,
+    model: &Model<A::Scalar>,
     x: &Sensitive<A::Scalar>,
     sin_cos: [SinCos<A::Scalar>; 2],
     torque: A::Scalar,
 ) -> Sensitive<A::Scalar> {
-    let ([ddtheta1, ddtheta2], [by_state @ .., by_torque]) = partials(model, x.y, sin_cos, torque);
+    let ([ddtheta1, ddtheta2], [by_state @ .., by_torque]) =
+        partials::<A>(model, x.y, sin_cos, torque);
     let [_, _, dtheta1, dtheta2] = x.y;
     let y = [dtheta1, dtheta2, ddtheta1, ddtheta2];
     let ddtheta1 = by_state.map(|[ddtheta1, _]| ddtheta1);

@@ -4,9 +4,9 @@ use super::error::ControlError;
 use super::matrix::check_finite;
 use crate::error::Range;
 use crate::math::Real;
-use crate::physics::common::directions;
-use crate::physics::equations::{Arithmetic, FrictionOf};
-use crate::physics::friction::Friction;
+use crate::physics::arithmetic::Arithmetic;
+use crate::physics::friction::Viscous;
+use crate::physics::geometry::directions;
 use crate::physics::params::Dynamics;
 use crate::physics::pendulum::Pendulum;
 
@@ -87,7 +87,8 @@ pub fn inverse_dynamics<A: Arithmetic>(
         + lc1 * across(direction1, force1)
         + (l1 - lc1) * across(direction1, force2);
 
-    if let Some([joint1, joint2]) = FrictionOf::<A>::coefficients::<A::Scalar>(&params.friction) {
+    if A::HAS_FRICTION {
+        let Viscous { joint1, joint2 } = params.friction;
         torque1 = torque1 + joint1 * state.dtheta1;
         torque2 = torque2 + joint2 * state.dtheta2;
     }

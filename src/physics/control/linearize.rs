@@ -3,9 +3,10 @@
 use super::error::ControlError;
 use super::matrix::check_finite;
 use crate::math::{Real, SinCos};
-use crate::physics::common::{Common, directions};
-use crate::physics::equations::{Arithmetic, Form, FrictionOf, Model};
-use crate::physics::friction::Friction;
+use crate::physics::arithmetic::Arithmetic;
+use crate::physics::friction::Viscous;
+use crate::physics::geometry::directions;
+use crate::physics::model::{Constants, Model};
 use crate::physics::pendulum::{Pendulum, check_torque};
 
 /// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
@@ -48,7 +49,8 @@ pub fn linearize<A: Arithmetic>(
     check_torque(torque)?;
     let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
     let y = pendulum.state().into();
-    let (_, [by_state @ .., by_torque]) = partials(pendulum.model(), y, pendulum.sin_cos(), torque);
+    let (_, [by_state @ .., by_torque]) =
+        partials::<A>(pendulum.model(), y, pendulum.sin_cos(), torque);
     let model = ContinuousModel {
         a: [
             [zero, zero, one, zero],
@@ -71,20 +73,20 @@ pub fn linearize<A: Arithmetic>(
 /// heavier than the other, so this does not call it.
 #[inline(always)]
 pub(super) fn partials<A: Arithmetic>(
-    model: &Model<A>,
+    model: &Model<A::Scalar>,
     [_, _, dtheta1, dtheta2]: [A::Scalar; 4],
     [(sin1, cos1), (sin2, cos2)]: [SinCos<A::Scalar>; 2],
     torque: A::Scalar,
 ) -> ([A::Scalar; 2], [[A::Scalar; 2]; 5]) {
     let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
-    let Common {
+    let Constants {
         coupling,
         link2,
         gravity1,
         gravity2,
         nips,
         ..
-    } = *A::Form::common(&model.constants);
+    } = model.constants;
     let params = &model.params;
     let (l1, lc1) = (params.length1, params.center_of_mass1);
     let link1 = params.mass1 * (lc1 * lc1) + params.inertia1;
@@ -115,7 +117,8 @@ pub(super) fn partials<A: Arithmetic>(
         mut force1_by_dtheta2,
         mut force2_by_dtheta2,
     ] = [twice_sin * (dbeta - nips * dalpha), twice_sin * dbeta, zero];
-    if let Some([joint1, joint2]) = FrictionOf::<A>::coefficients(&params.friction) {
+    if A::HAS_FRICTION {
+        let Viscous { joint1, joint2 } = params.friction;
         force1 = force1 - joint1 * dtheta1 + joint2 * dtheta2;
         force2 = force2 - joint2 * dtheta2;
         force1_by_dtheta1 = force1_by_dtheta1 - joint1;

@@ -4,7 +4,7 @@ use super::discretize::discretize;
 use super::error::ControlError;
 use super::lqr::{Lqr, lqr};
 use crate::math::Real;
-use crate::physics::equations::Arithmetic;
+use crate::physics::arithmetic::Arithmetic;
 use crate::physics::pendulum::Pendulum;
 
 /// The largest acceleration in equilibrium, rad/s². Rounding upright is far below.

@@ -1,9 +1,9 @@
 //! Fixed episodes and batches, and a digest of every bit of each.
 
-use acrobot::arithmetic::{Arithmetic, Damped, Form, Micro, Real, Reference, Swingup};
+use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference, Swingup};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::{ParamsOf, ParamsRange, Viscous};
+use acrobot::physics::{ParamsRange, Viscous};
 use acrobot::{Acrobot, Action, Fast, Observation, Params, Portable, State, TimeLimit};
 
 use crate::{Digest, against};
@@ -50,7 +50,7 @@ pub fn equal<A: Arithmetic>(expected: &[u64; 16]) -> usize {
 }
 
 /// Torques so small that angles and velocities stay subnormal for 200 steps.
-fn subnormal_torques<A: Arithmetic>(params: &mut ParamsOf<A>) {
+fn subnormal_torques<A: Arithmetic>(params: &mut Params<A::Scalar>) {
     let smallest_normal = if size_of::<A::Scalar>() == 4 {
         f64::from(f32::MIN_POSITIVE)
     } else {
@@ -82,10 +82,7 @@ pub fn damped() -> [u64; 2] {
     ]
 }
 
-fn damped_in<A>() -> u64
-where
-    A: Arithmetic<Form: Form<A::Scalar, Friction = Viscous<A::Scalar>>>,
-{
+fn damped_in<A: Arithmetic>() -> u64 {
     let [joint1, joint2] = [0.1, 0.05].map(A::Scalar::from_f64);
     steps(Acrobot::<A>::new(0), |params| {
         params.friction = Viscous { joint1, joint2 };
@@ -117,7 +114,7 @@ fn swingup_in<A: Arithmetic>() -> u64 {
 }
 
 /// Every bit of 200 steps against θ̇1 with changed parameters.
-fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>, change: impl Fn(&mut ParamsOf<A>)) -> u64 {
+fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>, change: impl Fn(&mut Params<A::Scalar>)) -> u64 {
     let mut params = *acrobot.params();
     change(&mut params);
     if acrobot.set_params(params).is_err() {

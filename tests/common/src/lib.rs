@@ -8,8 +8,8 @@ pub mod twins;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use acrobot::arithmetic::Real;
-use acrobot::physics::{Dynamics, Friction, Frictionless, ParamsRange, Viscous};
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::physics::{Dynamics, ParamsRange, Viscous};
 use acrobot::{Params, State};
 
 pub use bits::Digest;
@@ -46,25 +46,8 @@ macro_rules! in_every_arithmetic {
     }};
 }
 
-/// A friction with these coefficients, where there is any.
-pub trait AnyFriction<S: Real>: Friction<S, Of<S> = Self> {
-    fn new(joint1: S, joint2: S) -> Self;
-}
-
-impl<S: Real> AnyFriction<S> for Frictionless {
-    fn new(_: S, _: S) -> Self {
-        Self
-    }
-}
-
-impl<S: Real> AnyFriction<S> for Viscous<S> {
-    fn new(joint1: S, joint2: S) -> Self {
-        Self { joint1, joint2 }
-    }
-}
-
-/// All parameters, each from a wide range.
-pub fn params_range<S: Real, F: AnyFriction<S>>(dynamics: Dynamics) -> ParamsRange<S, F> {
+/// All parameters that an arithmetic has, each from a wide range.
+pub fn params_range<A: Arithmetic>(dynamics: Dynamics) -> ParamsRange<A::Scalar> {
     let low = Params {
         length1: 0.5,
         length2: 0.5,
@@ -81,7 +64,7 @@ pub fn params_range<S: Real, F: AnyFriction<S>>(dynamics: Dynamics) -> ParamsRan
         torques: [-2.0, -0.5, 0.5],
         torque_noise: 0.0,
         dynamics,
-        friction: Frictionless,
+        friction: Viscous::default(),
     };
     let high = Params {
         length1: 2.0,
@@ -99,15 +82,16 @@ pub fn params_range<S: Real, F: AnyFriction<S>>(dynamics: Dynamics) -> ParamsRan
         torques: [-0.5, 0.5, 2.0],
         torque_noise: 0.5,
         dynamics,
-        friction: Frictionless,
+        friction: if A::HAS_FRICTION {
+            Viscous {
+                joint1: 0.5,
+                joint2: 0.3,
+            }
+        } else {
+            Viscous::default()
+        },
     };
-    let [joint1, joint2] = [0.5, 0.3].map(S::from_f64);
-    let friction = F::new(joint1, joint2);
-    ParamsRange::new(
-        low.cast().with_friction(F::default()),
-        high.cast().with_friction(friction),
-    )
-    .unwrap()
+    ParamsRange::new(low.cast(), high.cast()).unwrap()
 }
 
 /// Fails with the text that a page of the docs should contain. Line breaks do not count.

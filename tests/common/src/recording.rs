@@ -32,7 +32,7 @@ impl Episode {
     /// An acrobot in the episode's initial state.
     pub fn start<A: Arithmetic>(&self) -> Acrobot<A> {
         let mut acrobot = Acrobot::<A>::new(0);
-        let params = self.params.cast().with_friction(Default::default());
+        let params = self.params.cast();
         acrobot.set_params(params).unwrap();
         acrobot.reset_with(ResetOptions {
             seed: Some(self.seed.clone()),

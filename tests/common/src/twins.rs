@@ -3,11 +3,11 @@
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, SimdLevel, StepBuffers, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, FrictionOf, ParamsOf, ResetBounds};
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Observation, Params, ResetOptions, State, Step, TimeLimit};
 use bits::against;
 
-use crate::{AnyFriction, bits, params_range};
+use crate::{bits, params_range};
 
 pub const MODES: [Autoreset; 3] = [
     Autoreset::NextStep,
@@ -53,7 +53,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         }
     }
 
-    pub fn set_params(&mut self, params: ParamsOf<A>) {
+    pub fn set_params(&mut self, params: Params<A::Scalar>) {
         self.batch.set_params(params).unwrap();
         for alone in &mut self.alone {
             alone.set_params(params).unwrap();
@@ -61,7 +61,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.assert_equal();
     }
 
-    pub fn set_params_of_each(&mut self, params: &[ParamsOf<A>]) {
+    pub fn set_params_of_each(&mut self, params: &[Params<A::Scalar>]) {
         for (i, alone) in self.alone.iter_mut().enumerate() {
             self.batch.set_params_of(i, params[i]).unwrap();
             alone.set_params(params[i]).unwrap();
@@ -206,11 +206,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
 
     /// Plays with every SIMD level, with shared parameters and with drawn ones. Initial states are far outside of the bounds,
     /// and there is noise.
-    pub fn at_every_level()
-    where
-        FrictionOf<A>: AnyFriction<A::Scalar>,
-    {
-        let range = params_range(Dynamics::Book);
+    pub fn at_every_level() {
+        let range = params_range::<A>(Dynamics::Book);
         for level in LEVELS {
             let mut shared = Self::new(37, Autoreset::SameStep);
             let mut drawn = Self::with_own_params(37, Autoreset::NextStep);

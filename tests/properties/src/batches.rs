@@ -5,23 +5,23 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference, Swingup};
 use acrobot::batch::{Autoreset, Member, SimdLevel};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, FrictionOf, ResetBounds};
+use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
+use common::params_range;
 use common::twins::{LEVELS, MODES, Twins};
-use common::{AnyFriction, params_range};
 use proptest::prelude::*;
 
-use crate::given::{Number, Range, Tested, action, holds, number, params, reset_bounds, state};
+use crate::given::{Range, Tested, action, holds, number, params, reset_bounds, state};
 
 /// The largest batch: three blocks of 16, of which one is not full.
 const LEN: usize = 35;
 
 #[derive(Clone, Debug)]
-enum Call<S, F> {
+enum Call<S> {
     Settings(Autoreset, NonZeroU32, SimdLevel, ResetBounds),
-    Params(Params<S, F>),
+    Params(Params<S>),
     /// Valid, or without mass.
-    ParamsOf(usize, Params<S, F>, bool),
+    ParamsOf(usize, Params<S>, bool),
     ParamsRange(Option<Dynamics>),
     Reset(Option<Vec<bool>>, Option<u64>, Option<ResetBounds>),
     ResetTo(Vec<State<S>>),
@@ -39,7 +39,7 @@ fn each<S: Strategy>(element: S) -> impl Strategy<Value = Vec<S::Value>> {
     prop::collection::vec(element, LEN)
 }
 
-fn call<S: Number, F: AnyFriction<S>>() -> BoxedStrategy<Call<S, F>> {
+fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
     // Lanes of the last block have no acrobot.
     let index = || 0..LEN + 16;
     let mode = prop::sample::select(&MODES[..]);
@@ -53,10 +53,10 @@ fn call<S: Number, F: AnyFriction<S>>() -> BoxedStrategy<Call<S, F>> {
         any::<Option<u64>>(),
         prop::option::of(bounds()),
     );
-    let of_one = (index(), params(Range::Any), prop::bool::weighted(0.8));
+    let of_one = (index(), params::<A>(Range::Any), prop::bool::weighted(0.8));
     prop_oneof![
         3 => (mode, limit, level, bounds()).prop_map(|(a, b, c, d)| Call::Settings(a, b, c, d)),
-        1 => params(Range::Any).prop_map(Call::Params),
+        1 => params::<A>(Range::Any).prop_map(Call::Params),
         3 => of_one.prop_map(|(index, params, valid)| Call::ParamsOf(index, params, valid)),
         1 => prop::option::of(dynamics).prop_map(Call::ParamsRange),
         3 => reset.prop_map(|(mask, seed, bounds)| Call::Reset(mask, seed, bounds)),
@@ -92,7 +92,7 @@ impl<A: Tested, const N: usize> Model<A, N> {
     }
 
     /// A rejected call leaves the batch as it was.
-    fn call(&mut self, call: Call<A::Scalar, FrictionOf<A>>) {
+    fn call(&mut self, call: Call<A::Scalar>) {
         let Twins {
             batch,
             alone,
@@ -120,7 +120,7 @@ impl<A: Tested, const N: usize> Model<A, N> {
                 }
             }
             Call::ParamsRange(dynamics) => {
-                let set = batch.set_params_range(dynamics.map(params_range));
+                let set = batch.set_params_range(dynamics.map(params_range::<A>));
                 assert_eq!(set.is_ok(), self.own_params || dynamics.is_none());
             }
             Call::Reset(mask, seed, bounds) => {
@@ -182,7 +182,7 @@ impl<A: Tested, const N: usize> Model<A, N> {
 #[test]
 fn any_calls_in_any_order_equal_single_acrobots() {
     fn check<A: Tested, const N: usize>() {
-        let calls = prop::collection::vec(call(), 0..40);
+        let calls = prop::collection::vec(call::<A>(), 0..40);
         holds(200, (1..=LEN, any::<bool>(), calls), |(len, own, calls)| {
             let mut model = Model::<A, N>::new(len, own);
             calls.into_iter().for_each(|call| model.call(call));

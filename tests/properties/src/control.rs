@@ -26,7 +26,7 @@ fn results_are_finite_or_errors() {
     fn check<A: Tested>() {
         let rates = [number::<A::Scalar>(Range::Any), number(Range::Any)];
         let given = (
-            params(Range::Any),
+            params::<A>(Range::Any),
             state(Range::Any),
             number(Range::Any),
             rates,
@@ -58,7 +58,7 @@ fn results_are_finite_or_errors() {
 fn moderate_pendulums_have_models() {
     fn check<A: Tested>() {
         let given = (
-            params::<A::Scalar, _>(Range::Moderate),
+            params::<A>(Range::Moderate),
             state(Range::Moderate),
             number(Range::Moderate),
         );
@@ -144,7 +144,7 @@ fn moderate_pendulums_can_be_held_upright() {
         let weight = (-4.0..4.0_f64).prop_map(f64::exp);
         holds(
             500,
-            (params::<A::Scalar, _>(Range::Moderate), weight),
+            (params::<A>(Range::Moderate), weight),
             |(params, r)| {
                 let target = acrobot::State::UPRIGHT;
                 let pendulum = Pendulum::<A>::new(params, target).unwrap();

@@ -6,7 +6,7 @@ use acrobot::env::{
 };
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::ResetBounds;
-use acrobot::{Action, Params, ResetOptions, State, TimeLimit};
+use acrobot::{Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use common::in_every_arithmetic;
 use proptest::prelude::*;
 
@@ -14,7 +14,7 @@ use crate::given::{Range, Tested, action, holds, params, reset_bounds, state};
 
 /// Parameters that are also valid in `f32`.
 fn fitting() -> impl Strategy<Value = Params> {
-    params::<f32, _>(Range::Any).prop_map(|params| params.cast())
+    params::<Fast>(Range::Any).prop_map(|params| params.cast())
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn call() -> impl Strategy<Value = Call> {
         2 => reset.prop_map(|(seed, bounds)| Call::Reset(seed, bounds)),
         20 => action().prop_map(Call::Step),
         2 => state::<f64>(Range::Any).prop_map(Call::SetState),
-        2 => params::<f64, _>(Range::Any).prop_map(Call::SetParams),
+        2 => params::<Portable>(Range::Any).prop_map(Call::SetParams),
         2 => Just(Call::Render),
         1 => Just(Call::Close),
     ]

@@ -2,11 +2,10 @@
 
 use std::fmt::Debug;
 
-use acrobot::arithmetic::{Arithmetic, Form, Real};
+use acrobot::arithmetic::{Arithmetic, Modeled, Real};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::{Dynamics, ParamsOf, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, Pendulum, ResetBounds, Viscous};
 use acrobot::{Acrobot, Action, Params, State};
-use common::AnyFriction;
 use proptest::num::{f32, f64};
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, RngSeed, TestRunner};
@@ -40,19 +39,13 @@ fn hold<T: Debug>(cases: u32, given: BoxedStrategy<T>, property: &dyn Fn(T)) {
     }
 }
 
-/// An arithmetic whose scalar and friction can be generated.
-pub trait Tested:
-    Arithmetic<Scalar: Number, Form: Form<Self::Scalar, Friction: AnyFriction<Self::Scalar>>>
-{
-}
+/// An arithmetic whose scalar can be generated.
+pub trait Tested: Arithmetic<Scalar: Number> {}
 
-impl<A> Tested for A where
-    A: Arithmetic<Scalar: Number, Form: Form<Self::Scalar, Friction: AnyFriction<Self::Scalar>>>
-{
-}
+impl<A: Arithmetic<Scalar: Number>> Tested for A {}
 
 /// A scalar that can be generated.
-pub trait Number: Real {
+pub trait Number: Modeled {
     /// Any finite number. All exponents are equally likely.
     fn finite() -> BoxedStrategy<Self>;
 }
@@ -101,22 +94,23 @@ fn positive<S: Number>(range: Range, usual: f64) -> BoxedStrategy<S> {
     }
 }
 
-/// Valid parameters.
-pub fn params<S: Number, F: AnyFriction<S>>(range: Range) -> BoxedStrategy<Params<S, F>> {
+/// Valid parameters of an arithmetic.
+pub fn params<A: Tested>(range: Range) -> BoxedStrategy<Params<A::Scalar>> {
     let Params {
         dt,
         max_velocity1,
         max_velocity2,
         ..
     } = Params::DEFAULT;
-    let of_links = [(); 4].map(|()| positive::<S>(range, 1.0));
-    let or_none = |usual| prop_oneof![4 => positive::<S>(range, usual), 1 => Just(S::ZERO)];
+    let of_links = [(); 4].map(|()| positive::<A::Scalar>(range, 1.0));
+    let or_none =
+        |usual| prop_oneof![4 => positive::<A::Scalar>(range, usual), 1 => Just(A::Scalar::ZERO)];
     let centers = [0.5, 0.5].map(or_none);
     let inertias = [1.0, 1.0].map(or_none);
-    let limits = [max_velocity1, max_velocity2].map(|usual| positive::<S>(range, usual));
-    let gravity = prop_oneof![1 => Just(S::from_f64(9.8)), 1 => number(range)];
-    let torques = [(); 3].map(|()| number::<S>(range));
-    let noise = prop_oneof![2 => Just(S::ZERO), 1 => positive::<S>(range, 1.0)];
+    let limits = [max_velocity1, max_velocity2].map(|usual| positive::<A::Scalar>(range, usual));
+    let gravity = prop_oneof![1 => Just(A::Scalar::from_f64(9.8)), 1 => number(range)];
+    let torques = [(); 3].map(|()| number::<A::Scalar>(range));
+    let noise = prop_oneof![2 => Just(A::Scalar::ZERO), 1 => positive::<A::Scalar>(range, 1.0)];
     let dynamics = prop_oneof![Just(Dynamics::Book), Just(Dynamics::Nips)];
     let friction = [(); 2].map(|()| or_none(0.05));
     let all = (
@@ -147,7 +141,11 @@ pub fn params<S: Number, F: AnyFriction<S>>(range: Range) -> BoxedStrategy<Param
                 torques,
                 torque_noise,
                 dynamics,
-                friction: F::new(joint1, joint2),
+                friction: if A::HAS_FRICTION {
+                    Viscous { joint1, joint2 }
+                } else {
+                    Viscous::default()
+                },
             }
         },
     )
@@ -180,7 +178,7 @@ pub fn reset_bounds() -> impl Strategy<Value = ResetBounds> {
 
 /// An acrobot with these parameters in this state.
 pub fn acrobot<A: Arithmetic>(
-    params: ParamsOf<A>,
+    params: Params<A::Scalar>,
     state: State<A::Scalar>,
     seed: u64,
 ) -> Acrobot<A> {

@@ -11,7 +11,11 @@ use common::canvas::Canvas;
 use common::in_every_arithmetic;
 
 fn figure<A: Tested>() -> impl Strategy<Value = Figure> {
-    let given = (params(Range::Any), state(Range::Any), prop::num::f32::ANY);
+    let given = (
+        params::<A>(Range::Any),
+        state(Range::Any),
+        prop::num::f32::ANY,
+    );
     given.prop_map(|(params, state, torque)| {
         Figure::new(&acrobot::<A>(params, state, 0)).with_torque(torque)
     })

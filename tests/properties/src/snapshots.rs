@@ -15,7 +15,12 @@ use crate::given::{Range, Tested, acrobot, holds, params, state};
 
 /// An acrobot after some steps and draws, with any time limit.
 fn running<A: Tested>() -> impl Strategy<Value = TimeLimit<Acrobot<A>>> {
-    let given = (params(Range::Any), state(Range::Any), any::<u64>(), 0..4);
+    let given = (
+        params::<A>(Range::Any),
+        state(Range::Any),
+        any::<u64>(),
+        0..4,
+    );
     let limit = prop_oneof![Just(1), Just(500), 1..=u32::MAX];
     (given, limit).prop_map(|((params, state, seed, steps), limit)| {
         let mut acrobot = TimeLimit::new(acrobot(params, state, seed), limit.try_into().unwrap());
@@ -59,14 +64,18 @@ fn snapshots_resume_to_the_same_bits() {
 #[test]
 fn members_and_parts_load_as_stored() {
     let progress = any::<(u32, bool, u64, bool)>();
-    let given = (params(Range::Any), state(Range::Any), progress);
+    let given = (
+        params::<Damped<Fast>>(Range::Any),
+        state(Range::Any),
+        progress,
+    );
     holds(500, given, |(params, state, progress)| {
         let (elapsed, reset_pending, seed, half) = progress;
         let mut rng = Pcg64::new(seed);
         if half {
             rng.next_u32();
         }
-        let member = Member::<Fast> {
+        let member = Member::<Damped<Fast>> {
             params,
             state,
             elapsed,
@@ -78,7 +87,10 @@ fn members_and_parts_load_as_stored() {
             assert_eq!(loaded, member);
         }
     });
-    let given = (params::<f64, _>(Range::Any), state::<f64>(Range::Any));
+    let given = (
+        params::<Damped<Portable>>(Range::Any),
+        state::<f64>(Range::Any),
+    );
     holds(500, given, |(params, state): (Params, State)| {
         for (_, loaded) in again(&params) {
             assert_eq!(loaded, params);
@@ -98,7 +110,7 @@ struct Saved {
 #[test]
 fn every_format_stores_batches() {
     let mut batch = VecBatch::with_own_params(SeedSequence::new(42), 3).unwrap();
-    for range in [None, Some(params_range(Dynamics::Nips))] {
+    for range in [None, Some(params_range::<Fast>(Dynamics::Nips))] {
         batch.set_params_range(range).unwrap();
         batch.reset();
         let batch = batch.clone();

@@ -7,7 +7,7 @@ use std::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
 use acrobot::numpy::{Pcg64, integers};
-use acrobot::physics::{ParamsOf, Pendulum};
+use acrobot::physics::Pendulum;
 use acrobot::{Acrobot, Action, Error, Fast, Observation, Params, Portable, State, Step};
 use proptest::prelude::*;
 
@@ -50,7 +50,7 @@ fn any_settings_and_steps_stay_in_bounds() {
     fn check<A: Tested>() {
         let steps = Cell::new(0_u64);
         let set = (
-            [(); 2].map(|()| params(Range::Any)),
+            [(); 2].map(|()| params::<A>(Range::Any)),
             [(); 2].map(|()| state(Range::Any)),
         );
         let done = (
@@ -100,7 +100,7 @@ fn mirror<S: Real>(state: State<S>) -> State<S> {
     <[S; 4]>::from(state).map(|x| -x).into()
 }
 
-fn mirrored<S: Real, F>(params: Params<S, F>) -> Params<S, F> {
+fn mirrored<S: Real>(params: Params<S>) -> Params<S> {
     let [negative, zero, positive] = params.torques;
     Params {
         torques: [-positive, -zero, -negative],
@@ -111,7 +111,7 @@ fn mirrored<S: Real, F>(params: Params<S, F>) -> Params<S, F> {
 
 /// The largest angle that a Runge-Kutta step passes through, rad. An error if a number is not finite.
 fn reach<A: Arithmetic>(
-    params: &ParamsOf<A>,
+    params: &Params<A::Scalar>,
     state: State<A::Scalar>,
     torque: A::Scalar,
 ) -> Result<f64, Error> {
@@ -141,7 +141,7 @@ fn reach<A: Arithmetic>(
 fn mirrored_steps_are_mirror_images() {
     fn check<A: Tested>(farthest: f64) {
         let checked = Cell::new(0);
-        let given = (params(Range::Any), state(Range::Any), action());
+        let given = (params::<A>(Range::Any), state(Range::Any), action());
         holds(2000, given, |(params, state, action)| {
             let right = mirrored(params);
             let left = mirrored(right);

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use acrobot::arithmetic::{Real, Reference};
-use acrobot::physics::{ParamsOf, Pendulum, bound, wrap};
-use acrobot::{Fast, Observation, Portable, State};
+use acrobot::arithmetic::{Damped, Real, Reference};
+use acrobot::physics::{Pendulum, bound, wrap};
+use acrobot::{Fast, Observation, Params, Portable, State};
 use common::{bits, in_every_arithmetic};
 use proptest::prelude::*;
 
@@ -13,7 +13,7 @@ use crate::given::{Range, Tested, acrobot, holds, number, params, state};
 /// The angle x after a step in which nothing moves.
 fn stepped<A: Tested>(x: A::Scalar) -> A::Scalar {
     let zero = A::Scalar::ZERO;
-    let params = ParamsOf::<A> {
+    let params = Params::<A::Scalar> {
         gravity: zero,
         ..Default::default()
     };
@@ -121,7 +121,7 @@ fn sines_and_cosines_are_on_the_unit_circle() {
 #[test]
 fn the_tip_is_within_reach() {
     fn check<A: Tested>() {
-        let given = (params(Range::Any), state(Range::Any));
+        let given = (params::<A>(Range::Any), state(Range::Any));
         holds(1000, given, |(params, state)| {
             let acrobot = acrobot::<A>(params, state, 0);
             assert_eq!(acrobot.params(), &params);
@@ -146,7 +146,7 @@ fn the_tip_is_within_reach() {
 fn the_equations_are_those_of_a_pendulum() {
     fn check<A: Tested>() {
         let given = (
-            params(Range::Moderate),
+            params::<A>(Range::Moderate),
             state(Range::Moderate),
             number(Range::Moderate),
         );
@@ -183,7 +183,7 @@ fn the_equations_are_those_of_a_pendulum() {
 fn casts_to_a_wider_scalar_are_exact() {
     holds(
         1000,
-        (params::<f32, _>(Range::Any), state::<f32>(Range::Any)),
+        (params::<Damped<Fast>>(Range::Any), state::<f32>(Range::Any)),
         |(params, state)| {
             assert_eq!(params.cast::<f64>().cast::<f32>(), params);
             assert_eq!(bits(state.cast::<f64>().cast::<f32>()), bits(state));

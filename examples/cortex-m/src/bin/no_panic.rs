@@ -73,7 +73,7 @@ fn state<S: Real>() -> State<S> {
     [(); 4].map(|()| number()).into()
 }
 
-fn params<S: Real, F: Default>() -> Params<S, F> {
+fn params<S: Real>() -> Params<S> {
     Params {
         torque_noise: number(),
         mass1: number(),

@@ -67,7 +67,7 @@ struct Planner {
 
 impl Planner {
     fn new(seed: u64) -> anyhow::Result<Self> {
-        let model = Pendulum::<Task>::new(Params::<f32, _>::SWINGUP, State::UPRIGHT)?;
+        let model = Pendulum::<Task>::new(Params::SWINGUP, State::UPRIGHT)?;
         let weights = from_fn(|i| from_fn(|j| f32::from(u8::from(i == j))));
         Ok(Self {
             regulator: lqr(&discretize(&model, 0.0)?, &weights, 1.0)?,

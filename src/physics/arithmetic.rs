@@ -1,0 +1,133 @@
+//! The trait that determines every bit of a step, and what it decides about parameters.
+
+use core::fmt;
+
+use super::friction::Viscous;
+use super::model::{Form, Model, Modeled};
+use super::params::Params;
+use super::task::Task;
+use crate::error::Error;
+use crate::math::{Numbers, Real};
+
+/// A scalar, its sines and the form of the equations: they determine every bit of a result.
+pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
+    /// A short name in lower case, of at most 16 bytes. Snapshots hold it, so no other arithmetic can load them. The
+    /// crate's names are "reference", "portable", "fast", "micro" and "host". With a longer name, code that saves or
+    /// loads a snapshot does not compile.
+    const NAME: &'static str;
+
+    /// The type of angles, velocities, torques and parameters.
+    type Scalar: Modeled;
+
+    /// How the equations of motion are evaluated.
+    const FORM: Form = Form::Lean;
+
+    /// Whether the joints can have [friction](Viscous). Without it, steps compute none.
+    const HAS_FRICTION: bool = false;
+
+    /// Sine and cosine of `x` rad. Both must be within \[−1, 1\] for every finite `x`.
+    fn sin_cos(x: Self::Scalar) -> (Self::Scalar, Self::Scalar);
+
+    /// Sines and cosines of one angle or of many, bit-identical to [`sin_cos`](Self::sin_cos) for |x| ≤ 2¹⁹ rad.
+    /// Beyond, any result is valid, even NaN. Steps call this method for speed: it can leave out range checks, and
+    /// compute many angles with SIMD.
+    #[inline(always)]
+    fn sin_cos_near<V: Numbers<Self::Scalar>>(x: V) -> (V, V) {
+        x.zip3(x, x, |x, _, _| Self::sin_cos(x))
+    }
+
+    /// Cosine of `x` rad, bit-identical to the cosine of [`sin_cos`](Self::sin_cos).
+    #[inline]
+    fn cos(x: Self::Scalar) -> Self::Scalar {
+        Self::sin_cos(x).1
+    }
+
+    /// The task: Gymnasium's, unless it is replaced as in [`Swingup`](crate::arithmetic::Swingup).
+    const TASK: Task = Task::Acrobot;
+
+    /// The square of `x`: only `Host` replaces it.
+    #[doc(hidden)]
+    #[inline]
+    fn square(x: Self::Scalar) -> Self::Scalar {
+        x * x
+    }
+
+    /// Whether `square` is x · x, as a `const` computes it.
+    #[doc(hidden)]
+    const SQUARES_IN_CONST: bool = true;
+}
+
+/// The model of the task's default parameters.
+pub(crate) const fn default_model<A: Arithmetic>() -> Model<A::Scalar> {
+    let models = match A::FORM {
+        Form::Lean => A::Scalar::LEAN,
+        Form::Gymnasium => A::Scalar::GYMNASIUM,
+    };
+    let [acrobot, swingup] = models;
+    let mut model = match A::TASK {
+        Task::Acrobot => acrobot,
+        Task::Swingup | Task::SwingupSparse => swingup,
+    };
+    if !A::HAS_FRICTION {
+        model.params.friction = Viscous {
+            joint1: A::Scalar::ZERO,
+            joint2: A::Scalar::ZERO,
+        };
+    }
+    model
+}
+
+/// The model of valid parameters.
+#[inline]
+pub(crate) fn model<A: Arithmetic>(params: Params<A::Scalar>) -> Model<A::Scalar> {
+    let lengths = [
+        params.length1,
+        params.center_of_mass1,
+        params.center_of_mass2,
+    ];
+    A::Scalar::model(A::FORM, params, lengths.map(A::square))
+}
+
+/// Checks parameters, and that there is no friction where the arithmetic has none.
+pub(crate) fn check_params<A: Arithmetic>(params: &Params<impl Real>) -> Result<(), Error> {
+    params.validate()?;
+    if A::HAS_FRICTION {
+        return Ok(());
+    }
+    let Viscous { joint1, joint2 } = params.friction;
+    no_friction([joint1.to_f64(), joint2.to_f64()])
+}
+
+/// Checks that both coefficients are 0.
+pub(super) const fn no_friction([joint1, joint2]: [f64; 2]) -> Result<(), Error> {
+    let (name, value) = if joint1 != 0.0 {
+        ("friction.joint1", joint1)
+    } else if joint2 != 0.0 {
+        ("friction.joint2", joint2)
+    } else {
+        return Ok(());
+    };
+    Err(Error::OutOfRange {
+        name,
+        value,
+        unit: "N m s/rad",
+        rule: "0 in an arithmetic without friction, in",
+    })
+}
+
+/// The torque at the elbow less that of friction, and the resistance of the fixed joint if it has friction, N m.
+#[inline(always)]
+pub(super) fn resist<A: Arithmetic, V: Numbers<A::Scalar>>(
+    friction: &Viscous<V>,
+    torque: V,
+    [dtheta1, dtheta2]: [V; 2],
+) -> (V, Option<V>) {
+    if A::HAS_FRICTION {
+        (
+            torque - friction.joint2 * dtheta2,
+            Some(friction.joint1 * dtheta1),
+        )
+    } else {
+        (torque, None)
+    }
+}

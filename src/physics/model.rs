@@ -1,0 +1,166 @@
+//! The model: parameters, and the constants of the equations that follow from them.
+
+use super::params::{Dynamics, Params};
+use crate::math::Real;
+
+/// How the equations of motion are evaluated. Both forms agree up to rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Form {
+    /// Solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.
+    Lean,
+    /// As Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
+    Gymnasium,
+}
+
+/// The constants, of one acrobot or of many. The names are those of Sutton & Barto, *Reinforcement Learning: An
+/// Introduction* (1998), section 11.3.
+#[derive(Clone, Copy, Debug)]
+pub struct Constants<V> {
+    /// 1 for the equations of the 1996 paper, otherwise 0.
+    pub nips: V,
+    /// m2 l1 lc2, kg m²: how strongly the links accelerate each other.
+    pub coupling: V,
+    /// m2 lc2² + I2, kg m²: the inertia of link 2 about its joint.
+    pub link2: V,
+    /// (m1 lc1 + m2 l1) g, N m.
+    pub gravity1: V,
+    /// m2 lc2 g, N m.
+    pub gravity2: V,
+    /// dt/2, s.
+    pub half_dt: V,
+    /// dt/6, s.
+    pub sixth_dt: V,
+    /// Those of one form, which names them where it unpacks them.
+    pub own: [V; 5],
+}
+
+/// The parameters, and the constants that follow from them: of one acrobot or of many.
+#[derive(Clone, Copy, Debug)]
+pub struct Model<V> {
+    pub(crate) params: Params<V>,
+    pub(crate) constants: Constants<V>,
+}
+
+impl<V: Copy> Model<V> {
+    /// Applies `f` to each pair of numbers. The dynamics are those of `self`.
+    #[inline(always)]
+    pub(crate) fn zip<W: Copy, X>(
+        &self,
+        other: &Model<W>,
+        f: impl Fn(V, W) -> X + Copy,
+    ) -> Model<X> {
+        let (one, two) = (&self.constants, &other.constants);
+        let ([a, b, c, d, e], [v, w, x, y, z]) = (one.own, two.own);
+        Model {
+            params: self.params.zip(&other.params, f),
+            constants: Constants {
+                nips: f(one.nips, two.nips),
+                coupling: f(one.coupling, two.coupling),
+                link2: f(one.link2, two.link2),
+                gravity1: f(one.gravity1, two.gravity1),
+                gravity2: f(one.gravity2, two.gravity2),
+                half_dt: f(one.half_dt, two.half_dt),
+                sixth_dt: f(one.sixth_dt, two.sixth_dt),
+                own: [f(a, v), f(b, w), f(c, x), f(d, y), f(e, z)],
+            },
+        }
+    }
+}
+
+/// A scalar with the models of the default parameters: `f32` or `f64`. A generic constant cannot compute them.
+pub trait Modeled: Real {
+    /// The models of [`Params::DEFAULT`] and [`Params::SWINGUP`] in the lean form.
+    #[doc(hidden)]
+    const LEAN: [Model<Self>; 2];
+
+    /// The same in Gymnasium's form.
+    #[doc(hidden)]
+    const GYMNASIUM: [Model<Self>; 2];
+
+    /// The model of `params`, given l1², lc1² and lc2².
+    #[doc(hidden)]
+    fn model(form: Form, params: Params<Self>, squares: [Self; 3]) -> Model<Self>;
+}
+
+impl<S: Modeled> Params<S> {
+    /// The parameters of Gymnasium's `Acrobot-v1`, each rounded to the scalar.
+    pub const DEFAULT: Self = S::LEAN[0].params;
+
+    /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step of 0.01 s and
+    /// torques of ±2 N m. Its velocities have no bounds.
+    pub const SWINGUP: Self = S::LEAN[1].params;
+}
+
+for_f32_and_f64! {
+    impl Model<S> {
+        /// The model of `params`, given l1², lc1² and lc2², because `Host` squares with the platform's `pow`.
+        #[inline(always)]
+        pub(crate) const fn new(
+            form: Form,
+            params: Params<S>,
+            [l1_squared, lc1_squared, lc2_squared]: [S; 3],
+        ) -> Self {
+            let Params {
+                length1: l1,
+                mass1: m1,
+                mass2: m2,
+                center_of_mass1: lc1,
+                center_of_mass2: lc2,
+                inertia1,
+                inertia2,
+                gravity,
+                dt,
+                dynamics,
+                ..
+            } = params;
+            let nips = match dynamics {
+                Dynamics::Book => 0.0,
+                Dynamics::Nips => 1.0,
+            };
+            let coupling = m2 * l1 * lc2;
+            let link2 = m2 * lc2_squared + inertia2;
+            let own = match form {
+                Form::Lean => {
+                    let link1 = m1 * lc1_squared + inertia1;
+                    let m2_l1_squared = m2 * l1_squared;
+                    let upper = link1 + m2_l1_squared; // kg m², of the absolute angles
+                    // Of the mass matrix where θ2 is ±π/2, kg² m⁴.
+                    let determinant = link1 * link2 + m2_l1_squared * inertia2;
+                    [upper, determinant, 1.0 - nips, 0.0, 0.0]
+                }
+                Form::Gymnasium => {
+                    let arms_squared = l1_squared + lc2_squared;
+                    [m1 * lc1_squared, arms_squared, l1 * lc2, lc2_squared, 2.0 * coupling]
+                }
+            };
+            let constants = Constants {
+                nips,
+                coupling,
+                link2,
+                gravity1: (m1 * lc1 + m2 * l1) * gravity,
+                gravity2: m2 * lc2 * gravity,
+                half_dt: dt * 0.5,
+                sixth_dt: dt / 6.0,
+                own,
+            };
+            Self { params, constants }
+        }
+    }
+
+    impl Modeled for S {
+        const LEAN: [Model<Self>; 2] = [
+            Model::<S>::new(Form::Lean, Params::<S>::ACROBOT, [1.0, 0.25, 0.25]),
+            Model::<S>::new(Form::Lean, Params::<S>::CAPSULES, [1.0, 0.25, 0.25]),
+        ];
+        const GYMNASIUM: [Model<Self>; 2] = [
+            Model::<S>::new(Form::Gymnasium, Params::<S>::ACROBOT, [1.0, 0.25, 0.25]),
+            Model::<S>::new(Form::Gymnasium, Params::<S>::CAPSULES, [1.0, 0.25, 0.25]),
+        ];
+
+        #[inline(always)]
+        fn model(form: Form, params: Params<Self>, squares: [Self; 3]) -> Model<Self> {
+            Model::<S>::new(form, params, squares)
+        }
+    }
+}
