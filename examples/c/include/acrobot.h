@@ -52,7 +52,7 @@
 #define ACROBOT_DYNAMICS_NIPS 1
 
 // The bytes of an acrobot_t: the most that any target needs.
-#define ACROBOT_SIZE 224
+#define ACROBOT_SIZE 240
 
 // The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
 #define ACROBOT_ALIGN 16

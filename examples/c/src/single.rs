@@ -11,7 +11,7 @@ use crate::memory::{Holder, change, check, get, read};
 use crate::status::{acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The bytes of an acrobot_t: the most that any target needs.
-pub const ACROBOT_SIZE: usize = 224;
+pub const ACROBOT_SIZE: usize = 240;
 
 /// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
 pub const ACROBOT_ALIGN: usize = 16;

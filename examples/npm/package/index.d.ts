@@ -214,7 +214,7 @@ export class Batch extends Kept {
   /** Changes parameters of one acrobot, if the batch has `ownParams`. `setParams` changes those of all. */
   setParamsOf(index: number, changes: Readonly<Partial<Params>>): void;
   /**
-   * Settings, parameters, states, steps and random numbers, in about 130 bytes for each acrobot:
+   * Settings, parameters, states, steps and random numbers, in about 140 bytes for each acrobot:
    * Rust's `VecBatch<Fast>` in postcard with CRC-32. With "Disabled", `ended` and a CRC-32 follow.
    * A snapshot made in Rust cannot be restored if its batch has "Disabled", a range of parameters or
    * other reset bounds.

@@ -12,9 +12,9 @@ const NUMBERS = [
 const TORQUES = ["torques[0]", "torques[1]", "torques[2]"];
 const SLOTS = NUMBERS.flatMap((name) => (name === "torques" ? TORQUES : name));
 const DYNAMICS = ["book", "nips"];
-/** The byte of the dynamics, behind the numbers. */
+/** The byte of the dynamics, behind the numbers. Two numbers for friction follow, which are 0. */
 const DYNAMICS_AT = 64;
-export const PARAMS_LENGTH = 65;
+export const PARAMS_LENGTH = 73;
 export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
 export const isAction = (action) => action === 0 || action === 1 || action === 2;
@@ -44,7 +44,7 @@ export function elements(what, array, count, isValid, rule) {
   return copy;
 }
 
-/** The parameters of acrobot `index` in postcard's format: sixteen numbers, and a byte for the dynamics. A single one ignores the index. */
+/** The parameters of acrobot `index` in postcard's format: sixteen numbers, a byte for the dynamics, and the friction. A single one ignores the index. */
 export function readParams(kind, address, index) {
   wasm()[`${kind}_params`](address, index);
   const values = [...numbers()];
