@@ -4,12 +4,13 @@ use crate::math::{Numbers, Real};
 
 /// The angle `x`, rad, wrapped to \[−π, π\] by whole turns.
 ///
-/// Subtracts the rounded number of turns at once, as a step of the form [`Lean`](super::Lean) does. Its error in `f32`
-/// is at most the spacing of `f32` at `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero, up
-/// to 2²² turns in `f32` and 2⁵¹ in `f64`, because it counts no more. An infinite angle or NaN gives NaN.
+/// Subtracts the rounded number of turns at once, as a step of the form
+/// [`Lean`](super::model::Form::Lean) does. Its error in `f32` is at most the spacing of `f32` at
+/// `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero, up to 2²² turns in
+/// `f32` and 2⁵¹ in `f64`, because it counts no more. An infinite angle or NaN gives NaN.
 ///
-/// A step of the form [`Gymnasium`](super::Gymnasium) subtracts turn by turn, up to 64 turns, and takes the remainder
-/// beyond. Beyond one turn its last digits differ.
+/// A step of the form [`Gymnasium`](super::model::Form::Gymnasium) subtracts turn by turn, up to 64
+/// turns, and takes the remainder beyond. Beyond one turn its last digits differ.
 ///
 /// ```
 /// use acrobot::physics::wrap;
