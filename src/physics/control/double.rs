@@ -4,7 +4,7 @@ use core::ops::{Add, Mul};
 
 use super::matrix::Matrix;
 
-/// The sum of two `f64`, of which the second is at most half a unit in the last place of the first.
+/// The sum of two `f64`. The second is at most half a unit in the last place of the first.
 ///
 /// A sum or a product of two such numbers has an error of at most 2⁻¹⁰² times the sum, or the product, of their absolute
 /// values (M. Joldes, J.-M. Muller and V. Popescu, *Tight and Rigorous Error Bounds for Basic Building Blocks of
