@@ -48,7 +48,16 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 /// The pages name the repository's files by their paths, without links, because rustdoc shows the pages without the files.
 #[test]
 fn the_files_that_the_pages_name_exist() {
-    const FOLDERS: [&str; 5] = ["benches/", "docs/", "examples/", "fuzz/", "tests/"];
+    const FOLDERS: [&str; 8] = [
+        "benches/",
+        "bindings/",
+        "crates/",
+        "docs/",
+        "examples/",
+        "fuzz/",
+        "research/",
+        "tests/",
+    ];
 
     let mut count = 0;
     for page in fs::read_dir(absolute("docs")).unwrap() {

@@ -161,7 +161,7 @@ REQUIREMENTS = {
     "envpool": ["envpool==1.2.7", "gymnasium==1.4.0", "numpy==2.4.6"],
     # gymnax imports six, and does not ask for it.
     "gymnax": ["gymnax==1.0.1", "jax==0.10.2", "jaxlib==0.10.2", "numpy==2.4.6", "six==1.17.0"],
-    "acrobot_rs": ["../../examples/python", "gymnasium==1.4.0", "numpy==2.4.6"],
+    "acrobot_rs": ["../../bindings/python", "gymnasium==1.4.0", "numpy==2.4.6"],
 }
 
 

@@ -1,6 +1,6 @@
 """Steps of dm_control's swing-up per second and core: dm_control, MuJoCo's own batch, and this package.
 
-    pip install dm_control==1.0.50 mujoco==3.17.0 && pip install examples/python
+    pip install dm_control==1.0.50 mujoco==3.17.0 && pip install bindings/python
     MUJOCO_GL=disable python benches/compare/swingup.py
 
 Interleaved, the best of five. `mujoco.rollout` computes states alone; the others also observations, rewards and resets.

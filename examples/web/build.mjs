@@ -3,7 +3,7 @@
 import { cpSync, rmSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
-import { bundle } from "../npm/wasm.mjs";
+import { bundle } from "../../bindings/npm/wasm.mjs";
 
 process.chdir(fileURLToPath(new URL(".", import.meta.url)));
 rmSync("dist", { recursive: true, force: true });

@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { inChromium } from "../../npm/browser.mjs";
+import { inChromium } from "../../../bindings/npm/browser.mjs";
 import { Learner } from "../dist/acrobot-rs/policies.js";
 import { ACTIONS, bits, trace } from "./native.mjs";
 import { downloaded, folder, linkedActions, onPage, open, paused, press, shownBits, steps, text } from "./player.mjs";
@@ -270,8 +270,8 @@ onPage("loaded weights reach the goal, and invalid ones are rejected with the le
   assert.equal(await text(page, "#weights-reason"), "short.bin: weights must have 49172 bytes, got 1000");
   // The weights that were loaded before are kept.
   assert.ok((await downloaded(page, "#save")).equals(good));
-  // A perceptron from Python, with the steps of examples/policy/tests/policy.rs.
-  await page.setInputFiles("#load", fileURLToPath(new URL("../../policy/policy.bin", import.meta.url)));
+  // A perceptron from Python, with the steps of crates/policy/tests/policy.rs.
+  await page.setInputFiles("#load", fileURLToPath(new URL("../../../crates/policy/policy.bin", import.meta.url)));
   await page.waitForFunction(() => document.querySelector("#training-status").textContent === "policy.bin is loaded.");
   await page.fill("#seed", "1");
   await steps(page, 200);

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
-import { inChromium, launch } from "../../npm/browser.mjs";
+import { inChromium, launch } from "../../../bindings/npm/browser.mjs";
 import { decodeActions } from "../page/link.js";
 
 export const dist = fileURLToPath(new URL("../dist", import.meta.url));

@@ -14,12 +14,12 @@ use policy::Policy;
 use semihosting::{println, process};
 
 /// The compiler checks the file.
-static POLICY: Policy<64> = match Policy::new(include_bytes!("../../../policy/policy.bin")) {
+static POLICY: Policy<64> = match Policy::new(include_bytes!("../../../../crates/policy/policy.bin")) {
     Ok(policy) => policy,
     Err(error) => panic!("{}", error.message()),
 };
-/// Four actions a byte, 3 for a tie: `record.py` in `examples/policy`.
-static ACTIONS: [u8; 2500] = *include_bytes!("../../../policy/actions.bin");
+/// Four actions a byte, 3 for a tie: `record.py` in `crates/policy`.
+static ACTIONS: [u8; 2500] = *include_bytes!("../../../../crates/policy/actions.bin");
 
 const EPISODES: u32 = 100;
 

@@ -79,8 +79,6 @@ fn pictures_are_those_of_the_pages() {
 fn bad_arguments_are_rejected_with_a_reason() {
     let folder = Folder::new("rejected");
     for (line, reason) in [
-        ("optimum search --width 0", "0 is not in 1.."),
-        ("optimum table", "Error: tests/data/optimum.txt"),
         ("swing_up --plan 129", "129 is not in 1..=128"),
         ("swing_up --load none.bin", "Error: none.bin"),
         ("episode --seed 4x2", "got 'x' as character 2"),

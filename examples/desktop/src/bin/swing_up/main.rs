@@ -5,7 +5,7 @@
 //! cargo run --release -p desktop --bin swing_up -- --steps 0 --load weights.bin
 //! ```
 //!
-//! The learner is `examples/learners`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
+//! The learner is `crates/learners`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
 //! `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for which the mean return of episodes
 //! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
 //! states that it was not trained on, and K of these missed the goal. The time of learning goes to stderr. With `--evaluate N` a line `steps M greedy_mean R`

@@ -1,0 +1,99 @@
+// The policies reach the goal, and the learner learns the weights of the native program `swing_up`.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, test } from "node:test";
+
+import { swingUp } from "../../../examples/web/test/native.mjs";
+import { Acrobot, Batch } from "../dist/index.js";
+import { Learner, Perceptron, bangBang, energyLaw, uprightEnergy } from "../dist/policies.js";
+
+const folder = mkdtempSync(join(tmpdir(), "acrobot-npm-"));
+after(() => rmSync(folder, { recursive: true }));
+
+/** The steps to the goal. */
+function play(policy, options) {
+  const acrobot = new Acrobot(options);
+  for (;;) {
+    const { terminated, truncated } = acrobot.step(policy(acrobot));
+    if (terminated || truncated) return terminated ? acrobot.elapsed : Infinity;
+  }
+}
+
+test("policies reach the goal", () => {
+  assert.equal(play(bangBang, { seed: 42 }), 94);
+  assert.ok(play(energyLaw, { seed: 42 }) < 200);
+  const acrobot = new Acrobot({ params: { mass1: 2, length1: 1.5, gravity: 5 } });
+  acrobot.state = { theta1: Math.PI, theta2: 0, dtheta1: 0, dtheta2: 0 };
+  assert.ok(Math.abs(uprightEnergy(acrobot.params) - acrobot.energy) < 1e-4);
+});
+
+test("learnt weights are bit-identical to native ones, reach the goal, and each program loads those of the other", () => {
+  for (const seed of [42, 123456789012345678901n]) {
+    const learner = new Learner({ episodes: 100, seed });
+    const returns = Array.from({ length: 100 }, () => learner.train());
+    assert.ok(returns.every((sum) => Number.isInteger(sum) && sum >= -500 && sum < 0));
+    const path = join(folder, `${seed}.bin`);
+    assert.equal(swingUp("--episodes", "100", "--seed", String(seed), "--save", path), null);
+    const weights = readFileSync(path);
+    assert.ok(weights.equals(learner.save()), `seed ${seed}: the weights differ from native ones`);
+
+    const loaded = new Learner();
+    loaded.load(weights);
+    assert.ok(play((acrobot) => loaded.act(acrobot), { seed: 7 }) < 200);
+    const own = join(folder, "own.bin");
+    writeFileSync(own, learner.save());
+    assert.equal(swingUp("--episodes", "0", "--load", own), null);
+  }
+});
+
+test("invalid weights are rejected with the native message, as other invalid arguments, and nothing changes", () => {
+  const learner = new Learner({ episodes: 5, seed: 1 });
+  learner.train();
+  const good = learner.save();
+  const damaged = good.slice();
+  damaged.fill(1, 500, 504);
+  for (const [i, bytes] of [good.subarray(0, 1000), damaged].entries()) {
+    const path = join(folder, `${i}.bin`);
+    writeFileSync(path, bytes);
+    const native = swingUp("--episodes", "0", "--load", path);
+    assert.throws(() => learner.load(bytes), (error) => error instanceof RangeError && native.includes(error.message));
+  }
+  for (const [call, name, message] of [
+    [() => learner.load(new Uint8Array(1e6)), "RangeError", "weights must have at most 524288 bytes, got 1000000"],
+    [() => learner.load([...good]), "TypeError", /^weights must be a Uint8Array, got \[.*…$/],
+    [() => learner.act({ state: { theta1: NaN } }), "RangeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got NaN"],
+    [() => learner.act({ state: { theta1: 1e300 } }), "RangeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got 1e+300, which is Infinity in single precision"],
+    [() => learner.train(10), "TypeError", "train() must have no arguments, got 10"],
+    ...[undefined, {}, new Batch({ count: 1 }), new Acrobot().observation].flatMap((wrong) => [
+      [() => learner.act(wrong), "TypeError", "act(acrobot): acrobot.state.theta1 must be a finite number, got undefined"],
+      [() => bangBang(wrong), "TypeError", "bangBang(acrobot): acrobot.state.dtheta1 must be a finite number, got undefined"],
+      [() => energyLaw(wrong), "TypeError", "energyLaw(acrobot): acrobot.energy must be a finite number, got undefined"],
+      [() => uprightEnergy(wrong), "TypeError", "uprightEnergy(params): params.gravity must be a finite number, got undefined"],
+    ]),
+    [() => new Learner({ episodes: 0 }), "RangeError", "episodes must be an integer from 1 to 2^32 - 1, got 0"],
+    [() => new Learner({ seed: -1 }), "RangeError", /^seed must be .*, got -1$/],
+    [() => new Learner({ sed: 1 }), "TypeError", "options must be among episodes, seed, got sed"],
+  ]) {
+    assert.throws(call, { name, message });
+    assert.deepEqual(learner.save(), good);
+  }
+});
+
+test("a perceptron from Python plays as natively, and other files are rejected", () => {
+  const file = readFileSync(new URL("../../../crates/policy/policy.bin", import.meta.url));
+  const perceptron = new Perceptron(file);
+  // As in crates/policy/tests/policy.rs.
+  assert.deepEqual([1, 2, 3, 4, 5].map((seed) => play((acrobot) => perceptron.act(acrobot), { seed })), [101, 88, 96, 72, 72]);
+  for (const [bytes, message] of [
+    [file.subarray(1), /must begin with MLP1/],
+    [Buffer.from(file).fill(1, 500, 504), /must have its checksum/],
+    [new Uint8Array(1e6), /must have at most 524288 bytes, got 1000000/],
+    ["MLP1", /must be a Uint8Array, got "MLP1"/],
+  ]) {
+    assert.throws(() => new Perceptron(bytes), message);
+  }
+  assert.throws(() => perceptron.act({}), /acrobot\.observation\.0 must be a finite number/);
+});

@@ -1,0 +1,227 @@
+"""Saves a trained perceptron for the crate ``crates/policy``, which plays it on a microcontroller or in a browser.
+
+:func:`save` takes a model and compares the file's actions with the model's. :func:`write` takes arrays. Neither needs torch beside the model.
+"""
+
+from __future__ import annotations
+
+import reprlib
+import struct
+import warnings
+import zlib
+from collections.abc import Iterable, Sequence
+from numbers import Real
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from acrobot_rs.arrays import require
+
+Layer = tuple[Any, Any, str]
+"""Weights of shape ``(outputs, inputs)``, biases of shape ``(outputs,)``, and ``"none"``, ``"tanh"`` or ``"relu"``."""
+
+_ACTIVATIONS = ["none", "tanh", "relu"]
+_KINDS = {"Linear": None, "Tanh": "tanh", "ReLU": "relu", "Identity": "none", "Flatten": "none", "Dropout": "none"}
+
+
+def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None = None) -> None:
+    """Write a file of the layers, from the observation to the outputs.
+
+    Args:
+        path: The file.
+        layers: The first has 6 inputs; the last has 3 outputs, the scores of the actions, or 1, a torque, N m.
+        torque_limit: The largest torque, N m, of a policy with one output. ``None`` for scores.
+
+    Raises:
+        ValueError: If a shape, an activation or a number is wrong. No file is written then.
+    """
+    Path(path).write_bytes(_content(layers, torque_limit))
+
+
+def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
+    inputs, head, body = 6, b"", b""
+    for i, (weights, biases, activation) in enumerate(layers):
+        with np.errstate(over="ignore"):
+            weights, biases = np.asarray(weights, "<f4"), np.asarray(biases, "<f4")
+        outputs = len(biases) if biases.ndim == 1 else 0
+        if not 1 <= outputs < 2**16 or weights.shape != (outputs, inputs):
+            rule = f"weights of shape (outputs, {inputs}) and biases of shape (outputs,)"
+            raise ValueError(f"layer {i} must have {rule}, got {weights.shape} and {biases.shape}")
+        if activation not in _ACTIVATIONS:
+            raise ValueError(f"the activation of layer {i} must be one of {_ACTIVATIONS}, got {activation!r}")
+        numbers = np.column_stack([biases, weights])
+        if not np.isfinite(numbers).all():
+            raise ValueError(f"the numbers of layer {i} must be finite in float32")
+        head += struct.pack("<HBB", outputs, _ACTIVATIONS.index(activation), 0)
+        body += numbers.tobytes()
+        inputs = outputs
+    scores = torque_limit is None
+    if inputs != (3 if scores else 1) or not 1 <= len(layers) < 256:
+        raise ValueError(f"the last layer must have {'3 outputs, or 1 with a torque_limit' if scores else '1 output'}, got {inputs}")
+    limit = 0.0 if torque_limit is None else _checked(torque_limit)
+    content = struct.pack("<4sBBHf", b"MLP1", len(layers), not scores, 6, limit) + head + body
+    return content + struct.pack("<I", zlib.crc32(content))
+
+
+def _checked(torque_limit: float) -> float:
+    require(Real, "a number of N m", torque_limit=torque_limit)
+    limit = float(torque_limit)
+    # Up to 2^-150 it is 0 in float32.
+    if not 2.0**-150 < limit <= float(np.finfo(np.float32).max):
+        rule = "finite and above 0 N m in float32"
+        raise ValueError(f"torque_limit must be {rule}, got {torque_limit}")
+    return limit
+
+
+def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None = None, torque_limit: float | None = None) -> None:
+    """Write a model's greedy or mean policy. Means and deviations of ``VecNormalize`` become part of the first layer.
+
+    Args:
+        model: A model of Stable-Baselines3 (PPO, A2C, DQN) or sb3-contrib (QR-DQN) with ``MlpPolicy``, or a ``torch.nn.Sequential`` of linear
+            layers, tanh and ReLU.
+        path: The file.
+        observations: On which the file's actions are compared with the model's: an array of shape ``(n, 6)``. Default: 2,000 of random episodes.
+        torque_limit: The largest torque, N m, of a ``Sequential`` with one output. Of a model of
+            Stable-Baselines3, the torque of its largest action. By default this is the action
+            itself, and in a swing-up the largest in its environment's ``AVAIL_TORQUE``.
+
+    Raises:
+        TypeError: If the model, or a layer, is of another kind.
+        ValueError: If a shape or a number is wrong, if the file's actions would differ from the
+            model's or its outputs would not be finite, or if a ``Sequential`` has Dropout in
+            training mode. No file is written then.
+    """
+    policy = getattr(model, "policy", None)
+    if policy is None and not isinstance(model, Iterable):
+        raise TypeError(f"model must be one of Stable-Baselines3 or a torch.nn.Sequential, got {model!r}")
+    modules, quantiles = (model, 1) if policy is None else _modules_of(policy)
+    layers = _layers(modules, quantiles)
+    if policy is None and any(type(each).__name__ == "Dropout" and each.training for each in model):
+        what = "it has Dropout in training mode; call model.eval() before"
+        raise ValueError(f"the model must be in evaluation mode: {what}")
+    is_swingup = policy is not None and bool(np.isinf(policy.observation_space.high).any())
+    scale, note = 1, ""
+    if policy is not None and isinstance(policy.action_space, gym.spaces.Box):
+        low, high = float(policy.action_space.low[0]), float(policy.action_space.high[0])
+        if not 0 < high == -low < np.inf:
+            rule = "finite and opposite"
+            raise ValueError(f"the bounds of the action space must be {rule}, got {low} and {high}")
+        if torque_limit is None:
+            torque_limit = _largest_torque(model.get_env()) if is_swingup else high
+        scale = _checked(torque_limit) / high
+        weights, biases, activation = layers[-1]
+        layers[-1] = (weights * scale, biases * scale, activation)
+    normalize = model.get_vec_normalize_env() if policy is not None else None
+    if normalize is not None and normalize.norm_obs:
+        mean, deviation = normalize.obs_rms.mean, np.sqrt(normalize.obs_rms.var + normalize.epsilon)
+        bounds = policy.observation_space.high
+        if ((bounds + abs(mean)) / deviation > normalize.clip_obs).any():
+            clip = f"at clip_obs={normalize.clip_obs:g}"
+            note = f"VecNormalize clips extreme observations, {clip}, and the file does not"
+            warnings.warn(note, stacklevel=2)
+        weights, biases, activation = layers[0]
+        layers[0] = (weights / deviation, biases - weights @ (mean / deviation), activation)
+    content = _content(layers, torque_limit)
+    if observations is None:
+        observations = _observations("AcrobotSwingup-v0" if is_swingup else "Acrobot-v1")
+    seen = np.asarray(observations, np.float32)
+    if seen.shape[1:] != (6,) or not seen.size or not np.isfinite(seen).all():
+        rule = "finite numbers of shape (n, 6)"
+        raise ValueError(f"observations must be {rule}, got {reprlib.repr(observations)}")
+    expected = scale * _expected(model, policy, normalize, modules, seen)
+    _compare(layers, seen, expected, torque_limit, note)
+    Path(path).write_bytes(content)
+
+
+def _largest_torque(envs: Any) -> float:
+    """The torque of the action 1 in the environments of a swing-up, N m."""
+    what = "the model has no environment"
+    if envs is not None:
+        every = envs.get_attr("AVAIL_TORQUE")
+        torques = {torque for each in every for torque in (max(each), -min(each))}
+        if len(torques) == 1:
+            return float(torques.pop())
+        what = f"largest and negated smallest of AVAIL_TORQUE differ: {sorted(torques)}"
+    raise ValueError(f"torque_limit must be the torque of the action 1, N m, because {what}")
+
+
+def _modules_of(policy: Any) -> tuple[list[Any], int]:
+    """The layers of a policy of Stable-Baselines3, and how many quantiles each score is the mean of."""
+    extractor = type(getattr(policy, "features_extractor", None)).__name__
+    if extractor not in ("FlattenExtractor", "NoneType"):
+        raise TypeError(f"the features extractor must be FlattenExtractor, got {extractor}")
+    if hasattr(policy, "mlp_extractor"):
+        if getattr(policy, "squash_output", False):
+            raise TypeError("the policy must not have squash_output")
+        return [*policy.mlp_extractor.policy_net, policy.action_net], 1
+    if hasattr(policy, "quantile_net"):
+        return list(policy.quantile_net.quantile_net), policy.quantile_net.n_quantiles
+    if hasattr(policy, "q_net"):
+        return list(policy.q_net.q_net), 1
+    raise TypeError(f"the policy must be that of PPO, A2C, DQN or QR-DQN, got {type(policy).__name__}")
+
+
+def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
+    layers: list[Layer] = []
+    for module in modules:
+        kind = type(module).__name__
+        if kind not in _KINDS:
+            raise TypeError(f"a layer must be one of {', '.join(_KINDS)}, got {kind}")
+        if kind == "Linear":
+            weights = module.weight.detach().cpu().numpy().astype(np.float64)
+            biases = np.zeros(len(weights)) if module.bias is None else module.bias.detach().cpu().numpy().astype(np.float64)
+            layers.append((weights, biases, "none"))
+        elif (activation := _KINDS[kind]) != "none":
+            if not layers or layers[-1][2] != "none":
+                raise TypeError(f"{kind} must follow a linear layer")
+            layers[-1] = (*layers[-1][:2], activation)
+    if quantiles > 1:
+        weights, biases, activation = layers[-1]
+        layers[-1] = (weights.reshape(quantiles, -1, weights.shape[1]).mean(0), biases.reshape(quantiles, -1).mean(0), activation)
+    return layers
+
+
+def _observations(task: str) -> NDArray[np.float32]:
+    envs = gym.make_vec(f"acrobot_rs/{task}", num_envs=20)
+    envs.action_space.seed(1)
+    return np.concatenate([envs.reset(seed=1)[0], *(envs.step(envs.action_space.sample())[0].copy() for _ in range(99))])
+
+
+def _expected(model: Any, policy: Any, normalize: Any, modules: Any, seen: NDArray[np.float32]) -> NDArray[Any]:
+    """What the model itself answers."""
+    if policy is not None:
+        return np.asarray(model.predict(seen if normalize is None else normalize.normalize_obs(seen), deterministic=True)[0])
+    import torch
+
+    with torch.no_grad():
+        outputs = modules(torch.as_tensor(seen)).numpy()
+    return outputs if outputs.shape[1] == 1 else outputs.argmax(1)
+
+
+def _compare(
+    layers: list[Layer],
+    seen: NDArray[np.float32],
+    expected: NDArray[Any],
+    torque_limit: float | None,
+    note: str,
+) -> None:
+    x: NDArray[Any] = seen
+    for weights, biases, activation in layers:
+        with np.errstate(all="ignore"):
+            x = x @ np.asarray(weights, np.float32).T + np.asarray(biases, np.float32)
+        x = np.tanh(x) if activation == "tanh" else np.maximum(x, 0) if activation == "relu" else x
+    if wrong := (~np.isfinite(x)).any(1).sum():
+        where = f"they are not on {wrong} of {len(seen)} observations"
+        raise ValueError(f"the outputs of the file must be finite; {where}")
+    if torque_limit is None:
+        # Scores that differ by a rounding are a tie.
+        chosen = np.take_along_axis(x, expected.reshape(-1, 1), 1)[:, 0]
+        differ = x.max(1) - chosen > 1e-4 * np.maximum(1, abs(x).max(1))
+    else:
+        differ = abs(np.clip(x[:, 0], -torque_limit, torque_limit) - np.clip(expected[:, 0], -torque_limit, torque_limit)) > 1e-4 * torque_limit
+    if differ.any():
+        where = f"they differ on {differ.sum()} of {len(seen)} observations{note and '. '}{note}"
+        raise ValueError(f"the file's actions must be those of the model; {where}")

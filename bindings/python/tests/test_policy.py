@@ -1,0 +1,211 @@
+"""Policies in files for the crate `crates/policy`: what is written, and what is rejected. Stand-ins have the attributes of torch's modules."""
+
+import struct
+import types
+import zlib
+
+import acrobot_rs
+import gymnasium as gym
+import numpy as np
+import pytest
+from acrobot_rs import policy
+
+RNG = np.random.default_rng(7)
+
+
+class Tensor(np.ndarray):
+    def detach(self):
+        return self
+
+    cpu = detach
+
+    def numpy(self):
+        return np.asarray(self)
+
+
+class Linear:
+    def __init__(self, inputs, outputs):
+        self.weight, self.bias = (RNG.normal(size=size).view(Tensor) for size in [(outputs, inputs), (outputs,)])
+
+    def __call__(self, x):
+        return x @ np.asarray(self.weight).T + np.asarray(self.bias)
+
+
+class Tanh:
+    __call__ = staticmethod(np.tanh)
+
+
+class ReLU:
+    def __call__(self, x):
+        return np.maximum(x, 0)
+
+
+class GELU:
+    pass
+
+
+class Dropout:
+    training = True
+
+
+class Model:
+    """A model of Stable-Baselines3: `kind` names its network."""
+
+    envs, seen = None, acrobot_rs.AcrobotEnv().observation_space
+
+    def __init__(self, kind, modules, space=gym.spaces.Discrete(3), quantiles=1, normalize=None):
+        networks = {
+            "ppo": {"mlp_extractor": types.SimpleNamespace(policy_net=modules[:-1]), "action_net": modules[-1]},
+            "dqn": {"q_net": types.SimpleNamespace(q_net=modules)},
+            "qrdqn": {"quantile_net": types.SimpleNamespace(quantile_net=modules, n_quantiles=quantiles)},
+        }
+        spaces = {"action_space": space, "observation_space": self.seen}
+        self.policy = types.SimpleNamespace(**spaces, **networks[kind])
+        self.modules, self.quantiles, self.normalize = modules, quantiles, normalize
+
+    def get_vec_normalize_env(self):
+        return self.normalize
+
+    def get_env(self):
+        return self.envs
+
+    def predict(self, x, deterministic):
+        assert deterministic
+        for module in self.modules:
+            x = module(x)
+        scores = x.reshape(len(x), self.quantiles, -1).mean(1)
+        if scores.shape[1] > 1:
+            return scores.argmax(1), None
+        return np.clip(scores, self.policy.action_space.low, self.policy.action_space.high), None
+
+
+class SwingupModel(Model):
+    seen = acrobot_rs.AcrobotSwingupEnv().observation_space
+
+    def __init__(self, torques=None):
+        super().__init__("ppo", [Linear(6, 4), Tanh(), Linear(4, 1)], gym.spaces.Box(-1, 1, (1,)))
+        if torques is not None:
+            self.envs = acrobot_rs.AcrobotSwingupVectorEnv(2, AVAIL_TORQUE=torques)
+
+
+class Normalize:
+    norm_obs, epsilon, clip_obs = True, 1e-8, 100.0
+    obs_rms = types.SimpleNamespace(mean=RNG.normal(size=6) / 4, var=RNG.uniform(0.2, 3, 6))
+
+    def normalize_obs(self, x):
+        return (x - self.obs_rms.mean) / np.sqrt(self.obs_rms.var + self.epsilon)
+
+
+def read(path):
+    """The header and the numbers of a file."""
+    content = path.read_bytes()
+    assert zlib.crc32(content[:-4]) == struct.unpack("<I", content[-4:])[0]
+    magic, layers, kind, inputs, limit = struct.unpack_from("<4sBBHf", content)
+    shapes = [struct.unpack_from("<HBB", content, 12 + 4 * i) for i in range(layers)]
+    return (magic, kind, inputs, limit, shapes), np.frombuffer(content[12 + 4 * layers : -4], "<f4")
+
+
+def test_a_file_has_the_header_and_the_numbers(tmp_path):
+    weights, biases = np.arange(18).reshape(3, 6), [100, 200, 300]
+    policy.write(tmp_path / "p", [(weights, biases, "relu")])
+    head, numbers = read(tmp_path / "p")
+    assert head == (b"MLP1", 0, 6, 0.0, [(3, 2, 0)])
+    np.testing.assert_array_equal(numbers.reshape(3, 7), np.column_stack([biases, weights]))
+
+
+@pytest.mark.parametrize("normalize", [None, Normalize()])
+@pytest.mark.parametrize("kind", ["ppo", "dqn", "qrdqn"])
+def test_models_of_stable_baselines3_are_saved_with_their_own_actions(kind, normalize, tmp_path):
+    quantiles = 5 if kind == "qrdqn" else 1
+    model = Model(kind, [Linear(6, 8), Tanh(), Linear(8, 8), ReLU(), Linear(8, 3 * quantiles)], quantiles=quantiles, normalize=normalize)
+    policy.save(model, tmp_path / "p")  # compares the actions
+    head, numbers = read(tmp_path / "p")
+    assert head == (b"MLP1", 0, 6, 0.0, [(8, 1, 0), (8, 2, 0), (3, 0, 0)])
+    assert len(numbers) == 8 * 7 + 8 * 9 + 3 * 9
+    # A model that answers otherwise is found.
+    model.predict = lambda x, deterministic: (np.full(len(x), 1), None)
+    with pytest.raises(ValueError, match="they differ on .* of 2000 observations"):
+        policy.save(model, tmp_path / "other")
+    assert not (tmp_path / "other").exists()
+
+
+def test_the_mean_of_a_continuous_policy_is_a_torque(tmp_path):
+    space = gym.spaces.Box(-2.5, 2.5, (1,))
+    policy.save(Model("ppo", [Linear(6, 4), Tanh(), Linear(4, 1)], space), tmp_path / "p")
+    assert read(tmp_path / "p")[0] == (b"MLP1", 1, 6, 2.5, [(4, 1, 0), (1, 0, 0)])
+
+
+@pytest.mark.parametrize(
+    ("torques", "given", "limit"),
+    [([-2, 0, 2], None, 2.0), ([-3, 3, 1], None, 3.0), (None, 5.0, 5.0), ([-2, 0, 2], 0.5, 0.5)],
+)
+def test_an_action_of_a_swing_up_becomes_a_torque(torques, given, limit, tmp_path):
+    model = SwingupModel(torques)
+    policy.save(model, tmp_path / "p", torque_limit=given)
+    head, numbers = read(tmp_path / "p")
+    assert head == (b"MLP1", 1, 6, limit, [(4, 1, 0), (1, 0, 0)])
+    last = np.append(model.modules[-1].bias, model.modules[-1].weight)
+    np.testing.assert_allclose(numbers[-5:], limit * last, rtol=1e-6)
+
+
+def overflowing():
+    """1e30 times 1e30 is beyond float32, and infinity less infinity is no number."""
+    model = Model("dqn", [Linear(6, 2), Linear(2, 3)])
+    model.modules[0].weight[:], model.modules[1].weight[:] = 1e30, [[1e30, -1e30]] * 3
+    return model
+
+
+def test_clipped_observations_are_warned_of(tmp_path):
+    normalize = Normalize()
+    normalize.clip_obs = 10.0
+    with pytest.warns(UserWarning, match="VecNormalize clips extreme observations"):
+        policy.save(Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "p", np.zeros((1, 6)))
+    normalize.clip_obs = 0.5
+    normalize.normalize_obs = lambda x: np.clip(Normalize().normalize_obs(x), -0.5, 0.5)
+    message = "they differ on .* clips extreme observations, at clip_obs=0.5, and the file does not"
+    with pytest.warns(UserWarning), pytest.raises(ValueError, match=message):
+        policy.save(Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "q")
+
+
+@pytest.mark.parametrize(
+    ("error", "message", "save"),
+    [
+        (TypeError, "a layer must be one of Linear, Tanh.*, got GELU", lambda p: policy.save(Model("dqn", [Linear(6, 3), GELU()]), p)),
+        (TypeError, "Tanh must follow a linear layer", lambda p: policy.save(Model("dqn", [Tanh(), Linear(6, 3)]), p)),
+        (TypeError, "the policy must be that of PPO, A2C, DQN or QR-DQN", lambda p: policy.save(types.SimpleNamespace(policy=1), p)),
+        (TypeError, "model must be .*, got 5", lambda p: policy.save(5, p)),
+        (ValueError, r"layer 0 must have weights of shape \(outputs, 6\)", lambda p: policy.save(Model("dqn", [Linear(4, 3)]), p)),
+        (ValueError, "the last layer must have 3 outputs, or 1 with a torque_limit, got 2", lambda p: policy.save(Model("dqn", [Linear(6, 2)]), p)),
+        (ValueError, "the activation of layer 0 must be one of", lambda p: policy.write(p, [(np.ones((3, 6)), np.ones(3), "elu")])),
+        (ValueError, "the numbers of layer 0 must be finite", lambda p: policy.write(p, [(np.full((3, 6), np.nan), np.ones(3), "none")])),
+        (ValueError, "torque_limit must be finite and above 0 N m", lambda p: policy.write(p, [(np.ones((1, 6)), np.ones(1), "none")], -1)),
+        (ValueError, "torque_limit must be .* above 0 N m in float32, got 1e-50",
+         lambda p: policy.write(p, [(np.ones((1, 6)), np.ones(1), "none")], 1e-50)),
+        (ValueError, "the numbers of layer 0 must be finite",
+         lambda p: policy.write(p, [(np.full((3, 6), 1e300), np.ones(3), "none")])),
+        (ValueError, "outputs of the file must be finite; they are not on .* of 2000",
+         lambda p: policy.save(overflowing(), p)),
+        (ValueError, "it has Dropout in training mode",
+         lambda p: policy.save([Linear(6, 3), Dropout()], p)),
+        (ValueError, "torque_limit must be .* the model has no environment",
+         lambda p: policy.save(SwingupModel(), p)),
+        (ValueError, r"torque_limit must be .* differ: \[1.0, 2.0\]",
+         lambda p: policy.save(SwingupModel([[-1, 0, 1], [-2, 0, 2]]), p)),
+        (ValueError, r"torque_limit must be .* differ: \[-5.0, 5.0\]",
+         lambda p: policy.save(SwingupModel([5, 5, 5]), p)),
+        *((ValueError, "torque_limit must be finite and above 0 N m",
+           lambda p, limit=limit: policy.save(SwingupModel(), p, torque_limit=limit))
+          for limit in (np.nan, np.inf, 1e39, -2.0)),
+        (TypeError, "torque_limit must be a number of N m, got '1'",
+         lambda p: policy.save(SwingupModel(), p, torque_limit="1")),
+        *((ValueError, "observations must be finite numbers of shape .*, got",
+           lambda p, seen=seen: policy.save(Model("dqn", [Linear(6, 3)]), p, seen))
+          for seen in (np.zeros((0, 6)), np.zeros((5, 4)), np.zeros(6), np.full((3, 6), np.nan))),
+        (ValueError, "bounds of the action space must be .*opposite, got -1.0 and 2.0",
+         lambda p: policy.save(Model("ppo", [Linear(6, 1)], gym.spaces.Box(-1, 2, (1,))), p)),
+    ],
+)  # fmt: skip
+def test_other_models_are_rejected(error, message, save, tmp_path):
+    with pytest.raises(error, match=message):
+        save(tmp_path / "p")
+    assert not list(tmp_path.iterdir())

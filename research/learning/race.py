@@ -1,0 +1,99 @@
+"""Trains Stable-Baselines3's agents with RL Zoo's settings, and evaluates them as docs/learning.md evaluates this project's learner.
+
+    pip install stable-baselines3 sb3-contrib ../../bindings/python
+    python race.py qrdqn 0 1 2    # an agent of AGENTS, and seeds
+
+Prints for each seed the mean return of 1,000 greedy episodes from fresh initial states, those that missed the goal, the seconds of one core, and the
+seconds until a greedy evaluation during the training passed -100, -80 and -70. Evaluations do not count as time.
+"""
+
+import sys
+import time
+
+import acrobot_rs  # noqa: F401 registers
+import gymnasium as gym
+import numpy as np
+import torch
+from acrobot_rs.sb3 import AcrobotVecEnv
+from sb3_contrib import QRDQN
+from stable_baselines3 import DQN, PPO
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.vec_env import VecMonitor, VecNormalize
+
+NAME = "acrobot_rs/Acrobot-v1"
+THRESHOLDS = [-100, -80, -70]
+# Settings of rl-baselines3-zoo's files in `hyperparams`: the class, environments, steps, settings.
+Q = {
+    "gamma": 0.99,
+    "learning_starts": 0,
+    "learning_rate": 6.3e-4,
+    "batch_size": 128,
+    "buffer_size": 50_000,
+    "target_update_interval": 250,
+    "train_freq": 4,
+    "gradient_steps": -1,
+    "exploration_fraction": 0.12,
+    "exploration_final_eps": 0.1,
+}
+AGENTS = {
+    "qrdqn": (QRDQN, 1, 100_000, Q | {"policy_kwargs": {"net_arch": [256, 256], "n_quantiles": 25}}),
+    "dqn": (DQN, 1, 100_000, Q | {"policy_kwargs": {"net_arch": [256, 256]}}),
+    "ppo": (PPO, 16, 1_000_000, {"n_steps": 256, "gae_lambda": 0.94, "gamma": 0.99, "n_epochs": 4, "ent_coef": 0.0}),
+}
+
+
+def evaluate(model, normalize, episodes, seed):
+    """The returns of greedy episodes, one in each environment."""
+    envs = gym.make_vec(NAME, num_envs=episodes)
+    observations, _ = envs.reset(seed=seed)
+    returns, running = np.zeros(episodes), np.ones(episodes, bool)
+    while running.any():
+        actions, _ = model.predict(normalize(observations), deterministic=True)
+        observations, rewards, terminated, truncated, _ = envs.step(actions)
+        returns += rewards * running
+        running &= ~(terminated | truncated)
+    return returns
+
+
+class Clock(BaseCallback):
+    """Evaluates each 5,000 steps, and notes the seconds of training when a threshold is passed."""
+
+    def __init__(self, normalize):
+        super().__init__()
+        self.normalize, self.passed, self.pauses, self.next, self.began = normalize, {}, 0.0, 5000, time.process_time()
+
+    def seconds(self):
+        return time.process_time() - self.began - self.pauses
+
+    def _on_step(self):
+        if self.num_timesteps >= self.next:
+            self.next += 5000
+            before = time.process_time()
+            mean = evaluate(self.model, self.normalize, 100, 10**6).mean()
+            self.pauses += time.process_time() - before
+            for threshold in THRESHOLDS:
+                if mean > threshold:
+                    self.passed.setdefault(threshold, (self.num_timesteps, self.seconds()))
+        return True
+
+
+def main():
+    torch.set_num_threads(1)
+    name, *seeds = sys.argv[1:]
+    kind, count, steps, settings = AGENTS[name]
+    for seed in map(int, seeds):
+        envs = VecMonitor(AcrobotVecEnv(gym.make_vec(NAME, num_envs=count, autoreset_mode="SameStep", threads=1)))
+        normalize = np.asarray
+        if kind is PPO:
+            envs = VecNormalize(envs, gamma=settings["gamma"])
+            normalize = envs.normalize_obs
+        model = kind("MlpPolicy", envs, seed=seed, device="cpu", **settings)
+        clock = Clock(normalize)
+        model.learn(steps, callback=clock)
+        seconds = clock.seconds()
+        returns = evaluate(model, normalize, 1000, 10**9 + seed)
+        times = ", ".join(f"{each}: {at:,} steps {s:.0f} s" for each, (at, s) in clock.passed.items())
+        print(f"{name} seed {seed}: {returns.mean():.1f}, {(returns <= -500).sum()} missed, {seconds:.0f} s; {times}", flush=True)
+
+
+main()

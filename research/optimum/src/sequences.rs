@@ -1,0 +1,92 @@
+//! The file of the best known sequences: a line for each initial state, with a sign for each action.
+
+use std::fs;
+use std::path::Path;
+
+use acrobot::arithmetic::{Arithmetic, Reference};
+use acrobot::physics::Pendulum;
+use acrobot::{Action, State};
+use anyhow::{Context, ensure};
+
+use crate::{SEEDS, initial};
+
+const SIGNS: [char; 3] = ['-', '0', '+'];
+const HEAD: &str = "\
+# The fewest known steps to the goal: line s has the actions after Gymnasium's reset(seed=s), counted from 0.
+# - 0 + are torques of -1, 0 and 1 N m. Made by: cargo run --release -p optimum -- search
+";
+
+/// The sequences of a file, one for each initial state, each checked.
+pub fn load(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
+    parse(path).with_context(|| path.display().to_string())
+}
+
+fn parse(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
+    let text = fs::read_to_string(path)?;
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
+    let sequences = lines.map(|line| {
+        let action = |sign| {
+            let index = SIGNS.iter().position(|&s| s == sign);
+            index.map(|i| Action::ALL[i])
+        };
+        let actions = line.chars().map(action).collect::<Option<_>>();
+        actions.with_context(|| format!("a line must have only - 0 +, got {line}"))
+    });
+    let sequences = sequences.collect::<anyhow::Result<Vec<Vec<_>>>>()?;
+    let found = sequences.len();
+    ensure!(
+        found == SEEDS as usize,
+        "must have {SEEDS} sequences, got {found}"
+    );
+    for (seed, sequence) in (0..).zip(&sequences) {
+        ensure!(
+            reaches::<Reference>(initial(seed), sequence),
+            "the sequence for seed {seed} must reach the goal with its last action"
+        );
+    }
+    Ok(sequences)
+}
+
+/// The text of the file.
+pub fn text(sequences: &[Vec<Action>]) -> String {
+    let mut text = HEAD.to_string();
+    for sequence in sequences {
+        text.extend(sequence.iter().map(|&action| SIGNS[action as usize]));
+        text.push('\n');
+    }
+    text
+}
+
+/// Whether the last action reaches the goal, and none before.
+pub fn reaches<A: Arithmetic<Scalar = f64>>(initial: State, actions: &[Action]) -> bool {
+    let mut pendulum = Pendulum::<A>::hanging();
+    pendulum.set_state(initial).expect("a finite state");
+    let last = actions.iter().position(|&action| {
+        let torque = pendulum.params().torque(action);
+        pendulum.step(torque).expect("a finite torque")
+    });
+    last.is_some_and(|last| last + 1 == actions.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use acrobot::arithmetic::Host;
+    use common::{absolute, assert_says};
+
+    use super::*;
+    use crate::{FILE, mean_return};
+
+    /// `Host` has Gymnasium's own bits where the C library is the recorded one.
+    #[test]
+    fn the_best_sequences_reach_the_goal_in_both_arithmetics() {
+        let sequences = load(&absolute(FILE)).unwrap();
+        let mean = mean_return(sequences.iter().flatten().count() as f64);
+        assert_says(
+            "docs/optimum.md",
+            &format!("| best known | −{:.2} |", -mean),
+        );
+        let all = (0..).zip(&sequences);
+        let in_host = all.filter(|(seed, sequence)| reaches::<Host>(initial(*seed), sequence));
+        assert!(in_host.count() >= 990);
+    }
+}
