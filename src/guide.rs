@@ -1,31 +1,5 @@
-//! The guide: one page for each reader and each subject.
-//!
-//! | you write | begin with |
-//! |---|---|
-//! | Rust on a desktop or a server | [`rust`] |
-//! | firmware | [`embedded`] |
-//! | C or C++ | [`c`] |
-//! | a web page | [`wasm`] |
-//! | Python | [`python`] |
-//!
-//! | you want to know | read |
-//! |---|---|
-//! | which arithmetic to choose; units, ranges and errors | [`numbers`] |
-//! | how to hold it upright, and with which motor | [`control`] |
-//! | how close it is to Gymnasium | [`parity`] |
-//! | how close it is to the solution of the equations | [`accuracy`] |
-//! | why all machines compute the same bits, and where that ends | [`determinism`] |
-//! | the equations, and their sources | [`equations`] |
-//! | how another Acrobot compares itself with Gymnasium | [`ports`] |
-//! | how fast it is | [`benchmarks`] |
-//! | what it costs on a microcontroller | [`embedded_figures`] |
-//! | how well it learns | [`learning`] |
-//! | dm_control's swing-up, with friction | [`swingup`] |
-//! | how well any policy can do | [`optimum`] |
-//!
-//! # Files
-//!
-//! Paths such as `examples/cortex-m` and `tests/data` are in the repository, beside the crate's source.
+#![doc = include_str!("../docs/rustdoc-links.txt")]
+#![doc = include_str!("../docs/README.md")]
 
 // Each page is also a file that GitHub shows. Its links are defined twice: for rustdoc in docs/rustdoc-links.txt, and for
 // GitHub at the page's end. The first definition counts. A page whose examples need a feature is not tested without it.

@@ -33,7 +33,7 @@ RUNS = [
     ("64k", 1_000_000, 20),
     ("64k", 2_000_000, 20),
 ]
-RETURNS = "| memory | steps | seeds | greedy return: mean ± sd of the seeds | 95 % interval of the mean | worst seed | misses |"
+RETURNS = "| memory | steps | seeds | return: mean ± sd | 95 % interval of the mean | worst seed | misses |"
 TIMES = "| memory | steps | steps to −80: median, worst seed | to −75 | to −70 |"
 
 
