@@ -33,12 +33,6 @@ def make(environment="Acrobot-v1"):
     return alone(gymnasium.make(environment))
 
 
-def unwrapped():
-    import gymnasium
-
-    return alone(gymnasium.make("Acrobot-v1").unwrapped)
-
-
 def sync_vector_env():
     import gymnasium
 
@@ -103,16 +97,12 @@ def alone(env):
 
     actions = numpy.random.default_rng(0).integers(3, size=10_000).tolist()
     env.reset(seed=0)
-    length = 0
 
     def run():
-        nonlocal length
         for action in actions:
-            _, _, terminated, _, _ = env.step(action)
-            length += 1
-            if terminated or length == LIMIT:  # `unwrapped` has no limit
+            _, _, terminated, truncated, _ = env.step(action)
+            if terminated or truncated:
                 env.reset()
-                length = 0
         return len(actions)
 
     return run
@@ -137,21 +127,14 @@ def together(envs, count):
 # that plays some steps, and its packages. The first of these is the key of `REQUIREMENTS`.
 IMPLEMENTATIONS = {
     "make": ("Gymnasium, `make`", make, ["gymnasium"]),
-    "unwrapped": ("Gymnasium, `unwrapped`", unwrapped, ["gymnasium"]),
     "sync_vector_env": ("Gymnasium, `SyncVectorEnv` of 64", sync_vector_env, ["gymnasium"]),
     "envpool": ("EnvPool of 1,024", envpool, ["envpool"]),
     "gymnax": ("gymnax and jax on the CPU, 4,096 in `jit`, `vmap` and `scan`", gymnax, ["gymnax", "jax"]),
     "acrobot_make": ("acrobot_rs for Python, `make`", acrobot_make, ["acrobot_rs"]),
     "acrobot_make_vec": ("acrobot_rs for Python, `make_vec` of 1,024", acrobot_make_vec, ["acrobot_rs"]),
-    "ogym": ("ogym, f64",),
-    "gmgn": ("gmgn, f64",),
     "rlevo": ("rlevo-environments, f32",),
-    "host": ("acrobot, `Host`",),
-    "reference": ("acrobot, `Reference`",),
-    "portable": ("acrobot, `Portable`",),
     "fast": ("acrobot, `Fast`",),
-    "batch": ("acrobot, batch of 1,024 `Fast`, without observations",),
-    "observations": ("acrobot, the same with observations",),
+    "batch": ("acrobot, batch of 1,024 `Fast`",),
 }
 
 
