@@ -1,5 +1,5 @@
-//! Plays one Rust implementation with a random policy for some seconds of processor time, and prints
-//! `name version steps seconds`: `cargo run --release -- rlevo 1`.
+//! Plays one Rust implementation with a random policy for some seconds of processor time, and
+//! prints `name version steps seconds`: `cargo run --release -- rlevo 1`.
 
 #![forbid(unsafe_code)]
 
@@ -53,13 +53,13 @@ fn main() {
 /// The version in the lock file.
 fn version(package: &str) -> &'static str {
     let lock = include_str!("../Cargo.lock");
-    let (_, rest) = lock
-        .split_once(&format!("name = \"{package}\"\nversion = \""))
-        .expect("a dependency");
+    let (_, rest) =
+        lock.split_once(&format!("name = \"{package}\"\nversion = \"")).expect("a dependency");
     rest.split_once('"').expect("a version in quotes").0
 }
 
-/// An implementation from a `step`, which resets after an episode's end and returns whether there was one.
+/// An implementation from a `step`, which resets after an episode's end and returns whether there
+/// was one.
 fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Implementation {
     let mut stream = 0;
     Box::new(move |steps| (0..steps).filter(|_| step(draw(&mut stream))).count())
