@@ -1,8 +1,8 @@
-//! The environment's contract beyond its numbers: construction, resets, terminations, time limits, live changes,
-//! sizes and auto-traits.
+//! The environment's contract beyond its numbers: construction, resets, terminations, time limits,
+//! live changes, sizes and auto-traits.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Real, Reference};
-use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::control::ControlError;
 use acrobot::physics::{Dynamics, Pendulum, ResetBounds};
 use acrobot::trajectory::{Trajectory, Transition};
@@ -10,13 +10,14 @@ use acrobot::{
     Acrobot, Action, Error, Fast, Observation, Params, Portable, REWARD_THRESHOLD, ResetOptions,
     State, Step, TimeLimit,
 };
-use common::{Repeating, bits, in_every_arithmetic};
+use common::{bits, in_every_arithmetic};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
 
-/// Firmware relies on these sizes and traits, and users on Gymnasium's threshold. The compiler checks them.
+/// Firmware relies on these sizes and traits, and users on Gymnasium's threshold. The compiler
+/// checks them.
 const _: () = {
     assert!(size_of::<Acrobot<Micro>>() == size_of::<Acrobot<Fast>>());
     assert!(size_of::<Acrobot<Reference>>() <= 400);
@@ -38,7 +39,8 @@ const _: () = {
     is_send_sync_clone::<ControlError>();
 };
 
-/// An arithmetic with only the required items. Its cosines put the tip at exactly the target height, whatever the angles.
+/// An arithmetic with only the required items. Its cosines put the tip at exactly the target
+/// height, whatever the angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct AtTheTarget;
 
@@ -62,19 +64,12 @@ fn a_tip_at_the_target_height_is_not_in_the_goal() {
 fn assert_height_decides_the_goal<A: Arithmetic>() {
     let mut acrobot = Acrobot::<A>::new(0);
     let dt = A::Scalar::from_f64(1e-6);
-    let params = Params {
-        dt,
-        ..*acrobot.params()
-    };
+    let params = Params { dt, ..*acrobot.params() };
     acrobot.set_params(params).unwrap();
     let mut terminated = 0;
     for [i, j] in (0..64).flat_map(|i| (0..64).map(move |j| [i, j])) {
         let [theta1, theta2] = [i, j].map(|k| A::Scalar::from_f64(0.1 * f64::from(k) - 3.13));
-        let state = State {
-            theta1,
-            theta2,
-            ..State::default()
-        };
+        let state = State { theta1, theta2, ..State::default() };
         acrobot.set_state(state).unwrap();
         let height = acrobot.pendulum().tip_height().to_f64();
         if (height - 1.0).abs() > 1e-4 {
@@ -101,10 +96,7 @@ fn time_limits_truncate_whether_or_not_an_episode_terminates() {
         for n in 1..limit {
             assert!(!acrobot.step(Action::Zero).truncated, "step {n}");
         }
-        let upright = State {
-            theta1: core::f32::consts::PI,
-            ..State::default()
-        };
+        let upright = State { theta1: core::f32::consts::PI, ..State::default() };
         acrobot.set_state(upright).unwrap();
         let last = acrobot.step(Action::Zero);
         assert!(last.terminated && last.truncated, "both on the last step");
@@ -128,10 +120,7 @@ fn acrobots_are_equal_by_parameters_state_and_generator() {
     assert_eq!(acrobot, acrobot.clone());
 
     let mut heavier = acrobot.clone();
-    let params = Params {
-        mass2: 1.5,
-        ..*heavier.params()
-    };
+    let params = Params { mass2: 1.5, ..*heavier.params() };
     heavier.set_params(params).unwrap();
     assert_ne!(acrobot, heavier);
 
@@ -144,7 +133,6 @@ fn acrobots_are_equal_by_parameters_state_and_generator() {
     assert_ne!(acrobot, drawn);
 }
 
-/// A reset with a seed equals a new acrobot. It draws from the bounds that it is given.
 #[test]
 fn reset_with_takes_a_seed_and_bounds() {
     let bounds = ResetBounds::new(-3.0, 5.0).unwrap();
@@ -163,10 +151,7 @@ fn reset_with_takes_a_seed_and_bounds() {
     }
 
     acrobot.step(Action::Zero);
-    let observation = acrobot.reset_with(ResetOptions {
-        bounds: Some(bounds),
-        ..7.into()
-    });
+    let observation = acrobot.reset_with(ResetOptions { bounds: Some(bounds), ..7.into() });
     let mut expected = TimeLimit::v1(Acrobot::hanging(Pcg64::new(7)));
     let draw = |acrobot: &mut Acrobot<_>| {
         let state = bounds.draw(acrobot.rng_mut());
@@ -192,7 +177,6 @@ fn bits_of<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) -> ([u64; 4], [u64; 
     )
 }
 
-/// An acrobot in a `static`, hanging or with given parameters and state, steps bit-identically to one made at run time.
 #[test]
 fn acrobots_made_by_the_compiler_equal_those_made_at_run_time() {
     fn check<A: Arithmetic>(made: &Acrobot<A>, state: State) {
@@ -206,10 +190,7 @@ fn acrobots_made_by_the_compiler_equal_those_made_at_run_time() {
         for noise in [0.0, 0.5] {
             let torque_noise = A::Scalar::from_f64(noise);
             for acrobot in [&mut made, &mut set] {
-                let params = Params {
-                    torque_noise,
-                    ..*acrobot.params()
-                };
+                let params = Params { torque_noise, ..*acrobot.params() };
                 acrobot.set_params(params).unwrap();
             }
             for _ in 0..200 {
@@ -248,38 +229,6 @@ fn acrobots_made_by_the_compiler_equal_those_made_at_run_time() {
     check_static!(Reference, Portable, Fast, Micro, Damped<Fast>);
 }
 
-/// A custom generator draws initial states and noise, in the order of the calls.
-#[test]
-fn custom_generators_draw_initial_states_and_noise() {
-    let words = Repeating::new([1, 3 << 62, 5 << 60, 7 << 61, u64::MAX]);
-    let mut rng = words.clone();
-    let mut drawn = |low, high| {
-        let numbers = [(); 4].map(|()| uniform(&mut rng, low, high) as f32);
-        State::from(numbers)
-    };
-    let mut acrobot = TimeLimit::v1(Acrobot::<Fast, _>::with_rng(words));
-    assert_eq!(acrobot.state(), drawn(-0.1, 0.1));
-    acrobot.reset();
-    assert_eq!(acrobot.state(), drawn(-0.1, 0.1));
-    let bounds = ResetBounds::new(1.0, 2.0).unwrap();
-    let state = bounds.draw(acrobot.inner_mut().rng_mut());
-    acrobot.set_state(state).unwrap();
-    assert_eq!(acrobot.state(), drawn(1.0, 2.0));
-
-    let noisy = Params {
-        torque_noise: 0.5,
-        ..Params::DEFAULT
-    };
-    acrobot.set_params(noisy).unwrap();
-    let mut twin = acrobot.inner().clone();
-    twin.set_params(Params::DEFAULT).unwrap();
-    let noise = uniform(twin.rng_mut(), -0.5, 0.5) as f32;
-    acrobot.step(Action::Positive);
-    twin.step_torque(1.0 + noise).unwrap();
-    assert_eq!(acrobot.state(), twin.state());
-    assert_eq!(acrobot.inner().rng(), twin.rng());
-}
-
 #[test]
 fn observation_bounds_equal_gymnasiums() {
     // As its observation space prints them: 4π and 9π in f32.
@@ -296,17 +245,12 @@ fn observation_bounds_equal_gymnasiums() {
 #[test]
 fn both_observations_show_the_state() {
     let state = State::from([0.5, -2.0, 3.0, -4.0]);
-    let acrobot = Acrobot::from_pendulum(
-        Pendulum::<Portable>::new(Params::DEFAULT, state).unwrap(),
-        (),
-    );
+    let acrobot =
+        Acrobot::from_pendulum(Pendulum::<Portable>::new(Params::DEFAULT, state).unwrap(), ());
     let (sin1, cos1) = Portable::sin_cos(0.5);
     let (sin2, cos2) = Portable::sin_cos(-2.0);
     let seen = acrobot.observation();
-    assert_eq!(
-        seen.to_array(),
-        [cos1, sin1, cos2, sin2, 3.0, -4.0].map(|x| x as f32)
-    );
+    assert_eq!(seen.to_array(), [cos1, sin1, cos2, sin2, 3.0, -4.0].map(|x| x as f32));
     let [sines, velocities] = [
         [seen.cos_theta1(), seen.sin_theta1(), seen.cos_theta2()],
         [seen.sin_theta2(), seen.dtheta1(), seen.dtheta2()],
@@ -318,23 +262,6 @@ fn both_observations_show_the_state() {
     assert_eq!([angles.dtheta1(), angles.dtheta2()], [3.0, -4.0]);
 }
 
-#[test]
-fn acrobots_can_begin_with_parameters() {
-    let heavy = Params {
-        mass1: 2.0,
-        ..Params::DEFAULT
-    };
-    let acrobot = Acrobot::<Portable>::with_params(42, heavy).unwrap();
-    assert_eq!(*acrobot.params(), heavy);
-    assert_eq!(acrobot.state(), Acrobot::<Portable>::new(42).state());
-    let without_mass = Params {
-        mass1: 0.0,
-        ..heavy
-    };
-    assert!(Acrobot::<Portable>::with_params(42, without_mass).is_err());
-}
-
-/// A program that expects an array or a slice finds one.
 #[test]
 fn observations_are_arrays_and_are_stored() {
     fn check<const N: usize>(seen: Observation<N>)

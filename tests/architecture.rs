@@ -1,5 +1,5 @@
-//! The architecture: a module imports only from modules above it in ARCHITECTURE.md's table, each import names the file
-//! that defines the item, and no files import each other.
+//! The architecture: a module imports only from modules above it in ARCHITECTURE.md's table, each
+//! import names the file that defines the item, and no files import each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -44,7 +44,8 @@ fn paths(code: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// The module that a path in `file` names, and the file that defines the item, otherwise that of the module.
+/// The module that a path in `file` names, and the file that defines the item, otherwise that of
+/// the module.
 fn target(sources: &BTreeMap<PathBuf, String>, file: &Path, path: &Path) -> Option<[PathBuf; 2]> {
     path.iter().nth(1)?; // not the path in `pub(super)`
     let path = match path.iter().next()?.to_str()? {
@@ -98,7 +99,8 @@ fn imports_go_one_way() {
         let all = paths(&own).into_iter().chain(exported);
         let found = all.filter_map(|path| target(&sources, file, &path));
         let found: Vec<_> = found.filter(|[_, home]| home != file).collect();
-        // Through a parent or the root, which only re-export, one does not see where an import leads.
+        // Through a parent or the root, which only re-export, one does not see where an import
+        // leads.
         let is_hidden = |[module, home]: &&[PathBuf; 2]| module != home && file.starts_with(module);
         let hidden = found.iter().find(is_hidden);
         assert_eq!(hidden, None, "{file:?} imports through a parent");

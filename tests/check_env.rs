@@ -23,10 +23,7 @@ fn our_environments_keep_the_contract() {
             check_env(&env, seed).unwrap();
         }
     }
-    let options = Options {
-        render_mode: RenderMode::RgbArray,
-        ..Options::default()
-    };
+    let options = Options { render_mode: RenderMode::RgbArray, ..Options::default() };
     check(AcrobotEnv::<Host, Observation>::default());
     check(AcrobotEnv::<Micro, Observation<4>>::default());
     check(acrobot_v1::<Host>(options).unwrap());
@@ -168,15 +165,7 @@ impl Env for Broken {
 
 #[test]
 fn every_violation_is_found() {
-    let check = |flaw| {
-        check_env(
-            &Broken {
-                env: TimeLimit::v1(AcrobotEnv::default()),
-                flaw,
-            },
-            1,
-        )
-    };
+    let check = |flaw| check_env(&Broken { env: TimeLimit::v1(AcrobotEnv::default()), flaw }, 1);
     assert_eq!(check(Flaw::None), Ok(()));
     let in_space = "observations are in the observation space";
     let repeats = "the same seed and actions give the same episode";
@@ -190,19 +179,13 @@ fn every_violation_is_found() {
         (Flaw::Seed, repeats),
         (Flaw::Resets(Cell::default()), repeats),
         (Flaw::Shared(Rc::default()), repeats),
-        (
-            Flaw::SharedInEpisode(Rc::default()),
-            "a clone behaves like its original",
-        ),
+        (Flaw::SharedInEpisode(Rc::default()), "a clone behaves like its original"),
         (Flaw::Count(Cell::default()), restarts),
         (Flaw::Unseeded(Cell::default()), restarts),
         (Flaw::Render, "rendering changes nothing"),
     ] {
         let violation = check(flaw).expect_err(rule);
-        let Violation {
-            rule: broken,
-            found,
-        } = &violation;
+        let Violation { rule: broken, found } = &violation;
         assert_eq!(*broken, rule, "{found}");
         assert!(!found.is_empty());
         assert_eq!(violation.to_string(), format!("{rule}: {found}"));

@@ -11,30 +11,20 @@ use acrobot::render::{Figure, Frame};
 use acrobot::{Action, Observation, Portable, State, TimeLimit};
 
 fn with_mode(render_mode: RenderMode) -> TimeLimit<AcrobotEnv<Portable, Observation>> {
-    let mut env = acrobot_v1::<Portable>(Options {
-        render_mode,
-        ..Options::default()
-    })
-    .unwrap();
+    let mut env = acrobot_v1::<Portable>(Options { render_mode, ..Options::default() }).unwrap();
     env.reset_with_seed(1);
-    env.unwrapped_mut()
-        .set_state(State::from([0.6, -1.5, 1.0, -2.0]))
-        .unwrap();
+    env.unwrapped_mut().set_state(State::from([0.6, -1.5, 1.0, -2.0])).unwrap();
     env
 }
 
 #[test]
 fn each_render_mode_returns_its_kind() {
     let mut rgb = with_mode(RenderMode::RgbArray);
-    let Ok(Rendering::Frame(frame)) = rgb.render() else {
-        panic!("no frame")
-    };
+    let Ok(Rendering::Frame(frame)) = rgb.render() else { panic!("no frame") };
     assert_eq!((frame.width(), frame.height()), (500, 500));
     assert_eq!(frame, Frame::of(&Figure::new(rgb.unwrapped())));
 
-    let Ok(Rendering::Text(text)) = with_mode(RenderMode::Ansi).render() else {
-        panic!("no text")
-    };
+    let Ok(Rendering::Text(text)) = with_mode(RenderMode::Ansi).render() else { panic!("no text") };
     common::assert_snapshot("ansi.txt", &text);
 
     let shown = Arc::new(Mutex::new(Vec::new()));
@@ -50,14 +40,11 @@ fn each_render_mode_returns_its_kind() {
 }
 
 fn human(display: &Display) -> Options {
-    Options {
-        render_mode: RenderMode::Human(display.clone()),
-        ..Options::default()
-    }
+    Options { render_mode: RenderMode::Human(display.clone()), ..Options::default() }
 }
 
-/// A display's function that renders on the same display gets an error and does not deadlock. The display shows the
-/// next frame, also after a panic.
+/// A display's function that renders on the same display gets an error and does not deadlock. The
+/// display shows the next frame, also after a panic.
 #[test]
 fn a_display_rejects_frames_from_its_own_function() {
     let nested: Arc<Mutex<Option<[Box<DynEnv>; 2]>>> = Arc::default();
@@ -95,7 +82,6 @@ fn a_display_rejects_frames_from_its_own_function() {
     );
 }
 
-/// A display that two threads share shows every frame.
 #[test]
 fn threads_share_a_display() {
     let (sender, frames) = mpsc::channel();

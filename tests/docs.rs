@@ -20,7 +20,6 @@ fn the_figures_of_the_readme_are_those_of_the_pages() {
     }
 }
 
-/// Each number of the firmware guide's section on costs stands in the page that `figures.py` checks.
 #[test]
 fn the_figures_of_the_firmware_guide_are_those_of_its_page() {
     let guide = text_of("docs/embedded.md");
@@ -40,24 +39,16 @@ fn assert_numbers_are_in(text: &str, page: &str) {
 /// The words without signs and punctuation.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split([' ', '\n', '|']).map(|word| {
-        word.trim_start_matches(['-', '−'])
-            .trim_end_matches(['.', ',', ';', ':', ')', '`'])
+        word.trim_start_matches(['-', '−']).trim_end_matches(['.', ',', ';', ':', ')', '`'])
     })
 }
 
-/// The pages name the repository's files by their paths, without links, because rustdoc shows the pages without the files.
+/// The pages name the repository's files by their paths, without links, because rustdoc shows the
+/// pages without the files.
 #[test]
 fn the_files_that_the_pages_name_exist() {
-    const FOLDERS: [&str; 8] = [
-        "benches/",
-        "bindings/",
-        "crates/",
-        "docs/",
-        "examples/",
-        "fuzz/",
-        "research/",
-        "tests/",
-    ];
+    const FOLDERS: [&str; 8] =
+        ["benches/", "bindings/", "crates/", "docs/", "examples/", "fuzz/", "research/", "tests/"];
 
     let mut count = 0;
     for page in fs::read_dir(absolute("docs")).unwrap() {
@@ -76,29 +67,21 @@ fn the_files_that_the_pages_name_exist() {
     assert!(count > 40, "{count}");
 }
 
-/// A block that is not compiled with the crate names the file that it is from: "```rust,ignore (path)" or "```c (path)".
+/// A block that is not compiled with the crate names the file that it is from: "```rust,ignore
+/// (path)" or "```c (path)".
 #[test]
 fn excerpts_are_in_their_files() {
-    let unindented = |text: &str| {
-        text.lines()
-            .map(str::trim_start)
-            .collect::<Vec<_>>()
-            .join("\n")
-    };
-    for (page, fence, count) in [
-        ("docs/embedded.md", "```rust,ignore (", 2),
-        ("docs/c.md", "```c (", 4),
-    ] {
+    let unindented = |text: &str| text.lines().map(str::trim_start).collect::<Vec<_>>().join("\n");
+    for (page, fence, count) in
+        [("docs/embedded.md", "```rust,ignore (", 2), ("docs/c.md", "```c (", 4)]
+    {
         let page = text_of(page);
         let blocks: Vec<&str> = page.split(fence).skip(1).collect();
         for block in &blocks {
             let (path, rest) = block.split_once(")\n").unwrap();
             let (excerpt, _) = rest.split_once("```").unwrap();
             let file = unindented(&text_of(path));
-            assert!(
-                file.contains(&unindented(excerpt)),
-                "{path} has no such lines:\n{excerpt}"
-            );
+            assert!(file.contains(&unindented(excerpt)), "{path} has no such lines:\n{excerpt}");
         }
         assert_eq!(blocks.len(), count);
     }

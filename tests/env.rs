@@ -26,10 +26,7 @@ fn make_plays_gymnasiums_runs() {
         let mut env = make(id).unwrap();
         let sequence: SeedSequence = seed.parse().unwrap();
         let mut actions = Pcg64::from(sequence.clone());
-        env.reset_with(ResetOptions {
-            seed: Some(sequence),
-            ..ResetOptions::default()
-        });
+        env.reset_with(ResetOptions { seed: Some(sequence), ..ResetOptions::default() });
         let (mut found, mut ends) = (Digest::default(), 0);
         for _ in 0..1000 {
             let step = env.step(env.action_space().sample(&mut actions));
@@ -74,21 +71,10 @@ fn versions_have_gymnasiums_spaces() {
 
 #[test]
 fn live_changes_reach_through_every_wrapper() {
-    let params = Params {
-        dynamics: Dynamics::Nips,
-        dt: 0.05,
-        ..Params::DEFAULT
-    };
+    let params = Params { dynamics: Dynamics::Nips, dt: 0.05, ..Params::DEFAULT };
     let mut typed = RecordEpisodeStatistics::new(acrobot_v1::<Host>(Options::default()).unwrap());
     let mut erased = make("Acrobot-v1").unwrap();
-    let mut made = make_with(
-        "Acrobot-v1",
-        Options {
-            params,
-            ..Options::default()
-        },
-    )
-    .unwrap();
+    let mut made = make_with("Acrobot-v1", Options { params, ..Options::default() }).unwrap();
     typed.reset_with_seed(3);
     erased.reset_with_seed(3);
     made.reset_with_seed(3);
@@ -105,28 +91,17 @@ fn live_changes_reach_through_every_wrapper() {
         assert_eq!(step.observation, expected.observation.into());
     }
 
-    let slower = Params {
-        max_velocity1: 1.0,
-        max_velocity2: 2.0,
-        ..params
-    };
+    let slower = Params { max_velocity1: 1.0, max_velocity2: 2.0, ..params };
     let mut angles = make("Acrobot-v0").unwrap();
     angles.unwrapped_mut().set_params(slower).unwrap();
     erased.unwrapped_mut().set_params(slower).unwrap();
-    assert_eq!(
-        erased.observation_space().high().as_slice()[4..],
-        [1.0, 2.0]
-    );
-    assert_eq!(
-        angles.observation_space().high().as_slice()[2..],
-        [1.0, 2.0]
-    );
+    assert_eq!(erased.observation_space().high().as_slice()[4..], [1.0, 2.0]);
+    assert_eq!(angles.observation_space().high().as_slice()[2..], [1.0, 2.0]);
     assert_eq!(erased.unwrapped().figure(), Figure::new(typed.unwrapped()));
     erased.unwrapped_mut().set_state(State::UPRIGHT).unwrap();
     assert!(erased.step(Action::Zero).terminated);
 }
 
-/// The boxes that `make` returns can be wrapped and borrowed like any environment.
 #[test]
 fn boxed_and_borrowed_environments_are_environments() {
     let limit = 3.try_into().unwrap();
@@ -139,33 +114,23 @@ fn boxed_and_borrowed_environments_are_environments() {
     assert_eq!(borrowed.observation_space().high().as_slice().len(), 4);
     assert_eq!(borrowed.action_space().n().get(), 3);
     assert_eq!(borrowed.render(), Err(Error::NoRenderMode));
-    borrowed
-        .unwrapped_mut()
-        .set_state(State::default())
-        .unwrap();
+    borrowed.unwrapped_mut().set_state(State::default()).unwrap();
     assert_eq!(borrowed.unwrapped().state(), State::default());
     assert_eq!(reset_to(&mut borrowed, 0.5), [0.5; 4]);
     borrowed.close();
 
-    // The shorter of two limits truncates. `close` reaches through all wrappers and drops the display.
+    // The shorter of two limits truncates. `close` reaches through all wrappers and drops the
+    // display.
     let (sender, frames) = std::sync::mpsc::channel();
     let display = Display::new(move |frame| sender.send(frame.width()).unwrap());
     assert_eq!(format!("{display:?}"), "Display");
-    let options = Options {
-        render_mode: RenderMode::Human(display),
-        ..Options::default()
-    };
-    let mut env = TimeLimit::v1(RecordEpisodeStatistics::new(
-        make_with("Acrobot-v0", options).unwrap(),
-    ));
+    let options = Options { render_mode: RenderMode::Human(display), ..Options::default() };
+    let mut env =
+        TimeLimit::v1(RecordEpisodeStatistics::new(make_with("Acrobot-v0", options).unwrap()));
     env.reset();
     let length = (1..).find(|_| env.step(Action::Zero).truncated);
     assert_eq!(length, Some(200));
-    assert!(
-        env.inner()
-            .episodes()
-            .all(|episode| !episode.elapsed.is_zero())
-    );
+    assert!(env.inner().episodes().all(|episode| !episode.elapsed.is_zero()));
     assert_eq!(frames.try_iter().count(), 201);
     RecordEpisodeStatistics::new(&mut env).close();
     assert!(frames.recv().is_err(), "the sender is dropped");
@@ -186,14 +151,8 @@ fn every_arithmetic_can_be_made() {
         (ArithmeticKind::Fast, after_a_step::<Fast>()),
         (ArithmeticKind::Micro, after_a_step::<Micro>()),
     ] {
-        let mut env = make_with(
-            "Acrobot-v1",
-            Options {
-                arithmetic,
-                ..Options::default()
-            },
-        )
-        .unwrap();
+        let mut env =
+            make_with("Acrobot-v1", Options { arithmetic, ..Options::default() }).unwrap();
         env.reset_with_seed(1);
         env.step(Action::Positive);
         assert_eq!(env.unwrapped().state(), expected, "{arithmetic:?}");
@@ -208,10 +167,7 @@ fn statistics_cover_each_episode() {
     for episode in 1..=120 {
         env.reset();
         if episode == 120 {
-            let upright = State {
-                theta1: 3.0,
-                ..State::default()
-            };
+            let upright = State { theta1: 3.0, ..State::default() };
             env.unwrapped_mut().set_state(upright).unwrap();
         }
         let last = loop {
@@ -228,7 +184,6 @@ fn statistics_cover_each_episode() {
     assert_eq!(env.mean_return(), Some(-99.0 * 5.0 / 100.0));
 }
 
-/// `into_inner` of a wrapper returns the environment as it is.
 #[test]
 fn unwrapping_changes_nothing() {
     let mut env = acrobot_v1::<Fast>(Options::default()).unwrap();
@@ -263,10 +218,7 @@ fn rejections_name_the_rule() {
     let mut options = Options::default();
     options.params.mass1 = -1.0;
     let error = make_with("Acrobot-v1", options).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "mass1 must be finite and above 0 kg, got -1"
-    );
+    assert_eq!(error.to_string(), "mass1 must be finite and above 0 kg, got -1");
 
     let mut mute = make("Acrobot-v1").unwrap();
     let error = mute.render().unwrap_err();
@@ -281,9 +233,7 @@ fn rejections_name_the_rule() {
 
 #[test]
 fn spaces_know_their_elements() {
-    let space = acrobot_v1::<Fast>(Options::default())
-        .unwrap()
-        .observation_space();
+    let space = acrobot_v1::<Fast>(Options::default()).unwrap().observation_space();
     assert!(space.contains(space.low()) && space.contains(space.high()));
     for i in 0..6 {
         let [low, high] = [space.low(), space.high()].map(|bound| bound.as_ref()[i]);
@@ -293,31 +243,17 @@ fn spaces_know_their_elements() {
             assert!(!space.contains(&outside), "{outside:?}");
         }
     }
-    assert!(
-        !BoxSpace::new(vec![0.0], vec![1.0])
-            .unwrap()
-            .contains(&vec![0.5, 0.5])
-    );
+    assert!(!BoxSpace::new(vec![0.0], vec![1.0]).unwrap().contains(&vec![0.5, 0.5]));
     assert!(BoxSpace::new(vec![0.0], vec![1.0, 2.0]).is_none());
-    assert!(
-        Action::ALL
-            .iter()
-            .all(|action| DiscreteSpace::ACTIONS.contains(action))
-    );
+    assert!(Action::ALL.iter().all(|action| DiscreteSpace::ACTIONS.contains(action)));
 }
 
 /// Parameters are checked before and after they are rounded to the scalar.
 #[test]
 fn parameters_that_only_rounding_makes_valid_are_rejected() {
     // Rounded to `f32` it is 0.
-    let params = Params {
-        torque_noise: -1e-60,
-        ..Params::DEFAULT
-    };
-    let options = Options {
-        arithmetic: ArithmeticKind::Fast,
-        ..Options::default()
-    };
+    let params = Params { torque_noise: -1e-60, ..Params::DEFAULT };
+    let options = Options { arithmetic: ArithmeticKind::Fast, ..Options::default() };
     let mut env = make_with("Acrobot-v1", options.clone()).unwrap();
     let expected = params.validate().unwrap_err();
     assert_eq!(env.unwrapped_mut().set_params(params), Err(expected));
@@ -332,10 +268,7 @@ fn parameters_that_only_rounding_makes_valid_are_rejected() {
 /// What is valid in `f64` and not in `f32` is rejected as it was given.
 #[test]
 fn numbers_that_rounding_makes_invalid_are_named_as_given() {
-    let options = Options {
-        arithmetic: ArithmeticKind::Fast,
-        ..Options::default()
-    };
+    let options = Options { arithmetic: ArithmeticKind::Fast, ..Options::default() };
     let mut env = make_with("Acrobot-v1", options.clone()).unwrap();
     let acrobot = env.unwrapped_mut();
     let before = (acrobot.state(), acrobot.params());
@@ -361,10 +294,7 @@ fn numbers_that_rounding_makes_invalid_are_named_as_given() {
         ),
     ] {
         reject(acrobot.set_params(params), name, value, unit);
-        let options = Options {
-            params,
-            ..options.clone()
-        };
+        let options = Options { params, ..options.clone() };
         let made = make_with("Acrobot-v1", options);
         let Err(Error::Invalid(error)) = made else {
             panic!("{name} was accepted");

@@ -12,8 +12,8 @@ use common::{
 /// The tolerance of a single step with another C library: twice the error of [`Reference`].
 const OTHER_LIBRARY: f64 = 1.5e-14;
 
-/// The tolerance of `Portable`, whose lean form adds in another order: twice its error, at up to 28 rad/s and after
-/// dozens of turns.
+/// The tolerance of `Portable`, whose lean form adds in another order: twice its error, at up to 28
+/// rad/s and after dozens of turns.
 const OTHER_ORDER: f64 = 1.5e-12;
 
 #[test]
@@ -34,11 +34,7 @@ fn host_replays_gymnasium() {
         for (i, &action) in episode.actions.iter().enumerate() {
             let step = acrobot.step(action);
             let context = format!("step {} of episode {number}", i + 1);
-            assert_eq!(
-                bits(acrobot.state()),
-                bits(episode.states[i + 1]),
-                "{context}"
-            );
+            assert_eq!(bits(acrobot.state()), bits(episode.states[i + 1]), "{context}");
             assert_eq!(step.reward, episode.rewards[i], "{context}");
             assert_eq!(step.terminated, episode.terminated[i], "{context}");
             goals += usize::from(step.terminated);
@@ -46,18 +42,13 @@ fn host_replays_gymnasium() {
                 observations.add(x.to_bits().into());
             }
         }
-        assert_eq!(
-            observations, episode.observations,
-            "observations of episode {number}"
-        );
+        assert_eq!(observations, episode.observations, "observations of episode {number}");
     }
-    assert!(
-        goals > 1000,
-        "the recording must reach the goal often, and reaches it {goals} times"
-    );
+    assert!(goals > 1000, "the recording must reach the goal often, and reaches it {goals} times");
 }
 
-/// Single steps with other parameters from states anywhere within the bounds, and from each state of the episodes.
+/// Single steps with other parameters from states anywhere within the bounds, and from each state
+/// of the episodes.
 fn single_steps<A: Arithmetic<Scalar = f64>>(exact: bool, tolerance: f64) {
     let worst = Cell::new(0.0_f64);
     let check = |acrobot: &Acrobot<A>, next: State, context: &str| {
@@ -102,8 +93,9 @@ fn other_arithmetics_take_single_steps_closely() {
     single_steps::<Portable>(false, OTHER_ORDER);
 }
 
-/// How much of the recordings an arithmetic repeats bit for bit: the shares of single steps under a random and under an
-/// energetic policy, in percent, and how many of 60 free-running episodes after 65, 100 and 200 steps.
+/// How much of the recordings an arithmetic repeats bit for bit: the shares of single steps under a
+/// random and under an energetic policy, in percent, and how many of 60 free-running episodes after
+/// 65, 100 and 200 steps.
 fn repeated<A: Arithmetic<Scalar = f64>>() -> ([f64; 2], [u32; 3]) {
     // One policy in each half of the first 64 episodes. The last eight begin outside the bounds.
     let shares = [0..32, 32..64].map(|episodes| {
@@ -156,10 +148,7 @@ fn the_docs_say_how_much_of_gymnasium_is_repeated() {
     let reference = repeated::<Reference>();
     let ([random, energetic], [after_65, ..]) = reference;
     assert!(random >= 99.5 && energetic >= 99.5 && after_65 >= 40);
-    let mut rows = vec![
-        row("`Reference`", reference),
-        row("`Portable`", repeated::<Portable>()),
-    ];
+    let mut rows = vec![row("`Reference`", reference), row("`Portable`", repeated::<Portable>())];
     if is_recorded_library() {
         rows.push(row("`Host`", repeated::<Host>()));
     } else {
@@ -170,7 +159,8 @@ fn the_docs_say_how_much_of_gymnasium_is_repeated() {
     }
 }
 
-/// NumPy computes the sines of an initial state with its own `f32` code, and those of later steps with other code.
+/// NumPy computes the sines of an initial state with its own `f32` code, and those of later steps
+/// with other code.
 #[test]
 fn initial_observations_are_within_one_ulp() {
     for (number, episode) in RECORDING.episodes.iter().enumerate() {

@@ -5,27 +5,18 @@ use acrobot::physics::Pendulum;
 use acrobot::{Acrobot, Params, Portable, State};
 use common::{bits, in_every_arithmetic};
 
-/// A pendulum steps bit-identically to an acrobot without noise, and returns whether the acrobot terminates.
 #[test]
 fn a_pendulum_equals_an_acrobot_without_noise() {
     fn check<A: Arithmetic>() {
         let number = A::Scalar::from_f64;
-        let params = Params {
-            mass2: number(1.5),
-            dt: number(0.1),
-            ..Params::default()
-        };
+        let params = Params { mass2: number(1.5), dt: number(0.1), ..Params::default() };
         let mut acrobot = Acrobot::<A>::new(5);
         acrobot.set_params(params).unwrap();
         let mut pendulum = Pendulum::<A>::new(params, acrobot.state()).unwrap();
         let mut terminated = 0;
         for _ in 0..500 {
             // Torque along link 1's velocity, which swings it up.
-            let torque = number(if acrobot.state().dtheta1 > number(0.0) {
-                -2.0
-            } else {
-                2.0
-            });
+            let torque = number(if acrobot.state().dtheta1 > number(0.0) { -2.0 } else { 2.0 });
             let step = acrobot.step_torque(torque).unwrap();
             assert_eq!(pendulum.step(torque), Ok(step.terminated));
             assert_eq!(bits(pendulum.state()), bits(acrobot.state()));
@@ -40,7 +31,8 @@ fn a_pendulum_equals_an_acrobot_without_noise() {
     in_every_arithmetic!(check);
 }
 
-/// After each step, whose sines are cached, a pendulum gives the same bits as a new one in its state.
+/// After each step, whose sines are cached, a pendulum gives the same bits as a new one in its
+/// state.
 #[test]
 fn a_pendulum_after_a_step_equals_a_new_one() {
     fn check<A: Arithmetic>() {
@@ -74,11 +66,7 @@ fn a_pendulum_after_a_step_equals_a_new_one() {
 #[test]
 fn positions_follow_from_the_angles() {
     use std::f64::consts::FRAC_PI_2;
-    let params = Params {
-        length1: 1.5,
-        length2: 0.5,
-        ..Params::DEFAULT
-    };
+    let params = Params { length1: 1.5, length2: 0.5, ..Params::DEFAULT };
     let at = |theta1: f64, theta2: f64| {
         let state = State::from([theta1, theta2, 0.0, 0.0]);
         let pendulum = Pendulum::<Portable>::new(params, state).unwrap();

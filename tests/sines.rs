@@ -1,5 +1,5 @@
-//! Promise 2, bits defined by mathematics: `Reference`'s sines and cosines are correctly rounded. `data/sines.py`
-//! recorded MPFR's results.
+//! Promise 2, bits defined by mathematics: `Reference`'s sines and cosines are correctly rounded.
+//! `data/sines.py` recorded MPFR's results.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,9 +12,7 @@ const CHUNK: usize = 250_000;
 
 fn recorded() -> impl Iterator<Item = Vec<&'static str>> {
     let lines = include_str!("data/sines.txt").lines();
-    lines
-        .filter(|line| !line.starts_with('#'))
-        .map(|line| line.split(' ').collect())
+    lines.filter(|line| !line.starts_with('#')).map(|line| line.split(' ').collect())
 }
 
 /// The next argument of a family, as `data/sines.py` draws it.
@@ -41,11 +39,7 @@ fn argument(family: &str, rng: &mut Pcg64) -> f64 {
         }
         "any" => {
             let any = f64::from_bits(rng.next_u64());
-            if any.is_finite() {
-                any
-            } else {
-                f64::from_bits(any.to_bits() & !(1 << 62))
-            }
+            if any.is_finite() { any } else { f64::from_bits(any.to_bits() & !(1 << 62)) }
         }
         _ => panic!("unknown family {family}"),
     }
@@ -67,24 +61,18 @@ fn millions_of_sines_are_correctly_rounded() {
             let x = argument(family, &mut rng);
             let (sin, cos) = Reference::sin_cos(x);
             for y in [sin, cos] {
-                digest = digest
-                    .wrapping_mul(0x9e37_79b9_7f4a_7c15)
-                    .wrapping_add(y.to_bits());
+                digest = digest.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(y.to_bits());
             }
         }
-        assert_eq!(
-            format!("{digest:016x}"),
-            expected,
-            "{family}, chunk {chunk}"
-        );
+        assert_eq!(format!("{digest:016x}"), expected, "{family}, chunk {chunk}");
         count += CHUNK;
     }
     // 84 families, which come first.
     assert_eq!(count, 84_usize.div_ceil(EVERY) * CHUNK);
 }
 
-/// Results next to half way between two `f64`, arguments next to multiples of π/2 of every size, and the ends of each
-/// method.
+/// Results next to half way between two `f64`, arguments next to multiples of π/2 of every size,
+/// and the ends of each method.
 #[test]
 fn hard_cases_are_correctly_rounded() {
     let mut count = 0;
@@ -93,21 +81,9 @@ fn hard_cases_are_correctly_rounded() {
         let [x, sin, cos] =
             [x, sin, cos].map(|bits| f64::from_bits(u64::from_str_radix(bits, 16).unwrap()));
         let (found_sin, found_cos) = Reference::sin_cos(x);
-        assert_eq!(
-            found_sin.to_bits(),
-            sin.to_bits(),
-            "sin {x:e}: {found_sin:e}"
-        );
-        assert_eq!(
-            found_cos.to_bits(),
-            cos.to_bits(),
-            "cos {x:e}: {found_cos:e}"
-        );
-        assert_eq!(
-            Reference::cos(x).to_bits(),
-            cos.to_bits(),
-            "cos {x:e} alone"
-        );
+        assert_eq!(found_sin.to_bits(), sin.to_bits(), "sin {x:e}: {found_sin:e}");
+        assert_eq!(found_cos.to_bits(), cos.to_bits(), "cos {x:e}: {found_cos:e}");
+        assert_eq!(Reference::cos(x).to_bits(), cos.to_bits(), "cos {x:e} alone");
         count += 1;
     }
     assert!(count > 2000, "{count}");

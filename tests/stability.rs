@@ -1,4 +1,5 @@
-//! Promise 2, the same bits everywhere: digests of long runs. Changing one takes a breaking release.
+//! Promise 2, the same bits everywhere: digests of long runs. Changing one takes a breaking
+//! release.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, uniform};
@@ -10,10 +11,7 @@ use bits::{Digest, episodes, training};
 fn digest<A: Arithmetic>(friction: Viscous<A::Scalar>) -> u64 {
     let mut digest = Digest::default();
     for seed in 0..64 {
-        let params = Params {
-            friction,
-            ..Params::default()
-        };
+        let params = Params { friction, ..Params::default() };
         let mut acrobot = TimeLimit::v1(Acrobot::<A>::with_params(seed, params).unwrap());
         let mut actions = Pcg64::new(seed);
         for _ in 0..3 {
@@ -36,10 +34,7 @@ fn digest<A: Arithmetic>(friction: Viscous<A::Scalar>) -> u64 {
 }
 
 fn damped<S: Real>() -> Viscous<S> {
-    Viscous {
-        joint1: S::from_f64(0.1),
-        joint2: S::from_f64(0.05),
-    }
+    Viscous { joint1: S::from_f64(0.1), joint2: S::from_f64(0.05) }
 }
 
 #[test]
@@ -73,7 +68,8 @@ fn random_episodes_are_stable() {
     assert!(found == expected, "with friction: {found:#018x?}");
 }
 
-/// Friction and the task are two things: the initial states, rewards and the goal stay Gymnasium's, too.
+/// Friction and the task are two things: the initial states, rewards and the goal stay Gymnasium's,
+/// too.
 #[test]
 fn a_friction_of_0_changes_no_bit() {
     let damped = digest::<Damped<Reference>>(Viscous::default());
@@ -98,7 +94,8 @@ fn libm_has_the_sines_of_portables_digests() {
     assert_eq!(
         format!("{:016x}", digest.0),
         "30c8c9548cb4f32a",
-        "this version of libm rounds sines differently from 0.2.16, so Portable's bits differ: see docs/determinism.md"
+        "this libm rounds sines differently from 0.2.16, so Portable's bits differ: see \
+        docs/determinism.md"
     );
 }
 
@@ -122,11 +119,7 @@ fn the_shared_episodes_are_stable_in_the_other_arithmetics() {
 
 #[test]
 fn subnormal_numbers_friction_and_the_swing_up_are_stable() {
-    let found = (
-        episodes::subnormal(),
-        episodes::damped(),
-        episodes::swingup(),
-    );
+    let found = (episodes::subnormal(), episodes::damped(), episodes::swingup());
     let expected = (episodes::SUBNORMAL, episodes::DAMPED, episodes::SWINGUP);
     assert!(found == expected, "{found:#018x?}");
 }
@@ -138,7 +131,6 @@ fn batches_are_stable() {
     assert!(found == episodes::BATCHES, "{found:#018x?}");
 }
 
-/// The weights after 100 episodes. Any change in the learner or the task changes them.
 #[test]
 fn the_shared_training_is_stable() {
     let found = training::weights();

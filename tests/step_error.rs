@@ -6,11 +6,12 @@ use acrobot::arithmetic::{Arithmetic, Micro};
 use acrobot::{Acrobot, Fast, Portable, State};
 use common::{RECORDING, RecordedStep, assert_says, distance, recorded_steps};
 
-/// Upper ends of the bands of max(|θ̇1|, |θ̇2|) before a step, rad/s. The last band has all remaining steps: up to the
-/// velocity bounds, and from the few initial states beyond them.
+/// Upper ends of the bands of max(|θ̇1|, |θ̇2|) before a step, rad/s. The last band has all
+/// remaining steps: up to the velocity bounds, and from the few initial states beyond them.
 const BANDS: [f64; 5] = [3.0, 6.0, 12.0, 20.0, f64::INFINITY];
 
-/// The promised error of a step in the slowest band: about ten roundings of numbers near 3, in `f64` and in `f32`.
+/// The promised error of a step in the slowest band: about ten roundings of numbers near 3, in
+/// `f64` and in `f32`.
 const PORTABLE_SLOW: f64 = 4e-15;
 const FAST_SLOW: f64 = 4e-6;
 
@@ -27,15 +28,11 @@ fn step_errors<A: Arithmetic>() -> [Vec<f64>; 5] {
     for episode in &RECORDING.episodes {
         let mut acrobot = episode.start();
         for (i, &action) in episode.actions.iter().enumerate() {
-            take(
-                &mut acrobot,
-                episode.states[i],
-                action,
-                episode.states[i + 1],
-            );
+            take(&mut acrobot, episode.states[i], action, episode.states[i + 1]);
         }
     }
-    // Steps from angles of many turns test `wrap` only, because `f32` cannot represent such a state.
+    // Steps from angles of many turns test `wrap` only, because `f32` cannot represent such a
+    // state.
     let within_a_turn =
         |step: &RecordedStep| step.state.theta1.abs().max(step.state.theta2.abs()) <= PI;
     for step in recorded_steps().into_iter().filter(within_a_turn) {
@@ -58,14 +55,9 @@ fn percentile_99_9(sorted: &[f64]) -> f64 {
     sorted[sorted.len() * 999 / 1000]
 }
 
-/// This measures the table in docs/parity.md, which is the same on every machine.
 #[test]
 fn single_steps_are_as_close_as_the_docs_say() {
-    let errors = [
-        step_errors::<Portable>(),
-        step_errors::<Fast>(),
-        step_errors::<Micro>(),
-    ];
+    let errors = [step_errors::<Portable>(), step_errors::<Fast>(), step_errors::<Micro>()];
     assert!(maximum(&errors[0][0]) <= PORTABLE_SLOW);
     assert!(maximum(&errors[1][0]) <= FAST_SLOW);
 
@@ -75,11 +67,7 @@ fn single_steps_are_as_close_as_the_docs_say() {
             let sorted = &arithmetic[band];
             format!("{:.1e}, {:.1e}", percentile_99_9(sorted), maximum(sorted))
         });
-        format!(
-            "| {name} | {} | {} |",
-            errors[0][band].len(),
-            cells.join(" | ")
-        )
+        format!("| {name} | {} | {} |", errors[0][band].len(), cells.join(" | "))
     });
     let table = rows.collect::<Vec<_>>().join("\n");
     println!("{table}");
@@ -105,9 +93,6 @@ fn whole_episodes_stay_as_close_as_the_docs_say() {
     assert_eq!(close[0], all as u32);
     assert_says(
         "docs/parity.md",
-        &format!(
-            "all {all} after 100 steps, {} after 200 and {} after 500",
-            close[1], close[2]
-        ),
+        &format!("all {all} after 100 steps, {} after 200 and {} after 500", close[1], close[2]),
     );
 }

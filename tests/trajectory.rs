@@ -14,12 +14,7 @@ fn record<const N: usize>(steps: usize) -> (Trajectory<f32, N>, Vec<Transition<f
     for i in 0..steps {
         let action = Action::ALL[i % 3];
         let mut twin = acrobot.clone();
-        let Step {
-            reward,
-            terminated,
-            truncated,
-            ..
-        } = twin.step(action);
+        let Step { reward, terminated, truncated, .. } = twin.step(action);
         all.push(Transition {
             state: acrobot.state(),
             torque: [-1.0, 0.0, 1.0][i % 3],
@@ -34,7 +29,6 @@ fn record<const N: usize>(steps: usize) -> (Trajectory<f32, N>, Vec<Transition<f
     (trajectory, all)
 }
 
-/// `step` and `step_torque` record and return the step of an acrobot.
 #[test]
 fn acrobots_step_the_same_with_a_trajectory() {
     let limit = NonZeroU32::new(3).unwrap();
@@ -60,7 +54,6 @@ fn acrobots_step_the_same_with_a_trajectory() {
     assert_eq!(trajectory.len(), 6);
 }
 
-/// A row of random episodes, with `f32` and Gymnasium's parameters, takes at most 150 bytes.
 #[test]
 fn rows_are_as_long_as_documented() {
     let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(4));
@@ -68,10 +61,7 @@ fn rows_are_as_long_as_documented() {
     let (mut rows, mut longest) = (0, 0);
     for _ in 0..20 {
         let mut trajectory = Trajectory::<f32, 500>::new();
-        while !trajectory
-            .step(&mut acrobot, Action::sample(&mut actions))
-            .done()
-        {}
+        while !trajectory.step(&mut acrobot, Action::sample(&mut actions)).done() {}
         for row in trajectory.rows() {
             (rows, longest) = (rows + 1, longest.max(row.to_string().len()));
         }
@@ -81,7 +71,6 @@ fn rows_are_as_long_as_documented() {
     assert!(rows > 5000 && longest <= 150);
 }
 
-/// postcard stores a transition of `f32` in 42 bytes, and reads it back.
 #[test]
 fn a_transition_takes_42_bytes() {
     let (_, all) = record::<10>(25);
@@ -102,8 +91,7 @@ fn a_trajectory_keeps_the_last_transitions_in_order() {
         assert!(trajectory.iter().eq(&all[steps - kept..]));
         trajectory.clear();
         assert!(trajectory.is_empty());
-        all.iter()
-            .for_each(|transition| trajectory.push(*transition));
+        all.iter().for_each(|transition| trajectory.push(*transition));
         let first = trajectory.rows().next().map(|row| row.to_string());
         let number = format!("{},", steps - kept + 1);
         assert!(first.is_none_or(|first| first.starts_with(&number)));
@@ -119,10 +107,7 @@ fn a_row_of_csv_reads_back_as_its_transition() {
     let mut rows = csv.lines();
     assert_eq!(rows.next(), Some(HEADER));
     assert_eq!(HEADER.split(',').count(), 13);
-    assert!(
-        rows.clone()
-            .eq(trajectory.rows().map(|row| row.to_string()))
-    );
+    assert!(rows.clone().eq(trajectory.rows().map(|row| row.to_string())));
     for (i, transition) in all.iter().enumerate().skip(15) {
         let row: Vec<&str> = rows.next().unwrap().split(',').collect();
         assert_eq!(row[0], (i + 1).to_string());

@@ -1,5 +1,5 @@
-//! Promise 3: input out of range is rejected before anything changes. Extreme but valid input neither hangs nor panics
-//! nor gives NaN.
+//! Promise 3: input out of range is rejected before anything changes. Extreme but valid input
+//! neither hangs nor panics nor gives NaN.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::batch::{Batch, Block};
@@ -45,10 +45,7 @@ fn errors_name_the_value_and_the_rule() {
             params(|params| params.torque_noise = -0.5),
             "torque_noise must be finite and at least 0 N m, got -0.5",
         ),
-        (
-            params(|params| params.dt = 0.0),
-            "dt must be finite and above 0 s, got 0",
-        ),
+        (params(|params| params.dt = 0.0), "dt must be finite and above 0 s, got 0"),
         (
             params(|params| params.max_velocity2 = f64::INFINITY),
             "max_velocity2 must be from 1.2e-38 to 3.4e38 rad/s, got inf",
@@ -56,7 +53,8 @@ fn errors_name_the_value_and_the_rule() {
         (
             // Subnormal in `f32`: NEON of 32-bit ARM would take it for 0.
             params(|params| params.max_velocity1 = 1.1754942e-38),
-            "max_velocity1 must be from 1.2e-38 to 3.4e38 rad/s, got 0.000000000000000000000000000000000000011754942",
+            "max_velocity1 must be from 1.2e-38 to 3.4e38 rad/s, \
+                got 0.000000000000000000000000000000000000011754942",
         ),
         (
             bounds(f64::NEG_INFINITY, 0.0),
@@ -64,7 +62,8 @@ fn errors_name_the_value_and_the_rule() {
         ),
         (
             bounds(-0.1, 1e39),
-            "high must be from -3.4e38 to 3.4e38 rad and rad/s, got 1000000000000000000000000000000000000000",
+            "high must be from -3.4e38 to 3.4e38 rad and rad/s, \
+                got 1000000000000000000000000000000000000000",
         ),
         (
             bounds(0.2, -0.2),
@@ -75,16 +74,10 @@ fn errors_name_the_value_and_the_rule() {
             "the lower mass2 must not be above the upper one, got 3 and 1 kg",
         ),
         (
-            range(
-                |params| params.gravity = f64::MIN,
-                |params| params.gravity = f64::MAX,
-            ),
+            range(|params| params.gravity = f64::MIN, |params| params.gravity = f64::MAX),
             "gravity must be a range of finite width in m/s², got inf",
         ),
-        (
-            range(|params| params.dt = -0.1, |_| {}),
-            "dt must be finite and above 0 s, got -0.1",
-        ),
+        (range(|params| params.dt = -0.1, |_| {}), "dt must be finite and above 0 s, got -0.1"),
         (
             range(|_| {}, |params| params.dynamics = Dynamics::Nips),
             "dynamics must be the same in both bounds of a range",
@@ -93,30 +86,15 @@ fn errors_name_the_value_and_the_rule() {
             params(|params| (params.inertia1, params.center_of_mass1) = (0.0, 0.0)),
             "inertia1 must be above 0 kg m² if the centre of mass is on the joint, got 0",
         ),
-        (
-            batch::<0>().map(drop),
-            "a batch must have at least 1 acrobot, got 0 generators",
-        ),
-        (
-            batch::<17>().map(drop),
-            "blocks must have 2 elements, got 3",
-        ),
-        (
-            members.set_state(35, State::default()),
-            "member index must be below 35, got 35",
-        ),
+        (batch::<0>().map(drop), "a batch must have at least 1 acrobot, got 0 generators"),
+        (batch::<17>().map(drop), "blocks must have 2 elements, got 3"),
+        (members.set_state(35, State::default()), "member index must be below 35, got 35"),
         (
             Action::try_from(3).map(drop),
             "action must be 0 (negative torque), 1 (none) or 2 (positive), got 3",
         ),
-        (
-            seed("12x"),
-            "seed must be a decimal integer of at least 0, got 'x' as character 3",
-        ),
-        (
-            seed(""),
-            "seed must be a decimal integer of at least 0, got an empty text",
-        ),
+        (seed("12x"), "seed must be a decimal integer of at least 0, got 'x' as character 3"),
+        (seed(""), "seed must be a decimal integer of at least 0, got an empty text"),
     ] {
         let error = result.unwrap_err();
         assert_eq!(error.to_string(), message);
@@ -220,10 +198,7 @@ fn a_link_needs_inertia_about_its_joint() {
         params(1.0, 0.5, 0.0, 1e-170),
     ] {
         let error = point.validate().unwrap_err();
-        assert!(
-            matches!(error, Error::NoInertia { value: 0.0, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, Error::NoInertia { value: 0.0, .. }), "{error}");
     }
     // This one underflows only in f32.
     let small = params(1.0, 0.5, 0.0, 1e-30);
@@ -241,10 +216,7 @@ fn states_and_torques_that_are_not_finite_are_rejected() {
     let mut pendulum = Pendulum::<Portable>::new(Params::DEFAULT, before.state()).unwrap();
     let pendulum_before = pendulum.clone();
     for value in NOT_FINITE {
-        for (i, name) in ["theta1", "theta2", "dtheta1", "dtheta2"]
-            .into_iter()
-            .enumerate()
-        {
+        for (i, name) in ["theta1", "theta2", "dtheta1", "dtheta2"].into_iter().enumerate() {
             let mut numbers = [0.0; 4];
             numbers[i] = value;
             let unit = if i < 2 { "rad" } else { "rad/s" };
@@ -255,9 +227,7 @@ fn states_and_torques_that_are_not_finite_are_rejected() {
                 pendulum.set_state(state),
                 Pendulum::<Portable>::new(Params::DEFAULT, state).map(drop),
                 Params::<f64>::DEFAULT.pendulum::<Portable>(state).map(drop),
-                Params::<f32>::DEFAULT
-                    .pendulum::<Fast>(state.cast())
-                    .map(drop),
+                Params::<f32>::DEFAULT.pendulum::<Fast>(state.cast()).map(drop),
             ] {
                 assert_eq!(result.unwrap_err().to_string(), message);
             }
@@ -292,28 +262,15 @@ fn results_that_are_not_finite_keep_the_angles_and_stop() {
     fn check<A: Arithmetic>() {
         let number = A::Scalar::from_f64;
         let mut acrobot = Acrobot::<A>::new(3);
-        let huge = number(if number(1e300).is_finite() {
-            1e300
-        } else {
-            1e38
-        });
+        let huge = number(if number(1e300).is_finite() { 1e300 } else { 1e38 });
         let state = State::from([0.5, -0.25, 1.0, 2.0]).cast::<A::Scalar>();
         // The angles stay and the velocities are 0.
-        acrobot
-            .set_params(Params {
-                dt: huge,
-                ..Params::default()
-            })
-            .unwrap();
+        acrobot.set_params(Params { dt: huge, ..Params::default() }).unwrap();
         acrobot.set_state(state).unwrap();
         acrobot.step(Action::Positive);
         assert_eq!(
             acrobot.state(),
-            State {
-                dtheta1: A::Scalar::ZERO,
-                dtheta2: A::Scalar::ZERO,
-                ..state
-            }
+            State { dtheta1: A::Scalar::ZERO, dtheta2: A::Scalar::ZERO, ..state }
         );
         // Later steps are as usual.
         acrobot.set_params(Params::default()).unwrap();

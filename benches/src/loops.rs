@@ -1,4 +1,5 @@
-//! The shortest loops that step an acrobot. They share no formula with the crate, so they do not change with it.
+//! The shortest loops that step an acrobot. They share no formula with the crate, so they do not
+//! change with it.
 
 use std::array::from_fn;
 use std::hint::black_box;
@@ -6,13 +7,10 @@ use std::hint::black_box;
 use acrobot::Action;
 use acrobot::arithmetic::Real;
 
-/// Gymnasium's order in f64, with `x * x` for its squares. It plays whole episodes of the same policy as the crate,
-/// because the C library's sines branch on the quadrant: with a periodic torque the CPU predicts the branches,
-/// and the loop takes a third less time.
-#[expect(
-    clippy::disallowed_methods,
-    reason = "the yardstick uses the platform's sines"
-)]
+/// Gymnasium's order in f64, with `x * x` for its squares. It plays whole episodes of the same
+/// policy as the crate, because the C library's sines branch on the quadrant: with a periodic
+/// torque the CPU predicts the branches, and the loop takes a third less time.
+#[expect(clippy::disallowed_methods, reason = "the yardstick uses the platform's sines")]
 pub fn bare_f64(actions: &[Action]) {
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
     let derivative = |[t1, t2, w1, w2]: [f64; 4], torque: f64| {
@@ -86,11 +84,7 @@ fn lean_step<const FMA: bool>(y: [f32; 4], torque: f32) -> [f32; 4] {
         let cos = add(z, cos, 1.0);
         let quadrant = shifted.to_bits();
         // The sign bit, by which AVX2 selects.
-        let (sin, cos) = if (quadrant << 31).cast_signed() < 0 {
-            (cos, sin)
-        } else {
-            (sin, cos)
-        };
+        let (sin, cos) = if (quadrant << 31).cast_signed() < 0 { (cos, sin) } else { (sin, cos) };
         let flip = |x: f32, sign: u32| f32::from_bits(x.to_bits() ^ ((sign & 2) << 30));
         (flip(sin, quadrant), flip(cos, quadrant.wrapping_add(1)))
     };
@@ -133,7 +127,8 @@ fn rk4<S: Real>(
     from_fn(|i| add(sixth, sum(i), y[i]))
 }
 
-/// Steps of 1,024 acrobots, without episodes and observations. The compiler makes loops over eight lanes of AVX2.
+/// Steps of 1,024 acrobots, without episodes and observations. The compiler makes loops over eight
+/// lanes of AVX2.
 #[derive(Debug)]
 pub struct Lanes {
     fma: bool,

@@ -4,7 +4,8 @@ use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
 
-/// The policy: the next action of a stream. It costs little compared with a step, and SIMD can compute it.
+/// The policy: the next action of a stream. It costs little compared with a step, and SIMD can
+/// compute it.
 pub fn draw(stream: &mut u32) -> u8 {
     *stream = stream.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     (((*stream >> 16) * 3) >> 16) as u8
@@ -27,9 +28,7 @@ impl<A: Arithmetic> From<VecBatch<A>> for Play<A> {
         let len = batch.len();
         Self {
             batch,
-            streams: (0..len as u32)
-                .map(|i| i.wrapping_mul(0x9e37_79b9))
-                .collect(),
+            streams: (0..len as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect(),
             actions: vec![0; len],
             rewards: vec![0.0; len],
             terminated: vec![false; len],
@@ -55,8 +54,7 @@ impl<A: Arithmetic> Play<A> {
     /// How many episodes the last step ended.
     pub fn ends(&self) -> usize {
         let ends = self.terminated.iter().zip(&self.truncated);
-        ends.filter(|(terminated, truncated)| **terminated || **truncated)
-            .count()
+        ends.filter(|(terminated, truncated)| **terminated || **truncated).count()
     }
 
     /// Steps with the last actions, on one core or on all. Returns the number of acrobots.

@@ -1,10 +1,12 @@
-"""Records torch's actions on 10,000 observations: writes actions.bin beside policy.bin, which it reads.
+"""Records torch's actions on 10,000 observations: writes actions.bin beside policy.bin, which it
+reads.
 
     python ../../bindings/python/train_ppo.py 3 --save policy.bin
     python record.py
 
-Each byte has four actions, the first in its lowest bits. 3 stands for a tie, two scores that differ by less than 1e-4. The observations are those
-of the acrobot with child 0 of seed 1 under random actions with seed 1, so that firmware computes them again.
+Each byte has four actions, the first in its lowest bits. 3 stands for a tie, two scores that differ
+by less than 1e-4. The observations are those of the acrobot with child 0 of seed 1 under random
+actions with seed 1, so that firmware computes them again.
 """
 
 import struct
@@ -24,9 +26,10 @@ def perceptron(content):
     modules, at = [], 12 + 4 * count
     for i in range(count):
         outputs, activation, _ = struct.unpack_from("<HBB", content, 12 + 4 * i)
-        numbers = np.frombuffer(content, "<f4", outputs * (1 + inputs), at).reshape(outputs, 1 + inputs)
+        numbers = np.frombuffer(content, "<f4", outputs * (1 + inputs), at)
+        bias, weight = np.split(numbers.reshape(outputs, 1 + inputs), [1], axis=1)
         linear = torch.nn.Linear(inputs, outputs)
-        linear.load_state_dict({"bias": torch.tensor(numbers[:, 0]), "weight": torch.tensor(numbers[:, 1:])})
+        linear.load_state_dict({"bias": torch.tensor(bias[:, 0]), "weight": torch.tensor(weight)})
         modules += [linear, [torch.nn.Identity(), torch.nn.Tanh(), torch.nn.ReLU()][activation]]
         inputs, at = outputs, at + numbers.nbytes
     return torch.nn.Sequential(*modules)
@@ -43,7 +46,8 @@ def observations(count):
 
 
 with torch.no_grad():
-    scores = perceptron((HERE / "policy.bin").read_bytes())(torch.tensor(np.array(list(observations(10_000)))))
+    policy = perceptron((HERE / "policy.bin").read_bytes())
+    scores = policy(torch.tensor(np.array(list(observations(10_000)))))
 two, actions = scores.topk(2).values, scores.argmax(1)
 actions[two[:, 0] - two[:, 1] < 1e-4] = 3
 quarters = actions.numpy().astype("u1").reshape(-1, 4)

@@ -6,12 +6,10 @@ use std::{env, error::Error};
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rerun-if-changed=memory.x");
-    println!(
-        "cargo:rustc-link-search={}",
-        env::var("CARGO_MANIFEST_DIR")?
-    );
+    println!("cargo:rustc-link-search={}", env::var("CARGO_MANIFEST_DIR")?);
     println!("cargo:rustc-link-arg=-Tlink.x");
-    // The memory of QEMU's machines that differ from `memory.x`: mps2-an505, and virt, which runs from RAM.
+    // The memory of QEMU's machines that differ from `memory.x`: mps2-an505, and virt, which runs
+    // from RAM.
     let target = env::var("TARGET")?;
     if target.starts_with("thumbv8m.main") {
         println!("cargo:rustc-link-arg=--defsym=FLASH_ORIGIN=0x10000000");

@@ -1,13 +1,14 @@
-//! Makes libgcc add, multiply and convert doubles, instead of Rust's own routines. The bits are the same.
+//! Makes libgcc add, multiply and convert doubles, instead of Rust's own routines. The bits are the
+//! same.
 //!
-//! It is for a Cortex-M3, M4 or M33, which compute doubles in software. Copy this file beside your `build.rs`, and call
-//! `libgcc::link()?` there.
+//! It is for a Cortex-M3, M4 or M33, which compute doubles in software. Copy this file beside your
+//! `build.rs`, and call `libgcc::link()?` there.
 
 use std::process::Command;
 use std::{env, error::Error, fs};
 
-/// The parts of libgcc that need fewer instructions than Rust's. Its division needs four times as many, and its comparisons
-/// slightly more.
+/// The parts of libgcc that need fewer instructions than Rust's. Its division needs four times as
+/// many, and its comparisons slightly more.
 const PARTS: [&str; 3] = ["_arm_addsubdf3.o", "_arm_muldf3.o", "_arm_truncdfsf2.o"];
 
 pub fn link() -> Result<(), Box<dyn Error>> {
@@ -31,18 +32,16 @@ pub fn link() -> Result<(), Box<dyn Error>> {
     let pack = [&["rcs", "libdoubles.a"], &PARTS[..]].concat();
     run(&folder, "arm-none-eabi-ar", &pack)?;
     println!("cargo:rustc-link-search={folder}");
-    // The linker takes a library named here before Rust's own routines, but an object in its arguments after them.
+    // The linker takes a library named here before Rust's own routines, but an object in its
+    // arguments after them.
     println!("cargo:rustc-link-lib=static:-bundle=doubles");
     Ok(())
 }
 
 /// Runs a program of the package gcc-arm-none-eabi, and returns what it prints.
 fn run(folder: &str, program: &str, arguments: &[&str]) -> Result<String, Box<dyn Error>> {
-    let output = Command::new(program)
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .map_err(|error| {
+    let output =
+        Command::new(program).args(arguments).current_dir(folder).output().map_err(|error| {
             format!("{program}: {error}; this installs it: sudo apt-get install gcc-arm-none-eabi")
         })?;
     if !output.status.success() {

@@ -2,11 +2,12 @@
 
     pip install numpy==2.4.6 scipy==1.17.1
     python certificate.py           # ten minutes
-    python certificate.py attack    # tries to refute certificate.rs: ten million states, and hill climbing from the worst
+    python certificate.py attack    # tries to refute certificate.rs with ten million states
 
-The program finds the coefficients with the most progress between the initial states and the target, so that no step from
-sampled states makes more than 1. Where hill climbing finds states with longer steps, they join the sample, until none is
-longer than 1.01. bound.rs proves a little less for all states.
+The program finds the coefficients with the most progress between the initial states and the target,
+so that no step from sampled states makes more than 1. Where hill climbing finds states with longer
+steps, they join the sample, until none is longer than 1.01. bound.rs proves a little less for all
+states.
 """
 
 import itertools
@@ -20,7 +21,8 @@ from scipy.optimize import linprog
 
 FILE = pathlib.Path(__file__).with_name("src") / "certificate.rs"
 MOST, UNIT = 30.0, 1.02
-# The target of the linear program is larger, by so much in height, m, and in energy, J, so that boxes need not be small there.
+# The target of the linear program is larger, by so much in height, m, and in energy, J, so that
+# boxes need not be small there.
 NEAR = 0.05, 0.5
 # On the sum of the magnitudes of the coefficients: smaller ones need fewer boxes.
 PENALTY = 2e-4
@@ -55,7 +57,8 @@ def kinetic(alpha, beta, v, w):
 
 
 def is_target(y, margin=(0, 0)):
-    return (-np.cos(y[0]) - np.cos(y[1]) > 1 - margin[0]) | (kinetic(*y) + potential(*y[:2]) > MOST - margin[1])
+    height, energy = -np.cos(y[0]) - np.cos(y[1]), kinetic(*y) + potential(*y[:2])
+    return (height > 1 - margin[0]) | (energy > MOST - margin[1])
 
 
 def features(y):
@@ -64,9 +67,11 @@ def features(y):
     r = np.sqrt(kinetic(*y) + potential(alpha, beta) + 0.3)
     x = [np.sin(alpha), np.sin(beta), v, w]
     cosines = [np.ones_like(r), np.cos(alpha), np.cos(beta), np.cos(alpha) * np.cos(beta)]
-    pairs, fours = ([np.prod(xs, 0) for xs in itertools.combinations_with_replacement(x, n)] for n in (2, 4))
+    products = lambda n: itertools.combinations_with_replacement(x, n)
+    pairs, fours = ([np.prod(xs, 0) for xs in products(n)] for n in (2, 4))
     quadratic = [pair * cosine / r**n for n in range(3) for cosine in cosines for pair in pairs]
-    return np.array([r, r**2, r**3, r**4, 1 / r] + quadratic + [four / r ** (n + 1) for n in range(3) for four in fours])
+    quartic = [four / r ** (n + 1) for n in range(3) for four in fours]
+    return np.array([r, r**2, r**3, r**4, 1 / r, *quadratic, *quartic])
 
 
 def progress(coefficients, y):
@@ -103,7 +108,8 @@ def sample(count):
 def worst(excess, y, cell, count):
     """The states of most excess, one in each cell."""
     order = np.argsort(-excess)
-    _, first = np.unique(np.round(y[:, order] / (cell * np.array([[1], [1], [3], [3]]))), axis=1, return_index=True)
+    cells = np.round(y[:, order] / (cell * np.array([[1], [1], [3], [3]])))
+    _, first = np.unique(cells, axis=1, return_index=True)
     return order[np.sort(first)[:count]]
 
 
@@ -113,7 +119,8 @@ def climb(found, y, torque, **options):
     chosen = worst(best, y, 0.15, 1500)
     y, best = y[:, chosen], best[chosen]
     for size in 0.1 * 0.85 ** np.arange(25):
-        near = y + rng.normal(0, size, y.shape) * np.array([[1], [1], [2.5], [2.5]]) * rng.choice([0, 1, 1], y.shape)
+        change = rng.normal(0, size, y.shape) * np.array([[1], [1], [2.5], [2.5]])
+        near = y + change * rng.choice([0, 1, 1], y.shape)
         value = excess(*found, near, torque, **options)
         y, best = np.where(value > best, near, y), np.maximum(value, best)
     return y, best
@@ -138,12 +145,15 @@ def find(initial):
         goal = np.concatenate([start + PENALTY, PENALTY - start, [-1]])
         split = np.hstack([table[:, :-1], -table])
         split[:, -1] = table[:, -1]
-        x = linprog(goal, split, np.ones(len(table)), bounds=[(0, None)] * (len(goal) - 1) + [(None, None)]).x
+        bounds = [(0, None)] * (len(goal) - 1) + [(None, None)]
+        x = linprog(goal, split, np.ones(len(table)), bounds=bounds).x
         x, at_target = x[: len(start)] - x[len(start) : -1], x[-1]
         found = x / scale[:, 0], at_target
-        climbs = [(torque, *climb(found, sample(200_000), torque, margin=NEAR)) for torque in (-1, 0, 1)]
+        up = lambda torque: climb(found, sample(200_000), torque, margin=NEAR)
+        climbs = [(torque, *up(torque)) for torque in (-1, 0, 1)]
         longest = max(values.max() for _, _, values in climbs)
-        print(f"{at_target - start @ x:.3f} steps, with {len(table)} inequalities; the longest found is {1 + longest:.3f}", flush=True)
+        print(f"{at_target - start @ x:.3f} steps, with {len(table)} inequalities", end="; ")
+        print(f"the longest found is {1 + longest:.3f}", flush=True)
         if longest < 0.01:
             return found
         for torque, y, values in climbs:
@@ -158,7 +168,8 @@ def attack():
         states = [climb(found, sample(100_000), torque, unit=UNIT) for _ in range(34)]
         y, values = (np.concatenate(parts, -1) for parts in zip(*states))
         at = values.argmax()
-        print(f"torque {torque} N m: a margin of {-values[at]:.4f}, at {y[:, at].round(4).tolist()}")
+        place = y[:, at].round(4).tolist()
+        print(f"torque {torque} N m: a margin of {-values[at]:.4f}, at {place}")
 
 
 def write(coefficients, at_target):
@@ -175,7 +186,7 @@ pub const AT_TARGET: f64 = {at_target:.6g};
 pub const UNIT: f64 = {UNIT};
 /// The factors of r, r², r³, r⁴ and 1 / r.
 pub const RADIAL: {array(5)};
-/// The factors of the ten products of two, for each of three powers of 1 / r, and for each of four cosines.
+/// The factors of the ten products of two, for three powers of 1 / r and four cosines each.
 pub const QUADRATIC: {array(120)};
 /// The factors of the 35 products of four, for each power of 1 / r.
 pub const QUARTIC: {array(105)};

@@ -1,5 +1,6 @@
-//! Promise 2 for batches: acrobot `i` is bit-identical to an `Acrobot` seeded with the seed's `i`-th child, with shared
-//! parameters and with its own. `cargo test -p common` tries more widths, and `cargo test -p properties` calls in any order.
+//! Promise 2 for batches: acrobot `i` is bit-identical to an `Acrobot` seeded with the seed's
+//! `i`-th child, with shared parameters and with its own. `cargo test -p properties` tries more
+//! widths, and calls in any order.
 
 mod slices;
 mod snapshots;

@@ -3,42 +3,20 @@
 use std::num::NonZeroU32;
 
 use acrobot::batch::{Autoreset, Batch, Block, Member, SimdLevel, StepBuffers};
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::numpy::Pcg64;
 use acrobot::physics::{Dynamics, ResetBounds};
-use acrobot::{Acrobot, Error, Fast, Params, ResetOptions, State};
+use acrobot::{Fast, Params, ResetOptions, State};
 
-type Small<const BLOCKS: usize, const LEN: usize> = Batch<Fast, ([Block; BLOCKS], [Pcg64; LEN])>;
+type Small = Batch<Fast, ([Block; 1], [Pcg64; 3])>;
 
 /// A batch without a heap.
-fn small<const BLOCKS: usize, const LEN: usize>() -> Result<Small<BLOCKS, LEN>, Error> {
-    Batch::new(1, ([Block::EMPTY; BLOCKS], [Pcg64::UNSEEDED; LEN]))
+fn small() -> Small {
+    Batch::new(1, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 3])).unwrap()
 }
 
-/// The batch changes its SIMD level. `par_step` takes one thread for so few acrobots.
-#[test]
-fn a_limit_truncates_at_every_simd_level() {
-    let mut batch = small::<1, 3>().unwrap();
-    batch.set_limit(NonZeroU32::new(2).unwrap());
-    batch.set_autoreset(Autoreset::SameStep);
-    for level in [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512] {
-        batch.set_simd_level(level);
-        for expected in [false, true] {
-            let mut truncated = [!expected; 3];
-            batch
-                .par_step(
-                    &[1_u8; 3],
-                    StepBuffers::new(&mut [0.0; 3], &mut [false; 3], &mut truncated),
-                )
-                .unwrap();
-            assert_eq!(truncated, [expected; 3]);
-        }
-    }
-}
-
-/// Getters return what was set, and before that the defaults.
 #[test]
 fn settings_are_returned_as_set() {
-    let mut batch = small::<1, 3>().unwrap();
+    let mut batch = small();
     assert_eq!(batch.len(), 3);
     assert_eq!(batch.params_of(0), Some(Params::DEFAULT));
     assert_eq!(batch.simd_level(), SimdLevel::widest());
@@ -46,10 +24,7 @@ fn settings_are_returned_as_set() {
     assert_eq!(batch.limit().get(), 500);
     assert_eq!(batch.autoreset(), Autoreset::NextStep);
 
-    let params = Params {
-        dt: 0.1,
-        ..Params::DEFAULT
-    };
+    let params = Params { dt: 0.1, ..Params::DEFAULT };
     batch.set_params(params).unwrap();
     assert_eq!(batch.params_of(0), Some(params));
     for level in [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512] {
@@ -61,39 +36,20 @@ fn settings_are_returned_as_set() {
     assert_eq!(batch.reset_bounds(), bounds);
     batch.set_limit(NonZeroU32::MIN);
     assert_eq!(batch.limit(), NonZeroU32::MIN);
-    for autoreset in [
-        Autoreset::SameStep,
-        Autoreset::Disabled,
-        Autoreset::NextStep,
-    ] {
+    for autoreset in [Autoreset::SameStep, Autoreset::Disabled, Autoreset::NextStep] {
         batch.set_autoreset(autoreset);
         assert_eq!(batch.autoreset(), autoreset);
     }
 }
 
-/// A batch with a seed of any size equals one that is reset with that seed.
-#[test]
-fn a_batch_takes_seeds_of_any_size() {
-    let seed: SeedSequence = "340282366920938463463374607431768211456".parse().unwrap();
-    let memory = ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
-    let batch = Small::<2, 20>::new(seed.clone(), memory).unwrap();
-    let mut reset = small::<2, 20>().unwrap();
-    assert_ne!(members(&batch), members(&reset));
-    reset.reset_with(seed.clone().into());
-    assert_eq!(members(&batch), members(&reset));
-    let alone = Acrobot::<Fast>::with_rng(seed.child(19).into());
-    assert_eq!(batch.state(19), Some(alone.state()));
-    reset.reset_with_seed(1);
-    assert_eq!(members(&reset), members(&small::<2, 20>().unwrap()));
+fn members(batch: &Small) -> Vec<Member<Fast>> {
+    (0..3).map(|i| batch.member(i).unwrap()).collect()
 }
 
-fn members<const BLOCKS: usize, const LEN: usize>(batch: &Small<BLOCKS, LEN>) -> Vec<Member<Fast>> {
-    (0..LEN).map(|i| batch.member(i).unwrap()).collect()
-}
-
-/// The errors of all four kinds of step, which change neither the batch nor the buffers of these lengths.
+/// The errors of all four kinds of step, which change neither the batch nor the buffers of these
+/// lengths.
 fn rejections(
-    batch: &mut Small<1, 3>,
+    batch: &mut Small,
     actions: &[u8],
     torques: &[f32],
     lengths: [usize; 5],
@@ -123,34 +79,23 @@ fn rejections(
     })
 }
 
-/// Slices of another length, unknown actions and torques that are not finite are rejected before any acrobot steps.
 #[test]
 fn rejected_steps_change_nothing() {
-    let batch = &mut small::<1, 3>().unwrap();
+    let batch = &mut small();
     for (lengths, message) in [
         ([2, 3, 3, 3, 3], "rewards must have 3 elements, got 2"),
         ([3, 0, 3, 3, 3], "terminated must have 3 elements, got 0"),
         ([3, 3, 4, 3, 3], "truncated must have 3 elements, got 4"),
         ([3, 3, 3, 1, 3], "observations must have 3 elements, got 1"),
-        (
-            [3, 3, 3, 3, 4],
-            "final_observations must have 3 elements, got 4",
-        ),
+        ([3, 3, 3, 3, 4], "final_observations must have 3 elements, got 4"),
     ] {
         assert_eq!(rejections(batch, &[1; 3], &[0.0; 3], lengths), [message; 4]);
     }
     let actions = "actions must have 3 elements, got 2";
     let torques = "torques must have 3 elements, got 2";
-    assert_eq!(
-        rejections(batch, &[1; 2], &[0.0; 2], [3; 5]),
-        [actions, actions, torques, torques]
-    );
+    assert_eq!(rejections(batch, &[1; 2], &[0.0; 2], [3; 5]), [actions, actions, torques, torques]);
     let action = "action must be 0 (negative torque), 1 (none) or 2 (positive), got 3";
-    for (number, name) in [
-        (f32::NAN, "NaN"),
-        (f32::INFINITY, "inf"),
-        (f32::NEG_INFINITY, "-inf"),
-    ] {
+    for (number, name) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf"), (f32::NEG_INFINITY, "-inf")] {
         let torque = format!("torque must be a finite number of N m, got {name}");
         assert_eq!(
             rejections(batch, &[0, 3, 1], &[0.0, 1.0, number], [3; 5]),
@@ -159,28 +104,16 @@ fn rejected_steps_change_nothing() {
     }
 }
 
-/// A batch rejects other invalid calls with the reason, and its next step equals that of an untouched twin.
 #[test]
 fn rejected_changes_change_nothing() {
-    const NAN: State<f32> = State {
-        theta1: 0.0,
-        theta2: f32::NAN,
-        dtheta1: 0.0,
-        dtheta2: 0.0,
-    };
-    let mut batch = small::<1, 3>().unwrap();
+    const NAN: State<f32> = State { theta1: 0.0, theta2: f32::NAN, dtheta1: 0.0, dtheta2: 0.0 };
+    let mut batch = small();
     let mut twin = batch.clone();
     let member = batch.member(0).unwrap();
     let mut invalid = member.clone();
     invalid.state = NAN;
-    let massless = Params {
-        mass1: 0.0,
-        ..Params::DEFAULT
-    };
-    let heavy = Params {
-        mass1: 2.0,
-        ..Params::DEFAULT
-    };
+    let massless = Params { mass1: 0.0, ..Params::DEFAULT };
+    let heavy = Params { mass1: 2.0, ..Params::DEFAULT };
     let mut other = member.clone();
     other.params = heavy;
     let range = common::params_range::<Fast>(Dynamics::Book);
@@ -195,50 +128,23 @@ fn rejected_changes_change_nothing() {
             batch.reset_masked(&[true; 4], ResetOptions::default()),
             "mask must have 3 elements, got 4",
         ),
-        (
-            batch.reset_to(&[State::default(); 2]),
-            "states must have 3 elements, got 2",
-        ),
+        (batch.reset_to(&[State::default(); 2]), "states must have 3 elements, got 2"),
         (
             batch.reset_to(&[State::default(), State::default(), NAN]),
             "theta2 must be a finite number of rad, got NaN",
         ),
         // Lane 3 of the block holds no acrobot.
-        (
-            batch.set_state(3, State::default()),
-            "member index must be below 3, got 3",
-        ),
-        (
-            batch.set_state(16, State::default()),
-            "member index must be below 3, got 16",
-        ),
-        (
-            batch.set_state(1, NAN),
-            "theta2 must be a finite number of rad, got NaN",
-        ),
-        (
-            batch.set_member(3, member),
-            "member index must be below 3, got 3",
-        ),
-        (
-            batch.set_member(1, invalid),
-            "theta2 must be a finite number of rad, got NaN",
-        ),
-        (
-            batch.set_params(massless),
-            "mass1 must be finite and above 0 kg, got 0",
-        ),
-        (
-            batch.set_params_of(3, Params::DEFAULT),
-            "member index must be below 3, got 3",
-        ),
+        (batch.set_state(3, State::default()), "member index must be below 3, got 3"),
+        (batch.set_state(16, State::default()), "member index must be below 3, got 16"),
+        (batch.set_state(1, NAN), "theta2 must be a finite number of rad, got NaN"),
+        (batch.set_member(3, member), "member index must be below 3, got 3"),
+        (batch.set_member(1, invalid), "theta2 must be a finite number of rad, got NaN"),
+        (batch.set_params(massless), "mass1 must be finite and above 0 kg, got 0"),
+        (batch.set_params_of(3, Params::DEFAULT), "member index must be below 3, got 3"),
         (batch.set_params_of(0, heavy), shared),
         (batch.set_member(0, other), shared),
         (batch.set_params_range(Some(range)), shared),
-        (
-            batch.observe(&mut rows),
-            "observations must have 3 elements, got 4",
-        ),
+        (batch.observe(&mut rows), "observations must have 3 elements, got 4"),
     ] {
         assert_eq!(result.unwrap_err().to_string(), message);
     }
@@ -249,10 +155,7 @@ fn rejected_changes_change_nothing() {
     assert_eq!(members(&batch), members(&twin));
     for batch in [&mut batch, &mut twin] {
         batch
-            .step(
-                &[2_u8; 3],
-                StepBuffers::new(&mut [0.0; 3], &mut [false; 3], &mut [false; 3]),
-            )
+            .step(&[2_u8; 3], StepBuffers::new(&mut [0.0; 3], &mut [false; 3], &mut [false; 3]))
             .unwrap();
     }
     assert_eq!(members(&batch), members(&twin));

@@ -27,22 +27,12 @@ fn every_arithmetic_and_simd_level_equals_single_acrobots() {
 fn zeros_have_the_same_sign_as_in_single_acrobots() {
     for autoreset in MODES {
         let mut twins = Twins::<Fast>::new(20, autoreset);
-        twins.set_params(Params {
-            gravity: -0.0,
-            torques: [-0.0; 3],
-            ..Params::DEFAULT
-        });
+        twins.set_params(Params { gravity: -0.0, torques: [-0.0; 3], ..Params::DEFAULT });
         let far = [18_800_440.0, -18_800_440.0, 6_597_069_800_000.0, 1e30];
-        for (theta1, theta2) in far
-            .into_iter()
-            .flat_map(|x| [(0.0, x), (x, 0.0), (-0.0, x), (x, x)])
+        for (theta1, theta2) in
+            far.into_iter().flat_map(|x| [(0.0, x), (x, 0.0), (-0.0, x), (x, x)])
         {
-            let state = State {
-                theta1,
-                theta2,
-                dtheta1: -0.0,
-                dtheta2: -0.0,
-            };
+            let state = State { theta1, theta2, dtheta1: -0.0, dtheta2: -0.0 };
             twins.reset_to(&[state; 20]);
             twins.swing(2);
         }
@@ -83,7 +73,6 @@ fn bits_of(results: &StepResults) -> [Vec<u32>; 5] {
     ]
 }
 
-/// Steps on all cores equal those on one, with actions and with torques, with shared and with drawn parameters.
 #[test]
 fn threads_change_no_bit() {
     let (seed, len) = (SeedSequence::new(3), 40_003);
@@ -115,7 +104,8 @@ fn threads_change_no_bit() {
     }
 }
 
-/// A user's slices can differ in length from one call to the next. Steps on all cores and on one then do the same.
+/// A user's slices can differ in length from one call to the next. Steps on all cores and on one
+/// then do the same.
 #[test]
 fn slices_that_change_their_length_cannot_panic() {
     #[derive(Clone)]
@@ -126,10 +116,7 @@ fn slices_that_change_their_length_cannot_panic() {
 
     impl<T: Clone> Fickle<T> {
         fn new(value: T, len: usize) -> Self {
-            Self {
-                all: vec![value; len],
-                changed: Rc::new(len.into()),
-            }
+            Self { all: vec![value; len], changed: Rc::new(len.into()) }
         }
     }
 

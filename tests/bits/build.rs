@@ -14,11 +14,9 @@ fn main() {
         target if target.starts_with("thumbv8m.main") => {
             &["FLASH_ORIGIN=0x10000000", "RAM_ORIGIN=0x30000000"]
         }
-        target if target.starts_with("riscv") => &[
-            "FLASH_ORIGIN=0x80000000",
-            "RAM_ORIGIN=0x80100000",
-            "FLASH_SIZE=1M",
-        ],
+        target if target.starts_with("riscv") => {
+            &["FLASH_ORIGIN=0x80000000", "RAM_ORIGIN=0x80100000", "FLASH_SIZE=1M"]
+        }
         _ => &[],
     };
     for symbol in symbols {

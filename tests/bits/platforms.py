@@ -1,4 +1,5 @@
-"""Compares the bits of each platform with the recorded digests, and the outcome with the table in `docs/determinism.md`.
+"""Compares the bits of each platform with the recorded digests, and the outcome with the table in
+`docs/determinism.md`.
 
     python3 platforms.py                  all platforms
     python3 platforms.py Cortex s390x     those whose name contains one of these words
@@ -54,7 +55,8 @@ HEAD = ["| platform | Rust target | options | bits |", "|---|---|---|---|"]
 
 def row(platform):
     options = platform.flags or platform.features and f"--features {platform.features}"
-    cells = platform.name, f"`{platform.target}`", options and f"`{options}`", "equal" if platform.equal else "differ"
+    cells = [platform.name, f"`{platform.target}`", options and f"`{options}`"]
+    cells.append("equal" if platform.equal else "differ")
     return f"| {' | '.join(cells)} |"
 
 
@@ -66,12 +68,14 @@ def wrong(platform):
         name = platform.target.upper().replace("-", "_").replace(".", "_")
         environment[f"CARGO_TARGET_{name}_RUNNER"] = f"{ROOT}/.cargo/qemu arm {platform.machine}"
     options = ["--quiet", "--locked", "--release", "--package=bits", f"--target={platform.target}"]
-    build, run = (["cargo", each, *options, f"--features={platform.features}"] for each in ("build", "run"))
+    options.append(f"--features={platform.features}")
+    build, run = (["cargo", each, *options] for each in ("build", "run"))
     if subprocess.run(build, cwd=ROOT, env=environment).returncode != 0:
         return "does not compile"
     try:
         # A stack overflow makes a microcontroller loop forever.
-        done = subprocess.run(run, cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True, timeout=300)
+        settings = {"cwd": ROOT, "env": environment, "stdout": subprocess.PIPE, "text": True}
+        done = subprocess.run(run, timeout=300, **settings)
     except subprocess.TimeoutExpired:
         return "takes more than 300 s"
     print(done.stdout, end="", flush=True)
@@ -83,11 +87,12 @@ def wrong(platform):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Compares the bits of each platform with the recorded digests.")
-    parser.add_argument("words", nargs="*", metavar="WORD", help="only platforms whose name contains one; default: all")
-    parser.add_argument("--update", action="store_true", help="write the table into docs/determinism.md")
+    parser = argparse.ArgumentParser(description="Compares the bits of each platform.")
+    parser.add_argument("words", nargs="*", metavar="WORD", help="in the names of platforms")
+    parser.add_argument("--update", action="store_true", help="write the table into the page")
     options = parser.parse_args()
-    chosen = [each for each in PLATFORMS if not options.words or any(word in each.name for word in options.words)]
+    words = options.words or [""]
+    chosen = [each for each in PLATFORMS if any(word in each.name for word in words)]
     if not chosen:
         parser.error(f"no platform's name contains {' or '.join(options.words)}")
     failures = [f"{each.name} {reason}" for each in chosen if (reason := wrong(each))]

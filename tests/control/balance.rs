@@ -11,7 +11,8 @@ use common::{assert_says, in_every_arithmetic};
 use crate::cast;
 use crate::regulators::diagonal;
 
-/// A pendulum at rest in `target`, and its regulator, all computed in `A`. All numbers of a state have the same weight.
+/// A pendulum at rest in `target`, and its regulator, all computed in `A`. All numbers of a state
+/// have the same weight.
 fn regulated<A: Arithmetic>(
     params: Params,
     target: State,
@@ -26,10 +27,7 @@ fn regulated<A: Arithmetic>(
 
 /// The default parameters with this `dt`.
 fn every(dt: f64) -> Params {
-    Params {
-        dt,
-        ..Params::DEFAULT
-    }
+    Params { dt, ..Params::DEFAULT }
 }
 
 /// How far link 1 may lean, mrad, at 100 Hz, so that a motor of `limit` brings it back from rest.
@@ -53,25 +51,18 @@ fn largest_lean(params: Params, limit: f64, weight: f64) -> usize {
 #[test]
 fn a_weak_motor_holds_as_little_as_the_docs_say() {
     let default = every(0.01);
-    let heavy = Params {
-        mass2: 2.0,
-        ..default
-    };
+    let heavy = Params { mass2: 2.0, ..default };
     let rows = [1.0, 2.0, 5.0, 10.0].map(|limit| {
-        let leans = [
-            (default, 1.0),
-            (default, 0.01),
-            (default, 100.0),
-            (heavy, 1.0),
-        ]
-        .map(|(params, weight)| largest_lean(params, limit, weight).to_string());
+        let leans = [(default, 1.0), (default, 0.01), (default, 100.0), (heavy, 1.0)]
+            .map(|(params, weight)| largest_lean(params, limit, weight).to_string());
         format!("| {limit} | {} |", leans.join(" | "))
     });
     println!("{}", rows.join("\n"));
     assert_says("docs/control.md", &rows.join("\n"));
 }
 
-/// The largest deviation of an angle in the tenth second, mrad, of a regulator that begins at 10 mrad.
+/// The largest deviation of an angle in the tenth second, mrad, of a regulator that begins at 10
+/// mrad.
 fn deviation_held<A: Arithmetic>(params: Params, target: State) -> f64 {
     let (mut pendulum, regulator) = regulated::<A>(params, target, 1.0);
     let target = target.cast();
@@ -93,10 +84,7 @@ fn deviation_held<A: Arithmetic>(params: Params, target: State) -> f64 {
 fn single_precision_loses_upright_what_the_docs_say() {
     let rows = [100, 1000, 10_000].map(|rate| {
         let params = every(1.0 / f64::from(rate));
-        let inverted = Params {
-            gravity: -params.gravity,
-            ..params
-        };
+        let inverted = Params { gravity: -params.gravity, ..params };
         let upright = deviation_held::<Fast>(params, State::UPRIGHT);
         let hanging = deviation_held::<Fast>(inverted, State::HANGING);
         let portable = deviation_held::<Portable>(params, State::UPRIGHT);
@@ -132,17 +120,11 @@ fn a_regulator_needs_an_equilibrium() {
             assert!(regulate(state, torque).is_ok(), "{state:?}");
             let rule = "the state must be in equilibrium, with velocities of 0 and accelerations \
                 of at most 0.01 rad/s², got ";
-            let moving = State {
-                dtheta2: 0.25,
-                ..state
-            };
+            let moving = State { dtheta2: 0.25, ..state };
             assert_eq!(regulate(moving, torque), Err(format!("{rule}0.25")));
             let pushed = regulate(state, torque + 0.1).unwrap_err();
             assert!(pushed.starts_with(rule), "{pushed}");
-            let leaning = State {
-                theta1: state.theta1 + 0.1,
-                ..state
-            };
+            let leaning = State { theta1: state.theta1 + 0.1, ..state };
             assert!(regulate(leaning, torque).unwrap_err().starts_with(rule));
         }
     }

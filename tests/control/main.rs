@@ -1,5 +1,5 @@
-//! `physics::control` is right: derivatives, forces, velocities and gains equal those of automatic differentiation and of
-//! 200 digits, recorded by `tests/data/control.py`.
+//! `physics::control` is right: derivatives, forces, velocities and gains equal those of automatic
+//! differentiation and of 200 digits, recorded by `tests/data/control.py`.
 
 mod balance;
 mod regulators;
@@ -31,7 +31,8 @@ fn relative<S: Real>(found: &[S], expected: &[f64]) -> f64 {
     largest(differences) / largest(&mut expected.iter().copied())
 }
 
-/// The first of forty cases with moderate parameters, with those over six decades, and with moderate ones and friction.
+/// The first of forty cases with moderate parameters, with those over six decades, and with
+/// moderate ones and friction.
 const MODERATE: usize = 0;
 const DECADES: usize = 40;
 const DAMPED: usize = 80;
@@ -74,10 +75,7 @@ fn cases(first: usize) -> Vec<Case> {
                     gravity: x[8],
                     dt: x[9],
                     dynamics: dynamics_of(dynamics),
-                    friction: Viscous {
-                        joint1: x[10],
-                        joint2: x[11],
-                    },
+                    friction: Viscous { joint1: x[10], joint2: x[11] },
                     ..Params::default()
                 },
                 state: State::from(vector(&x[12..16])),
@@ -99,20 +97,11 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
         let torque = Real::from_f64(case.torque);
         let continuous = linearize(&pendulum, torque).unwrap();
         let discrete = discretize(&pendulum, torque).unwrap();
-        let Forces {
-            torques,
-            reaction,
-            elbow,
-        } = inverse_dynamics(&pendulum, cast(case.accelerations)).unwrap();
+        let Forces { torques, reaction, elbow } =
+            inverse_dynamics(&pendulum, cast(case.accelerations)).unwrap();
         let pairs = [
-            (
-                [continuous.a.as_flattened(), &continuous.b].concat(),
-                &case.continuous[..],
-            ),
-            (
-                [discrete.a.as_flattened(), &discrete.b].concat(),
-                &case.discrete,
-            ),
+            ([continuous.a.as_flattened(), &continuous.b].concat(), &case.continuous[..]),
+            ([discrete.a.as_flattened(), &discrete.b].concat(), &case.discrete),
             ([torques, reaction, elbow].concat(), &case.motion[..6]),
             (velocities(&pendulum).unwrap().concat(), &case.motion[6..]),
         ];
@@ -158,14 +147,8 @@ fn a_deviation_is_the_state_less_the_target() {
 fn inputs_that_are_not_finite_are_rejected() {
     let pendulum = Pendulum::<Fast>::hanging();
     let torque = "torque must be a finite number of N m, got NaN";
-    assert_eq!(
-        linearize(&pendulum, f32::NAN).unwrap_err().to_string(),
-        torque
-    );
-    assert_eq!(
-        discretize(&pendulum, f32::NAN).unwrap_err().to_string(),
-        torque
-    );
+    assert_eq!(linearize(&pendulum, f32::NAN).unwrap_err().to_string(), torque);
+    assert_eq!(discretize(&pendulum, f32::NAN).unwrap_err().to_string(), torque);
     let error = inverse_dynamics(&pendulum, [0.0, f32::INFINITY]).unwrap_err();
     let rule = "ddtheta2 must be a finite number of rad/s², got inf";
     assert_eq!(error.to_string(), rule);

@@ -18,12 +18,8 @@ pub fn diagonal(x: [f64; 4]) -> [[f64; 4]; 4] {
     from_fn(|i| from_fn(|j| if i == j { x[i] } else { 0.0 }))
 }
 
-const IDENTITY: [[f64; 4]; 4] = [
-    [1.0, 0.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0, 0.0],
-    [0.0, 0.0, 1.0, 0.0],
-    [0.0, 0.0, 0.0, 1.0],
-];
+const IDENTITY: [[f64; 4]; 4] =
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
 /// What SciPy computed for one regulator.
 struct Recorded {
@@ -44,10 +40,7 @@ fn regulators() -> Vec<Recorded> {
         Recorded {
             theta1: x[0],
             dt: x[1],
-            model: DiscreteModel {
-                a: matrix(&x[2..18]),
-                b: vector(&x[18..22]),
-            },
+            model: DiscreteModel { a: matrix(&x[2..18]), b: vector(&x[18..22]) },
             q: matrix(&x[22..38]),
             r: x[38],
             gain: vector(&x[39..43]),
@@ -59,10 +52,7 @@ fn regulators() -> Vec<Recorded> {
 
 /// The model and the weights in another scalar.
 fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, ControlError> {
-    let model = DiscreteModel {
-        a: model.a.map(cast),
-        b: cast(model.b),
-    };
+    let model = DiscreteModel { a: model.a.map(cast), b: cast(model.b) };
     lqr(&model, &q.map(cast), S::from_f64(*r))
 }
 
@@ -73,10 +63,7 @@ fn errors_of_lqr<S: Real>(recorded: &Recorded) -> [f64; 2] {
     assert_eq!(found.cost_to_go, columns, "not symmetric");
     [
         relative(&found.gain, &recorded.gain),
-        relative(
-            found.cost_to_go.as_flattened(),
-            recorded.cost_to_go.as_flattened(),
-        ),
+        relative(found.cost_to_go.as_flattened(), recorded.cost_to_go.as_flattened()),
     ]
 }
 
@@ -123,20 +110,10 @@ fn gains_are_exact_over_many_decades() {
 /// The smallest number of `b` belongs to a row of zeros, so the other gains must not depend on it.
 #[test]
 fn a_small_effect_of_the_torque_does_not_spoil_a_gain() {
-    let a = [
-        [1.0, 0.0, 0.1, 0.0],
-        [0.0, 0.5, 0.0, 0.0],
-        [0.0, 0.0, 1.0, 1.0],
-        [0.0; 4],
-    ];
+    let a = [[1.0, 0.0, 0.1, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 1.0], [0.0; 4]];
     let q = diagonal([1.0, 0.0, 0.0, 0.0]);
     // 200 digits; smaller effects change none of these.
-    let expected = [
-        0.9317451415095747,
-        0.0,
-        1.3650971698084902,
-        1.2719226556575325,
-    ];
+    let expected = [0.9317451415095747, 0.0, 1.3650971698084902, 1.2719226556575325];
     for effect in [1e-16, 1e-20, 1e-300] {
         let b = [0.005, 0.0, 0.1, effect];
         let found = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap();
@@ -144,13 +121,9 @@ fn a_small_effect_of_the_torque_does_not_spoil_a_gain() {
     }
 }
 
-/// A cost that fits is found, whatever its unit.
 #[test]
 fn the_unit_of_the_weights_changes_no_digit() {
-    let model = DiscreteModel {
-        a: diagonal([0.5, 0.4, 0.3, 0.2]),
-        b: [1.0; 4],
-    };
+    let model = DiscreteModel { a: diagonal([0.5, 0.4, 0.3, 0.2]), b: [1.0; 4] };
     let of = |unit: f64| lqr(&model, &IDENTITY.map(|row| row.map(|x| x * unit)), unit);
     let gain = of(1.0).unwrap().gain;
     for exponent in [-1000, -1, 1, 1023] {
@@ -182,31 +155,18 @@ fn motions_that_the_torque_does_not_reach_have_no_gain() {
         [0.0, 0.0, -0.00048828125, 3.0],
     ];
     let b = [128.0, 1024.0, 0.0, 0.0];
-    let error = lqr(
-        &DiscreteModel { a, b },
-        &diagonal([5000.0, 20.0, 200.0, 10.0]),
-        27000.0,
-    );
+    let error = lqr(&DiscreteModel { a, b }, &diagonal([5000.0, 20.0, 200.0, 10.0]), 27000.0);
     assert!(error.is_err(), "{error:?}");
 }
 
 fn upright() -> DiscreteModel {
-    discretize(
-        &Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap(),
-        0.0,
-    )
-    .unwrap()
+    discretize(&Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap(), 0.0).unwrap()
 }
 
 #[test]
 fn wrong_weights_are_rejected() {
     let message = |q, r| lqr(&upright(), &q, r).unwrap_err().to_string();
-    for (r, got) in [
-        (0.0, "0"),
-        (-1.0, "-1"),
-        (f64::NAN, "NaN"),
-        (f64::INFINITY, "inf"),
-    ] {
+    for (r, got) in [(0.0, "0"), (-1.0, "-1"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
         let expected = format!("r must be finite and above 0 per (N m)², got {got}");
         assert_eq!(message(IDENTITY, r), expected);
     }
@@ -216,10 +176,7 @@ fn wrong_weights_are_rejected() {
     );
     let mut q = IDENTITY;
     q[1][3] = 0.5;
-    assert_eq!(
-        message(q, 1.0),
-        "q must be symmetric, got 0.5 and 0 on both sides of the diagonal"
-    );
+    assert_eq!(message(q, 1.0), "q must be symmetric, got 0.5 and 0 on both sides of the diagonal");
     q[3][1] = 0.5;
     assert!(lqr(&upright(), &q, 1.0).is_ok());
     [q[1][3], q[3][1]] = [2.0, 2.0];
@@ -246,58 +203,38 @@ fn a_regulator_that_cannot_exist_is_an_error() {
         (growing, [0.0; 4], IDENTITY, stabilizable),
         (diagonal([1.1, 1.1, 0.5, 0.3]), all, IDENTITY, stabilizable),
         (persistent, all, none, detectable),
-        (
-            diagonal([1.0, 1.5, 0.5, 0.5]),
-            all,
-            diagonal([0.0, 1.0, 1.0, 1.0]),
-            detectable,
-        ),
+        (diagonal([1.0, 1.5, 0.5, 0.5]), all, diagonal([0.0, 1.0, 1.0, 1.0]), detectable),
     ] {
         let error = lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap_err();
         assert_eq!(error, expected, "{a:?} {b:?} {q:?}");
     }
 
     // A link on its centre of mass: gravity and the motor do not move link 1.
-    let params = Params {
-        center_of_mass1: 0.0,
-        center_of_mass2: 0.0,
-        gravity: 0.0,
-        ..Params::DEFAULT
-    };
+    let params =
+        Params { center_of_mass1: 0.0, center_of_mass2: 0.0, gravity: 0.0, ..Params::DEFAULT };
     let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
     let model = discretize(&pendulum, 0.0).unwrap();
     let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
     assert_eq!(error, ControlError::NotStabilizable);
 
     // What `f32` cannot hold has a name.
-    let model = DiscreteModel {
-        a: growing.map(cast::<f32, 4>),
-        b: [1e-30; 4],
-    };
+    let model = DiscreteModel { a: growing.map(cast::<f32, 4>), b: [1e-30; 4] };
     let error = lqr(&model, &IDENTITY.map(cast), 1.0).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "cost_to_go must be finite in each element, got inf"
-    );
+    assert_eq!(error.to_string(), "cost_to_go must be finite in each element, got inf");
 }
 
-/// Of all gains that stabilize, the regulator has the cheapest, even where the weights do not ask for one.
+/// Of all gains that stabilize, the regulator has the cheapest, even where the weights do not ask
+/// for one.
 #[test]
 fn a_motion_that_grows_is_stopped_without_weights() {
     let gain = |a, b, q| lqr(&DiscreteModel { a, b }, &q, 1.0).unwrap().gain;
     let (none, all) = (diagonal([0.0; 4]), [1.0; 4]);
     // The cheapest way mirrors 1.1 in the unit circle: 1.1 − k = 1 / 1.1.
     let found = gain(diagonal([1.1, 0.5, 0.4, 0.3]), all, none);
-    assert!(
-        relative(&found, &[1.1 - 1.0 / 1.1, 0.0, 0.0, 0.0]) < 1e-9,
-        "{found:?}"
-    );
+    assert!(relative(&found, &[1.1 - 1.0 / 1.1, 0.0, 0.0, 0.0]) < 1e-9, "{found:?}");
     // Elements below 1, whose powers grow as 1.2.
     let found = gain([[0.3; 4]; 4], all, none);
-    assert!(
-        relative(&found, &[(1.2 - 1.0 / 1.2) / 4.0; 4]) < 1e-9,
-        "{found:?}"
-    );
+    assert!(relative(&found, &[(1.2 - 1.0 / 1.2) / 4.0; 4]) < 1e-9, "{found:?}");
     assert_eq!(gain(diagonal([0.5; 4]), all, none), [0.0; 4]);
     assert_eq!(gain(diagonal([0.5; 4]), [0.0; 4], IDENTITY), [0.0; 4]);
     assert_eq!(gain(none, all, IDENTITY), [0.0; 4]);

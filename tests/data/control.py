@@ -1,20 +1,20 @@
-"""Differentiates the equations of motion automatically and solves Riccati equations: writes control.txt to its folder.
+"""Differentiates the equations of motion automatically and solves Riccati equations: writes
+control.txt to its folder.
 
-    pip install -r tests/data/requirements.txt
-    python tests/data/control.py
+The equations are those that truth.py integrates, for any parameters, and autograd differentiates
+them and a Runge-Kutta step of them. The torques are Lagrange's equations from positions and
+energies alone, and the forces Newton's law from the second derivatives of positions in time.
 
-The equations are those that truth.py integrates, for any parameters, and autograd differentiates them and a Runge-Kutta
-step of them. The torques are Lagrange's equations from positions and energies alone, and the forces Newton's law from the
-second derivatives of positions in time.
-
-The gains solve the Riccati equation in 200 digits. SciPy's solve_discrete_are finds the same, with an error of up to 3e-6.
+The gains solve the Riccati equation in 200 digits. SciPy's solve_discrete_are finds the same, with
+an error of up to 3e-6.
 """
 
 import os
 from importlib.metadata import version
 from pathlib import Path
 
-# OpenBLAS and NumPy have other code, and so another rounding, for each processor. This chooses code with FMA.
+# OpenBLAS and NumPy have other code, and so another rounding, for each processor. This chooses code
+# with FMA.
 os.environ["OPENBLAS_CORETYPE"] = "Haswell"
 if "avx512f" in Path("/proc/cpuinfo").read_text():
     os.environ["NPY_DISABLE_CPU_FEATURES"] = "X86_V4 AVX512_ICL AVX512_SPR"
@@ -24,10 +24,12 @@ import mpmath
 from autograd import grad, jacobian
 from scipy.linalg import solve_discrete_are
 
-NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2 gravity dt friction1 friction2".split()
+NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2"
+NAMES += " gravity dt friction1 friction2"
 LOW = [0.3, 0.3, 0.3, 0.3, 0.0, 0.0, 0.1, 0.1, -15.0, 0.002]
 HIGH = [2.0, 2.0, 3.0, 3.0, 1.0, 1.0, 2.0, 2.0, 15.0, 0.2]
 NONE = [0.0, 0.0]
+PACKAGES = "autograd", "mpmath", "numpy", "scipy"
 DEFAULT = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 1.0, 9.8, 0.2, *NONE]
 STATES = np.array([3.2, 3.2, 6.0, 8.0])
 
@@ -55,7 +57,8 @@ def terms(p, y, dynamics, math):
     d1 = m1 * lc1**2 + m2 * (l1**2 + lc2**2) + 2 * arm * math.cos(theta2) + i1 + i2
     d2 = m2 * lc2**2 + arm * math.cos(theta2) + i2
     phi2 = m2 * lc2 * g * math.sin(theta1 + theta2)
-    phi1 = -arm * dtheta2**2 * sin2 - 2 * arm * dtheta2 * dtheta1 * sin2 + (m1 * lc1 + m2 * l1) * g * math.sin(theta1) + phi2
+    phi1 = -arm * dtheta2**2 * sin2 - 2 * arm * dtheta2 * dtheta1 * sin2
+    phi1 = phi1 + (m1 * lc1 + m2 * l1) * g * math.sin(theta1) + phi2
     centrifugal = arm * dtheta1**2 * sin2 if dynamics == "book" else 0.0
     return np.array([[d1, d2], [d2, m2 * lc2**2 + i2]]), phi1, centrifugal, phi2
 
@@ -63,7 +66,8 @@ def terms(p, y, dynamics, math):
 def derivative(p, y, torque, dynamics, math=Floats):
     theta1, theta2, dtheta1, dtheta2 = y
     mass, phi1, centrifugal, phi2 = terms(p, (theta1, theta2, dtheta1, dtheta2), dynamics, math)
-    rates = math.solve(mass, np.array([-phi1 - p[10] * dtheta1, torque - centrifugal - phi2 - p[11] * dtheta2]))
+    forces = [-phi1 - p[10] * dtheta1, torque - centrifugal - phi2 - p[11] * dtheta2]
+    rates = math.solve(mass, np.array(forces))
     return np.array([dtheta1, dtheta2, rates[0], rates[1]])
 
 
@@ -84,7 +88,7 @@ def linear(f, p, y, torque, dynamics):
 
 def point(theta, distance1, distance2, math=Floats):
     """The point at these distances along link 1 and along link 2."""
-    along = lambda angle, distance: np.array([distance * math.sin(angle), -distance * math.cos(angle)])
+    along = lambda angle, length: np.array([length * math.sin(angle), -length * math.cos(angle)])
     return along(theta[0], distance1) + along(theta[0] + theta[1], distance2)
 
 
@@ -120,18 +124,20 @@ def exactly(f, p, y, torque, dynamics):
     h = mpmath.mpf(10) ** -60
     columns = []
     for unit in np.eye(5, dtype=int) * h:
-        above, below = (f(p, y + sign * unit[:4], torque + sign * unit[4], dynamics, Digits) for sign in (1, -1))
+        near = lambda unit: f(p, y + unit[:4], torque + unit[4], dynamics, Digits)
+        above, below = near(unit), near(-unit)
         columns.append((above - below) / (2 * h))
     return np.array(columns[:4]).T, columns[4]
 
 
 def exact_motion(p, y, accelerations, dynamics):
-    """As motion, by differences in 200 digits. The torques are those of the equations in `terms`."""
+    """As motion, by differences in 200 digits, and the torques by the equations in `terms`."""
     l1, l2, m1, m2, lc1, lc2, _, _, g, *_ = p
     theta, dtheta = y[:2], y[2:]
     h = mpmath.mpf(10) ** -60
     times = -h, mpmath.mpf(0), h
-    places = lambda *distances: [point(theta + dtheta * t + accelerations * t**2 / 2, *distances, Digits) for t in times]
+    path = lambda t: theta + dtheta * t + accelerations * t**2 / 2
+    places = lambda *distances: [point(path(t), *distances, Digits) for t in times]
     velocity = lambda before, _, after: (after - before) / (2 * h)
     acceleration = lambda before, now, after: (after - 2 * now + before) / h**2
     weight = np.array([0, g])
@@ -143,16 +149,18 @@ def exact_motion(p, y, accelerations, dynamics):
 
 
 def regulator(a, b, q, r):
-    """The gain and the cost to go that solve the Riccati equation: structured doubling in 200 digits, checked."""
+    """The solution of the Riccati equation: structured doubling in 200 digits, checked."""
     a, b, q = (mpmath.matrix(m.tolist()) for m in (a, b[:, None], q))
     r = mpmath.mpf(float(r))
     power, reach, cost = a, b * b.T / r, q
     while mpmath.mnorm(power) > 1e-50:
         w = (mpmath.eye(4) + reach * cost) ** -1
-        cost, reach, power = (cost + power.T * cost * w * power, reach + power * w * reach * power.T, power * w * power)
+        cost, reach = cost + power.T * cost * w * power, reach + power * w * reach * power.T
+        power = power * w * power
     gain = b.T * cost * a / (r + (b.T * cost * b)[0])
     closed = a - b * gain
-    assert mpmath.mnorm(closed.T * cost * closed + q + r * gain.T * gain - cost) < 1e-90 * mpmath.mnorm(cost)
+    residual = closed.T * cost * closed + q + r * gain.T * gain - cost
+    assert mpmath.mnorm(residual) < 1e-90 * mpmath.mnorm(cost)
     for _ in range(40):
         closed = closed * closed
     assert mpmath.mnorm(closed) < 1e-9
@@ -166,7 +174,8 @@ def texts(*arrays):
 def weights(rng):
     """Q and R, from one weight on the angles alone to a full matrix."""
     square = rng.normal(size=(4, 4))
-    for q in np.eye(4), np.diag([10.0, 10.0, 1.0, 1.0]), np.diag([1.0, 1.0, 0.0, 0.0]), square @ square.T:
+    diagonals = np.eye(4), np.diag([10.0, 10.0, 1.0, 1.0]), np.diag([1.0, 1.0, 0.0, 0.0])
+    for q in *diagonals, square @ square.T:
         yield (q + q.T) / 2, 10.0 ** rng.integers(-2, 3)
 
 
@@ -174,12 +183,17 @@ def decades(rng, low, high, size=None):
     return 10.0 ** rng.uniform(low, high, size)
 
 
+def resting(dt, angle):
+    p = np.array([*DEFAULT[:9], dt, *NONE])
+    return linear(step, p, np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
+
+
 def models(rng):
-    """Models with weights: the acrobot with sensible and extreme weights, then anything over many decades."""
+    """Models with weights: the acrobot with any weights, then anything over many decades."""
     for dt in 0.002, 0.01, 0.05:
         for angle in 0.0, np.pi:
-            a, b = linear(step, np.array([*DEFAULT[:9], dt, *NONE]), np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
-            for diagonal in (1.0, 1.0, 1.0, 1.0), (1000.0, 1000.0, 10.0, 10.0), (1.0, 1.0, 0.0, 0.0):
+            a, b = resting(dt, angle)
+            for diagonal in [1.0] * 4, (1000.0, 1000.0, 10.0, 10.0), (1.0, 1.0, 0.0, 0.0):
                 for r in 1e-8, 1e-4, 1.0, 1e6, 1e8:
                     yield "acrobot", a, b, np.diag(diagonal), r
     for number in range(150):
@@ -199,7 +213,8 @@ def wide_models(rng):
     """Models whose numbers span up to 24 decades, half of them zeros in many."""
     for number in range(100):
         spread = 2 + number % 11
-        sparse = lambda size, kept: (rng.random(size) < kept) * decades(rng, -spread / 2, spread / 2, size)
+        anything = lambda size: decades(rng, -spread / 2, spread / 2, size)
+        sparse = lambda size, kept: (rng.random(size) < kept) * anything(size)
         a = rng.normal(size=(4, 4)) * sparse((4, 4), 0.7)
         a *= decades(rng, -1, 0.5) / max(1.0, np.abs(np.linalg.eigvals(a)).max())
         b = rng.normal(size=4) * sparse(4, 0.8) ** 2
@@ -208,7 +223,8 @@ def wide_models(rng):
 
 def case(rng, number, p):
     dynamics = ["book", "nips"][number % 2]
-    y, torque, accelerations = rng.uniform(-STATES, STATES), rng.uniform(-5, 5), rng.uniform(-20, 20, 2)
+    y, torque = rng.uniform(-STATES, STATES), rng.uniform(-5, 5)
+    accelerations = rng.uniform(-20, 20, 2)
     yield f"case {dynamics} {texts(p, y, torque, accelerations)}"
     yield f"continuous {texts(*linear(derivative, p, y, torque, dynamics))}"
     yield f"discrete {texts(*linear(step, p, y, torque, dynamics))}"
@@ -224,8 +240,7 @@ def main():
         lines += case(rng, number, p)
     for dt in 0.001, 0.01, 0.05, 0.2:
         for angle in 0.0, np.pi:
-            p = np.array([*DEFAULT[:9], dt, *NONE])
-            a, b = linear(step, p, np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
+            a, b = resting(dt, angle)
             for q, r in weights(rng):
                 approximate = solve_discrete_are(a, b[:, None], q, np.array([[r]]))
                 gain, cost = regulator(a, b, q, r)
@@ -233,15 +248,17 @@ def main():
                 lines.append(f"lqr {texts(angle, dt, a, b, q, r, gain, cost)}")
     for number in range(40):
         dynamics = ["book", "nips"][number % 2]
-        p = np.array([*decades(rng, -3, 3, 8), rng.normal() * decades(rng, -3, 3), decades(rng, -5, -2), *NONE])
+        p = [*decades(rng, -3, 3, 8), rng.normal() * decades(rng, -3, 3), decades(rng, -5, -2)]
+        p = np.array([*p, *NONE])
         y = rng.uniform(-STATES, STATES)
-        torque, accelerations = rng.normal() * decades(rng, -3, 3), rng.normal(size=2) * decades(rng, -3, 3, 2)
-        p, y, torque, accelerations = (np.float32(x).astype(float) for x in (p, y, torque, accelerations))
-        lines.append(f"case {dynamics} {texts(p, y, torque, accelerations)}")
-        digits = [row * mpmath.mpf(1) for row in (p, y, accelerations)]
-        lines.append(f"continuous {texts(*exactly(derivative, *digits[:2], mpmath.mpf(float(torque)), dynamics))}")
-        lines.append(f"discrete {texts(*exactly(step, *digits[:2], mpmath.mpf(float(torque)), dynamics))}")
-        lines.append(f"motion {texts(*exact_motion(*digits, dynamics))}")
+        torque = rng.normal() * decades(rng, -3, 3)
+        given = p, y, torque, rng.normal(size=2) * decades(rng, -3, 3, 2)
+        given = [np.float32(x).astype(float) for x in given]
+        lines.append(f"case {dynamics} {texts(*given)}")
+        p, y, torque, accelerations = (x * mpmath.mpf(1) for x in given)
+        for name, f in ("continuous", derivative), ("discrete", step):
+            lines.append(f"{name} {texts(*exactly(f, p, y, torque, dynamics))}")
+        lines.append(f"motion {texts(*exact_motion(p, y, accelerations, dynamics))}")
     for kind, *model in [*models(rng), *wide_models(np.random.default_rng(6))]:
         given = [np.float32(x) for x in model]
         gain, _ = regulator(*(x.astype(float) for x in given))
@@ -250,8 +267,8 @@ def main():
     for number in range(40):
         lines += case(rng, number, np.array([*rng.uniform(LOW, HIGH), *decades(rng, -3, 0, 2)]))
     head = [
-        f"# {', '.join(f'{name} {version(name)}' for name in ('autograd', 'mpmath', 'numpy', 'scipy'))}",
-        f"# case DYNAMICS {' '.join(NAMES)}, the state, the torque, two accelerations",
+        "# " + ", ".join(f"{name} {version(name)}" for name in PACKAGES),
+        f"# case DYNAMICS {NAMES}, the state, the torque, two accelerations",
         "# continuous, discrete: A by rows, B",
         "# motion: torques, reaction, force in the elbow, velocities of elbow and tip",
         "# lqr THETA1 DT: A, B, Q by rows, R, the gain, the cost by rows",
@@ -261,5 +278,4 @@ def main():
     (Path(__file__).parent / "control.txt").write_text("\n".join(head + lines) + "\n")
 
 
-if __name__ == "__main__":
-    main()
+main()

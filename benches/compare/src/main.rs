@@ -1,20 +1,14 @@
-//! Plays one Rust implementation with a random policy for some seconds of processor time, and prints
-//! `name version steps seconds`: `cargo run --release -- gmgn 1`.
+//! Plays one Rust implementation with a random policy for some seconds of processor time, and
+//! prints `name version steps seconds`: `cargo run --release -- rlevo 1`.
 
 #![forbid(unsafe_code)]
 
 use std::env;
 use std::hint::black_box;
 
-use acrobot::arithmetic::{Arithmetic, Host, Reference};
-use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, TimeLimit};
 use benches::{Play, draw};
 use cpu_time::ProcessTime;
-use gmgn::env::Env as _;
-use gmgn::envs::classic_control::AcrobotEnv;
-use ogym::env::control::acrobot::{Acrobot as OgymAcrobot, AcrobotConfig};
-use ogym::env::environment::Environment as _;
-use ogym::spaces::MixedItem;
 use rlevo_core::action::DiscreteAction as _;
 use rlevo_core::environment::Environment as _;
 use rlevo_environments::classic::acrobot::{Acrobot as RlevoAcrobot, AcrobotAction};
@@ -25,15 +19,9 @@ type Implementation = Box<dyn FnMut(usize) -> usize>;
 type New = fn() -> Implementation;
 
 /// The name of each implementation, its package, and how to make it.
-const IMPLEMENTATIONS: [(&str, &str, New); 9] = [
-    ("host", "acrobot", ours::<Host>),
-    ("reference", "acrobot", ours::<Reference>),
-    ("portable", "acrobot", ours::<Portable>),
-    ("fast", "acrobot", ours::<Fast>),
-    ("batch", "acrobot", || batch(false)),
-    ("observations", "acrobot", || batch(true)),
-    ("gmgn", "gmgn", gmgn),
-    ("ogym", "ogym", ogym),
+const IMPLEMENTATIONS: [(&str, &str, New); 3] = [
+    ("fast", "acrobot", fast),
+    ("batch", "acrobot", batch),
     ("rlevo", "rlevo-environments", rlevo),
 ];
 
@@ -41,7 +29,6 @@ const IMPLEMENTATIONS: [(&str, &str, New); 9] = [
 const ACROBOTS: usize = 1024;
 /// Steps between two readings of the clock: a few milliseconds, and whole steps of a batch.
 const STEPS: usize = 16 * ACROBOTS;
-const LIMIT: u16 = 500;
 
 fn main() {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -66,20 +53,20 @@ fn main() {
 /// The version in the lock file.
 fn version(package: &str) -> &'static str {
     let lock = include_str!("../Cargo.lock");
-    let (_, rest) = lock
-        .split_once(&format!("name = \"{package}\"\nversion = \""))
-        .expect("a dependency");
+    let (_, rest) =
+        lock.split_once(&format!("name = \"{package}\"\nversion = \"")).expect("a dependency");
     rest.split_once('"').expect("a version in quotes").0
 }
 
-/// An implementation from a `step`, which resets after an episode's end and returns whether there was one.
+/// An implementation from a `step`, which resets after an episode's end and returns whether there
+/// was one.
 fn alone(mut step: impl FnMut(u8) -> bool + 'static) -> Implementation {
     let mut stream = 0;
     Box::new(move |steps| (0..steps).filter(|_| step(draw(&mut stream))).count())
 }
 
-fn ours<A: Arithmetic + 'static>() -> Implementation {
-    let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(0));
+fn fast() -> Implementation {
+    let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(0));
     alone(move |action| {
         let done = black_box(acrobot.step(Action::ALL[usize::from(action)])).done();
         if done {
@@ -89,50 +76,21 @@ fn ours<A: Arithmetic + 'static>() -> Implementation {
     })
 }
 
-fn batch(observe: bool) -> Implementation {
+fn batch() -> Implementation {
     let mut play = Play::<Fast>::new(ACROBOTS);
     Box::new(move |steps| {
         let batch_steps = 0..steps / ACROBOTS;
         let ends = batch_steps.map(|_| {
-            play.play(observe);
+            play.play(true);
             play.ends()
         });
         ends.sum()
     })
 }
 
-fn gmgn() -> Implementation {
-    let acrobot = AcrobotEnv::new(Default::default()).expect("its default is valid");
-    let mut acrobot = gmgn::wrappers::TimeLimit::new(acrobot, LIMIT.into());
-    acrobot.reset(Some(0)).expect("it resets");
-    alone(move |action| {
-        let step = black_box(acrobot.step(&action.into())).expect("a valid action");
-        let ended = step.terminated || step.truncated;
-        if ended {
-            acrobot.reset(None).expect("it resets");
-        }
-        ended
-    })
-}
-
-fn ogym() -> Implementation {
-    let config = AcrobotConfig::default().with_max_steps(LIMIT.into());
-    let mut acrobot = OgymAcrobot::new(config).expect("its default is valid");
-    acrobot.reset(Some(0)).expect("it resets");
-    alone(move |action| {
-        let action = MixedItem::Discrete(action.into());
-        let step = black_box(acrobot.step(action)).expect("the episode goes on");
-        let ended = step.terminal.is_done();
-        if ended {
-            acrobot.reset(None).expect("it resets");
-        }
-        ended
-    })
-}
-
 fn rlevo() -> Implementation {
     let acrobot = <RlevoAcrobot>::default();
-    let mut acrobot = rlevo_environments::wrappers::TimeLimit::new(acrobot, LIMIT.into());
+    let mut acrobot = rlevo_environments::wrappers::TimeLimit::new(acrobot, 500);
     acrobot.reset().expect("it resets");
     alone(move |action| {
         let action = AcrobotAction::from_index(action.into());

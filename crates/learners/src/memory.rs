@@ -2,8 +2,8 @@
 
 use crate::QLambda;
 
-/// Memory of a learner with `T` tilings: 8 bytes for each of `S` slots, and 24 for each of the latest `N` steps. It should
-/// hold more steps than an episode has.
+/// Memory of a learner with `T` tilings: 8 bytes for each of `S` slots, and 24 for each of the
+/// latest `N` steps. It should hold more steps than an episode has.
 #[derive(Clone, Debug)]
 pub struct Memory<const S: usize, const T: usize, const N: usize> {
     /// In each slot a weight for each torque.
@@ -13,10 +13,7 @@ pub struct Memory<const S: usize, const T: usize, const N: usize> {
 
 impl<const S: usize, const T: usize, const N: usize> Memory<S, T, N> {
     /// Unused memory. It is zeros, which a program need not contain.
-    pub const EMPTY: Self = Self {
-        weights: [[0.0; 2]; S],
-        steps: [Transition::EMPTY; N],
-    };
+    pub const EMPTY: Self = Self { weights: [[0.0; 2]; S], steps: [Transition::EMPTY; N] };
 }
 
 /// All that the learner keeps fits in 16 KiB.
@@ -48,7 +45,8 @@ pub(crate) struct Transition {
 /// What follows a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Next {
-    /// Nothing that is known: the episode was truncated before this step. It is first, so that unused memory is zeros.
+    /// Nothing that is known: the episode was truncated before this step. It is first, so that
+    /// unused memory is zeros.
     Unknown,
     /// The next transition.
     Step,
@@ -57,10 +55,6 @@ pub(crate) enum Next {
 }
 
 impl Transition {
-    pub const EMPTY: Self = Self {
-        state: [0.0; 4],
-        reward: 0.0,
-        positive: false,
-        next: Next::Unknown,
-    };
+    pub const EMPTY: Self =
+        Self { state: [0.0; 4], reward: 0.0, positive: false, next: Next::Unknown };
 }

@@ -1,4 +1,5 @@
-//! Watkins's Q(λ) over whole episodes, from the last step to the first, with replay (Sutton & Barto 12.10; Lin 1992).
+//! Watkins's Q(λ) over whole episodes, from the last step to the first, with replay (Sutton & Barto
+//! 12.10; Lin 1992).
 
 use acrobot::physics::wrap;
 use acrobot::{Action, State};
@@ -10,11 +11,13 @@ use crate::tiles::TileCoder;
 /// The decay of a trace in a step. Rewards are not discounted: γ is 1.
 const LAMBDA: f32 = 0.95;
 
-/// α times the number of tilings, the share of an error that one update removes (Sutton & Barto 9.6), in the first episode and
-/// after the budget. Together with the tilings it is tuned for the best policy after 100,000 steps.
+/// α times the number of tilings, the share of an error that one update removes (Sutton & Barto
+/// 9.6), in the first episode and after the budget. Together with the tilings it is tuned for the
+/// best policy after 100,000 steps.
 const ALPHA: [f32; 2] = [0.3, 0.005];
 
-/// How long learning takes. The step size falls linearly over this time; after that the learner hardly changes.
+/// How long learning takes. The step size falls linearly over this time; after that the learner
+/// hardly changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Budget {
     /// This many episodes.
@@ -23,12 +26,13 @@ pub enum Budget {
     Steps(u32),
 }
 
-/// Learns after each episode from the latest steps in its memory, from the last one to the first, so that a return is known
-/// before the step that led to it. The memory may hold several episodes, or a part of one.
+/// Learns after each episode from the latest steps in its memory, from the last one to the first,
+/// so that a return is known before the step that led to it. The memory may hold several episodes,
+/// or a part of one.
 ///
-/// The learner has no action without torque, which would gain nothing. Weights start at 0, which is optimistic, because
-/// rewards are negative: untried actions look best. So it always takes the action with the highest value. A state and its mirror
-/// image share their values.
+/// The learner has no action without torque, which would gain nothing. Weights start at 0, which is
+/// optimistic, because rewards are negative: untried actions look best. So it always takes the
+/// action with the highest value. A state and its mirror image share their values.
 #[derive(Debug)]
 pub struct QLambda<'w, const S: usize, const T: usize> {
     pub(crate) tiles: TileCoder<S, T>,
@@ -71,7 +75,8 @@ impl<'w, const S: usize, const T: usize> QLambda<'w, S, T> {
         self.best(&view(state).0).1
     }
 
-    /// The weights: in each slot one for negative torque and one for positive, in units of the reward.
+    /// The weights: in each slot one for negative torque and one for positive, in units of the
+    /// reward.
     #[must_use]
     pub fn weights(&self) -> &[[f32; 2]; S] {
         self.weights
@@ -90,18 +95,11 @@ impl<'w, const S: usize, const T: usize> QLambda<'w, S, T> {
                 state,
                 reward: step.reward,
                 positive,
-                next: if step.terminated {
-                    Next::Goal
-                } else {
-                    Next::Step
-                },
+                next: if step.terminated { Next::Goal } else { Next::Step },
             });
             if step.truncated && !step.terminated {
                 let (state, _) = view(&env.state());
-                self.store(Transition {
-                    state,
-                    ..Transition::EMPTY
-                });
+                self.store(Transition { state, ..Transition::EMPTY });
             }
             if step.done() {
                 break;
@@ -127,8 +125,9 @@ impl<'w, const S: usize, const T: usize> QLambda<'w, S, T> {
         self.next += 1;
     }
 
-    /// w ← w + α (G − q(S, A)) ∇q(S, A), from the last step to the first, where G is the λ-return: R + max q where the
-    /// greedy policy would not take the next action, and R + (1 − λ) max q + λ G′ elsewhere.
+    /// w ← w + α (G − q(S, A)) ∇q(S, A), from the last step to the first, where G is the λ-return:
+    /// R + max q where the greedy policy would not take the next action, and R + (1 − λ) max q + λ
+    /// G′ elsewhere.
     fn replay(&mut self) {
         let step_size = self.step_size();
         // The return from the state after a step, as the replay of that state left it.
@@ -154,11 +153,8 @@ impl<'w, const S: usize, const T: usize> QLambda<'w, S, T> {
                 }
             }
             let (_, value) = best(self::values(self.weights, &slots));
-            following = if step.positive == greedy {
-                value + LAMBDA * (target - value)
-            } else {
-                value
-            };
+            following =
+                if step.positive == greedy { value + LAMBDA * (target - value) } else { value };
         }
     }
 
@@ -193,34 +189,24 @@ fn values<const S: usize, const T: usize>(weights: &[[f32; 2]; S], slots: &[u16;
     values
 }
 
-/// Whether the action with the higher value has positive torque, and that value. Equal values choose negative torque.
+/// Whether the action with the higher value has positive torque, and that value. Equal values
+/// choose negative torque.
 #[inline]
 fn best([negative, positive]: [f32; 2]) -> (bool, f32) {
-    if positive > negative {
-        (true, positive)
-    } else {
-        (false, negative)
-    }
+    if positive > negative { (true, positive) } else { (false, negative) }
 }
 
-/// A state as the learner sees it, \[θ1, θ2, θ̇1, θ̇1 + θ̇2\] in rad and rad/s, and whether it is the mirror image, in which θ̇1
-/// is not negative. Link 2's velocity in space tells more about it than the velocity of its joint.
+/// A state as the learner sees it, \[θ1, θ2, θ̇1, θ̇1 + θ̇2\] in rad and rad/s, and whether it is
+/// the mirror image, in which θ̇1 is not negative. Link 2's velocity in space tells more about it
+/// than the velocity of its joint.
 fn view(state: &State<f32>) -> ([f32; 4], bool) {
     let [theta1, theta2, dtheta1, dtheta2] = (*state).into();
     let [theta1, theta2] = [theta1, theta2].map(wrap);
     let seen = [theta1, theta2, dtheta1, dtheta1 + dtheta2];
-    if dtheta1 < 0.0 {
-        (seen.map(|x| -x), true)
-    } else {
-        (seen, false)
-    }
+    if dtheta1 < 0.0 { (seen.map(|x| -x), true) } else { (seen, false) }
 }
 
 /// The torque of an action that the learner chose in a state or in its mirror image.
 fn torque(positive: bool, is_mirrored: bool) -> Action {
-    if positive == is_mirrored {
-        Action::Negative
-    } else {
-        Action::Positive
-    }
+    if positive == is_mirrored { Action::Negative } else { Action::Positive }
 }

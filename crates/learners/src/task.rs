@@ -16,7 +16,8 @@ pub fn evaluation(seed: &SeedSequence) -> Env {
     TimeLimit::v1(Acrobot::with_rng(seed.child(1).into()))
 }
 
-/// Plays an episode from a new initial state. Returns the sum of the rewards and whether the goal was reached.
+/// Plays an episode from a new initial state. Returns the sum of the rewards and whether the goal
+/// was reached.
 pub fn play(env: &mut Env, mut policy: impl FnMut(&State<f32>) -> Action) -> (f32, bool) {
     env.reset();
     let mut sum = 0.0;

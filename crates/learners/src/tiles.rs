@@ -9,8 +9,8 @@ use crate::weights::{FNV, fnv};
 struct Dimension {
     high: f32,
     intervals: u16,
-    /// Whether `high` equals `-high`. Otherwise a number outside counts as the nearest bound, and there is one more interval
-    /// beyond the bounds, because tilings are offset.
+    /// Whether `high` equals `-high`. Otherwise a number outside counts as the nearest bound, and
+    /// there is one more interval beyond the bounds, because tilings are offset.
     cyclic: bool,
     /// Intervals for each unit of the state.
     per_unit: f32,
@@ -18,12 +18,7 @@ struct Dimension {
 
 impl Dimension {
     fn new(high: f32, intervals: u16, cyclic: bool) -> Self {
-        Self {
-            high,
-            intervals,
-            cyclic,
-            per_unit: f32::from(intervals) / (high + high),
-        }
+        Self { high, intervals, cyclic, per_unit: f32::from(intervals) / (high + high) }
     }
 
     /// The number of coordinates that a tile can have.
@@ -31,7 +26,8 @@ impl Dimension {
         self.intervals + u16::from(!self.cyclic)
     }
 
-    /// The interval of `x` before any offset, the next one, and how far `x` is between them, in 2⁻¹⁶ intervals.
+    /// The interval of `x` before any offset, the next one, and how far `x` is between them, in
+    /// 2⁻¹⁶ intervals.
     #[inline]
     fn locate(&self, x: f32) -> [u16; 3] {
         let mut x = (x + self.high) * self.per_unit;
@@ -48,27 +44,29 @@ impl Dimension {
 }
 
 /// The dimensions of a group of tilings, a bit for each: all four, pairs and triples.
-const GROUPS: [u8; 9] = [
-    0b1111, 0b0011, 0b1100, 0b0101, 0b1010, 0b0111, 0b1011, 0b1101, 0b1110,
-];
+const GROUPS: [u8; 9] = [0b1111, 0b0011, 0b1100, 0b0101, 0b1010, 0b0111, 0b1011, 0b1101, 0b1110];
 
-/// The stride from tile to tile of a tiling. Its multiples modulo 2¹⁶ lie far apart, as those of the golden
-/// ratio do (Knuth 6.4): it is the only factor whose continued fraction over 2¹⁶ has no quotient above 2.
+/// The stride from tile to tile of a tiling. Its multiples modulo 2¹⁶ lie far apart, as those of
+/// the golden ratio do (Knuth 6.4): it is the only factor whose continued fraction over 2¹⁶ has no
+/// quotient above 2.
 const FACTOR: u16 = 0xb3f9;
 
 /// The stride from tiling to tiling: 2¹⁶ over the golden ratio.
 const GOLDEN: u16 = 0x9e37;
 
-/// `T` tilings over two angles, in rad from −π to π, and two velocities, in rad/s. All tiles share `S` slots.
+/// `T` tilings over two angles, in rad from −π to π, and two velocities, in rad/s. All tiles share
+/// `S` slots.
 ///
-/// A tile's slot is linear in its coordinates: one product and one comparison for each dimension, in 16 bits, so
-/// that eight tilings fit in the smallest vector register. Hashing scales the sum at the end.
+/// A tile's slot is linear in its coordinates: one product and one comparison for each dimension,
+/// in 16 bits, so that eight tilings fit in the smallest vector register. Hashing scales the sum at
+/// the end.
 #[derive(Clone, Debug)]
 pub struct TileCoder<const S: usize, const T: usize> {
     dimensions: [Dimension; 4],
     /// The offset of each tiling, in 2⁻¹⁶ intervals.
     offsets: [[u16; T]; 4],
-    /// How much the slot grows from one coordinate to the next; 0 in dimensions that a tiling ignores.
+    /// How much the slot grows from one coordinate to the next; 0 in dimensions that a tiling
+    /// ignores.
     strides: [[u16; T]; 4],
     /// The slot of each tiling's first tile.
     bases: [u16; T],
@@ -83,16 +81,14 @@ impl<const S: usize, const T: usize> TileCoder<S, T> {
     /// The tilings over all dimensions: the others.
     const WHOLE: usize = T - 4 * (Self::PAIR + Self::TRIPLE);
 
-    /// The tilings for this many slots, which are tuned. Two tunings exist: below 2,048 slots, and from there on.
+    /// The tilings for this many slots, which are tuned. Two tunings exist: below 2,048 slots, and
+    /// from there on.
     #[expect(clippy::new_without_default, reason = "there is only one")]
     #[must_use]
     pub fn new() -> Self {
         const { assert!(S >= 2 && S <= 1 << 16, "16 bits number the slots") };
-        let [angle1, angle2, velocity1, velocity2] = if Self::MANY {
-            [8, 10, 4, 8]
-        } else {
-            [6, 6, 5, 6]
-        };
+        let [angle1, angle2, velocity1, velocity2] =
+            if Self::MANY { [8, 10, 4, 8] } else { [6, 6, 5, 6] };
         let mut coder = Self {
             // Faster velocities are rare.
             dimensions: [
@@ -106,15 +102,12 @@ impl<const S: usize, const T: usize> TileCoder<S, T> {
             bases: core::array::from_fn(|t| (t as u16).wrapping_mul(GOLDEN)),
         };
         let [whole, pair, triple] = [Self::WHOLE, Self::PAIR, Self::TRIPLE];
-        let tilings = [
-            whole, pair, pair, pair, pair, triple, triple, triple, triple,
-        ];
-        // For each group: its stride in the next of its dimensions, and that dimension's odd integer.
+        let tilings = [whole, pair, pair, pair, pair, triple, triple, triple, triple];
+        // For each group: its stride in the next of its dimensions, and that dimension's odd
+        // integer.
         let mut next = [(FACTOR, 1); 9];
-        for (d, ((dimension, offsets), strides)) in (coder.dimensions.iter())
-            .zip(&mut coder.offsets)
-            .zip(&mut coder.strides)
-            .enumerate()
+        for (d, ((dimension, offsets), strides)) in
+            (coder.dimensions.iter()).zip(&mut coder.offsets).zip(&mut coder.strides).enumerate()
         {
             let mut all = offsets.iter_mut().zip(strides);
             for ((dimensions, tilings), (stride, odd)) in GROUPS.iter().zip(tilings).zip(&mut next)
@@ -172,8 +165,8 @@ impl<const S: usize, const T: usize> TileCoder<S, T> {
     }
 }
 
-/// Displacement by the first odd integers (Sutton & Barto 9.5.4): among n tilings, the offset of tiling j is
-/// j (1, 3, 5, 7, …) / n intervals, modulo 1. Here it is in 2⁻¹⁶ intervals.
+/// Displacement by the first odd integers (Sutton & Barto 9.5.4): among n tilings, the offset of
+/// tiling j is j (1, 3, 5, 7, …) / n intervals, modulo 1. Here it is in 2⁻¹⁶ intervals.
 fn displacement(steps: usize, tilings: usize) -> u16 {
     (steps as f32 / tilings as f32 * 65536.0) as u32 as u16
 }

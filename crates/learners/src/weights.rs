@@ -1,4 +1,5 @@
-//! Weights as little-endian bytes: magic, version, size, the tiles' fingerprint, the weights and a checksum.
+//! Weights as little-endian bytes: magic, version, size, the tiles' fingerprint, the weights and a
+//! checksum.
 
 use core::fmt;
 
@@ -16,14 +17,8 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
     /// The weights as [`QLambda::BYTES`] bytes, from the first to the last.
     pub fn save(&self) -> impl Iterator<Item = u8> + '_ {
         let header = [VERSION, Self::BYTES as u32, self.tiles.fingerprint()];
-        let words = MAGIC
-            .into_iter()
-            .chain(header.into_iter().flat_map(u32::to_le_bytes));
-        let weights = self
-            .weights
-            .as_flattened()
-            .iter()
-            .flat_map(|w| w.to_le_bytes());
+        let words = MAGIC.into_iter().chain(header.into_iter().flat_map(u32::to_le_bytes));
+        let weights = self.weights.as_flattened().iter().flat_map(|w| w.to_le_bytes());
         let body = words.chain(weights);
         let checksum = body.clone().fold(FNV, fnv);
         body.chain(checksum.to_le_bytes())
@@ -33,8 +28,8 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
     ///
     /// # Errors
     ///
-    /// [`LoadError`] for bytes of another kind, version, size or learner, for damaged bytes, and for a weight that is
-    /// not finite. The weights are unchanged then.
+    /// [`LoadError`] for bytes of another kind, version, size or learner, for damaged bytes, and
+    /// for a weight that is not finite. The weights are unchanged then.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
         let (words, _) = bytes.as_chunks();
         let word = |at: usize| words.get(at).copied().map_or(0, u32::from_le_bytes);
@@ -45,10 +40,7 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
             return Err(LoadError::Version(word(1)));
         }
         if bytes.len() != Self::BYTES {
-            return Err(LoadError::Size {
-                found: bytes.len(),
-                expected: Self::BYTES,
-            });
+            return Err(LoadError::Size { found: bytes.len(), expected: Self::BYTES });
         }
         if word(3) != self.tiles.fingerprint() {
             return Err(LoadError::Features);
@@ -109,10 +101,9 @@ impl fmt::Display for LoadError {
             Self::Size { found, expected } => {
                 write!(f, "weights must have {expected} bytes, got {found}")
             }
-            Self::Features => write!(
-                f,
-                "weights must be those of a learner with the same features"
-            ),
+            Self::Features => {
+                write!(f, "weights must be those of a learner with the same features")
+            }
             Self::Checksum => write!(f, "damaged weights: the checksum differs"),
             Self::NotFinite(index) => write!(f, "weight {index} must be a finite number"),
         }

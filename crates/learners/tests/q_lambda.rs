@@ -5,15 +5,15 @@ use std::f32::consts::TAU;
 use acrobot::{Acrobot, Action, State, TimeLimit};
 use learners::{Budget, Memory, QLambda, TileCoder};
 
-/// A step of an episode: the state, and the action, its reward and whether the next state is the goal. Without an action it is
-/// the state in which the episode was truncated.
+/// A step of an episode: the state, and the action, its reward and whether the next state is the
+/// goal. Without an action it is the state in which the episode was truncated.
 type Step = ([f32; 4], Option<(usize, f64, bool)>);
 
 type Weights = [[f64; 2]; 1408];
 
-/// The λ-returns of Watkins's Q(λ) (Sutton & Barto 12.10), from the last of these steps to the first. The weight of each return
-/// is written out: where the next action is greedy, 1 − λ for its value and λ for its return. Returns how many of the actions
-/// were not greedy.
+/// The λ-returns of Watkins's Q(λ) (Sutton & Barto 12.10), from the last of these steps to the
+/// first. The weight of each return is written out: where the next action is greedy, 1 − λ for its
+/// value and λ for its return. Returns how many of the actions were not greedy.
 fn replay(w: &mut Weights, steps: &[Step], alpha: f64) -> usize {
     const LAMBDA: f64 = 0.95;
     let tiles = TileCoder::<1408, 16>::new();
@@ -21,7 +21,8 @@ fn replay(w: &mut Weights, steps: &[Step], alpha: f64) -> usize {
         let slots = tiles.active(state);
         slots.iter().map(|&slot| w[usize::from(slot)][action]).sum()
     };
-    // The state after a step, the return from there, and whether its action was greedy before it was learnt from.
+    // The state after a step, the return from there, and whether its action was greedy before it
+    // was learnt from.
     let mut next: Option<([f32; 4], f64, bool)> = None;
     let mut others = 0;
     for &(state, taken) in steps.iter().rev() {
@@ -32,11 +33,7 @@ fn replay(w: &mut Weights, steps: &[Step], alpha: f64) -> usize {
         let following = match next {
             Some((state, following, is_greedy)) if !is_goal => {
                 let highest = q(w, &state, 0).max(q(w, &state, 1));
-                if is_greedy {
-                    (1.0 - LAMBDA) * highest + LAMBDA * following
-                } else {
-                    highest
-                }
+                if is_greedy { (1.0 - LAMBDA) * highest + LAMBDA * following } else { highest }
             }
             _ => 0.0,
         };
@@ -60,14 +57,15 @@ fn seen(state: State<f32>) -> [f32; 4] {
     [theta1, theta2, dtheta1, dtheta1 + dtheta2].map(|x| sign * x)
 }
 
-/// The mirror image of a state, and in each angle one turn more or less. It has the same value, and the opposite torque.
+/// The mirror image of a state, and in each angle one turn more or less. It has the same value, and
+/// the opposite torque.
 fn turned_mirror_image(state: State<f32>) -> State<f32> {
     let [theta1, theta2, dtheta1, dtheta2] = <[f32; 4]>::from(state).map(|x| -x);
     State::from([theta1 + TAU, theta2 - TAU, dtheta1, dtheta2])
 }
 
-/// Some episodes are truncated. The memory holds several episodes or a part of one, and each budget ends within the training. The second
-/// learner gets the memory as the first one left it.
+/// Some episodes are truncated. The memory holds several episodes or a part of one, and each budget
+/// ends within the training. The second learner gets the memory as the first one left it.
 #[test]
 fn the_weights_equal_those_of_the_definition() {
     const STEPS: usize = 150;
@@ -119,9 +117,6 @@ fn the_weights_equal_those_of_the_definition() {
                 assert!(error < 1e-4, "episode {episode}: {found} for {expected}");
             }
         }
-        assert!(
-            (20..60).contains(&goals) && others > 500,
-            "{goals} {others}"
-        );
+        assert!((20..60).contains(&goals) && others > 500, "{goals} {others}");
     }
 }

@@ -6,8 +6,8 @@ use std::f32::consts::PI;
 use acrobot::numpy::{Pcg64, uniform};
 use learners::TileCoder;
 
-/// Six intervals for each angle, five and six for the velocities. The first eight tilings are over all dimensions, then
-/// come two for each of four pairs.
+/// Six intervals for each angle, five and six for the velocities. The first eight tilings are over
+/// all dimensions, then come two for each of four pairs.
 type Few = TileCoder<1408, 16>;
 
 /// The bounds of the state.
@@ -21,8 +21,8 @@ fn changed(a: &[u16], b: &[u16]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
-/// Each odd displacement is coprime to 8, so the borders of eight tilings are an eighth of an interval apart in
-/// each dimension.
+/// Each odd displacement is coprime to 8, so the borders of eight tilings are an eighth of an
+/// interval apart in each dimension.
 #[test]
 fn an_eighth_of_an_interval_changes_one_tile_of_eight() {
     let coder = Few::new();
@@ -86,33 +86,4 @@ fn velocities_beyond_a_bound_count_as_the_bound_and_every_slot_is_in_the_table()
         }
         assert!(d < 2 || at(-BOUNDS[d]) != at(BOUNDS[d]));
     }
-}
-
-/// With 65,536 slots each tile has its own. Random slots would leave 24 % of those of 3,600 tiles in 6,144 slots shared.
-#[test]
-fn hashing_spreads_the_tiles() {
-    let (tiles, slots) = (TileCoder::<65536, 52>::new(), TileCoder::<6144, 52>::new());
-    let mut rng = Pcg64::new(3);
-    let mut used = [(); 2].map(|()| vec![BTreeSet::new(); 52]);
-    for _ in 0..100_000 {
-        let state = anywhere(&mut rng);
-        for (used, active) in used
-            .iter_mut()
-            .zip([tiles.active(&state), slots.active(&state)])
-        {
-            for (used, slot) in used.iter_mut().zip(active) {
-                used.insert(slot);
-            }
-        }
-    }
-    let [tiles, slots] = used;
-    for (tiling, (tiles, slots)) in tiles.iter().zip(&slots).enumerate() {
-        let (tiles, slots) = (tiles.len(), slots.len());
-        assert!(
-            slots * 20 > tiles * 19,
-            "tiling {tiling}: {slots} slots for {tiles} tiles"
-        );
-    }
-    // All tilings together use the whole table.
-    assert!(slots.iter().flatten().collect::<BTreeSet<_>>().len() > 6000);
 }

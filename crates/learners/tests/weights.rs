@@ -1,4 +1,5 @@
-//! Saved weights are loaded unchanged. Other bytes are rejected with the reason, and change nothing.
+//! Saved weights are loaded unchanged. Other bytes are rejected with the reason, and change
+//! nothing.
 
 use learners::{Budget, LoadError, Memory, Memory16, Memory32, Memory64, QLambda, training};
 
@@ -32,14 +33,11 @@ fn saved_weights_are_loaded() {
     assert!(learner.save().eq(bytes));
 }
 
-/// Weights that were saved once stay loadable: magic, version, size, and the fingerprint of the tiles.
+/// Weights that were saved once stay loadable: magic, version, size, and the fingerprint of the
+/// tiles.
 #[test]
 fn the_header_is_stable() {
-    let headers = [
-        learnt(Memory16::EMPTY),
-        learnt(Memory32::EMPTY),
-        learnt(Memory64::EMPTY),
-    ];
+    let headers = [learnt(Memory16::EMPTY), learnt(Memory32::EMPTY), learnt(Memory64::EMPTY)];
     let expected = [
         b"TILE\x01\0\0\0\x14\x2c\0\0\xc7\xe8\xdb\x37",
         b"TILE\x01\0\0\0\x14\x5c\0\0\xe7\x67\x05\x43",
@@ -78,7 +76,6 @@ fn damaged_bytes_are_rejected() {
     }
 }
 
-/// The weights have the same size, but belong to other tiles.
 #[test]
 fn weights_of_other_tiles_are_rejected() {
     let bytes = learnt(Memory::<32, 20, 100>::EMPTY);

@@ -1,4 +1,5 @@
-//! Policies that were trained in Python: multilayer perceptrons with tanh or ReLU, without a heap and without a panic.
+//! Policies that were trained in Python: multilayer perceptrons with tanh or ReLU, without a heap
+//! and without a panic.
 //!
 //! `acrobot_rs.policy.save` writes a file, and a `static` checks and holds it:
 //!
@@ -9,8 +10,9 @@
 //! };
 //! ```
 //!
-//! Each sum begins with the bias and adds the products in the order of the inputs, in `f32` without a fused multiply-add; tanh is
-//! `libm`'s. So the outputs have the same bits on every machine. torch adds in another order, so they differ from its outputs in the last digits.
+//! Each sum begins with the bias and adds the products in the order of the inputs, in `f32` without
+//! a fused multiply-add; tanh is `libm`'s. So the outputs have the same bits on every machine.
+//! torch adds in another order, so they differ from its outputs in the last digits.
 //!
 //! # The file
 //!
@@ -34,7 +36,8 @@ use acrobot::{Action, Observation};
 /// The number of inputs: those of an observation.
 const INPUTS: usize = 6;
 
-/// A policy whose layers have at most `WIDTH` outputs, 6 at least. It refers to the file, in flash. A decision needs 8 `WIDTH` bytes of stack.
+/// A policy whose layers have at most `WIDTH` outputs, 6 at least. It refers to the file, in flash.
+/// A decision needs 8 `WIDTH` bytes of stack.
 #[derive(Clone, Copy, Debug)]
 pub struct Policy<'a, const WIDTH: usize> {
     layers: &'a [u8],
@@ -83,17 +86,7 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
         let Some((head, rest)) = content.split_first_chunk() else {
             return Err(PolicyError::MAGIC);
         };
-        let &[
-            b'M',
-            b'L',
-            b'P',
-            b'1',
-            count,
-            kind,
-            low,
-            high,
-            ref limit @ ..,
-        ] = head as &[u8; 12]
+        let &[b'M', b'L', b'P', b'1', count, kind, low, high, ref limit @ ..] = head as &[u8; 12]
         else {
             return Err(PolicyError::MAGIC);
         };
@@ -137,14 +130,11 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
             (1, 1) => return Err(PolicyError::NUMBER),
             _ => return Err(PolicyError::SHAPE),
         };
-        Ok(Self {
-            layers,
-            numbers,
-            torque_limit,
-        })
+        Ok(Self { layers, numbers, torque_limit })
     }
 
-    /// The action with the highest score; among equal ones the first. A policy with a torque takes the action of its sign.
+    /// The action with the highest score; among equal ones the first. A policy with a torque takes
+    /// the action of its sign.
     pub fn action(&self, observation: &Observation) -> Action {
         let scores = self.outputs(observation);
         if self.torque_limit.is_some() {
@@ -172,7 +162,8 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
         Some(torque.min(limit).max(-limit)) // `clamp` can panic
     }
 
-    /// The outputs of the last layer: three scores, or a torque before its limits, N m. The rest is 0.
+    /// The outputs of the last layer: three scores, or a torque before its limits, N m. The rest is
+    /// 0.
     pub fn outputs(&self, observation: &Observation) -> [f32; 3] {
         let mut inputs = [0.0; WIDTH];
         for (input, x) in inputs.iter_mut().zip(observation.to_array()) {

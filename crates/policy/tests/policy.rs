@@ -43,9 +43,8 @@ fn by_hand() -> Vec<f64> {
     let mut layer = |inputs: &[f64], outputs: usize, activation: fn(f64) -> f64| -> Vec<f64> {
         (0..outputs)
             .map(|_| {
-                let numbers: Vec<f64> = (next..=next + inputs.len())
-                    .map(|i| number(i).into())
-                    .collect();
+                let numbers: Vec<f64> =
+                    (next..=next + inputs.len()).map(|i| number(i).into()).collect();
                 next += 1 + inputs.len();
                 let products = inputs.iter().zip(&numbers[1..]).map(|(x, w)| x * w);
                 activation(numbers[0] + products.sum::<f64>())
@@ -63,14 +62,9 @@ fn outputs_are_those_of_the_layers() {
     let policy = Policy::<6>::new(&file).unwrap();
     let outputs = policy.outputs(&Observation::from(SEEN));
     for (output, expected) in outputs.into_iter().zip(by_hand()) {
-        assert!(
-            (f64::from(output) - expected).abs() < 1e-6,
-            "{output} {expected}"
-        );
+        assert!((f64::from(output) - expected).abs() < 1e-6, "{output} {expected}");
     }
-    let best = (0..3)
-        .max_by(|&i, &j| outputs[i].total_cmp(&outputs[j]))
-        .unwrap();
+    let best = (0..3).max_by(|&i, &j| outputs[i].total_cmp(&outputs[j])).unwrap();
     assert_eq!(policy.action(&Observation::from(SEEN)), Action::ALL[best]);
     assert_eq!(policy.torque(&Observation::from(SEEN)), None);
 }
@@ -81,16 +75,10 @@ fn a_torque_is_within_its_limit() {
     let policy = Policy::<64>::new(&wide).unwrap();
     let [output, ..] = policy.outputs(&Observation::from(SEEN));
     assert_eq!(policy.torque(&Observation::from(SEEN)), Some(output));
-    let expected = if output < 0.0 {
-        Action::Negative
-    } else {
-        Action::Positive
-    };
+    let expected = if output < 0.0 { Action::Negative } else { Action::Positive };
     assert_eq!(policy.action(&Observation::from(SEEN)), expected);
     let narrow = file(Some(0.01));
-    let torque = Policy::<64>::new(&narrow)
-        .unwrap()
-        .torque(&Observation::from(SEEN));
+    let torque = Policy::<64>::new(&narrow).unwrap().torque(&Observation::from(SEEN));
     assert_eq!(torque, Some(0.01_f32.copysign(output)));
 }
 
@@ -123,7 +111,6 @@ fn other_files_are_rejected() {
     assert!(message.contains("6 inputs"), "{message}");
 }
 
-/// No byte of a file can make a decision panic.
 #[test]
 fn any_accepted_file_decides() {
     let good = file(None);

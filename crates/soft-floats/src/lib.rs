@@ -1,10 +1,12 @@
-//! Sums, differences and products of `f32` for 32-bit cores without an FPU, in fewer instructions than Rust's routines.
+//! Sums, differences and products of `f32` for 32-bit cores without an FPU, in fewer instructions
+//! than Rust's routines.
 //!
-//! A firmware that names this crate once, `use soft_floats as _;`, has these routines in place of Rust's. The bits are
-//! those of IEEE 754, rounded to nearest, ties to even, also for subnormal numbers; only the bits of a NaN differ.
+//! A firmware that names this crate once, `use soft_floats as _;`, has these routines in place of
+//! Rust's. The bits are those of IEEE 754, rounded to nearest, ties to even, also for subnormal
+//! numbers; only the bits of a NaN differ.
 //!
-//! Rust's routines handle every float format on every processor. These have a short path for two normal numbers with a
-//! normal result. All else is out of line.
+//! Rust's routines handle every float format on every processor. These have a short path for two
+//! normal numbers with a normal result. All else is out of line.
 
 #![no_std]
 
@@ -22,11 +24,7 @@ const NAN: u32 = 0x7fc0_0000;
 #[inline(always)]
 #[must_use]
 pub fn add(a: u32, b: u32) -> u32 {
-    if a << 1 < b << 1 {
-        add_ordered(b, a)
-    } else {
-        add_ordered(a, b)
-    }
+    if a << 1 < b << 1 { add_ordered(b, a) } else { add_ordered(a, b) }
 }
 
 /// a − b, all three as bits.
@@ -47,7 +45,8 @@ fn add_ordered(a: u32, b: u32) -> u32 {
     if exponent(b) == 0 || exponent(a) == 255 {
         return add_rare(a, b);
     }
-    // Below the last place are seven bits. The shift cuts off bits only beyond these, and they decide only about ties.
+    // Below the last place are seven bits. The shift cuts off bits only beyond these, and they
+    // decide only about ties.
     let (x, y) = (mantissa(a), mantissa(b) >> distance);
     let mut replaced = x >> 7;
     let mut sum;
@@ -179,18 +178,15 @@ fn unpack(x: u32) -> (i32, u32) {
     }
 }
 
-/// The product of the mantissas of two normal numbers, 48 bits: the upper 32, and the lower 16 in the upper half.
+/// The product of the mantissas of two normal numbers, 48 bits: the upper 32, and the lower 16 in
+/// the upper half.
 #[inline(always)]
 fn product(a: u32, b: u32) -> (u32, u32) {
     const HAS_64_BIT_PRODUCT: bool = !cfg!(any(
         all(target_arch = "arm", not(target_has_atomic = "32")), // ARMv6-M
         all(target_arch = "riscv32", not(target_feature = "m")),
     ));
-    if HAS_64_BIT_PRODUCT {
-        wide_product(a, b)
-    } else {
-        narrow_product(a, b)
-    }
+    if HAS_64_BIT_PRODUCT { wide_product(a, b) } else { narrow_product(a, b) }
 }
 
 #[inline(always)]
@@ -218,7 +214,8 @@ fn shift_right(x: u32, distance: i32) -> u32 {
     shifted | u32::from(shifted << distance != x)
 }
 
-/// The number with this sign, exponent and mantissa, of which bit 30 counts 1, rounded. +0 if the mantissa is 0.
+/// The number with this sign, exponent and mantissa, of which bit 30 counts 1, rounded. +0 if the
+/// mantissa is 0.
 #[inline(never)]
 fn pack(sign: u32, mut exponent: i32, mut x: u32) -> u32 {
     let sign = sign & SIGN;

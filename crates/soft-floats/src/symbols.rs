@@ -1,6 +1,8 @@
-//! The routines under the names that the compiler calls. Rust's are weak symbols, so these replace them.
+//! The routines under the names that the compiler calls. Rust's are weak symbols, so these replace
+//! them.
 //!
-//! Without an FPU a `u32` is passed as an `f32` is. With `f32` LLVM does not end a routine with a jump to another.
+//! Without an FPU a `u32` is passed as an `f32` is. With `f32` LLVM does not end a routine with a
+//! jump to another.
 
 #[cfg_attr(target_arch = "arm", unsafe(export_name = "__aeabi_fadd"))]
 #[cfg_attr(target_arch = "riscv32", unsafe(export_name = "__addsf3"))]

@@ -9,11 +9,9 @@ use super::*;
 #[track_caller]
 fn compare(a: u32, b: u32) {
     let (x, y) = (f32::from_bits(a), f32::from_bits(b));
-    for (operator, found, expected) in [
-        ("+", add(a, b), x + y),
-        ("-", sub(a, b), x - y),
-        ("*", mul(a, b), x * y),
-    ] {
+    for (operator, found, expected) in
+        [("+", add(a, b), x + y), ("-", sub(a, b), x - y), ("*", mul(a, b), x * y)]
+    {
         let is_nan = expected.is_nan() && f32::from_bits(found).is_nan();
         assert!(
             is_nan || found == expected.to_bits(),
@@ -24,9 +22,8 @@ fn compare(a: u32, b: u32) {
 
 /// Numbers at the ends of all ranges, with short and with long runs of equal bits.
 fn edges() -> Vec<u32> {
-    let exponents = [
-        0, 1, 2, 25, 64, 102, 103, 126, 127, 128, 134, 135, 150, 152, 153, 253, 254, 255,
-    ];
+    let exponents =
+        [0, 1, 2, 25, 64, 102, 103, 126, 127, 128, 134, 135, 150, 152, 153, 253, 254, 255];
     let mantissas = [
         0, 1, 2, 3, 0x3f, 0x40, 0x41, 0x7f, 0x80, 0x3f_ffff, 0x40_0000, 0x40_0001, 0x7f_fffe,
         0x7f_ffff,
@@ -45,11 +42,7 @@ fn random(state: &mut u64) -> u64 {
 
 #[test]
 fn all_edges_and_random_numbers_are_equal() {
-    const COUNT: u32 = if cfg!(debug_assertions) {
-        500_000
-    } else {
-        50_000_000
-    };
+    const COUNT: u32 = if cfg!(debug_assertions) { 500_000 } else { 50_000_000 };
 
     let edges = edges();
     for &a in &edges {

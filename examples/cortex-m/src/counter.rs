@@ -1,4 +1,5 @@
-//! Counts instructions under QEMU's `-icount shift=0`, where an instruction takes one virtual nanosecond.
+//! Counts instructions under QEMU's `-icount shift=0`, where an instruction takes one virtual
+//! nanosecond.
 
 #[cfg(target_arch = "arm")]
 use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
@@ -7,7 +8,8 @@ use riscv::register::minstret;
 #[cfg(target_arch = "arm")]
 use semihosting::process;
 
-/// SysTick, with its frequency in MHz. It counts down from 2²⁴ − 1, longer than any measurement takes.
+/// SysTick, with its frequency in MHz. It counts down from 2²⁴ − 1, longer than any measurement
+/// takes.
 #[cfg(target_arch = "arm")]
 pub struct Counter(SYST, u64);
 
@@ -15,9 +17,7 @@ pub struct Counter(SYST, u64);
 impl Counter {
     /// Ends the program if the peripherals are in use.
     pub fn take() -> Self {
-        let Some(mut peripherals) = Peripherals::take() else {
-            process::exit(1)
-        };
+        let Some(mut peripherals) = Peripherals::take() else { process::exit(1) };
         peripherals.SYST.set_clock_source(SystClkSource::Core);
         peripherals.SYST.set_reload(0xff_ffff);
         // The core's part number tells which QEMU machine this is.

@@ -1,6 +1,7 @@
 //! The policy of the programs that play one episode, and how they end.
 //!
-//! `#[inline]` compiles them in these programs alone. Otherwise the flash of `minimal` changes by 8 bytes.
+//! `#[inline]` compiles them in these programs alone. Otherwise the flash of `minimal` changes by 8
+//! bytes.
 
 use acrobot::numpy::Pcg64;
 use acrobot::{Acrobot, Action, Fast, Observation, Step, TimeLimit};
@@ -9,11 +10,7 @@ use semihosting::{println, process};
 /// Torque against the first link's velocity.
 #[inline]
 pub fn decide(observation: &Observation) -> Action {
-    if observation.dtheta1() > 0.0 {
-        Action::Negative
-    } else {
-        Action::Positive
-    }
+    if observation.dtheta1() > 0.0 { Action::Negative } else { Action::Positive }
 }
 
 /// Ends the program, with status 0 if the episode ended as in a plain loop.

@@ -11,7 +11,8 @@ pub fn depth(run: impl FnOnce()) -> Option<usize> {
     // The paint begins below this function's own frame.
     let end = pointer();
     for i in 1..=WORDS {
-        // SAFETY: the words below the stack pointer are unused stack, because no interrupt is enabled.
+        // SAFETY: the words below the stack pointer are unused stack, because no interrupt is
+        // enabled.
         unsafe { end.sub(i).write_volatile(PAINT) };
     }
     run();

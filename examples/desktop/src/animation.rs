@@ -10,8 +10,9 @@ pub const DELAY: u16 = 7;
 /// How long the last frame is shown, in 1/100 s.
 const LAST: u16 = 200;
 
-/// Links of 1 m, drawn as Gymnasium draws them. Each state is shown for `delay`, in 1/100 s, and the angles are interpolated
-/// between states. The text has no blank line, so that Markdown takes it as one picture.
+/// Links of 1 m, drawn as Gymnasium draws them. Each state is shown for `delay`, in 1/100 s, and
+/// the angles are interpolated between states. The text has no blank line, so that Markdown takes
+/// it as one picture.
 pub fn svg(states: &[State], delay: u16) -> String {
     let last = usize::from(LAST / delay);
     let [angles1, angles2] = [
@@ -21,7 +22,8 @@ pub fn svg(states: &[State], delay: u16) -> String {
     let seconds = f64::from(delay) / 100.0 * angles1.split(';').count() as f64;
     let rotate = |angles: &str| {
         format!(
-            r#"<animateTransform attributeName="transform" type="rotate" dur="{seconds:.2}s" repeatCount="indefinite" values="{angles}"/>"#
+            "<animateTransform attributeName=\"transform\" type=\"rotate\" dur=\"{seconds:.2}s\" \
+            repeatCount=\"indefinite\" values=\"{angles}\"/>"
         )
     };
     let link = r##"<path d="M-.1 0h.2v1h-.2z" fill="#0cc"/><circle r=".1" fill="#cc0"/>"##;

@@ -14,11 +14,7 @@ use learners::{QLambda, evaluation, play};
 
 /// The bang-bang policy: torque against θ̇1, in rad/s.
 pub fn bang_bang(dtheta1: impl Into<f64>) -> Action {
-    if dtheta1.into() > 0.0 {
-        Action::Negative
-    } else {
-        Action::Positive
-    }
+    if dtheta1.into() > 0.0 { Action::Negative } else { Action::Positive }
 }
 
 /// Writes a file. An error names it.
@@ -66,9 +62,5 @@ pub fn evaluate(
         misses += u32::from(!reached);
     }
     let mean = sum / n;
-    Returns {
-        mean,
-        sd: (squares / n - mean * mean).max(0.0).sqrt(),
-        misses,
-    }
+    Returns { mean, sd: (squares / n - mean * mean).max(0.0).sqrt(), misses }
 }

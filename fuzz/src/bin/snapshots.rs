@@ -105,10 +105,7 @@ fn assert_settled<S: Real>(state: State<S>, params: &Params<S>) {
 impl<A: Arithmetic> Snapshot for Acrobot<A> {
     fn sample() -> Self {
         let mut acrobot = Acrobot::new(42);
-        let noisy = Params {
-            torque_noise: A::Scalar::from_f64(0.1),
-            ..Params::default()
-        };
+        let noisy = Params { torque_noise: A::Scalar::from_f64(0.1), ..Params::default() };
         assert!(acrobot.set_params(noisy).is_ok());
         Action::sample(acrobot.rng_mut()); // leaves half of a draw over
         acrobot.step(Action::Positive);
@@ -152,10 +149,7 @@ impl<A: Arithmetic> Snapshot for Member<A> {
     fn sample() -> Self {
         let acrobot = Acrobot::<A>::sample();
         Self {
-            params: Params {
-                dynamics: Dynamics::Nips,
-                ..*acrobot.params()
-            },
+            params: Params { dynamics: Dynamics::Nips, ..*acrobot.params() },
             state: acrobot.state(),
             elapsed: 3,
             reset_pending: true,
@@ -231,8 +225,7 @@ impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, N> {
         for index in 0..len {
             assert_eq!(own.member(index), self.member(index));
         }
-        self.reset_masked(&vec![false; len], 1.into())
-            .expect("the length");
+        self.reset_masked(&vec![false; len], 1.into()).expect("the length");
         assert!(binary(&self) == bytes);
         assert_steps(&mut self);
         self.reset();

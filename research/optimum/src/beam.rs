@@ -11,8 +11,9 @@ use crate::values::{Stepper, Values, coordinates};
 /// Cells per rad and per rad/s. The beam follows only one state of each cell.
 const FINENESS: f32 = 10.0;
 
-/// The shortest path to the goal with the exact model, if a beam of at most `width` states finds one of at most `depth` actions.
-/// An origin of a state is the place of its parent in the beam, and the action.
+/// The shortest path to the goal with the exact model, if a beam of at most `width` states finds
+/// one of at most `depth` actions. An origin of a state is the place of its parent in the beam, and
+/// the action.
 pub fn search(values: &Values, width: usize, initial: State, depth: usize) -> Option<Vec<Action>> {
     let mut stepper = Stepper::default();
     let mut beam = vec![initial.cast()];
@@ -37,9 +38,7 @@ pub fn search(values: &Values, width: usize, initial: State, depth: usize) -> Op
         children.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
         let mut cells = HashSet::new();
         let cell = |state: &_| coordinates(state).map(|x| (x * FINENESS).round() as i32);
-        let kept = children
-            .into_iter()
-            .map(|(_, state, origin)| (state, origin));
+        let kept = children.into_iter().map(|(_, state, origin)| (state, origin));
         let kept = kept.filter(|(state, _)| cells.insert(cell(state)));
         let origins_of_beam;
         (beam, origins_of_beam) = kept.take(width).unzip();

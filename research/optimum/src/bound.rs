@@ -1,13 +1,16 @@
-//! A lower bound: no policy reaches the goal in fewer steps than a function of the initial state says.
+//! A lower bound: no policy reaches the goal in fewer steps than a function of the initial state
+//! says.
 //!
-//! The function P estimates the progress towards the goal, in steps. The target is the goal, and all states whose energy is
-//! above `MOST`. Taylor models prove a statement about all states, in boxes that are halved until it is certain:
+//! The function P estimates the progress towards the goal, in steps. The target is the goal, and
+//! all states whose energy is above `MOST`. Taylor models prove a statement about all states, in
+//! boxes that are halved until it is certain:
 //!
-//! From a state outside of the target where P is below `at_target` − `unit`, each step ends outside of the target, and
-//! increases P by at most `unit`.
+//! From a state outside of the target where P is below `at_target` − `unit`, each step ends outside
+//! of the target, and increases P by at most `unit`.
 //!
-//! So from a state s outside of the target the goal is at least (`at_target` − P(s)) / `unit` steps away. This holds for
-//! Gymnasium's parameters, the book's dynamics, `f64`, and angles from −π to π. docs/optimum.md has the argument.
+//! So from a state s outside of the target the goal is at least (`at_target` − P(s)) / `unit` steps
+//! away. This holds for Gymnasium's parameters, the book's dynamics, `f64`, and angles from −π to
+//! π. docs/optimum.md has the argument.
 
 use std::array::from_fn;
 use std::ops::Add;
@@ -20,8 +23,8 @@ use rayon::prelude::*;
 use crate::certificate::{AT_TARGET, QUADRATIC, QUARTIC, RADIAL, UNIT};
 use crate::taylor::{PAIRS, TaylorModel};
 
-/// (m1 lc1 + m2 l1) g and m2 lc2 g, N m, of docs/equations.md with Gymnasium's parameters, as are the numbers in `derivative`
-/// and `energy_height_progress`.
+/// (m1 lc1 + m2 l1) g and m2 lc2 g, N m, of docs/equations.md with Gymnasium's parameters, as are
+/// the numbers in `derivative` and `energy_height_progress`.
 const GRAVITY: [f64; 2] = [14.7, 4.9];
 /// The torques, N m.
 const TORQUES: [f64; 3] = Params::<f64>::DEFAULT.torques;
@@ -30,9 +33,10 @@ const SLACK: f64 = 1e-6;
 /// The energy above hanging at rest, J, from which a state is in the target.
 const MOST: f64 = 30.0;
 
-/// θ1, θ1 + θ2 and their velocities, rad and rad/s, of all states up to the energy `MOST`, except mirror images and whole
-/// turns. Outside there is more kinetic energy: at least (1.125 − 0.1) 5.5² = 31.0 J or (0.625 − 0.0556) 7.5² = 32.0 J. Within,
-/// no velocity reaches its bound. These numbers are multiples of 1/4, so halving them is exact.
+/// θ1, θ1 + θ2 and their velocities, rad and rad/s, of all states up to the energy `MOST`, except
+/// mirror images and whole turns. Outside there is more kinetic energy: at least (1.125 − 0.1) 5.5²
+/// = 31.0 J or (0.625 − 0.0556) 7.5² = 32.0 J. Within, no velocity reaches its bound. These numbers
+/// are multiples of 1/4, so halving them is exact.
 const STATES: [[f64; 2]; 4] = [[-3.25, 3.25], [-3.25, 3.25], [0.0, 5.5], [-7.5, 7.5]];
 
 /// θ1, θ1 + θ2 and their velocities.
@@ -62,11 +66,12 @@ fn step(y: Space, torque: f64) -> Space {
     along(0.2 / 6.0, k)
 }
 
-/// The energy above hanging at rest, J, the height of the free end above the axis, m, and P. P is a function of the energy,
-/// corrected by the phase of the swing, because the motor gains most energy where link 2 is fast. With r = √(energy + 0.3):
+/// The energy above hanging at rest, J, the height of the free end above the axis, m, and P. P is a
+/// function of the energy, corrected by the phase of the swing, because the motor gains most energy
+/// where link 2 is fast. With r = √(energy + 0.3):
 ///
-/// P = Σ RADIAL rⁿ + Σ r⁻ⁿ (quadratic polynomials of x, times cosines) + Σ r⁻ⁿ⁻¹ (polynomials of x of degree 4),
-/// x = (sin θ1, sin(θ1 + θ2), and the velocities of both angles).
+/// P = Σ RADIAL rⁿ + Σ r⁻ⁿ (quadratic polynomials of x, times cosines) + Σ r⁻ⁿ⁻¹ (polynomials of x
+/// of degree 4), x = (sin θ1, sin(θ1 + θ2), and the velocities of both angles).
 fn energy_height_progress(y: Space) -> [TaylorModel; 3] {
     const AT_REST: f64 = 0.3;
     let sum = TaylorModel::sum;
@@ -104,9 +109,7 @@ fn quartic(mut factors: &[f64], pairs: &[TaylorModel; 10]) -> TaylorModel {
     let terms = from_fn::<_, 10, _>(|n| {
         // x[i] x[j] x[k] x[l] with i <= j <= k <= l.
         let later = &pairs[PAIRS.partition_point(|&(k, _)| k < PAIRS[n].1)..];
-        let factors = factors
-            .split_off(..later.len())
-            .expect("35 products of four");
+        let factors = factors.split_off(..later.len()).expect("35 products of four");
         pairs[n] * TaylorModel::sum(factors.iter().copied().zip(later))
     });
     TaylorModel::sum(terms.iter().map(|term| (1.0, term)))
@@ -120,10 +123,7 @@ struct Bound {
     unit: f64,
 }
 
-const BOUND: Bound = Bound {
-    at_target: AT_TARGET,
-    unit: UNIT,
-};
+const BOUND: Bound = Bound { at_target: AT_TARGET, unit: UNIT };
 
 impl Bound {
     /// Those of the torques for which the statement is not certain in a box.
@@ -145,8 +145,9 @@ impl Bound {
         torques.iter().copied().filter(is_open).collect()
     }
 
-    /// Proves the statement in a box, given its centre and its radius in each dimension. Halves the box where the statement
-    /// is not certain, at most `halvings` times. Returns the number of boxes.
+    /// Proves the statement in a box, given its centre and its radius in each dimension. Halves the
+    /// box where the statement is not certain, at most `halvings` times. Returns the number of
+    /// boxes.
     fn prove_in(
         &self,
         centre: [f64; 4],
@@ -197,7 +198,8 @@ pub fn prove() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The bound: from this state no policy reaches the goal in fewer steps. `None` in the target, where the proof gives no bound.
+/// The bound: from this state no policy reaches the goal in fewer steps. `None` in the target,
+/// where the proof gives no bound.
 pub fn least_steps(state: State) -> Option<u32> {
     let [theta1, theta2, dtheta1, dtheta2] = state.into();
     let y = [theta1, theta1 + theta2, dtheta1, dtheta1 + dtheta2].map(TaylorModel::from);

@@ -6,7 +6,7 @@ pub const AT_TARGET: f64 = 48.6593;
 pub const UNIT: f64 = 1.02;
 /// The factors of r, r², r³, r⁴ and 1 / r.
 pub const RADIAL: [f64; 5] = [11.8643, -1.35372, 0.336769, -0.0309358, -5.67245];
-/// The factors of the ten products of two, for each of three powers of 1 / r, and for each of four cosines.
+/// The factors of the ten products of two, for three powers of 1 / r and four cosines each.
 pub const QUADRATIC: [f64; 120] = [
     7.07779, 12.5882, 1.22159, 1.81962, 4.38244, 1.35208, -0.752775, 0.0, -0.179621, -2.63429,
     -5.76876, -3.55648, -0.0664269, -1.95842, -3.14986, -0.547566, 1.04701, -0.100183, -0.491433,

@@ -1,4 +1,5 @@
-//! How good can any policy be? The fewest known steps to the goal from 1,000 initial states, and a bound.
+//! How good can any policy be? The fewest known steps to the goal from 1,000 initial states, and a
+//! bound.
 //!
 //! ```text
 //! cargo run --release -p optimum -- search
@@ -6,10 +7,10 @@
 //! cargo run --release -p optimum -- bound
 //! ```
 //!
-//! `search` computes the steps to the goal on a grid of states, and follows the best states of each step from every
-//! initial state. Where it finds a shorter sequence than the file has, it replaces that. `table` plays other policies
-//! from the same states. `bound` proves that no policy takes fewer steps than a function of the initial state says.
-//! docs/optimum.md explains all three.
+//! `search` computes the steps to the goal on a grid of states, and follows the best states of each
+//! step from every initial state. Where it finds a shorter sequence than the file has, it replaces
+//! that. `table` plays other policies from the same states. `bound` proves that no policy takes
+//! fewer steps than a function of the initial state says. docs/optimum.md explains all three.
 
 use std::path::{Path, PathBuf};
 
@@ -74,11 +75,7 @@ fn mean_return(steps: f64) -> f64 {
 }
 
 fn search(width: usize, file: &Path) -> anyhow::Result<()> {
-    let mut known = if file.exists() {
-        load(file)?
-    } else {
-        vec![Vec::new(); SEEDS as usize]
-    };
+    let mut known = if file.exists() { load(file)? } else { vec![Vec::new(); SEEDS as usize] };
     let values = Values::compute();
     let found = (0..SEEDS).into_par_iter().progress().map(|seed| {
         let depth = known[seed as usize].len().checked_sub(1).unwrap_or(DEPTH);

@@ -1,4 +1,5 @@
-//! The file of the best known sequences: a line for each initial state, with a sign for each action.
+//! The file of the best known sequences: a line for each initial state, with a sign for each
+//! action.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +13,8 @@ use crate::{SEEDS, initial};
 
 const SIGNS: [char; 3] = ['-', '0', '+'];
 const HEAD: &str = "\
-# The fewest known steps to the goal: line s has the actions after Gymnasium's reset(seed=s), counted from 0.
+# The fewest known steps to the goal: line s has the actions after Gymnasium's \
+reset(seed=s), counted from 0.
 # - 0 + are torques of -1, 0 and 1 N m. Made by: cargo run --release -p optimum -- search
 ";
 
@@ -34,10 +36,7 @@ fn parse(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
     });
     let sequences = sequences.collect::<anyhow::Result<Vec<Vec<_>>>>()?;
     let found = sequences.len();
-    ensure!(
-        found == SEEDS as usize,
-        "must have {SEEDS} sequences, got {found}"
-    );
+    ensure!(found == SEEDS as usize, "must have {SEEDS} sequences, got {found}");
     for (seed, sequence) in (0..).zip(&sequences) {
         ensure!(
             reaches::<Reference>(initial(seed), sequence),
@@ -81,10 +80,7 @@ mod tests {
     fn the_best_sequences_reach_the_goal_in_both_arithmetics() {
         let sequences = load(&absolute(FILE)).unwrap();
         let mean = mean_return(sequences.iter().flatten().count() as f64);
-        assert_says(
-            "docs/optimum.md",
-            &format!("| best known | −{:.2} |", -mean),
-        );
+        assert_says("docs/optimum.md", &format!("| best known | −{:.2} |", -mean));
         let all = (0..).zip(&sequences);
         let in_host = all.filter(|(seed, sequence)| reaches::<Host>(initial(*seed), sequence));
         assert!(in_host.count() >= 990);

@@ -6,32 +6,24 @@ use std::ops::{Add, Mul, Sub};
 use acrobot::arithmetic::{Arithmetic, Reference};
 
 /// The products of two of four variables.
-pub const PAIRS: [(usize, usize); 10] = [
-    (0, 0),
-    (0, 1),
-    (0, 2),
-    (0, 3),
-    (1, 1),
-    (1, 2),
-    (1, 3),
-    (2, 2),
-    (2, 3),
-    (3, 3),
-];
+pub const PAIRS: [(usize, usize); 10] =
+    [(0, 0), (0, 1), (0, 2), (0, 3), (1, 1), (1, 2), (1, 3), (2, 2), (2, 3), (3, 3)];
 
-/// A function over a box: constant + Σ linear\[i\] t\[i\] + Σ quadratic\[k\] t\[i\] t\[j\] ± error, where (i, j) is `PAIRS[k]` and
-/// each t\[i\], from −1 to 1, is a position in the box.
+/// A function over a box: constant + Σ linear\[i\] t\[i\] + Σ quadratic\[k\] t\[i\] t\[j\] ± error,
+/// where (i, j) is `PAIRS[k]` and each t\[i\], from −1 to 1, is a position in the box.
 #[derive(Clone, Copy, Debug)]
 pub struct TaylorModel {
     constant: f64,
     linear: [f64; 4],
     quadratic: [f64; 10],
     error: f64,
-    /// More than the sum of the magnitudes of these numbers, and of those that they are the sums of.
+    /// More than the sum of the magnitudes of these numbers, and of those that they are the sums
+    /// of.
     size: f64,
 }
 
-/// More than the error by rounding, relative to the size of a result: no operation rounds a number a hundred times, by 1.1e-16.
+/// More than the error by rounding, relative to the size of a result: no operation rounds a number
+/// a hundred times, by 1.1e-16.
 const ROUNDING: f64 = 1e-13;
 
 impl TaylorModel {
@@ -116,8 +108,8 @@ impl TaylorModel {
         sum
     }
 
-    /// f(self) by Taylor's theorem, given f and its first two derivatives at the constant, and the largest magnitude of the
-    /// third derivative.
+    /// f(self) by Taylor's theorem, given f and its first two derivatives at the constant, and the
+    /// largest magnitude of the third derivative.
     #[inline(always)]
     fn taylor(&self, [value, first, second]: [f64; 3], third: f64) -> Self {
         let [linear, quadratic] = self.magnitudes();
@@ -144,10 +136,7 @@ impl TaylorModel {
         let (sin, cos) = Reference::sin_cos(self.constant);
         // The slopes of sine and cosine are at most 1.
         let near = |x: f64| (x.abs() + self.radius()).min(1.0);
-        [
-            self.taylor([sin, cos, -sin], near(cos)),
-            self.taylor([cos, -sin, -cos], near(sin)),
-        ]
+        [self.taylor([sin, cos, -sin], near(cos)), self.taylor([cos, -sin, -cos], near(sin))]
     }
 
     /// The reciprocal of a function that is at least `least`, which is above 0.
@@ -155,10 +144,7 @@ impl TaylorModel {
         let x = self.at_least(least);
         let (least, inverse) = (x.low().max(least), 1.0 / x.constant);
         let square = inverse * inverse;
-        x.taylor(
-            [inverse, -square, 2.0 * square * inverse],
-            6.0 / (least * least * least * least),
-        )
+        x.taylor([inverse, -square, 2.0 * square * inverse], 6.0 / (least * least * least * least))
     }
 
     /// The square root of a function that is at least `least`, which is above 0.
@@ -171,7 +157,8 @@ impl TaylorModel {
         )
     }
 
-    /// With a constant of at least `least`, so that Taylor's theorem needs derivatives only from there on.
+    /// With a constant of at least `least`, so that Taylor's theorem needs derivatives only from
+    /// there on.
     fn at_least(&self, least: f64) -> Self {
         let missing = (least - self.constant).max(0.0);
         let mut x = *self + Self::from(missing);
@@ -198,11 +185,7 @@ fn products(a: [f64; 4], b: [f64; 4]) -> [f64; 10] {
 /// A constant.
 impl From<f64> for TaylorModel {
     fn from(constant: f64) -> Self {
-        Self {
-            constant,
-            size: 1.0 + constant.abs(),
-            ..Self::ZERO
-        }
+        Self { constant, size: 1.0 + constant.abs(), ..Self::ZERO }
     }
 }
 
@@ -259,7 +242,8 @@ mod tests {
 
     use super::*;
 
-    /// A model of random terms, large or small, one of the functions that it contains, and the value of that function at `t`.
+    /// A model of random terms, large or small, one of the functions that it contains, and the
+    /// value of that function at `t`.
     fn draw(rng: &mut Pcg64, t: [f64; 4]) -> (TaylorModel, f64) {
         let mut draw = |size: f64| size * uniform(rng, -1.0, 1.0);
         let [linear_size, quadratic_size, error_size] =
@@ -279,18 +263,13 @@ mod tests {
     fn assert_contains(model: TaylorModel, t: [f64; 4], exact: f64) {
         let slack = 1e-12 * model.size;
         let [low, high] = model.range_at(t);
-        assert!(
-            low - slack <= exact && exact <= high + slack,
-            "{exact}: {model:?}"
-        );
+        assert!(low - slack <= exact && exact <= high + slack, "{exact}: {model:?}");
         let (low, high) = (model.low(), model.high());
-        assert!(
-            low - slack <= exact && exact <= high + slack,
-            "{exact}: {low} to {high}"
-        );
+        assert!(low - slack <= exact && exact <= high + slack, "{exact}: {low} to {high}");
     }
 
-    /// Each operation, also roots and reciprocals where a part of the box is below the least number.
+    /// Each operation, also roots and reciprocals where a part of the box is below the least
+    /// number.
     #[test]
     fn models_contain_the_results_of_each_number() {
         const LEAST: f64 = 0.3;
@@ -316,12 +295,9 @@ mod tests {
 
     #[test]
     fn a_parabola_is_highest_at_its_vertex_or_at_an_edge() {
-        for (linear, quadratic, highest) in [
-            (1.0, -1.0, 0.25),
-            (-1.0, -1.0, 0.25),
-            (1.0, 0.5, 1.5),
-            (4.0, -1.0, 3.0),
-        ] {
+        for (linear, quadratic, highest) in
+            [(1.0, -1.0, 0.25), (-1.0, -1.0, 0.25), (1.0, 0.5, 1.5), (4.0, -1.0, 3.0)]
+        {
             let [mut x, ..] = TaylorModel::coordinates([0.0; 4], [linear, 0.0, 0.0, 0.0]);
             x.quadratic[0] = quadratic;
             assert!((x.high() - highest).abs() < 1e-12, "{x:?}");

@@ -1,4 +1,5 @@
-//! The steps to the goal from every state, approximately: value iteration on a grid, with linear interpolation.
+//! The steps to the goal from every state, approximately: value iteration on a grid, with linear
+//! interpolation.
 
 use std::array::from_fn;
 use std::f32::consts::{PI, TAU};
@@ -119,10 +120,7 @@ fn mirror(plane: usize) -> usize {
     (SHAPE[0] - first) % SHAPE[0] * SHAPE[1] + (SHAPE[1] - second) % SHAPE[1]
 }
 
-#[expect(
-    clippy::disallowed_methods,
-    reason = "these bits need not be the same everywhere"
-)]
+#[expect(clippy::disallowed_methods, reason = "these bits need not be the same everywhere")]
 fn is_goal(state: &State<f32>) -> bool {
     -state.theta1.cos() - (state.theta1 + state.theta2).cos() > 1.0
 }

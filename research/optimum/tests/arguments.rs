@@ -10,11 +10,7 @@ fn bad_arguments_are_rejected_with_a_reason() {
     ] {
         let mut program = Command::new(env!("CARGO_BIN_EXE_optimum"));
         let folder = env!("CARGO_TARGET_TMPDIR");
-        let output = program
-            .args(line.split(' '))
-            .current_dir(folder)
-            .output()
-            .unwrap();
+        let output = program.args(line.split(' ')).current_dir(folder).output().unwrap();
         assert!(!output.status.success() && output.stdout.is_empty());
         let errors = String::from_utf8(output.stderr).unwrap();
         assert!(errors.contains(reason), "{line}: {errors}");

@@ -18,8 +18,8 @@ pub fn add_seen<A: Arithmetic>(digest: &mut Digest, acrobot: &Acrobot<A>, seen: 
     }
 }
 
-/// Every bit of one episode, from its initial state to its end, and of the next initial state. Even episodes have
-/// random actions, odd ones torque against θ̇1.
+/// Every bit of one episode, from its initial state to its end, and of the next initial state. Even
+/// episodes have random actions, odd ones torque against θ̇1.
 pub fn digest<A: Arithmetic>(episode: u64) -> u64 {
     let mut digest = Digest::default();
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(episode));
@@ -51,16 +51,14 @@ pub fn equal<A: Arithmetic>(expected: &[u64; 16]) -> usize {
 
 /// Torques so small that angles and velocities stay subnormal for 200 steps.
 fn subnormal_torques<A: Arithmetic>(params: &mut Params<A::Scalar>) {
-    let smallest_normal = if size_of::<A::Scalar>() == 4 {
-        f64::from(f32::MIN_POSITIVE)
-    } else {
-        f64::MIN_POSITIVE
-    };
+    let smallest_normal =
+        if size_of::<A::Scalar>() == 4 { f64::from(f32::MIN_POSITIVE) } else { f64::MIN_POSITIVE };
     let torque = A::Scalar::from_f64(smallest_normal / 100.0);
     params.torques = [-torque, A::Scalar::ZERO, torque];
 }
 
-/// Every bit of 200 steps with subnormal numbers, which some FPUs flush to zero, in each arithmetic.
+/// Every bit of 200 steps with subnormal numbers, which some FPUs flush to zero, in each
+/// arithmetic.
 pub fn subnormal() -> [u64; 4] {
     [
         subnormal_in::<Reference>(),
@@ -76,10 +74,7 @@ fn subnormal_in<A: Arithmetic>() -> u64 {
 
 /// Every bit of 200 steps with friction, in both forms of the equations.
 pub fn damped() -> [u64; 2] {
-    [
-        damped_in::<Damped<Reference>>(),
-        damped_in::<Damped<Fast>>(),
-    ]
+    [damped_in::<Damped<Reference>>(), damped_in::<Damped<Fast>>()]
 }
 
 fn damped_in<A: Arithmetic>() -> u64 {
@@ -89,12 +84,10 @@ fn damped_in<A: Arithmetic>() -> u64 {
     })
 }
 
-/// Every bit of 200 steps of the swing-up, with their rewards, from a state near the target and from one far away.
+/// Every bit of 200 steps of the swing-up, with their rewards, from a state near the target and
+/// from one far away.
 pub fn swingup() -> [u64; 2] {
-    [
-        swingup_in::<Swingup<Reference>>(),
-        swingup_in::<Swingup<Fast>>(),
-    ]
+    [swingup_in::<Swingup<Reference>>(), swingup_in::<Swingup<Fast>>()]
 }
 
 fn swingup_in<A: Arithmetic>() -> u64 {
@@ -128,8 +121,8 @@ fn steps<A: Arithmetic>(mut acrobot: Acrobot<A>, change: impl Fn(&mut Params<A::
     digest.0
 }
 
-/// Every bit that three batches return, which is the same for any width `N`. Each is a function out of line, which frees its
-/// stack before the next, because RAM has 16 KiB.
+/// Every bit that three batches return, which is the same for any width `N`. Each is a function out
+/// of line, which frees its stack before the next, because RAM has 16 KiB.
 pub fn batches<const N: usize, const BLOCKS_OF_20: usize, const BLOCKS_OF_8: usize>() -> [u64; 3] {
     [
         shared_params::<N, BLOCKS_OF_20>(),
@@ -161,26 +154,12 @@ fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
 /// As [`shared_params`] for eight, of which each reset draws parameters.
 #[inline(never)]
 fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
-    let low = Params {
-        mass1: 0.9,
-        inertia2: 0.9,
-        gravity: 9.0,
-        torque_noise: 0.0,
-        ..Params::DEFAULT
-    };
-    let high = Params {
-        mass1: 1.1,
-        inertia2: 1.1,
-        gravity: 10.0,
-        torque_noise: 0.1,
-        ..Params::DEFAULT
-    };
+    let low =
+        Params { mass1: 0.9, inertia2: 0.9, gravity: 9.0, torque_noise: 0.0, ..Params::DEFAULT };
+    let high =
+        Params { mass1: 1.1, inertia2: 1.1, gravity: 10.0, torque_noise: 0.1, ..Params::DEFAULT };
     let generators = [Pcg64::UNSEEDED; 8];
-    let memory = (
-        [Block::EMPTY; BLOCKS],
-        generators,
-        [LaneParams::default(); BLOCKS],
-    );
+    let memory = ([Block::EMPTY; BLOCKS], generators, [LaneParams::default(); BLOCKS]);
     batch::<8, N, _>(memory, |batch| {
         // It does not fail: a failure changes the digest.
         let _ = batch.set_params_range(ParamsRange::new(low, high).ok());
@@ -217,9 +196,9 @@ fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
 }
 
 pub const BATCHES: [u64; 3] = [
-    0xeae8_bc44_fb2b_ab5e,
-    0xcc78_d474_8108_4cf5,
-    0xd88c_48c6_8c23_a5eb,
+    0xeae8_bc44_fb2b_ab5e, // shared parameters
+    0xcc78_d474_8108_4cf5, // subnormal numbers
+    0xd88c_48c6_8c23_a5eb, // own parameters
 ];
 
 pub const SUBNORMAL: [u64; 4] = [

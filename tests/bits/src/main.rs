@@ -35,12 +35,9 @@ fn main() -> ! {
         report("batches of 1 lane", &batches::<1, 20, 8>(), &BATCHES),
         report("batches of 4 lanes", &batches::<4, 5, 2>(), &BATCHES),
         // More of them do not fit into 256 KiB of flash.
-        report(
-            "batch of 16 lanes",
-            &[shared_params::<16, 2>()],
-            &BATCHES[..1],
-        ),
-        // The learner and the stack do not fit into 16 KiB of RAM. The firmware `learn` compares them.
+        report("batch of 16 lanes", &[shared_params::<16, 2>()], &BATCHES[..1]),
+        // The learner and the stack do not fit into 16 KiB of RAM. The firmware `learn` compares
+        // them.
         cfg!(target_os = "none")
             || report("training", &[training::weights()], &[training::WEIGHTS]),
     ];
@@ -55,9 +52,6 @@ fn check<A: Arithmetic>(expected: &[u64; 16]) -> bool {
 
 fn report(name: &str, found: &[u64], expected: &[u64]) -> bool {
     let equal = found == expected;
-    println!(
-        "{name}: {}",
-        if equal { "bit-identical" } else { "differs" }
-    );
+    println!("{name}: {}", if equal { "bit-identical" } else { "differs" });
     equal
 }

@@ -7,7 +7,8 @@ use embedded_graphics::pixelcolor::BinaryColor;
 
 use crate::against;
 
-/// Draws the initial state and every step to the end of the episode. Calls `shown` after each frame.
+/// Draws the initial state and every step to the end of the episode. Calls `shown` after each
+/// frame.
 pub fn play<D: DrawTarget<Color = BinaryColor>>(
     display: &mut D,
     mut shown: impl FnMut(&mut D),
@@ -33,6 +34,6 @@ pub fn play<D: DrawTarget<Color = BinaryColor>>(
 /// The number of frames.
 pub const FRAMES: u32 = 95;
 
-/// The digest of all frames, each as the 1024 bytes in the memory of an SSD1306: eight rows at a time
-/// from the left, the upper row in the lowest bit.
+/// The digest of all frames, each as the 1024 bytes in the memory of an SSD1306: eight rows at a
+/// time from the left, the upper row in the lowest bit.
 pub const DIGEST: u64 = 0x1f54_b503_27e0_b4f1;

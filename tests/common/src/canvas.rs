@@ -24,12 +24,7 @@ impl Canvas {
 
     pub fn of_first(most: usize, area: Rectangle) -> Self {
         let len = u64::from(area.size.width) * u64::from(area.size.height);
-        Self {
-            area,
-            pixels: vec![None; most.min(len as usize)],
-            written: 0,
-            most,
-        }
+        Self { area, pixels: vec![None; most.min(len as usize)], written: 0, most }
     }
 }
 

@@ -34,10 +34,8 @@ impl Episode {
         let mut acrobot = Acrobot::<A>::new(0);
         let params = self.params.cast();
         acrobot.set_params(params).unwrap();
-        acrobot.reset_with(ResetOptions {
-            seed: Some(self.seed.clone()),
-            bounds: Some(self.bounds),
-        });
+        acrobot
+            .reset_with(ResetOptions { seed: Some(self.seed.clone()), bounds: Some(self.bounds) });
         acrobot
     }
 }
@@ -60,19 +58,13 @@ pub static RECORDING: LazyLock<Recording> = LazyLock::new(|| {
     let library = lines.next().unwrap().strip_prefix("library ").unwrap();
     let library = Digest(u64::from_str_radix(library, 16).unwrap());
     let episodes = lines.map(|line| read_episode(line, &mut bytes)).collect();
-    assert!(
-        bytes.is_empty(),
-        "episodes.bin and episodes.txt do not belong together"
-    );
-    Recording {
-        versions,
-        library,
-        episodes,
-    }
+    assert!(bytes.is_empty(), "episodes.bin and episodes.txt do not belong together");
+    Recording { versions, library, episodes }
 });
 
-/// Whether this platform's sin, cos and pow are those that the episodes were recorded with. `Host`'s bits depend on
-/// them. If they differ, this writes to stderr directly, because the test harness captures `eprintln!`.
+/// Whether this platform's sin, cos and pow are those that the episodes were recorded with.
+/// `Host`'s bits depend on them. If they differ, this writes to stderr directly, because the test
+/// harness captures `eprintln!`.
 pub fn is_recorded_library() -> bool {
     let mut rng = Pcg64::new(0);
     let mut digest = Digest::default();
@@ -119,10 +111,7 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
             dt: number(dt),
             ..Params::DEFAULT
         },
-        actions: take(STEPS)
-            .iter()
-            .map(|&n| Action::try_from(n).unwrap())
-            .collect(),
+        actions: take(STEPS).iter().map(|&n| Action::try_from(n).unwrap()).collect(),
         states: f64s(take((STEPS + 1) * 32))
             .as_chunks::<4>()
             .0
@@ -147,8 +136,7 @@ pub fn dynamics_of(name: &str) -> Dynamics {
 
 /// The rest of each line of a recording that starts with this word.
 pub fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
-    text.lines()
-        .filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
+    text.lines().filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
 }
 
 /// The numbers in a line of a recording.

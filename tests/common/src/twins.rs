@@ -9,11 +9,7 @@ use bits::against;
 
 use crate::{bits, params_range};
 
-pub const MODES: [Autoreset; 3] = [
-    Autoreset::NextStep,
-    Autoreset::SameStep,
-    Autoreset::Disabled,
-];
+pub const MODES: [Autoreset; 3] = [Autoreset::NextStep, Autoreset::SameStep, Autoreset::Disabled];
 
 /// A level that the machine does not have acts as the baseline.
 pub const LEVELS: [SimdLevel; 3] = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
@@ -177,8 +173,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.assert_equal();
     }
 
-    /// Compares every bit of the states, the observations, the steps since the last reset, the generators and the
-    /// parameters.
+    /// Compares every bit of the states, the observations, the steps since the last reset, the
+    /// generators and the parameters.
     pub fn assert_equal(&self) {
         let mut rows = vec![[9.0; 6]; self.alone.len()];
         self.batch.observe(&mut rows).unwrap();
@@ -204,8 +200,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         }
     }
 
-    /// Plays with every SIMD level, with shared parameters and with drawn ones. Initial states are far outside of the bounds,
-    /// and there is noise.
+    /// Plays with every SIMD level, with shared parameters and with drawn ones. Initial states are
+    /// far outside of the bounds, and there is noise.
     pub fn at_every_level() {
         let range = params_range::<A>(Dynamics::Book);
         for level in LEVELS {

@@ -48,11 +48,8 @@ fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
     let limit = limit.prop_map(|limit| limit.try_into().unwrap());
     let dynamics = prop::sample::select(&[Dynamics::Book, Dynamics::Nips][..]);
     let bounds = || prop_oneof![Just(ResetBounds::DEFAULT), reset_bounds()];
-    let reset = (
-        prop::option::of(each(any::<bool>())),
-        any::<Option<u64>>(),
-        prop::option::of(bounds()),
-    );
+    let reset =
+        (prop::option::of(each(any::<bool>())), any::<Option<u64>>(), prop::option::of(bounds()));
     let of_one = (index(), params::<A>(Range::Any), prop::bool::weighted(0.8));
     prop_oneof![
         3 => (mode, limit, level, bounds()).prop_map(|(a, b, c, d)| Call::Settings(a, b, c, d)),
@@ -84,20 +81,12 @@ impl<A: Tested, const N: usize> Model<A, N> {
             true => Twins::with_own_params(len, Autoreset::NextStep),
             false => Twins::new(len, Autoreset::NextStep),
         };
-        Self {
-            twins,
-            own_params,
-            stored: None,
-        }
+        Self { twins, own_params, stored: None }
     }
 
     /// A rejected call leaves the batch as it was.
     fn call(&mut self, call: Call<A::Scalar>) {
-        let Twins {
-            batch,
-            alone,
-            pending,
-        } = &mut self.twins;
+        let Twins { batch, alone, pending } = &mut self.twins;
         let len = alone.len();
         match call {
             Call::Settings(autoreset, limit, level, bounds) => {
@@ -196,4 +185,16 @@ fn any_calls_in_any_order_equal_single_acrobots() {
     check::<Host, 16>();
     check::<Damped<Reference>, 3>();
     check::<Swingup<Fast>, 16>();
+}
+
+/// Below, at and above the width of a vector.
+#[test]
+fn any_width_equals_single_acrobots() {
+    Twins::<Fast, 1>::at_every_level();
+    Twins::<Fast, 4>::at_every_level();
+    Twins::<Fast, 7>::at_every_level();
+    Twins::<Fast, 8>::at_every_level();
+    Twins::<Fast, 32>::at_every_level();
+    Twins::<Micro, 7>::at_every_level();
+    Twins::<Portable, 4>::at_every_level();
 }

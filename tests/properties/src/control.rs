@@ -25,29 +25,18 @@ fn is_finite<S: Real>(result: Result<Vec<S>, ControlError>) -> bool {
 fn results_are_finite_or_errors() {
     fn check<A: Tested>() {
         let rates = [number::<A::Scalar>(Range::Any), number(Range::Any)];
-        let given = (
-            params::<A>(Range::Any),
-            state(Range::Any),
-            number(Range::Any),
-            rates,
-        );
+        let given = (params::<A>(Range::Any), state(Range::Any), number(Range::Any), rates);
         holds(2000, given, |(params, state, torque, accelerations)| {
             let pendulum = Pendulum::<A>::new(params, state).unwrap();
             let continuous = linearize(&pendulum, torque);
             let discrete = discretize(&pendulum, torque);
             let forces = inverse_dynamics(&pendulum, accelerations);
+            assert!(is_finite(continuous.map(|model| [model.a.as_flattened(), &model.b].concat())));
+            assert!(is_finite(discrete.map(|model| [model.a.as_flattened(), &model.b].concat())));
             assert!(is_finite(
-                continuous.map(|model| [model.a.as_flattened(), &model.b].concat())
+                forces.map(|forces| { [forces.torques, forces.reaction, forces.elbow].concat() })
             ));
-            assert!(is_finite(
-                discrete.map(|model| [model.a.as_flattened(), &model.b].concat())
-            ));
-            assert!(is_finite(forces.map(|forces| {
-                [forces.torques, forces.reaction, forces.elbow].concat()
-            })));
-            assert!(is_finite(
-                velocities(&pendulum).map(|points| points.concat())
-            ));
+            assert!(is_finite(velocities(&pendulum).map(|points| points.concat())));
         });
     }
     in_every_arithmetic!(check);
@@ -57,11 +46,7 @@ fn results_are_finite_or_errors() {
 #[test]
 fn moderate_pendulums_have_models() {
     fn check<A: Tested>() {
-        let given = (
-            params::<A>(Range::Moderate),
-            state(Range::Moderate),
-            number(Range::Moderate),
-        );
+        let given = (params::<A>(Range::Moderate), state(Range::Moderate), number(Range::Moderate));
         holds(1000, given, |(params, state, torque)| {
             let pendulum = Pendulum::<A>::new(params, state).unwrap();
             assert!(linearize(&pendulum, torque).is_ok());
@@ -76,11 +61,8 @@ fn moderate_pendulums_have_models() {
                 + m22 * (ddtheta1.to_f64().abs() + ddtheta2.to_f64().abs())
                 + reach * (x.abs() + y.abs())
                 + torque.to_f64().abs();
-            let rounding = if A::Scalar::PI.to_f64() == std::f64::consts::PI {
-                1e-12
-            } else {
-                1e-3
-            };
+            let rounding =
+                if A::Scalar::PI.to_f64() == std::f64::consts::PI { 1e-12 } else { 1e-3 };
             let error = (forces.torques[1] - torque).to_f64().abs();
             assert!(error <= rounding * parts, "{error:e} of {parts:e}");
         });
@@ -95,18 +77,13 @@ fn weights<S: Number>(range: Range) -> BoxedStrategy<[[S; 4]; 4]> {
         .prop_map(|(rows, is_square)| {
             let element = |i: usize, j: usize| {
                 let product = (0..4).map(|k| rows[k][i] * rows[k][j]).sum::<f64>();
-                if is_square {
-                    product
-                } else {
-                    rows[i.min(j)][i.max(j)]
-                }
+                if is_square { product } else { rows[i.min(j)][i.max(j)] }
             };
             from_fn(|i| from_fn(|j| S::from_f64(element(i, j))))
         })
         .boxed()
 }
 
-/// A regulator for any model and any weights is symmetric and makes the deviation vanish, or it is an error.
 #[test]
 fn regulators_stabilize_or_are_errors() {
     fn check<S: Number>(range: Range) {
@@ -142,42 +119,34 @@ fn regulators_stabilize_or_are_errors() {
 fn moderate_pendulums_can_be_held_upright() {
     fn check<A: Tested>() {
         let weight = (-4.0..4.0_f64).prop_map(f64::exp);
-        holds(
-            500,
-            (params::<A>(Range::Moderate), weight),
-            |(params, r)| {
-                let target = acrobot::State::UPRIGHT;
-                let pendulum = Pendulum::<A>::new(params, target).unwrap();
-                let zero = A::Scalar::ZERO;
-                let Ok(model) = discretize(&pendulum, zero) else {
-                    return;
-                };
-                let one = A::Scalar::from_f64(1.0);
-                let q = from_fn(|i| from_fn(|j| if i == j { one } else { zero }));
-                let r = A::Scalar::from_f64(r);
-                let Ok(regulator) = lqr(&model, &q, r) else {
-                    return;
-                };
-                // Rounding leaves upright an equilibrium.
-                assert_eq!(pendulum.regulator(zero, &q, r), Ok(regulator));
-                // In f64, where rounding hides less, the powers of the closed loop vanish too.
-                let [gain, b] = [regulator.gain, model.b].map(|row| row.map(Real::to_f64));
-                let mut closed: [[f64; 4]; 4] =
-                    from_fn(|i| from_fn(|j| model.a[i][j].to_f64() - b[i] * gain[j]));
-                for _ in 0..40 {
-                    let row =
-                        |i: usize| from_fn(|j| (0..4).map(|k| closed[i][k] * closed[k][j]).sum());
-                    closed = from_fn(row);
-                }
-                let largest = closed
-                    .as_flattened()
-                    .iter()
-                    .fold(0.0_f64, |most, x| most.max(x.abs()));
-                assert!(largest < 0.1, "{regulator:?} {largest}");
-                let error = difference(pendulum.state(), target);
-                assert_eq!(error, [zero; 4]);
-            },
-        );
+        holds(500, (params::<A>(Range::Moderate), weight), |(params, r)| {
+            let target = acrobot::State::UPRIGHT;
+            let pendulum = Pendulum::<A>::new(params, target).unwrap();
+            let zero = A::Scalar::ZERO;
+            let Ok(model) = discretize(&pendulum, zero) else {
+                return;
+            };
+            let one = A::Scalar::from_f64(1.0);
+            let q = from_fn(|i| from_fn(|j| if i == j { one } else { zero }));
+            let r = A::Scalar::from_f64(r);
+            let Ok(regulator) = lqr(&model, &q, r) else {
+                return;
+            };
+            // Rounding leaves upright an equilibrium.
+            assert_eq!(pendulum.regulator(zero, &q, r), Ok(regulator));
+            // In f64, where rounding hides less, the powers of the closed loop vanish too.
+            let [gain, b] = [regulator.gain, model.b].map(|row| row.map(Real::to_f64));
+            let mut closed: [[f64; 4]; 4] =
+                from_fn(|i| from_fn(|j| model.a[i][j].to_f64() - b[i] * gain[j]));
+            for _ in 0..40 {
+                let row = |i: usize| from_fn(|j| (0..4).map(|k| closed[i][k] * closed[k][j]).sum());
+                closed = from_fn(row);
+            }
+            let largest = closed.as_flattened().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            assert!(largest < 0.1, "{regulator:?} {largest}");
+            let error = difference(pendulum.state(), target);
+            assert_eq!(error, [zero; 4]);
+        });
     }
     in_every_arithmetic!(check);
 }

@@ -20,21 +20,14 @@ fn fitting() -> impl Strategy<Value = Params> {
 #[test]
 fn environments_of_any_parameters_keep_the_contract() {
     fn check<A: Tested>() {
-        holds(
-            10,
-            (fitting(), any::<u64>(), 1..600_u32),
-            |(params, seed, limit)| {
-                let options = Options {
-                    params,
-                    ..Options::default()
-                };
-                let env = acrobot_v1::<A>(options.clone()).unwrap();
-                let env = TimeLimit::new(env, limit.try_into().unwrap());
-                check_env(&env, seed).unwrap();
-                let env = RecordEpisodeStatistics::new(acrobot_v0::<A>(options).unwrap());
-                check_env(&env, seed).unwrap();
-            },
-        );
+        holds(10, (fitting(), any::<u64>(), 1..600_u32), |(params, seed, limit)| {
+            let options = Options { params, ..Options::default() };
+            let env = acrobot_v1::<A>(options.clone()).unwrap();
+            let env = TimeLimit::new(env, limit.try_into().unwrap());
+            check_env(&env, seed).unwrap();
+            let env = RecordEpisodeStatistics::new(acrobot_v0::<A>(options).unwrap());
+            check_env(&env, seed).unwrap();
+        });
     }
     in_every_arithmetic!(check);
 }
@@ -72,11 +65,7 @@ fn any_calls_in_any_order_keep_observations_in_their_space() {
     let calls = prop::collection::vec(call(), 0..60);
     holds(300, (arithmetic, id, calls), |(arithmetic, id, calls)| {
         let limit = if id == "Acrobot-v0" { 200 } else { 500 };
-        let options = Options {
-            arithmetic,
-            render_mode: RenderMode::Ansi,
-            ..Options::default()
-        };
+        let options = Options { arithmetic, render_mode: RenderMode::Ansi, ..Options::default() };
         let mut env = RecordEpisodeStatistics::new(make_with(id, options).unwrap());
         let (mut elapsed, mut closed) = (0, false);
         for call in calls {

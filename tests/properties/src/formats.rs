@@ -22,12 +22,10 @@ enum Untagged<T> {
     One(T),
 }
 
-/// The value after a round trip through each format, with the format's name. `value` must be a struct.
+/// The value after a round trip through each format, with the format's name. `value` must be a
+/// struct.
 pub fn again<T: Serialize + DeserializeOwned>(value: &T) -> Vec<(&'static str, T)> {
-    let flattened = Flattened {
-        name: "a".into(),
-        value,
-    };
+    let flattened = Flattened { name: "a".into(), value };
     let json = |text: String| serde_json::from_str(&text).unwrap();
     let mut cbor = Vec::new();
     ciborium::into_writer(value, &mut cbor).unwrap();
@@ -43,31 +41,13 @@ pub fn again<T: Serialize + DeserializeOwned>(value: &T) -> Vec<(&'static str, T
     let Untagged::One(untagged) = serde_json::from_str::<Untagged<T>>(&untagged).unwrap();
     vec![
         ("JSON", json(serde_json::to_string(value).unwrap())),
-        (
-            "a JSON value",
-            serde_json::from_value(serde_json::to_value(value).unwrap()).unwrap(),
-        ),
-        (
-            "postcard",
-            postcard::from_bytes(&postcard::to_stdvec(value).unwrap()).unwrap(),
-        ),
+        ("a JSON value", serde_json::from_value(serde_json::to_value(value).unwrap()).unwrap()),
+        ("postcard", postcard::from_bytes(&postcard::to_stdvec(value).unwrap()).unwrap()),
         ("CBOR", ciborium::from_reader(&cbor[..]).unwrap()),
-        (
-            "MessagePack",
-            rmp_serde::from_slice(&rmp_serde::to_vec(value).unwrap()).unwrap(),
-        ),
-        (
-            "MessagePack with names",
-            rmp_serde::from_slice(&named).unwrap(),
-        ),
-        (
-            "TOML",
-            toml::from_str(&toml::to_string(value).unwrap()).unwrap(),
-        ),
-        (
-            "RON",
-            ron::from_str(&ron::to_string(value).unwrap()).unwrap(),
-        ),
+        ("MessagePack", rmp_serde::from_slice(&rmp_serde::to_vec(value).unwrap()).unwrap()),
+        ("MessagePack with names", rmp_serde::from_slice(&named).unwrap()),
+        ("TOML", toml::from_str(&toml::to_string(value).unwrap()).unwrap()),
+        ("RON", ron::from_str(&ron::to_string(value).unwrap()).unwrap()),
         ("YAML", serde_yaml_ng::from_str(&yaml).unwrap()),
         ("flattened JSON", flat.value),
         ("flattened TOML", flat_toml.value),

@@ -8,10 +8,10 @@ use acrobot::physics::{Dynamics, Pendulum, ResetBounds, Viscous};
 use acrobot::{Acrobot, Action, Params, State};
 use proptest::num::{f32, f64};
 use proptest::prelude::*;
-use proptest::test_runner::{FileFailurePersistence, RngSeed, TestRunner};
+use proptest::test_runner::{RngSeed, TestRunner};
 
-/// Tries a property on this many cases, the same in every run. In the environment, `PROPTEST_CASES` changes their
-/// number and `PROPTEST_RNG_SEED` the cases.
+/// Tries a property on this many cases, the same in every run. In the environment, `PROPTEST_CASES`
+/// changes their number and `PROPTEST_RNG_SEED` the cases.
 pub fn holds<G: Strategy + 'static>(cases: u32, given: G, property: impl Fn(G::Value)) {
     hold(cases, given.boxed(), &property);
 }
@@ -27,7 +27,7 @@ fn hold<T: Debug>(cases: u32, given: BoxedStrategy<T>, property: &dyn Fn(T)) {
             fixed => fixed,
         },
         max_local_rejects: u32::MAX,
-        failure_persistence: Some(Box::new(FileFailurePersistence::Direct("regressions.txt"))),
+        failure_persistence: None,
         ..default
     };
     let outcome = TestRunner::new(config).run(&given, |value| {
@@ -96,69 +96,51 @@ fn positive<S: Number>(range: Range, usual: f64) -> BoxedStrategy<S> {
 
 /// Valid parameters of an arithmetic.
 pub fn params<A: Tested>(range: Range) -> BoxedStrategy<Params<A::Scalar>> {
-    let Params {
-        dt,
-        max_velocity1,
-        max_velocity2,
-        ..
-    } = Params::DEFAULT;
-    let of_links = [(); 4].map(|()| positive::<A::Scalar>(range, 1.0));
-    let or_none =
-        |usual| prop_oneof![4 => positive::<A::Scalar>(range, usual), 1 => Just(A::Scalar::ZERO)];
-    let centers = [0.5, 0.5].map(or_none);
-    let inertias = [1.0, 1.0].map(or_none);
-    let limits = [max_velocity1, max_velocity2].map(|usual| positive::<A::Scalar>(range, usual));
+    let above_0 = |usual| positive::<A::Scalar>(range, usual);
+    let or_0 = |usual| prop_oneof![4 => above_0(usual), 1 => Just(A::Scalar::ZERO)].boxed();
+    let Params { dt, max_velocity1, max_velocity2, .. } = Params::DEFAULT;
+    let of_links = [(); 4].map(|()| above_0(1.0));
+    let limits = [dt, max_velocity1, max_velocity2].map(above_0);
+    let others = [0.5, 0.5, 1.0, 1.0, 0.05, 0.05].map(or_0);
     let gravity = prop_oneof![1 => Just(A::Scalar::from_f64(9.8)), 1 => number(range)];
     let torques = [(); 3].map(|()| number::<A::Scalar>(range));
-    let noise = prop_oneof![2 => Just(A::Scalar::ZERO), 1 => positive::<A::Scalar>(range, 1.0)];
+    let noise = prop_oneof![2 => Just(A::Scalar::ZERO), 1 => above_0(1.0)];
     let dynamics = prop_oneof![Just(Dynamics::Book), Just(Dynamics::Nips)];
-    let friction = [(); 2].map(|()| or_none(0.05));
-    let all = (
-        (of_links, centers, inertias, limits),
-        (gravity, positive(range, dt), torques, noise, dynamics),
-        friction,
-    );
-    all.prop_map(
-        |((links, centers, inertias, limits), others, [joint1, joint2])| {
-            let (gravity, dt, torques, torque_noise, dynamics) = others;
-            let [length1, length2, mass1, mass2] = links;
-            let [center_of_mass1, center_of_mass2] = centers;
-            let [inertia1, inertia2] = inertias;
-            let [max_velocity1, max_velocity2] = limits;
-            Params {
-                length1,
-                length2,
-                mass1,
-                mass2,
-                center_of_mass1,
-                center_of_mass2,
-                inertia1,
-                inertia2,
-                gravity,
-                dt,
-                max_velocity1,
-                max_velocity2,
-                torques,
-                torque_noise,
-                dynamics,
-                friction: if A::HAS_FRICTION {
-                    Viscous { joint1, joint2 }
-                } else {
-                    Viscous::default()
-                },
-            }
-        },
-    )
+    let all = (of_links, limits, others, gravity, torques, noise, dynamics);
+    all.prop_map(|(links, limits, others, gravity, torques, torque_noise, dynamics)| {
+        let [length1, length2, mass1, mass2] = links;
+        let [dt, max_velocity1, max_velocity2] = limits;
+        let [center_of_mass1, center_of_mass2, inertia1, inertia2, joint1, joint2] = others;
+        let friction = match A::HAS_FRICTION {
+            true => Viscous { joint1, joint2 },
+            false => Viscous::default(),
+        };
+        Params {
+            length1,
+            length2,
+            mass1,
+            mass2,
+            center_of_mass1,
+            center_of_mass2,
+            inertia1,
+            inertia2,
+            gravity,
+            dt,
+            max_velocity1,
+            max_velocity2,
+            torques,
+            torque_noise,
+            dynamics,
+            friction,
+        }
+    })
     .prop_filter("valid parameters", |params| params.validate().is_ok())
     .boxed()
 }
 
 /// Any finite state.
 pub fn state<S: Number>(range: Range) -> BoxedStrategy<State<S>> {
-    [(); 4]
-        .map(|()| number::<S>(range))
-        .prop_map(State::from)
-        .boxed()
+    [(); 4].map(|()| number::<S>(range)).prop_map(State::from).boxed()
 }
 
 pub fn action() -> impl Strategy<Value = Action> {
@@ -168,10 +150,7 @@ pub fn action() -> impl Strategy<Value = Action> {
 /// Any valid bounds.
 pub fn reset_bounds() -> impl Strategy<Value = ResetBounds> {
     let bound = || {
-        prop_oneof![
-            number::<f64>(Range::Moderate),
-            number::<f32>(Range::Any).prop_map(f64::from)
-        ]
+        prop_oneof![number::<f64>(Range::Moderate), number::<f32>(Range::Any).prop_map(f64::from)]
     };
     (bound(), bound()).prop_map(|(x, y)| ResetBounds::new(x.min(y), x.max(y)).unwrap())
 }

@@ -11,11 +11,7 @@ use common::canvas::Canvas;
 use common::in_every_arithmetic;
 
 fn figure<A: Tested>() -> impl Strategy<Value = Figure> {
-    let given = (
-        params::<A>(Range::Any),
-        state(Range::Any),
-        prop::num::f32::ANY,
-    );
+    let given = (params::<A>(Range::Any), state(Range::Any), prop::num::f32::ANY);
     given.prop_map(|(params, state, torque)| {
         Figure::new(&acrobot::<A>(params, state, 0)).with_torque(torque)
     })
@@ -74,18 +70,12 @@ fn targets_at_the_ends_of_the_grid_do_not_overflow() {
             i64::from(side) <= i32::MAX.into() && end <= i32::MAX.into()
         };
         let pixels = u64::from(width) * u64::from(height);
-        let drawn = if fits(x, width) && fits(y, height) {
-            pixels.min(1000)
-        } else {
-            0
-        };
+        let drawn = if fits(x, width) && fits(y, height) { pixels.min(1000) } else { 0 };
         assert_eq!(target.written as u64, drawn);
         // A redraw compares all pixels, which takes too long on a large target.
         if drawn == 1000 {
             target.most = 0;
         }
-        after
-            .redraw(&before, &mut target, &Theme::MONOCHROME)
-            .unwrap();
+        after.redraw(&before, &mut target, &Theme::MONOCHROME).unwrap();
     });
 }

@@ -15,12 +15,7 @@ use crate::given::{Range, Tested, acrobot, holds, params, state};
 
 /// An acrobot after some steps and draws, with any time limit.
 fn running<A: Tested>() -> impl Strategy<Value = TimeLimit<Acrobot<A>>> {
-    let given = (
-        params::<A>(Range::Any),
-        state(Range::Any),
-        any::<u64>(),
-        0..4,
-    );
+    let given = (params::<A>(Range::Any), state(Range::Any), any::<u64>(), 0..4);
     let limit = prop_oneof![Just(1), Just(500), 1..=u32::MAX];
     (given, limit).prop_map(|((params, state, seed, steps), limit)| {
         let mut acrobot = TimeLimit::new(acrobot(params, state, seed), limit.try_into().unwrap());
@@ -39,11 +34,7 @@ fn snapshots_resume_to_the_same_bits() {
             let expected = serde_json::to_string(&original).unwrap();
             for (format, mut resumed) in again(&original) {
                 let mut original = original.clone();
-                assert_eq!(
-                    serde_json::to_string(&resumed).unwrap(),
-                    expected,
-                    "{format}"
-                );
+                assert_eq!(serde_json::to_string(&resumed).unwrap(), expected, "{format}");
                 for _ in 0..3 {
                     assert_eq!(resumed, original);
                     let [state, other] = [&resumed, &original].map(|limited| limited.state());
@@ -64,33 +55,20 @@ fn snapshots_resume_to_the_same_bits() {
 #[test]
 fn members_and_parts_load_as_stored() {
     let progress = any::<(u32, bool, u64, bool)>();
-    let given = (
-        params::<Damped<Fast>>(Range::Any),
-        state(Range::Any),
-        progress,
-    );
+    let given = (params::<Damped<Fast>>(Range::Any), state(Range::Any), progress);
     holds(500, given, |(params, state, progress)| {
         let (elapsed, reset_pending, seed, half) = progress;
         let mut rng = Pcg64::new(seed);
         if half {
             rng.next_u32();
         }
-        let member = Member::<Damped<Fast>> {
-            params,
-            state,
-            elapsed,
-            reset_pending,
-            rng,
-        };
+        let member = Member::<Damped<Fast>> { params, state, elapsed, reset_pending, rng };
         for (_, loaded) in again(&member) {
             assert_eq!(bits(loaded.state), bits(member.state));
             assert_eq!(loaded, member);
         }
     });
-    let given = (
-        params::<Damped<Portable>>(Range::Any),
-        state::<f64>(Range::Any),
-    );
+    let given = (params::<Damped<Portable>>(Range::Any), state::<f64>(Range::Any));
     holds(500, given, |(params, state): (Params, State)| {
         for (_, loaded) in again(&params) {
             assert_eq!(loaded, params);
@@ -122,7 +100,6 @@ fn every_format_stores_batches() {
     }
 }
 
-/// Changed or truncated bytes are rejected, or load as another valid acrobot.
 #[test]
 fn damaged_snapshots_are_rejected_or_valid() {
     fn check<A: Tested>() {

@@ -28,11 +28,7 @@ fn assert_seen<A: Arithmetic>(acrobot: &Acrobot<A>, observation: Observation) {
 
 /// Promise 3 after a step: the state is within its bounds, and the results follow from it.
 fn assert_stepped<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) {
-    let Params {
-        max_velocity1,
-        max_velocity2,
-        ..
-    } = *acrobot.params();
+    let Params { max_velocity1, max_velocity2, .. } = *acrobot.params();
     let limits = [A::Scalar::PI, A::Scalar::PI, max_velocity1, max_velocity2];
     let state = acrobot.state();
     for (x, limit) in <[A::Scalar; 4]>::from(state).into_iter().zip(limits) {
@@ -42,23 +38,16 @@ fn assert_stepped<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) {
     assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
 }
 
-/// With optimization this takes ten million steps: `CASES` of 100 steps on average in four arithmetics.
+/// With optimization this takes ten million steps: `CASES` of 100 steps on average in four
+/// arithmetics.
 #[test]
 fn any_settings_and_steps_stay_in_bounds() {
     const CASES: u32 = if cfg!(debug_assertions) { 500 } else { 25_500 };
 
     fn check<A: Tested>() {
         let steps = Cell::new(0_u64);
-        let set = (
-            [(); 2].map(|()| params::<A>(Range::Any)),
-            [(); 2].map(|()| state(Range::Any)),
-        );
-        let done = (
-            reset_bounds(),
-            number(Range::Any),
-            any::<u64>(),
-            0..=200_u32,
-        );
+        let set = ([(); 2].map(|()| params::<A>(Range::Any)), [(); 2].map(|()| state(Range::Any)));
+        let done = (reset_bounds(), number(Range::Any), any::<u64>(), 0..=200_u32);
         holds(CASES, (set, done), |((params, states), done)| {
             let (bounds, torque, seed, count) = done;
             let mut choices = Pcg64::new(seed);
@@ -102,14 +91,11 @@ fn mirror<S: Real>(state: State<S>) -> State<S> {
 
 fn mirrored<S: Real>(params: Params<S>) -> Params<S> {
     let [negative, zero, positive] = params.torques;
-    Params {
-        torques: [-positive, -zero, -negative],
-        torque_noise: S::ZERO,
-        ..params
-    }
+    Params { torques: [-positive, -zero, -negative], torque_noise: S::ZERO, ..params }
 }
 
-/// The largest angle that a Runge-Kutta step passes through, rad. An error if a number is not finite.
+/// The largest angle that a Runge-Kutta step passes through, rad. An error if a number is not
+/// finite.
 fn reach<A: Arithmetic>(
     params: &Params<A::Scalar>,
     state: State<A::Scalar>,
@@ -134,9 +120,9 @@ fn reach<A: Arithmetic>(
     Ok(reach)
 }
 
-/// Mirroring state and torque mirrors the result, bit for bit, except for the sign of zero, up to the angle where the
-/// lean wrap or the kernel loses count: beyond, |x| + 1.5 × 2²³ and −|x| + 1.5 × 2²³ round differently, in `f64` with
-/// 2⁵².
+/// Mirroring state and torque mirrors the result, bit for bit, except for the sign of zero, up to
+/// the angle where the lean wrap or the kernel loses count: beyond, |x| + 1.5 × 2²³ and −|x| + 1.5
+/// × 2²³ round differently, in `f64` with 2⁵².
 #[test]
 fn mirrored_steps_are_mirror_images() {
     fn check<A: Tested>(farthest: f64) {

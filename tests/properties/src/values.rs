@@ -13,10 +13,7 @@ use crate::given::{Range, Tested, acrobot, holds, number, params, state};
 /// The angle x after a step in which nothing moves.
 fn stepped<A: Tested>(x: A::Scalar) -> A::Scalar {
     let zero = A::Scalar::ZERO;
-    let params = Params::<A::Scalar> {
-        gravity: zero,
-        ..Default::default()
-    };
+    let params = Params::<A::Scalar> { gravity: zero, ..Default::default() };
     let mut pendulum = Pendulum::<A>::new(params, State::from([x, zero, zero, zero])).unwrap();
     pendulum.step(zero).unwrap();
     pendulum.state().theta1
@@ -25,24 +22,19 @@ fn stepped<A: Tested>(x: A::Scalar) -> A::Scalar {
 #[test]
 fn angles_wrap_into_half_a_turn_to_either_side() {
     fn check<A: Tested>() {
-        // The lean form counts turns exactly up to 2²² in `f32` and 2⁵¹ in `f64`, and beyond not symmetrically.
+        // The lean form counts turns exactly up to 2²² in `f32` and 2⁵¹ in `f64`, and beyond not
+        // symmetrically.
         let counted = match size_of::<A::Scalar>() {
             8 => TAU * (1_u64 << 51) as f64,
             _ => TAU * f64::from(1 << 22),
         };
-        let is_lean = !["host", "reference"]
-            .iter()
-            .any(|name| A::NAME.ends_with(name));
+        let is_lean = !["host", "reference"].iter().any(|name| A::NAME.ends_with(name));
         holds(5000, number::<A::Scalar>(Range::Any), |x| {
             let pi = A::Scalar::PI;
             let (wrapped, after_step) = (wrap(x), stepped::<A>(x));
             for (wrapped, mirrored, counted) in [
                 (wrapped, wrap(-x), counted),
-                (
-                    after_step,
-                    stepped::<A>(-x),
-                    if is_lean { counted } else { f64::INFINITY },
-                ),
+                (after_step, stepped::<A>(-x), if is_lean { counted } else { f64::INFINITY }),
             ] {
                 assert!(-pi <= wrapped && wrapped <= pi, "{wrapped}");
                 if x.to_f64().abs() <= counted {
@@ -88,11 +80,7 @@ fn bound_is_clamp() {
     fn check<A: Tested>() {
         let given = (number::<A::Scalar>(Range::Any), number(Range::Any));
         holds(1000, given, |(x, limit): (A::Scalar, A::Scalar)| {
-            let limit = if limit < A::Scalar::ZERO {
-                -limit
-            } else {
-                limit
-            };
+            let limit = if limit < A::Scalar::ZERO { -limit } else { limit };
             let clamped = x.to_f64().clamp(-limit.to_f64(), limit.to_f64());
             assert_eq!(bound(x, limit).to_f64(), clamped);
         });
@@ -108,7 +96,8 @@ fn sines_and_cosines_are_on_the_unit_circle() {
             let [sine, cosine] = [sin, cos].map(Real::to_f64);
             assert!(sine.abs() <= 1.0 && cosine.abs() <= 1.0, "{sine} {cosine}");
             let radius = sine * sine + cosine * cosine;
-            // For large angles, which are far apart in `f32`, `Micro` leaves the range of its polynomials.
+            // For large angles, which are far apart in `f32`, `Micro` leaves the range of its
+            // polynomials.
             assert!((radius - 1.0).abs() <= 1e-4, "{radius}");
             assert_eq!(A::sin_cos(-x), (-sin, cos));
             assert_eq!(bits([A::cos(x)]), bits([cos]));
@@ -132,10 +121,7 @@ fn the_tip_is_within_reach() {
             assert!(-reach <= height && height <= reach, "{height}");
 
             let angles = Observation::<4>::from(state);
-            assert_eq!(
-                angles.to_array(),
-                <[A::Scalar; 4]>::from(state).map(|x| x.to_f64() as f32)
-            );
+            assert_eq!(angles.to_array(), <[A::Scalar; 4]>::from(state).map(|x| x.to_f64() as f32));
         });
     }
     in_every_arithmetic!(check);
@@ -145,18 +131,12 @@ fn the_tip_is_within_reach() {
 #[test]
 fn the_equations_are_those_of_a_pendulum() {
     fn check<A: Tested>() {
-        let given = (
-            params::<A>(Range::Moderate),
-            state(Range::Moderate),
-            number(Range::Moderate),
-        );
+        let given = (params::<A>(Range::Moderate), state(Range::Moderate), number(Range::Moderate));
         holds(2000, given, |(params, state, torque)| {
             let mut pendulum = Pendulum::<A>::new(params, state).unwrap();
             let rates = pendulum.derivative(torque).map(Real::to_f64);
             assert!(rates.into_iter().all(f64::is_finite), "{rates:?}");
-            let State {
-                dtheta1, dtheta2, ..
-            } = state.cast::<f64>();
+            let State { dtheta1, dtheta2, .. } = state.cast::<f64>();
             assert_eq!(rates[..2], [dtheta1, dtheta2]);
 
             let [[m11, m12], [m21, m22]] = pendulum.mass_matrix().map(|row| row.map(Real::to_f64));
@@ -165,11 +145,7 @@ fn the_equations_are_those_of_a_pendulum() {
 
             // The kinetic energy is never negative, except for rounding where parts cancel.
             let total = pendulum.energy().to_f64();
-            let at_rest = State {
-                dtheta1: A::Scalar::ZERO,
-                dtheta2: A::Scalar::ZERO,
-                ..state
-            };
+            let at_rest = State { dtheta1: A::Scalar::ZERO, dtheta2: A::Scalar::ZERO, ..state };
             pendulum.set_state(at_rest).unwrap();
             let potential = pendulum.energy().to_f64();
             let parts = m11 * dtheta1 * dtheta1 + m22 * dtheta2 * dtheta2 + potential.abs();

@@ -82,10 +82,7 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
 
 /// A controller at 100 Hz, about the upright position.
 fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), ControlError> {
-    let params = Params {
-        dt: A::Scalar::from_f64(0.01),
-        ..Params::default()
-    };
+    let params = Params { dt: A::Scalar::from_f64(0.01), ..Params::default() };
     let pendulum = Pendulum::<A>::new(params, State::UPRIGHT)?;
     let [zero, one] = [0.0, 1.0].map(A::Scalar::from_f64);
     let weights =

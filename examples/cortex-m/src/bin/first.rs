@@ -1,4 +1,5 @@
-//! The first firmware of docs/embedded.md: SysTick steps an acrobot in a `static` until the episode ends.
+//! The first firmware of docs/embedded.md: SysTick steps an acrobot in a `static` until the episode
+//! ends.
 
 #![no_std]
 #![no_main]
@@ -13,18 +14,15 @@ use cortex_m_rt::{entry, exception};
 use critical_section::Mutex;
 use semihosting::{println, process};
 
-static ACROBOT: Mutex<RefCell<TimeLimit<Acrobot<Fast>>>> = Mutex::new(RefCell::new(TimeLimit::v1(
-    Acrobot::hanging(Pcg64::new(42)),
-)));
+static ACROBOT: Mutex<RefCell<TimeLimit<Acrobot<Fast>>>> =
+    Mutex::new(RefCell::new(TimeLimit::v1(Acrobot::hanging(Pcg64::new(42)))));
 
 /// 0.2 s of the 25 MHz clock of QEMU's mps2-an386. SysTick counts to 2²⁴ at most.
 const PERIOD: u32 = 5_000_000;
 
 #[entry]
 fn main() -> ! {
-    let Some(peripherals) = Peripherals::take() else {
-        process::exit(1)
-    };
+    let Some(peripherals) = Peripherals::take() else { process::exit(1) };
     // From hanging at rest to the initial state of seed 42.
     critical_section::with(|cs| ACROBOT.borrow_ref_mut(cs).reset());
     let mut syst = peripherals.SYST;

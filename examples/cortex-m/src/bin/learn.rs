@@ -1,5 +1,6 @@
-//! Learns to swing up on the microcontroller until the mean return of 100 episodes is at least −100. It needs 17,128
-//! bytes of RAM, and the learner has 16 KiB of them. Its weights are bit-identical to those of a desktop.
+//! Learns to swing up on the microcontroller until the mean return of 100 episodes is at least
+//! −100. It needs 17,128 bytes of RAM, and the learner has 16 KiB of them. Its weights are
+//! bit-identical to those of a desktop.
 //!
 //! It prints figures in the format of `bench`: `fast figure value`.
 

@@ -24,10 +24,7 @@ fn main() -> ! {
     let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(42), STEPS);
     defmt::info!("start {}", acrobot.state());
 
-    let rejected = Params {
-        dt: 0.0,
-        ..Params::DEFAULT
-    };
+    let rejected = Params { dt: 0.0, ..Params::DEFAULT };
     if let Err(error) = acrobot.set_params(rejected) {
         defmt::warn!("{}", error);
     }

@@ -1,8 +1,10 @@
-//! Links only if no panicking branch is left, because the panic handler calls a function that does not exist.
-//! `cargo build --release --bin no_panic` is the whole test; there is nothing to run. CI builds it with the oldest and with the
-//! newest Rust, at opt-level 3, 2, "s" and "z", so that the result does not depend on one optimizer.
+//! Links only if no panicking branch is left, because the panic handler calls a function that does
+//! not exist. `cargo build --release --bin no_panic` is the whole test; there is nothing to run. CI
+//! builds it with the oldest and with the newest Rust, at opt-level 3, 2, "s" and "z", so that the
+//! result does not depend on one optimizer.
 //!
-//! `Trajectory`'s `write_csv` and `rows` are not called: core's formatting of floats has branches that panic.
+//! `Trajectory`'s `write_csv` and `rows` are not called: core's formatting of floats has branches
+//! that panic.
 
 #![no_std]
 #![no_main]
@@ -74,11 +76,7 @@ fn state<S: Real>() -> State<S> {
 }
 
 fn params<S: Real>() -> Params<S> {
-    Params {
-        torque_noise: number(),
-        mass1: number(),
-        ..Params::default()
-    }
+    Params { torque_noise: number(), mass1: number(), ..Params::default() }
 }
 
 /// The physics alone.

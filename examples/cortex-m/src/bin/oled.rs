@@ -1,5 +1,5 @@
-//! Draws an episode on a simulated SSD1306 through its driver and a bus that counts bytes. Compares the display's memory after
-//! each frame with the digest of the crate's tests.
+//! Draws an episode on a simulated SSD1306 through its driver and a bus that counts bytes. Compares
+//! the display's memory after each frame with the digest of the crate's tests.
 
 #![no_std]
 #![no_main]
@@ -53,7 +53,8 @@ fn main() -> ! {
     process::exit(if equal { 0 } else { 1 })
 }
 
-/// An SSD1306's memory, eight rows at a time, and the window of it that received bytes are written to, from the left.
+/// An SSD1306's memory, eight rows at a time, and the window of it that received bytes are written
+/// to, from the left.
 struct Panel {
     memory: [[u8; 128]; 8],
     /// First and last column of the window.

@@ -1,4 +1,5 @@
-//! Plays a policy that was trained in Python. Compares its actions on 10,000 observations with those that torch computed.
+//! Plays a policy that was trained in Python. Compares its actions on 10,000 observations with
+//! those that torch computed.
 //!
 //! It prints figures in the format of `bench`: `fast figure value`.
 
@@ -14,10 +15,11 @@ use policy::Policy;
 use semihosting::{println, process};
 
 /// The compiler checks the file.
-static POLICY: Policy<64> = match Policy::new(include_bytes!("../../../../crates/policy/policy.bin")) {
-    Ok(policy) => policy,
-    Err(error) => panic!("{}", error.message()),
-};
+static POLICY: Policy<64> =
+    match Policy::new(include_bytes!("../../../../crates/policy/policy.bin")) {
+        Ok(policy) => policy,
+        Err(error) => panic!("{}", error.message()),
+    };
 /// Four actions a byte, 3 for a tie: `record.py` in `crates/policy`.
 static ACTIONS: [u8; 2500] = *include_bytes!("../../../../crates/policy/actions.bin");
 
@@ -60,7 +62,8 @@ fn env() -> TimeLimit<Acrobot<Fast>> {
     env
 }
 
-/// Of the observations under random actions: on how many the action is torch's, and how many ties there are.
+/// Of the observations under random actions: on how many the action is torch's, and how many ties
+/// there are.
 fn compare() -> (usize, usize) {
     let mut env = env();
     let mut random = Pcg64::new(1);

@@ -1,7 +1,8 @@
-//! An RTIC app. SysTick's task owns the acrobot and steps it five times a second; a task of lower priority decides on the
-//! next action.
+//! An RTIC app. SysTick's task owns the acrobot and steps it five times a second; a task of lower
+//! priority decides on the next action.
 //!
-//! It fails if the episode does not end as in a plain loop, for instance because a decision came too late.
+//! It fails if the episode does not end as in a plain loop, for instance because a decision came
+//! too late.
 
 #![no_std]
 #![no_main]
@@ -59,7 +60,8 @@ mod app {
         }
     }
 
-    /// Steps the acrobot, which stands for the machine. Only this task can reach it, so it needs no lock.
+    /// Steps the acrobot, which stands for the machine. Only this task can reach it, so it needs no
+    /// lock.
     #[task(binds = SysTick, priority = 2, shared = [observation, action], local = [
         // The compiler makes it, seed included.
         acrobot: TimeLimit<Acrobot<Fast>> = TimeLimit::v1(Acrobot::hanging(Pcg64::new(42))),

@@ -1,5 +1,6 @@
-//! Prints the instructions and the stack of an environment step and the size of an acrobot, with each arithmetic, one figure a
-//! line: `arithmetic figure value`. It builds for each target of the tables of cores in `docs/embedded-figures.md`.
+//! Prints the instructions and the stack of an environment step and the size of an acrobot, with
+//! each arithmetic, one figure a line: `arithmetic figure value`. It builds for each target of the
+//! tables of cores in `docs/embedded-figures.md`.
 
 #![no_std]
 #![no_main]
@@ -42,9 +43,7 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
     });
     println!("{name} step {count}");
     println!("{name} size {}", size_of::<Acrobot<A>>());
-    let Some(bytes) = stack_of_a_step::<A>() else {
-        process::exit(1)
-    };
+    let Some(bytes) = stack_of_a_step::<A>() else { process::exit(1) };
     println!("{name} stack {bytes}");
 }
 
@@ -52,10 +51,7 @@ fn measure<A: Arithmetic>(name: &str, counter: &mut Counter) {
 fn stack_of_a_step<A: Arithmetic>() -> Option<usize> {
     // With noise this large the steps take every branch: noise, bounds and goal.
     let mut acrobot = TimeLimit::v1(Acrobot::<A>::new(42));
-    let params = Params {
-        torque_noise: A::Scalar::from_f64(20.0),
-        ..*acrobot.params()
-    };
+    let params = Params { torque_noise: A::Scalar::from_f64(20.0), ..*acrobot.params() };
     acrobot.set_params(params).ok()?;
     let mut action_space = Pcg64::new(42);
     let mut deepest = 0;

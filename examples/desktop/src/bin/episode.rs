@@ -1,4 +1,5 @@
-//! An episode as an animated SVG: the bang-bang policy, torque against θ̇1, or the firmware's controller.
+//! An episode as an animated SVG: the bang-bang policy, torque against θ̇1, or the firmware's
+//! controller.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin episode -- --seed 42 --out episode.svg
@@ -20,13 +21,15 @@ struct Options {
     /// Seed of the initial state, and of the disturbance: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// Draws in real time how the controller of the firmware `balance` swings up and holds the acrobot upright.
+    /// Draws in real time how the controller of the firmware `balance` swings up and holds the
+    /// acrobot upright.
     #[arg(long)]
     balance: bool,
     /// File to write.
     #[arg(long, value_name = "FILE", default_value = "episode.svg")]
     out: PathBuf,
-    /// Also writes the picture as a definition for Markdown, because rustdoc's pages have no files beside them.
+    /// Also writes the picture as a definition for Markdown, because rustdoc's pages have no files
+    /// beside them.
     #[arg(long, value_name = "FILE", requires = "balance")]
     definition: Option<PathBuf>,
 }
@@ -75,11 +78,7 @@ const STEPS_PER_FRAME: usize = 4;
 /// The state of each frame.
 fn balance(rng: Pcg64) -> Result<Vec<State>, ControlError> {
     // As in the firmware with a largest torque of 10 N m.
-    let params = Params {
-        dt: 0.01,
-        torque_noise: 0.5,
-        ..Params::DEFAULT
-    };
+    let params = Params { dt: 0.01, torque_noise: 0.5, ..Params::DEFAULT };
     let mut machine = Acrobot::<Fast>::with_rng(rng);
     machine.set_params(params)?;
     let mut controller = Controller::new(params, 10.0)?;

@@ -1,10 +1,12 @@
-//! Replays actions in `Fast` and prints every bit of the states, to compare them with another implementation.
+//! Replays actions in `Fast` and prints every bit of the states, to compare them with another
+//! implementation.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin trace -- --seed 42 01222
 //! ```
 //!
-//! The first line is the initial state and every other line a step: the bits of θ1, θ2, θ̇1 and θ̇2.
+//! The first line is the initial state and every other line a step: the bits of θ1, θ2, θ̇1 and
+//! θ̇2.
 
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::Dynamics;
@@ -43,11 +45,7 @@ fn main() -> anyhow::Result<()> {
     acrobot.set_params(Params {
         dt: options.dt,
         torque_noise: options.noise,
-        dynamics: if options.nips {
-            Dynamics::Nips
-        } else {
-            Dynamics::Book
-        },
+        dynamics: if options.nips { Dynamics::Nips } else { Dynamics::Book },
         ..Params::default()
     })?;
     print(&acrobot);

@@ -2,8 +2,8 @@
 
 use super::Folder;
 
-/// The figures of the line that `--quiet` prints: the episode that solved the task, the greedy policy's mean and
-/// standard deviation, and its misses. Checks the form of the line.
+/// The figures of the line that `--quiet` prints: the episode that solved the task, the greedy
+/// policy's mean and standard deviation, and its misses. Checks the form of the line.
 fn figures(line: &str) -> (Option<u32>, f64, f64, u32) {
     let words: Vec<&str> = line.split_whitespace().collect();
     let number = |i: usize| words[i].parse::<f64>().unwrap();
@@ -37,10 +37,7 @@ fn swing_up_learns_the_same_from_the_same_seed() {
     assert!(solved_at.is_some_and(|n| (100..=150).contains(&n)) && misses == 0);
     assert!(mean > -100.0 && sd > 0.0, "{}", one.0);
     folder.swing_up("--quiet --episodes 300 --seed 2 --save other");
-    assert!(
-        folder.read("other") != one.1,
-        "the seed must change the weights"
-    );
+    assert!(folder.read("other") != one.1, "the seed must change the weights");
 
     // Loaded weights give the same figures, and are saved unchanged.
     let line = folder.swing_up("--quiet --episodes 0 --seed 1 --load one --save again");
@@ -48,8 +45,8 @@ fn swing_up_learns_the_same_from_the_same_seed() {
     assert!(folder.read("again") == one.1);
 }
 
-/// Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
-/// Learning must improve on this baseline by more than chance.
+/// Untrained, all values tie, so the learner takes the first action, and mirroring turns that into
+/// torque against θ̇1. Learning must improve on this baseline by more than chance.
 #[test]
 fn swing_up_is_better_than_torque_against_the_velocity() {
     let folder = Folder::new("baseline");
@@ -112,10 +109,7 @@ fn swing_up_rejects_weights_of_another_learner() {
     folder.swing_up("--quiet --episodes 3 --save weights");
     for (memory, bytes) in [("16k", 11284), ("32k", 23572)] {
         let line = format!("swing_up --load weights --save out --memory {memory}");
-        folder.assert_rejects(
-            &line,
-            &format!("weights must have {bytes} bytes, got 49172"),
-        );
+        folder.assert_rejects(&line, &format!("weights must have {bytes} bytes, got 49172"));
         assert!(!folder.path("out").exists());
     }
 }

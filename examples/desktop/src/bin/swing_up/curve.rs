@@ -5,7 +5,8 @@ use acrobot::REWARD_THRESHOLD;
 /// Gymnasium's reward threshold applies to the mean of this many episodes.
 const LATEST: usize = 100;
 
-/// The mean of the latest 100 returns, or of all if there are fewer. Returns are integers, so the sum is exact.
+/// The mean of the latest 100 returns, or of all if there are fewer. Returns are integers, so the
+/// sum is exact.
 pub fn running_mean(returns: &[f32]) -> f32 {
     mean(&returns[returns.len().saturating_sub(LATEST)..])
 }
@@ -19,11 +20,12 @@ pub fn solved_at(returns: &[f32]) -> Option<usize> {
     (LATEST..=returns.len()).find(|&n| running_mean(&returns[..n]) >= REWARD_THRESHOLD)
 }
 
-/// The rows of the chart, each a factor of √2 in steps: on a linear axis, −500 to −100 would hide the best returns.
+/// The rows of the chart, each a factor of √2 in steps: on a linear axis, −500 to −100 would hide
+/// the best returns.
 const ROWS: usize = 6;
 
-/// Bars of mean returns: better is higher. Each bar covers a sixth of all episodes before it, because most is learnt
-/// early.
+/// Bars of mean returns: better is higher. Each bar covers a sixth of all episodes before it,
+/// because most is learnt early.
 pub fn chart(returns: &[f32]) -> String {
     const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let (mut heights, mut axis) = (Vec::new(), String::new());

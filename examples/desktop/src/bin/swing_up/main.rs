@@ -1,19 +1,22 @@
-//! Q(λ) with replay learns to swing up within seconds. The greedy policy is then compared with two policies that do not learn.
+//! Q(λ) with replay learns to swing up within seconds. The greedy policy is then compared with two
+//! policies that do not learn.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin swing_up -- --steps 1000000 --save weights.bin
 //! cargo run --release -p desktop --bin swing_up -- --steps 0 --load weights.bin
 //! ```
 //!
-//! The learner is `crates/learners`, bit-identical on microcontrollers and in browsers. `--quiet` prints one line,
-//! `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for which the mean return of episodes
-//! n − 99 to n is −100 or better. R and S are the mean and standard deviation of 1,000 greedy episodes from initial
-//! states that it was not trained on, and K of these missed the goal. The time of learning goes to stderr. With `--evaluate N` a line `steps M greedy_mean R`
-//! for every N steps comes before. Without `--quiet` it draws the learning curve, the values and a greedy
-//! episode. With `--plan 60` it also plays a beam search on the model over the learnt values.
+//! The learner is `crates/learners`, bit-identical on microcontrollers and in browsers. `--quiet`
+//! prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for
+//! which the mean return of episodes n − 99 to n is −100 or better. R and S are the mean and
+//! standard deviation of 1,000 greedy episodes from initial states that it was not trained on, and
+//! K of these missed the goal. The time of learning goes to stderr. With `--evaluate N` a line
+//! `steps M greedy_mean R` for every N steps comes before. Without `--quiet` it draws the learning
+//! curve, the values and a greedy episode. With `--plan 60` it also plays a beam search on the
+//! model over the learnt values.
 //!
-//! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into torque against θ̇1.
-//! This is the baseline.
+//! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into
+//! torque against θ̇1. This is the baseline.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -57,7 +60,8 @@ struct Options {
     #[arg(long, value_name = "FILE")]
     load: Option<PathBuf>,
     /// Also plays a beam search over the learnt values, which looks so many steps ahead.
-    #[arg(long, value_name = "STEPS", conflicts_with = "quiet", value_parser = clap::value_parser!(u32).range(1..=128))]
+    #[arg(long, value_name = "STEPS", conflicts_with = "quiet")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=128))]
     plan: Option<u32>,
     /// Prints only one line, and draws nothing.
     #[arg(long)]
@@ -66,8 +70,7 @@ struct Options {
 
 impl Options {
     fn budget(&self) -> Budget {
-        self.steps
-            .map_or(Budget::Episodes(self.episodes), Budget::Steps)
+        self.steps.map_or(Budget::Episodes(self.episodes), Budget::Steps)
     }
 }
 
@@ -117,14 +120,8 @@ fn run<const S: usize, const T: usize, const N: usize>(
         println!("{name:<18}  {mean:>19.2} ± {sd:<9.2}  {misses:>15}");
     };
     row("learnt", learnt);
-    row(
-        "torque against θ̇1",
-        evaluate(seed, 0..EVALUATION, |state| bang_bang(state.dtheta1)),
-    );
-    row(
-        "random",
-        evaluate(seed, 0..EVALUATION, |_| Action::sample(&mut actions)),
-    );
+    row("torque against θ̇1", evaluate(seed, 0..EVALUATION, |state| bang_bang(state.dtheta1)));
+    row("random", evaluate(seed, 0..EVALUATION, |_| Action::sample(&mut actions)));
     if let Some(depth) = options.plan {
         let mut search = Search::default();
         let planned = evaluate(seed, (0..EVALUATION).progress(), |state| {
@@ -152,9 +149,7 @@ fn draw<const S: usize, const T: usize>(
         let content = format!("the returns of {} episodes", returns.len());
         save("learning_curve.svg", curve, &content)?;
     }
-    let values = svg((680, 720), |area| {
-        pictures::draw_values(area, |state| learner.value(state))
-    })?;
+    let values = svg((680, 720), |area| pictures::draw_values(area, |state| learner.value(state)))?;
     save("values.svg", values, "the learnt values of states at rest")?;
 
     let mut env = evaluation(&options.seed);
@@ -165,11 +160,7 @@ fn draw<const S: usize, const T: usize>(
     });
     states.push(env.state().cast());
     let content = format!("a greedy episode, {} steps", env.elapsed());
-    save(
-        "swing_up.svg",
-        animation::svg(&states, animation::DELAY),
-        &content,
-    )
+    save("swing_up.svg", animation::svg(&states, animation::DELAY), &content)
 }
 
 /// Learns. Returns the return of each episode.
@@ -179,11 +170,7 @@ fn train<const S: usize, const T: usize>(
 ) -> Vec<f32> {
     let mut env = training(options.seed.clone());
     let (Budget::Episodes(length) | Budget::Steps(length)) = options.budget();
-    let bar = if options.quiet {
-        ProgressBar::hidden()
-    } else {
-        ProgressBar::new(length.into())
-    };
+    let bar = if options.quiet { ProgressBar::hidden() } else { ProgressBar::new(length.into()) };
     let style = ProgressStyle::with_template("{msg}{elapsed} {wide_bar} {pos}/{len}");
     bar.set_style(style.expect("a valid template"));
 

@@ -36,7 +36,8 @@ pub fn draw_curve(area: &Area, returns: &[f32]) -> anyhow::Result<()> {
     const THRESHOLD: RGBColor = RGBColor(200, 60, 40);
 
     let body = area.titled("Learning to swing up", TITLE)?;
-    // Both axes are logarithmic: most is learnt in few episodes, and the last steps are the hardest to save.
+    // Both axes are logarithmic: most is learnt in few episodes, and the last steps are the hardest
+    // to save.
     let threshold = f64::from(REWARD_THRESHOLD);
     let (worst, best) = (-500_f64, -40_f64);
     let last = (returns.len() as f64).max(2.0);
@@ -73,11 +74,7 @@ pub fn draw_curve(area: &Area, returns: &[f32]) -> anyhow::Result<()> {
             [1.0, last].map(|n| (n, doublings(threshold))).to_vec(),
             THRESHOLD.stroke_width(1),
         ),
-        (
-            "mean of the latest 100",
-            line(&|n| running_mean(&returns[..n])),
-            MEAN.stroke_width(3),
-        ),
+        ("mean of the latest 100", line(&|n| running_mean(&returns[..n])), MEAN.stroke_width(3)),
     ] {
         chart
             .draw_series(LineSeries::new(points, style))?
@@ -96,7 +93,8 @@ pub fn draw_curve(area: &Area, returns: &[f32]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The values at rest over both angles, except where the tip is above the target height, which ends an episode.
+/// The values at rest over both angles, except where the tip is above the target height, which ends
+/// an episode.
 pub fn draw_values(area: &Area, value: impl Fn(&State<f32>) -> f32) -> anyhow::Result<()> {
     /// The number of cells in each direction.
     const SIDE: usize = 72;
