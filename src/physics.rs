@@ -1,7 +1,7 @@
 //! The pendulum alone: equations of motion, integrator and bounds, without a generator or an environment.
 //!
-//! [`Pendulum`] is the fast way to simulate: it caches the constants that depend on the parameters, and the sines and
-//! cosines of its angles. It has no code for random numbers, so it takes about a third of the flash of an
+//! [`Pendulum`] caches the constants that depend on the parameters, and the sines and cosines of its
+//! angles. It has no random numbers, so it takes a third of the flash of an
 //! [`Acrobot`](crate::Acrobot).
 //!
 //! ```
@@ -37,7 +37,6 @@ macro_rules! for_f32_and_f64 {
 
 pub(crate) mod arithmetic;
 mod bounds;
-pub mod control;
 mod equations;
 mod friction;
 mod geometry;
@@ -52,6 +51,9 @@ mod rk4;
 mod state;
 mod step;
 mod task;
+
+// Last, so that the documentation of a pendulum begins with its own methods.
+pub mod control;
 
 pub(crate) use arithmetic::{check_params, default_model, model};
 pub use bounds::{bound, wrap};

@@ -6,8 +6,8 @@ use super::model::{Form, Model};
 use super::{gymnasium, lean};
 use crate::math::{Numbers, SinCos};
 
-/// The derivative at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque, N m. `sin_cos` are the sines and cosines of θ1 and θ2, if
-/// they are known.
+/// The derivative at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque, N m. `sin_cos` are the sines and cosines
+/// of θ1 and θ2, if they are known.
 #[inline(always)]
 pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,

@@ -13,8 +13,7 @@ pub enum Form {
     Gymnasium,
 }
 
-/// The constants, of one acrobot or of many. The names are those of Sutton & Barto, *Reinforcement Learning: An
-/// Introduction* (1998), section 11.3.
+/// The constants, of one acrobot or of many, named as in Sutton & Barto (1998), section 11.3.
 #[derive(Clone, Copy, Debug)]
 pub struct Constants<V> {
     /// 1 for the equations of the 1996 paper, otherwise 0.
@@ -94,27 +93,17 @@ impl<S: Modeled> Params<S> {
 
 for_f32_and_f64! {
     impl Model<S> {
-        /// The model of `params`, given l1², lc1² and lc2², because `Host` squares with the platform's `pow`.
+        /// See [`Modeled::model`]. Squares are given, because `Host` computes them with the C library.
         #[inline(always)]
         pub(crate) const fn new(
             form: Form,
             params: Params<S>,
             [l1_squared, lc1_squared, lc2_squared]: [S; 3],
         ) -> Self {
-            let Params {
-                length1: l1,
-                mass1: m1,
-                mass2: m2,
-                center_of_mass1: lc1,
-                center_of_mass2: lc2,
-                inertia1,
-                inertia2,
-                gravity,
-                dt,
-                dynamics,
-                ..
-            } = params;
-            let nips = match dynamics {
+            let Params { inertia1, inertia2, gravity, dt, .. } = params;
+            let (l1, m1, m2) = (params.length1, params.mass1, params.mass2);
+            let (lc1, lc2) = (params.center_of_mass1, params.center_of_mass2);
+            let nips = match params.dynamics {
                 Dynamics::Book => 0.0,
                 Dynamics::Nips => 1.0,
             };
