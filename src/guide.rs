@@ -1,12 +1,6 @@
 //! The guide: one page for each reader and each subject.
 //!
-//! | you write | begin with |
-//! |---|---|
-//! | Rust on a desktop or a server | [`rust`] |
-//! | firmware | [`embedded`] |
-//! | C or C++ | [`c`] |
-//! | a web page | [`wasm`] |
-//! | Python | [`python`] |
+//! Begin with [`rust`], [`embedded`], [`c`], [`wasm`] or [`python`].
 //!
 //! | you want to know | read |
 //! |---|---|
@@ -27,8 +21,9 @@
 //!
 //! Paths such as `examples/cortex-m` and `tests/data` are in the repository, beside the crate's source.
 
-// Each page is also a file that GitHub shows. Its links are defined twice: for rustdoc in docs/rustdoc-links.txt, and for
-// GitHub at the page's end. The first definition counts. A page whose examples need a feature is not tested without it.
+// Each page is also a file that GitHub shows. Its links are defined twice: for rustdoc in
+// docs/rustdoc-links.txt, and for GitHub at the page's end. The first definition counts. A page whose
+// examples need a feature is not tested without it.
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[cfg_attr(any(not(doctest), feature = "std"), doc = include_str!("../docs/rust.md"))]

@@ -1,5 +1,6 @@
-//! Gymnasium's `Acrobot-v1`, the two-link swing-up task, as a `no_std` crate that needs no heap and never panics. It is
-//! hundreds of times as fast as Gymnasium, and an episode has the same bits on a microcontroller, in a browser and on a server.
+//! Gymnasium's `Acrobot-v1`, the two-link swing-up task, as a `no_std` crate that needs no heap and
+//! never panics. It is hundreds of times as fast as Gymnasium, and an episode has the same bits on a
+//! microcontroller, in a browser and on a server.
 //!
 #![doc = include_str!("../docs/episode.svg")]
 //!
@@ -23,18 +24,19 @@
 //! assert_eq!(env.elapsed(), 94);
 //! ```
 //!
-//! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c), [in a browser](guide::wasm)
-//! or [in Python](guide::python).
+//! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c), [in a
+//! browser](guide::wasm) or [in Python](guide::python).
 //!
 //! # What everybody uses
 //!
 //! - [`Acrobot`] is the environment. Its type parameter is the arithmetic: [`Fast`] (`f32`), [`Portable`] (`f64`), or
 //!   [another one](arithmetic).
 //! - [`TimeLimit`] truncates episodes, after 500 steps as `Acrobot-v1`.
-//! - [`Action`] goes into a step. [`Step`] comes out, with the [`Observation`], the reward, and whether the episode is done.
-//! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques. Both can be set at any time.
+//! - [`Action`] goes into a step. [`Step`] comes out, with the [`Observation`], the reward, and whether
+//!   the episode is done.
+//! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques.
 //! - [`ResetOptions`] has what a reset may choose: the seed, and the bounds of the initial state.
-//! - [`Error`] names a rejected value, its unit and the rule. Nothing has changed then.
+//! - [`Error`] names a rejected value, its unit and the rule.
 //!
 //! # Modules
 //!
