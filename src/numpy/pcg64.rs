@@ -7,20 +7,19 @@ use rand_core::{Rng, SeedableRng, TryRng};
 
 use super::seed_sequence::SeedSequence;
 
-/// NumPy's `PCG64`, the generator of every Gymnasium environment and space: `rand_pcg`'s PCG XSL-RR 128/64, seeded
-/// through a [`SeedSequence`]. Like NumPy, it takes two 32-bit draws from one 64-bit draw.
+/// NumPy's `PCG64`, the generator of every Gymnasium environment and space: PCG XSL-RR 128/64
+/// (M. E. O'Neill, *PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for
+/// Random Number Generation*, 2014), seeded through a [`SeedSequence`]. Like NumPy, it takes two 32-bit
+/// draws from one 64-bit draw.
 ///
-/// It is `Clone`, to save and resume it, and not `Copy`, so that no stream is drawn from twice by accident. Two
-/// generators are equal if all their draws are equal. With the `serde` feature it can be stored. A `static` needs no
-/// initialization: the compiler hashes the seed.
-///
-/// Source: M. E. O'Neill, *PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
-/// Number Generation* (2014).
+/// It is not `Copy`, so that no stream is drawn from twice by accident. Two generators are equal if all
+/// their draws are equal. With the `serde` feature it can be stored: as the hash of the seed and the
+/// position, so any values make a valid generator.
 #[derive(Clone)]
 pub struct Pcg64(Stream);
 
-/// `rand_pcg` cannot seed a generator in a `const`, so the first draw seeds it. The enum takes no extra memory, because
-/// its tag fits into the tag of `half`.
+/// `rand_pcg` cannot seed a generator in a `const`, so the first draw does. The enum takes no extra
+/// memory: its tag fits into that of `half`.
 #[derive(Clone)]
 enum Stream {
     /// The hash of the seed.
@@ -38,7 +37,7 @@ struct Running {
 }
 
 impl Pcg64 {
-    /// A placeholder that a [`Batch`](crate::batch::Batch) seeds. Do not draw from it: its stream is of low quality.
+    /// A placeholder that a [`Batch`](crate::batch::Batch) seeds. Do not draw from it.
     pub const UNSEEDED: Self = Self::from_hash([0; 4]);
 
     /// NumPy's `default_rng(seed)`. For longer seeds: `Pcg64::from` a [`SeedSequence`].
@@ -116,7 +115,7 @@ impl PartialEq for Pcg64 {
 impl Eq for Pcg64 {}
 
 impl fmt::Debug for Pcg64 {
-    /// The next 64-bit draw, because `rand_pcg` does not show its state, and the unused half of the last one.
+    /// The next 64-bit draw, because `rand_pcg` hides its state, and the unused half of the last one.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut running = self.running();
         f.debug_struct("Pcg64")
@@ -156,7 +155,7 @@ impl TryRng for Pcg64 {
         Ok(self.draw(Running::next_u64))
     }
 
-    // Not rand_core's `fill_bytes_via_next_word`, which divides: some compilers keep the panic of a division by zero.
+    // Not rand_core's `fill_bytes_via_next_word`, whose division some compilers keep a panic for.
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
         let (words, rest) = bytes.as_chunks_mut();
         for word in words {
@@ -194,7 +193,7 @@ mod snapshot {
 
     use super::{Pcg64, Running, Stream};
 
-    /// The origin of a generator. A snapshot holds it, because any values make a valid generator.
+    /// The origin of a generator.
     #[derive(Clone)]
     pub struct Origin {
         /// The hash of the seed.
@@ -210,8 +209,8 @@ mod snapshot {
         }
     }
 
-    /// Only numbers that every format can hold: TOML has no integers above 2⁶³, JavaScript none above 2⁵³, and other
-    /// formats no 128-bit integers. No field is optional, because some formats omit optional fields.
+    /// Only numbers that every format can hold: TOML has no integers above 2⁶³, JavaScript none above
+    /// 2⁵³, and other formats none of 128 bits. Some formats omit optional fields.
     #[derive(Serialize, Deserialize)]
     #[serde(rename = "Pcg64")]
     struct Snapshot {
