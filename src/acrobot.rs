@@ -16,8 +16,8 @@ use crate::reset_options::ResetOptions;
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
 
-/// The result of a step. `O` is the type of the observation, `I` that of further information, such as
-/// the `Info` of an `Env`.
+/// The result of a step. `O` is the type of the observation, `I` that of further information, such
+/// as the `Info` of an `Env`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -64,24 +64,22 @@ impl<O, I> Step<O, I> {
 /// # Snapshots
 ///
 /// With the `serde` feature an acrobot can be saved and loaded; the loaded one continues
-/// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any serde
-/// format can hold it. The tests use JSON, postcard, CBOR, MessagePack, TOML, RON and YAML, also in
-/// flattened structs and in tagged enums.
+/// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
+/// serde format can hold it. The tests use JSON, postcard, CBOR, MessagePack, TOML, RON and YAML,
+/// also in flattened structs and in tagged enums.
 ///
 /// The first field holds the type, the version (1) and the [name of the
-/// arithmetic](Arithmetic::NAME). Loading rejects another one, and what the setters reject; postcard's
-/// errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a [`TimeLimit`](crate::TimeLimit), is the size
-/// of a buffer for postcard.
+/// arithmetic](Arithmetic::NAME). Loading rejects another one, and what the setters reject;
+/// postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
+/// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
 ///
 /// `Params`, `State` and [`Pcg64`] can also be saved alone, without a version.
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::arithmetic::Micro;
-/// use acrobot::{Acrobot, Fast};
+/// use acrobot::arithmetic::Micro; use acrobot::{Acrobot, Fast};
 ///
-/// let acrobot = Acrobot::<Fast>::new(42);
-/// let text = serde_json::to_string(&acrobot)?;
+/// let acrobot = Acrobot::<Fast>::new(42); let text = serde_json::to_string(&acrobot)?;
 /// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":1,"arithmetic":"fast"}"#));
 /// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
 ///
@@ -96,8 +94,9 @@ pub struct Acrobot<A: Arithmetic, R = Pcg64> {
 }
 
 impl<A: Arithmetic> Acrobot<A> {
-    /// An acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`.
-    /// For a [`SeedSequence`](crate::numpy::SeedSequence): `Acrobot::with_rng(sequence.into())`.
+    /// An acrobot with the default parameters, in the initial state of Gymnasium's
+    /// `reset(seed=seed)`. For a [`SeedSequence`](crate::numpy::SeedSequence):
+    /// `Acrobot::with_rng(sequence.into())`.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self::with_rng(Pcg64::new(seed))
@@ -133,8 +132,8 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
         self.advance(self.params().torque(action))
     }
 
-    /// Applies any finite torque, N m, for one dt. [`bound`](crate::physics::bound) limits it to that
-    /// of a motor.
+    /// Applies any finite torque, N m, for one dt. [`bound`](crate::physics::bound) limits it to
+    /// that of a motor.
     ///
     /// # Errors
     ///
@@ -241,8 +240,8 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         self.pendulum.set_params(params)
     }
 
-    /// The pendulum, with its energy, positions, mass matrix and derivative. Its clone is a model of
-    /// this acrobot without noise.
+    /// The pendulum, with its energy, positions, mass matrix and derivative. Its clone is a model
+    /// of this acrobot without noise.
     #[must_use]
     #[inline]
     pub const fn pendulum(&self) -> &Pendulum<A> {

@@ -1,7 +1,8 @@
 //! Many acrobots at once, each bit-identical to one alone.
 //!
-//! A [`Batch`] steps acrobots side by side, with SIMD and without a heap: it borrows or owns arrays,
-//! slices or `Vec`s. With the feature `alloc`, `VecBatch` also owns the memory of the results.
+//! A [`Batch`] steps acrobots side by side, with SIMD and without a heap: it borrows or owns
+//! arrays, slices or `Vec`s. With the feature `alloc`, `VecBatch` also owns the memory of the
+//! results.
 //!
 //! ```
 //! use acrobot::Fast;
@@ -56,9 +57,9 @@ use work::Work;
 
 /// Many acrobots, each with its own stream of random numbers.
 ///
-/// Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th child,
-/// under a [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side, with the [widest
-/// SIMD instructions](SimdLevel) of the machine. Neither changes a bit.
+/// Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th
+/// child, under a [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side, with
+/// the [widest SIMD instructions](SimdLevel) of the machine. Neither changes a bit.
 ///
 /// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32:
 ///
@@ -70,22 +71,16 @@ use work::Work;
 /// # Snapshots
 ///
 /// With the `serde` feature a batch can be saved as a whole: a sequence of the settings and the
-/// members. The first field is that of an [acrobot's](crate::Acrobot#snapshots) snapshot. A loaded batch
-/// continues bit-identically, with any `N` and on any machine.
+/// members. The first field is that of an [acrobot's](crate::Acrobot#snapshots) snapshot. A loaded
+/// batch continues bit-identically, with any `N` and on any machine.
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::Fast;
-/// use acrobot::batch::{Batch, Block};
-/// use acrobot::numpy::Pcg64;
+/// use acrobot::Fast; use acrobot::batch::{Batch, Block}; use acrobot::numpy::Pcg64;
 ///
-/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
-/// let batch = Batch::<Fast, _>::new(42, memory()).unwrap();
-/// let bytes = postcard::to_stdvec(&batch)?;
-/// let loaded = Batch::<Fast, _>::from_snapshot(
-///     memory(),
-///     &mut postcard::Deserializer::from_bytes(&bytes),
-/// )?;
+/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]); let batch = Batch::<Fast,
+/// _>::new(42, memory()).unwrap(); let bytes = postcard::to_stdvec(&batch)?; let loaded =
+/// Batch::<Fast, _>::from_snapshot( memory(), &mut postcard::Deserializer::from_bytes(&bytes), )?;
 /// assert_eq!(loaded.member(19), batch.member(19));
 /// # Ok::<(), postcard::Error>(())
 /// ```
@@ -97,14 +92,15 @@ pub struct Batch<A: Arithmetic, S, const N: usize = 16> {
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
-    /// A batch with one acrobot for each generator, in its initial state. Acrobot `i` is seeded with the
-    /// `i`-th child that `seed` has not yet spawned. The batch has the default parameters, the limit of
-    /// the [task](crate::physics::Task::limit) and [`Autoreset::NextStep`].
+    /// A batch with one acrobot for each generator, in its initial state. Acrobot `i` is seeded
+    /// with the `i`-th child that `seed` has not yet spawned. The batch has the default parameters,
+    /// the limit of the [task](crate::physics::Task::limit) and [`Autoreset::NextStep`].
     ///
     /// # Errors
     ///
-    /// [`Error::EmptyBatch`] without generators, and [`Error::WrongLength`] unless there is one block
-    /// for each `N` generators, the last partly filled, and one [`LaneParams`] for each block or none.
+    /// [`Error::EmptyBatch`] without generators, and [`Error::WrongLength`] unless there is one
+    /// block for each `N` generators, the last partly filled, and one [`LaneParams`] for each block
+    /// or none.
     pub fn new(seed: impl Into<SeedSequence>, mut storage: S) -> Result<Self, Error> {
         const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
         let SlicesMut {
@@ -150,8 +146,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// # Errors
     ///
     /// [`Error::WrongLength`] unless each slice has one element for each acrobot,
-    /// [`Error::UnknownAction`] for a number above 2, and [`Error::OutOfRange`] for a torque that is
-    /// not finite.
+    /// [`Error::UnknownAction`] for a number above 2, and [`Error::OutOfRange`] for a torque that
+    /// is not finite.
     pub fn step<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],
@@ -162,8 +158,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         Ok(())
     }
 
-    /// As [`step`](Self::step), with its errors, on all cores with rayon. The number of threads changes
-    /// no bit.
+    /// As [`step`](Self::step), with its errors, on all cores with rayon. The number of threads
+    /// changes no bit.
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(
         &mut self,
@@ -297,8 +293,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         }
     }
 
-    /// Sets the range from which each reset, also one in a step, draws the acrobot's parameters before
-    /// its initial state. With `None`, the default, a reset does not change parameters.
+    /// Sets the range from which each reset, also one in a step, draws the acrobot's parameters
+    /// before its initial state. With `None`, the default, a reset does not change parameters.
     ///
     /// # Errors
     ///
@@ -356,8 +352,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         self.settings.autoreset
     }
 
-    /// Sets when ended episodes are reset. [`Autoreset::SameStep`] immediately resets acrobots whose
-    /// reset is pending, and [`Autoreset::Disabled`] never.
+    /// Sets when ended episodes are reset. [`Autoreset::SameStep`] immediately resets acrobots
+    /// whose reset is pending, and [`Autoreset::Disabled`] never.
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.settings.autoreset = autoreset;
         for (block, generators, own) in each_block(&mut self.storage) {
@@ -366,7 +362,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     }
 }
 
-/// A block with its generators, of which the last has fewer than `N`, and its own parameters, if any.
+/// A block with its generators, of which the last has fewer than `N`, and its own parameters, if
+/// any.
 type Part<'a, A, const N: usize> = (
     &'a mut Block<A, N>,
     &'a mut [Pcg64],

@@ -77,8 +77,8 @@ pub trait Env {
     type Unwrapped: ?Sized;
 
     /// Gymnasium's `reset(seed=…, options=…)`: begins an episode and returns the observation of its
-    /// initial state. Without a seed the generator continues its stream, which has seed 0 at first, so
-    /// runs are repeatable.
+    /// initial state. Without a seed the generator continues its stream, which has seed 0 at first,
+    /// so runs are repeatable.
     fn reset_with(&mut self, options: ResetOptions) -> (Self::Observation, Info);
 
     /// Gymnasium's `reset()`.
@@ -104,8 +104,8 @@ pub trait Env {
     ///
     /// # Errors
     ///
-    /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if a [`Display`]
-    /// renders on itself.
+    /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if a
+    /// [`Display`] renders on itself.
     fn render(&mut self) -> Result<Rendering, Error> {
         Err(Error::NoRenderMode)
     }

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// Why an input was rejected. `Display` names the value, its unit and the rule. A rejected call changes
-/// nothing.
+/// Why an input was rejected. `Display` names the value, its unit and the rule. A rejected call
+/// changes nothing.
 ///
 /// ```
 /// use acrobot::{Acrobot, Fast, Params};
@@ -27,8 +27,8 @@ pub enum Error {
         /// The rule, before the unit: `"finite and above 0"`.
         rule: &'static str,
     },
-    /// A link has neither a moment of inertia nor a distance between its centre of mass and its joint,
-    /// so its acceleration is undetermined.
+    /// A link has neither a moment of inertia nor a distance between its centre of mass and its
+    /// joint, so its acceleration is undetermined.
     NoInertia {
         /// `"inertia1"` or `"inertia2"`.
         name: &'static str,
@@ -180,8 +180,8 @@ pub(crate) enum Range {
     Finite,
     AtLeastZero,
     AboveZero,
-    /// The positive normal numbers of `f32`: for velocity bounds, because observations are `f32`, and
-    /// NEON of 32-bit ARM treats subnormal numbers as 0.
+    /// The positive normal numbers of `f32`: for velocity bounds, because observations are `f32`,
+    /// and NEON of 32-bit ARM treats subnormal numbers as 0.
     NormalF32,
     /// Finite in `f32`: for reset bounds, because initial states are `f32`.
     InF32,

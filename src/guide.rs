@@ -19,11 +19,12 @@
 //!
 //! # Files
 //!
-//! Paths such as `examples/cortex-m` and `tests/data` are in the repository, beside the crate's source.
+//! Paths such as `examples/cortex-m` and `tests/data` are in the repository, beside the crate's
+//! source.
 
 // Each page is also a file that GitHub shows. Its links are defined twice: for rustdoc in
-// docs/rustdoc-links.txt, and for GitHub at the page's end. The first definition counts. A page whose
-// examples need a feature is not tested without it.
+// docs/rustdoc-links.txt, and for GitHub at the page's end. The first definition counts. A page
+// whose examples need a feature is not tested without it.
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[cfg_attr(any(not(doctest), feature = "std"), doc = include_str!("../docs/rust.md"))]

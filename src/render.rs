@@ -92,9 +92,9 @@ impl<C> Theme<C> {
 
 /// A drawing of an acrobot: [an example](self).
 ///
-/// It is scaled as in Gymnasium's window: the fixed joint is in the centre, and the shorter side of the
-/// target shows both links and 0.2 m more in each direction. Targets of any size work, except that one
-/// whose width, height, right end or bottom end is above `i32::MAX` stays as it is.
+/// It is scaled as in Gymnasium's window: the fixed joint is in the centre, and the shorter side of
+/// the target shows both links and 0.2 m more in each direction. Targets of any size work, except
+/// that one whose width, height, right end or bottom end is above `i32::MAX` stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Figure {
@@ -131,8 +131,8 @@ impl Figure {
         }
     }
 
-    /// Adds an arrow around the middle joint in the direction of `torque`, if `torque` is not 0 and the
-    /// target has at least 48 pixels in each direction.
+    /// Adds an arrow around the middle joint in the direction of `torque`, if `torque` is not 0 and
+    /// the target has at least 48 pixels in each direction.
     #[must_use]
     pub fn with_torque(mut self, torque: f32) -> Self {
         self.torque = i8::from(torque > 0.0) - i8::from(torque < 0.0);

@@ -26,7 +26,8 @@ pub struct ResetOptions {
     /// Seeds the generator. With `None` the generator continues its stream.
     pub seed: Option<SeedSequence>,
     /// The bounds of the initial state. `None` means those of the
-    /// [task](crate::physics::Task::reset_bounds) or of the [batch](crate::batch::Batch::reset_bounds).
+    /// [task](crate::physics::Task::reset_bounds) or of the
+    /// [batch](crate::batch::Batch::reset_bounds).
     pub bounds: Option<ResetBounds>,
 }
 

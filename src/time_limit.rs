@@ -12,8 +12,9 @@ use crate::observation::Observation;
 use crate::physics::{Params, State, Task};
 use crate::reset_options::ResetOptions;
 
-/// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they reach
-/// the limit. It does not change `terminated`. Steps after the end continue, with `truncated` true.
+/// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they
+/// reach the limit. It does not change `terminated`. Steps after the end continue, with `truncated`
+/// true.
 ///
 /// ```
 /// use acrobot::{Acrobot, Action, Fast, TimeLimit};

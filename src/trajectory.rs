@@ -58,8 +58,8 @@ pub struct Transition<S = f64> {
     pub truncated: bool,
 }
 
-/// The last `N` transitions, oldest first: [an example](self). With `f32` it takes about 44 bytes for
-/// each.
+/// The last `N` transitions, oldest first: [an example](self). With `f32` it takes about 44 bytes
+/// for each.
 #[derive(Clone, Debug)]
 pub struct Trajectory<S, const N: usize> {
     /// Not heapless's history buffer, whose indexing can panic.
@@ -155,8 +155,8 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
 
     /// All transitions as rows of CSV, oldest first. [`HEADER`] names their columns.
     ///
-    /// `step` counts from 1 at the first push, including dropped ones. Numbers have the fewest digits
-    /// that parse to the same bits: in `f32` usually 150 bytes a row, and more near 0.
+    /// `step` counts from 1 at the first push, including dropped ones. Numbers have the fewest
+    /// digits that parse to the same bits: in `f32` usually 150 bytes a row, and more near 0.
     pub fn rows(&self) -> impl Iterator<Item = impl fmt::Display> {
         let forgotten = self.pushed.saturating_sub(self.len() as u32);
         let steps = (1..).map(move |i| forgotten.saturating_add(i));

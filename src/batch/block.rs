@@ -88,8 +88,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         self.set_progress(lane, 0, false);
     }
 
-    /// Resets the lanes in `mask`, each with its generator, from which it first draws own parameters. A
-    /// lane without one has no acrobot and hangs at rest.
+    /// Resets the lanes in `mask`, each with its generator, from which it first draws own
+    /// parameters. A lane without one has no acrobot and hangs at rest.
     #[cold]
     pub(super) fn reset(
         &mut self,
@@ -207,7 +207,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// Resets lanes whose episodes ended, writes the results, and removes the written elements from `buffers`.
+    /// Resets lanes whose episodes ended, writes the results, and removes the written elements from
+    /// `buffers`.
     #[inline(always)]
     pub(super) fn finish(
         &mut self,
@@ -259,7 +260,8 @@ impl<const N: usize> Results<N> {
     }
 }
 
-/// Adds a noise draw to each torque, except in lanes without noise and in those that this step only resets.
+/// Adds a noise draw to each torque, except in lanes without noise and in those that this step only
+/// resets.
 #[cold]
 fn add_noise<S: Real, const N: usize>(
     torques: &mut [S; N],

@@ -6,8 +6,8 @@ use crate::error::Error;
 use crate::math::{Lanes, Real};
 use crate::physics::check_torque;
 
-/// What a step of a batch applies to an acrobot: an action as a `u8` (0, 1 or 2) or an [`Action`], or
-/// any finite torque in N m, as the scalar of the arithmetic. No other type can implement it.
+/// What a step of a batch applies to an acrobot: an action as a `u8` (0, 1 or 2) or an [`Action`],
+/// or any finite torque in N m, as the scalar of the arithmetic. No other type can implement it.
 pub trait Input<S>: Copy + Sync {
     #[doc(hidden)]
     fn inputs(inputs: &[Self]) -> Inputs<'_, S>;
@@ -69,7 +69,8 @@ impl<S: Real> Inputs<'_, S> {
         }
     }
 
-    /// The torques of one block, N m, given those of the three actions. Lanes without an acrobot get a valid torque.
+    /// The torques of one block, N m, given those of the three actions. Lanes without an acrobot
+    /// get a valid torque.
     #[inline(always)]
     pub(super) fn torques<const N: usize>(self, of_actions: &[Lanes<S, N>; 3]) -> Lanes<S, N> {
         match self {
@@ -96,11 +97,7 @@ fn choose<S: Real, const N: usize>(
 
 /// Converts a block's inputs. The last block may have fewer than `N`; its other lanes get `rest`.
 #[inline(always)]
-fn read<T: Copy, U: Copy, const N: usize>(
-    from: &[T],
-    rest: U,
-    convert: impl Fn(T) -> U + Copy,
-) -> [U; N] {
+fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(T) -> U) -> [U; N] {
     let mut to = [rest; N];
     match <&[T; N]>::try_from(from) {
         Ok(from) => to

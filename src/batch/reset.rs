@@ -19,8 +19,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         self.reset_with(seed.into());
     }
 
-    /// Gymnasium's `reset(seed=…, options=…)` for all acrobots. A seed seeds acrobot `i` with the `i`-th
-    /// child that the seed has not yet spawned.
+    /// Gymnasium's `reset(seed=…, options=…)` for all acrobots. A seed seeds acrobot `i` with the
+    /// `i`-th child that the seed has not yet spawned.
     pub fn reset_with(&mut self, options: ResetOptions) {
         self.reset_lanes(core::iter::repeat(true), options);
     }
@@ -57,8 +57,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// [`Error::WrongLength`] unless there is one state for each acrobot, and [`Error::OutOfRange`] for a
-    /// number that is not finite.
+    /// [`Error::WrongLength`] unless there is one state for each acrobot, and [`Error::OutOfRange`]
+    /// for a number that is not finite.
     pub fn reset_to(&mut self, states: &[State<A::Scalar>]) -> Result<(), Error> {
         check_length("states", states.len(), self.len())?;
         states.iter().try_for_each(State::validate)?;

@@ -63,8 +63,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// # Errors
     ///
     /// Those of the format, of [`new`](Self::new), of [`set_member`](Self::set_member), of
-    /// [`ResetBounds::new`] and of [`ParamsRange::new`], and [`Error::WrongLength`] for another number of
-    /// members. The contents of the memory are then unspecified.
+    /// [`ResetBounds::new`] and of [`ParamsRange::new`], and [`Error::WrongLength`] for another
+    /// number of members. The contents of the memory are then unspecified.
     pub fn from_snapshot<'de, D>(storage: S, deserializer: D) -> Result<Self, D::Error>
     where
         D: Deserializer<'de>,

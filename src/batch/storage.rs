@@ -5,9 +5,9 @@ use super::lane_params::LaneParams;
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
 
-/// The memory of a [`Batch`](super::Batch): arrays, slices or `Vec`s, as `(blocks, generators)` where
-/// acrobots share their parameters, and `(blocks, generators, lane_params)` where each has its own.
-/// Their lengths must never change.
+/// The memory of a [`Batch`](super::Batch): arrays, slices or `Vec`s, as `(blocks, generators)`
+/// where acrobots share their parameters, and `(blocks, generators, lane_params)` where each has
+/// its own. Their lengths must never change.
 ///
 /// ```
 /// use acrobot::batch::{Batch, Block, LaneParams};
@@ -28,8 +28,8 @@ pub trait Storage<A: Arithmetic, const N: usize>: SealedStorage<A, N> {}
 
 impl<A: Arithmetic, S: SealedStorage<A, N>, const N: usize> Storage<A, N> for S {}
 
-/// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters: one
-/// [`LaneParams`] for each block, or none where acrobots share them.
+/// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters:
+/// one [`LaneParams`] for each block, or none where acrobots share them.
 #[derive(Debug)]
 pub struct Slices<'a, A: Arithmetic, const N: usize> {
     pub blocks: &'a [Block<A, N>],

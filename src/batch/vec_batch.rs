@@ -20,9 +20,9 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 /// It has all methods of [`Batch`], except that its steps return their results, and its resets the
 /// observations. On a core without SIMD, an `N` of 1 takes less memory than 16.
 ///
-/// A [`Batch`] of another length may replace the one inside, for example by [`core::mem::swap`]. The
-/// next results need new memory: without it a step returns [`Error::OutOfMemory`], and the observations
-/// are empty.
+/// A [`Batch`] of another length may replace the one inside, for example by [`core::mem::swap`].
+/// The next results need new memory: without it a step returns [`Error::OutOfMemory`], and the
+/// observations are empty.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -37,14 +37,16 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
-/// Each acrobot can have its own parameters: [an example that draws them](crate::guide::rust#many-at-once).
+/// Each acrobot can have its own parameters: [an example that draws
+/// them](crate::guide::rust#many-at-once).
 #[derive(Clone, Debug)]
 pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
     batch: InVecs<A, N>,
     results: StepResults,
 }
 
-/// The results of a step of a [`VecBatch`], with one element for each acrobot. The next step overwrites them.
+/// The results of a step of a [`VecBatch`], with one element for each acrobot. The next step
+/// overwrites them.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StepResults {
@@ -56,8 +58,8 @@ pub struct StepResults {
     pub truncated: Vec<bool>,
     /// The observations of the new states.
     pub observations: Vec<[f32; 6]>,
-    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the episodes
-    /// that this step ended. Those of other acrobots are older, or 0.
+    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the
+    /// episodes that this step ended. Those of other acrobots are older, or 0.
     pub final_observations: Vec<[f32; 6]>,
 }
 
@@ -105,7 +107,8 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         self.observations()
     }
 
-    /// Calls [`Batch::reset_masked`], with its errors, and returns the observations of all acrobots.
+    /// Calls [`Batch::reset_masked`], with its errors, and returns the observations of all
+    /// acrobots.
     pub fn reset_masked(
         &mut self,
         mask: &[bool],
@@ -149,8 +152,8 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         self.step_by(|batch, buffers| batch.step(inputs, buffers))
     }
 
-    /// As [`step`](Self::step), with its errors, on all cores with rayon. The number of threads changes
-    /// no bit.
+    /// As [`step`](Self::step), with its errors, on all cores with rayon. The number of threads
+    /// changes no bit.
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.par_step(inputs, buffers))

@@ -1,4 +1,5 @@
-//! The environment that [`make`](super::make) wraps: an acrobot with a kind of observation and a render mode.
+//! The environment that [`make`](super::make) wraps: an acrobot with a kind of observation and a
+//! render mode.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -67,7 +68,8 @@ pub struct AcrobotEnv<A: Arithmetic, O> {
 }
 
 impl<A: Arithmetic, O: ObservationKind> AcrobotEnv<A, O> {
-    /// An environment in the initial state of seed 0, with the errors of [`DynAcrobot::set_params`].
+    /// An environment in the initial state of seed 0, with the errors of
+    /// [`DynAcrobot::set_params`].
     pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, Rejected> {
         let mut env = Self {
             render_mode,
@@ -159,15 +161,15 @@ pub trait DynAcrobot {
     /// The state, converted to `f64` exactly.
     fn state(&self) -> State;
 
-    /// [`Acrobot::set_state`] with the state rounded to the arithmetic's scalar, and its errors, for the
-    /// state as given and as rounded.
+    /// [`Acrobot::set_state`] with the state rounded to the arithmetic's scalar, and its errors,
+    /// for the state as given and as rounded.
     fn set_state(&mut self, state: State) -> Result<(), Rejected>;
 
     /// The parameters, converted to `f64` exactly.
     fn params(&self) -> Params;
 
-    /// [`Acrobot::set_params`] with the parameters rounded to the arithmetic's scalar, and its errors,
-    /// for the parameters as given and as rounded.
+    /// [`Acrobot::set_params`] with the parameters rounded to the arithmetic's scalar, and its
+    /// errors, for the parameters as given and as rounded.
     fn set_params(&mut self, params: Params) -> Result<(), Rejected>;
 
     /// The figure to draw.

@@ -18,7 +18,8 @@ pub trait Space {
     /// Whether `element` is in it.
     fn contains(&self, element: &Self::Element) -> bool;
 
-    /// Draws a random element: Gymnasium's `sample()`, if `rng` is a `Pcg64` with the seed of its space.
+    /// Draws a random element: Gymnasium's `sample()`, if `rng` is a `Pcg64` with the seed of its
+    /// space.
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Element;
 }
 
@@ -95,8 +96,8 @@ pub struct BoxSpace<T> {
 }
 
 impl<T: AsRef<[f32]>> BoxSpace<T> {
-    /// The vectors from `low` to `high`. `None` if the two differ in length, a bound is not finite, or a
-    /// lower bound is above its upper bound.
+    /// The vectors from `low` to `high`. `None` if the two differ in length, a bound is not finite,
+    /// or a lower bound is above its upper bound.
     #[must_use]
     pub fn new(low: T, high: T) -> Option<Self> {
         let (lows, highs) = (low.as_ref(), high.as_ref());

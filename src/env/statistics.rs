@@ -57,8 +57,8 @@ impl<E> RecordEpisodeStatistics<E> {
         self.episodes.iter()
     }
 
-    /// The mean return of these episodes, to compare with [`REWARD_THRESHOLD`](crate::REWARD_THRESHOLD).
-    /// `None` before the first has ended.
+    /// The mean return of these episodes, to compare with
+    /// [`REWARD_THRESHOLD`](crate::REWARD_THRESHOLD). `None` before the first has ended.
     #[must_use]
     pub fn mean_return(&self) -> Option<f32> {
         let sum: f32 = self.episodes().map(|episode| episode.episode_return).sum();

@@ -1,16 +1,16 @@
 //! NumPy's `SeedSequence`: turns a seed into the initial state of a generator.
 //!
 //! The algorithm is M. E. O'Neill's `seed_seq_fe`
-//! (<https://www.pcg-random.org/posts/developing-a-seed_seq-alternative.html>), with NumPy's constants
-//! and order (<https://numpy.org/doc/stable/reference/random/bit_generators/>).
+//! (<https://www.pcg-random.org/posts/developing-a-seed_seq-alternative.html>), with NumPy's
+//! constants and order (<https://numpy.org/doc/stable/reference/random/bit_generators/>).
 
 #[cfg(feature = "std")]
 use crate::error::Error;
 
 /// A hashed seed: NumPy's `SeedSequence` of any non-negative integer, and its children.
 ///
-/// It keeps the hashed seed: at most 48 bytes, however large the seed. It is not `Copy`, so that two
-/// copies do not spawn the same children by accident.
+/// It keeps the hashed seed: at most 48 bytes, however large the seed. It is not `Copy`, so that
+/// two copies do not spawn the same children by accident.
 ///
 /// ```
 /// use acrobot::numpy::SeedSequence;
@@ -28,7 +28,8 @@ pub struct SeedSequence {
     pool: [u32; 4],
     /// The multiplier of the next `hash`, which changes it.
     hash_multiplier: u32,
-    /// The number of children spawned. It cannot overflow in practice: one call spawns fewer than 2⁶⁴.
+    /// The number of children spawned. It cannot overflow in practice: one call spawns fewer than
+    /// 2⁶⁴.
     spawned: u128,
 }
 
@@ -42,8 +43,8 @@ impl SeedSequence {
         Self::from_words(&[seed as u32, (seed >> 32) as u32])
     }
 
-    /// The sequence of the integer with these 32-bit digits, the lowest first. An empty slice is the
-    /// integer 0.
+    /// The sequence of the integer with these 32-bit digits, the lowest first. An empty slice is
+    /// the integer 0.
     #[must_use]
     #[expect(clippy::indexing_slicing, reason = "the pool has 4 words")]
     #[inline(never)] // saves flash, as does `hash`, which it calls sixteen times
@@ -84,7 +85,8 @@ impl SeedSequence {
         sequence
     }
 
-    /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call returns other children.
+    /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call
+    /// returns other children.
     pub fn spawn(&mut self, n: u64) -> impl Iterator<Item = Self> + use<> {
         let parent = self.clone();
         self.spawned = parent.spawned.saturating_add(n.into());
@@ -166,12 +168,13 @@ impl From<u64> for SeedSequence {
 impl std::str::FromStr for SeedSequence {
     type Err = Error;
 
-    /// The sequence of a decimal integer with up to 4300 digits, as many as Python's `int` parses by
-    /// default. For a larger one: [`from_words`](Self::from_words).
+    /// The sequence of a decimal integer with up to 4300 digits, as many as Python's `int` parses
+    /// by default. For a larger one: [`from_words`](Self::from_words).
     ///
     /// # Errors
     ///
-    /// [`Error::SeedTooLong`], and [`Error::MalformedSeed`] with the first character that is not a digit.
+    /// [`Error::SeedTooLong`], and [`Error::MalformedSeed`] with the first character that is not a
+    /// digit.
     fn from_str(text: &str) -> Result<Self, Error> {
         // The time is quadratic in the length.
         let (len, limit) = (text.len(), 4300);

@@ -9,15 +9,15 @@ use super::task::Task;
 use crate::error::Error;
 use crate::math::{Numbers, Real};
 
-/// The numbers that an acrobot computes with: a scalar, its sines and the form of the equations. They
-/// determine every bit of a result.
+/// The numbers that an acrobot computes with: a scalar, its sines and the form of the equations.
+/// They determine every bit of a result.
 ///
 /// [`Fast`](crate::Fast), [`Portable`](crate::Portable) and [others](crate::arithmetic#structs)
 /// implement it. Implement it [for a hardware sine unit](crate::arithmetic).
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
-    /// A short name in lower case. Snapshots hold it, so no other arithmetic can load them. With more
-    /// than 16 bytes, code that saves or loads a snapshot does not compile. The crate's names are
-    /// "reference", "portable", "fast", "micro" and "host".
+    /// A short name in lower case. Snapshots hold it, so no other arithmetic can load them. With
+    /// more than 16 bytes, code that saves or loads a snapshot does not compile. The crate's names
+    /// are "reference", "portable", "fast", "micro" and "host".
     const NAME: &'static str;
 
     /// The type of angles, velocities, torques and parameters.
@@ -26,7 +26,8 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// How the equations of motion are evaluated.
     const FORM: Form = Form::Lean;
 
-    /// Whether the joints can have [friction](Viscous), as in [`Damped`](crate::arithmetic::Damped).
+    /// Whether the joints can have [friction](Viscous), as in
+    /// [`Damped`](crate::arithmetic::Damped).
     const HAS_FRICTION: bool = false;
 
     /// Sine and cosine of `x` rad. Both must be within \[−1, 1\] for every finite `x`.

@@ -7,9 +7,11 @@ use crate::math::Real;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Form {
-    /// Solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.
+    /// Solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's
+    /// bits.
     Lean,
-    /// As Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
+    /// As Gymnasium's source has them: four divisions and four trigonometric calls for each
+    /// evaluation.
     Gymnasium,
 }
 
@@ -67,7 +69,8 @@ impl<V: Copy> Model<V> {
     }
 }
 
-/// A scalar with the models of the default parameters: `f32` or `f64`. A generic constant cannot compute them.
+/// A scalar with the models of the default parameters: `f32` or `f64`. A generic constant cannot
+/// compute them.
 pub trait Modeled: Real {
     /// The models of [`Params::DEFAULT`] and [`Params::SWINGUP`] in the lean form.
     #[doc(hidden)]
@@ -86,14 +89,15 @@ impl<S: Modeled> Params<S> {
     /// The parameters of Gymnasium's `Acrobot-v1`, each rounded to the scalar.
     pub const DEFAULT: Self = S::LEAN[0].params;
 
-    /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step of 0.01 s and
-    /// torques of ±2 N m. Its velocities have no bounds.
+    /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step
+    /// of 0.01 s and torques of ±2 N m. Its velocities have no bounds.
     pub const SWINGUP: Self = S::LEAN[1].params;
 }
 
 for_f32_and_f64! {
     impl Model<S> {
-        /// See [`Modeled::model`]. Squares are given, because `Host` computes them with the C library.
+        /// See [`Modeled::model`]. Squares are given, because `Host` computes them with the C
+        /// library.
         #[inline(always)]
         pub(crate) const fn new(
             form: Form,

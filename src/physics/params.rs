@@ -11,18 +11,19 @@ use crate::math::Real;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dynamics {
-    /// Those of Sutton & Barto, *Reinforcement Learning: An Introduction*: the physical double pendulum.
+    /// Those of Sutton & Barto, *Reinforcement Learning: An Introduction*: the physical double
+    /// pendulum.
     #[default]
     Book,
-    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996). The centrifugal term
-    /// in θ̇1² of the second joint is missing, so energy is not conserved.
+    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996). The
+    /// centrifugal term in θ̇1² of the second joint is missing, so energy is not conserved.
     Nips,
 }
 
 /// The parameters of an acrobot. [`Params::DEFAULT`] has Gymnasium's values.
 ///
-/// Link 1 hangs from the fixed joint and link 2 from the tip of link 1. The motor is between the two
-/// links. All fields are in SI units; [`validate`](Self::validate) checks their ranges.
+/// Link 1 hangs from the fixed joint and link 2 from the tip of link 1. The motor is between the
+/// two links. All fields are in SI units; [`validate`](Self::validate) checks their ranges.
 ///
 /// ```
 /// use acrobot::Params;
@@ -38,8 +39,8 @@ pub enum Dynamics {
 pub struct Params<S = f64> {
     /// Length of link 1, m; above 0.
     pub length1: S,
-    /// Length of link 2, m; above 0. Only [`positions`](super::Pendulum::positions), the tip's height
-    /// and drawings use it: the equations of motion and Gymnasium's goal do not.
+    /// Length of link 2, m; above 0. Only [`positions`](super::Pendulum::positions), the tip's
+    /// height and drawings use it: the equations of motion and Gymnasium's goal do not.
     pub length2: S,
     /// Mass of link 1, kg; above 0.
     pub mass1: S,
@@ -62,15 +63,16 @@ pub struct Params<S = f64> {
     pub max_velocity1: S,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
-    /// Torques of the three actions, N m, in the order of their numbers; finite. They do not limit `step_torque`.
+    /// Torques of the three actions, N m, in the order of their numbers; finite. They do not limit
+    /// `step_torque`.
     pub torques: [S; 3],
     /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise), rounded to
     /// the scalar, to the torque. 0 draws nothing.
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
-    /// The friction of the joints. Only [`Damped`](crate::arithmetic::Damped) arithmetics accept one
-    /// that is not 0.
+    /// The friction of the joints. Only [`Damped`](crate::arithmetic::Damped) arithmetics accept
+    /// one that is not 0.
     pub friction: Viscous<S>,
 }
 
@@ -151,7 +153,8 @@ impl<S: Copy> Params<S> {
         ]
     }
 
-    /// Applies `f` to each pair of numbers, in the order of the fields. The dynamics are those of `self`.
+    /// Applies `f` to each pair of numbers, in the order of the fields. The dynamics are those of
+    /// `self`.
     #[inline(always)]
     pub(crate) fn zip<T: Copy, U>(
         &self,
@@ -211,8 +214,8 @@ for_f32_and_f64! {
     }
 }
 
-/// The moment of inertia of a capsule of 1 kg about an axis across its centre, kg m². The centres of
-/// its hemispheres are 1 m apart. As in MuJoCo, its density is uniform.
+/// The moment of inertia of a capsule of 1 kg about an axis across its centre, kg m². The centres
+/// of its hemispheres are 1 m apart. As in MuJoCo, its density is uniform.
 const fn inertia_of_capsule(radius: f64) -> f64 {
     let (cylinder, sphere) = (1.0, 4.0 / 3.0 * radius);
     let whole = cylinder + sphere;

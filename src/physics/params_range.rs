@@ -36,8 +36,8 @@ impl<S: Real> ParamsRange<S> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`], [`Error::ReversedRange`] for a parameter whose `low` is above its
-    /// `high`, [`Error::OutOfRange`] for an infinite width, and [`Error::DifferentDynamics`].
+    /// Those of [`Params::validate`], [`Error::ReversedRange`] for a parameter whose `low` is above
+    /// its `high`, [`Error::OutOfRange`] for an infinite width, and [`Error::DifferentDynamics`].
     pub fn new(low: Params<S>, high: Params<S>) -> Result<Self, Error> {
         low.validate()?;
         high.validate()?;

@@ -13,8 +13,9 @@ use crate::math::{Real, SinCos};
 
 /// A double pendulum with a motor between its links.
 ///
-/// `A` is the [arithmetic](crate::arithmetic), which determines every bit. [`hanging`](Self::hanging)
-/// and [`Params::pendulum`](Params#method.pendulum) make a pendulum in a `const` or a `static`.
+/// `A` is the [arithmetic](crate::arithmetic), which determines every bit.
+/// [`hanging`](Self::hanging) and [`Params::pendulum`](Params#method.pendulum) make a pendulum in a
+/// `const` or a `static`.
 ///
 /// ```
 /// use acrobot::Portable;
@@ -22,17 +23,21 @@ use crate::math::{Real, SinCos};
 ///
 /// const HANGING: Pendulum<Portable> = Pendulum::hanging();
 ///
-/// assert!((HANGING.energy() + 9.8 * (0.5 + 1.5)).abs() < 1e-12);
-/// assert_eq!(HANGING.mass_matrix(), [[4.5, 1.75], [1.75, 1.25]]);
-/// assert_eq!(HANGING.positions(), [[0.0, -1.0], [0.0, -2.0]]);
-/// assert_eq!(HANGING.tip_height(), -2.0);
+/// assert!((HANGING.energy() + 9.8 * (0.5 + 1.5)).abs() < 1e-12); // J
+/// assert_eq!(HANGING.mass_matrix(), [[4.5, 1.75], [1.75, 1.25]]); // kg m²
+/// assert_eq!(HANGING.positions(), [[0.0, -1.0], [0.0, -2.0]]); // m
+///
+/// let mut pendulum = HANGING;
+/// pendulum.step(1.0)?; // N m
+/// assert!(pendulum.tip_height() > -2.0); // m
+/// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
 /// # Results that are not finite
 ///
 /// With extreme but valid parameters, states or torques a step can overflow. A step whose result is
-/// not finite keeps the angles and sets both velocities to 0, in every arithmetic and in batches. So
-/// no step hangs, panics or returns NaN.
+/// not finite keeps the angles and sets both velocities to 0, in every arithmetic and in batches.
+/// So no step hangs, panics or returns NaN.
 #[derive(Clone, Debug)]
 pub struct Pendulum<A: Arithmetic> {
     /// θ1, θ2, θ̇1 and θ̇2.
@@ -55,8 +60,8 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`] and [`State::validate`], and [`Error::OutOfRange`] for friction in
-    /// an arithmetic [without it](Arithmetic::HAS_FRICTION).
+    /// Those of [`Params::validate`] and [`State::validate`], and [`Error::OutOfRange`] for
+    /// friction in an arithmetic [without it](Arithmetic::HAS_FRICTION).
     pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
         check_params::<A>(&params)?;
         state.validate()?;
@@ -84,8 +89,8 @@ impl<A: Arithmetic> Pendulum<A> {
         }
     }
 
-    /// Applies a torque, N m, for one dt. [`bound`](super::bound) limits it to that of a motor. Returns
-    /// whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
+    /// Applies a torque, N m, for one dt. [`bound`](super::bound) limits it to that of a motor.
+    /// Returns whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
     ///
     /// # Errors
     ///
@@ -152,8 +157,8 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`], and [`Error::OutOfRange`] for friction in an arithmetic [without
-    /// it](Arithmetic::HAS_FRICTION).
+    /// Those of [`Params::validate`], and [`Error::OutOfRange`] for friction in an arithmetic
+    /// [without it](Arithmetic::HAS_FRICTION).
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         check_params::<A>(&params)?;
         self.model = model::<A>(params);
@@ -175,9 +180,9 @@ impl<A: Arithmetic> Pendulum<A> {
         height
     }
 
-    /// The derivative of the state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque, N m, by
-    /// the [equations](crate::guide::equations) of [`Params::dynamics`]. A torque that is not finite
-    /// gives what IEEE 754 gives.
+    /// The derivative of the state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque, N
+    /// m, by the [equations](crate::guide::equations) of [`Params::dynamics`]. A torque that is not
+    /// finite gives what IEEE 754 gives.
     ///
     /// Your own integrator sets each state at which it needs the derivative:
     ///
@@ -218,8 +223,8 @@ impl<A: Arithmetic> Pendulum<A> {
         kinetic - common.gravity1 * cos1 - common.gravity2 * cos_sum
     }
 
-    /// The mass matrix M at the state, kg m², symmetric and positive definite. The kinetic energy is
-    /// θ̇ᵀ M θ̇ / 2. Extreme parameters can make its elements infinite or NaN.
+    /// The mass matrix M at the state, kg m², symmetric and positive definite. The kinetic energy
+    /// is θ̇ᵀ M θ̇ / 2. Extreme parameters can make its elements infinite or NaN.
     #[must_use]
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
         let [_, (_, cos2)] = self.sin_cos();
@@ -260,8 +265,8 @@ impl<A: Arithmetic> Pendulum<A> {
 
 for_f32_and_f64! {
     impl Params<S> {
-        /// [`Pendulum::new`] in a `const`, for every arithmetic except `Host`, which squares with the C
-        /// library:
+        /// [`Pendulum::new`] in a `const`, for every arithmetic except `Host`, which squares with
+        /// the C library:
         ///
         /// ```compile_fail,E0080
         /// use acrobot::arithmetic::Host;

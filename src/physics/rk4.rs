@@ -7,8 +7,8 @@ use super::equations::derivative;
 use super::model::{Form, Model};
 use crate::math::{Numbers, Real, SinCos};
 
-/// The state \[θ1, θ2, θ̇1, θ̇2\] one dt after `y`, under a constant torque, N m. `sin_cos` are the sines
-/// and cosines of θ1 and θ2.
+/// The state \[θ1, θ2, θ̇1, θ̇2\] one dt after `y`, under a constant torque, N m. `sin_cos` are the
+/// sines and cosines of θ1 and θ2.
 // No closure for the derivative: LLVM keeps a large one out of line, without its caller's SIMD.
 #[inline(always)]
 pub(super) fn rk4<A: Arithmetic, V: Numbers<A::Scalar>>(

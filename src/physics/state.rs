@@ -8,8 +8,8 @@ use crate::numpy::uniform;
 
 /// The state of an acrobot: two angles and their velocities.
 ///
-/// After a step the angles are within \[−π, π\] and the velocities within their bounds. Before, a state
-/// may be outside, as in Gymnasium. The default is hanging at rest.
+/// After a step the angles are within \[−π, π\] and the velocities within their bounds. Before, a
+/// state may be outside, as in Gymnasium. The default is hanging at rest.
 ///
 /// ```
 /// use acrobot::State;
@@ -133,13 +133,13 @@ impl ResetBounds {
         high: core::f64::consts::PI,
     };
 
-    /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state. Beyond ±π and
-    /// the velocity bounds, the first step wraps the angles and bounds the velocities.
+    /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state. Beyond ±π
+    /// and the velocity bounds, the first step wraps the angles and bounds the velocities.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedRange`] for a
-    /// `low` above `high`.
+    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedRange`]
+    /// for a `low` above `high`.
     pub const fn new(low: f64, high: f64) -> Result<Self, Error> {
         let unit = "rad and rad/s";
         if let Err(error) = Range::InF32.check("low", low, unit) {

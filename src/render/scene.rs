@@ -65,7 +65,8 @@ impl Figure {
     }
 }
 
-/// A figure in the pixels of one target. The parts overlap as in Gymnasium, the lower link over the upper.
+/// A figure in the pixels of one target. The parts overlap as in Gymnasium, the lower link over the
+/// upper.
 struct Scene {
     /// Corners of a rectangle around all parts except the line.
     corners: [Point; 2],
@@ -81,12 +82,13 @@ struct Scene {
 /// Targets with fewer pixels than this in one direction show no arrow.
 const ROOM_FOR_ARROW: u32 = 48;
 
-/// A bar covers pixels with centres up to this far from it, pixels, as in Gymnasium, which truncates
-/// the corners of a link to whole pixels and includes them.
+/// A bar covers pixels with centres up to this far from it, pixels, as in Gymnasium, which
+/// truncates the corners of a link to whole pixels and includes them.
 const TOLERANCE: f32 = 0.5;
 
 impl Scene {
-    /// `None` for an area without pixels, and for an area beyond `i32::MAX`, where embedded-graphics would overflow.
+    /// `None` for an area without pixels, and for an area beyond `i32::MAX`, where
+    /// embedded-graphics would overflow.
     fn new(figure: &Figure, area: Rectangle) -> Option<Self> {
         let Size { width, height } = area.size;
         let last = |start: i32, side: u32| {
@@ -152,8 +154,8 @@ impl Scene {
     }
 }
 
-/// Three quarters of a turn around `center`, open below, with two barbs at the end. A positive `direction` is
-/// counter-clockwise.
+/// Three quarters of a turn around `center`, open below, with two barbs at the end. A positive
+/// `direction` is counter-clockwise.
 fn arrow(center: Vector, radius: f32, direction: f32) -> [Bar; 8] {
     const D: f32 = core::f32::consts::FRAC_1_SQRT_2;
     const END: Vector = [-D, D];

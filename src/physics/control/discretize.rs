@@ -20,11 +20,12 @@ pub struct DiscreteModel<S = f64> {
     pub b: [S; 4],
 }
 
-/// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant during the step.
+/// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant
+/// during the step.
 ///
 /// The result is the derivative of the Runge-Kutta step that [`Pendulum::step`] takes, exact up to
-/// rounding, and not a matrix exponential. The state need not be an equilibrium: x′ is the deviation
-/// from the state after the step. Bounds of the velocities do not count.
+/// rounding, and not a matrix exponential. The state need not be an equilibrium: x′ is the
+/// deviation from the state after the step. Bounds of the velocities do not count.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;

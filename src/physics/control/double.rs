@@ -54,7 +54,8 @@ impl Mul for Double {
 
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
-        // The rounding error of the product, from exact products of half as many digits (T. J. Dekker).
+        // The rounding error of the product, from exact products of half as many digits (T. J.
+        // Dekker).
         let ([a, b], [c, d]) = (split(self.0), split(other.0));
         let product = self.0 * other.0;
         let lost = ((a * c - product) + a * d + b * c) + b * d;

@@ -4,7 +4,8 @@ use core::fmt;
 
 use crate::error::Error;
 
-/// Why a model, a force or a regulator cannot be computed. `Display` names the value, its unit and the rule.
+/// Why a model, a force or a regulator cannot be computed. `Display` names the value, its unit and
+/// the rule.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -14,8 +14,8 @@ use crate::physics::pendulum::Pendulum;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Forces<S = f64> {
-    /// The torques on θ1 and θ2 that the motion needs, N m. The second is that of the motor. The first
-    /// joint has none, so the acrobot can move in this way only if the first torque is 0.
+    /// The torques on θ1 and θ2 that the motion needs, N m. The second is that of the motor. The
+    /// first joint has none, so the acrobot can move in this way only if the first torque is 0.
     pub torques: [S; 2],
     /// The force of the fixed joint on link 1, \[x, y\] in N, x to the right and y up.
     pub reaction: [S; 2],
@@ -23,12 +23,13 @@ pub struct Forces<S = f64> {
     pub elbow: [S; 2],
 }
 
-/// The torques and forces that the accelerations \[θ̈1, θ̈2\], rad/s², need in the pendulum's state.
+/// The torques and forces that the accelerations \[θ̈1, θ̈2\], rad/s², need in the pendulum's
+/// state.
 ///
-/// This is the inverse of [`Pendulum::derivative`], by the recursive Newton-Euler method (J. Y. S. Luh,
-/// M. W. Walker and R. P. C. Paul, *On-Line Computational Scheme for Mechanical Manipulators*, 1980).
-/// Accelerations of 0 at rest give the torques that hold the state. For [`Dynamics::Nips`] the
-/// torques are those of its equations; the forces follow from the motion by Newton's law.
+/// This is the inverse of [`Pendulum::derivative`], by the recursive Newton-Euler method (J. Y. S.
+/// Luh, M. W. Walker and R. P. C. Paul, *On-Line Computational Scheme for Mechanical Manipulators*,
+/// 1980). Accelerations of 0 at rest give the torques that hold the state. For [`Dynamics::Nips`]
+/// the torques are those of its equations; the forces follow from the motion by Newton's law.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
@@ -47,8 +48,9 @@ pub struct Forces<S = f64> {
 ///
 /// # Errors
 ///
-/// [`ControlError::Invalid`] for an acceleration that is not finite, and [`ControlError::NotFinite`]
-/// if extreme parameters or velocities make a torque or a force overflow.
+/// [`ControlError::Invalid`] for an acceleration that is not finite, and
+/// [`ControlError::NotFinite`] if extreme parameters or velocities make a torque or a force
+/// overflow.
 pub fn inverse_dynamics<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     [ddtheta1, ddtheta2]: [A::Scalar; 2],

@@ -9,8 +9,8 @@ use crate::physics::geometry::directions;
 use crate::physics::model::{Constants, Model};
 use crate::physics::pendulum::{Pendulum, check_torque};
 
-/// The model ẋ = A x + B u: x is the deviation from a state \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u
-/// that from a torque, N m.
+/// The model ẋ = A x + B u: x is the deviation from a state \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s,
+/// and u that from a torque, N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ContinuousModel<S = f64> {
@@ -21,7 +21,8 @@ pub struct ContinuousModel<S = f64> {
 }
 
 /// Linearizes the equations of motion about the pendulum's state and a torque, N m. The derivatives
-/// are exact up to rounding. In `f32`, parameters that differ by more than four decades can cost digits.
+/// are exact up to rounding. In `f32`, parameters that differ by more than four decades can cost
+/// digits.
 ///
 /// The state need not be an equilibrium: the model describes the difference from the rates at the
 /// state, [`Pendulum::derivative`]. Bounds of the velocities do not count.

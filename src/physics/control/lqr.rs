@@ -22,8 +22,8 @@ pub struct Lqr<S = f64> {
 }
 
 impl<S: Real> Lqr<S> {
-    /// The torque −K x, N m, for a [deviation](crate::physics::Pendulum::deviation) x from the state
-    /// of the linearization, rad and rad/s. Add the torque of the linearization, and
+    /// The torque −K x, N m, for a [deviation](crate::physics::Pendulum::deviation) x from the
+    /// state of the linearization, rad and rad/s. Add the torque of the linearization, and
     /// [`bound`](crate::physics::bound) the sum to that of a motor.
     #[must_use]
     pub fn torque(&self, x: [S; 4]) -> S {
@@ -42,8 +42,8 @@ impl<S: Real> Lqr<S> {
 /// The structured doubling algorithm (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin and C.-S. Wang,
 /// *Structure-Preserving Algorithms for Periodic Discrete-Time Algebraic Riccati Equations*, 2004)
 /// finds a gain. Newton's method (G. A. Hewer, *An Iterative Technique for the Computation of the
-/// Steady State Gains for the Discrete Optimal Regulator*, 1971), with residuals in twice the digits
-/// of `f64`, makes it exact up to rounding.
+/// Steady State Gains for the Discrete Optimal Regulator*, 1971), with residuals in twice the
+/// digits of `f64`, makes it exact up to rounding.
 ///
 /// ```
 /// use acrobot::physics::control::{DiscreteModel, lqr};
@@ -65,7 +65,8 @@ impl<S: Real> Lqr<S> {
 /// - [`ControlError::NotFinite`] for an element of the model, of `q` or of the result.
 /// - [`ControlError::NotSymmetric`] and [`ControlError::NotSemidefinite`] for such a `q`, where up
 ///   to 16 machine epsilons of the largest element count as 0.
-/// - [`ControlError::NotStabilizable`] if the torque does not reach a motion that grows or persists.
+/// - [`ControlError::NotStabilizable`] if the torque does not reach a motion that grows or
+///   persists.
 /// - [`ControlError::NotDetectable`] if `q` does not weight a motion that persists: one that needs
 ///   more than 2⁴⁰ steps to vanish.
 /// - [`ControlError::IllConditioned`] if the error of the gain can be above 1e-9 of its largest
@@ -191,9 +192,9 @@ impl Problem {
         (gain.map(|x| f64::from(x) / weight), weight)
     }
 
-    /// Newton's method, from a gain that stabilizes. It alternates between the cost of a gain and the
-    /// gain that is best for this cost. Residuals have twice the digits of `f64`, so each iteration
-    /// corrects the rounding of the one before.
+    /// Newton's method, from a gain that stabilizes. It alternates between the cost of a gain and
+    /// the gain that is best for this cost. Residuals have twice the digits of `f64`, so each
+    /// iteration corrects the rounding of the one before.
     #[inline(never)]
     fn refine(&self, (mut gain, cost): Solution) -> Result<Solution, ControlError> {
         let mut cost = widen(&cost);
@@ -257,8 +258,8 @@ impl Problem {
         (transpose(&narrow(&columns)), residual)
     }
 
-    /// A bound of the error that rounding leaves in a gain, times the weight of the torque; infinite
-    /// if the cost still changes.
+    /// A bound of the error that rounding leaves in a gain, times the weight of the torque;
+    /// infinite if the cost still changes.
     ///
     /// The rounding N of the residual has |N_ij| ≤ s_i s_j, because |P_ij|² ≤ P_ii P_jj. So N is
     /// between −4 diag(s²) and 4 diag(s²), and the error E of P between −L and L, if L is the cost
@@ -326,8 +327,8 @@ fn check_symmetric(q: &Matrix) -> Result<(), ControlError> {
     Ok(())
 }
 
-/// Subtracts (column columnᵀ) / pivot for the largest pivot on the diagonal, until none is above the
-/// rounding. Then only rounding remains of a positive semidefinite matrix.
+/// Subtracts (column columnᵀ) / pivot for the largest pivot on the diagonal, until none is above
+/// the rounding. Then only rounding remains of a positive semidefinite matrix.
 fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), ControlError> {
     let mut rest = *q;
     let rounding = relative_rounding * largest(q.as_flattened());
