@@ -1,7 +1,7 @@
 //! Friction of the joints.
 
 /// Viscous friction: each joint resists its velocity with a torque in proportion to it. Only
-/// [`Damped`](crate::arithmetic::Damped) arithmetics accept one that is not 0.
+/// arithmetics [with friction](crate::arithmetic::Damped) accept one that is not 0.
 ///
 /// ```
 /// use acrobot::arithmetic::Damped;

@@ -71,8 +71,7 @@ pub struct Params<S = f64> {
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
-    /// The friction of the joints. Only [`Damped`](crate::arithmetic::Damped) arithmetics accept
-    /// one that is not 0.
+    /// The friction of the joints. An arithmetic without friction rejects one that is not 0.
     pub friction: Viscous<S>,
 }
 
