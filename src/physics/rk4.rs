@@ -19,9 +19,10 @@ pub(super) fn rk4<A: Arithmetic, V: Numbers<A::Scalar>>(
 ) -> [V; 4] {
     let k1 = derivative::<A, V>(model, y, Some(sin_cos), torque);
     let common = &model.constants;
-    let (half, dt, sixth) = (common.half_dt, model.params.dt, common.sixth_dt);
+    let sixth = common.sixth_dt;
     if A::FORM == Form::Gymnasium {
         // Gymnasium's order of additions.
+        let (half, dt) = (common.half_dt, model.params.dt);
         let k2 = derivative::<A, V>(model, plus_scaled(y, half, k1), None, torque);
         let k3 = derivative::<A, V>(model, plus_scaled(y, half, k2), None, torque);
         let k4 = derivative::<A, V>(model, plus_scaled(y, dt, k3), None, torque);
@@ -33,7 +34,7 @@ pub(super) fn rk4<A: Arithmetic, V: Numbers<A::Scalar>>(
     // derivative only once, which saves flash.
     let third = sixth + sixth;
     let mut next = plus_scaled(y, sixth, k1);
-    let (mut k, mut h, mut stage) = (k1, half, 2);
+    let (mut k, mut h, mut stage) = (k1, common.half_dt, 2);
     loop {
         k = derivative::<A, V>(model, plus_scaled(y, h, k), None, torque);
         if stage == 4 {
@@ -41,7 +42,7 @@ pub(super) fn rk4<A: Arithmetic, V: Numbers<A::Scalar>>(
         }
         next = plus_scaled(next, third, k);
         if stage == 3 {
-            h = dt;
+            h = model.params.dt;
         }
         stage += 1;
     }
