@@ -97,7 +97,11 @@ fn choose<S: Real, const N: usize>(
 
 /// Converts a block's inputs. The last block may have fewer than `N`; its other lanes get `rest`.
 #[inline(always)]
-fn read<T: Copy, U: Copy, const N: usize>(from: &[T], rest: U, convert: impl Fn(T) -> U) -> [U; N] {
+fn read<T: Copy, U: Copy, const N: usize>(
+    from: &[T],
+    rest: U,
+    convert: impl Fn(T) -> U + Copy,
+) -> [U; N] {
     let mut to = [rest; N];
     match <&[T; N]>::try_from(from) {
         Ok(from) => to
