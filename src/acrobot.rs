@@ -16,9 +16,8 @@ use crate::reset_options::ResetOptions;
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
 
-/// The result of a step.
-///
-/// `O` is the type of the observation, `I` that of further information, such as the `Info` of an `Env`.
+/// The result of a step. `O` is the type of the observation, `I` that of further information, such
+/// as the `Info` of an `Env`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -29,7 +28,7 @@ pub struct Step<O = Observation, I = ()> {
     pub reward: f32,
     /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1. Never in a swing-up.
     pub terminated: bool,
-    /// Whether a time limit ended the episode. Always false without a [`TimeLimit`](crate::TimeLimit).
+    /// Whether a [`TimeLimit`](crate::TimeLimit) ended the episode.
     pub truncated: bool,
     /// Further information from the environment.
     pub info: I,
@@ -46,11 +45,10 @@ impl<O, I> Step<O, I> {
 
 /// One Acrobot: Gymnasium's environment without its wrappers.
 ///
-/// `A` is the [arithmetic](crate::arithmetic), which determines every bit. `R` is the generator for initial states and
-/// torque noise.
-///
-/// The state is always finite ([why](Pendulum#results-that-are-not-finite)). After the goal an acrobot can step on, as
-/// in Gymnasium. [`TimeLimit`](crate::TimeLimit) adds truncation.
+/// `A` is the [arithmetic](crate::arithmetic), which determines every bit. `R` is the generator for
+/// initial states and torque noise. The state [is always
+/// finite](Pendulum#results-that-are-not-finite). After the goal an acrobot can step on, as in
+/// Gymnasium. [`TimeLimit`](crate::TimeLimit) adds truncation.
 ///
 /// ```
 /// use acrobot::{Acrobot, Action, Fast};
@@ -65,25 +63,23 @@ impl<O, I> Step<O, I> {
 ///
 /// # Snapshots
 ///
-/// With the `serde` feature an acrobot can be saved and loaded; the loaded one continues bit-identically. A snapshot
-/// has only numbers of up to 64 bits and no optional field, so any serde format can hold it. The tests use JSON,
-/// postcard, CBOR, MessagePack, TOML, RON and YAML, also in flattened structs and in tagged enums.
+/// With the `serde` feature an acrobot can be saved and loaded; the loaded one continues
+/// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
+/// serde format can hold it. The tests use JSON, postcard, CBOR, MessagePack, TOML, RON and YAML,
+/// also in flattened structs and in tagged enums.
 ///
-/// The first field holds the type, the version (1) and the [name of the arithmetic](Arithmetic::NAME). Loading rejects
-/// other values of this field, and the error names both. Loading also rejects parameters and states that the setters
-/// reject. postcard's errors do not say why. The version of a [`TimeLimit`](crate::TimeLimit) is that of its acrobot.
-/// For a buffer there are `Acrobot::MAX_SNAPSHOT_SIZE` and `TimeLimit::MAX_SNAPSHOT_SIZE`, bytes in postcard's format.
+/// The first field holds the type, the version (1) and the [name of the
+/// arithmetic](Arithmetic::NAME). Loading rejects another one, and what the setters reject;
+/// postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
+/// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
 ///
-/// `Params`, `State` and `Pcg64` can also be saved alone, without a version. A saved [`Pcg64`] is the hash of a seed
-/// and a position in its stream, so any values make a valid generator.
+/// `Params`, `State` and [`Pcg64`] can also be saved alone, without a version.
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::arithmetic::Micro;
-/// use acrobot::{Acrobot, Fast};
+/// use acrobot::arithmetic::Micro; use acrobot::{Acrobot, Fast};
 ///
-/// let acrobot = Acrobot::<Fast>::new(42);
-/// let text = serde_json::to_string(&acrobot)?;
+/// let acrobot = Acrobot::<Fast>::new(42); let text = serde_json::to_string(&acrobot)?;
 /// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":1,"arithmetic":"fast"}"#));
 /// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
 ///
@@ -98,18 +94,16 @@ pub struct Acrobot<A: Arithmetic, R = Pcg64> {
 }
 
 impl<A: Arithmetic> Acrobot<A> {
-    /// An acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. For a
-    /// [`SeedSequence`](crate::numpy::SeedSequence): `Acrobot::with_rng(Pcg64::from(sequence))`.
+    /// An acrobot with the default parameters, in the initial state of Gymnasium's
+    /// `reset(seed=seed)`. For a [`SeedSequence`](crate::numpy::SeedSequence):
+    /// `Acrobot::with_rng(sequence.into())`.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self::with_rng(Pcg64::new(seed))
     }
 
-    /// As [`new`](Self::new), with other parameters. They change no initial state.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`].
+    /// As [`new`](Self::new), with other parameters, and the errors of
+    /// [`set_params`](Self::set_params). They change no initial state.
     pub fn with_params(seed: u64, params: Params<A::Scalar>) -> Result<Self, Error> {
         let mut acrobot = Self::new(seed);
         acrobot.set_params(params)?;
@@ -132,39 +126,14 @@ impl<A: Arithmetic> Acrobot<A> {
 }
 
 impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
-    /// An acrobot with the default parameters, in an initial state drawn from `rng`: a generator of
-    /// [`rand_core`](crate::rand_core) 0.10, as those of rand 0.10. One of rand 0.9 needs [an
-    /// adapter](crate::guide::rust#generators).
-    #[must_use]
-    pub fn with_rng(mut rng: R) -> Self {
-        let state = A::TASK.draw(A::TASK.reset_bounds(), &mut rng).cast();
-        let params = match A::TASK {
-            // Built field by field: see `Params::default`.
-            Task::Acrobot => Params::default(),
-            Task::Swingup | Task::SwingupSparse => const { default_model::<A>().params },
-        };
-        Self::from_pendulum(Pendulum::new_unchecked(params, state), rng)
-    }
-
-    /// Draws a new initial state from the task's [bounds](Task::reset_bounds) and returns its observation.
-    pub fn reset(&mut self) -> Observation {
-        self.begin(A::TASK.reset_bounds())
-    }
-
-    fn begin(&mut self, bounds: ResetBounds) -> Observation {
-        let state = A::TASK.draw(bounds, &mut self.rng).cast();
-        let sin_cos = self.pendulum.set_state_unchecked(state);
-        self.observe(sin_cos)
-    }
-
     /// Applies the torque of `action` for one dt.
     #[inline]
     pub fn step(&mut self, action: Action) -> Step {
         self.advance(self.params().torque(action))
     }
 
-    /// Applies any finite torque, N m, for one dt: for controllers. [`Params::torques`] does not limit it; `bound` in
-    /// [`physics`](crate::physics::bound) limits it to that of a motor.
+    /// Applies any finite torque, N m, for one dt. [`bound`](crate::physics::bound) limits it to
+    /// that of a motor.
     ///
     /// # Errors
     ///
@@ -197,41 +166,35 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
             info: (),
         }
     }
+
+    /// Draws a new initial state from the task's [bounds](Task::reset_bounds) and returns its
+    /// observation.
+    pub fn reset(&mut self) -> Observation {
+        self.begin(A::TASK.reset_bounds())
+    }
+
+    fn begin(&mut self, bounds: ResetBounds) -> Observation {
+        let state = A::TASK.draw(bounds, &mut self.rng).cast();
+        let sin_cos = self.pendulum.set_state_unchecked(state);
+        self.observe(sin_cos)
+    }
+
+    /// An acrobot with the default parameters, in an initial state drawn from `rng`: a generator of
+    /// [`rand_core`](crate::rand_core) 0.10, as those of rand 0.10. One of rand 0.9 needs [an
+    /// adapter](crate::guide::rust#generators).
+    #[must_use]
+    pub fn with_rng(mut rng: R) -> Self {
+        let state = A::TASK.draw(A::TASK.reset_bounds(), &mut rng).cast();
+        let params = match A::TASK {
+            // Built field by field: see `Params::default`.
+            Task::Acrobot => Params::default(),
+            Task::Swingup | Task::SwingupSparse => const { default_model::<A>().params },
+        };
+        Self::from_pendulum(Pendulum::new_unchecked(params, state), rng)
+    }
 }
 
 impl<A: Arithmetic, R> Acrobot<A, R> {
-    /// An acrobot with the default parameters that hangs at rest. It can be a `const` or a `static`.
-    ///
-    /// ```
-    /// use std::sync::Mutex;
-    ///
-    /// use acrobot::numpy::Pcg64;
-    /// use acrobot::{Acrobot, Action, Fast};
-    ///
-    /// static ACROBOT: Mutex<Acrobot<Fast>> = Mutex::new(Acrobot::hanging(Pcg64::new(42)));
-    ///
-    /// let mut acrobot = ACROBOT.lock().unwrap();
-    /// acrobot.step(Action::Positive);
-    /// ```
-    #[must_use]
-    pub const fn hanging(rng: R) -> Self {
-        Self::from_pendulum(Pendulum::hanging(), rng)
-    }
-
-    /// An acrobot with the parameters and the state of `pendulum`.
-    #[must_use]
-    pub const fn from_pendulum(pendulum: Pendulum<A>, rng: R) -> Self {
-        Self { pendulum, rng }
-    }
-
-    /// The pendulum, with its energy, positions, mass matrix and derivative. Its clone is a model of this acrobot without
-    /// noise.
-    #[must_use]
-    #[inline]
-    pub const fn pendulum(&self) -> &Pendulum<A> {
-        &self.pendulum
-    }
-
     /// The observation of the state.
     #[must_use]
     #[inline]
@@ -241,9 +204,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
 
     #[inline]
     fn observe(&self, sin_cos: [SinCos<A::Scalar>; 2]) -> Observation {
-        let State {
-            dtheta1, dtheta2, ..
-        } = self.state();
+        let [_, _, dtheta1, dtheta2] = self.state().into();
         Observation::of::<A>(sin_cos, [dtheta1, dtheta2])
     }
 
@@ -274,9 +235,17 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`].
+    /// Those of [`Pendulum::set_params`].
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         self.pendulum.set_params(params)
+    }
+
+    /// The pendulum, with its energy, positions, mass matrix and derivative. Its clone is a model
+    /// of this acrobot without noise.
+    #[must_use]
+    #[inline]
+    pub const fn pendulum(&self) -> &Pendulum<A> {
+        &self.pendulum
     }
 
     /// The generator.
@@ -292,6 +261,29 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     pub fn rng_mut(&mut self) -> &mut R {
         &mut self.rng
     }
+
+    /// An acrobot with the default parameters that hangs at rest: a `const` or a `static`, as in [a
+    /// first program](crate::guide::embedded#a-first-program).
+    #[must_use]
+    pub const fn hanging(rng: R) -> Self {
+        Self::from_pendulum(Pendulum::hanging(), rng)
+    }
+
+    /// An acrobot with the parameters and the state of `pendulum`, which [`Params::pendulum`] makes
+    /// [in a `const`](crate::guide::embedded).
+    #[must_use]
+    pub const fn from_pendulum(pendulum: Pendulum<A>, rng: R) -> Self {
+        Self { pendulum, rng }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<A: Arithmetic> Acrobot<A> {
+    /// The largest size of a snapshot in postcard's format, bytes, without a checksum.
+    pub const MAX_SNAPSHOT_SIZE: usize = crate::snapshot::Header::<A, false>::SIZE
+        + (18 + 4) * size_of::<A::Scalar>() // the parameters and the state
+        + 1 // the dynamics
+        + Pcg64::MAX_SNAPSHOT_SIZE;
 }
 
 #[cfg(feature = "defmt")]
@@ -316,7 +308,6 @@ mod snapshot {
 
     use super::Acrobot;
     use crate::arithmetic::Arithmetic;
-    use crate::numpy::Pcg64;
     use crate::physics::{Pendulum, State};
     use crate::snapshot::Header;
 
@@ -327,15 +318,6 @@ mod snapshot {
         params: P,
         state: State<S>,
         rng: R,
-    }
-
-    impl<A: Arithmetic> Acrobot<A> {
-        /// The largest size of a snapshot in postcard's format, bytes, without a checksum: of a buffer in firmware.
-        pub const MAX_SNAPSHOT_SIZE: usize = Header::<A, false>::SIZE
-            + 18 * size_of::<A::Scalar>() // the parameters and their dynamics
-            + 1
-            + 4 * size_of::<A::Scalar>() // the state
-            + Pcg64::MAX_SNAPSHOT_SIZE;
     }
 
     impl<A: Arithmetic, R: Serialize> Serialize for Acrobot<A, R> {

@@ -7,8 +7,8 @@ use rand_core::Rng;
 use crate::error::Error;
 use crate::numpy::integers;
 
-/// One of the three torques that an agent can apply between the links, numbered 0, 1 and 2 as in
-/// Gymnasium. [`Params::torques`](crate::Params::torques) holds their values in N m.
+/// One of the three torques between the links, numbered 0, 1 and 2 as in Gymnasium.
+/// [`Params::torques`](crate::Params::torques) has their values in N m.
 ///
 /// ```
 /// use acrobot::Action;
@@ -35,8 +35,8 @@ impl Action {
     /// All three actions, in the order of their numbers.
     pub const ALL: [Self; 3] = [Self::Negative, Self::Zero, Self::Positive];
 
-    /// Draws a random action, all equally likely: Gymnasium's `action_space.sample()`, if `rng` is a
-    /// [`Pcg64`](crate::numpy::Pcg64) with the seed given to `action_space.seed`.
+    /// Draws an action, all equally likely: Gymnasium's `action_space.sample()`, if `rng` is a
+    /// [`Pcg64`](crate::numpy::Pcg64) with the seed of the space.
     #[inline]
     pub fn sample<R: Rng + ?Sized>(rng: &mut R) -> Self {
         match integers(rng, const { NonZeroU32::new(3).unwrap() }) {

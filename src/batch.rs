@@ -1,7 +1,8 @@
 //! Many acrobots at once, each bit-identical to one alone.
 //!
-//! A [`Batch`] steps acrobots side by side, with SIMD and without a heap: it borrows or owns arrays, slices or
-//! `Vec`s. With the feature `alloc`, `VecBatch` is a batch that owns its memory and that of the results.
+//! A [`Batch`] steps acrobots side by side, with SIMD and without a heap: it borrows or owns
+//! arrays, slices or `Vec`s. With the feature `alloc`, `VecBatch` also owns the memory of the
+//! results.
 //!
 //! ```
 //! use acrobot::Fast;
@@ -56,9 +57,9 @@ use work::Work;
 
 /// Many acrobots, each with its own stream of random numbers.
 ///
-/// Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th child, under a
-/// [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side; with the `std` feature it uses
-/// the widest SIMD instructions that the machine has. Neither `N` nor the instructions change a bit.
+/// Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th
+/// child, under a [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side, with
+/// the [widest SIMD instructions](SimdLevel) of the machine. Neither changes a bit.
 ///
 /// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32:
 ///
@@ -69,24 +70,17 @@ use work::Work;
 ///
 /// # Snapshots
 ///
-/// With the `serde` feature a batch can be saved as a whole: settings, parameters and their range, states, progress,
-/// pending resets and generators. A loaded batch continues bit-identically, with any `N` and on any machine. A
-/// snapshot is a sequence of the settings and the members; the first field holds type, version and arithmetic, as in
-/// that of an [`Acrobot`](crate::Acrobot#snapshots).
+/// With the `serde` feature a batch can be saved as a whole: a sequence of the settings and the
+/// members. The first field is that of an [acrobot's](crate::Acrobot#snapshots) snapshot. A loaded
+/// batch continues bit-identically, with any `N` and on any machine.
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::Fast;
-/// use acrobot::batch::{Batch, Block};
-/// use acrobot::numpy::Pcg64;
+/// use acrobot::Fast; use acrobot::batch::{Batch, Block}; use acrobot::numpy::Pcg64;
 ///
-/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
-/// let batch = Batch::<Fast, _>::new(42, memory()).unwrap();
-/// let bytes = postcard::to_stdvec(&batch)?;
-/// let loaded = Batch::<Fast, _>::from_snapshot(
-///     memory(),
-///     &mut postcard::Deserializer::from_bytes(&bytes),
-/// )?;
+/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]); let batch = Batch::<Fast,
+/// _>::new(42, memory()).unwrap(); let bytes = postcard::to_stdvec(&batch)?; let loaded =
+/// Batch::<Fast, _>::from_snapshot( memory(), &mut postcard::Deserializer::from_bytes(&bytes), )?;
 /// assert_eq!(loaded.member(19), batch.member(19));
 /// # Ok::<(), postcard::Error>(())
 /// ```
@@ -98,14 +92,15 @@ pub struct Batch<A: Arithmetic, S, const N: usize = 16> {
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
-    /// A batch with one acrobot for each generator. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet
-    /// spawned, and is in its initial state. The batch has the default parameters, a limit of 500 steps and
-    /// [`Autoreset::NextStep`].
+    /// A batch with one acrobot for each generator, in its initial state. Acrobot `i` is seeded
+    /// with the `i`-th child that `seed` has not yet spawned. The batch has the default parameters,
+    /// the limit of the [task](crate::physics::Task::limit) and [`Autoreset::NextStep`].
     ///
     /// # Errors
     ///
-    /// [`Error::EmptyBatch`] without generators, and [`Error::WrongLength`] unless there is one block for each `N`
-    /// generators, and one [`LaneParams`] for each block or none. The last block may be partly filled.
+    /// [`Error::EmptyBatch`] without generators, and [`Error::WrongLength`] unless there is one
+    /// block for each `N` generators, the last partly filled, and one [`LaneParams`] for each block
+    /// or none.
     pub fn new(seed: impl Into<SeedSequence>, mut storage: S) -> Result<Self, Error> {
         const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
         let SlicesMut {
@@ -145,13 +140,14 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         self.storage.slices().generators.len()
     }
 
-    /// Applies an action or a torque to each acrobot for one dt: the numbers 0, 1 and 2, [`Action`](crate::Action)s, or
-    /// any finite torques in N m.
+    /// Applies an action or a torque to each acrobot for one dt: the numbers 0, 1 and 2,
+    /// [`Action`](crate::Action)s, or any finite torques in N m.
     ///
     /// # Errors
     ///
-    /// [`Error::WrongLength`] unless each slice has one element for each acrobot, [`Error::UnknownAction`] for a
-    /// number above 2, and [`Error::OutOfRange`] for a torque that is not finite.
+    /// [`Error::WrongLength`] unless each slice has one element for each acrobot,
+    /// [`Error::UnknownAction`] for a number above 2, and [`Error::OutOfRange`] for a torque that
+    /// is not finite.
     pub fn step<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],
@@ -162,11 +158,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         Ok(())
     }
 
-    /// As [`step`](Self::step), on all cores with rayon. The number of threads changes no bit.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`step`](Self::step).
+    /// As [`step`](Self::step), with its errors, on all cores with rayon. The number of threads
+    /// changes no bit.
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(
         &mut self,
@@ -233,8 +226,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), and [`Error::OutOfRange`] for a number
-    /// that is not finite.
+    /// [`Error::NoSuchIndex`], and [`Error::OutOfRange`] for a number that is not finite.
     pub fn set_state(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
         self.block_of(index)?;
@@ -265,7 +257,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`](crate::Params::validate).
+    /// Those of [`Params::validate`].
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         check_params::<A>(&params)?;
         let model = model::<A>(params);
@@ -281,8 +273,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`](crate::Params::validate), [`Error::NoSuchIndex`] for an index of at least
-    /// [`len`](Self::len), and [`Error::SharedParams`] without memory for [`LaneParams`].
+    /// Those of [`Params::validate`], [`Error::NoSuchIndex`], and [`Error::SharedParams`] without
+    /// memory for [`LaneParams`].
     pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
         check_params::<A>(&params)?;
         self.block_of(index)?;
@@ -301,8 +293,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         }
     }
 
-    /// Sets the range from which each reset, also one in a step, first draws the acrobot's parameters and then its
-    /// initial state. With `None`, the default, a reset does not change parameters.
+    /// Sets the range from which each reset, also one in a step, draws the acrobot's parameters
+    /// before its initial state. With `None`, the default, a reset does not change parameters.
     ///
     /// # Errors
     ///
@@ -314,8 +306,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         }
         match &mut self.settings.parameters {
             Parameters::Own(own) => *own = range,
-            Parameters::Shared(_) if range.is_none() => {}
-            Parameters::Shared(_) => return Err(Error::SharedParams),
+            Parameters::Shared(_) if range.is_some() => return Err(Error::SharedParams),
+            Parameters::Shared(_) => {}
         }
         Ok(())
     }
@@ -326,7 +318,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         self.simd_level
     }
 
-    /// Sets the SIMD instructions that a step uses. A level that the machine does not have acts as the baseline.
+    /// Sets the SIMD instructions that a step uses. One that the machine does not have acts as the
+    /// baseline.
     pub fn set_simd_level(&mut self, level: SimdLevel) {
         self.simd_level = level;
     }
@@ -359,8 +352,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         self.settings.autoreset
     }
 
-    /// Sets when ended episodes are reset. Acrobots whose reset is pending are reset immediately by
-    /// [`Autoreset::SameStep`], and never by [`Autoreset::Disabled`].
+    /// Sets when ended episodes are reset. [`Autoreset::SameStep`] immediately resets acrobots
+    /// whose reset is pending, and [`Autoreset::Disabled`] never.
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.settings.autoreset = autoreset;
         for (block, generators, own) in each_block(&mut self.storage) {
@@ -369,17 +362,17 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     }
 }
 
-/// Each block with its generators and its own parameters, if there are any. The last block can have fewer than `N`
-/// generators.
+/// A block with its generators, of which the last has fewer than `N`, and its own parameters, if
+/// any.
+type Part<'a, A, const N: usize> = (
+    &'a mut Block<A, N>,
+    &'a mut [Pcg64],
+    Option<&'a mut LaneParams<A, N>>,
+);
+
 fn each_block<A: Arithmetic, const N: usize>(
     storage: &mut impl Storage<A, N>,
-) -> impl Iterator<
-    Item = (
-        &mut Block<A, N>,
-        &mut [Pcg64],
-        Option<&mut LaneParams<A, N>>,
-    ),
-> {
+) -> impl Iterator<Item = Part<'_, A, N>> {
     let slices = storage.slices_mut();
     let (mut generators, mut lane_params) = (slices.generators, slices.lane_params.iter_mut());
     let blocks = slices.blocks.iter_mut();

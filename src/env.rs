@@ -41,9 +41,8 @@ pub use statistics::RecordEpisodeStatistics;
 use crate::acrobot::Step;
 use crate::reset_options::ResetOptions;
 
-/// An environment: Gymnasium's `Env`, with its types known at compile time.
-///
-/// It is dyn-compatible: [`make`] returns a boxed [`DynEnv`]. [`check_env`] checks an implementation.
+/// An environment: Gymnasium's `Env`, with its types known at compile time. [`check_env`] checks an
+/// implementation.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -77,10 +76,9 @@ pub trait Env {
     /// The type of the environment without its wrappers: Gymnasium's `unwrapped`.
     type Unwrapped: ?Sized;
 
-    /// Gymnasium's `reset(seed=…, options=…)`: begins an episode and returns the observation of its initial state.
-    ///
-    /// A seed seeds the generator; without one the generator continues its stream. An environment that was never seeded
-    /// has seed 0, so runs are repeatable. Gymnasium takes entropy from the system instead.
+    /// Gymnasium's `reset(seed=…, options=…)`: begins an episode and returns the observation of its
+    /// initial state. Without a seed the generator continues its stream, which has seed 0 at first,
+    /// so runs are repeatable.
     fn reset_with(&mut self, options: ResetOptions) -> (Self::Observation, Info);
 
     /// Gymnasium's `reset()`.
@@ -106,13 +104,13 @@ pub trait Env {
     ///
     /// # Errors
     ///
-    /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if a [`Display`] renders on
-    /// itself.
+    /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if a
+    /// [`Display`] renders on itself.
     fn render(&mut self) -> Result<Rendering, Error> {
         Err(Error::NoRenderMode)
     }
 
-    /// Releases resources for rendering, such as a display. Afterwards nothing is rendered.
+    /// Releases resources for rendering. Afterwards nothing is rendered.
     fn close(&mut self) {}
 
     /// The environment without its wrappers.

@@ -2,10 +2,8 @@
 
 use core::fmt;
 
-/// Why an input was rejected. `Display` names the value, its unit and the rule; [`message`](Self::message) is only the
-/// kind of error.
-///
-/// A rejected call changes nothing.
+/// Why an input was rejected. `Display` names the value, its unit and the rule. A rejected call
+/// changes nothing.
 ///
 /// ```
 /// use acrobot::{Acrobot, Fast, Params};
@@ -26,11 +24,11 @@ pub enum Error {
         value: f64,
         /// The SI unit, such as `"rad/s"`.
         unit: &'static str,
-        /// The rule, which the message puts before the unit: `"finite and above 0"`.
+        /// The rule, before the unit: `"finite and above 0"`.
         rule: &'static str,
     },
-    /// A link has neither a moment of inertia nor a distance between its centre of mass and its joint, so
-    /// its acceleration is undetermined.
+    /// A link has neither a moment of inertia nor a distance between its centre of mass and its
+    /// joint, so its acceleration is undetermined.
     NoInertia {
         /// `"inertia1"` or `"inertia2"`.
         name: &'static str,
@@ -50,7 +48,7 @@ pub enum Error {
     },
     /// The two bounds of a range of parameters have different dynamics.
     DifferentDynamics,
-    /// The acrobots of a batch share their parameters: it has no memory for those of each.
+    /// A batch has no memory for the parameters of each acrobot.
     SharedParams,
     /// A batch has no acrobots.
     EmptyBatch,
@@ -97,7 +95,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// What is wrong, without numbers, whose formatting by `Display` needs [more flash than the
+    /// The kind of error. `Display` adds the numbers, and needs [more flash than the
     /// crate](crate::guide::embedded_figures#what-adds-flash).
     #[must_use]
     pub const fn message(&self) -> &'static str {
@@ -144,13 +142,9 @@ impl fmt::Display for Error {
                 "the lower {name} must not be above the upper one, got {low} and {high} {unit}"
             ),
             Self::DifferentDynamics | Self::SharedParams => f.write_str(self.message()),
-            Self::EmptyBatch => {
-                write!(f, "a batch must have at least 1 acrobot, got 0 generators")
-            }
+            Self::EmptyBatch => write!(f, "{}, got 0 generators", self.message()),
             #[cfg(feature = "alloc")]
-            Self::OutOfMemory { len } => {
-                write!(f, "a batch must fit into memory, got {len} acrobots")
-            }
+            Self::OutOfMemory { len } => write!(f, "{}, got {len} acrobots", self.message()),
             Self::WrongLength {
                 name,
                 len,
@@ -165,10 +159,10 @@ impl fmt::Display for Error {
             ),
             #[cfg(feature = "std")]
             Self::MalformedSeed { found, position } => {
-                write!(f, "seed must be a decimal integer of at least 0, got ")?;
+                f.write_str("seed must be a decimal integer of at least 0, got ")?;
                 match found {
                     Some(found) => write!(f, "{found:?} as character {position}"),
-                    None => write!(f, "an empty text"),
+                    None => f.write_str("an empty text"),
                 }
             }
             #[cfg(feature = "std")]
@@ -186,10 +180,10 @@ pub(crate) enum Range {
     Finite,
     AtLeastZero,
     AboveZero,
-    /// The positive normal numbers of `f32`: for velocity bounds, because observations are `f32`. NEON of 32-bit ARM
-    /// treats subnormal numbers as 0.
+    /// The positive normal numbers of `f32`: for velocity bounds, because observations are `f32`,
+    /// and NEON of 32-bit ARM treats subnormal numbers as 0.
     NormalF32,
-    /// Finite in `f32`: for reset bounds, because initial states are rounded to `f32`.
+    /// Finite in `f32`: for reset bounds, because initial states are `f32`.
     InF32,
 }
 
@@ -205,20 +199,20 @@ impl Range {
             Self::Finite => (true, "a finite number of"),
             Self::AtLeastZero => (value >= 0.0, "finite and at least 0"),
             Self::AboveZero => (value > 0.0, "finite and above 0"),
-            Self::NormalF32 => (
-                value >= f32::MIN_POSITIVE as f64 && in_f32,
-                "from 1.2e-38 to 3.4e38",
-            ),
+            Self::NormalF32 => {
+                let is_normal = value >= f32::MIN_POSITIVE as f64;
+                (is_normal && in_f32, "from 1.2e-38 to 3.4e38")
+            }
             Self::InF32 => (in_f32, "from -3.4e38 to 3.4e38"),
         };
-        if holds && value.is_finite() {
-            return Ok(());
+        match holds && value.is_finite() {
+            true => Ok(()),
+            false => Err(Error::OutOfRange {
+                name,
+                value,
+                unit,
+                rule,
+            }),
         }
-        Err(Error::OutOfRange {
-            name,
-            value,
-            unit,
-            rule,
-        })
     }
 }

@@ -1,8 +1,9 @@
 #![doc = include_str!("../docs/rustdoc-links.txt")]
 #![doc = include_str!("../docs/README.md")]
 
-// Each page is also a file that GitHub shows. Its links are defined twice: for rustdoc in docs/rustdoc-links.txt, and for
-// GitHub at the page's end. The first definition counts. A page whose examples need a feature is not tested without it.
+// Each page is also a file that GitHub shows. Its links are defined twice: for rustdoc in
+// docs/rustdoc-links.txt, and for GitHub at the page's end. The first definition counts. A page
+// whose examples need a feature is not tested without it.
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
 #[cfg_attr(any(not(doctest), feature = "std"), doc = include_str!("../docs/rust.md"))]

@@ -1,5 +1,6 @@
-//! Gymnasium's `Acrobot-v1`, the two-link swing-up task, as a `no_std` crate that needs no heap and never panics. It is
-//! hundreds of times as fast as Gymnasium, and an episode has the same bits on a microcontroller, in a browser and on a server.
+//! Gymnasium's `Acrobot-v1`, the two-link swing-up task, as a `no_std` crate that needs no heap and
+//! never panics. It is hundreds of times as fast as Gymnasium, and an episode has the same bits on
+//! a microcontroller, in a browser and on a server.
 //!
 #![doc = include_str!("../docs/episode.svg")]
 //!
@@ -23,38 +24,31 @@
 //! assert_eq!(env.elapsed(), 94);
 //! ```
 //!
-//! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c), [in a browser](guide::wasm)
-//! or [in Python](guide::python).
+//! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c),
+//! [in a browser](guide::wasm) or [in Python](guide::python).
 //!
 //! # What everybody uses
 //!
-//! - [`Acrobot`] is the environment. Its type parameter is the arithmetic: [`Fast`] (`f32`), [`Portable`] (`f64`), or
-//!   [another one](arithmetic).
+//! - [`Acrobot`] is the environment. Its type parameter is the arithmetic: [`Fast`] (`f32`),
+//!   [`Portable`] (`f64`), or [another one](arithmetic).
 //! - [`TimeLimit`] truncates episodes, after 500 steps as `Acrobot-v1`.
-//! - [`Action`] goes into a step. [`Step`] comes out, with the [`Observation`], the reward, and whether the episode is done.
-//! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques. Both can be set at any time.
+//! - [`Action`] goes into a step. [`Step`] comes out, with the [`Observation`], the reward, and
+//!   whether the episode is done.
+//! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques.
 //! - [`ResetOptions`] has what a reset may choose: the seed, and the bounds of the initial state.
-//! - [`Error`] names a rejected value, its unit and the rule. Nothing has changed then.
+//! - [`Error`] names a rejected value, its unit and the rule.
 //!
-//! # Modules
-//!
-//! - [`physics`]: the model alone, [`Pendulum`](physics::Pendulum), and [`control`](physics::control), from the
-//!   linearization to a regulator.
-//! - [`batch`]: many acrobots at once, with SIMD and on all cores.
-//! - [`numpy`]: NumPy's seeds and random numbers, as Gymnasium draws them.
-//! - [`trajectory`]: the last steps in fixed memory, as CSV.
-//! - `render` (feature `graphics`): drawing, on a display or into memory.
-//! - `env` (feature `std`): Gymnasium's `make`, spaces, wrappers and render modes.
-//! - [`arithmetic`]: the types that decide the bits, and the trait to write another one.
-//! - [`guide`]: pages on firmware, C, browsers, Python, control, parity, accuracy, determinism, the equations, speed and
-//!   learning.
+//! [`physics`] has the model alone, and [`control`](physics::control), from the linearization to a
+//! regulator. [`batch`] has many acrobots at once, with SIMD and on all cores. The [`guide`] has a
+//! page for each reader and each subject.
 //!
 //! # Features
 //!
 //! None is on by default. Features are additive and never change a result.
 //!
 //! - `alloc` adds a batch that owns its memory.
-//! - `std` enables `alloc` and `graphics`, and adds `env`, the arithmetic `Host`, and batches with AVX2 or AVX-512.
+//! - `std` enables `alloc` and `graphics`, and adds `env`, the arithmetic `Host`, and batches with
+//!   AVX2 or AVX-512.
 //! - `graphics` adds `render`.
 //! - `rayon` enables `std`, and adds batches on all cores.
 //! - `serde` adds snapshots, whose version and arithmetic are checked when loaded.

@@ -1,9 +1,9 @@
 //! NumPy's random numbers: the same streams as `np.random`, from the same seeds.
 //!
-//! Gymnasium seeds each environment and each space with NumPy's `default_rng(seed)`. [`Pcg64`] is that
-//! generator, [`SeedSequence`] turns a seed into its state and into independent child seeds, and [`uniform`]
-//! and [`integers`] are the two draws that Gymnasium makes. rand's `Pcg64` seeds differently, so this
-//! module is named after NumPy.
+//! Gymnasium seeds each environment and each space with NumPy's `default_rng(seed)`. [`Pcg64`] is
+//! that generator, which rand's `Pcg64` seeds differently. [`SeedSequence`] turns a seed into its
+//! state and into independent child seeds. [`uniform`] and [`integers`] are the draws that
+//! Gymnasium makes.
 //!
 //! ```
 //! use acrobot::numpy::{Pcg64, SeedSequence, uniform};
@@ -26,8 +26,8 @@ use rand_core::Rng;
 pub use pcg64::Pcg64;
 pub use seed_sequence::SeedSequence;
 
-/// NumPy's `Generator.uniform(low, high)`: draws from \[`low`, `high`) with 53 random bits. As in NumPy, rounding
-/// can give `high` itself. The difference of the bounds must be finite.
+/// NumPy's `Generator.uniform(low, high)`: draws from \[`low`, `high`) with 53 random bits. As in
+/// NumPy, rounding can give `high` itself. The difference of the bounds must be finite.
 ///
 /// ```
 /// use acrobot::numpy::{Pcg64, uniform};
@@ -43,8 +43,8 @@ pub fn uniform<R: Rng + ?Sized>(rng: &mut R, low: f64, high: f64) -> f64 {
 
 /// NumPy's `Generator.integers(n)`: draws one of 0 to `n` − 1, all equally likely.
 ///
-/// This is Lemire's method (<https://arxiv.org/abs/1805.10941>) on 32-bit draws. It always returns: after 64 rejected
-/// draws in a row, which only a broken generator produces, it takes the last one.
+/// This is Lemire's method (<https://arxiv.org/abs/1805.10941>) on 32-bit draws. After 64 rejected
+/// draws, which only a broken generator produces, it takes the last one.
 #[inline]
 pub fn integers<R: Rng + ?Sized>(rng: &mut R, n: NonZeroU32) -> u32 {
     // Like NumPy, draw nothing if there is only one result.
@@ -54,7 +54,8 @@ pub fn integers<R: Rng + ?Sized>(rng: &mut R, n: NonZeroU32) -> u32 {
     let mut product = 0;
     for _ in 0..64 {
         product = u64::from(rng.next_u32()) * u64::from(n.get());
-        // Rejects the lowest 2³² mod n products, which would make some results more likely than others.
+        // Rejects the lowest 2³² mod n products, which would make some results more likely than
+        // others.
         if product as u32 >= n.get() || product as u32 >= n.get().wrapping_neg() % n {
             break;
         }

@@ -9,13 +9,15 @@ use crate::physics::{State, Task, directions};
 
 /// What an agent sees: `N` numbers in Gymnasium's order.
 ///
-/// `Observation`, short for `Observation<6>`, is the observation of `Acrobot-v1`:
-/// \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\], velocities in rad/s. Hanging at rest it is \[1, 0, 1, 0, 0, 0\].
+/// `Observation`, short for `Observation<6>`, is the observation of `Acrobot-v1`: \[cos θ1, sin θ1,
+/// cos θ2, sin θ2, θ̇1, θ̇2\], velocities in rad/s. Hanging at rest it is \[1, 0, 1, 0, 0, 0\].
 ///
-/// In dm_control's [`Swingup`](crate::arithmetic::Swingup) the six numbers are the sines of both links' angles from upright,
-/// their cosines, and the velocities. The accessors have the names of `Acrobot-v1`.
+/// In dm_control's [`Swingup`](crate::arithmetic::Swingup) the six numbers are the sines of both
+/// links' angles from upright, their cosines, and the velocities. The accessors have the names of
+/// `Acrobot-v1`.
 ///
-/// `Observation<4>` is the observation of `Acrobot-v0`: the state \[θ1, θ2, θ̇1, θ̇2\] in rad and rad/s.
+/// `Observation<4>` is the observation of `Acrobot-v0`: the state \[θ1, θ2, θ̇1, θ̇2\] in rad and
+/// rad/s.
 ///
 /// ```
 /// use acrobot::{Acrobot, Observation, Portable};
@@ -114,7 +116,7 @@ impl Observation<6> {
                 let [(sin1, cos1), (sin2, cos2)] = sin_cos;
                 [cos1, sin1, cos2, sin2, dtheta1, dtheta2]
             }
-            // From upright, where this crate's angles are from hanging.
+            // From upright, not from hanging.
             Task::Swingup | Task::SwingupSparse => {
                 let [(sin1, cos1), (sin_sum, cos_sum)] = directions(sin_cos);
                 // A sum of two products can be beyond 1 by a rounding.

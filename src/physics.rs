@@ -1,24 +1,12 @@
-//! The pendulum alone: equations of motion, integrator and bounds, without a generator or an environment.
+//! The pendulum alone: equations of motion, integrator and bounds, without a generator or an
+//! environment.
 //!
-//! [`Pendulum`] is the fast way to simulate: it caches the constants that depend on the parameters, and the sines and
-//! cosines of its angles. It has no code for random numbers, so it takes about a third of the flash of an
+//! [`Pendulum`] caches the constants that depend on the parameters, and the sines and cosines of
+//! its angles. It has no random numbers, so it takes a third of the flash of an
 //! [`Acrobot`](crate::Acrobot).
 //!
-//! ```
-//! use acrobot::Fast;
-//! use acrobot::physics::Pendulum;
-//!
-//! let mut pendulum = Pendulum::<Fast>::hanging();
-//! for _ in 0..50 {
-//!     let torque = if pendulum.state().dtheta1 > 0.0 { -1.0 } else { 1.0 }; // N m
-//!     pendulum.step(torque)?;
-//! }
-//! assert!(pendulum.tip_height() > -2.0); // m
-//! # Ok::<(), acrobot::Error>(())
-//! ```
-//!
-//! For your own integrator, use [`Pendulum::derivative`]. The module [`control`] linearizes and regulates. The guide
-//! explains the [equations](crate::guide::equations).
+//! For your own integrator, use [`Pendulum::derivative`]. The module [`control`] linearizes and
+//! regulates. The guide explains the [equations](crate::guide::equations).
 
 /// Repeats items for both scalars, named `S`: arithmetic in a `const fn` needs a concrete type.
 macro_rules! for_f32_and_f64 {
@@ -37,7 +25,6 @@ macro_rules! for_f32_and_f64 {
 
 pub(crate) mod arithmetic;
 mod bounds;
-pub mod control;
 mod equations;
 mod friction;
 mod geometry;
@@ -52,6 +39,9 @@ mod rk4;
 mod state;
 mod step;
 mod task;
+
+// Last, so that the documentation of a pendulum begins with its own methods.
+pub mod control;
 
 pub(crate) use arithmetic::{check_params, default_model, model};
 pub use bounds::{bound, wrap};

@@ -1,7 +1,7 @@
 //! Drawing on any [embedded-graphics] target, from a 128×64 OLED to a window.
 //!
-//! A [`Figure`] is scaled to the target. Each pixel's colour is computed from the geometry, so [`Figure::draw`] writes
-//! each pixel once, and [`Figure::redraw`] writes only the pixels that changed.
+//! A [`Figure`] is scaled to the target. [`Figure::draw`] writes each pixel once, and
+//! [`Figure::redraw`] only the pixels that changed.
 //!
 //! ```
 //! use acrobot::render::{Figure, Theme};
@@ -54,8 +54,8 @@ pub struct Theme<C> {
 }
 
 impl Theme<Rgb888> {
-    /// Gymnasium's colours: cyan links, olive joints and a black line on white. The arrow, which Gymnasium does not
-    /// have, is red.
+    /// Gymnasium's colours: cyan links, olive joints and a black line on white. The arrow, which
+    /// Gymnasium does not have, is red.
     pub const GYMNASIUM: Self = Self {
         background: Rgb888::new(255, 255, 255),
         target: Rgb888::new(0, 0, 0),
@@ -66,7 +66,7 @@ impl Theme<Rgb888> {
 }
 
 impl Theme<BinaryColor> {
-    /// For monochrome displays: lit links on a dark background, with dark joints.
+    /// Lit links on a dark background, with dark joints.
     pub const MONOCHROME: Self = Self {
         background: BinaryColor::Off,
         target: BinaryColor::On,
@@ -90,11 +90,11 @@ impl<C> Theme<C> {
     }
 }
 
-/// A drawing of an acrobot. See [the example](self).
+/// A drawing of an acrobot: [an example](self).
 ///
-/// It is scaled as in Gymnasium's window: the fixed joint is in the centre, and the shorter side of the target shows
-/// both links and 0.2 m more in each direction. Targets of any size work, also 0×0. A target whose width, height, right
-/// end or bottom end is above `i32::MAX` stays as it is.
+/// It is scaled as in Gymnasium's window: the fixed joint is in the centre, and the shorter side of
+/// the target shows both links and 0.2 m more in each direction. Targets of any size work, except
+/// that one whose width, height, right end or bottom end is above `i32::MAX` stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Figure {
@@ -115,8 +115,7 @@ impl Figure {
         Self::of(acrobot.pendulum())
     }
 
-    /// The figure of a pendulum, without a torque. For a state alone make its pendulum:
-    /// `Pendulum::new(params, state)?`.
+    /// The figure of a pendulum, without a torque.
     #[must_use]
     pub fn of<A: Arithmetic>(pendulum: &Pendulum<A>) -> Self {
         let narrow = |x: A::Scalar| x.to_f64() as f32;
@@ -132,8 +131,8 @@ impl Figure {
         }
     }
 
-    /// Adds an arrow around the middle joint in the direction of `torque`. It is drawn if `torque` is not 0 and the
-    /// target has at least 48 pixels in each direction.
+    /// Adds an arrow around the middle joint in the direction of `torque`, if `torque` is not 0 and
+    /// the target has at least 48 pixels in each direction.
     #[must_use]
     pub fn with_torque(mut self, torque: f32) -> Self {
         self.torque = i8::from(torque > 0.0) - i8::from(torque < 0.0);

@@ -25,8 +25,9 @@ use crate::physics::ResetBounds;
 pub struct ResetOptions {
     /// Seeds the generator. With `None` the generator continues its stream.
     pub seed: Option<SeedSequence>,
-    /// The bounds of the initial state. `None` means those of the [task](crate::physics::Task::reset_bounds), or a batch's
-    /// [`reset_bounds`](crate::batch::Batch::reset_bounds).
+    /// The bounds of the initial state. `None` means those of the
+    /// [task](crate::physics::Task::reset_bounds) or of the
+    /// [batch](crate::batch::Batch::reset_bounds).
     pub bounds: Option<ResetBounds>,
 }
 

@@ -12,8 +12,7 @@ use crate::arithmetic::Arithmetic;
 /// Incremented whenever the fields of any snapshot change.
 const VERSION: u32 = 1;
 
-/// The longest text in a header, bytes. Snapshots of an arithmetic with a longer name could not be loaded, so saving
-/// one does not compile:
+/// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile:
 ///
 /// ```compile_fail,E0080
 /// use acrobot::arithmetic::Arithmetic;
@@ -34,8 +33,8 @@ const VERSION: u32 = 1;
 /// ```
 const LIMIT: usize = 16;
 
-/// The first field of a snapshot of an acrobot or a batch. Zero-sized: its contents are constants, checked when loaded.
-/// Binary formats have no field names, so only the header tells which type a snapshot is of.
+/// The first field of a snapshot of an acrobot or a batch. Zero-sized: its contents are constants,
+/// checked when loaded. In binary formats only it tells the type of a snapshot.
 pub(crate) struct Header<A, const BATCH: bool>(PhantomData<A>);
 
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -60,7 +59,7 @@ impl<Text: fmt::Debug> fmt::Display for Fields<Text> {
 impl<A: Arithmetic, const BATCH: bool> Header<A, BATCH> {
     pub(crate) const NEW: Self = Self(PhantomData);
 
-    /// The size in postcard's format, bytes: two texts after their lengths, and the version. Each is below 128, so one byte.
+    /// The size in postcard's format, bytes: two texts, their lengths and the version, a byte each.
     pub(crate) const SIZE: usize = 3 + Self::FIELDS.of.len() + A::NAME.len();
 
     const FIELDS: Fields<&'static str> = {
@@ -90,17 +89,11 @@ impl<'de, A: Arithmetic, const BATCH: bool> Deserialize<'de> for Header<A, BATCH
                 "{error}; the input must be a snapshot of version {VERSION}"
             ))
         })?;
-        let Fields {
-            of,
-            version,
-            arithmetic,
-        } = Self::FIELDS;
-        if (&*found.of, found.version, &*found.arithmetic) == (of, version, arithmetic) {
+        let rule = Self::FIELDS;
+        if found.of == rule.of && found.version == VERSION && found.arithmetic == A::NAME {
             return Ok(Self::NEW);
         }
-        Err(D::Error::custom(format_args!(
-            "the snapshot must be {}, got {found}",
-            Self::FIELDS
-        )))
+        let text = format_args!("the snapshot must be {rule}, got {found}");
+        Err(D::Error::custom(text))
     }
 }

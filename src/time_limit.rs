@@ -12,8 +12,9 @@ use crate::observation::Observation;
 use crate::physics::{Params, State, Task};
 use crate::reset_options::ResetOptions;
 
-/// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they reach the limit. It
-/// does not change `terminated`. Steps after the end continue, with `truncated` true.
+/// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they
+/// reach the limit. It does not change `terminated`. Steps after the end continue, with `truncated`
+/// true.
 ///
 /// ```
 /// use acrobot::{Acrobot, Action, Fast, TimeLimit};
@@ -63,7 +64,7 @@ impl<E> TimeLimit<E> {
         self.limit
     }
 
-    /// Sets the number of steps after which episodes are truncated. The count of steps does not change.
+    /// Sets the number of steps after which episodes are truncated. The count does not change.
     pub const fn set_limit(&mut self, limit: NonZeroU32) {
         self.limit = limit;
     }
@@ -82,7 +83,7 @@ impl<E> TimeLimit<E> {
         &self.inner
     }
 
-    /// The wrapped environment, to change it. Resetting it does not reset the count of steps.
+    /// The wrapped environment, to change it. Resetting it does not reset the count.
     #[must_use]
     #[inline]
     pub fn inner_mut(&mut self) -> &mut E {
@@ -136,11 +137,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
         self.inner.observation()
     }
 
-    /// Calls [`Acrobot::set_state`]. The count of steps does not change.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] for a number that is not finite.
+    /// Calls [`Acrobot::set_state`], with its errors. The count of steps does not change.
     pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
         self.inner.set_state(state)
     }
@@ -152,11 +149,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
         self.inner.params()
     }
 
-    /// Calls [`Acrobot::set_params`]. The count of steps does not change.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`](crate::Params::validate).
+    /// Calls [`Acrobot::set_params`], with its errors. The count of steps does not change.
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         self.inner.set_params(params)
     }
@@ -177,11 +170,7 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
         Step { truncated, ..step }
     }
 
-    /// Calls [`Acrobot::step_torque`] and counts the step.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] for a torque that is not finite.
+    /// Calls [`Acrobot::step_torque`], with its errors, and counts the step.
     #[inline]
     pub fn step_torque(&mut self, torque: A::Scalar) -> Result<Step, Error> {
         let step = self.inner.step_torque(torque)?;

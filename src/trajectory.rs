@@ -24,9 +24,8 @@
 //! # Ok::<(), core::fmt::Error>(())
 //! ```
 //!
-//! Formatting floats costs a microcontroller 28 KB of flash, and the linker cannot prove it free of panics, because
-//! `core`'s code for it slices with bounds checks. The alternative is binary: with the `serde` feature, postcard writes a
-//! `Transition<f32>` into 42 bytes.
+//! Formatting floats costs a microcontroller 28 KB of flash, and the linker cannot prove it free of
+//! panics. With the `serde` feature, postcard writes a `Transition<f32>` into 42 bytes instead.
 
 use core::fmt;
 
@@ -59,12 +58,11 @@ pub struct Transition<S = f64> {
     pub truncated: bool,
 }
 
-/// The last `N` transitions, oldest first. Older ones are dropped.
-///
-/// With `f32` it takes about 44 bytes for each transition, and no heap. See [the example](self).
+/// The last `N` transitions, oldest first: [an example](self). With `f32` it takes about 44 bytes
+/// for each.
 #[derive(Clone, Debug)]
 pub struct Trajectory<S, const N: usize> {
-    /// Not heapless's history buffer, whose indexing has a bounds check that can panic.
+    /// Not heapless's history buffer, whose indexing can panic.
     transitions: Deque<Transition<S>, N>,
     /// Transitions pushed since the last `clear`, including dropped ones.
     pushed: u32,
@@ -121,7 +119,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
         });
     }
 
-    /// Adds a transition. If there are already `N`, drops the oldest.
+    /// Adds a transition. Drops the oldest if there are `N`.
     #[inline]
     pub fn push(&mut self, transition: Transition<S>) {
         if self.transitions.is_full() {
@@ -157,9 +155,8 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
 
     /// All transitions as rows of CSV, oldest first. [`HEADER`] names their columns.
     ///
-    /// `step` counts from 1 at the first push, including dropped ones. Numbers have the fewest digits that parse to the
-    /// same bits. With `f32` and Gymnasium's parameters 150 bytes a row are usually enough; numbers near 0 have more
-    /// digits.
+    /// `step` counts from 1 at the first push, including dropped ones. Numbers have the fewest
+    /// digits that parse to the same bits: in `f32` usually 150 bytes a row, and more near 0.
     pub fn rows(&self) -> impl Iterator<Item = impl fmt::Display> {
         let forgotten = self.pushed.saturating_sub(self.len() as u32);
         let steps = (1..).map(move |i| forgotten.saturating_add(i));
@@ -196,12 +193,8 @@ impl<S: Real> fmt::Display for Row<'_, S> {
         for x in <[S; 4]>::from(row.next) {
             write!(f, ",{x}")?;
         }
-        write!(
-            f,
-            ",{},{}",
-            u8::from(row.terminated),
-            u8::from(row.truncated)
-        )
+        let [terminated, truncated] = [row.terminated, row.truncated].map(u8::from);
+        write!(f, ",{terminated},{truncated}")
     }
 }
 

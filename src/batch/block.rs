@@ -1,11 +1,9 @@
 //! `N` acrobots side by side, and their step.
 
-use super::buffers::StepBuffers;
-use super::buffers::{set, take_mut};
+use super::buffers::{StepBuffers, set, take_mut};
 use super::inputs::Inputs;
 use super::lane_params::LaneParams;
-use super::settings::Autoreset;
-use super::settings::{Parameters, Settings};
+use super::settings::{Autoreset, Parameters, Settings};
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Numbers, Real, SinCos};
 use crate::numpy::{Pcg64, uniform};
@@ -14,8 +12,8 @@ use crate::physics::{ResetBounds, State, reward, sin_cos, step};
 
 /// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
 ///
-/// `N` = 16 suits a machine with SIMD. For a few acrobots, a smaller `N` wastes less memory: a `Block<Fast, 1>` takes 64
-/// bytes, a `Block<Fast, 16>` 640.
+/// `N` = 16 suits a machine with SIMD. For a few acrobots, a smaller `N` wastes less memory: a
+/// `Block<Fast, 1>` takes 64 bytes, a `Block<Fast, 16>` 640.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -90,8 +88,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         self.set_progress(lane, 0, false);
     }
 
-    /// Resets the lanes in `mask`, each with its generator. A lane without one has no acrobot and hangs at rest. If
-    /// each has its own parameters, draws them first from the range.
+    /// Resets the lanes in `mask`, each with its generator, from which it first draws own
+    /// parameters. A lane without one has no acrobot and hangs at rest.
     #[cold]
     pub(super) fn reset(
         &mut self,
@@ -157,13 +155,10 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
 
     #[cold]
     fn observe_masked(&self, mask: &[bool; N], to: &mut [[f32; 6]]) {
-        for ((to, row), _) in to
-            .iter_mut()
-            .zip(self.rows())
-            .zip(mask)
-            .filter(|(_, mask)| **mask)
-        {
-            *to = row;
+        for ((to, row), mask) in to.iter_mut().zip(self.rows()).zip(mask) {
+            if *mask {
+                *to = row;
+            }
         }
     }
 
@@ -212,7 +207,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// Resets lanes whose episodes ended, writes the results, and removes the written elements from `buffers`.
+    /// Resets lanes whose episodes ended, writes the results, and removes the written elements from
+    /// `buffers`.
     #[inline(always)]
     pub(super) fn finish(
         &mut self,
@@ -230,13 +226,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
             } else if let Some(finals) = finals {
                 self.observe_masked(&results.resets, finals);
             }
-            self.reset(
-                &results.resets,
-                settings,
-                settings.bounds,
-                generators,
-                lane_params,
-            );
+            let (mask, bounds) = (&results.resets, settings.bounds);
+            self.reset(mask, settings, bounds, generators, lane_params);
         }
         write(&mut buffers.rewards, &results.rewards);
         write(&mut buffers.terminated, &results.terminated);
@@ -259,20 +250,18 @@ impl<const N: usize> Results<N> {
     /// Clears the results of lanes that the step only resets.
     #[cold]
     fn clear(&mut self) {
-        let results = self
-            .rewards
-            .iter_mut()
-            .zip(&mut self.terminated)
-            .zip(&mut self.truncated);
-        for (((reward, terminated), truncated), _) in
-            results.zip(self.resets).filter(|(_, resets)| *resets)
-        {
-            (*reward, *terminated, *truncated) = (0.0, false, false);
+        let results = self.rewards.iter_mut().zip(&mut self.terminated);
+        let results = results.zip(&mut self.truncated).zip(self.resets);
+        for (((reward, terminated), truncated), resets) in results {
+            if resets {
+                (*reward, *terminated, *truncated) = (0.0, false, false);
+            }
         }
     }
 }
 
-/// Adds a noise draw to each torque, except in lanes without noise and in those that this step only resets.
+/// Adds a noise draw to each torque, except in lanes without noise and in those that this step only
+/// resets.
 #[cold]
 fn add_noise<S: Real, const N: usize>(
     torques: &mut [S; N],
@@ -280,16 +269,12 @@ fn add_noise<S: Real, const N: usize>(
     reset_pending: &[bool; N],
     generators: &mut [Pcg64],
 ) {
-    let lanes = torques
-        .iter_mut()
-        .zip(noise)
-        .zip(reset_pending)
-        .zip(generators);
-    for (((torque, noise), _), rng) in
-        lanes.filter(|(((_, noise), pending), _)| **noise > S::ZERO && !**pending)
-    {
-        let noise = noise.to_f64();
-        *torque = *torque + S::from_f64(uniform(rng, -noise, noise));
+    let lanes = torques.iter_mut().zip(noise).zip(reset_pending);
+    for (((torque, noise), pending), rng) in lanes.zip(generators) {
+        if *noise > S::ZERO && !pending {
+            let noise = noise.to_f64();
+            *torque = *torque + S::from_f64(uniform(rng, -noise, noise));
+        }
     }
 }
 
@@ -303,8 +288,8 @@ fn write<T: Copy, const N: usize>(to: &mut &mut [T], from: &[T; N]) {
     }
 }
 
-/// Only the last block can have fewer than `N` acrobots. Out of line, because a copy of a constant length takes less
-/// time.
+/// Only the last block can have fewer than `N` acrobots. Out of line: a copy of a constant length
+/// takes less time.
 #[cold]
 #[inline(never)]
 fn write_partial<T: Copy>(to: &mut [T], from: &[T]) {

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 
-/// Where a step of a [`Batch`](super::Batch) writes its results. Each slice has one element for each acrobot.
+/// Where a step of a [`Batch`](super::Batch) writes its results, one element for each acrobot.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct StepBuffers<'a> {
@@ -14,8 +14,8 @@ pub struct StepBuffers<'a> {
     pub truncated: &'a mut [bool],
     /// The [observations](crate::Observation) of the new states. With `None` they are not computed.
     pub observations: Option<&'a mut [[f32; 6]]>,
-    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the episodes that this step
-    /// ended. Elements of other acrobots are not written.
+    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the
+    /// episodes that this step ended. Elements of other acrobots are not written.
     pub final_observations: Option<&'a mut [[f32; 6]]>,
 }
 
@@ -53,15 +53,13 @@ impl<'a> StepBuffers<'a> {
     /// Splits off the buffers of the first `n` acrobots, or of all if there are fewer.
     #[cfg(feature = "rayon")]
     pub(super) fn take(&mut self, n: usize) -> Self {
+        let rows = |rows: &mut Option<_>| rows.as_mut().map(|rows| take_mut(rows, n));
         Self {
             rewards: take_mut(&mut self.rewards, n),
             terminated: take_mut(&mut self.terminated, n),
             truncated: take_mut(&mut self.truncated, n),
-            observations: self.observations.as_mut().map(|rows| take_mut(rows, n)),
-            final_observations: self
-                .final_observations
-                .as_mut()
-                .map(|rows| take_mut(rows, n)),
+            observations: rows(&mut self.observations),
+            final_observations: rows(&mut self.final_observations),
         }
     }
 
@@ -79,8 +77,8 @@ impl<'a> StepBuffers<'a> {
     }
 }
 
-/// Splits off the first `n` elements of a slice, or all if there are fewer. Not `chunks`, which divides by `n`: some
-/// compilers keep the panic of a division by zero.
+/// Splits off the first `n` elements of a slice, or all if there are fewer. Not `chunks`, which
+/// divides by `n`: some compilers keep the panic of a division by zero.
 #[inline(always)]
 pub(super) fn take<'a, T>(rest: &mut &'a [T], n: usize) -> &'a [T] {
     let first = rest.split_off(..n);
@@ -102,13 +100,12 @@ pub(super) fn set<T>(to: &mut [T], index: usize, x: T) {
 }
 
 pub(super) fn check_length(name: &'static str, len: usize, expected: usize) -> Result<(), Error> {
-    if len == expected {
-        Ok(())
-    } else {
-        Err(Error::WrongLength {
+    match len == expected {
+        true => Ok(()),
+        false => Err(Error::WrongLength {
             name,
             len,
             expected,
-        })
+        }),
     }
 }

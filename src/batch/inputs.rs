@@ -6,8 +6,8 @@ use crate::error::Error;
 use crate::math::{Lanes, Real};
 use crate::physics::check_torque;
 
-/// What a step of a batch applies to an acrobot: an action as a `u8` (0, 1 or 2) or an [`Action`], or any finite torque in
-/// N m as an `f32` or `f64`, the scalar of the arithmetic. No other type can implement it.
+/// What a step of a batch applies to an acrobot: an action as a `u8` (0, 1 or 2) or an [`Action`],
+/// or any finite torque in N m, as the scalar of the arithmetic. No other type can implement it.
 pub trait Input<S>: Copy + Sync {
     #[doc(hidden)]
     fn inputs(inputs: &[Self]) -> Inputs<'_, S>;
@@ -31,8 +31,8 @@ impl<S: Real> Input<S> for S {
     }
 }
 
-/// The inputs of several acrobots. Their kind is a value and not a type, so that a step is compiled once. No path outside
-/// of the crate names it, which seals [`Input`].
+/// The inputs of several acrobots. Their kind is a value, so that a step is compiled once. No path
+/// outside of the crate names it, which seals [`Input`].
 #[derive(Clone, Copy, Debug)]
 pub enum Inputs<'a, S> {
     Numbers(&'a [u8]),
@@ -69,7 +69,8 @@ impl<S: Real> Inputs<'_, S> {
         }
     }
 
-    /// The torques of one block, N m, given those of the three actions. Lanes without an acrobot get a valid torque.
+    /// The torques of one block, N m, given those of the three actions. Lanes without an acrobot
+    /// get a valid torque.
     #[inline(always)]
     pub(super) fn torques<const N: usize>(self, of_actions: &[Lanes<S, N>; 3]) -> Lanes<S, N> {
         match self {

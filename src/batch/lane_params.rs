@@ -5,7 +5,8 @@ use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real};
 use crate::physics::{Dynamics, Model, Params, default_model, model};
 
-/// The memory for the parameters of `N` acrobots, where each has its own. The default is [`Params::DEFAULT`] for all.
+/// The memory for the parameters of `N` acrobots, where each has its own. The default is
+/// [`Params::DEFAULT`] for all.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -17,7 +18,8 @@ use crate::physics::{Dynamics, Model, Params, default_model, model};
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct LaneParams<A: Arithmetic = Fast, const N: usize = 16> {
-    /// Its `params.dynamics` says nothing: `nips` among the constants tells the equations of each lane.
+    /// Its `params.dynamics` says nothing: `nips` among the constants tells the equations of each
+    /// lane.
     pub(super) model: Model<Lanes<A::Scalar, N>>,
 }
 

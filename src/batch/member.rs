@@ -9,8 +9,8 @@ use crate::error::Error;
 use crate::numpy::Pcg64;
 use crate::physics::{Params, State, check_params};
 
-/// One acrobot of a batch, as plain data. With the `serde` feature it can be stored, without a version; a
-/// [whole batch](Batch#snapshots) has one.
+/// One acrobot of a batch, as plain data. With the `serde` feature it can be stored, without a
+/// version; a [whole batch](Batch#snapshots) has one.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -36,7 +36,8 @@ pub struct Member<A: Arithmetic> {
     pub state: State<A::Scalar>,
     /// The number of steps since the last reset.
     pub elapsed: u32,
-    /// Whether the next step resets it; only with [`Autoreset::NextStep`](super::Autoreset::NextStep).
+    /// Whether the next step resets it; only with
+    /// [`Autoreset::NextStep`](super::Autoreset::NextStep).
     pub reset_pending: bool,
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
@@ -57,15 +58,14 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         })
     }
 
-    /// Replaces acrobot `index` by `member`, which continues bit-identically if the settings are the same. If its reset
-    /// is pending, [`Autoreset::SameStep`](super::Autoreset::SameStep) resets it immediately, and
-    /// [`Autoreset::Disabled`](super::Autoreset::Disabled) never.
+    /// Replaces acrobot `index` by `member`, which continues bit-identically if the settings are
+    /// the same. A pending reset is settled as in [`set_autoreset`](Self::set_autoreset).
     ///
     /// # Errors
     ///
-    /// [`Error::NoSuchIndex`] for an index of at least [`len`](Self::len), [`Error::OutOfRange`] for a state with a
-    /// number that is not finite, those of [`Params::validate`](crate::Params::validate), and [`Error::SharedParams`] for
-    /// parameters other than those that all acrobots of this batch share.
+    /// [`Error::NoSuchIndex`], [`Error::OutOfRange`] for a state with a number that is not finite,
+    /// those of [`Params::validate`], and [`Error::SharedParams`] for parameters other than those
+    /// that all acrobots of this batch share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
         check_params::<A>(&member.params)?;
         member.state.validate()?;

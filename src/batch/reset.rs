@@ -19,14 +19,14 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         self.reset_with(seed.into());
     }
 
-    /// Gymnasium's `reset(seed=…, options=…)` for all acrobots. A seed seeds acrobot `i` with the `i`-th child that the
-    /// seed has not yet spawned. Without bounds, initial states are from [`reset_bounds`](Self::reset_bounds).
+    /// Gymnasium's `reset(seed=…, options=…)` for all acrobots. A seed seeds acrobot `i` with the
+    /// `i`-th child that the seed has not yet spawned.
     pub fn reset_with(&mut self, options: ResetOptions) {
         self.reset_lanes(core::iter::repeat(true), options);
     }
 
-    /// As [`reset_with`](Self::reset_with), for the acrobots whose element of `mask` is true: Gymnasium's
-    /// `reset(options={"reset_mask": mask})`. The others do not change.
+    /// As [`reset_with`](Self::reset_with), for the acrobots whose element of `mask` is true:
+    /// Gymnasium's `reset(options={"reset_mask": mask})`. The others do not change.
     ///
     /// # Errors
     ///
@@ -53,12 +53,12 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         }
     }
 
-    /// Begins an episode of each acrobot in a given state, for example to search on the model. Draws nothing.
+    /// Begins an episode of each acrobot in a given state. Draws nothing.
     ///
     /// # Errors
     ///
-    /// [`Error::WrongLength`] unless there is one state for each acrobot, and [`Error::OutOfRange`] for a number that
-    /// is not finite.
+    /// [`Error::WrongLength`] unless there is one state for each acrobot, and [`Error::OutOfRange`]
+    /// for a number that is not finite.
     pub fn reset_to(&mut self, states: &[State<A::Scalar>]) -> Result<(), Error> {
         check_length("states", states.len(), self.len())?;
         states.iter().try_for_each(State::validate)?;

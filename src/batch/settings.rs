@@ -11,14 +11,16 @@ use crate::physics::{Model, ParamsRange, ResetBounds};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Autoreset {
-    /// In the next step, which ignores its action and returns the initial observation and a reward of 0.
+    /// In the next step, which ignores its action and returns the initial observation and a reward
+    /// of 0.
     #[default]
     NextStep,
-    /// In the step that ends the episode. It returns the initial observation of the next episode, and the last one of
-    /// the ended episode in [`final_observations`](super::StepBuffers::final_observations).
+    /// In the step that ends the episode. It returns the initial observation of the next episode,
+    /// and the last one of the ended episode in
+    /// [`final_observations`](super::StepBuffers::final_observations).
     SameStep,
-    /// Never. Acrobots continue after the end of an episode, as an [`Acrobot`](crate::Acrobot) does, until
-    /// [`Batch::reset_masked`](super::Batch::reset_masked) or another reset.
+    /// Never. Acrobots continue after the end of an episode until a reset, for example by
+    /// [`Batch::reset_masked`](super::Batch::reset_masked).
     Disabled,
 }
 

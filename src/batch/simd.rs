@@ -5,8 +5,8 @@ use crate::arithmetic::Arithmetic;
 
 /// The SIMD instructions that a step of a [`Batch`](super::Batch) uses. They change no bit.
 ///
-/// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there is only the
-/// baseline: what the crate is compiled for, such as WASM's simd128 or NEON. To compare their speed, call
+/// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there
+/// is only the baseline, such as WASM's simd128 or NEON. To compare their speed, call
 /// [`Batch::set_simd_level`](super::Batch::set_simd_level).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -30,7 +30,7 @@ impl SimdLevel {
             .unwrap_or(Self::Baseline)
     }
 
-    /// Whether this machine has it. Without `std`, and on targets other than x86-64, only the baseline is available.
+    /// Whether this machine has it.
     #[must_use]
     pub fn is_available(self) -> bool {
         match self {

@@ -11,8 +11,7 @@ use serde::ser::{Serialize, SerializeSeq, Serializer};
 use super::Batch;
 use super::buffers::check_length;
 use super::member::Member;
-use super::settings::Autoreset;
-use super::settings::Parameters;
+use super::settings::{Autoreset, Parameters};
 use super::storage::Storage;
 #[cfg(feature = "alloc")]
 use super::vec_batch::VecBatch;
@@ -63,9 +62,9 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// Those of the format, of [`new`](Self::new), of [`set_member`](Self::set_member), of [`ResetBounds::new`] and of
-    /// [`ParamsRange::new`], and [`Error::WrongLength`] for another number of members. The contents of the memory are
-    /// then unspecified.
+    /// Those of the format, of [`new`](Self::new), of [`set_member`](Self::set_member), of
+    /// [`ResetBounds::new`] and of [`ParamsRange::new`], and [`Error::WrongLength`] for another
+    /// number of members. The contents of the memory are then unspecified.
     pub fn from_snapshot<'de, D>(storage: S, deserializer: D) -> Result<Self, D::Error>
     where
         D: Deserializer<'de>,

@@ -5,12 +5,9 @@ use super::lane_params::LaneParams;
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
 
-/// The memory of a [`Batch`](super::Batch): blocks with the states, generators, and parameters if each acrobot has its
-/// own.
-///
-/// These are pairs and triples of arrays, slices or `Vec`s: `(blocks, generators)` where acrobots share their
-/// parameters, `(blocks, generators, lane_params)` where each has its own. States and generators are separate because
-/// most steps draw no random number. The slices must always have the same lengths.
+/// The memory of a [`Batch`](super::Batch): arrays, slices or `Vec`s, as `(blocks, generators)`
+/// where acrobots share their parameters, and `(blocks, generators, lane_params)` where each has
+/// its own. Their lengths must never change.
 ///
 /// ```
 /// use acrobot::batch::{Batch, Block, LaneParams};
@@ -31,8 +28,8 @@ pub trait Storage<A: Arithmetic, const N: usize>: SealedStorage<A, N> {}
 
 impl<A: Arithmetic, S: SealedStorage<A, N>, const N: usize> Storage<A, N> for S {}
 
-/// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters: one [`LaneParams`]
-/// for each block, or none where acrobots share their parameters.
+/// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters:
+/// one [`LaneParams`] for each block, or none where acrobots share them.
 #[derive(Debug)]
 pub struct Slices<'a, A: Arithmetic, const N: usize> {
     pub blocks: &'a [Block<A, N>],

@@ -17,12 +17,12 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 
 /// A [`Batch`] in `Vec`s, with the memory for the results of its steps.
 ///
-/// It has all methods of [`Batch`], except that its steps return their results, and its resets the observations.
-/// Only the feature `alloc` has it. `N` is as in [`Batch`]; on a core without SIMD, 1 takes less memory than 16.
+/// It has all methods of [`Batch`], except that its steps return their results, and its resets the
+/// observations. On a core without SIMD, an `N` of 1 takes less memory than 16.
 ///
-/// A [`Batch`] of another length may replace the one inside, for example by [`core::mem::swap`]. The next step or
-/// [`observations`](Self::observations) then allocates memory for its results. If that fails, the step returns
-/// [`Error::OutOfMemory`], and the observations are empty.
+/// A [`Batch`] of another length may replace the one inside, for example by [`core::mem::swap`].
+/// The next results need new memory: without it a step returns [`Error::OutOfMemory`], and the
+/// observations are empty.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -37,14 +37,16 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
-/// Each acrobot can have its own parameters: [an example that draws them](crate::guide::rust#many-at-once).
+/// Each acrobot can have its own parameters: [an example that draws
+/// them](crate::guide::rust#many-at-once).
 #[derive(Clone, Debug)]
 pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
     batch: InVecs<A, N>,
     results: StepResults,
 }
 
-/// The results of a step of a [`VecBatch`], with one element for each acrobot. The next step overwrites them.
+/// The results of a step of a [`VecBatch`], with one element for each acrobot. The next step
+/// overwrites them.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct StepResults {
@@ -56,8 +58,8 @@ pub struct StepResults {
     pub truncated: Vec<bool>,
     /// The observations of the new states.
     pub observations: Vec<[f32; 6]>,
-    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the episodes that this step
-    /// ended. Those of other acrobots are older, or 0.
+    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the
+    /// episodes that this step ended. Those of other acrobots are older, or 0.
     pub final_observations: Vec<[f32; 6]>,
 }
 
@@ -71,11 +73,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         Self::allocate(seed, len, 0)
     }
 
-    /// As [`new`](Self::new), with parameters for each acrobot.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`new`](Self::new).
+    /// As [`new`](Self::new), with its errors, and with parameters for each acrobot.
     pub fn with_own_params(seed: SeedSequence, len: usize) -> Result<Self, Error> {
         Self::allocate(seed, len, len.div_ceil(N))
     }
@@ -109,11 +107,8 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         self.observations()
     }
 
-    /// Calls [`Batch::reset_masked`] and returns the observations of all acrobots.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Batch::reset_masked`].
+    /// Calls [`Batch::reset_masked`], with its errors, and returns the observations of all
+    /// acrobots.
     pub fn reset_masked(
         &mut self,
         mask: &[bool],
@@ -123,7 +118,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         Ok(self.observations())
     }
 
-    /// Allocates new results if a batch of another length is in place. If that fails, the results are empty.
+    /// Allocates new results if the batch has another length. If that fails, the results are empty.
     fn fit_results(&mut self) -> Result<(), Error> {
         let len = self.batch.len();
         if self.results.rewards.len() != len {
@@ -157,11 +152,8 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         self.step_by(|batch, buffers| batch.step(inputs, buffers))
     }
 
-    /// As [`step`](Self::step), on all cores with rayon. The number of threads changes no bit.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`step`](Self::step).
+    /// As [`step`](Self::step), with its errors, on all cores with rayon. The number of threads
+    /// changes no bit.
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.par_step(inputs, buffers))
@@ -173,18 +165,12 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         step: impl FnOnce(&mut InVecs<A, N>, StepBuffers<'_>) -> Result<(), Error>,
     ) -> Result<&StepResults, Error> {
         self.fit_results()?;
-        let Self { batch, results } = self;
-        step(
-            batch,
-            StepBuffers::new(
-                &mut results.rewards,
-                &mut results.terminated,
-                &mut results.truncated,
-            )
-            .with_observations(&mut results.observations)
-            .with_final_observations(&mut results.final_observations),
-        )?;
-        Ok(results)
+        let to = &mut self.results;
+        let buffers = StepBuffers::new(&mut to.rewards, &mut to.terminated, &mut to.truncated)
+            .with_observations(&mut to.observations)
+            .with_final_observations(&mut to.final_observations);
+        step(&mut self.batch, buffers)?;
+        Ok(&self.results)
     }
 }
 

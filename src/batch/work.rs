@@ -3,8 +3,7 @@
 use core::hint::black_box;
 
 use super::block::Block;
-use super::buffers::StepBuffers;
-use super::buffers::take_mut;
+use super::buffers::{StepBuffers, take_mut};
 use super::inputs::Inputs;
 use super::lane_params::LaneParams;
 use super::settings::{Parameters, Settings};
@@ -23,9 +22,10 @@ pub(super) struct Work<'a, A: Arithmetic, const N: usize> {
 }
 
 impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
-    /// Whether acrobots share their parameters is decided once, and not for each block, which would be 3 to 6 % slower:
-    /// the compiler then sees that all lanes have the same constants. `HIDE` hides the model: with AVX-512 the compiler
-    /// would hold it in registers and spill the state, 16 % slower.
+    /// Whether acrobots share their parameters is decided once, so that the compiler sees that all
+    /// lanes have the same constants: deciding for each block would be 3 to 6 % slower. `HIDE`
+    /// hides the model: with AVX-512 the compiler would hold it in registers and spill the state,
+    /// 16 % slower.
     #[inline(always)]
     pub(super) fn step<const HIDE: bool>(self) {
         let Self {
@@ -53,8 +53,7 @@ impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
         }
     }
 
-    /// Splits off the first `blocks` blocks. Unlike `split_at`, it cannot panic, whatever lengths the
-    /// parts of a [`Storage`](super::Storage) have.
+    /// Splits off the first `blocks` blocks. Cannot panic, whatever the lengths.
     #[cfg(feature = "rayon")]
     pub(super) fn take(&mut self, blocks: usize) -> Work<'a, A, N> {
         let acrobots = blocks * N;

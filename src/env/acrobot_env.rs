@@ -1,4 +1,5 @@
-//! The environment that [`make`](super::make) wraps: an acrobot with a kind of observation and a render mode.
+//! The environment that [`make`](super::make) wraps: an acrobot with a kind of observation and a
+//! render mode.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -10,6 +11,7 @@ use super::{Env, Info};
 use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
+use crate::error::Error as Rejected;
 use crate::observation::Observation;
 use crate::physics::{Params, ResetBounds, State, check_params};
 use crate::render::Figure;
@@ -22,8 +24,8 @@ pub trait ObservationKind:
     /// The observation of an acrobot's state.
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self;
 
-    /// The space of these observations. Its velocity bounds are those of `params`, but at least 0.1 rad/s, so that it
-    /// contains Gymnasium's initial states.
+    /// The space of these observations. Its velocity bounds are those of `params`, but at least
+    /// 0.1 rad/s, so that it contains Gymnasium's initial states.
     fn space(params: &Params<f32>) -> BoxSpace<Self>;
 }
 
@@ -66,12 +68,9 @@ pub struct AcrobotEnv<A: Arithmetic, O> {
 }
 
 impl<A: Arithmetic, O: ObservationKind> AcrobotEnv<A, O> {
-    /// An environment in the initial state of seed 0.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`], for the parameters as given and as rounded to `A`'s scalar.
-    pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, crate::error::Error> {
+    /// An environment in the initial state of seed 0, with the errors of
+    /// [`DynAcrobot::set_params`].
+    pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, Rejected> {
         let mut env = Self {
             render_mode,
             ..Self::default()
@@ -162,22 +161,16 @@ pub trait DynAcrobot {
     /// The state, converted to `f64` exactly.
     fn state(&self) -> State;
 
-    /// [`Acrobot::set_state`] with the state rounded to the arithmetic's scalar.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Acrobot::set_state`], for the state as given and as rounded.
-    fn set_state(&mut self, state: State) -> Result<(), crate::error::Error>;
+    /// [`Acrobot::set_state`] with the state rounded to the arithmetic's scalar, and its errors,
+    /// for the state as given and as rounded.
+    fn set_state(&mut self, state: State) -> Result<(), Rejected>;
 
     /// The parameters, converted to `f64` exactly.
     fn params(&self) -> Params;
 
-    /// [`Acrobot::set_params`] with the parameters rounded to the arithmetic's scalar.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Acrobot::set_params`], for the parameters as given and as rounded.
-    fn set_params(&mut self, params: Params) -> Result<(), crate::error::Error>;
+    /// [`Acrobot::set_params`] with the parameters rounded to the arithmetic's scalar, and its
+    /// errors, for the parameters as given and as rounded.
+    fn set_params(&mut self, params: Params) -> Result<(), Rejected>;
 
     /// The figure to draw.
     fn figure(&self) -> Figure;
@@ -188,7 +181,7 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
         Self::state(self).cast()
     }
 
-    fn set_state(&mut self, state: State) -> Result<(), crate::error::Error> {
+    fn set_state(&mut self, state: State) -> Result<(), Rejected> {
         state.validate()?;
         let fields = state.fields().map(|(name, value, _)| (name, value));
         Self::set_state(self, state.cast()).map_err(|error| as_given(error, &fields))
@@ -198,7 +191,7 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
         Self::params(self).cast()
     }
 
-    fn set_params(&mut self, params: Params) -> Result<(), crate::error::Error> {
+    fn set_params(&mut self, params: Params) -> Result<(), Rejected> {
         check_params::<A>(&params)?;
         let fields = params.fields().map(|(name, value, ..)| (name, value));
         Self::set_params(self, params.cast()).map_err(|error| as_given(error, &fields))
@@ -210,16 +203,16 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
 }
 
 /// The error of a number that is valid as `given`, and not after it was rounded to `f32`.
-fn as_given(error: crate::error::Error, given: &[(&'static str, f64)]) -> crate::error::Error {
+fn as_given(error: Rejected, given: &[(&'static str, f64)]) -> Rejected {
     let (name, rounded, unit) = match error {
-        crate::error::Error::OutOfRange {
+        Rejected::OutOfRange {
             name, value, unit, ..
         } => (name, value, unit),
-        crate::error::Error::NoInertia { name, value } => (name, value, "kg m²"),
+        Rejected::NoInertia { name, value } => (name, value, "kg m²"),
         _ => return error,
     };
     match given.iter().find(|(other, _)| *other == name) {
-        Some(&(_, value)) if value != rounded => crate::error::Error::OutOfRange {
+        Some(&(_, value)) if value != rounded => Rejected::OutOfRange {
             name,
             value,
             unit,

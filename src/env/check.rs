@@ -48,15 +48,14 @@ const AFTER_END: &str = "a reset after the end begins a full new episode";
 const CLONE: &str = "a clone behaves like its original";
 const RENDER: &str = "rendering changes nothing";
 
-/// The largest number of steps that is played in an episode.
+/// The largest number of steps of an episode.
 const STEPS: usize = 2000;
 
 /// Plays random episodes and checks the contract:
 ///
 /// - Observations and samples are in their space, and rewards are finite.
 /// - The same seed gives the same episode.
-/// - A reset after the end begins a full new episode, with or without a seed. So a truncated episode does not shorten
-///   the next one.
+/// - A reset after the end begins a full new episode, with or without a seed.
 /// - A clone behaves like its original.
 /// - Rendering changes nothing.
 ///

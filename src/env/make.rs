@@ -123,15 +123,12 @@ pub fn make_with(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     }
 }
 
-/// The number of characters of an unknown id that an error keeps. An id can have any length.
-const LONGEST_ID: usize = 64;
-
 fn make_in<A: Arithmetic>(id: &str, options: Options) -> Result<Box<DynEnv>, Error> {
     match id {
         "Acrobot-v0" => Ok(Box::new(Erased(acrobot_v0::<A>(options)?))),
         "Acrobot-v1" => Ok(Box::new(Erased(acrobot_v1::<A>(options)?))),
         _ => {
-            let mut start: String = id.chars().take(LONGEST_ID).collect();
+            let mut start: String = id.chars().take(64).collect();
             if start.len() < id.len() {
                 start.push('…');
             }

@@ -38,11 +38,12 @@ struct Shared<F: ?Sized> {
 }
 
 impl Display {
-    /// A display that passes each frame to `show`. Clones share `show`: while one shows a frame, other threads wait.
+    /// A display that passes each frame to `show`. Clones share `show`: while one shows a frame,
+    /// other threads wait.
     ///
-    /// `show` cannot use its display itself: an environment that it resets or steps is not shown on this display, and
-    /// [`render`](super::Env::render) returns [`Error::DisplayBusy`]. `show` must not wait for another thread that uses
-    /// this display: both would wait forever.
+    /// If `show` uses its display itself, resets and steps are not shown, and
+    /// [`render`](super::Env::render) returns [`Error::DisplayBusy`]. `show` must not wait for
+    /// another thread that uses this display: both would wait forever.
     pub fn new(show: impl FnMut(&Frame) + Send + 'static) -> Self {
         Self(Arc::new(Shared {
             thread: Mutex::new(None),

@@ -9,8 +9,8 @@ use crate::numpy::{integers, uniform};
 
 /// A set that can test for an element and draw random ones.
 ///
-/// A space has no generator, so copies cannot draw the same elements by accident. Gymnasium's `action_space.seed(s)`
-/// is [`Pcg64::new(s)`](crate::numpy::Pcg64::new) here.
+/// A space has no generator. Gymnasium's `action_space.seed(s)` is
+/// [`Pcg64::new(s)`](crate::numpy::Pcg64::new) here.
 pub trait Space {
     /// The type of its elements.
     type Element;
@@ -18,7 +18,8 @@ pub trait Space {
     /// Whether `element` is in it.
     fn contains(&self, element: &Self::Element) -> bool;
 
-    /// Draws a random element: Gymnasium's `sample()`, if `rng` is a `Pcg64` with the seed of its space.
+    /// Draws a random element: Gymnasium's `sample()`, if `rng` is a `Pcg64` with the seed of its
+    /// space.
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Element;
 }
 
@@ -70,10 +71,7 @@ impl<T: Clone + PartialEq> Space for DiscreteSpace<T> {
         self.elements.contains(element)
     }
 
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "integers are below n, the number of elements"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "integers are below n")]
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> T {
         self.elements[integers(rng, self.n) as usize].clone()
     }
@@ -98,8 +96,8 @@ pub struct BoxSpace<T> {
 }
 
 impl<T: AsRef<[f32]>> BoxSpace<T> {
-    /// The vectors from `low` to `high`. `None` if the two differ in length, a bound is not finite, or a lower bound is
-    /// above its upper bound.
+    /// The vectors from `low` to `high`. `None` if the two differ in length, a bound is not finite,
+    /// or a lower bound is above its upper bound.
     #[must_use]
     pub fn new(low: T, high: T) -> Option<Self> {
         let (lows, highs) = (low.as_ref(), high.as_ref());
@@ -147,11 +145,8 @@ impl<T: AsRef<[f32]> + AsMut<[f32]> + Clone> Space for BoxSpace<T> {
     fn contains(&self, element: &T) -> bool {
         let (lows, highs) = (self.low.as_ref(), self.high.as_ref());
         let element = element.as_ref();
-        element.len() == lows.len()
-            && element
-                .iter()
-                .zip(lows.iter().zip(highs))
-                .all(|(x, (low, high))| low <= x && x <= high)
+        let mut all = element.iter().zip(lows.iter().zip(highs));
+        element.len() == lows.len() && all.all(|(x, (low, high))| low <= x && x <= high)
     }
 
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> T {

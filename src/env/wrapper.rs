@@ -9,8 +9,8 @@ use crate::acrobot::Step;
 use crate::reset_options::ResetOptions;
 use crate::time_limit::TimeLimit;
 
-/// Forwards parts of [`Env`] to the wrapped one: its types; an episode, which is `reset_with` and `step`; all other
-/// methods; or only those of them without an observation.
+/// Forwards parts of [`Env`] to the wrapped one: its types; an episode, which is `reset_with` and
+/// `step`; all other methods; or only those of them without an observation.
 macro_rules! forward {
     (types $inner:ident) => {
         type Observation = $inner::Observation;
@@ -85,7 +85,7 @@ impl<E: Env + ?Sized> Env for &mut E {
     forward!(self, (**self));
 }
 
-/// A boxed environment. So the result of [`make`](super::make) can be wrapped and passed to generic code.
+/// A boxed environment, such as the result of [`make`](super::make).
 impl<E: Env + ?Sized> Env for Box<E> {
     forward!(types E);
     forward!(episode self, (**self));

@@ -7,20 +7,19 @@ use rand_core::{Rng, SeedableRng, TryRng};
 
 use super::seed_sequence::SeedSequence;
 
-/// NumPy's `PCG64`, the generator of every Gymnasium environment and space: `rand_pcg`'s PCG XSL-RR 128/64, seeded
-/// through a [`SeedSequence`]. Like NumPy, it takes two 32-bit draws from one 64-bit draw.
+/// NumPy's `PCG64`, the generator of every Gymnasium environment and space: PCG XSL-RR 128/64 (M.
+/// E. O'Neill, *PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for
+/// Random Number Generation*, 2014), seeded through a [`SeedSequence`]. Like NumPy, it takes two
+/// 32-bit draws from one 64-bit draw.
 ///
-/// It is `Clone`, to save and resume it, and not `Copy`, so that no stream is drawn from twice by accident. Two
-/// generators are equal if all their draws are equal. With the `serde` feature it can be stored. A `static` needs no
-/// initialization: the compiler hashes the seed.
-///
-/// Source: M. E. O'Neill, *PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
-/// Number Generation* (2014).
+/// It is not `Copy`, so that no stream is drawn from twice by accident. Two generators are equal if
+/// all their draws are equal. With the `serde` feature it can be stored: as the hash of the seed
+/// and the position, so any values make a valid generator.
 #[derive(Clone)]
 pub struct Pcg64(Stream);
 
-/// `rand_pcg` cannot seed a generator in a `const`, so the first draw seeds it. The enum takes no extra memory, because
-/// its tag fits into the tag of `half`.
+/// `rand_pcg` cannot seed a generator in a `const`, so the first draw does. The enum takes no extra
+/// memory: its tag fits into that of `half`.
 #[derive(Clone)]
 enum Stream {
     /// The hash of the seed.
@@ -33,12 +32,13 @@ struct Running {
     pcg: rand_pcg::Pcg64,
     /// The high half of a 64-bit draw whose low half was used.
     half: Option<u32>,
+    /// The hash of the seed, and the number of 64-bit draws since the seeding.
     #[cfg(feature = "serde")]
-    origin: snapshot::Origin,
+    origin: ([u64; 4], u64),
 }
 
 impl Pcg64 {
-    /// A placeholder that a [`Batch`](crate::batch::Batch) seeds. Do not draw from it: its stream is of low quality.
+    /// A placeholder that a [`Batch`](crate::batch::Batch) seeds. Do not draw from it.
     pub const UNSEEDED: Self = Self::from_hash([0; 4]);
 
     /// NumPy's `default_rng(seed)`. For longer seeds: `Pcg64::from` a [`SeedSequence`].
@@ -83,14 +83,16 @@ impl Running {
             pcg: rand_pcg::Pcg64::new(state1 << 64 | state0, stream1 << 64 | stream0),
             half: None,
             #[cfg(feature = "serde")]
-            origin: snapshot::Origin { hash, position: 0 },
+            origin: (hash, 0),
         }
     }
 
     #[inline]
     fn next_u64(&mut self) -> u64 {
         #[cfg(feature = "serde")]
-        self.origin.advance();
+        {
+            self.origin.1 = self.origin.1.wrapping_add(1);
+        }
         self.pcg.next_u64()
     }
 
@@ -116,7 +118,8 @@ impl PartialEq for Pcg64 {
 impl Eq for Pcg64 {}
 
 impl fmt::Debug for Pcg64 {
-    /// The next 64-bit draw, because `rand_pcg` does not show its state, and the unused half of the last one.
+    /// The next 64-bit draw, because `rand_pcg` hides its state, and the unused half of the last
+    /// one.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut running = self.running();
         f.debug_struct("Pcg64")
@@ -156,7 +159,7 @@ impl TryRng for Pcg64 {
         Ok(self.draw(Running::next_u64))
     }
 
-    // Not rand_core's `fill_bytes_via_next_word`, which divides: some compilers keep the panic of a division by zero.
+    // Not rand_core's `fill_bytes_via_next_word`, whose division some compilers keep a panic for.
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
         let (words, rest) = bytes.as_chunks_mut();
         for word in words {
@@ -194,24 +197,8 @@ mod snapshot {
 
     use super::{Pcg64, Running, Stream};
 
-    /// The origin of a generator. A snapshot holds it, because any values make a valid generator.
-    #[derive(Clone)]
-    pub struct Origin {
-        /// The hash of the seed.
-        pub hash: [u64; 4],
-        /// The number of 64-bit draws since the seeding.
-        pub position: u64,
-    }
-
-    impl Origin {
-        #[inline]
-        pub fn advance(&mut self) {
-            self.position = self.position.wrapping_add(1);
-        }
-    }
-
-    /// Only numbers that every format can hold: TOML has no integers above 2⁶³, JavaScript none above 2⁵³, and other
-    /// formats no 128-bit integers. No field is optional, because some formats omit optional fields.
+    /// Only numbers that every format can hold: TOML has no integers above 2⁶³, JavaScript none
+    /// above 2⁵³, and other formats none of 128 bits. Some formats omit optional fields.
     #[derive(Serialize, Deserialize)]
     #[serde(rename = "Pcg64")]
     struct Snapshot {
@@ -223,17 +210,19 @@ mod snapshot {
     }
 
     impl Pcg64 {
-        /// The largest size of a snapshot in postcard's format, bytes: 7 bits of an integer in a byte.
+        /// The largest size of a snapshot in postcard's format, bytes: 7 bits of an integer in a
+        /// byte.
         pub(crate) const MAX_SNAPSHOT_SIZE: usize = 8 * 5 + 10 + 1 + 5;
     }
 
     impl Serialize for Pcg64 {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let Running { half, origin, .. } = self.running();
-            let [a, b, c, d] = origin.hash.map(|word| [word as u32, (word >> 32) as u32]);
+            let running = self.running();
+            let ((hash, position), half) = (running.origin, running.half);
+            let [a, b, c, d] = hash.map(|word| [word as u32, (word >> 32) as u32]);
             Snapshot {
                 seed: [a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1]],
-                position: origin.position,
+                position,
                 has_half: half.is_some(),
                 half: half.unwrap_or_default(),
             }
@@ -253,7 +242,7 @@ mod snapshot {
             let hash = hash.map(|[low, high]| u64::from(high) << 32 | u64::from(low));
             let mut running = Running::new(hash);
             running.pcg.advance(position.into());
-            running.origin.position = position;
+            running.origin.1 = position;
             running.half = has_half.then_some(half);
             Ok(Self(Stream::Running(running)))
         }

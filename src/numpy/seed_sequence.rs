@@ -1,14 +1,16 @@
 //! NumPy's `SeedSequence`: turns a seed into the initial state of a generator.
 //!
 //! The algorithm is M. E. O'Neill's `seed_seq_fe`
-//! (<https://www.pcg-random.org/posts/developing-a-seed_seq-alternative.html>), with NumPy's constants
-//! and order (<https://numpy.org/doc/stable/reference/random/bit_generators/>).
+//! (<https://www.pcg-random.org/posts/developing-a-seed_seq-alternative.html>), with NumPy's
+//! constants and order (<https://numpy.org/doc/stable/reference/random/bit_generators/>).
+
+#[cfg(feature = "std")]
+use crate::error::Error;
 
 /// A hashed seed: NumPy's `SeedSequence` of any non-negative integer, and its children.
 ///
-/// NumPy keeps the seed and hashes it again for each child. Hashing is sequential, so this type keeps only the hashed
-/// pool: at most 48 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the same children
-/// by accident.
+/// It keeps the hashed seed: at most 48 bytes, however large the seed. It is not `Copy`, so that
+/// two copies do not spawn the same children by accident.
 ///
 /// ```
 /// use acrobot::numpy::SeedSequence;
@@ -26,27 +28,25 @@ pub struct SeedSequence {
     pool: [u32; 4],
     /// The multiplier of the next `hash`, which changes it.
     hash_multiplier: u32,
-    /// The number of children spawned. It cannot overflow in practice: one call spawns fewer than 2⁶⁴.
+    /// The number of children spawned. It cannot overflow in practice: one call spawns fewer than
+    /// 2⁶⁴.
     spawned: u128,
 }
 
 const SHIFT: u32 = 16;
 
 impl SeedSequence {
-    /// The sequence of `seed`. For longer seeds: [`from_words`](Self::from_words) and, with `std`, `parse` on a decimal
-    /// text.
+    /// The sequence of `seed`. For longer seeds: [`from_words`](Self::from_words) and, with `std`,
+    /// `parse` on a decimal text.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self::from_words(&[seed as u32, (seed >> 32) as u32])
     }
 
-    /// The sequence of the integer with these 32-bit digits, the lowest first. An empty slice is the integer 0, and
-    /// leading zeros do not count.
+    /// The sequence of the integer with these 32-bit digits, the lowest first. An empty slice is
+    /// the integer 0.
     #[must_use]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "indices are below 4, the length of the pool"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "the pool has 4 words")]
     #[inline(never)] // saves flash, as does `hash`, which it calls sixteen times
     pub const fn from_words(mut words: &[u32]) -> Self {
         while let [rest @ .., 0] = words {
@@ -85,15 +85,15 @@ impl SeedSequence {
         sequence
     }
 
-    /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call returns other children.
+    /// NumPy's `spawn(n)`: the next `n` children, each with an independent stream. A later call
+    /// returns other children.
     pub fn spawn(&mut self, n: u64) -> impl Iterator<Item = Self> + use<> {
         let parent = self.clone();
         self.spawned = parent.spawned.saturating_add(n.into());
         (0..n).map(move |i| parent.descend(parent.spawned.saturating_add(i.into())))
     }
 
-    /// The child with this index, counted from 0 over all calls of [`spawn`](Self::spawn): for a worker that
-    /// knows only its own number.
+    /// The child with this index, counted from 0 over all calls of [`spawn`](Self::spawn).
     #[must_use]
     pub fn child(&self, index: u64) -> Self {
         self.descend(index.into())
@@ -115,10 +115,7 @@ impl SeedSequence {
 
     /// The first `N` 64-bit words of the sequence. Each call returns the same.
     #[must_use]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "i is below N, and the pool's index below 4"
-    )]
+    #[expect(clippy::indexing_slicing, reason = "indices are below 4 and N")]
     pub const fn generate_state<const N: usize>(&self) -> [u64; N] {
         let mut state = [0; N];
         let mut multiplier = 0x8b51_f9dd_u32;
@@ -169,24 +166,22 @@ impl From<u64> for SeedSequence {
 
 #[cfg(feature = "std")]
 impl std::str::FromStr for SeedSequence {
-    type Err = crate::error::Error;
+    type Err = Error;
 
-    /// The sequence of a decimal integer with up to 4300 digits, as many as Python's `int` parses by default. For a
-    /// larger one: [`from_words`](Self::from_words).
+    /// The sequence of a decimal integer with up to 4300 digits, as many as Python's `int` parses
+    /// by default. For a larger one: [`from_words`](Self::from_words).
     ///
     /// # Errors
     ///
-    /// [`Error::SeedTooLong`](crate::Error::SeedTooLong) for a longer text, and
-    /// [`Error::MalformedSeed`](crate::Error::MalformedSeed) with the first character that is not a digit.
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
+    /// [`Error::SeedTooLong`], and [`Error::MalformedSeed`] with the first character that is not a
+    /// digit.
+    fn from_str(text: &str) -> Result<Self, Error> {
         // The time is quadratic in the length.
-        const LIMIT: usize = 4300;
-        if text.len() > LIMIT {
-            let (len, limit) = (text.len(), LIMIT);
-            return Err(crate::error::Error::SeedTooLong { len, limit });
+        let (len, limit) = (text.len(), 4300);
+        if len > limit {
+            return Err(Error::SeedTooLong { len, limit });
         }
-        let malformed =
-            |found, position| Err(crate::error::Error::MalformedSeed { found, position });
+        let malformed = |found, position| Err(Error::MalformedSeed { found, position });
         if text.is_empty() {
             return malformed(None, 1);
         }

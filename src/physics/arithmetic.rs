@@ -9,11 +9,15 @@ use super::task::Task;
 use crate::error::Error;
 use crate::math::{Numbers, Real};
 
-/// A scalar, its sines and the form of the equations: they determine every bit of a result.
+/// The numbers that an acrobot computes with: a scalar, its sines and the form of the equations.
+/// They determine every bit of a result.
+///
+/// [`Fast`](crate::Fast), [`Portable`](crate::Portable) and [others](crate::arithmetic#structs)
+/// implement it. Implement it [for a hardware sine unit](crate::arithmetic).
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
-    /// A short name in lower case, of at most 16 bytes. Snapshots hold it, so no other arithmetic can load them. The
-    /// crate's names are "reference", "portable", "fast", "micro" and "host". With a longer name, code that saves or
-    /// loads a snapshot does not compile.
+    /// A short name in lower case. Snapshots hold it, so no other arithmetic can load them. With
+    /// more than 16 bytes, code that saves or loads a snapshot does not compile. The crate's names
+    /// are "reference", "portable", "fast", "micro" and "host".
     const NAME: &'static str;
 
     /// The type of angles, velocities, torques and parameters.
@@ -22,15 +26,16 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// How the equations of motion are evaluated.
     const FORM: Form = Form::Lean;
 
-    /// Whether the joints can have [friction](Viscous). Without it, steps compute none.
+    /// Whether the joints can have [friction](Viscous), as in
+    /// [`Damped`](crate::arithmetic::Damped).
     const HAS_FRICTION: bool = false;
 
     /// Sine and cosine of `x` rad. Both must be within \[−1, 1\] for every finite `x`.
     fn sin_cos(x: Self::Scalar) -> (Self::Scalar, Self::Scalar);
 
-    /// Sines and cosines of one angle or of many, bit-identical to [`sin_cos`](Self::sin_cos) for |x| ≤ 2¹⁹ rad.
-    /// Beyond, any result is valid, even NaN. Steps call this method for speed: it can leave out range checks, and
-    /// compute many angles with SIMD.
+    /// Sines and cosines of one angle or of many, bit-identical to [`sin_cos`](Self::sin_cos) for
+    /// |x| ≤ 2¹⁹ rad. Beyond, any result is valid, even NaN. Steps call it for speed: it can leave out
+    /// range checks, and compute many angles with SIMD.
     #[inline(always)]
     fn sin_cos_near<V: Numbers<Self::Scalar>>(x: V) -> (V, V) {
         x.zip3(x, x, |x, _, _| Self::sin_cos(x))
@@ -91,21 +96,17 @@ pub(crate) fn model<A: Arithmetic>(params: Params<A::Scalar>) -> Model<A::Scalar
 /// Checks parameters, and that there is no friction where the arithmetic has none.
 pub(crate) fn check_params<A: Arithmetic>(params: &Params<impl Real>) -> Result<(), Error> {
     params.validate()?;
-    if A::HAS_FRICTION {
-        return Ok(());
-    }
     let Viscous { joint1, joint2 } = params.friction;
-    no_friction([joint1.to_f64(), joint2.to_f64()])
+    check_friction::<A>([joint1.to_f64(), joint2.to_f64()])
 }
 
-/// Checks that both coefficients are 0.
-pub(super) const fn no_friction([joint1, joint2]: [f64; 2]) -> Result<(), Error> {
-    let (name, value) = if joint1 != 0.0 {
-        ("friction.joint1", joint1)
-    } else if joint2 != 0.0 {
-        ("friction.joint2", joint2)
-    } else {
-        return Ok(());
+/// Checks that both coefficients are 0 where the arithmetic has no friction.
+pub(super) const fn check_friction<A: Arithmetic>(friction: [f64; 2]) -> Result<(), Error> {
+    let (name, value) = match friction {
+        _ if A::HAS_FRICTION => return Ok(()),
+        [0.0, 0.0] => return Ok(()),
+        [0.0, joint2] => ("friction.joint2", joint2),
+        [joint1, _] => ("friction.joint1", joint1),
     };
     Err(Error::OutOfRange {
         name,
@@ -115,19 +116,11 @@ pub(super) const fn no_friction([joint1, joint2]: [f64; 2]) -> Result<(), Error>
     })
 }
 
-/// The torque at the elbow less that of friction, and the resistance of the fixed joint if it has friction, N m.
+/// A torque less that of a joint's friction, N m.
 #[inline(always)]
-pub(super) fn resist<A: Arithmetic, V: Numbers<A::Scalar>>(
-    friction: &Viscous<V>,
-    torque: V,
-    [dtheta1, dtheta2]: [V; 2],
-) -> (V, Option<V>) {
-    if A::HAS_FRICTION {
-        (
-            torque - friction.joint2 * dtheta2,
-            Some(friction.joint1 * dtheta1),
-        )
-    } else {
-        (torque, None)
+pub(super) fn resist<A: Arithmetic, V: Numbers<A::Scalar>>(torque: V, joint: V, dtheta: V) -> V {
+    match A::HAS_FRICTION {
+        true => torque - joint * dtheta,
+        false => torque,
     }
 }

@@ -5,12 +5,12 @@ use crate::math::{Numbers, Real};
 /// The angle `x`, rad, wrapped to \[−π, π\] by whole turns.
 ///
 /// Subtracts the rounded number of turns at once, as a step of the form
-/// [`Lean`](super::model::Form::Lean) does. Its error in `f32` is at most the spacing of `f32` at
-/// `x`, 1.2e-7 |x|. Wrapping −x negates the result, except for the sign of zero, up to 2²² turns in
-/// `f32` and 2⁵¹ in `f64`, because it counts no more. An infinite angle or NaN gives NaN.
+/// [`Lean`](super::model::Form::Lean) does. The error in `f32` is at most 1.2e-7 |x|. Wrapping −x
+/// negates the result, except for the sign of zero, up to 2²² turns in `f32` and 2⁵¹ in `f64`. An
+/// infinite angle or NaN gives NaN.
 ///
-/// A step of the form [`Gymnasium`](super::model::Form::Gymnasium) subtracts turn by turn, up to 64
-/// turns, and takes the remainder beyond. Beyond one turn its last digits differ.
+/// A step of the form [`Gymnasium`](super::model::Form::Gymnasium) subtracts turn by turn, so
+/// beyond one turn its last digits differ.
 ///
 /// ```
 /// use acrobot::physics::wrap;
@@ -32,8 +32,8 @@ pub fn wrap<S: Real>(x: S) -> S {
 pub(super) fn wrap_each<S: Real, V: Numbers<S>>(x: V) -> V {
     let turns = x * V::splat(S::from_f64(1.0 / core::f64::consts::TAU));
     let turned = x - turns.map(S::round_small) * V::splat(S::TAU);
-    // The bound is for angles so large that neighbouring numbers are more than a turn apart. An angle within ±π
-    // does not change, even where its turns round to ±1.
+    // The bound is for angles whose neighbours are more than a turn away. An angle within ±π does
+    // not change, even where its turns round to ±1.
     x.zip(turned.bound(V::splat(S::PI)), |x, turned| {
         if x.abs() <= S::PI { x } else { turned }
     })

@@ -1,4 +1,5 @@
-//! The equations of motion in the form that the arithmetic names, for one number or for many at once.
+//! The equations of motion in the form that the arithmetic names, for one number or for many at
+//! once.
 
 use super::arithmetic::Arithmetic;
 use super::bounds::wrap_each;
@@ -6,8 +7,8 @@ use super::model::{Form, Model};
 use super::{gymnasium, lean};
 use crate::math::{Numbers, SinCos};
 
-/// The derivative at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque, N m. `sin_cos` are the sines and cosines of θ1 and θ2, if
-/// they are known.
+/// The derivative at `y` = \[θ1, θ2, θ̇1, θ̇2\] under a torque, N m. `sin_cos` are the sines and
+/// cosines of θ1 and θ2, if they are known.
 #[inline(always)]
 pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,

@@ -1,8 +1,7 @@
 //! Friction of the joints.
 
-/// Viscous friction: each joint resists its velocity with a torque in proportion to it.
-///
-/// `Damped<Fast>` is [`Fast`](crate::Fast) with it. Other arithmetics reject one that is not 0.
+/// Viscous friction: each joint resists its velocity with a torque in proportion to it. Only
+/// arithmetics [with friction](crate::arithmetic::Damped) accept one that is not 0.
 ///
 /// ```
 /// use acrobot::arithmetic::Damped;

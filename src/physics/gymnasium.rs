@@ -1,6 +1,7 @@
 //! Gymnasium's expressions, operation by operation.
 
 use super::arithmetic::{Arithmetic, resist};
+use super::friction::Viscous;
 use super::model::{Constants, Model};
 use super::params::Params;
 use crate::math::sealed::Sealed;
@@ -24,16 +25,11 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
         gravity1,
         gravity2,
         nips,
-        own:
-            [
-                link1,
-                arms_squared,
-                arms_product,
-                lc2_squared,
-                twice_coupling,
-            ],
+        own,
         ..
     } = &model.constants;
+    let [link1, arms_squared, arms_product, ..] = own; // kg m², m², m²
+    let [.., lc2_squared, twice_coupling] = own; // m², kg m²
     let &Params {
         mass2: m2,
         inertia1,
@@ -56,14 +52,12 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     let arm = arms_product * cos2;
     let d1 = link1 + m2 * (arms_squared + two * arm) + inertia1 + inertia2;
     let d2 = m2 * (lc2_squared + arm) + inertia2;
-    let velocities = [dtheta1, dtheta2];
-    let (torque, resistance) = resist::<A, V>(&model.params.friction, torque, velocities);
-    let mut phi1 = -coupling * square(dtheta2) * sin2 - twice_coupling * dtheta2 * dtheta1 * sin2
+    let Viscous { joint1, joint2 } = model.params.friction;
+    let torque = resist::<A, V>(torque, joint2, dtheta2);
+    let phi1 = -coupling * square(dtheta2) * sin2 - twice_coupling * dtheta2 * dtheta1 * sin2
         + gravity1 * cos1
         + phi2;
-    if let Some(resistance) = resistance {
-        phi1 = phi1 + resistance;
-    }
+    let phi1 = resist::<A, V>(phi1, -joint1, dtheta1);
     let driven = torque + d2 / d1 * phi1;
     let centrifugal = coupling * square(dtheta1) * sin2;
     let driven = nips.select_within(A::Scalar::ZERO, driven - centrifugal, driven);

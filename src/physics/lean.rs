@@ -1,6 +1,7 @@
 //! The lean form: one division and the sines and cosines of θ1 and θ2 for each evaluation.
 
 use super::arithmetic::{Arithmetic, resist};
+use super::friction::Viscous;
 use super::model::{Constants, Model};
 use crate::math::sealed::Sealed;
 use crate::math::{Numbers, Real, SinCos};
@@ -24,7 +25,7 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
         gravity1,
         gravity2,
         nips,
-        own: [upper, determinant, book, ..],
+        own: [upper, determinant, book, ..], // kg m², kg² m⁴, 1
         ..
     } = &model.constants;
     let coupling_cos = coupling * cos2;
@@ -34,13 +35,11 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     let square = dtheta1 * dtheta1;
 
     // The generalized forces: the negated one on θ1, and the one on θ1 + θ2.
-    let velocities = [dtheta1, dtheta2];
-    let (torque, resistance) = resist::<A, V>(&model.params.friction, torque, velocities);
-    let mut force1 =
+    let Viscous { joint1, joint2 } = model.params.friction;
+    let torque = resist::<A, V>(torque, joint2, dtheta2);
+    let force1 =
         (gravity1 * sin1 - coupling_sin * (dtheta_sum * dtheta_sum - nips * square)) + torque;
-    if let Some(resistance) = resistance {
-        force1 = force1 + resistance;
-    }
+    let force1 = resist::<A, V>(force1, -joint1, dtheta1);
     let force2 = torque - gravity2 * sin_sum - coupling_sin * (book * square);
     let inverse = V::splat(A::Scalar::ONE) / (determinant + coupling_sin * coupling_sin);
     let common = link2 * force1 + coupling_cos * force2;

@@ -7,14 +7,15 @@ use crate::math::Real;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Form {
-    /// Solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's bits.
+    /// Solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's
+    /// bits.
     Lean,
-    /// As Gymnasium's source has them: four divisions and four trigonometric calls for each evaluation.
+    /// As Gymnasium's source has them: four divisions and four trigonometric calls for each
+    /// evaluation.
     Gymnasium,
 }
 
-/// The constants, of one acrobot or of many. The names are those of Sutton & Barto, *Reinforcement Learning: An
-/// Introduction* (1998), section 11.3.
+/// The constants, of one acrobot or of many, named as in Sutton & Barto (1998), section 11.3.
 #[derive(Clone, Copy, Debug)]
 pub struct Constants<V> {
     /// 1 for the equations of the 1996 paper, otherwise 0.
@@ -68,7 +69,8 @@ impl<V: Copy> Model<V> {
     }
 }
 
-/// A scalar with the models of the default parameters: `f32` or `f64`. A generic constant cannot compute them.
+/// A scalar with the models of the default parameters: `f32` or `f64`. A generic constant cannot
+/// compute them.
 pub trait Modeled: Real {
     /// The models of [`Params::DEFAULT`] and [`Params::SWINGUP`] in the lean form.
     #[doc(hidden)]
@@ -87,34 +89,25 @@ impl<S: Modeled> Params<S> {
     /// The parameters of Gymnasium's `Acrobot-v1`, each rounded to the scalar.
     pub const DEFAULT: Self = S::LEAN[0].params;
 
-    /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step of 0.01 s and
-    /// torques of ±2 N m. Its velocities have no bounds.
+    /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step
+    /// of 0.01 s and torques of ±2 N m. Its velocities have no bounds.
     pub const SWINGUP: Self = S::LEAN[1].params;
 }
 
 for_f32_and_f64! {
     impl Model<S> {
-        /// The model of `params`, given l1², lc1² and lc2², because `Host` squares with the platform's `pow`.
+        /// See [`Modeled::model`]. Squares are given, because `Host` computes them with the C
+        /// library.
         #[inline(always)]
         pub(crate) const fn new(
             form: Form,
             params: Params<S>,
             [l1_squared, lc1_squared, lc2_squared]: [S; 3],
         ) -> Self {
-            let Params {
-                length1: l1,
-                mass1: m1,
-                mass2: m2,
-                center_of_mass1: lc1,
-                center_of_mass2: lc2,
-                inertia1,
-                inertia2,
-                gravity,
-                dt,
-                dynamics,
-                ..
-            } = params;
-            let nips = match dynamics {
+            let Params { inertia1, inertia2, gravity, dt, .. } = params;
+            let (l1, m1, m2) = (params.length1, params.mass1, params.mass2);
+            let (lc1, lc2) = (params.center_of_mass1, params.center_of_mass2);
+            let nips = match params.dynamics {
                 Dynamics::Book => 0.0,
                 Dynamics::Nips => 1.0,
             };

@@ -11,18 +11,19 @@ use crate::math::Real;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Dynamics {
-    /// Those of Sutton & Barto, *Reinforcement Learning: An Introduction*: the physical double pendulum.
+    /// Those of Sutton & Barto, *Reinforcement Learning: An Introduction*: the physical double
+    /// pendulum.
     #[default]
     Book,
-    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996). The centrifugal term
-    /// in θ̇1² of the second joint is missing, so energy is not conserved.
+    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996). The
+    /// centrifugal term in θ̇1² of the second joint is missing, so energy is not conserved.
     Nips,
 }
 
 /// The parameters of an acrobot. [`Params::DEFAULT`] has Gymnasium's values.
 ///
-/// All fields are in SI units. Link 1 hangs from the fixed joint and link 2 from the tip of link 1. The motor is
-/// between the two links.
+/// Link 1 hangs from the fixed joint and link 2 from the tip of link 1. The motor is between the
+/// two links. All fields are in SI units; [`validate`](Self::validate) checks their ranges.
 ///
 /// ```
 /// use acrobot::Params;
@@ -38,8 +39,8 @@ pub enum Dynamics {
 pub struct Params<S = f64> {
     /// Length of link 1, m; above 0.
     pub length1: S,
-    /// Length of link 2, m; above 0. Only [`positions`](super::Pendulum::positions), the tip's height and drawings use
-    /// it: neither the equations of motion nor Gymnasium's goal contain it.
+    /// Length of link 2, m; above 0. Only [`positions`](super::Pendulum::positions), the tip's
+    /// height and drawings use it: the equations of motion and Gymnasium's goal do not.
     pub length2: S,
     /// Mass of link 1, kg; above 0.
     pub mass1: S,
@@ -49,8 +50,8 @@ pub struct Params<S = f64> {
     pub center_of_mass1: S,
     /// Distance of link 2's centre of mass from its joint, m; 0 or more.
     pub center_of_mass2: S,
-    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on
-    /// the joint.
+    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
+    /// centre of mass is on the joint.
     pub inertia1: S,
     /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
     pub inertia2: S,
@@ -62,10 +63,11 @@ pub struct Params<S = f64> {
     pub max_velocity1: S,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`.
     pub max_velocity2: S,
-    /// Torques of the three actions, N m, in the order of their numbers; finite. They do not limit `step_torque`.
+    /// Torques of the three actions, N m, in the order of their numbers; finite. They do not limit
+    /// `step_torque`.
     pub torques: [S; 3],
-    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise), rounded to the scalar, to the
-    /// torque. 0 draws nothing.
+    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise), rounded to
+    /// the scalar, to the torque. 0 draws nothing.
     pub torque_noise: S,
     /// The equations of motion.
     pub dynamics: Dynamics,
@@ -74,8 +76,8 @@ pub struct Params<S = f64> {
 }
 
 impl<S: Real> Default for Params<S> {
-    /// [`Params::DEFAULT`], built field by field: copying the constant would call `memcpy`, which takes 1 KB of flash
-    /// if nothing else calls it.
+    /// [`Params::DEFAULT`].
+    // Built field by field: copying the constant would call `memcpy`, 1 KB of flash.
     #[inline]
     fn default() -> Self {
         Params::<f64>::ACROBOT.cast()
@@ -83,39 +85,34 @@ impl<S: Real> Default for Params<S> {
 }
 
 impl<S: Real> Params<S> {
-    /// The same parameters in another scalar. Each number is rounded to the nearest.
-    #[must_use]
-    #[inline]
-    pub fn cast<T: Real>(&self) -> Params<T> {
-        self.zip(self, |x, _| T::from_f64(x.to_f64()))
-    }
-
-    /// The torque of an action, N m.
-    #[must_use]
-    #[inline]
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "there is a torque for every action"
-    )]
-    pub fn torque(&self, action: Action) -> S {
-        self.torques[action as usize]
-    }
-
-    /// Checks every field against the range in its documentation.
-    ///
-    /// With extreme but valid parameters a step can still overflow: see
-    /// [results that are not finite](super::Pendulum#results-that-are-not-finite).
+    /// Checks every field against the range in its documentation. With extreme but valid parameters
+    /// [a step can still overflow](super::Pendulum#results-that-are-not-finite).
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] with the first field outside its range, and [`Error::NoInertia`] for a link without
-    /// inertia about its joint.
+    /// [`Error::OutOfRange`] with the first field outside its range, and [`Error::NoInertia`] for a
+    /// link without inertia about its joint.
     pub fn validate(&self) -> Result<(), Error> {
         // The casts change nothing: `S` is one of these two.
         match size_of::<S>() {
             4 => self.cast::<f32>().check(),
             _ => self.cast::<f64>().check(),
         }
+    }
+
+    /// The torque of an action, N m.
+    #[must_use]
+    #[inline]
+    #[expect(clippy::indexing_slicing, reason = "each action has a torque")]
+    pub fn torque(&self, action: Action) -> S {
+        self.torques[action as usize]
+    }
+
+    /// The same parameters in another scalar. Each number is rounded to the nearest.
+    #[must_use]
+    #[inline]
+    pub fn cast<T: Real>(&self) -> Params<T> {
+        self.zip(self, |x, _| T::from_f64(x.to_f64()))
     }
 
     /// Whether all bits are the same. `==` takes −0 for 0.
@@ -155,7 +152,8 @@ impl<S: Copy> Params<S> {
         ]
     }
 
-    /// Applies `f` to each number and that of `other`, in the order of the fields. The dynamics are those of `self`.
+    /// Applies `f` to each pair of numbers, in the order of the fields. The dynamics are those of
+    /// `self`.
     #[inline(always)]
     pub(crate) fn zip<T: Copy, U>(
         &self,
@@ -202,24 +200,21 @@ for_f32_and_f64! {
                 }
                 fields = rest;
             }
-            // The acceleration of a link without inertia about its joint is undetermined.
-            let (m1, lc1) = (self.mass1, self.center_of_mass1);
-            if self.inertia1 + m1 * lc1 * lc1 <= 0.0 {
-                let (name, value) = ("inertia1", self.inertia1 as f64);
-                return Err(Error::NoInertia { name, value });
-            }
-            let (m2, lc2) = (self.mass2, self.center_of_mass2);
-            if self.inertia2 + m2 * lc2 * lc2 <= 0.0 {
-                let (name, value) = ("inertia2", self.inertia2 as f64);
-                return Err(Error::NoInertia { name, value });
-            }
-            Ok(())
+            let (lc1, lc2) = (self.center_of_mass1, self.center_of_mass2);
+            let (name, value) = if self.inertia1 + self.mass1 * lc1 * lc1 <= 0.0 {
+                ("inertia1", self.inertia1 as f64)
+            } else if self.inertia2 + self.mass2 * lc2 * lc2 <= 0.0 {
+                ("inertia2", self.inertia2 as f64)
+            } else {
+                return Ok(());
+            };
+            Err(Error::NoInertia { name, value })
         }
     }
 }
 
-/// The moment of inertia of a capsule of 1 kg about an axis across its centre, kg m². The centres of its hemispheres are 1 m
-/// apart. As in MuJoCo, its mass is spread evenly over its volume.
+/// The moment of inertia of a capsule of 1 kg about an axis across its centre, kg m². The centres
+/// of its hemispheres are 1 m apart. As in MuJoCo, its density is uniform.
 const fn inertia_of_capsule(radius: f64) -> f64 {
     let (cylinder, sphere) = (1.0, 4.0 / 3.0 * radius);
     let whole = cylinder + sphere;

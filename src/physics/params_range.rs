@@ -36,8 +36,8 @@ impl<S: Real> ParamsRange<S> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`], [`Error::ReversedRange`] for a parameter whose `low` is above its `high`,
-    /// [`Error::OutOfRange`] for a range so wide that its width is infinite, and [`Error::DifferentDynamics`].
+    /// Those of [`Params::validate`], [`Error::ReversedRange`] for a parameter whose `low` is above
+    /// its `high`, [`Error::OutOfRange`] for an infinite width, and [`Error::DifferentDynamics`].
     pub fn new(low: Params<S>, high: Params<S>) -> Result<Self, Error> {
         low.validate()?;
         high.validate()?;
@@ -79,13 +79,13 @@ impl<S: Real> ParamsRange<S> {
         &self.high
     }
 
-    /// Draws each parameter uniformly, in the order of the fields of [`Params`]. A fixed one draws nothing.
+    /// Draws each parameter uniformly, in the order of the fields. A fixed one draws nothing.
     pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> Params<S> {
         self.low.zip(&self.high, |low, high| {
             if low == high {
                 return low;
             }
-            // At most `high`: `uniform` adds at most the exact width to `low`, and rounding keeps the order.
+            // At most `high`: `uniform` adds at most the exact width, and rounding keeps the order.
             S::from_f64(uniform(rng, low.to_f64(), high.to_f64()))
         })
     }

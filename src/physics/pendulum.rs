@@ -1,6 +1,6 @@
 //! The pendulum: parameters, a state, and quantities that follow from them.
 
-use super::arithmetic::{Arithmetic, check_params, default_model, model, no_friction};
+use super::arithmetic::{Arithmetic, check_friction, check_params, default_model, model};
 use super::equations;
 use super::friction::Viscous;
 use super::geometry;
@@ -13,8 +13,9 @@ use crate::math::{Real, SinCos};
 
 /// A double pendulum with a motor between its links.
 ///
-/// `A` is the [arithmetic](crate::arithmetic), which determines every bit. A pendulum can be made in a `const`, so it
-/// can be a `static`.
+/// `A` is the [arithmetic](crate::arithmetic), which determines every bit.
+/// [`hanging`](Self::hanging) and [`Params::pendulum`](Params#method.pendulum) make a pendulum in a
+/// `const` or a `static`.
 ///
 /// ```
 /// use acrobot::Portable;
@@ -22,17 +23,21 @@ use crate::math::{Real, SinCos};
 ///
 /// const HANGING: Pendulum<Portable> = Pendulum::hanging();
 ///
-/// assert!((HANGING.energy() + 9.8 * (0.5 + 1.5)).abs() < 1e-12);
-/// assert_eq!(HANGING.mass_matrix(), [[4.5, 1.75], [1.75, 1.25]]);
-/// assert_eq!(HANGING.positions(), [[0.0, -1.0], [0.0, -2.0]]);
-/// assert_eq!(HANGING.tip_height(), -2.0);
+/// assert!((HANGING.energy() + 9.8 * (0.5 + 1.5)).abs() < 1e-12); // J
+/// assert_eq!(HANGING.mass_matrix(), [[4.5, 1.75], [1.75, 1.25]]); // kg m²
+/// assert_eq!(HANGING.positions(), [[0.0, -1.0], [0.0, -2.0]]); // m
+///
+/// let mut pendulum = HANGING;
+/// pendulum.step(1.0)?; // N m
+/// assert!(pendulum.tip_height() > -2.0); // m
+/// # Ok::<(), acrobot::Error>(())
 /// ```
 ///
 /// # Results that are not finite
 ///
-/// With extreme but valid parameters, states or torques a step can overflow. A step whose result is not finite keeps
-/// the angles and sets both velocities to 0, in every arithmetic and in batches. An initial state far outside ±π is
-/// valid: the first step wraps the angles and bounds the velocities. No step hangs, panics or returns NaN.
+/// With extreme but valid parameters, states or torques a step can overflow. A step whose result is
+/// not finite keeps the angles and sets both velocities to 0, in every arithmetic and in batches.
+/// So no step hangs, panics or returns NaN.
 #[derive(Clone, Debug)]
 pub struct Pendulum<A: Arithmetic> {
     /// θ1, θ2, θ̇1 and θ̇2.
@@ -51,26 +56,26 @@ impl<A: Arithmetic> Pendulum<A> {
         Self::from_model(const { default_model::<A>() }, [A::Scalar::ZERO; 4])
     }
 
+    /// A pendulum with these parameters in this state.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Params::validate`] and [`State::validate`], and [`Error::OutOfRange`] for
+    /// friction in an arithmetic [without it](Arithmetic::HAS_FRICTION).
+    pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
+        check_params::<A>(&params)?;
+        state.validate()?;
+        Ok(Self::new_unchecked(params, state))
+    }
+
     /// A pendulum with this model in a state that is known to be finite.
-    pub(crate) const fn from_model(model: Model<A::Scalar>, y: [A::Scalar; 4]) -> Self {
+    const fn from_model(model: Model<A::Scalar>, y: [A::Scalar; 4]) -> Self {
         Self {
             model,
             y,
             sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2],
             is_current: false,
         }
-    }
-
-    /// A pendulum with these parameters in this state.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`] and [`State::validate`], and [`Error::OutOfRange`] for friction that is not 0 in an
-    /// arithmetic [without friction](Arithmetic::HAS_FRICTION).
-    pub fn new(params: Params<A::Scalar>, state: State<A::Scalar>) -> Result<Self, Error> {
-        check_params::<A>(&params)?;
-        state.validate()?;
-        Ok(Self::new_unchecked(params, state))
     }
 
     /// As [`new`](Self::new), with parameters and a state that are known to be valid.
@@ -84,8 +89,8 @@ impl<A: Arithmetic> Pendulum<A> {
         }
     }
 
-    /// Applies a torque, N m, for one dt. [`bound`](super::bound) limits it to that of a motor. Returns whether the new
-    /// state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
+    /// Applies a torque, N m, for one dt. [`bound`](super::bound) limits it to that of a motor.
+    /// Returns whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
     ///
     /// # Errors
     ///
@@ -97,7 +102,7 @@ impl<A: Arithmetic> Pendulum<A> {
         Ok(terminated)
     }
 
-    /// As [`step`](Self::step), with a torque that is known to be finite. Also returns the sines and cosines.
+    /// As [`step`](Self::step), with a finite torque. Also returns the sines and cosines.
     #[inline]
     pub(crate) fn advance(&mut self, torque: A::Scalar) -> (bool, [SinCos<A::Scalar>; 2]) {
         if !self.is_current {
@@ -125,7 +130,7 @@ impl<A: Arithmetic> Pendulum<A> {
         Ok(())
     }
 
-    /// As [`set_state`](Self::set_state), with a state that is known to be finite. Returns its sines and cosines.
+    /// As [`set_state`](Self::set_state), with a finite state. Returns its sines and cosines.
     pub(crate) fn set_state_unchecked(
         &mut self,
         state: State<A::Scalar>,
@@ -152,31 +157,34 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`], and [`Error::OutOfRange`] for friction that is not 0 in an arithmetic
-    /// [without friction](Arithmetic::HAS_FRICTION).
+    /// Those of [`Params::validate`], and [`Error::OutOfRange`] for friction in an arithmetic
+    /// [without it](Arithmetic::HAS_FRICTION).
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         check_params::<A>(&params)?;
         self.model = model::<A>(params);
         Ok(())
     }
 
-    /// Sine and cosine of θ1, then of θ2, which the pendulum caches.
+    /// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the
+    /// right and y up.
     #[must_use]
-    #[inline]
-    pub fn sin_cos(&self) -> [(A::Scalar, A::Scalar); 2] {
-        if self.is_current {
-            self.sin_cos
-        } else {
-            sin_cos::<A>(self.angles())
-        }
+    pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
+        geometry::positions(self.params(), self.sin_cos())
     }
 
-    /// The derivative of the state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque between the links, N m.
+    /// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from
+    /// −(l1 + l2) hanging to l1 + l2 upright.
+    #[must_use]
+    pub fn tip_height(&self) -> A::Scalar {
+        let [_, [_, height]] = self.positions();
+        height
+    }
+
+    /// The derivative of the state, \[θ̇1, θ̇2, θ̈1, θ̈2\] in rad/s and rad/s², under a torque, N
+    /// m, by the [equations](crate::guide::equations) of [`Params::dynamics`]. A torque that is not
+    /// finite gives what IEEE 754 gives.
     ///
-    /// [`Arithmetic::FORM`] determines the order of evaluation, and [`Params::dynamics`] the
-    /// [equations](crate::guide::equations). A torque that is not finite gives what IEEE 754 gives.
-    ///
-    /// Your own integrator sets each state at which it needs the derivative. The constants stay cached:
+    /// Your own integrator sets each state at which it needs the derivative:
     ///
     /// ```
     /// use acrobot::physics::Pendulum;
@@ -197,11 +205,11 @@ impl<A: Arithmetic> Pendulum<A> {
         equations::derivative::<A, A::Scalar>(&self.model, self.y, Some(self.sin_cos()), torque)
     }
 
-    /// The total mechanical energy of the state, J. The potential energy is 0 at the height of the fixed joint, so the
+    /// The mechanical energy, J. The potential energy is 0 at the height of the fixed joint, so the
     /// least energy is that of hanging at rest.
     ///
-    /// Without a torque, `Dynamics::Book` conserves it and `Dynamics::Nips` does not. Extreme velocities or parameters
-    /// can make it infinite or NaN.
+    /// Without torque and friction, `Dynamics::Book` conserves it and `Dynamics::Nips` does not.
+    /// Extreme velocities or parameters can make it infinite or NaN.
     #[must_use]
     pub fn energy(&self) -> A::Scalar {
         let [_, _, dtheta1, dtheta2] = self.y;
@@ -215,8 +223,8 @@ impl<A: Arithmetic> Pendulum<A> {
         kinetic - common.gravity1 * cos1 - common.gravity2 * cos_sum
     }
 
-    /// The mass matrix M at the state, kg m². The kinetic energy is θ̇ᵀ M θ̇ / 2. M is symmetric and positive definite.
-    /// Extreme parameters can make its elements infinite or NaN.
+    /// The mass matrix M at the state, kg m², symmetric and positive definite. The kinetic energy
+    /// is θ̇ᵀ M θ̇ / 2. Extreme parameters can make its elements infinite or NaN.
     #[must_use]
     pub fn mass_matrix(&self) -> [[A::Scalar; 2]; 2] {
         let [_, (_, cos2)] = self.sin_cos();
@@ -232,18 +240,15 @@ impl<A: Arithmetic> Pendulum<A> {
         [[upper + coupling + d2, d2], [d2, constants.link2]]
     }
 
-    /// The positions of the elbow and of the tip, each \[x, y\] in m from the fixed joint, x to the right and y up.
+    /// Sine and cosine of θ1, then of θ2, which the pendulum caches.
     #[must_use]
-    pub fn positions(&self) -> [[A::Scalar; 2]; 2] {
-        geometry::positions(self.params(), self.sin_cos())
-    }
-
-    /// The height of link 2's tip above the fixed joint, m: −l1 cos θ1 − l2 cos(θ1 + θ2), from −(l1 + l2) hanging to
-    /// l1 + l2 upright.
-    #[must_use]
-    pub fn tip_height(&self) -> A::Scalar {
-        let [_, [_, height]] = self.positions();
-        height
+    #[inline]
+    pub fn sin_cos(&self) -> [(A::Scalar, A::Scalar); 2] {
+        if self.is_current {
+            self.sin_cos
+        } else {
+            sin_cos::<A>(self.angles())
+        }
     }
 
     #[inline]
@@ -260,8 +265,8 @@ impl<A: Arithmetic> Pendulum<A> {
 
 for_f32_and_f64! {
     impl Params<S> {
-        /// [`Pendulum::new`] in a `const`, so that a `static` needs no initialization. `Host` has none: it squares with
-        /// the C library, and code that calls this for it does not compile:
+        /// [`Pendulum::new`] in a `const`, for every arithmetic except `Host`, which squares with
+        /// the C library:
         ///
         /// ```compile_fail,E0080
         /// use acrobot::arithmetic::Host;
@@ -282,9 +287,7 @@ for_f32_and_f64! {
                 return Err(error);
             }
             let Viscous { joint1, joint2 } = self.friction;
-            if !A::HAS_FRICTION
-                && let Err(error) = no_friction([joint1 as f64, joint2 as f64])
-            {
+            if let Err(error) = check_friction::<A>([joint1 as f64, joint2 as f64]) {
                 return Err(error);
             }
             if let Err(error) = state.check() {
@@ -299,7 +302,7 @@ for_f32_and_f64! {
 }
 
 impl<A: Arithmetic> PartialEq for Pendulum<A> {
-    /// Compares parameters and state only: extreme parameters can make constants NaN, which does not equal itself.
+    /// Compares parameters and state. Extreme parameters can make constants NaN.
     fn eq(&self, other: &Self) -> bool {
         self.params() == other.params() && self.y == other.y
     }

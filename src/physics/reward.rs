@@ -6,8 +6,8 @@ use super::params::Params;
 use super::task::Task;
 use crate::math::{Numbers, Real, SinCos};
 
-/// The reward of a swing-up: dm_control's `tolerance` of the distance from the tip to the target, 0.1^(d²) at d metres
-/// from its edge. None for Gymnasium's task, whose reward is −1 before the goal.
+/// The reward of a swing-up: dm_control's `tolerance` of the distance from the tip to the target,
+/// 0.1^(d²) at d metres from its edge. `None` for Gymnasium's task.
 #[inline(always)]
 pub(crate) fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
     params: &Params<V>,

@@ -8,8 +8,8 @@ use crate::numpy::uniform;
 
 /// The state of an acrobot: two angles and their velocities.
 ///
-/// After a step the angles are within \[−π, π\] and the velocities within their bounds. An initial state, or one that
-/// you set, may be outside, as in Gymnasium. The default is hanging at rest.
+/// After a step the angles are within \[−π, π\] and the velocities within their bounds. Before, a
+/// state may be outside, as in Gymnasium. The default is hanging at rest.
 ///
 /// ```
 /// use acrobot::State;
@@ -54,7 +54,7 @@ impl<S> From<State<S>> for [S; 4] {
 }
 
 impl<S: Real> State<S> {
-    /// Hanging at rest: all four numbers are 0. This is the default as a constant.
+    /// Hanging at rest: all four numbers are 0.
     pub const HANGING: Self = Self {
         theta1: S::ZERO,
         theta2: S::ZERO,
@@ -111,9 +111,8 @@ for_f32_and_f64! {
     }
 }
 
-/// The bounds between which a reset draws each of the four numbers of an initial state, rad and rad/s.
-///
-/// Both are finite in `f32`, because initial states are rounded to `f32`. The lower one is never above the upper one.
+/// The bounds between which a reset draws each number of an initial state, rad and rad/s. Both are
+/// finite in `f32`, because initial states are `f32`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ResetBounds {
@@ -134,40 +133,37 @@ impl ResetBounds {
         high: core::f64::consts::PI,
     };
 
-    /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state.
-    ///
-    /// Bounds may be beyond ±π and beyond the velocity bounds. The first step then wraps the angles and bounds the
-    /// velocities.
+    /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state. Beyond ±π
+    /// and the velocity bounds, the first step wraps the angles and bounds the velocities.
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedRange`] for a `low`
-    /// above `high`.
+    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedRange`]
+    /// for a `low` above `high`.
     pub const fn new(low: f64, high: f64) -> Result<Self, Error> {
-        if let Err(error) = Range::InF32.check("low", low, "rad and rad/s") {
+        let unit = "rad and rad/s";
+        if let Err(error) = Range::InF32.check("low", low, unit) {
             return Err(error);
         }
-        if let Err(error) = Range::InF32.check("high", high, "rad and rad/s") {
+        if let Err(error) = Range::InF32.check("high", high, unit) {
             return Err(error);
         }
-        if low > high {
-            let (name, unit) = ("reset bound", "rad and rad/s");
-            return Err(Error::ReversedRange {
-                name,
+        match low <= high {
+            true => Ok(Self { low, high }),
+            false => Err(Error::ReversedRange {
+                name: "reset bound",
                 low,
                 high,
                 unit,
-            });
+            }),
         }
-        Ok(Self { low, high })
     }
 
     /// Draws an initial state. It is `f32` in every arithmetic, as in Gymnasium.
     #[inline(never)] // saves flash: each kind of reset calls it
     pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> State<f32> {
-        [(); 4]
-            .map(|()| uniform(rng, self.low, self.high) as f32)
-            .into()
+        let numbers = [(); 4].map(|()| uniform(rng, self.low, self.high) as f32);
+        numbers.into()
     }
 
     /// As [`draw`](Self::draw), with velocities of 0, for which it draws nothing.

@@ -7,8 +7,8 @@ use super::rk4::rk4;
 use super::task::Task;
 use crate::math::{Numbers, Real, SinCos};
 
-/// Advances `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 by one dt under a constant torque, N m.
-/// Returns whether the new state ends the task.
+/// Advances `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 by one dt under a
+/// constant torque, N m. Returns whether the new state ends the task.
 #[inline(always)]
 pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,
@@ -18,8 +18,8 @@ pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
 ) -> V::Mask {
     let angles = [y[0], y[1]];
     *y = rk4::<A, V>(model, *y, *sin_cos, torque);
-    // One acrobot seldom leaves its bounds, so this is out of line, which saves flash. Among many lanes one often does.
-    // There it is inlined, because a function out of line may not use the SIMD instructions of its caller.
+    // One acrobot seldom leaves its bounds: out of line this saves flash. Among many lanes one
+    // often does, and a function out of line may not use the SIMD instructions of its caller.
     if !V::IS_ONE {
         enforce_bounds::<A, V>(model, y, angles);
     } else if !is_within_bounds::<A, V>(model, y) {
@@ -56,8 +56,8 @@ fn enforce_bounds_out_of_line<A: Arithmetic, V: Numbers<A::Scalar>>(
     enforce_bounds::<A, V>(model, y, angles);
 }
 
-/// Wraps the angles and bounds the velocities. A result that is not finite becomes the angles before the step with
-/// zero velocities.
+/// Wraps the angles and bounds the velocities. A result that is not finite becomes the angles
+/// before the step, at rest.
 #[inline(always)]
 fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,

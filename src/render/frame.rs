@@ -57,13 +57,14 @@ impl Frame {
         let pixels = (width as usize).saturating_mul(height as usize);
         let len = pixels.saturating_mul(3);
         let mut bytes = Vec::new();
-        let reserved = bytes.try_reserve_exact(len);
-        reserved.map_err(|_| Error::OutOfRange {
-            name: "width × height",
-            value: f64::from(width) * f64::from(height),
-            unit: "pixels",
-            rule: "small enough for the memory, in",
-        })?;
+        if bytes.try_reserve_exact(len).is_err() {
+            return Err(Error::OutOfRange {
+                name: "width × height",
+                value: f64::from(width) * f64::from(height),
+                unit: "pixels",
+                rule: "small enough for the memory, in",
+            });
+        }
         bytes.resize(len, 0);
         Ok(Self {
             width,
@@ -150,9 +151,10 @@ pub(crate) fn text(figure: &Figure) -> String {
         }
         char::from_u32(0x2800 + dots)
     };
-    let lines: [String; LINES] = core::array::from_fn(|line| {
-        let characters = (0..COLUMNS).filter_map(|column| character(line, column));
-        characters.collect()
-    });
-    lines.join("\n")
+    let line = |line| {
+        (0..COLUMNS)
+            .filter_map(|column| character(line, column))
+            .collect()
+    };
+    core::array::from_fn::<String, LINES, _>(line).join("\n")
 }

@@ -6,8 +6,9 @@ use crate::physics::bounds::wrap;
 use crate::physics::pendulum::Pendulum;
 use crate::physics::state::State;
 
-/// The deviation of `state` from `target`, rad and rad/s. The differences of the angles are wrapped to \[−π, π\], so
-/// that it is continuous upright, where θ1 jumps from π to −π. Velocities near the limit of the scalar can overflow.
+/// The deviation of `state` from `target`, rad and rad/s. Differences of angles are wrapped to
+/// \[−π, π\], so it is continuous upright, where θ1 jumps from π to −π. Velocities near the limit
+/// of the scalar can overflow.
 ///
 /// ```
 /// use acrobot::physics::control::difference;

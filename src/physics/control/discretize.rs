@@ -9,8 +9,8 @@ use crate::physics::model::Model;
 use crate::physics::pendulum::{Pendulum, check_torque};
 use crate::physics::rk4::plus_scaled;
 
-/// The model x′ = A x + B u of one step about a state and a torque: x and x′ are the deviations before and after the
-/// step, \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s, and u is that of the torque, N m.
+/// The model x′ = A x + B u of one step: x and x′ are the deviations before and after it, \[θ1, θ2,
+/// θ̇1, θ̇2\] in rad and rad/s, and u is that of the torque, N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DiscreteModel<S = f64> {
@@ -20,11 +20,12 @@ pub struct DiscreteModel<S = f64> {
     pub b: [S; 4],
 }
 
-/// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant during the step.
+/// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant
+/// during the step.
 ///
-/// The result is the derivative of the Runge-Kutta step that [`Pendulum::step`] takes, exact up to rounding, and not an
-/// approximation of the matrix exponential. The state need not be an equilibrium: then x′ is the deviation from the
-/// state after the step. Wrapped angles change nothing; bounds of the velocities do not count.
+/// The result is the derivative of the Runge-Kutta step that [`Pendulum::step`] takes, exact up to
+/// rounding, and not a matrix exponential. The state need not be an equilibrium: x′ is the
+/// deviation from the state after the step. Bounds of the velocities do not count.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
@@ -42,8 +43,8 @@ pub struct DiscreteModel<S = f64> {
 ///
 /// # Errors
 ///
-/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if extreme parameters or
-/// velocities make an element overflow.
+/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if
+/// extreme parameters or velocities make an element overflow.
 pub fn discretize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
@@ -53,10 +54,10 @@ pub fn discretize<A: Arithmetic>(
     let common = &model.constants;
     let (half, dt, sixth) = (common.half_dt, model.params.dt, common.sixth_dt);
     let third = sixth + sixth;
+    let [by1, by2, by3, by4] = identity();
     let before = Sensitive {
         y: pendulum.state().into(),
-        by_state: identity(),
-        by_torque: [A::Scalar::ZERO; 4],
+        columns: [by1, by2, by3, by4, [A::Scalar::ZERO; 4]],
     };
     let mut k = rates::<A>(model, &before, pendulum.sin_cos(), torque);
     let mut after = before.plus_scaled(sixth, &k);
@@ -67,39 +68,34 @@ pub fn discretize<A: Arithmetic>(
         k = rates::<A>(model, &x, [theta1, theta2].map(A::sin_cos_near), torque);
         after = after.plus_scaled(weight, &k);
     }
-    let model = DiscreteModel {
-        a: transpose(&after.by_state),
-        b: after.by_torque,
-    };
+    let [columns @ .., b] = after.columns;
+    let a = transpose(&columns);
+    let model = DiscreteModel { a, b };
     check_finite("a", model.a.as_flattened())?;
     check_finite("b", &model.b)?;
     Ok(model)
 }
 
-/// A state with its derivatives by the four numbers of an earlier state and by the torque.
+/// A state, and its derivatives by the four numbers of an earlier state and by the torque.
 #[derive(Clone, Copy)]
 struct Sensitive<S> {
     y: [S; 4],
-    by_state: [[S; 4]; 4],
-    by_torque: [S; 4],
+    columns: [[S; 4]; 5],
 }
 
 impl<S: Real> Sensitive<S> {
     /// self + h k.
     fn plus_scaled(mut self, h: S, k: &Self) -> Self {
-        for (column, k) in self.by_state.iter_mut().zip(k.by_state) {
+        self.y = plus_scaled(self.y, h, k.y);
+        for (column, k) in self.columns.iter_mut().zip(k.columns) {
             *column = plus_scaled(*column, h, k);
         }
-        Self {
-            y: plus_scaled(self.y, h, k.y),
-            by_torque: plus_scaled(self.by_torque, h, k.by_torque),
-            ..self
-        }
+        self
     }
 }
 
-/// The equations of motion with their variational equations. A Runge-Kutta step of both gives the state after a step of
-/// the first, and its exact derivatives. `sin_cos` are the sines and cosines of θ1 and θ2.
+/// The equations of motion with their variational equations. A Runge-Kutta step of both gives the
+/// state after a step and its exact derivatives. `sin_cos` are the sines and cosines of θ1 and θ2.
 #[inline(never)] // saves flash: it is called in two places
 fn rates<A: Arithmetic>(
     model: &Model<A::Scalar>,
@@ -113,24 +109,12 @@ fn rates<A: Arithmetic>(
     let y = [dtheta1, dtheta2, ddtheta1, ddtheta2];
     let ddtheta1 = by_state.map(|[ddtheta1, _]| ddtheta1);
     let ddtheta2 = by_state.map(|[_, ddtheta2]| ddtheta2);
-    let rate = |column: [A::Scalar; 4]| {
-        let [_, _, dtheta1, dtheta2] = column;
-        [
-            dtheta1,
-            dtheta2,
-            dot(ddtheta1, column),
-            dot(ddtheta2, column),
-        ]
-    };
-    let [dtheta1, dtheta2, first, second] = rate(x.by_torque);
-    Sensitive {
-        y,
-        by_state: x.by_state.map(rate),
-        by_torque: [
-            dtheta1,
-            dtheta2,
-            first + by_torque[0],
-            second + by_torque[1],
-        ],
-    }
+    let mut columns = x.columns.map(|x| {
+        let [_, _, dtheta1, dtheta2] = x;
+        [dtheta1, dtheta2, dot(ddtheta1, x), dot(ddtheta2, x)]
+    });
+    let [.., [_, _, ddtheta1, ddtheta2]] = &mut columns;
+    *ddtheta1 = *ddtheta1 + by_torque[0];
+    *ddtheta2 = *ddtheta2 + by_torque[1];
+    Sensitive { y, columns }
 }

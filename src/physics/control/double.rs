@@ -4,10 +4,10 @@ use core::ops::{Add, Mul};
 
 use super::matrix::Matrix;
 
-/// The sum of two `f64`. The second is at most half a unit in the last place of the first.
+/// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
-/// A sum or a product of two such numbers has an error of at most 2⁻¹⁰² times the sum, or the product, of their absolute
-/// values (M. Joldes, J.-M. Muller and V. Popescu, *Tight and Rigorous Error Bounds for Basic Building Blocks of
+/// The error of a sum or a product is at most 2⁻¹⁰² times that of the absolute values (M. Joldes,
+/// J.-M. Muller and V. Popescu, *Tight and Rigorous Error Bounds for Basic Building Blocks of
 /// Double-Word Arithmetic*, 2017), while nothing overflows or underflows.
 #[derive(Clone, Copy, Debug)]
 pub struct Double(f64, f64);
@@ -54,7 +54,8 @@ impl Mul for Double {
 
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
-        // The rounding error of the product, from products of half as many digits, which are exact (T. J. Dekker).
+        // The rounding error of the product, from exact products of half as many digits (T. J.
+        // Dekker).
         let ([a, b], [c, d]) = (split(self.0), split(other.0));
         let product = self.0 * other.0;
         let lost = ((a * c - product) + a * d + b * c) + b * d;
@@ -67,7 +68,7 @@ fn normalize(high: f64, low: f64) -> Double {
     Double(sum, low - (sum - high))
 }
 
-/// The upper 26 bits, and the rest, which has as many with its sign.
+/// The upper 26 bits and the rest, which has as many with its sign.
 fn split(x: f64) -> [f64; 2] {
     let scaled = x * ((1_u32 << 27) + 1) as f64;
     let high = scaled - (scaled - x);

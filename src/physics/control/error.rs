@@ -4,14 +4,15 @@ use core::fmt;
 
 use crate::error::Error;
 
-/// Why a model, a force or a regulator cannot be computed. `Display` names the value, its unit and the rule.
+/// Why a model, a force or a regulator cannot be computed. `Display` names the value, its unit and
+/// the rule.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ControlError {
     /// An argument was rejected.
     Invalid(Error),
-    /// An element of a matrix or a vector is infinite or NaN: it was given, or extreme parameters made it overflow.
+    /// An element of a matrix or a vector is infinite or NaN.
     NotFinite {
         /// The argument or the result.
         name: &'static str,
@@ -31,17 +32,17 @@ pub enum ControlError {
     NotSemidefinite {
         /// The argument.
         name: &'static str,
-        /// The largest absolute value that remains after the elimination of all positive pivots.
+        /// The largest absolute value after the elimination of all positive pivots.
         value: f64,
     },
     /// The state of a regulator is not an equilibrium under the torque.
     NotInEquilibrium {
-        /// The first velocity that is not 0, rad/s, or acceleration that is above 0.01 rad/s².
+        /// The first velocity that is not 0, rad/s, or acceleration above 0.01 rad/s².
         rate: f64,
     },
-    /// The torque does not reach a motion of the model that grows or persists, so no regulator makes it vanish.
+    /// The torque does not reach a motion that grows or persists, so no regulator makes it vanish.
     NotStabilizable,
-    /// The weights do not see a motion of the model that persists, so the best regulator lets it persist.
+    /// The weights do not see a motion that persists, so the best regulator lets it persist.
     NotDetectable,
     /// The gain of a regulator cannot be computed precisely enough.
     IllConditioned {

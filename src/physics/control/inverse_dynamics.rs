@@ -14,21 +14,22 @@ use crate::physics::pendulum::Pendulum;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Forces<S = f64> {
-    /// The torques on θ1 and θ2 that the motion needs, N m. The second is that of the motor. The first joint has no
-    /// motor, so the acrobot can move in this way only if the first is 0.
+    /// The torques on θ1 and θ2 that the motion needs, N m. The second is that of the motor. The
+    /// first joint has none, so the acrobot can move in this way only if the first torque is 0.
     pub torques: [S; 2],
-    /// The reaction: the force of the fixed joint on link 1, \[x, y\] in N, x to the right and y up.
+    /// The force of the fixed joint on link 1, \[x, y\] in N, x to the right and y up.
     pub reaction: [S; 2],
     /// The force of link 1 on link 2 in the elbow, \[x, y\] in N.
     pub elbow: [S; 2],
 }
 
-/// The torques and forces that the accelerations \[θ̈1, θ̈2\], rad/s², need in the pendulum's state.
+/// The torques and forces that the accelerations \[θ̈1, θ̈2\], rad/s², need in the pendulum's
+/// state.
 ///
-/// This is the inverse of [`Pendulum::derivative`]. With accelerations of 0 at rest it gives the torques that hold
-/// the state. It is the recursive Newton-Euler method (J. Y. S. Luh, M. W. Walker and R. P. C. Paul, *On-Line
-/// Computational Scheme for Mechanical Manipulators*, 1980). For [`Dynamics::Nips`](crate::physics::Dynamics::Nips) the
-/// torques are those of its equations; the forces follow from the motion by Newton's law.
+/// This is the inverse of [`Pendulum::derivative`], by the recursive Newton-Euler method (J. Y. S.
+/// Luh, M. W. Walker and R. P. C. Paul, *On-Line Computational Scheme for Mechanical Manipulators*,
+/// 1980). Accelerations of 0 at rest give the torques that hold the state. For [`Dynamics::Nips`]
+/// the torques are those of its equations; the forces follow from the motion by Newton's law.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
@@ -47,8 +48,9 @@ pub struct Forces<S = f64> {
 ///
 /// # Errors
 ///
-/// [`ControlError::Invalid`] for an acceleration that is not finite, and [`ControlError::NotFinite`] if extreme
-/// parameters or velocities make a torque or a force overflow.
+/// [`ControlError::Invalid`] for an acceleration that is not finite, and
+/// [`ControlError::NotFinite`] if extreme parameters or velocities make a torque or a force
+/// overflow.
 pub fn inverse_dynamics<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     [ddtheta1, ddtheta2]: [A::Scalar; 2],
@@ -60,11 +62,8 @@ pub fn inverse_dynamics<A: Arithmetic>(
     let [direction1, direction2] = directions(pendulum.sin_cos());
     let (rate1, rate2) = (state.dtheta1, state.dtheta1 + state.dtheta2);
     let (turn1, turn2) = (ddtheta1, ddtheta1 + ddtheta2);
-    let (l1, lc1, lc2) = (
-        params.length1,
-        params.center_of_mass1,
-        params.center_of_mass2,
-    );
+    let (l1, lc1) = (params.length1, params.center_of_mass1);
+    let lc2 = params.center_of_mass2;
 
     // From the fixed joint to the tip: accelerations relative to free fall.
     let along = |(sin, cos), rate: A::Scalar, turn, distance| {
@@ -77,22 +76,18 @@ pub fn inverse_dynamics<A: Arithmetic>(
     let elbow = add(up, along(direction1, rate1, turn1, l1));
     let center2 = add(elbow, along(direction2, rate2, turn2, lc2));
 
-    // And back: each joint bears what follows it. A force at a distance along a link turns it by its part across.
+    // And back: each joint bears what follows it. A force turns a link by its part across.
     let across = |(sin, cos), [x, y]: [A::Scalar; 2]| cos * x + sin * y;
     let force2 = center2.map(|x| params.mass2 * x);
     let force1 = add(force2, center1.map(|x| params.mass1 * x));
-    let mut torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2);
-    let mut torque1 = torque2
+    let Viscous { joint1, joint2 } = params.friction;
+    let torque2 = params.inertia2 * turn2 + lc2 * across(direction2, force2);
+    let torque1 = torque2
         + params.inertia1 * turn1
         + lc1 * across(direction1, force1)
-        + (l1 - lc1) * across(direction1, force2);
-
-    if A::HAS_FRICTION {
-        let Viscous { joint1, joint2 } = params.friction;
-        torque1 = torque1 + joint1 * state.dtheta1;
-        torque2 = torque2 + joint2 * state.dtheta2;
-    }
-
+        + (l1 - lc1) * across(direction1, force2)
+        + joint1 * state.dtheta1;
+    let torque2 = torque2 + joint2 * state.dtheta2;
     let (sin2, _) = pendulum.sin_cos()[1];
     let centrifugal = params.mass2 * l1 * lc2 * (rate1 * rate1) * sin2;
     let forces = Forces {
@@ -110,7 +105,6 @@ pub fn inverse_dynamics<A: Arithmetic>(
 }
 
 /// The velocities of the elbow and of the tip, each \[x, y\] in m/s, x to the right and y up.
-///
 /// [`Pendulum::positions`] has their positions.
 ///
 /// ```

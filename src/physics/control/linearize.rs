@@ -9,8 +9,8 @@ use crate::physics::geometry::directions;
 use crate::physics::model::{Constants, Model};
 use crate::physics::pendulum::{Pendulum, check_torque};
 
-/// The model ẋ = A x + B u about a state and a torque: x is the deviation from the state \[θ1, θ2, θ̇1, θ̇2\], rad and
-/// rad/s, and u that from the torque, N m.
+/// The model ẋ = A x + B u: x is the deviation from a state \[θ1, θ2, θ̇1, θ̇2\], rad and rad/s,
+/// and u that from a torque, N m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ContinuousModel<S = f64> {
@@ -20,11 +20,12 @@ pub struct ContinuousModel<S = f64> {
     pub b: [S; 4],
 }
 
-/// Linearizes the equations of motion about the pendulum's state and a torque, N m. The derivatives are exact up to
-/// rounding. Parameters that differ by more than four decades can cost digits; `f64` has enough of them.
+/// Linearizes the equations of motion about the pendulum's state and a torque, N m. The derivatives
+/// are exact up to rounding. In `f32`, parameters that differ by more than four decades can cost
+/// digits.
 ///
-/// The state need not be an equilibrium. Where it is none, the rates at the state are
-/// [`Pendulum::derivative`], and the model describes the difference from them. Bounds of the velocities do not count.
+/// The state need not be an equilibrium: the model describes the difference from the rates at the
+/// state, [`Pendulum::derivative`]. Bounds of the velocities do not count.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
@@ -40,8 +41,8 @@ pub struct ContinuousModel<S = f64> {
 ///
 /// # Errors
 ///
-/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if extreme parameters or
-/// velocities make an element overflow.
+/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if
+/// extreme parameters or velocities make an element overflow.
 pub fn linearize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
@@ -67,10 +68,10 @@ pub fn linearize<A: Arithmetic>(
 
 /// \[θ̈1, θ̈2\], and their derivatives by θ1, θ2, θ̇1, θ̇2 and the torque.
 ///
-/// The equations M q̈ = f for the absolute angles α = θ1 and β = θ1 + θ2 are those of docs/equations.md: M has the rows
-/// \[upper, c\] and \[c, link2\], with c = coupling cos θ2. The derivative by p is M⁻¹ (∂f/∂p − ∂M/∂p q̈).
-/// Here nothing cancels in the determinant. In Gymnasium's form of the equations digits are lost if one link is much
-/// heavier than the other, so this does not call it.
+/// The equations M q̈ = f for the absolute angles α = θ1 and β = θ1 + θ2 are those of
+/// docs/equations.md: M has the rows \[upper, c\] and \[c, link2\], with c = coupling cos θ2. The
+/// derivative by p is M⁻¹ (∂f/∂p − ∂M/∂p q̈). Nothing cancels in the determinant, where Gymnasium's
+/// form loses digits if one link is much heavier than the other.
 #[inline(always)]
 pub(super) fn partials<A: Arithmetic>(
     model: &Model<A::Scalar>,
@@ -78,7 +79,7 @@ pub(super) fn partials<A: Arithmetic>(
     [(sin1, cos1), (sin2, cos2)]: [SinCos<A::Scalar>; 2],
     torque: A::Scalar,
 ) -> ([A::Scalar; 2], [[A::Scalar; 2]; 5]) {
-    let (zero, one) = (A::Scalar::ZERO, A::Scalar::from_f64(1.0));
+    let one = A::Scalar::from_f64(1.0);
     let Constants {
         coupling,
         link2,
@@ -109,22 +110,14 @@ pub(super) fn partials<A: Arithmetic>(
     let fall = -(gravity2 * cos_sum);
     let dalpha_squared = dalpha * dalpha;
     let twice_sin = coupling_sin + coupling_sin;
-    let mut force1 =
-        coupling_sin * (dbeta * dbeta - nips * dalpha_squared) - gravity1 * sin1 - torque;
-    let mut force2 = torque - gravity2 * sin_sum - coupling_sin * (book * dalpha_squared);
-    let [
-        mut force1_by_dtheta1,
-        mut force1_by_dtheta2,
-        mut force2_by_dtheta2,
-    ] = [twice_sin * (dbeta - nips * dalpha), twice_sin * dbeta, zero];
-    if A::HAS_FRICTION {
-        let Viscous { joint1, joint2 } = params.friction;
-        force1 = force1 - joint1 * dtheta1 + joint2 * dtheta2;
-        force2 = force2 - joint2 * dtheta2;
-        force1_by_dtheta1 = force1_by_dtheta1 - joint1;
-        force1_by_dtheta2 = force1_by_dtheta2 + joint2;
-        force2_by_dtheta2 = -joint2;
-    }
+    let Viscous { joint1, joint2 } = params.friction;
+    let force1 = coupling_sin * (dbeta * dbeta - nips * dalpha_squared)
+        - gravity1 * sin1
+        - torque
+        - joint1 * dtheta1
+        + joint2 * dtheta2;
+    let force2 =
+        torque - gravity2 * sin_sum - coupling_sin * (book * dalpha_squared) - joint2 * dtheta2;
     let [ddalpha, ddtheta2] = solve([force1, force2]);
     let ddbeta = ddalpha + ddtheta2;
     let derivatives = [
@@ -133,8 +126,11 @@ pub(super) fn partials<A: Arithmetic>(
             coupling_cos * (dbeta * dbeta - nips * dalpha_squared) + coupling_sin * ddbeta,
             fall - coupling_cos * (book * dalpha_squared) + coupling_sin * ddalpha,
         ],
-        [force1_by_dtheta1, -(twice_sin * (book * dalpha))],
-        [force1_by_dtheta2, force2_by_dtheta2],
+        [
+            twice_sin * (dbeta - nips * dalpha) - joint1,
+            -(twice_sin * (book * dalpha)),
+        ],
+        [twice_sin * dbeta + joint2, -joint2],
         [-one, one],
     ]
     .map(solve);

@@ -10,22 +10,21 @@ use super::matrix::{
 use crate::error::Range;
 use crate::math::Real;
 
-/// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one with the least sum of
-/// xᵀ Q x + R u² over all steps.
+/// A linear-quadratic regulator: of all state feedbacks that make every deviation vanish, the one
+/// with the least sum of xᵀ Q x + R u² over all steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Lqr<S = f64> {
     /// K in u = −K x, N m per rad and per rad/s.
     pub gain: [S; 4],
-    /// P, the solution of the discrete algebraic Riccati equation: xᵀ P x is the cost of all steps from x on. It is
-    /// symmetric.
+    /// P, symmetric: xᵀ P x is the cost of all steps from x on.
     pub cost_to_go: [[S; 4]; 4],
 }
 
 impl<S: Real> Lqr<S> {
-    /// The torque −K x, N m, for a deviation x from the state of the linearization, rad and rad/s: see
-    /// [`Pendulum::deviation`](crate::physics::Pendulum::deviation). Add the torque of the linearization if it is not 0. [`bound`](crate::physics::bound) limits
-    /// it to that of a motor.
+    /// The torque −K x, N m, for a [deviation](crate::physics::Pendulum::deviation) x from the
+    /// state of the linearization, rad and rad/s. Add the torque of the linearization, and
+    /// [`bound`](crate::physics::bound) the sum to that of a motor.
     #[must_use]
     pub fn torque(&self, x: [S; 4]) -> S {
         -dot(self.gain, x)
@@ -34,25 +33,25 @@ impl<S: Real> Lqr<S> {
 
 /// The [linear-quadratic regulator](Lqr) of a discrete model.
 ///
-/// `q` weights the deviation of the state: it is symmetric and positive semidefinite, by rows, in 1/rad², s/rad² and
-/// s²/rad². `r` weights the torque, in 1/(N m)²; above 0. Only their ratio matters for the gain.
+/// `q` weights the deviation: symmetric and positive semidefinite, by rows, 1/rad², s/rad² and
+/// s²/rad². `r` weights the torque, 1/(N m)²; above 0. The gain depends only on their ratio.
 ///
-/// Both scalars are computed in `f64`. An error of the gain above 1e-9 of its largest element is
-/// an error. The acrobot has a gain, upright and hanging, for each `dt` from 0.002 to 0.05 s and
-/// each ratio of `q` to `r` from 1e-8 to 1e8.
+/// Both scalars are computed in `f64`. The acrobot has a gain, upright and hanging, for each `dt`
+/// from 0.002 to 0.05 s and each ratio of `q` to `r` from 1e-8 to 1e8.
 ///
 /// The structured doubling algorithm (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin and C.-S. Wang,
 /// *Structure-Preserving Algorithms for Periodic Discrete-Time Algebraic Riccati Equations*, 2004)
-/// finds a gain, and Newton's method (G. A. Hewer, *An Iterative Technique for the Computation of
-/// the Steady State Gains for the Discrete Optimal Regulator*, 1971), with residuals in twice the
+/// finds a gain. Newton's method (G. A. Hewer, *An Iterative Technique for the Computation of the
+/// Steady State Gains for the Discrete Optimal Regulator*, 1971), with residuals in twice the
 /// digits of `f64`, makes it exact up to rounding.
 ///
 /// ```
 /// use acrobot::physics::control::{DiscreteModel, lqr};
 ///
-/// // A force moves a mass of 1 kg in steps of 0.1 s: position and velocity are the first and the third number. The
-/// // others decay.
-/// let a: [[f64; 4]; 4] = [[1.0, 0.0, 0.1, 0.0], [0.0, 0.5, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.5]];
+/// // A force moves a mass of 1 kg, whose position and velocity are the first and the third number,
+/// // in steps of 0.1 s. The others decay.
+/// let mut a = [[0.0_f64; 4]; 4];
+/// (a[0], a[1][1], a[2][2], a[3][3]) = ([1.0, 0.0, 0.1, 0.0], 0.5, 1.0, 0.5);
 /// let model = DiscreteModel { a, b: [0.005, 0.0, 0.1, 0.0] };
 /// let q = [[1.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4], [0.0; 4]];
 /// let regulator = lqr(&model, &q, 1.0)?;
@@ -63,14 +62,13 @@ impl<S: Real> Lqr<S> {
 /// # Errors
 ///
 /// - [`ControlError::Invalid`] for an `r` that is not above 0.
-/// - [`ControlError::NotFinite`] for an element of the model or of `q` that is not finite, or an element of the result
-///   that the scalar cannot hold.
-/// - [`ControlError::NotSymmetric`] and [`ControlError::NotSemidefinite`] for such a `q`. Elements smaller than 16
-///   machine epsilons of the largest one count as 0.
-/// - [`ControlError::NotStabilizable`] if the torque does not reach a motion that grows or persists, as far as `f64`
-///   shows.
-/// - [`ControlError::NotDetectable`] if `q` does not weight a motion that persists: it would need more than 2⁴⁰ steps to
-///   vanish.
+/// - [`ControlError::NotFinite`] for an element of the model, of `q` or of the result.
+/// - [`ControlError::NotSymmetric`] and [`ControlError::NotSemidefinite`] for such a `q`, where up
+///   to 16 machine epsilons of the largest element count as 0.
+/// - [`ControlError::NotStabilizable`] if the torque does not reach a motion that grows or
+///   persists.
+/// - [`ControlError::NotDetectable`] if `q` does not weight a motion that persists: one that needs
+///   more than 2⁴⁰ steps to vanish.
 /// - [`ControlError::IllConditioned`] if the error of the gain can be above 1e-9 of its largest
 ///   element, or if deviations do not vanish with the gain that the scalar rounds.
 pub fn lqr<S: Real>(
@@ -81,8 +79,8 @@ pub fn lqr<S: Real>(
     check_finite("a", model.a.as_flattened())?;
     check_finite("b", &model.b)?;
     check_finite("q", q.as_flattened())?;
-    let wide = |m: &Matrix<S>| m.map(|row| row.map(S::to_f64));
-    let (a, b, q, r) = (wide(&model.a), model.b.map(S::to_f64), wide(q), r.to_f64());
+    let [a, q] = [&model.a, q].map(|m| m.map(|row| row.map(S::to_f64)));
+    let (b, r) = (model.b.map(S::to_f64), r.to_f64());
     check_symmetric(&q)?;
     check_semidefinite(&q, 16.0 * S::EPSILON.to_f64())?;
     Range::AboveZero.check("r", r, "per (N m)²")?;
@@ -102,11 +100,9 @@ pub fn lqr<S: Real>(
     Ok(regulator)
 }
 
-/// How often the number of steps is doubled before deviations that have not vanished count as
-/// persistent.
+/// A motion persists if it does not vanish within 2 to the power of this number of steps.
 const DOUBLINGS: u32 = 40;
-/// Newton's method converges quadratically, but first it may halve a gain that is too large by many
-/// decades.
+/// Newton's method converges quadratically, but may first halve a gain that is decades too large.
 const NEWTON_ITERATIONS: u32 = 60;
 /// The largest error of a gain, relative to its largest element.
 const TOLERANCE: f64 = 1e-9;
@@ -124,8 +120,8 @@ struct Problem {
 type Solution = ([f64; 4], Matrix);
 
 impl Problem {
-    /// In units of torque and cost in which the largest elements of B and of the weights are
-    /// between 1 and 2, so that nothing overflows. The units are powers of 2 and change no digit.
+    /// Computes in units of torque and cost in which the largest elements of B and of the weights
+    /// are between 1 and 2, so that nothing overflows. Powers of 2 change no digit.
     fn solve(mut self) -> Result<Solution, ControlError> {
         let torque_unit = power_of_2(largest(&self.b));
         self.b = self.b.map(|x| x / torque_unit);
@@ -138,8 +134,7 @@ impl Problem {
         self.r /= cost_unit;
         scale(&mut self.q, 1.0 / cost_unit);
 
-        // Where these weights give no gain that stabilizes, because Q does not weight a motion that
-        // grows or R is extreme, others do.
+        // Other weights give a gain that stabilizes even if Q does not weight a motion that grows.
         let (gain, mut cost) = self
             .solve_from(&self.q, self.r)
             .or_else(|_| self.solve_from(&identity(), inner(&self.b, &self.b)))?;
@@ -147,14 +142,13 @@ impl Problem {
         Ok((gain.map(|x| x / torque_unit), cost))
     }
 
-    /// The solution, beginning with that for other weights.
+    /// The solution, beginning with that for the weights `q` and `r`.
     fn solve_from(&self, q: &Matrix, r: f64) -> Result<Solution, ControlError> {
         let start = self.double(q, r);
         self.refine(start.ok_or(ControlError::NotStabilizable)?)
     }
 
-    /// K and P for the weights `q` and `r`, by the doubling algorithm. Rounding can make them
-    /// wrong.
+    /// K and P for the weights `q` and `r` up to rounding, which can be large.
     ///
     /// With A, G = B Bᵀ / R and P = Q for one step, the iteration computes the same for twice as
     /// many steps: P + Aᵀ P W⁻¹ A, G + A W⁻¹ G Aᵀ and A W⁻¹ A, where W = 1 + G P. A vanishes as the
@@ -188,8 +182,7 @@ impl Problem {
         None
     }
 
-    /// The best gain for the next step, if P is the cost after it, and how much it weights the
-    /// torque.
+    /// The best gain before a cost P, and how much that weights the torque.
     #[inline(never)]
     fn gain(&self, p: &Matrix<Double>, r: f64) -> ([f64; 4], f64) {
         let b = self.b.map(Double::from);
@@ -199,9 +192,9 @@ impl Problem {
         (gain.map(|x| f64::from(x) / weight), weight)
     }
 
-    /// The solution near one whose gain stabilizes, by Newton's method. It alternates between the cost
-    /// of a gain and the gain that is best for this cost. The residual of a cost has twice the
-    /// digits of `f64`, so each iteration corrects the rounding of the one before.
+    /// Newton's method, from a gain that stabilizes. It alternates between the cost of a gain and
+    /// the gain that is best for this cost. Residuals have twice the digits of `f64`, so each
+    /// iteration corrects the rounding of the one before.
     #[inline(never)]
     fn refine(&self, (mut gain, cost): Solution) -> Result<Solution, ControlError> {
         let mut cost = widen(&cost);
@@ -240,7 +233,7 @@ impl Problem {
         })
     }
 
-    /// Whether deviations vanish with a gain that was rounded.
+    /// Whether deviations vanish with this gain.
     fn is_stable(&self, gain: &[f64; 4]) -> bool {
         let (closed, _) = self.residual(gain, &widen(&[[0.0; 4]; 4]));
         lyapunov(&closed, &identity()).is_some()
@@ -265,8 +258,8 @@ impl Problem {
         (transpose(&narrow(&columns)), residual)
     }
 
-    /// A bound of the error that the rounding of `Double` leaves in a gain, times the weight of the
-    /// torque; infinite if the cost still changes.
+    /// A bound of the error that rounding leaves in a gain, times the weight of the torque;
+    /// infinite if the cost still changes.
     ///
     /// The rounding N of the residual has |N_ij| ≤ s_i s_j, because |P_ij|² ≤ P_ii P_jj. So N is
     /// between −4 diag(s²) and 4 diag(s²), and the error E of P between −L and L, if L is the cost
@@ -301,8 +294,8 @@ fn power_of_2(x: f64) -> f64 {
     }
 }
 
-/// The solution P of P = mᵀ P m + stage, the discrete Lyapunov equation, by doubling. None if the powers of m do not
-/// vanish.
+/// The solution of P = mᵀ P m + stage, the discrete Lyapunov equation, by doubling. `None` if the
+/// powers of m do not vanish.
 #[inline(never)]
 fn lyapunov(m: &Matrix, stage: &Matrix) -> Option<Matrix> {
     let (mut m, mut p) = (*m, *stage);
@@ -322,20 +315,20 @@ fn has_vanished(m: &Matrix) -> bool {
 }
 
 fn check_symmetric(q: &Matrix) -> Result<(), ControlError> {
-    let transposed = transpose(q);
-    let mut pairs = q.as_flattened().iter().zip(transposed.as_flattened());
-    match pairs.find(|(upper, lower)| upper != lower) {
-        Some((upper, lower)) => Err(ControlError::NotSymmetric {
-            name: "q",
-            upper: *upper,
-            lower: *lower,
-        }),
-        None => Ok(()),
+    for (&upper, &lower) in q.as_flattened().iter().zip(transpose(q).as_flattened()) {
+        if upper != lower {
+            return Err(ControlError::NotSymmetric {
+                name: "q",
+                upper,
+                lower,
+            });
+        }
     }
+    Ok(())
 }
 
-/// Subtracts (column columnᵀ) / pivot for the largest pivot on the diagonal, until none is above the rounding. What
-/// remains of a positive semidefinite matrix is rounding.
+/// Subtracts (column columnᵀ) / pivot for the largest pivot on the diagonal, until none is above
+/// the rounding. Then only rounding remains of a positive semidefinite matrix.
 fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), ControlError> {
     let mut rest = *q;
     let rounding = relative_rounding * largest(q.as_flattened());
@@ -353,12 +346,8 @@ fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), ControlE
             add_scaled(x, -(factor / pivot), &row);
         }
     }
-    let most = largest(rest.as_flattened());
-    if most > rounding {
-        return Err(ControlError::NotSemidefinite {
-            name: "q",
-            value: most,
-        });
+    match largest(rest.as_flattened()) {
+        value if value > rounding => Err(ControlError::NotSemidefinite { name: "q", value }),
+        _ => Ok(()),
     }
-    Ok(())
 }

@@ -10,13 +10,8 @@ use crate::math::Real;
 pub type Matrix<S = f64> = [[S; 4]; 4];
 
 pub fn identity<S: Real>() -> Matrix<S> {
-    let (one, zero) = (S::ONE, S::ZERO);
-    [
-        [one, zero, zero, zero],
-        [zero, one, zero, zero],
-        [zero, zero, one, zero],
-        [zero, zero, zero, one],
-    ]
+    let [x, o] = [S::ONE, S::ZERO];
+    [[x, o, o, o], [o, x, o, o], [o, o, x, o], [o, o, o, x]]
 }
 
 pub fn diagonal<S: Copy>(m: &Matrix<S>) -> [S; 4] {
@@ -115,14 +110,8 @@ pub fn scale(m: &mut Matrix, h: f64) {
 #[inline(never)]
 pub fn spread(diagonal: [f64; 4]) -> Matrix {
     let mut result = [[0.0; 4]; 4];
-    for (x, y) in result
-        .as_flattened_mut()
-        .iter_mut()
-        .step_by(5)
-        .zip(diagonal)
-    {
-        *x = y;
-    }
+    let places = result.as_flattened_mut().iter_mut().step_by(5);
+    places.zip(diagonal).for_each(|(place, x)| *place = x);
     result
 }
 
@@ -160,8 +149,8 @@ pub fn largest(elements: &[f64]) -> f64 {
     elements.iter().fold(0.0, |most, x| x.abs().max(most))
 }
 
-/// Gauss-Jordan elimination with partial pivoting: each row has a row of w, x and y, and the last two become those of
-/// w⁻¹ x and w⁻¹ y. They are not finite if w is singular.
+/// Gauss-Jordan elimination with partial pivoting of rows of w, x and y: x and y become w⁻¹ x and
+/// w⁻¹ y, which are not finite if w is singular.
 #[inline(never)]
 pub fn eliminate(rows: &mut [[[f64; 4]; 3]; 4]) -> Option<()> {
     for column in 0..4 {

@@ -7,7 +7,7 @@ use crate::math::Real;
 use crate::physics::arithmetic::Arithmetic;
 use crate::physics::pendulum::Pendulum;
 
-/// The largest acceleration in equilibrium, rad/s². Rounding upright is far below.
+/// The largest acceleration in equilibrium, rad/s²: far above rounding.
 const LARGEST: f64 = 0.01;
 
 impl<A: Arithmetic> Pendulum<A> {
