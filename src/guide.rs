@@ -6,7 +6,7 @@
 //! | firmware | [`embedded`] |
 //! | C or C++ | [`c`] |
 //! | a web page | [`wasm`] |
-//! | Python | [`python`] |
+//! | Python | [`python`], then [`python_many`] and [`python_parameters`] |
 //!
 //! | you want to know | read |
 //! |---|---|
@@ -55,6 +55,8 @@ pages! {
     c "c.md",
     wasm "wasm.md",
     python "python.md",
+    python_many "python-many.md",
+    python_parameters "python-parameters.md",
     numbers "numbers.md",
     control "control.md",
     parity "parity.md",

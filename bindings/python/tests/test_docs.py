@@ -8,7 +8,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 
 
-PAGES = ["README.md", "docs/python.md", "docs/swingup.md", "bindings/python/README.md"]
+NAMES = "python", "python-many", "python-parameters", "swingup"
+PAGES = ["README.md", "bindings/python/README.md", *(f"docs/{name}.md" for name in NAMES)]
 
 
 @pytest.mark.parametrize("name", PAGES)
