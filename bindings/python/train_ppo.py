@@ -33,7 +33,9 @@ EPISODES, EVALUATE_EVERY = 100, 5  # per evaluation; updates between two
 # The bounds of observations, which are divided by them.
 SCALE = jnp.array([1, 1, 1, 1, 4 * jnp.pi, 9 * jnp.pi])
 
-optimizer = optax.chain(optax.clip_by_global_norm(MAX_GRADIENT), optax.adam(LEARNING_RATE, eps=1e-5))
+optimizer = optax.chain(
+    optax.clip_by_global_norm(MAX_GRADIENT), optax.adam(LEARNING_RATE, eps=1e-5)
+)
 
 
 def layers(key, outputs, gain):
@@ -99,7 +101,11 @@ def roll_out(envs, parameters, key, observations):
 def advantages(parameters, observations, seen, rewards, terminated, ended):
     """Generalized advantage estimates."""
     # A truncated episode has not terminated, so the value of its last observation estimates the rest.
-    errors = rewards + DISCOUNT * ~terminated * values(parameters, seen) - values(parameters, observations)
+    errors = (
+        rewards
+        + DISCOUNT * ~terminated * values(parameters, seen)
+        - values(parameters, observations)
+    )
 
     def back(advantage, step):
         error, ended = step
@@ -128,8 +134,13 @@ def learn(parameters, state, key, rollout):
     observations, actions, seen, rewards, terminated, ended = rollout
     advantage = advantages(parameters, observations, seen, rewards, terminated, ended)
     targets = advantage + values(parameters, observations)
-    old = jnp.take_along_axis(log_probabilities(parameters, observations), actions[..., None], axis=2)[..., 0]
-    flat = [each.reshape(ENVS * STEPS, *each.shape[2:]) for each in (observations, actions, old, advantage, targets)]
+    old = jnp.take_along_axis(
+        log_probabilities(parameters, observations), actions[..., None], axis=2
+    )[..., 0]
+    flat = [
+        each.reshape(ENVS * STEPS, *each.shape[2:])
+        for each in (observations, actions, old, advantage, targets)
+    ]
 
     def minibatch(carry, indices):
         parameters, state = carry
@@ -138,7 +149,9 @@ def learn(parameters, state, key, rollout):
         return (optax.apply_updates(parameters, updates), state), None
 
     keys = jax.random.split(key, EPOCHS)
-    orders = jnp.concatenate([jax.random.permutation(each, ENVS * STEPS).reshape(MINIBATCHES, -1) for each in keys])
+    orders = jnp.concatenate(
+        [jax.random.permutation(each, ENVS * STEPS).reshape(MINIBATCHES, -1) for each in keys]
+    )
     return jax.lax.scan(minibatch, (parameters, state), orders)[0]
 
 
@@ -156,15 +169,21 @@ def evaluate(envs, parameters, key):
 
 def train(seed):
     """Trains until an evaluation passes. Returns the parameters, the steps and the last mean return."""
-    envs = gymnasium.make_vec(NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
+    envs = gymnasium.make_vec(
+        NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP
+    )
     others = gymnasium.make_vec(NAME, num_envs=EPISODES)
-    of_envs, of_others, of_jax = (int(each) for each in np.random.SeedSequence(seed).generate_state(3))
+    of_envs, of_others, of_jax = (
+        int(each) for each in np.random.SeedSequence(seed).generate_state(3)
+    )
     observations, _ = envs.reset(seed=of_envs)
     others.reset(seed=of_others)
     init, key = jax.random.split(jax.random.key(of_jax))
     parameters = initial(init)
     state = optimizer.init(parameters)
-    with tqdm(total=UPDATES * ENVS * STEPS, desc=f"seed {seed}", unit="step", unit_scale=True, leave=False) as bar:
+    with tqdm(
+        total=UPDATES * ENVS * STEPS, desc=f"seed {seed}", unit="step", unit_scale=True, leave=False
+    ) as bar:
         for update in range(UPDATES + 1):
             if update % EVALUATE_EVERY == 0:
                 key, draw = jax.random.split(key)
@@ -181,14 +200,22 @@ def train(seed):
 
 def save(parameters, path):
     """Writes the actor for `crates/policy`, with the observations' scale in its first layer."""
-    *hidden, last = [(np.asarray(weights).T, np.asarray(biases)) for weights, biases in parameters["actor"]]
+    *hidden, last = [
+        (np.asarray(weights).T, np.asarray(biases)) for weights, biases in parameters["actor"]
+    ]
     hidden[0] = (hidden[0][0] / np.asarray(SCALE), hidden[0][1])
     policy.write(path, [*((*layer, "tanh") for layer in hidden), (*last, "none")])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help="integers of at least 0; default 1 2 3")
+    parser.add_argument(
+        "seeds",
+        nargs="*",
+        type=int,
+        default=[1, 2, 3],
+        help="integers of at least 0; default 1 2 3",
+    )
     parser.add_argument("--save", help="file for the policy of the last seed")
     arguments = parser.parse_args()
     gymnasiums = gymnasium.make_vec("Acrobot-v1", num_envs=EPISODES, vectorization_mode="sync")
@@ -199,7 +226,10 @@ def main():
         seconds = time.perf_counter() - before
         gymnasiums.reset(seed=seed)
         there = evaluate(gymnasiums, parameters, jax.random.key(0))
-        print(f"seed {seed}: {mean:.1f} after {steps:,} steps and {seconds:.1f} s; in Gymnasium's own {there:.1f}", flush=True)
+        print(
+            f"seed {seed}: {mean:.1f} after {steps:,} steps and {seconds:.1f} s; in Gymnasium's own {there:.1f}",
+            flush=True,
+        )
         learnt &= mean > THRESHOLD
     if arguments.save:
         save(parameters, arguments.save)

@@ -10,7 +10,9 @@ from hypothesis import settings
 
 cpu = Path("/proc/cpuinfo")
 if cpu.exists() and "avx512f" in cpu.read_text():
-    os.environ["NPY_DISABLE_CPU_FEATURES"] = "AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL X86_V4 AVX512_SPR"
+    os.environ["NPY_DISABLE_CPU_FEATURES"] = (
+        "AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL X86_V4 AVX512_SPR"
+    )
 
 settings.register_profile("short", max_examples=200, deadline=None, derandomize=True)
 settings.register_profile("long", max_examples=10_000, deadline=None)

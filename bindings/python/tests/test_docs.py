@@ -22,4 +22,6 @@ def test_code_runs_and_prints_what_its_comments_say(name, capsys, tmp_path, monk
     session = {}
     for block in blocks:
         exec(compile(block, page, "exec"), session)
-        assert capsys.readouterr().out.splitlines() == re.findall(r"^# prints (.*)", block, re.MULTILINE)
+        assert capsys.readouterr().out.splitlines() == re.findall(
+            r"^# prints (.*)", block, re.MULTILINE
+        )

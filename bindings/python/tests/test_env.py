@@ -18,7 +18,11 @@ from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
 from vectors import rejects
 
-V1, V0, CONTINUOUS = "acrobot_rs/Acrobot-v1", "acrobot_rs/Acrobot-v0", "acrobot_rs/AcrobotContinuous-v0"
+V1, V0, CONTINUOUS = (
+    "acrobot_rs/Acrobot-v1",
+    "acrobot_rs/Acrobot-v0",
+    "acrobot_rs/AcrobotContinuous-v0",
+)
 
 
 @pytest.fixture
@@ -38,13 +42,17 @@ def make(name, **kwargs):
 
 @pytest.mark.parametrize("name", [V1, V0, CONTINUOUS])
 def test_gymnasium_checks_pass_without_a_warning(name, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pygame", unittest.mock.MagicMock())  # the check opens a window
+    monkeypatch.setitem(
+        sys.modules, "pygame", unittest.mock.MagicMock()
+    )  # the check opens a window
     check_env(make(name, render_mode="rgb_array").unwrapped)
 
 
 @pytest.mark.parametrize("base", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env])
 def test_the_observation_space_contains_initial_states_above_the_bounds_of_velocity(base):
-    check_env(type("Slow", (base,), {"MAX_VEL_1": 1e-30, "MAX_VEL_2": 0.05})(), skip_render_check=True)
+    check_env(
+        type("Slow", (base,), {"MAX_VEL_1": 1e-30, "MAX_VEL_2": 0.05})(), skip_render_check=True
+    )
 
 
 def test_registration_and_spaces_are_those_of_gymnasium():
@@ -79,7 +87,9 @@ def test_pictures(env):
 
     with pytest.warns(UserWarning, match="without a render mode"):
         assert env.render() is None
-    with pytest.warns(UserWarning, match="render_mode='text' that is not in the possible render_modes"):
+    with pytest.warns(
+        UserWarning, match="render_mode='text' that is not in the possible render_modes"
+    ):
         unknown = gymnasium.make(V1, render_mode="text")
     assert unknown.render_mode == "text"
     unknown.reset()
@@ -93,7 +103,9 @@ def test_a_window_shows_each_reset_and_step(monkeypatch):
     with pytest.raises(gymnasium.error.DependencyNotInstalled, match="pygame is not installed"):
         acrobot_rs.AcrobotEnv("human").reset()
 
-    env = gymnasium.make(V1, render_mode="human")  # with Gymnasium's wrapper for windows this would warn
+    env = gymnasium.make(
+        V1, render_mode="human"
+    )  # with Gymnasium's wrapper for windows this would warn
 
     pygame = unittest.mock.MagicMock()
     pygame.display.set_mode.return_value = window = object()
@@ -159,9 +171,17 @@ def test_actions_can_be_integers_of_any_type(env, action):
         (ValueError, "torque_noise_max", (-0.1,)),
         (ValueError, "book_or_nips", ("paper",)),
         # A set has no order, and an iterator may have no end.
-        (TypeError, "AVAIL_TORQUE", (None, {-1.0, 0.0, 1.0}, iter([-1.0, 0.0, 1.0]), itertools.repeat(0.0, 10**6))),
+        (
+            TypeError,
+            "AVAIL_TORQUE",
+            (None, {-1.0, 0.0, 1.0}, iter([-1.0, 0.0, 1.0]), itertools.repeat(0.0, 10**6)),
+        ),
         (TypeError, "book_or_nips", (1, None)),
-        *((TypeError, name, ("two", None, [1.0], 1j, True)) for name in _NAMES if name not in ("AVAIL_TORQUE", "book_or_nips")),
+        *(
+            (TypeError, name, ("two", None, [1.0], 1j, True))
+            for name in _NAMES
+            if name not in ("AVAIL_TORQUE", "book_or_nips")
+        ),
     ],
 )
 def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error):
@@ -198,7 +218,10 @@ def test_elements_of_the_state_can_be_assigned(env, steps):
         env.step(2)
     assert env.state is env.state
     env.state[1:] += [0.1, 0.2, 0.3]
-    twin, before = pickle.loads(pickle.dumps(env)), env.state  # before the step, which reads the elements too
+    twin, before = (
+        pickle.loads(pickle.dumps(env)),
+        env.state,
+    )  # before the step, which reads the elements too
     for each in (env, twin):
         each.step(0)
     before[0] = 7.0  # no longer the state
@@ -218,7 +241,16 @@ def test_the_state_can_be_set_from_any_four_numbers(env):
     assert env.state.dtype == np.float32 and list(env.state) == [0.0, 2.0, 4.0, 6.0]
     env.state = (1, 2, 3, 4)
     assert env.state.dtype == np.float64 and list(env.state) == [1.0, 2.0, 3.0, 4.0]
-    for state in ([1, 2, 3], "abcd", None, [[1], [2, 3]], 5.0, np.zeros((4, 1)), [0.0, 0.0, 0.0, np.nan], [True] * 4):
+    for state in (
+        [1, 2, 3],
+        "abcd",
+        None,
+        [[1], [2, 3]],
+        5.0,
+        np.zeros((4, 1)),
+        [0.0, 0.0, 0.0, np.nan],
+        [True] * 4,
+    ):
         with pytest.raises(ValueError, match="state must be .*four .*numbers, got |^dtheta2 must "):
             env.state = state
     assert list(env.state) == [1.0, 2.0, 3.0, 4.0]
@@ -242,7 +274,9 @@ def test_what_would_have_no_effect_is_rejected(env, name, value, error, message)
         lambda: make(V1).set_wrapper_attr(name, value),
         lambda: type("Changed", (acrobot_rs.AcrobotEnv,), {name: value}),
         lambda: type("Changed", (type("Mixin", (), {name: value}), acrobot_rs.AcrobotEnv), {}),
-        lambda: unittest.mock.patch.object(acrobot_rs.AcrobotEnv, name, value, create=True)(make)(V1),
+        lambda: unittest.mock.patch.object(acrobot_rs.AcrobotEnv, name, value, create=True)(make)(
+            V1
+        ),
     )
     for change in changes:
         with pytest.raises(error, match=re.escape(message)):
@@ -251,17 +285,30 @@ def test_what_would_have_no_effect_is_rejected(env, name, value, error, message)
     env._LINK_MAS_1 = 2.0
 
 
-@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotContinuousEnv, acrobot_rs.AcrobotVectorEnv])
+@pytest.mark.parametrize(
+    "kind", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotContinuousEnv, acrobot_rs.AcrobotVectorEnv]
+)
 def test_an_unknown_name_is_rejected(kind):
     env = kind()
-    for name, hint in [("mass_1", "did you mean LINK_MASS_1?"), ("MAX_TORQUE", "did you mean AVAIL_TORQUE?"), ("tau", "it has dt")]:
-        with pytest.raises(AttributeError, match=re.escape(f"{kind.__name__} has no parameter {name}; {hint}")):
+    for name, hint in [
+        ("mass_1", "did you mean LINK_MASS_1?"),
+        ("MAX_TORQUE", "did you mean AVAIL_TORQUE?"),
+        ("tau", "it has dt"),
+    ]:
+        with pytest.raises(
+            AttributeError, match=re.escape(f"{kind.__name__} has no parameter {name}; {hint}")
+        ):
             setattr(env, name, 2.0)
     message = "unexpected keyword argument 'rendermode'; did you mean render_mode?"
     with pytest.raises(TypeError, match=message):
         kind(rendermode="ansi")
     # What Gymnasium and users set.
-    env.np_random, env.render_mode, env.metadata, env.spec = np.random.default_rng(1), "ansi", {**env.metadata}, None
+    env.np_random, env.render_mode, env.metadata, env.spec = (
+        np.random.default_rng(1),
+        "ansi",
+        {**env.metadata},
+        None,
+    )
 
 
 def test_parameters_are_arguments():
@@ -272,9 +319,16 @@ def test_parameters_are_arguments():
     for name in (V0, CONTINUOUS, V1):
         env = make(name, LINK_MASS_1=2, AVAIL_TORQUE=[-2, 0, 3], MAX_VEL_1=9.0)
         for each in (env, copy.deepcopy(env), *([] if name == V0 else [env.spec.make()])):
-            assert each.unwrapped.LINK_MASS_1 == 2.0 and each.unwrapped.AVAIL_TORQUE == (-2.0, 0.0, 3.0)
+            assert each.unwrapped.LINK_MASS_1 == 2.0 and each.unwrapped.AVAIL_TORQUE == (
+                -2.0,
+                0.0,
+                3.0,
+            )
             assert each.observation_space.high[-2] == 9.0
-    for change in (lambda: make(V1, LINK_MASS_1=-1), lambda: env.set_wrapper_attr("LINK_MASS_1", -1)):
+    for change in (
+        lambda: make(V1, LINK_MASS_1=-1),
+        lambda: env.set_wrapper_attr("LINK_MASS_1", -1),
+    ):
         with pytest.raises(ValueError, match="^LINK_MASS_1 must be finite and above 0 kg, got -1"):
             change()
     env.set_wrapper_attr("LINK_MASS_1", 5.0)
@@ -320,7 +374,10 @@ def test_an_environment_takes_over_the_values_that_its_class_has_when_it_is_made
             each.state = [1.0, 1.0, 0.0, 0.0]
             each.step(2)
         assert (env.state == other.state).all()
-    with unittest.mock.patch.object(Heavy, "LINK_MASS_1", 0.0), pytest.raises(ValueError, match="LINK_MASS_1 must be "):
+    with (
+        unittest.mock.patch.object(Heavy, "LINK_MASS_1", 0.0),
+        pytest.raises(ValueError, match="LINK_MASS_1 must be "),
+    ):
         Heavy()
 
 
@@ -329,7 +386,9 @@ def test_values_cannot_change_in_place(env):
     mass, torques = np.array(2.0), [-2.0, 0.0, 2.0]
     env.LINK_MASS_1 = mass
     env.AVAIL_TORQUE = torques
-    changed = type("Changed", (acrobot_rs.AcrobotEnv,), {"LINK_MASS_1": mass, "AVAIL_TORQUE": torques})
+    changed = type(
+        "Changed", (acrobot_rs.AcrobotEnv,), {"LINK_MASS_1": mass, "AVAIL_TORQUE": torques}
+    )
     mass[...], torques[0] = 3.0, 0.0
     for each in (env, changed, changed()):
         assert each.LINK_MASS_1 == 2.0 and each.AVAIL_TORQUE == (-2.0, 0.0, 2.0)
@@ -343,7 +402,15 @@ def test_continuous_torques_are_those_of_the_discrete_environment(torques):
     assert ours.action_space == gymnasium.spaces.Box(low, high, (1,), np.float32)
     assert ours.observation_space == acrobot_rs.AcrobotEnv().observation_space
     between = float(np.float32(0.3))
-    actions = {-np.inf: low, low - 1: low, low: low, between: between, high: high, high + 1: high, np.inf: high}
+    actions = {
+        -np.inf: low,
+        low - 1: low,
+        low: low,
+        between: between,
+        high: high,
+        high + 1: high,
+        np.inf: high,
+    }
     discrete = acrobot_rs.AcrobotEnv()
     discrete.AVAIL_TORQUE = list(actions.values())
     for env in (ours, discrete):

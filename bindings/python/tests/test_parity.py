@@ -35,7 +35,15 @@ def change(rng, envs):
         "MAX_VEL_1": lambda: rng.uniform(0.05, 50),
         "MAX_VEL_2": lambda: rng.uniform(0.05, 50),
     }
-    for name in ["LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2", "LINK_MOI"]:
+    for name in [
+        "LINK_LENGTH_1",
+        "LINK_LENGTH_2",
+        "LINK_MASS_1",
+        "LINK_MASS_2",
+        "LINK_COM_POS_1",
+        "LINK_COM_POS_2",
+        "LINK_MOI",
+    ]:
         changes[name] = lambda: 10 ** rng.uniform(-1, 1)
     for name, draw in changes.items():
         if rng.random() < 0.25:
@@ -60,9 +68,18 @@ def compare(seed):
     def reset(seed=None):
         width = 10 ** rng.uniform(-2, 1.5)
         options = None if rng.random() < 0.5 else {"low": -width, "high": width * rng.random()}
-        (first, info), (our_first, our_info) = [env.reset(seed=seed, options=options) for env in envs]
-        assert our_first.tobytes() == first.tobytes() and our_first.dtype == first.dtype and our_info == info
-        assert ours.state.tobytes() == theirs.state.tobytes() and ours.state.dtype == theirs.state.dtype
+        (first, info), (our_first, our_info) = [
+            env.reset(seed=seed, options=options) for env in envs
+        ]
+        assert (
+            our_first.tobytes() == first.tobytes()
+            and our_first.dtype == first.dtype
+            and our_info == info
+        )
+        assert (
+            ours.state.tobytes() == theirs.state.tobytes()
+            and ours.state.dtype == theirs.state.dtype
+        )
 
     skipped = 0
     if not default:
@@ -98,7 +115,9 @@ def compare(seed):
             continue
         our_observation, *our_signals = ours.step(action)
         assert ours.state.tobytes() == theirs.state.tobytes(), f"configuration {seed}, step {step}"
-        assert our_observation.tobytes() == observation.tobytes(), f"configuration {seed}, step {step}"
+        assert our_observation.tobytes() == observation.tobytes(), (
+            f"configuration {seed}, step {step}"
+        )
         assert our_signals == signals and list(map(type, our_signals)) == list(map(type, signals))
         assert ours.np_random.bit_generator.state == theirs.np_random.bit_generator.state
     return skipped
@@ -115,7 +134,9 @@ def test_configurations(monkeypatch):
 def test_with_four_times_the_gravity_and_the_torque_an_acrobot_is_twice_as_fast():
     """Bit-identically, because factors of two round nothing. Gymnasium's gravity cannot change."""
     theirs = gymnasium.make("Acrobot-v1").unwrapped
-    ours = acrobot_rs.AcrobotEnv(gravity=4 * 9.8, dt=0.1, AVAIL_TORQUE=[-4, 0, 4], MAX_VEL_1=8 * np.pi, MAX_VEL_2=18 * np.pi)
+    ours = acrobot_rs.AcrobotEnv(
+        gravity=4 * 9.8, dt=0.1, AVAIL_TORQUE=[-4, 0, 4], MAX_VEL_1=8 * np.pi, MAX_VEL_2=18 * np.pi
+    )
     theirs.reset(seed=1)
     ours.state = theirs.state.astype(float) * [1, 1, 2, 2]
     for action in np.random.default_rng(0).integers(3, size=500):

@@ -25,7 +25,9 @@ class Tensor(np.ndarray):
 
 class Linear:
     def __init__(self, inputs, outputs):
-        self.weight, self.bias = (RNG.normal(size=size).view(Tensor) for size in [(outputs, inputs), (outputs,)])
+        self.weight, self.bias = (
+            RNG.normal(size=size).view(Tensor) for size in [(outputs, inputs), (outputs,)]
+        )
 
     def __call__(self, x):
         return x @ np.asarray(self.weight).T + np.asarray(self.bias)
@@ -55,9 +57,14 @@ class Model:
 
     def __init__(self, kind, modules, space=gym.spaces.Discrete(3), quantiles=1, normalize=None):
         networks = {
-            "ppo": {"mlp_extractor": types.SimpleNamespace(policy_net=modules[:-1]), "action_net": modules[-1]},
+            "ppo": {
+                "mlp_extractor": types.SimpleNamespace(policy_net=modules[:-1]),
+                "action_net": modules[-1],
+            },
             "dqn": {"q_net": types.SimpleNamespace(q_net=modules)},
-            "qrdqn": {"quantile_net": types.SimpleNamespace(quantile_net=modules, n_quantiles=quantiles)},
+            "qrdqn": {
+                "quantile_net": types.SimpleNamespace(quantile_net=modules, n_quantiles=quantiles)
+            },
         }
         spaces = {"action_space": space, "observation_space": self.seen}
         self.policy = types.SimpleNamespace(**spaces, **networks[kind])
@@ -117,7 +124,12 @@ def test_a_file_has_the_header_and_the_numbers(tmp_path):
 @pytest.mark.parametrize("kind", ["ppo", "dqn", "qrdqn"])
 def test_models_of_stable_baselines3_are_saved_with_their_own_actions(kind, normalize, tmp_path):
     quantiles = 5 if kind == "qrdqn" else 1
-    model = Model(kind, [Linear(6, 8), Tanh(), Linear(8, 8), ReLU(), Linear(8, 3 * quantiles)], quantiles=quantiles, normalize=normalize)
+    model = Model(
+        kind,
+        [Linear(6, 8), Tanh(), Linear(8, 8), ReLU(), Linear(8, 3 * quantiles)],
+        quantiles=quantiles,
+        normalize=normalize,
+    )
     policy.save(model, tmp_path / "p")  # compares the actions
     head, numbers = read(tmp_path / "p")
     assert head == (b"MLP1", 0, 6, 0.0, [(8, 1, 0), (8, 2, 0), (3, 0, 0)])
@@ -159,7 +171,9 @@ def test_clipped_observations_are_warned_of(tmp_path):
     normalize = Normalize()
     normalize.clip_obs = 10.0
     with pytest.warns(UserWarning, match="VecNormalize clips extreme observations"):
-        policy.save(Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "p", np.zeros((1, 6)))
+        policy.save(
+            Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "p", np.zeros((1, 6))
+        )
     normalize.clip_obs = 0.5
     normalize.normalize_obs = lambda x: np.clip(Normalize().normalize_obs(x), -0.5, 0.5)
     message = "they differ on .* clips extreme observations, at clip_obs=0.5, and the file does not"

@@ -116,7 +116,9 @@ def test_options_of_other_programs_pass_and_misspelt_ones_do_not(maker, name):
     }
     np.testing.assert_array_equal(env.reset(seed=1, options=others)[0], expected)
     keys = {"mask": "reset_mask", "reset_masks": "reset_mask", "initial_state": "state"}
-    for key, near in (keys | {"states": "state", "State": "state", "lo": "low", "HIGH": "high"}).items():
+    for key, near in (
+        keys | {"states": "state", "State": "state", "lo": "low", "HIGH": "high"}
+    ).items():
         hint = rf"got '{key}'(; did you mean '{near}'\?)?$"
         with rejects(env, ValueError, rf"the keys of options must be among \[.*\], {hint}"):
             env.reset(seed=2, options={key: None})
@@ -234,8 +236,16 @@ def test_episodes_begin_in_given_states(name):
     envs.reset(options={"state": states[2]})
     assert (envs.state == states[2]).all() and (envs.elapsed_steps == 0).all()
     envs.step(actions)
-    for bad in ([1.0] * 3, [[1.0] * 4] * 2, "x", None, [[0, 0, 0, np.nan]] * 3, [0, 0, 0, 1e39],
-                [[1.0], [1.0, 2.0]], bytearray(4)):
+    for bad in (
+        [1.0] * 3,
+        [[1.0] * 4] * 2,
+        "x",
+        None,
+        [[0, 0, 0, np.nan]] * 3,
+        [0, 0, 0, 1e39],
+        [[1.0], [1.0, 2.0]],
+        bytearray(4),
+    ):
         with rejects(
             envs, ValueError, r"state.* must be (numbers of shape \(3, 4\)|a finite number), got"
         ):

@@ -21,7 +21,11 @@ class VecEnv:
     """What the adapter uses of Stable-Baselines3 2.9's VecEnv."""
 
     def __init__(self, num_envs, observation_space, action_space):
-        self.num_envs, self.observation_space, self.action_space = num_envs, observation_space, action_space
+        self.num_envs, self.observation_space, self.action_space = (
+            num_envs,
+            observation_space,
+            action_space,
+        )
         self._reset_seeds()
         self._reset_options()
         self.render_mode = self.get_attr("render_mode")[0]
@@ -33,14 +37,22 @@ class VecEnv:
         self._options = [{} for _ in range(self.num_envs)]
 
     def _get_indices(self, indices):
-        return range(self.num_envs) if indices is None else [indices] if isinstance(indices, int) else indices
+        return (
+            range(self.num_envs)
+            if indices is None
+            else [indices]
+            if isinstance(indices, int)
+            else indices
+        )
 
     def seed(self, seed):
         self._seeds = [seed + index for index in range(self.num_envs)]
         return self._seeds
 
     def set_options(self, options):
-        self._options = [dict(options) for _ in range(self.num_envs)] if isinstance(options, dict) else options
+        self._options = (
+            [dict(options) for _ in range(self.num_envs)] if isinstance(options, dict) else options
+        )
 
     def step(self, actions):
         self.step_async(actions)
@@ -70,7 +82,10 @@ def test_the_swing_up_is_taken_too():
 
 def test_steps_are_those_of_the_vector_environment():
     """With the infos of DummyVecEnv."""
-    envs, twin = make(8, max_episode_steps=90), acrobot_rs.AcrobotVectorEnv(8, 90, autoreset_mode="SameStep")
+    envs, twin = (
+        make(8, max_episode_steps=90),
+        acrobot_rs.AcrobotVectorEnv(8, 90, autoreset_mode="SameStep"),
+    )
     assert envs.seed(5) == list(range(5, 13))
     envs.set_options({"low": -0.5})
     assert (envs.reset() == twin.reset(seed=list(range(5, 13)), options={"low": -0.5})[0]).all()
@@ -109,7 +124,10 @@ def test_gymnasium_s_episodes_are_those_of_dummy_vec_env():
 
     theirs = DummyVecEnv([lambda: gymnasium.make("Acrobot-v1", max_episode_steps=70)] * 8)
     ours = make(8, max_episode_steps=70, gymnasium_episodes=True)
-    assert (ours.observation_space, ours.action_space) == (theirs.observation_space, theirs.action_space)
+    assert (ours.observation_space, ours.action_space) == (
+        theirs.observation_space,
+        theirs.action_space,
+    )
     theirs, ours = VecMonitor(theirs), VecMonitor(ours)
     for envs in (theirs, ours):
         envs.seed(5)
@@ -128,13 +146,21 @@ def test_gymnasium_s_episodes_are_those_of_dummy_vec_env():
 def test_attributes_and_methods():
     envs = make(3, render_mode="rgb_array")
     envs.reset()
-    assert envs.get_attr("dt") == [0.2] * 3 and envs.get_attr("dt", 1) == [0.2] and envs.get_attr("dt", [0, 2]) == [0.2] * 2
+    assert (
+        envs.get_attr("dt") == [0.2] * 3
+        and envs.get_attr("dt", 1) == [0.2]
+        and envs.get_attr("dt", [0, 2]) == [0.2] * 2
+    )
     envs.set_attr("dt", 0.1)
     assert envs.get_attr("dt") == [0.1] * 3
     before = envs.get_attr("state")
     envs.set_attr("state", np.array([1.0, 2.0, 3.0, 4.0]), indices=[1])
     after = envs.get_attr("state")
-    assert list(after[1]) == [1.0, 2.0, 3.0, 4.0] and (after[0] == before[0]).all() and (after[2] == before[2]).all()
+    assert (
+        list(after[1]) == [1.0, 2.0, 3.0, 4.0]
+        and (after[0] == before[0]).all()
+        and (after[2] == before[2]).all()
+    )
     envs.set_attr("dt", 0.2, indices=0)
     envs.set_attr("AVAIL_TORQUE", [-2.0, 0.0, 2.0], indices=[0, 2])
     assert envs.get_attr("dt") == [0.2, 0.1, 0.1]
@@ -166,13 +192,19 @@ def test_a_range_is_for_all_environments():
         envs.reset()
         assert envs.envs.dt == drawn and len(set(envs.get_attr("dt"))) == 3
         for value, some in [(0.3, [0]), (0.3, 1), (drawn, [0]), (drawn, [0, 2])]:
-            with rejects(envs.envs, ValueError, "dt must be set in all environments, if it is or will be drawn, got"):
+            with rejects(
+                envs.envs,
+                ValueError,
+                "dt must be set in all environments, if it is or will be drawn, got",
+            ):
                 envs.set_attr("dt", value, indices=some)
         envs.set_attr("dt", 0.3, indices=[])
         assert envs.envs.dt == drawn
         envs.set_attr("dt", 0.2, indices=indices)
         assert envs.envs.dt == 0.2 and envs.get_attr("dt") == [0.2] * 3
-    with pytest.raises(ValueError, match="dt must be set in all environments, if it is or will be drawn"):
+    with pytest.raises(
+        ValueError, match="dt must be set in all environments, if it is or will be drawn"
+    ):
         envs.set_attr("dt", drawn, indices=[0])
     with pytest.raises(IndexError):
         envs.set_attr("dt", 0.1, indices=[3])
@@ -191,11 +223,17 @@ def test_infos_have_the_parameters_of_the_episode():
 def test_misuse_is_rejected():
     with pytest.raises(ValueError, match='autoreset_mode must be "SameStep", got "NextStep"'):
         AcrobotVecEnv(acrobot_rs.AcrobotVectorEnv(2))
-    with pytest.raises(TypeError, match="AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got TimeLimit"):
+    with pytest.raises(
+        TypeError, match="AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got TimeLimit"
+    ):
         AcrobotVecEnv(gymnasium.make("acrobot_rs/Acrobot-v1"))
     envs = make(2)
     envs.reset()
     for _ in range(2):
-        with rejects(envs.envs, gymnasium.error.NoAsyncCallError, "call step_async with the actions before each step_wait"):
+        with rejects(
+            envs.envs,
+            gymnasium.error.NoAsyncCallError,
+            "call step_async with the actions before each step_wait",
+        ):
             envs.step_wait()
         envs.step([0, 1])

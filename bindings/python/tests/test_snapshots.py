@@ -5,7 +5,15 @@ import pickle
 
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env, AcrobotVectorEnv, LogUniform, Normal, Uniform
+from acrobot_rs import (
+    AcrobotContinuousEnv,
+    AcrobotEnv,
+    AcrobotV0Env,
+    AcrobotVectorEnv,
+    LogUniform,
+    Normal,
+    Uniform,
+)
 from acrobot_rs.swingup import AcrobotSwingupEnv, AcrobotSwingupSparseEnv, AcrobotSwingupVectorEnv
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from vectors import rejects
@@ -22,9 +30,19 @@ VECTOR = (
     (AcrobotVectorEnv, "Disabled", Uniform(0.0, 0.3)),
     (AcrobotContinuousVectorEnv, "NextStep", Uniform(0.0, 0.3)),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gymnasium_episodes": True, "copy": False}),
-    (AcrobotVectorEnv, "SameStep", LogUniform(0.1, 0.3), {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}),
+    (
+        AcrobotVectorEnv,
+        "SameStep",
+        LogUniform(0.1, 0.3),
+        {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)},
+    ),
     (AcrobotSwingupVectorEnv, "SameStep", 0.1, DRAWN),
-    (AcrobotVectorEnv, "NextStep", 0.0, {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]}),
+    (
+        AcrobotVectorEnv,
+        "NextStep",
+        0.0,
+        {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]},
+    ),
 )
 
 
@@ -45,7 +63,13 @@ def play(envs, steps):
     played = []
     for _ in range(steps):
         *results, infos = envs.step(envs.action_space.sample())
-        played.append([*map(np.copy, results), envs.state.tobytes(), {key: list(value) for key, value in infos.items()}])
+        played.append(
+            [
+                *map(np.copy, results),
+                envs.state.tobytes(),
+                {key: list(value) for key, value in infos.items()},
+            ]
+        )
         ended = results[2] | results[3]
         if np.any(ended) and isinstance(envs, AcrobotEnv):
             envs.reset()
@@ -55,7 +79,11 @@ def play(envs, steps):
 
 
 PROTOCOLS = range(pickle.HIGHEST_PROTOCOL + 1)
-AGAIN = [copy.copy, copy.deepcopy, *(lambda env, p=p: pickle.loads(pickle.dumps(env, p)) for p in PROTOCOLS)]
+AGAIN = [
+    copy.copy,
+    copy.deepcopy,
+    *(lambda env, p=p: pickle.loads(pickle.dumps(env, p)) for p in PROTOCOLS),
+]
 
 
 @pytest.mark.parametrize("again", AGAIN)

@@ -24,7 +24,13 @@ from vectors import CONTINUOUS, MODES, assert_equal, different, make_vec, pair, 
 
 def test_attributes_and_types_are_those_of_sync_vector_env():
     theirs, ours = pair(5)
-    names = ("num_envs", "observation_space", "action_space", "single_observation_space", "single_action_space")
+    names = (
+        "num_envs",
+        "observation_space",
+        "action_space",
+        "single_observation_space",
+        "single_action_space",
+    )
     for name in (*names, "autoreset_mode", "render_mode", "copy", "closed"):
         assert getattr(ours, name) == getattr(theirs, name)
     assert repr(ours) == "AcrobotVectorEnv(acrobot_rs/Acrobot-v1, num_envs=5)"
@@ -39,7 +45,11 @@ def test_attributes_and_types_are_those_of_sync_vector_env():
         assert observations in envs.observation_space and infos == {}
         observations, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
         assert observations in envs.observation_space and infos == {}
-        for signals, dtype in [(rewards, np.float32), (terminated, np.bool_), (truncated, np.bool_)]:
+        for signals, dtype in [
+            (rewards, np.float32),
+            (terminated, np.bool_),
+            (truncated, np.bool_),
+        ]:
             assert signals.shape == (5,) and signals.dtype == dtype
     assert acrobot_rs.AcrobotVectorEnv.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
 
@@ -69,7 +79,11 @@ def test_invalid_actions_are_rejected(kind, actions):
     """`test_env.py` tries what is no array of numbers."""
     envs = kind(4)
     envs.reset(seed=1)
-    with rejects(envs, InvalidAction, r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number)"):
+    with rejects(
+        envs,
+        InvalidAction,
+        r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number)",
+    ):
         envs.step(actions)
 
 
@@ -114,7 +128,11 @@ def test_actions_can_be_integers_of_any_type(convert):
         *(("autoreset_mode", mode) for mode in ("nextstep", None, 1, [])),
         ("threads", 0),
         ("render_mode", "human"),
-        *((name, value) for name in ("num_envs", "max_episode_steps", "threads") for value in (2.0, "2", True)),
+        *(
+            (name, value)
+            for name in ("num_envs", "max_episode_steps", "threads")
+            for value in (2.0, "2", True)
+        ),
         *((name, value) for name in ("copy", "gymnasium_episodes") for value in (1, "False", None)),
         *(("info_parameters", value) for value in (True, None, "dt", [0])),
     ],
@@ -181,12 +199,20 @@ def test_attributes_of_each_environment():
             expected, found = getattr(theirs, get)(name), getattr(ours, get)(name)
             assert isinstance(found, tuple)
             # A list in Gymnasium, where a change of it would have an effect.
-            np.testing.assert_equal([list(x) if name == "AVAIL_TORQUE" else x for x in found], [*expected])
+            np.testing.assert_equal(
+                [list(x) if name == "AVAIL_TORQUE" else x for x in found], [*expected]
+            )
     assert ours.get_attr("elapsed_steps") == theirs.get_attr("_elapsed_steps")
     assert len(ours.call("render")) == 3 and (ours.call("render")[2] == ours.render()[2]).all()
-    with pytest.raises(AttributeError, match="no attribute 'length'; they have .*elapsed_steps.*LINK_LENGTH_1"):
+    with pytest.raises(
+        AttributeError, match="no attribute 'length'; they have .*elapsed_steps.*LINK_LENGTH_1"
+    ):
         ours.call("length")
-    for name, error in [("state", ValueError), ("length", AttributeError), ("elapsed_steps", AttributeError)]:
+    for name, error in [
+        ("state", ValueError),
+        ("length", AttributeError),
+        ("elapsed_steps", AttributeError),
+    ]:
         with rejects(ours, error, name):
             ours.set_attr(name, [1.0] * 3)
 
@@ -207,10 +233,16 @@ def test_states_can_be_set(gymnasium_episodes):
     for array in (envs.state, envs.elapsed_steps):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1
-    for row, column, number in [(39, 3, np.nan), (0, 2, -np.inf), *([] if gymnasium_episodes else [(7, 0, 1e39)])]:
+    for row, column, number in [
+        (39, 3, np.nan),
+        (0, 2, -np.inf),
+        *([] if gymnasium_episodes else [(7, 0, 1e39)]),
+    ]:
         bad = states.astype(np.float64) + 1.0
         bad[row, column] = number
-        with pytest.raises(ValueError, match=rf"state\[{row}, {column}\] must be a finite number, got "):
+        with pytest.raises(
+            ValueError, match=rf"state\[{row}, {column}\] must be a finite number, got "
+        ):
             envs.state = bad
     for bad in [states[:39], states.T, states[0], None, [["1"] * 4] * 40, states > 0]:
         with pytest.raises(ValueError, match=r"state must be numbers of shape \(40, 4\), got"):
@@ -224,7 +256,13 @@ def test_after_close_nothing_works():
     for _ in range(2):
         envs.close()
     assert envs.closed
-    for call in (envs.reset, envs.render, lambda: envs.step([0, 1]), lambda: envs.call("dt"), lambda: envs.set_attr("dt", 0.1)):
+    for call in (
+        envs.reset,
+        envs.render,
+        lambda: envs.step([0, 1]),
+        lambda: envs.call("dt"),
+        lambda: envs.set_attr("dt", 0.1),
+    ):
         with pytest.raises(ClosedEnvironmentError, match="closed"):
             call()
 
@@ -233,12 +271,20 @@ def test_after_close_nothing_works():
 def test_continuous_torques_give_the_episodes_of_single_environments(mode):
     """Also if environments have different bounds of the torque."""
     theirs = gymnasium.make_vec(
-        CONTINUOUS, num_envs=6, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, max_episode_steps=60
+        CONTINUOUS,
+        num_envs=6,
+        vectorization_mode="sync",
+        vector_kwargs={"autoreset_mode": mode},
+        max_episode_steps=60,
     )
-    ours = gymnasium.make_vec(CONTINUOUS, num_envs=6, autoreset_mode=mode, gymnasium_episodes=True, max_episode_steps=60)
+    ours = gymnasium.make_vec(
+        CONTINUOUS, num_envs=6, autoreset_mode=mode, gymnasium_episodes=True, max_episode_steps=60
+    )
     assert isinstance(ours, AcrobotContinuousVectorEnv) and ours.action_space == theirs.action_space
     assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
-    for step, actions in enumerate(np.random.default_rng(0).uniform(-1.5, 1.5, (300, 6, 1)).astype(np.float32)):
+    for step, actions in enumerate(
+        np.random.default_rng(0).uniform(-1.5, 1.5, (300, 6, 1)).astype(np.float32)
+    ):
         if step == 150:
             for envs in (theirs, ours):
                 envs.set_attr("AVAIL_TORQUE", different(6, 0)["AVAIL_TORQUE"].tolist())
@@ -254,7 +300,10 @@ def test_torques_in_float32_are_those_of_actions():
     class Strong(AcrobotContinuousVectorEnv):
         AVAIL_TORQUE = (3.0, -2.0, 0.0)
 
-    discrete, torques = make_vec(30, autoreset_mode="SameStep", max_episode_steps=60), Strong(30, 60, None, "SameStep")
+    discrete, torques = (
+        make_vec(30, autoreset_mode="SameStep", max_episode_steps=60),
+        Strong(30, 60, None, "SameStep"),
+    )
     discrete.AVAIL_TORQUE = Strong.AVAIL_TORQUE
     assert torques.single_action_space == gymnasium.spaces.Box(-2.0, 3.0, (1,), np.float32)
     assert torques.action_space == gymnasium.spaces.Box(-2.0, 3.0, (30, 1), np.float32)
@@ -312,7 +361,9 @@ def test_threads_in_a_forked_process():
     envs.reset(seed=1)
     envs.step(actions)
     ours, theirs = multiprocessing.Pipe()
-    child = multiprocessing.get_context("fork").Process(target=lambda: theirs.send(envs.step(actions)[0]))
+    child = multiprocessing.get_context("fork").Process(
+        target=lambda: theirs.send(envs.step(actions)[0])
+    )
     child.start()
     try:
         assert ours.poll(30), "the child hangs"
@@ -329,10 +380,23 @@ def test_a_call_during_a_step_is_rejected_and_changes_nothing(copies):
     envs = acrobot_rs.AcrobotVectorEnv(count, **kwargs)
     states, actions = np.zeros((count, 4)), np.ones(count, np.int64)
     calls = [
-        *(lambda: envs.state, lambda: setattr(envs, "state", states), lambda: envs.elapsed_steps, lambda: envs.render()),
-        *(lambda: setattr(envs, "dt", 0.1), lambda: setattr(envs, "dt", Uniform(0.1, 0.2)), lambda: setattr(envs, "dt", [0.1])),
+        *(
+            lambda: envs.state,
+            lambda: setattr(envs, "state", states),
+            lambda: envs.elapsed_steps,
+            lambda: envs.render(),
+        ),
+        *(
+            lambda: setattr(envs, "dt", 0.1),
+            lambda: setattr(envs, "dt", Uniform(0.1, 0.2)),
+            lambda: setattr(envs, "dt", [0.1]),
+        ),
         *(lambda: envs.step(actions), envs.reset, lambda: envs._native.seed(["1"])),
-        *(lambda: pickle.dumps(envs), lambda: copy.deepcopy(envs), lambda: envs._native.__setstate__(b"")),
+        *(
+            lambda: pickle.dumps(envs),
+            lambda: copy.deepcopy(envs),
+            lambda: envs._native.__setstate__(b""),
+        ),
     ]
     busy = "^another thread is stepping or resetting an environment; change parameters and call methods between its steps$"
     for call in calls:

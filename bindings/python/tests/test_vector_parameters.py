@@ -79,17 +79,29 @@ def test_zeros_of_both_signs_are_different_values():
 
 #: All parameters whose bounds each have one number and no other draws, in the order of their draws.
 UNIFORM = (
-    *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1", "LINK_COM_POS_2"),
+    *(
+        "LINK_LENGTH_1",
+        "LINK_LENGTH_2",
+        "LINK_MASS_1",
+        "LINK_MASS_2",
+        "LINK_COM_POS_1",
+        "LINK_COM_POS_2",
+    ),
     *("gravity", "dt", "MAX_VEL_1", "MAX_VEL_2"),
 )
 #: What has equal bounds, here a torque, is not drawn.
 TORQUES = Uniform((-1.5, 0.0, 0.5), (-0.5, 0.0, 1.5))
 #: In the order of their draws, which is not that of the assignments.
 DRAWS = (
-    {name: Uniform(0.3, 1.7) for name in UNIFORM} | {"AVAIL_TORQUE": TORQUES, "torque_noise_max": Uniform(0.3, 1.7)},
+    {name: Uniform(0.3, 1.7) for name in UNIFORM}
+    | {"AVAIL_TORQUE": TORQUES, "torque_noise_max": Uniform(0.3, 1.7)},
     {"dt": Uniform(0.3, 1.7), "AVAIL_TORQUE": TORQUES},
     {"LINK_MASS_2": LogUniform(0.5, 2.0)},
-    {"LINK_MASS_2": Normal(1.0, 0.125, 0.5, 2.0), "gravity": Normal(9.5, 4.0, 9.0, 12.0), "dt": Uniform(0.125, 0.25)},
+    {
+        "LINK_MASS_2": Normal(1.0, 0.125, 0.5, 2.0),
+        "gravity": Normal(9.5, 4.0, 9.0, 12.0),
+        "dt": Uniform(0.125, 0.25),
+    },
     {"LINK_MOI": Uniform(0.5, 2.0)},
 )
 
@@ -97,12 +109,16 @@ DRAWS = (
 def expected_draw(rng, draw, rounded):
     """As Rust draws: as NumPy, between the rounded bounds."""
     if isinstance(draw, Uniform):
-        bounds = np.transpose([np.ravel(rounded(each)).astype(float) for each in (draw.low, draw.high)])
+        bounds = np.transpose(
+            [np.ravel(rounded(each)).astype(float) for each in (draw.low, draw.high)]
+        )
         return np.squeeze([rng.uniform(low, high) if low < high else low for low, high in bounds])
     if isinstance(draw, LogUniform):
         return math.exp(rng.uniform(math.log(draw.low), math.log(draw.high)))
     while True:
-        drawn = rng.uniform(max(draw.low, draw.mean - 8 * draw.std), min(draw.high, draw.mean + 8 * draw.std))
+        drawn = rng.uniform(
+            max(draw.low, draw.mean - 8 * draw.std), min(draw.high, draw.mean + 8 * draw.std)
+        )
         if rng.uniform() < math.exp(-0.5 * ((drawn - draw.mean) / draw.std) ** 2):
             return drawn
 
@@ -111,23 +127,40 @@ def expected_draw(rng, draw, rounded):
     ("draws", "different"),
     [
         *((draws, {}) for draws in DRAWS),
-        ({"LINK_MASS_2": Uniform(0.5, 2.0)}, {"LINK_MASS_1": 1.0 + np.arange(20), "book_or_nips": ["book", "nips"] * 10}),
+        (
+            {"LINK_MASS_2": Uniform(0.5, 2.0)},
+            {"LINK_MASS_1": 1.0 + np.arange(20), "book_or_nips": ["book", "nips"] * 10},
+        ),
     ],
 )
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
 @pytest.mark.parametrize("mode", ["NextStep", "SameStep"])
 def test_resets_draw_parameters(draws, different, gymnasium_episodes, mode):
     """Those of all environments, those with a mask, and those within steps. What is not drawn stays."""
-    envs = make_vec(20, max_episode_steps=2, autoreset_mode=mode, gymnasium_episodes=gymnasium_episodes, **different)
+    envs = make_vec(
+        20,
+        max_episode_steps=2,
+        autoreset_mode=mode,
+        gymnasium_episodes=gymnasium_episodes,
+        **different,
+    )
     envs.reset(seed=3)
     for name, draw in reversed(draws.items()):
         setattr(envs, name, draw)
-        assert getattr(envs, name) == draw and len(set(envs.get_attr(name))) == 1, "the next reset draws"
+        assert getattr(envs, name) == draw and len(set(envs.get_attr(name))) == 1, (
+            "the next reset draws"
+        )
     rounded = np.float64 if gymnasium_episodes else np.float32
     streams, mask = [np.random.default_rng(seed) for seed in range(50, 70)], np.arange(20) % 3 == 0
     expected = {name: envs.get_parameter(name) for name in (*draws, *different)}
     # The platform's logarithms may round differently.
-    tolerance = 0 if all(isinstance(draw, Uniform) for draw in draws.values()) else 1e-15 if gymnasium_episodes else 1e-7
+    tolerance = (
+        0
+        if all(isinstance(draw, Uniform) for draw in draws.values())
+        else 1e-15
+        if gymnasium_episodes
+        else 1e-7
+    )
 
     def check(which):
         for i in np.flatnonzero(which):
@@ -155,21 +188,37 @@ def test_resets_draw_parameters(draws, different, gymnasium_episodes, mode):
 
 
 @pytest.mark.parametrize(
-    "draw", [LogUniform(0.5, 8.0), Normal(1.0, 0.2, 0.1, 9.0), Normal(1.0, 0.2, 1.0, 1.5), Normal(1.0, 50.0, 0.5, 2.0)]
+    "draw",
+    [
+        LogUniform(0.5, 8.0),
+        Normal(1.0, 0.2, 0.1, 9.0),
+        Normal(1.0, 0.2, 1.0, 1.5),
+        Normal(1.0, 50.0, 0.5, 2.0),
+    ],
 )
 def test_distributions(draw):
     """By Kolmogorov's and Smirnov's test."""
     envs = make_vec(20_000, LINK_MASS_1=draw)
     envs.reset(seed=1)
-    cdf = math.log if isinstance(draw, LogUniform) else statistics.NormalDist(draw.mean, draw.std).cdf
+    cdf = (
+        math.log if isinstance(draw, LogUniform) else statistics.NormalDist(draw.mean, draw.std).cdf
+    )
     start, end = cdf(draw.low), cdf(draw.high)
-    drawn = np.array([(cdf(x) - start) / (end - start) for x in sorted(envs.get_parameter("LINK_MASS_1"))])
+    drawn = np.array(
+        [(cdf(x) - start) / (end - start) for x in sorted(envs.get_parameter("LINK_MASS_1"))]
+    )
     assert drawn.min() >= 0 and drawn.max() <= 1
     assert np.abs(drawn - (np.arange(20_000) + 0.5) / 20_000).max() < 1.95 / 20_000**0.5
 
 
 @pytest.mark.parametrize(
-    "draw", [Normal(0.1, 1e-300, 0.1, 0.1 + 1e-12), Normal(1.0, 1e300, 1e-30, 1e30), LogUniform(1e-30, 1e30), Uniform(2.0, 2.0)]
+    "draw",
+    [
+        Normal(0.1, 1e-300, 0.1, 0.1 + 1e-12),
+        Normal(1.0, 1e300, 1e-30, 1e30),
+        LogUniform(1e-30, 1e30),
+        Uniform(2.0, 2.0),
+    ],
 )
 def test_extreme_draws_end_within_their_bounds(draw):
     envs = make_vec(50, LINK_LENGTH_1=LogUniform(1.0, 2.0), LINK_MASS_1=draw)
@@ -181,16 +230,36 @@ def test_extreme_draws_end_within_their_bounds(draw):
 @pytest.mark.parametrize(
     ("kind", "numbers", "error", "message"),
     [
-        (Uniform, (1.2, 0.8), ValueError, r"low must be at most high, .*, got Uniform\(low=1.2, high=0.8\)"),
+        (
+            Uniform,
+            (1.2, 0.8),
+            ValueError,
+            r"low must be at most high, .*, got Uniform\(low=1.2, high=0.8\)",
+        ),
         (Uniform, ([-1, 0, 1], [-2, 0, 2]), ValueError, "low must be at most high"),
         (Uniform, ([-1, 0, 1], 2), ValueError, "low must be at most high, and of the same length"),
-        (Uniform, ([-1, 1], [-1, 2]), TypeError, r"low must be three finite numbers, got int64 of shape \(2,\)"),
+        (
+            Uniform,
+            ([-1, 1], [-1, 2]),
+            TypeError,
+            r"low must be three finite numbers, got int64 of shape \(2,\)",
+        ),
         (Uniform, (0.2, None), TypeError, "high must be a finite number, got None"),
         (Uniform, (0.0, np.inf), ValueError, "high must be a finite number, got inf"),
         (LogUniform, (0.0, 1.0), ValueError, "low must be above 0, got LogUniform"),
         (LogUniform, ([1, 2, 3], 4.0), TypeError, "low must be a finite number, got"),
-        (Normal, (1.0, 0.0, 0.5, 2.0), ValueError, "std must be above 0, and mean from low to high, got Normal"),
-        (Normal, (3.0, 0.1, 0.5, 2.0), ValueError, "std must be above 0, and mean from low to high, got Normal"),
+        (
+            Normal,
+            (1.0, 0.0, 0.5, 2.0),
+            ValueError,
+            "std must be above 0, and mean from low to high, got Normal",
+        ),
+        (
+            Normal,
+            (3.0, 0.1, 0.5, 2.0),
+            ValueError,
+            "std must be above 0, and mean from low to high, got Normal",
+        ),
     ],
 )
 def test_invalid_draws_are_rejected_when_they_are_made(kind, numbers, error, message):
@@ -200,15 +269,30 @@ def test_invalid_draws_are_rejected_when_they_are_made(kind, numbers, error, mes
 
 def test_drawn_parameters_in_infos_and_arrays():
     draws = {"dt": LogUniform(0.1, 0.3), "AVAIL_TORQUE": Uniform([-2, 0, 1], [-1, 0, 2])}
-    envs = make_vec(3, max_episode_steps=1, autoreset_mode="SameStep", info_parameters=tuple(draws), **draws)
+    envs = make_vec(
+        3, max_episode_steps=1, autoreset_mode="SameStep", info_parameters=tuple(draws), **draws
+    )
     _, before = envs.reset(seed=1)
     after = envs.step([1] * 3)[-1]
     for name, shape in [("dt", (3,)), ("AVAIL_TORQUE", (3, 3))]:
-        assert (after["final_info"][name] == before[name]).all() and (after[name] != before[name]).any()
-        assert before[f"_{name}"].all() and after[f"_{name}"].all() and after["final_info"][f"_{name}"].all()
+        assert (after["final_info"][name] == before[name]).all() and (
+            after[name] != before[name]
+        ).any()
+        assert (
+            before[f"_{name}"].all()
+            and after[f"_{name}"].all()
+            and after["final_info"][f"_{name}"].all()
+        )
         array = envs.get_parameter(name)
-        assert array.shape == shape and (after[name] == array).all() and (array == envs.get_attr(name)).all()
-    with pytest.raises(ValueError, match="info_parameters must be names of parameters, got 'LINK_MAS_1'; did you mean LINK_MASS_1"):
+        assert (
+            array.shape == shape
+            and (after[name] == array).all()
+            and (array == envs.get_attr(name)).all()
+        )
+    with pytest.raises(
+        ValueError,
+        match="info_parameters must be names of parameters, got 'LINK_MAS_1'; did you mean LINK_MASS_1",
+    ):
         make_vec(2, info_parameters=["LINK_MAS_1"])
     with pytest.raises(AttributeError, match="no parameter 'mass_1'; did you mean LINK_MASS_1"):
         envs.get_parameter("mass_1")

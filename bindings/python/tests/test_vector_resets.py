@@ -20,14 +20,19 @@ def test_streams_are_the_seed_s_children_whatever_the_number_of_environments():
     small, large = make_vec(5), make_vec(100)
     for seed in [0, 42, 2**100 + 3]:
         small.reset(seed=seed), large.reset(seed=seed)
-        states = [np.random.default_rng(child).uniform(-0.1, 0.1, 4) for child in np.random.SeedSequence(seed).spawn(100)]
+        states = [
+            np.random.default_rng(child).uniform(-0.1, 0.1, 4)
+            for child in np.random.SeedSequence(seed).spawn(100)
+        ]
         assert (large.state == np.float32(states)).all()
         assert large.np_random_seed == seed
         for actions in np.random.default_rng(0).integers(3, size=(700, 100)):
             small.step(actions[:5])
             large.step(actions)
             assert (small.state == large.state[:5]).all()
-    assert (make_vec(5).reset()[0] != make_vec(5).reset()[0]).any(), "without a seed initial states are random"
+    assert (make_vec(5).reset()[0] != make_vec(5).reset()[0]).any(), (
+        "without a seed initial states are random"
+    )
 
 
 def test_rejected_seeds_and_bounds_change_nothing():
@@ -36,7 +41,12 @@ def test_rejected_seeds_and_bounds_change_nothing():
     for each in (single, envs):
         assert (each.reset(seed=np.uint8(255))[0] == each.reset(seed=255)[0]).all()
     bad_seeds = (-1, "4", 4.0, True, np.True_, 10**5000)
-    bad_options = ({"low": 1, "high": 0}, {"high": np.inf}, {"lo": 1}, {"low": 1, "reset_mask": [True, False]})
+    bad_options = (
+        {"low": 1, "high": 0},
+        {"high": np.inf},
+        {"lo": 1},
+        {"low": 1, "reset_mask": [True, False]},
+    )
     for seed in (*bad_seeds, [1], (1,) * 3, *([1, bad] for bad in bad_seeds), None):
         for options in bad_options if seed is None else ({},):
             with rejects(envs, (ValueError, gymnasium.error.Error)):
@@ -53,7 +63,11 @@ def test_invalid_masks_are_rejected_with_the_errors_of_sync_vector_env(mask, err
     with pytest.raises((error, AssertionError)):  # the latter with Gymnasium 1.1
         theirs.reset(seed=1, options={"reset_mask": mask and np.array(mask)})
     options = {"reset_mask": mask}
-    with rejects(ours, error, r"reset_mask must (be an array of bool|have shape \(2,\)|have a true element), got"):
+    with rejects(
+        ours,
+        error,
+        r"reset_mask must (be an array of bool|have shape \(2,\)|have a true element), got",
+    ):
         ours.reset(seed=1, options=options)
     assert options == {"reset_mask": mask}
 
@@ -70,7 +84,9 @@ def test_a_mask_selects_the_environments_to_seed_and_reset():
         before, twin = envs.state, copy.deepcopy(envs)
         observations, infos = envs.reset(seed=seed, options={"reset_mask": mask[::2], "low": -0.5})
         twin.reset(options={"low": -0.5})
-        seeded = np.float32([np.random.default_rng(stream).uniform(-0.5, 0.1, 4) for stream in streams])
+        seeded = np.float32(
+            [np.random.default_rng(stream).uniform(-0.5, 0.1, 4) for stream in streams]
+        )
         if streams is seeds:
             seeded[3] = twin.state[3]  # continues its stream
         assert infos == {} and envs.np_random_seed == 5
@@ -85,9 +101,15 @@ def test_other_bytes_than_0_and_1_in_a_mask_become_1():
 
 
 def test_other_sines_are_warned_of_once(monkeypatch):
-    monkeypatch.setattr(acrobot_rs.arrays, "math", types.SimpleNamespace(sin=math.sin, cos=lambda x: math.cos(x) + (x > 0)))
+    monkeypatch.setattr(
+        acrobot_rs.arrays,
+        "math",
+        types.SimpleNamespace(sin=math.sin, cos=lambda x: math.cos(x) + (x > 0)),
+    )
     warn_of_other_sines.cache_clear()
-    with pytest.warns(UserWarning, match="of [45],... of 10,000 angles differently .* are not bit-identical") as warned:
+    with pytest.warns(
+        UserWarning, match="of [45],... of 10,000 angles differently .* are not bit-identical"
+    ) as warned:
         acrobot_rs.AcrobotVectorEnv(gymnasium_episodes=True)
         acrobot_rs.AcrobotVectorEnv(gymnasium_episodes=True)
     assert len(warned) == 1 and warned[0].filename == __file__
@@ -104,7 +126,9 @@ def test_gymnasium_s_episodes_bit_identically(mode, noise):
     rng = np.random.default_rng(0)
     ends = np.zeros(2, int)
     for step in range(3000):
-        actions = np.where(rng.random(6) < 0.3, rng.integers(3, size=6), np.where(expected[0][:, 4] > 0, 0, 2))
+        actions = np.where(
+            rng.random(6) < 0.3, rng.integers(3, size=6), np.where(expected[0][:, 4] > 0, 0, 2)
+        )
         expected, found = theirs.step(actions), ours.step(actions)
         assert_equal(expected, found)
         np.testing.assert_array_equal(np.array(theirs.get_attr("state"), np.float64), ours.state)
@@ -131,7 +155,9 @@ def test_gymnasium_s_episodes_bit_identically(mode, noise):
         elif step in (1600, 1601) or (mode is AutoresetMode.DISABLED and ended.any()):
             mask = ended | (np.arange(6) % 3 == step % 3)
             options, twins = options | {"reset_mask": mask}, options | {"reset_mask": mask}
-            assert_equal(theirs.reset(seed=step, options=options), ours.reset(seed=step, options=twins))
+            assert_equal(
+                theirs.reset(seed=step, options=options), ours.reset(seed=step, options=twins)
+            )
             assert "reset_mask" in twins, "no option is removed"
     assert (ends > 20).all()
     ours.dt = 0.1
@@ -179,5 +205,7 @@ def test_without_autoreset_an_ended_episode_must_be_reset():
         assert not envs.step(np.array([0, 1, 2]))[3].any()
     for _ in range(4):
         ours.step([0, 1, 2])
-    with rejects(ours, ResetNeeded, "the episode of environment 0 has ended; reset it before the next step"):
+    with rejects(
+        ours, ResetNeeded, "the episode of environment 0 has ended; reset it before the next step"
+    ):
         ours.step([0, 1, 2])

@@ -22,7 +22,9 @@ with warnings.catch_warnings(record=True) as OTHER_SINES:
 
 
 def make_vec(num_envs, **kwargs):
-    return gymnasium.make_vec(V1, num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
+    return gymnasium.make_vec(
+        V1, num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs
+    )
 
 
 def pair(num_envs, mode="NextStep", **kwargs):
@@ -30,7 +32,11 @@ def pair(num_envs, mode="NextStep", **kwargs):
     if OTHER_SINES:
         pytest.skip(str(OTHER_SINES[0].message))
     theirs = gymnasium.make_vec(
-        "Acrobot-v1", num_envs=num_envs, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **kwargs
+        "Acrobot-v1",
+        num_envs=num_envs,
+        vectorization_mode="sync",
+        vector_kwargs={"autoreset_mode": mode},
+        **kwargs,
     )
     return theirs, make_vec(num_envs, autoreset_mode=mode, gymnasium_episodes=True, **kwargs)
 
@@ -41,7 +47,9 @@ def assert_equal(one, other):
         assert a.dtype == b.dtype
         np.testing.assert_array_equal(a, b)
     # Lists, because NumPy does not compare arrays of arrays.
-    np.testing.assert_equal(*({key: list(value) for key, value in each[-1].items()} for each in (one, other)))
+    np.testing.assert_equal(
+        *({key: list(value) for key, value in each[-1].items()} for each in (one, other))
+    )
 
 
 @contextlib.contextmanager
@@ -69,5 +77,7 @@ def different(count, seed):
     values["AVAIL_TORQUE"] = rng.uniform(-2, 2, (count, 3))
     values["torque_noise_max"] = rng.choice([0.0, 0.5], count)
     values["book_or_nips"] = rng.choice(["book", "nips"], count).tolist()
-    assert values.keys() == set(NAMES) - {"gravity"}, "Gymnasium's environment has no name for gravity"
+    assert values.keys() == set(NAMES) - {"gravity"}, (
+        "Gymnasium's environment has no name for gravity"
+    )
     return values

@@ -31,7 +31,9 @@ def reset_bounds(
     low, high = maybe_parse_reset_bounds(options, -bound, bound)
     largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
     if not (abs(low) <= largest and abs(high) <= largest):
-        raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
+        raise ValueError(
+            f"low and high must be finite numbers in the range of float32, got {low} and {high}"
+        )
     if options and "state" in options and ("low" in options or "high" in options):
         raise ValueError(f"options must have either state or low and high, got {list(options)}")
     return low, high
@@ -76,7 +78,12 @@ def reset_mask(options: dict[str, Any] | None, num_envs: int) -> NDArray[np.bool
 
 
 def numbers(
-    name: str, rule: str, value: Any, shape: tuple[int, ...], kinds: str = "fiu", error: type[Exception] = ValueError
+    name: str,
+    rule: str,
+    value: Any,
+    shape: tuple[int, ...],
+    kinds: str = "fiu",
+    error: type[Exception] = ValueError,
 ) -> NDArray[Any]:
     """Actions or states as an array.
 
@@ -105,7 +112,9 @@ def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> N
         finite = np.isfinite(states.astype(dtype))
     if not finite.all():
         row, column = np.argwhere(~finite)[0]
-        raise ValueError(f"state[{row}, {column}] must be a finite number, got {states[row, column]}")
+        raise ValueError(
+            f"state[{row}, {column}] must be a finite number, got {states[row, column]}"
+        )
     return np.ascontiguousarray(states, np.float64)
 
 
@@ -122,16 +131,22 @@ def values_of_each(name: str, value: Any) -> list[Any] | None:
         value = value.tolist()
     if not isinstance(value, list | tuple):
         return None
-    if name == "AVAIL_TORQUE" and not any(isinstance(one, list | tuple | np.ndarray) for one in value):
+    if name == "AVAIL_TORQUE" and not any(
+        isinstance(one, list | tuple | np.ndarray) for one in value
+    ):
         return None
     return list(value)
 
 
-def seeds_of(seed: Seed, num_envs: int, gymnasium_episodes: bool) -> tuple[str | None, list[str | None] | None]:
+def seeds_of(
+    seed: Seed, num_envs: int, gymnasium_episodes: bool
+) -> tuple[str | None, list[str | None] | None]:
     """The digits of the seed whose children seed all environments, or of a seed for each environment."""
     if isinstance(seed, list | tuple):
         if len(seed) != num_envs:
-            raise ValueError(f"seed must have one element for each of {num_envs} environments, got {len(seed)}")
+            raise ValueError(
+                f"seed must have one element for each of {num_envs} environments, got {len(seed)}"
+            )
         return None, [_digits(each) for each in seed]
     plain = plain_seed(seed)
     if plain is None or not gymnasium_episodes:
@@ -194,13 +209,20 @@ def warn_of_other_sines() -> None:
     """Warn, once, if NumPy does not round sines as the C library does, because Gymnasium's episodes contain NumPy's."""
     angles = np.random.default_rng(0).uniform(-2 * np.pi, 2 * np.pi, 10_000)
     pairs = zip(angles.tolist(), np.sin(angles).tolist(), np.cos(angles).tolist(), strict=True)
-    count = sum((sine, cosine) != (math.sin(angle), math.cos(angle)) for angle, sine, cosine in pairs)
+    count = sum(
+        (sine, cosine) != (math.sin(angle), math.cos(angle)) for angle, sine, cosine in pairs
+    )
     if count:
         what = f"NumPy rounds the sine or cosine of {count:,} of 10,000 angles differently from the C library here"
-        warnings.warn(f"gymnasium_episodes: {what}, so episodes follow Gymnasium's but are not bit-identical", stacklevel=3)
+        warnings.warn(
+            f"gymnasium_episodes: {what}, so episodes follow Gymnasium's but are not bit-identical",
+            stacklevel=3,
+        )
 
 
-def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dict[str, Any]) -> dict[str, Any]:
+def final_infos(
+    finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dict[str, Any]
+) -> dict[str, Any]:
     """Infos as in ``SyncVectorEnv``: last observations and infos, and which episodes ended.
 
     An observation is ``None`` where no episode ended.
@@ -210,5 +232,12 @@ def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dic
     final_obs = np.full(len(ended), None, dtype=object)
     for index in np.flatnonzero(ended):
         final_obs[index] = finals[index].copy()
-    final_info = {name: ended.copy() if name.startswith("_") else value for name, value in last.items()}
-    return {"final_obs": final_obs, "_final_obs": ended, "final_info": final_info, "_final_info": ended.copy()}
+    final_info = {
+        name: ended.copy() if name.startswith("_") else value for name, value in last.items()
+    }
+    return {
+        "final_obs": final_obs,
+        "_final_obs": ended,
+        "final_info": final_info,
+        "_final_info": ended.copy(),
+    }

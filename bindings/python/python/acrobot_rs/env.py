@@ -189,7 +189,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         first, second = (np.cos(s[0]), np.sin(s[0])), (np.cos(s[1]), np.sin(s[1]))
         return np.array([*first, *second, *s[2:]], dtype=np.float32)
 
-    def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+    def step(
+        self, action: ArrayLike
+    ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
 
         Args:

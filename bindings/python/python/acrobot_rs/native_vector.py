@@ -300,7 +300,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         self._check_open()
         if name not in self._NAMES:
-            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name, self._NAMES)}")
+            raise AttributeError(
+                f"the environments have no parameter {name!r}; {_hint(name, self._NAMES)}"
+            )
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)

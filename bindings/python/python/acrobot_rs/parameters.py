@@ -22,7 +22,9 @@ from acrobot_rs.arrays import numbers
 
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()
-_EQUATIONS = "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
+_EQUATIONS = (
+    "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
+)
 #: What Gymnasium's environment calls or reads, but ours does not, and what to do instead.
 _IGNORED = dict.fromkeys(("_dsdt", "rk4", "wrap", "bound"), _EQUATIONS) | {
     "_get_ob": "change observations with a wrapper",
@@ -44,7 +46,9 @@ class Drawn:
         for name, value in list(vars(self).items()):
             if name == "kind":
                 continue
-            is_row = self.kind == "Uniform" and (isinstance(value, list | tuple) or np.ndim(value) > 0)
+            is_row = self.kind == "Uniform" and (
+                isinstance(value, list | tuple) or np.ndim(value) > 0
+            )
             rule = "three finite numbers" if is_row else "a finite number"
             array = numbers(name, rule, value, (3,) if is_row else (), error=TypeError)
             if not np.isfinite(array).all():
@@ -283,7 +287,9 @@ class Parameters(arrays.Hints):
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
         if isinstance(value, Drawn):
-            rule = "a number, because only gymnasium.make_vec draws parameters, also with num_envs=1"
+            rule = (
+                "a number, because only gymnasium.make_vec draws parameters, also with num_envs=1"
+            )
             raise TypeError(f"{name} must be {rule}, got {value!r}")
         self._native.set(name, value)
         return _fixed(name, value)
@@ -299,7 +305,10 @@ class Parameters(arrays.Hints):
             actions = spaces.Discrete(np.shape(torques)[-1])
         others = [np.pi] * 2 if self._ANGLES else [1.0] * 4
         highest = np.array([*others, *velocities], dtype=np.float32)
-        return {"action_space": actions, "observation_space": spaces.Box(-highest, highest, dtype=np.float32)}
+        return {
+            "action_space": actions,
+            "observation_space": spaces.Box(-highest, highest, dtype=np.float32),
+        }
 
     def _limits(self) -> tuple[float, float, float, float]:
         """What the spaces contain: actions from one number to another, and velocities, rad/s."""
@@ -338,7 +347,9 @@ class Parameters(arrays.Hints):
         _reject_ignored(cls, name)
         is_ours = cls.__module__.startswith("acrobot_rs.") and self._made
         if is_ours and not (name.startswith("_") or name in vars(self) or hasattr(cls, name)):
-            raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name, cls._NAMES)}")
+            raise AttributeError(
+                f"{cls.__name__} has no parameter {name}; {_hint(name, cls._NAMES)}"
+            )
 
     def __delattr__(self, name: str) -> None:
         """Set a parameter back to the value of its class."""

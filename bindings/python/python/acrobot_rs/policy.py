@@ -24,7 +24,14 @@ Layer = tuple[Any, Any, str]
 """Weights of shape ``(outputs, inputs)``, biases of shape ``(outputs,)``, and ``"none"``, ``"tanh"`` or ``"relu"``."""
 
 _ACTIVATIONS = ["none", "tanh", "relu"]
-_KINDS = {"Linear": None, "Tanh": "tanh", "ReLU": "relu", "Identity": "none", "Flatten": "none", "Dropout": "none"}
+_KINDS = {
+    "Linear": None,
+    "Tanh": "tanh",
+    "ReLU": "relu",
+    "Identity": "none",
+    "Flatten": "none",
+    "Dropout": "none",
+}
 
 
 def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None = None) -> None:
@@ -51,7 +58,9 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
             rule = f"weights of shape (outputs, {inputs}) and biases of shape (outputs,)"
             raise ValueError(f"layer {i} must have {rule}, got {weights.shape} and {biases.shape}")
         if activation not in _ACTIVATIONS:
-            raise ValueError(f"the activation of layer {i} must be one of {_ACTIVATIONS}, got {activation!r}")
+            raise ValueError(
+                f"the activation of layer {i} must be one of {_ACTIVATIONS}, got {activation!r}"
+            )
         numbers = np.column_stack([biases, weights])
         if not np.isfinite(numbers).all():
             raise ValueError(f"the numbers of layer {i} must be finite in float32")
@@ -60,7 +69,9 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
         inputs = outputs
     scores = torque_limit is None
     if inputs != (3 if scores else 1) or not 1 <= len(layers) < 256:
-        raise ValueError(f"the last layer must have {'3 outputs, or 1 with a torque_limit' if scores else '1 output'}, got {inputs}")
+        raise ValueError(
+            f"the last layer must have {'3 outputs, or 1 with a torque_limit' if scores else '1 output'}, got {inputs}"
+        )
     limit = 0.0 if torque_limit is None else _checked(torque_limit)
     content = struct.pack("<4sBBHf", b"MLP1", len(layers), not scores, 6, limit) + head + body
     return content + struct.pack("<I", zlib.crc32(content))
@@ -76,7 +87,12 @@ def _checked(torque_limit: float) -> float:
     return limit
 
 
-def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None = None, torque_limit: float | None = None) -> None:
+def save(
+    model: Any,
+    path: str | Path,
+    observations: NDArray[np.float32] | None = None,
+    torque_limit: float | None = None,
+) -> None:
     """Write a model's greedy or mean policy. Means and deviations of ``VecNormalize`` become part of the first layer.
 
     Args:
@@ -96,7 +112,9 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
     """
     policy = getattr(model, "policy", None)
     if policy is None and not isinstance(model, Iterable):
-        raise TypeError(f"model must be one of Stable-Baselines3 or a torch.nn.Sequential, got {model!r}")
+        raise TypeError(
+            f"model must be one of Stable-Baselines3 or a torch.nn.Sequential, got {model!r}"
+        )
     modules, quantiles = (model, 1) if policy is None else _modules_of(policy)
     layers = _layers(modules, quantiles)
     if policy is None and any(type(each).__name__ == "Dropout" and each.training for each in model):
@@ -161,7 +179,9 @@ def _modules_of(policy: Any) -> tuple[list[Any], int]:
         return list(policy.quantile_net.quantile_net), policy.quantile_net.n_quantiles
     if hasattr(policy, "q_net"):
         return list(policy.q_net.q_net), 1
-    raise TypeError(f"the policy must be that of PPO, A2C, DQN or QR-DQN, got {type(policy).__name__}")
+    raise TypeError(
+        f"the policy must be that of PPO, A2C, DQN or QR-DQN, got {type(policy).__name__}"
+    )
 
 
 def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
@@ -172,7 +192,11 @@ def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
             raise TypeError(f"a layer must be one of {', '.join(_KINDS)}, got {kind}")
         if kind == "Linear":
             weights = module.weight.detach().cpu().numpy().astype(np.float64)
-            biases = np.zeros(len(weights)) if module.bias is None else module.bias.detach().cpu().numpy().astype(np.float64)
+            biases = (
+                np.zeros(len(weights))
+                if module.bias is None
+                else module.bias.detach().cpu().numpy().astype(np.float64)
+            )
             layers.append((weights, biases, "none"))
         elif (activation := _KINDS[kind]) != "none":
             if not layers or layers[-1][2] != "none":
@@ -180,20 +204,35 @@ def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
             layers[-1] = (*layers[-1][:2], activation)
     if quantiles > 1:
         weights, biases, activation = layers[-1]
-        layers[-1] = (weights.reshape(quantiles, -1, weights.shape[1]).mean(0), biases.reshape(quantiles, -1).mean(0), activation)
+        layers[-1] = (
+            weights.reshape(quantiles, -1, weights.shape[1]).mean(0),
+            biases.reshape(quantiles, -1).mean(0),
+            activation,
+        )
     return layers
 
 
 def _observations(task: str) -> NDArray[np.float32]:
     envs = gym.make_vec(f"acrobot_rs/{task}", num_envs=20)
     envs.action_space.seed(1)
-    return np.concatenate([envs.reset(seed=1)[0], *(envs.step(envs.action_space.sample())[0].copy() for _ in range(99))])
+    return np.concatenate(
+        [
+            envs.reset(seed=1)[0],
+            *(envs.step(envs.action_space.sample())[0].copy() for _ in range(99)),
+        ]
+    )
 
 
-def _expected(model: Any, policy: Any, normalize: Any, modules: Any, seen: NDArray[np.float32]) -> NDArray[Any]:
+def _expected(
+    model: Any, policy: Any, normalize: Any, modules: Any, seen: NDArray[np.float32]
+) -> NDArray[Any]:
     """What the model itself answers."""
     if policy is not None:
-        return np.asarray(model.predict(seen if normalize is None else normalize.normalize_obs(seen), deterministic=True)[0])
+        return np.asarray(
+            model.predict(
+                seen if normalize is None else normalize.normalize_obs(seen), deterministic=True
+            )[0]
+        )
     import torch
 
     with torch.no_grad():
@@ -221,7 +260,13 @@ def _compare(
         chosen = np.take_along_axis(x, expected.reshape(-1, 1), 1)[:, 0]
         differ = x.max(1) - chosen > 1e-4 * np.maximum(1, abs(x).max(1))
     else:
-        differ = abs(np.clip(x[:, 0], -torque_limit, torque_limit) - np.clip(expected[:, 0], -torque_limit, torque_limit)) > 1e-4 * torque_limit
+        differ = (
+            abs(
+                np.clip(x[:, 0], -torque_limit, torque_limit)
+                - np.clip(expected[:, 0], -torque_limit, torque_limit)
+            )
+            > 1e-4 * torque_limit
+        )
     if differ.any():
         where = f"they differ on {differ.sum()} of {len(seen)} observations{note and '. '}{note}"
         raise ValueError(f"the file's actions must be those of the model; {where}")

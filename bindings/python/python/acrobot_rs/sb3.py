@@ -47,9 +47,13 @@ class AcrobotVecEnv(VecEnv):
             ValueError: If they have another autoreset mode.
         """
         if not isinstance(envs, NativeVectorEnv):
-            raise TypeError(f"AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got {type(envs).__name__}")
+            raise TypeError(
+                f"AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got {type(envs).__name__}"
+            )
         if envs.autoreset_mode is not AutoresetMode.SAME_STEP:
-            raise ValueError(f'autoreset_mode must be "SameStep", got "{envs.autoreset_mode.value}"')
+            raise ValueError(
+                f'autoreset_mode must be "SameStep", got "{envs.autoreset_mode.value}"'
+            )
         self.envs = envs
         self._actions: NDArray[Any] | None = None
         super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
@@ -67,7 +71,9 @@ class AcrobotVecEnv(VecEnv):
         """Keep the actions. :meth:`step_wait` steps."""
         self._actions = actions
 
-    def step_wait(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
+    def step_wait(
+        self,
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
         """Step, and reset the environments whose episode ends.
 
         Returns:
@@ -80,7 +86,9 @@ class AcrobotVecEnv(VecEnv):
             raise NoAsyncCallError("call step_async with the actions before each step_wait", "step")
         actions, self._actions = self._actions, None
         # Those of the ended episode, if one ends, as in DummyVecEnv.
-        parameters = {name: self.envs.get_parameter(name).tolist() for name in self.envs.info_parameters}
+        parameters = {
+            name: self.envs.get_parameter(name).tolist() for name in self.envs.info_parameters
+        }
         observations, rewards, terminated, truncated, infos = self.envs.step(actions)
         ended = terminated | truncated
         each: list[dict[str, Any]] = [{"TimeLimit.truncated": False} for _ in range(self.num_envs)]
@@ -110,18 +118,29 @@ class AcrobotVecEnv(VecEnv):
         if isinstance(value, Drawn) and chosen.all():
             self.envs.set_attr(attr_name, value)
         elif chosen.any():
-            if not chosen.all() and (isinstance(value, Drawn) or isinstance(getattr(self.envs, attr_name), Drawn)):
+            if not chosen.all() and (
+                isinstance(value, Drawn) or isinstance(getattr(self.envs, attr_name), Drawn)
+            ):
                 rule = "set in all environments, if it is or will be drawn"
                 raise ValueError(f"{attr_name} must be {rule}, got indices {indices}")
-            self.envs.set_attr(attr_name, [value if new else old for new, old in zip(chosen, values, strict=True)])
-        self.observation_space, self.action_space = self.envs.single_observation_space, self.envs.single_action_space
+            self.envs.set_attr(
+                attr_name, [value if new else old for new, old in zip(chosen, values, strict=True)]
+            )
+        self.observation_space, self.action_space = (
+            self.envs.single_observation_space,
+            self.envs.single_action_space,
+        )
 
-    def env_method(self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any) -> list[Any]:
+    def env_method(
+        self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any
+    ) -> list[Any]:
         """The results of a method, which can only be ``render``, for each of these environments."""
         values = self.envs.call(method_name, *args, **kwargs)
         return [values[index] for index in self._get_indices(indices)]
 
-    def env_is_wrapped(self, wrapper_class: type[gymnasium.Wrapper], indices: Indices = None) -> list[bool]:
+    def env_is_wrapped(
+        self, wrapper_class: type[gymnasium.Wrapper], indices: Indices = None
+    ) -> list[bool]:
         """``False`` for each of these environments: they have no wrappers."""
         return [False for _ in self._get_indices(indices)]
 

@@ -128,9 +128,13 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
         """The actions, checked and converted to an array that the native part reads. It calls this where necessary."""
-        what, kinds, dtype = ("numbers", "fiu", np.float32) if self._CONTINUOUS else ("integers", "iu", np.int64)
+        what, kinds, dtype = (
+            ("numbers", "fiu", np.float32) if self._CONTINUOUS else ("integers", "iu", np.int64)
+        )
         shape = self.action_space.shape
-        actions = numbers("actions", f"{what} of shape {shape}", actions, shape, kinds, InvalidAction)
+        actions = numbers(
+            "actions", f"{what} of shape {shape}", actions, shape, kinds, InvalidAction
+        )
         if actions.dtype.kind == "u" and (actions > 2).any():  # which int64 may not have
             index = int(np.argmax(actions > 2))
             raise InvalidAction(f"actions[{index}] must be 0, 1 or 2, got {actions[index]}")
