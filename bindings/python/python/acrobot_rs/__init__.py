@@ -1,7 +1,7 @@
-"""Gymnasium's Acrobot in Rust: bit-identical episodes, and a vector environment thousands of times as fast.
+"""Gymnasium's Acrobot in Rust: bit-identical episodes, and a much faster vector environment.
 
-Importing this package registers ``acrobot_rs/Acrobot-v1``, ``acrobot_rs/AcrobotContinuous-v0`` and ``acrobot_rs/Acrobot-v0``, and dm_control's
-``acrobot_rs/AcrobotSwingup-v0`` and ``acrobot_rs/AcrobotSwingupSparse-v0``:
+Importing this package registers ``Acrobot-v1``, ``AcrobotContinuous-v0`` and ``Acrobot-v0``, and
+dm_control's ``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``acrobot_rs/``:
 
     >>> import gymnasium as gym
     >>> import acrobot_rs

@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 
-
 #: The options of ``reset``. Not all environments have all.
 _OPTIONS = ("low", "high", "reset_mask", "state")
 
@@ -87,8 +86,9 @@ def numbers(
 ) -> NDArray[Any]:
     """Actions or states as an array.
 
-    They may be an array, or a list or another sequence that NumPy converts to one, of this shape, and of integers (``iu``) or
-    floats (``f``). Texts, bytes, bools, complex numbers, other objects, sets, mappings and iterators are rejected.
+    They may be an array, a list or another sequence that NumPy converts to one, of this shape and
+    of integers (``iu``) or floats (``f``). Texts, bytes, bools, complex numbers, other objects,
+    sets, mappings and iterators are rejected.
     """
     array = None
     # NumPy takes the bytes of a bytearray, and the keys of some mappings.
@@ -119,7 +119,7 @@ def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> N
 
 
 def require(kind: type, rule: str, **arguments: Any) -> None:
-    """Reject arguments of another type, by their names. A bool is no integer here, and a text no sequence."""
+    """Reject arguments of another type. A bool is no integer here, and a text no sequence."""
     for name, value in arguments.items():
         if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool | str)):
             raise TypeError(f"{name} must be {rule}, got {value!r}")
@@ -141,7 +141,7 @@ def values_of_each(name: str, value: Any) -> list[Any] | None:
 def seeds_of(
     seed: Seed, num_envs: int, gymnasium_episodes: bool
 ) -> tuple[str | None, list[str | None] | None]:
-    """The digits of the seed whose children seed all environments, or of a seed for each environment."""
+    """The digits of the seed whose children seed all environments, or of a seed for each."""
     if isinstance(seed, list | tuple):
         if len(seed) != num_envs:
             raise ValueError(
@@ -155,7 +155,7 @@ def seeds_of(
 
 
 def plain_seed(seed: Any) -> int | None:
-    """A seed as Python's ``int``, which Gymnasium requires, also if it is one of NumPy's integers."""
+    """A seed, also one of NumPy's integers, as Python's ``int``, which Gymnasium requires."""
     if seed is None:
         return None
     # Gymnasium accepts True as 1.
@@ -166,8 +166,7 @@ def plain_seed(seed: Any) -> int | None:
 
 def _digits(seed: Any) -> str | None:
     """The digits of a seed. `str` rejects more than 4,300."""
-    plain = plain_seed(seed)
-    return None if plain is None else str(plain)
+    return None if seed is None else str(plain_seed(seed))
 
 
 class Missing:
@@ -206,16 +205,20 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
 
 @functools.cache
 def warn_of_other_sines() -> None:
-    """Warn, once, if NumPy does not round sines as the C library does, because Gymnasium's episodes contain NumPy's."""
+    """Warn, once, if NumPy does not round sines as the C library does.
+
+    Gymnasium's episodes contain NumPy's.
+    """
     angles = np.random.default_rng(0).uniform(-2 * np.pi, 2 * np.pi, 10_000)
     pairs = zip(angles.tolist(), np.sin(angles).tolist(), np.cos(angles).tolist(), strict=True)
     count = sum(
         (sine, cosine) != (math.sin(angle), math.cos(angle)) for angle, sine, cosine in pairs
     )
     if count:
-        what = f"NumPy rounds the sine or cosine of {count:,} of 10,000 angles differently from the C library here"
         warnings.warn(
-            f"gymnasium_episodes: {what}, so episodes follow Gymnasium's but are not bit-identical",
+            f"gymnasium_episodes: NumPy rounds the sine or cosine of {count:,} of 10,000 angles "
+            "differently from the C library here, so episodes follow Gymnasium's but are not "
+            "bit-identical",
             stacklevel=3,
         )
 

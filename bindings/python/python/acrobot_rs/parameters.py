@@ -34,7 +34,7 @@ _IGNORED = dict.fromkeys(("_dsdt", "rk4", "wrap", "bound"), _EQUATIONS) | {
 
 
 class Drawn:
-    """A parameter of a vector environment that each reset draws between two bounds, in each environment that it resets."""
+    """A parameter that each reset draws between two bounds, in each environment that it resets."""
 
     low: Any
     high: Any
@@ -64,7 +64,9 @@ class Drawn:
 
 @dataclasses.dataclass(frozen=True)
 class Uniform(Drawn):
-    """A parameter that each reset draws uniformly. The bounds of ``AVAIL_TORQUE`` are three numbers each.
+    """A parameter that each reset draws uniformly.
+
+    The bounds of ``AVAIL_TORQUE`` are three numbers each.
 
     >>> import acrobot_rs
     >>> envs = acrobot_rs.AcrobotVectorEnv(1024, LINK_MASS_1=acrobot_rs.Uniform(0.8, 1.2))
@@ -179,18 +181,19 @@ if TYPE_CHECKING:
 
 
 class Parameters(arrays.Hints):
-    """The parameters of the physics, with Gymnasium's names. Set them as arguments, on an environment or in a subclass.
+    """The parameters of the physics, with Gymnasium's names.
 
-    A value is checked immediately and acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError``
-    that says what is valid, and an unknown name an ``AttributeError``. An environment takes over the values that its class
-    has when it is made. The spaces follow the parameters.
+    Set them as arguments, on an environment or in a subclass. A value is checked immediately and
+    acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError`` that says
+    what is valid, and an unknown name an ``AttributeError``. A new environment copies its class's
+    parameters. The spaces follow them.
     """
 
     #: Duration of one step, s; above 0.
     dt: Each = 0.2
     #: Length of link 1, m; above 0.
     LINK_LENGTH_1: Each = 1.0
-    #: Length of link 2, m; above 0. It changes pictures only: neither the equations of motion nor the goal contain it.
+    #: Length of link 2, m; above 0. It changes pictures only.
     LINK_LENGTH_2: Each = 1.0
     #: Mass of link 1, kg; above 0.
     LINK_MASS_1: Each = 1.0
@@ -202,17 +205,17 @@ class Parameters(arrays.Hints):
     LINK_COM_POS_2: Each = 0.5
     #: Moment of inertia of each link about its centre of mass, kg m²; 0 or more.
     LINK_MOI: Each = 1.0
-    #: Acceleration of gravity, m/s², downwards; finite. Gymnasium's environment has no name for it.
+    #: Acceleration of gravity, m/s², downwards; finite. Gymnasium has no name for it.
     gravity: Each = 9.8
     #: Bound of link 1's velocity after a step, rad/s; above 0.
     MAX_VEL_1: Each = 4 * math.pi
     #: Bound of link 2's velocity, relative to link 1, after a step, rad/s; above 0.
     MAX_VEL_2: Each = 9 * math.pi
-    #: Torques of the actions 0, 1 and 2, N m. A single environment may have another number of actions.
+    #: Torques of the actions 0, 1 and 2, N m. A single environment may have more or fewer.
     AVAIL_TORQUE: EachTorques = (-1.0, 0.0, 1.0)
-    #: Each step adds a uniform draw from [-torque_noise_max, torque_noise_max) to the torque, N m; 0 or more. 0 draws nothing.
+    #: Each step adds a uniform draw within ± this to the torque, N m; 0 or more. 0 draws nothing.
     torque_noise_max: Each = 0.0
-    #: The equations of motion: those of Sutton and Barto's book, or those printed in the 1996 paper.
+    #: The equations of motion: of Sutton and Barto's book, or as printed in the 1996 paper.
     book_or_nips: EachEquations = "book"
 
     #: The width and the height of pictures, in pixels. It cannot be changed.
@@ -252,7 +255,7 @@ class Parameters(arrays.Hints):
 
     @classmethod
     def _check_names(cls) -> None:
-        """Reject attributes of this class, and of those that it inherits from, that would have no effect."""
+        """Reject attributes of this class and its bases that would have no effect."""
         for base in cls.__mro__:
             # A class with names defines the parameters.
             ours = base is arrays.Hints or "_NAMES" in vars(base)
@@ -263,7 +266,7 @@ class Parameters(arrays.Hints):
     def __init__(
         self, native: Acrobot | Batch, render_mode: str | None, parameters: Mapping[str, Any]
     ) -> None:
-        """Pass the parameters to the native part: these, and those of the class, which may have changed."""
+        """Pass these parameters, and those of the class, to the native part."""
         self._check_names()
         self._check_arguments(parameters)
         self._native = native
@@ -285,7 +288,7 @@ class Parameters(arrays.Hints):
             raise TypeError(f"{words}; {hint}")
 
     def _pass(self, name: str, value: Any) -> Any:
-        """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
+        """Pass a parameter to the native part, which checks it. Return it unchangeable."""
         if isinstance(value, Drawn):
             rule = (
                 "a number, because only gymnasium.make_vec draws parameters, also with num_envs=1"
@@ -340,7 +343,7 @@ class Parameters(arrays.Hints):
                     super().__setattr__(space, new)
 
     def _check_name(self, name: str) -> None:
-        """Reject the assignment of an attribute that would have no effect. A subclass may have other attributes."""
+        """Reject an attribute that would have no effect. A subclass may have others."""
         cls = type(self)
         if self._made and name in self._CHOSEN:
             raise AttributeError(f"{name} cannot change after {cls.__name__} was made")
@@ -365,8 +368,8 @@ class Parameters(arrays.Hints):
     def _warn_of_no_render_mode(self) -> None:
         call = f'gymnasium.make("{self.spec.id}", ' if self.spec else f"{type(self).__name__}("
         logger.warn(
-            "render returns None, because the environment was made without a render mode. Make it with one: "
-            f'{call}render_mode="rgb_array")'
+            "render returns None, because the environment was made without a render mode. Make it "
+            f'with one: {call}render_mode="rgb_array")'
         )
 
 

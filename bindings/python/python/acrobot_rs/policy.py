@@ -1,6 +1,7 @@
-"""Saves a trained perceptron for the crate ``crates/policy``, which plays it on a microcontroller or in a browser.
+"""Saves a trained perceptron for the crate ``crates/policy``: on a microcontroller, in a browser.
 
-:func:`save` takes a model and compares the file's actions with the model's. :func:`write` takes arrays. Neither needs torch beside the model.
+:func:`save` takes a model and compares the file's actions with the model's. :func:`write` takes
+arrays. Neither needs torch beside the model.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from numpy.typing import NDArray
 from acrobot_rs.arrays import require
 
 Layer = tuple[Any, Any, str]
-"""Weights of shape ``(outputs, inputs)``, biases of shape ``(outputs,)``, and ``"none"``, ``"tanh"`` or ``"relu"``."""
+"""Weights ``(outputs, inputs)``, biases ``(outputs,)``, and ``"none"``, ``"tanh"`` or ``"relu"``."""
 
 _ACTIVATIONS = ["none", "tanh", "relu"]
 _KINDS = {
@@ -39,7 +40,8 @@ def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None 
 
     Args:
         path: The file.
-        layers: The first has 6 inputs; the last has 3 outputs, the scores of the actions, or 1, a torque, N m.
+        layers: The first has 6 inputs; the last has 3 outputs, the scores of the actions, or 1, a
+            torque, N m.
         torque_limit: The largest torque, N m, of a policy with one output. ``None`` for scores.
 
     Raises:
@@ -93,13 +95,16 @@ def save(
     observations: NDArray[np.float32] | None = None,
     torque_limit: float | None = None,
 ) -> None:
-    """Write a model's greedy or mean policy. Means and deviations of ``VecNormalize`` become part of the first layer.
+    """Write a model's greedy or mean policy.
+
+    Means and deviations of ``VecNormalize`` become part of the first layer.
 
     Args:
-        model: A model of Stable-Baselines3 (PPO, A2C, DQN) or sb3-contrib (QR-DQN) with ``MlpPolicy``, or a ``torch.nn.Sequential`` of linear
-            layers, tanh and ReLU.
+        model: A model of Stable-Baselines3 (PPO, A2C, DQN) or sb3-contrib (QR-DQN) with
+            ``MlpPolicy``, or a ``torch.nn.Sequential`` of linear layers, tanh and ReLU.
         path: The file.
-        observations: On which the file's actions are compared with the model's: an array of shape ``(n, 6)``. Default: 2,000 of random episodes.
+        observations: On which the file's actions are compared with the model's: an array of shape
+            ``(n, 6)``. By default 2,000 of random episodes.
         torque_limit: The largest torque, N m, of a ``Sequential`` with one output. Of a model of
             Stable-Baselines3, the torque of its largest action. By default this is the action
             itself, and in a swing-up the largest in its environment's ``AVAIL_TORQUE``.
@@ -167,7 +172,7 @@ def _largest_torque(envs: Any) -> float:
 
 
 def _modules_of(policy: Any) -> tuple[list[Any], int]:
-    """The layers of a policy of Stable-Baselines3, and how many quantiles each score is the mean of."""
+    """A policy's layers in Stable-Baselines3, and how many quantiles make each score."""
     extractor = type(getattr(policy, "features_extractor", None)).__name__
     if extractor not in ("FlattenExtractor", "NoneType"):
         raise TypeError(f"the features extractor must be FlattenExtractor, got {extractor}")

@@ -1,4 +1,4 @@
-"""The vector environment for Stable-Baselines3, which does not take Gymnasium's vector environments.
+"""The vector environment for Stable-Baselines3, which does not take Gymnasium's.
 
 This module needs ``stable-baselines3``, which the package does not install.
 """
@@ -24,28 +24,20 @@ Indices = int | Iterable[int] | None
 class AcrobotVecEnv(VecEnv):
     """A vector environment of this package, of either task, as Stable-Baselines3's ``VecEnv``.
 
-    Its results are those of ``DummyVecEnv``: a step that ends an episode also resets, and the environment's info has
-    ``"terminal_observation"`` and ``"TimeLimit.truncated"``. Returns of episodes are logged by Stable-Baselines3's
-    ``VecMonitor``.
+    Its results are those of ``DummyVecEnv``: a step that ends an episode also resets, and the
+    environment's info has ``"terminal_observation"`` and ``"TimeLimit.truncated"``.
+    Stable-Baselines3's ``VecMonitor`` logs the returns of episodes.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
     >>> from acrobot_rs.sb3 import AcrobotVecEnv
-    >>> envs = AcrobotVecEnv(gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=64, autoreset_mode="SameStep"))
-    >>> envs.reset().shape
+    >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=64, autoreset_mode="SameStep")
+    >>> AcrobotVecEnv(envs).reset().shape
     (64, 6)
     """
 
     def __init__(self, envs: VectorEnv[Any, Any, Any]) -> None:
-        """Take environments over.
-
-        Args:
-            envs: Environments with ``autoreset_mode="SameStep"``.
-
-        Raises:
-            TypeError: If they are not of this package.
-            ValueError: If they have another autoreset mode.
-        """
+        """Take over environments of this package with ``autoreset_mode="SameStep"``."""
         if not isinstance(envs, NativeVectorEnv):
             raise TypeError(
                 f"AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got {type(envs).__name__}"
@@ -59,7 +51,7 @@ class AcrobotVecEnv(VecEnv):
         super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
 
     def reset(self) -> NDArray[np.float32]:
-        """Begin all episodes, with the seeds of :meth:`seed` and the options of ``set_options``, if there are new ones."""
+        """Begin all episodes, with new seeds of :meth:`seed` and options of ``set_options``."""
         if any(options != self._options[0] for options in self._options):
             raise ValueError("options must be the same for all environments")
         observations, _ = self.envs.reset(seed=self._seeds, options=dict(self._options[0]))
@@ -76,11 +68,7 @@ class AcrobotVecEnv(VecEnv):
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
         """Step, and reset the environments whose episode ends.
 
-        Returns:
-            Observations, rewards, whether the episodes ended, and an info for each environment.
-
-        Raises:
-            gymnasium.error.NoAsyncCallError: If there were no actions since the last step.
+        Returns observations, rewards, whether the episodes ended, and an info for each environment.
         """
         if self._actions is None:
             raise NoAsyncCallError("call step_async with the actions before each step_wait", "step")
@@ -108,8 +96,7 @@ class AcrobotVecEnv(VecEnv):
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
         """Set a parameter or the state of these environments. See :meth:`NativeVectorEnv.set_attr`.
 
-        Raises:
-            ValueError: If a parameter is or will be drawn, and these are not all environments. Nothing changes then.
+        A parameter that is or will be drawn can only be set in all.
         """
         values = self.envs.get_attr(attr_name)
         indices = list(self._get_indices(indices))

@@ -1,4 +1,4 @@
-"""dm_control's ``acrobot-swingup``: swing up from anywhere, with friction and a weak motor, and stay up."""
+"""dm_control's ``acrobot-swingup``: swing up from anywhere, with friction, and stay up."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
 
 
 class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
-    """dm_control's ``acrobot-swingup_sparse``: :class:`AcrobotSwingupEnv` with a reward of 0 beyond 0.2 m from the target."""
+    """dm_control's ``acrobot-swingup_sparse``: no reward beyond 0.2 m from the target."""
 
     _TASK = "swingup_sparse"
 
@@ -123,8 +123,8 @@ class AcrobotSwingupVectorEnv(
 ):
     """Many :class:`AcrobotSwingupEnv`, computed in ``float32``, bit-identically on every machine.
 
-    Actions have the shape ``(num_envs, 1)``. All else is as in :class:`acrobot_rs.AcrobotVectorEnv`,
-    without ``gymnasium_episodes``. The parameters are those of :class:`Swingup`.
+    Actions have the shape ``(num_envs, 1)``. All else is as in
+    :class:`acrobot_rs.AcrobotVectorEnv`, without ``gymnasium_episodes``.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -149,14 +149,8 @@ class AcrobotSwingupVectorEnv(
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
         self._check_arguments(parameters)  # gymnasium_episodes is none
         super().__init__(
-            num_envs,
-            max_episode_steps,
-            render_mode,
-            autoreset_mode,
-            copy,
-            False,
-            threads,
-            info_parameters,
+            *(num_envs, max_episode_steps, render_mode, autoreset_mode, copy),
+            *(False, threads, info_parameters),
             **parameters,
         )
 
