@@ -27,18 +27,16 @@ def make_vec(num_envs, **kwargs):
     )
 
 
-def pair(num_envs, mode="NextStep", **kwargs):
-    """Gymnasium's SyncVectorEnv of Gymnasium's Acrobot, and ours with the same episodes."""
-    if OTHER_SINES:
+def pair(num_envs, mode="NextStep", theirs="Acrobot-v1", ours=V1, **kwargs):
+    """Gymnasium's SyncVectorEnv of an environment, by default Gymnasium's, and ours like it."""
+    if OTHER_SINES and theirs == "Acrobot-v1":
         pytest.skip(str(OTHER_SINES[0].message))
-    theirs = gymnasium.make_vec(
-        "Acrobot-v1",
-        num_envs=num_envs,
-        vectorization_mode="sync",
-        vector_kwargs={"autoreset_mode": mode},
-        **kwargs,
+    sync = {"vectorization_mode": "sync", "vector_kwargs": {"autoreset_mode": mode}}
+    kwargs["num_envs"] = num_envs
+    return (
+        gymnasium.make_vec(theirs, **sync, **kwargs),
+        gymnasium.make_vec(ours, autoreset_mode=mode, gymnasium_episodes=True, **kwargs),
     )
-    return theirs, make_vec(num_envs, autoreset_mode=mode, gymnasium_episodes=True, **kwargs)
 
 
 def assert_equal(one, other):
