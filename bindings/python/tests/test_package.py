@@ -1,4 +1,4 @@
-"""The installed package has what a registry shows, and plays recorded episodes. CI runs this on each Python."""
+"""The installed package has what a registry shows, and plays recorded episodes."""
 
 from importlib.metadata import distribution
 
@@ -34,7 +34,7 @@ def test_files():
 
 
 def test_recorded_velocities():
-    """All bits of a vector environment's velocities after some twelve episodes in each environment."""
+    """All bits of the velocities after some twelve episodes in each environment."""
     envs = gymnasium.make_vec("acrobot_rs/Acrobot-v1", num_envs=8)
     observations, _ = envs.reset(seed=42)
     for _ in range(1000):
