@@ -79,17 +79,16 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """Begin an episode in each environment.
 
         Args:
-            seed: An integer of at least 0 with at most 4,300 digits. Its children seed the
+            seed: An integer of at least 0 with at most 4,300 digits, whose children seed the
                 environments' streams; with ``gymnasium_episodes``, ``seed + i`` seeds environment
-                ``i``. Or a list with an integer or ``None`` for each environment, which seeds it
-                as a single one, without a change of ``np_random``. Streams continue with ``None``.
-            options: ``"reset_mask"``: an array of ``bool`` of shape ``(num_envs,)``; environments
-                whose element is false are neither seeded nor reset. ``"state"``: the initial
-                states, of shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all: theta1,
-                theta2 (rad) and their velocities (rad/s). They replace the drawn ones, so streams
-                and drawn parameters are as without them. Or ``"low"`` and ``"high"``: the bounds of
-                the drawn ones, rad and rad/s, by default -0.1 and 0.1; in the swing-up those of the
-                angles, by default -pi and pi. Autoresets ignore all options.
+                ``i``. Or a list with an integer or ``None`` for each environment. With ``None``
+                streams continue.
+            options: ``"reset_mask"``: an array of ``bool``; environments whose element is false are
+                neither seeded nor reset. ``"state"``: the initial states, of shape
+                ``(num_envs, 4)``, or ``(4,)`` for the same one in all, which replace the drawn
+                ones: theta1, theta2 (rad) and their velocities (rad/s). Or ``"low"`` and
+                ``"high"``: the bounds of the drawn ones, by default -0.1 and 0.1; in the swing-up
+                those of the angles, by default -pi and pi. Autoresets ignore all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty

@@ -189,28 +189,17 @@ class Parameters(arrays.Hints):
     parameters. The spaces follow them.
     """
 
-    #: Duration of one step, s; above 0.
-    dt: Each = 0.2
-    #: Length of link 1, m; above 0.
-    LINK_LENGTH_1: Each = 1.0
-    #: Length of link 2, m; above 0. It changes pictures only.
-    LINK_LENGTH_2: Each = 1.0
-    #: Mass of link 1, kg; above 0.
-    LINK_MASS_1: Each = 1.0
-    #: Mass of link 2, kg; above 0.
-    LINK_MASS_2: Each = 1.0
-    #: Distance of link 1's centre of mass from its joint, m; 0 or more.
-    LINK_COM_POS_1: Each = 0.5
-    #: Distance of link 2's centre of mass from its joint, m; 0 or more.
-    LINK_COM_POS_2: Each = 0.5
-    #: Moment of inertia of each link about its centre of mass, kg m²; 0 or more.
-    LINK_MOI: Each = 1.0
-    #: Acceleration of gravity, m/s², downwards; finite. Gymnasium has no name for it.
-    gravity: Each = 9.8
-    #: Bound of link 1's velocity after a step, rad/s; above 0.
-    MAX_VEL_1: Each = 4 * math.pi
-    #: Bound of link 2's velocity, relative to link 1, after a step, rad/s; above 0.
-    MAX_VEL_2: Each = 9 * math.pi
+    dt: Each = 0.2  #: duration of a step, s; above 0
+    LINK_LENGTH_1: Each = 1.0  #: m; above 0
+    LINK_LENGTH_2: Each = 1.0  #: m; above 0; changes pictures only
+    LINK_MASS_1: Each = 1.0  #: kg; above 0
+    LINK_MASS_2: Each = 1.0  #: kg; above 0
+    LINK_COM_POS_1: Each = 0.5  #: centre of mass from the joint, m; 0 or more
+    LINK_COM_POS_2: Each = 0.5  #: centre of mass from the joint, m; 0 or more
+    LINK_MOI: Each = 1.0  #: moment of inertia of each link about its centre, kg m²; 0 or more
+    gravity: Each = 9.8  #: acceleration, downwards, m/s²; finite; Gymnasium's cannot change
+    MAX_VEL_1: Each = 4 * math.pi  #: bound of link 1's velocity after a step, rad/s; above 0
+    MAX_VEL_2: Each = 9 * math.pi  #: bound of link 2's, relative to link 1, rad/s; above 0
     #: Torques of the actions 0, 1 and 2, N m. A single environment may have more or fewer.
     AVAIL_TORQUE: EachTorques = (-1.0, 0.0, 1.0)
     #: Each step adds a uniform draw within ± this to the torque, N m; 0 or more. 0 draws nothing.
@@ -218,28 +207,24 @@ class Parameters(arrays.Hints):
     #: The equations of motion: of Sutton and Barto's book, or as printed in the 1996 paper.
     book_or_nips: EachEquations = "book"
 
-    #: The width and the height of pictures, in pixels. It cannot be changed.
-    SCREEN_DIM = 500
+    SCREEN_DIM = 500  #: width and height of pictures, pixels; cannot change
 
     metadata: dict[str, Any]
     spec: Any
     render_mode: str | None
     _native: Acrobot | Batch
-    #: The names of the parameters.
     _NAMES: tuple[str, ...] = ()
     #: The task, by its name in Rust.
     _TASK = "acrobot"
     #: The default bound of initial states, rad and rad/s.
     _BOUND = 0.1
-    #: Whether actions are numbers in a ``Box``.
+    #: Whether actions are numbers in a ``Box``, and what they are.
     _CONTINUOUS = False
-    #: What a continuous action is.
     _ACTION = "a torque in N m"
     #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
-    #: What cannot change after the construction.
+    #: What cannot change after the construction, and whether it has ended.
     _CHOSEN = ()
-    #: Whether the construction has ended.
     _made = False
 
     def __init_subclass__(cls, **kwargs: Any) -> None:

@@ -28,14 +28,10 @@ class Swingup(Parameters):
     -1. The spaces do not change.
     """
 
-    #: Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more.
-    LINK_MOI_1: Each = 0.09557031250000002
-    #: Moment of inertia of link 2 about its centre of mass, kg m²; 0 or more.
-    LINK_MOI_2: Each = 0.09530365719649563
-    #: Viscous friction of the fixed joint, N m s/rad; 0 or more.
-    FRICTION_1: Each = 0.05
-    #: Viscous friction of the joint between the links, N m s/rad; 0 or more.
-    FRICTION_2: Each = 0.05
+    LINK_MOI_1: Each = 0.09557031250000002  #: about its centre of mass, kg m²; 0 or more
+    LINK_MOI_2: Each = 0.09530365719649563  #: about its centre of mass, kg m²; 0 or more
+    FRICTION_1: Each = 0.05  #: viscous, of the fixed joint, N m s/rad; 0 or more
+    FRICTION_2: Each = 0.05  #: viscous, of the joint between the links, N m s/rad; 0 or more
     gravity: Each = 9.81
     dt: Each = 0.01
     MAX_VEL_1: Each = 1e30

@@ -33,13 +33,12 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
     Gymnasium's as ``float32`` is, but whole episodes drift apart, because an acrobot is chaotic.
 
     Environment ``i`` draws from the ``i``-th child of the seed,
-    ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``. So more environments do not change the
-    first ones, and two seeds share no stream.
+    ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
 
     A parameter has one value for all environments, a list or an array with one for each, or an
     :class:`acrobot_rs.Uniform`, :class:`acrobot_rs.LogUniform` or :class:`acrobot_rs.Normal`, from
-    which each reset draws. Reading it gives what was set, different values as an array, and
-    :meth:`get_parameter` what each environment has. ``book_or_nips`` cannot be drawn.
+    which each reset draws. Reading it gives what was set, and :meth:`get_parameter` what each
+    environment has.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -71,23 +70,19 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         """Make environments. Reset them before their first step.
 
         Args:
-            num_envs: The number of environments, at least 1.
-            max_episode_steps: The steps after which an episode is truncated, at least 1. With
-                ``None`` there is no limit below 2**32 - 1.
+            num_envs: The number of environments.
+            max_episode_steps: The steps after which an episode is truncated. ``None``: no limit.
             render_mode: ``None``, ``"rgb_array"`` or ``"ansi"``.
             autoreset_mode: ``NextStep``: the step after an episode's end resets, ignores its action
                 and returns a reward of 0. ``SameStep``: the step that ends an episode also resets,
-                and ``infos["final_obs"]`` has the episode's last observation. ``Disabled``: a
-                ``reset`` of all, or one with a ``"reset_mask"``, must reset an environment whose
-                episode has ended before the next step.
+                and ``infos["final_obs"]`` has the episode's last observation. ``Disabled``: an
+                environment whose episode has ended must be reset before the next step.
             copy: Whether each call returns observations in a new array, not in the same one.
             gymnasium_episodes: Whether to play the episodes of Gymnasium's ``Acrobot-v1`` in
-                ``SyncVectorEnv``: computed in ``float64``, environment ``i`` seeded with
-                ``seed + i``, and rewards as ``float64``. All results are bit-identical where those
-                of :class:`acrobot_rs.AcrobotEnv` are. Steps take longer.
+                ``SyncVectorEnv``, bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are.
             threads: The threads that compute a step; ``None``: as many as the process has cores.
-                They change no bit. More than one is faster only for more than 16,384 environments,
-                or 1,024 with ``gymnasium_episodes``.
+                They change no bit, and help above 16,384 environments, or 1,024 with
+                ``gymnasium_episodes``.
             info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
             **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
 
