@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import functools
 import math
@@ -20,6 +21,13 @@ Seed = int | list[int | None] | tuple[int | None, ...] | None
 
 #: The options of ``reset``. Not all environments have all.
 _OPTIONS = ("low", "high", "reset_mask", "state")
+#: A Box, a reset and a policy have float32, which rounds other numbers with a warning.
+LARGEST = float(np.finfo(np.float32).max)
+
+
+def must_be(name: str, rule: str, got: Any, error: type[Exception] = ValueError) -> Exception:
+    """An error in the form of the crate's."""
+    return error(f"{name} must be {rule}, got {got}")
 
 
 def reset_bounds(
@@ -28,11 +36,9 @@ def reset_bounds(
     """The bounds of initial states, rad and rad/s: the options, or ``-bound`` and ``bound``."""
     check_keys(options, known)
     low, high = maybe_parse_reset_bounds(options, -bound, bound)
-    largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
-    if not (abs(low) <= largest and abs(high) <= largest):
-        raise ValueError(
-            f"low and high must be finite numbers in the range of float32, got {low} and {high}"
-        )
+    if not (abs(low) <= LARGEST and abs(high) <= LARGEST):
+        rule = "finite numbers in the range of float32"
+        raise must_be("low and high", rule, f"{low} and {high}")
     if options and "state" in options and ("low" in options or "high" in options):
         raise ValueError(f"options must have either state or low and high, got {list(options)}")
     return low, high
@@ -43,14 +49,13 @@ def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
 
     Keys that resemble none of them belong to other programs.
     """
-    if not isinstance(options, Mapping | None):
-        raise TypeError(f"options must be a dict or None, got {options!r}")
+    require(Mapping | None, "a dict or None", options=options)
     for key in options or ():
         name = key.lower() if isinstance(key, str) else ""
         near = difflib.get_close_matches(name, _OPTIONS, n=1, cutoff=0.52)
         if near and key not in known:
             meant = f"; did you mean {near[0]!r}?" if near[0] in known else ""
-            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}{meant}")
+            raise must_be("the keys of options", f"among {list(known)}", f"{key!r}{meant}")
 
 
 def render_mode(mode: str | None, metadata: dict[str, Any]) -> str | None:
@@ -58,17 +63,17 @@ def render_mode(mode: str | None, metadata: dict[str, Any]) -> str | None:
     modes = metadata["render_modes"]
     # A comparison with an array is no bool.
     if mode is not None and not (isinstance(mode, str) and mode in modes):
-        raise ValueError(f"render_mode must be None or one of {modes}, got {mode!r}")
+        raise must_be("render_mode", f"None or one of {modes}", repr(mode))
     return mode
 
 
-def reset_mask(options: dict[str, Any] | None, num_envs: int) -> NDArray[np.bool_] | None:
+def reset_mask(options: dict[str, Any], num_envs: int) -> NDArray[np.bool_] | None:
     """The environments to reset: ``options["reset_mask"]``."""
-    if options is None or "reset_mask" not in options:
+    if "reset_mask" not in options:
         return None
     mask = np.asarray(options["reset_mask"])
     if mask.dtype != np.bool_:
-        raise TypeError(f"reset_mask must be an array of bool, got {mask!r}")
+        raise must_be("reset_mask", "an array of bool", repr(mask), TypeError)
     if mask.shape != (num_envs,):
         raise ValueError(f"reset_mask must have shape ({num_envs},), got shape {mask.shape}")
     if not mask.any():
@@ -93,15 +98,13 @@ def numbers(
     array = None
     # NumPy takes the bytes of a bytearray, and the keys of some mappings.
     if not isinstance(value, bytearray | Mapping):
-        try:
+        with contextlib.suppress(TypeError, ValueError):  # rows of different lengths
             array = np.asarray(value)
-        except (TypeError, ValueError):  # rows of different lengths
-            pass
     if array is not None and array.dtype.kind in kinds and array.shape == shape:
         return array
     is_numeric = array is not None and array.dtype.kind in "biufc"
     found = f"{array.dtype} of shape {array.shape}" if is_numeric else reprlib.repr(value)
-    raise error(f"{name} must be {rule}, got {found}")
+    raise must_be(name, rule, found, error)
 
 
 def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> NDArray[np.float64]:
@@ -112,17 +115,15 @@ def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> N
         finite = np.isfinite(states.astype(dtype))
     if not finite.all():
         row, column = np.argwhere(~finite)[0]
-        raise ValueError(
-            f"state[{row}, {column}] must be a finite number, got {states[row, column]}"
-        )
+        raise must_be(f"state[{row}, {column}]", "a finite number", states[row, column])
     return np.ascontiguousarray(states, np.float64)
 
 
-def require(kind: type, rule: str, **arguments: Any) -> None:
+def require(kind: Any, rule: str, **arguments: Any) -> None:
     """Reject arguments of another type. A bool is no integer here, and a text no sequence."""
     for name, value in arguments.items():
         if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool | str)):
-            raise TypeError(f"{name} must be {rule}, got {value!r}")
+            raise must_be(name, rule, repr(value), TypeError)
 
 
 def values_of_each(name: str, value: Any) -> list[Any] | None:
@@ -160,7 +161,7 @@ def plain_seed(seed: Any) -> int | None:
         return None
     # Gymnasium accepts True as 1.
     if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
-        raise Error(f"seed must be an integer of at least 0, got {seed!r}")
+        raise must_be("seed", "an integer of at least 0", repr(seed), Error)
     return int(seed)
 
 

@@ -11,7 +11,7 @@ from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.arrays import numbers, plain_seed, reset_bounds
+from acrobot_rs.arrays import must_be, numbers, plain_seed, reset_bounds
 from acrobot_rs.parameters import Parameters
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             given = numbers("state", rule, options["state"], (4,))
             with np.errstate(over="ignore"):
                 if not np.isfinite(given.astype(np.float32)).all():
-                    raise ValueError(f"state must be {rule}, got {given}")
+                    raise must_be("state", rule, given)
         super().reset(seed=seed)
         observation = self._begin(low, high, given)
         if self.render_mode == "human":
@@ -268,7 +268,7 @@ class AcrobotContinuousEnv(AcrobotEnv):
         rule = f"{self._ACTION}, as an array of shape (1,)"
         torque = float(numbers("action", rule, action, (1,), error=InvalidAction)[0])
         if math.isnan(torque):
-            raise InvalidAction(f"action must be {rule}, got {action!r}")
+            raise must_be("action", rule, repr(action), InvalidAction)
         return torque
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Acrobot, Batch
-from acrobot_rs.arrays import numbers
+from acrobot_rs.arrays import LARGEST, must_be, numbers
 
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()
@@ -52,14 +52,14 @@ class Drawn:
             rule = "three finite numbers" if is_row else "a finite number"
             array = numbers(name, rule, value, (3,) if is_row else (), error=TypeError)
             if not np.isfinite(array).all():
-                raise ValueError(f"{name} must be {rule}, got {value!r}")
+                raise must_be(name, rule, repr(value))
             object.__setattr__(self, name, tuple(map(float, array)) if is_row else float(array))
         if np.shape(self.low) != np.shape(self.high) or np.greater(self.low, self.high).any():
-            raise ValueError(f"low must be at most high, and of the same length, got {self}")
+            raise must_be("low", "at most high, and of the same length", self)
         if self.kind == "LogUniform" and self.low <= 0:
-            raise ValueError(f"low must be above 0, got {self}")
+            raise must_be("low", "above 0", self)
         if self.kind == "Normal" and not (self.std > 0 and self.low <= self.mean <= self.high):
-            raise ValueError(f"std must be above 0, and mean from low to high, got {self}")
+            raise must_be("std", "above 0, and mean from low to high", self)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -278,7 +278,7 @@ class Parameters(arrays.Hints):
             rule = (
                 "a number, because only gymnasium.make_vec draws parameters, also with num_envs=1"
             )
-            raise TypeError(f"{name} must be {rule}, got {value!r}")
+            raise must_be(name, rule, repr(value), TypeError)
         self._native.set(name, value)
         return _fixed(name, value)
 
@@ -302,12 +302,11 @@ class Parameters(arrays.Hints):
         """What the spaces contain: actions from one number to another, and velocities, rad/s."""
         torque: Any = self.AVAIL_TORQUE
         lows, highs = (getattr(torque, each, torque) for each in ("low", "high"))
-        largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
         bounds: tuple[Any, ...] = (self.MAX_VEL_1, self.MAX_VEL_2)
         velocities = (np.max(getattr(each, "high", each)) for each in bounds)
         # After a step, or after a reset with the default bounds of 0.1, rad/s.
         first, second = (max(each, self._BOUND) for each in velocities)
-        return max(np.min(lows), -largest), min(np.max(highs), largest), first, second
+        return max(np.min(lows), -LARGEST), min(np.max(highs), LARGEST), first, second
 
     if not TYPE_CHECKING:  # a checker would accept all names
 

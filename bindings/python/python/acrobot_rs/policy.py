@@ -19,7 +19,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from acrobot_rs.arrays import require
+from acrobot_rs.arrays import LARGEST, must_be, require
 
 Layer = tuple[Any, Any, str]
 """Weights ``(outputs, inputs)``, biases ``(outputs,)``, and ``"none"``, ``"tanh"`` or ``"relu"``."""
@@ -60,9 +60,8 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
             rule = f"weights of shape (outputs, {inputs}) and biases of shape (outputs,)"
             raise ValueError(f"layer {i} must have {rule}, got {weights.shape} and {biases.shape}")
         if activation not in _ACTIVATIONS:
-            raise ValueError(
-                f"the activation of layer {i} must be one of {_ACTIVATIONS}, got {activation!r}"
-            )
+            name = f"the activation of layer {i}"
+            raise must_be(name, f"one of {_ACTIVATIONS}", repr(activation))
         numbers = np.column_stack([biases, weights])
         if not np.isfinite(numbers).all():
             raise ValueError(f"the numbers of layer {i} must be finite in float32")
@@ -71,9 +70,8 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
         inputs = outputs
     scores = torque_limit is None
     if inputs != (3 if scores else 1) or not 1 <= len(layers) < 256:
-        raise ValueError(
-            f"the last layer must have {'3 outputs, or 1 with a torque_limit' if scores else '1 output'}, got {inputs}"
-        )
+        rule = "3 outputs, or 1 with a torque_limit" if scores else "1 output"
+        raise ValueError(f"the last layer must have {rule}, got {inputs}")
     limit = 0.0 if torque_limit is None else _checked(torque_limit)
     content = struct.pack("<4sBBHf", b"MLP1", len(layers), not scores, 6, limit) + head + body
     return content + struct.pack("<I", zlib.crc32(content))
@@ -83,9 +81,8 @@ def _checked(torque_limit: float) -> float:
     require(Real, "a number of N m", torque_limit=torque_limit)
     limit = float(torque_limit)
     # Up to 2^-150 it is 0 in float32.
-    if not 2.0**-150 < limit <= float(np.finfo(np.float32).max):
-        rule = "finite and above 0 N m in float32"
-        raise ValueError(f"torque_limit must be {rule}, got {torque_limit}")
+    if not 2.0**-150 < limit <= LARGEST:
+        raise must_be("torque_limit", "finite and above 0 N m in float32", torque_limit)
     return limit
 
 
@@ -117,9 +114,8 @@ def save(
     """
     policy = getattr(model, "policy", None)
     if policy is None and not isinstance(model, Iterable):
-        raise TypeError(
-            f"model must be one of Stable-Baselines3 or a torch.nn.Sequential, got {model!r}"
-        )
+        rule = "one of Stable-Baselines3 or a torch.nn.Sequential"
+        raise must_be("model", rule, repr(model), TypeError)
     modules, quantiles = (model, 1) if policy is None else _modules_of(policy)
     layers = _layers(modules, quantiles)
     if policy is None and any(type(each).__name__ == "Dropout" and each.training for each in model):
@@ -130,8 +126,8 @@ def save(
     if policy is not None and isinstance(policy.action_space, gym.spaces.Box):
         low, high = float(policy.action_space.low[0]), float(policy.action_space.high[0])
         if not 0 < high == -low < np.inf:
-            rule = "finite and opposite"
-            raise ValueError(f"the bounds of the action space must be {rule}, got {low} and {high}")
+            name, got = "the bounds of the action space", f"{low} and {high}"
+            raise must_be(name, "finite and opposite", got)
         if torque_limit is None:
             torque_limit = _largest_torque(model.get_env()) if is_swingup else high
         scale = _checked(torque_limit) / high
@@ -152,8 +148,8 @@ def save(
         observations = _observations("AcrobotSwingup-v0" if is_swingup else "Acrobot-v1")
     seen = np.asarray(observations, np.float32)
     if seen.shape[1:] != (6,) or not seen.size or not np.isfinite(seen).all():
-        rule = "finite numbers of shape (n, 6)"
-        raise ValueError(f"observations must be {rule}, got {reprlib.repr(observations)}")
+        got = reprlib.repr(observations)
+        raise must_be("observations", "finite numbers of shape (n, 6)", got)
     expected = scale * _expected(model, policy, normalize, modules, seen)
     _compare(layers, seen, expected, torque_limit, note)
     Path(path).write_bytes(content)
@@ -184,9 +180,8 @@ def _modules_of(policy: Any) -> tuple[list[Any], int]:
         return list(policy.quantile_net.quantile_net), policy.quantile_net.n_quantiles
     if hasattr(policy, "q_net"):
         return list(policy.q_net.q_net), 1
-    raise TypeError(
-        f"the policy must be that of PPO, A2C, DQN or QR-DQN, got {type(policy).__name__}"
-    )
+    rule = "that of PPO, A2C, DQN or QR-DQN"
+    raise must_be("the policy", rule, type(policy).__name__, TypeError)
 
 
 def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
@@ -194,38 +189,32 @@ def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
     for module in modules:
         kind = type(module).__name__
         if kind not in _KINDS:
-            raise TypeError(f"a layer must be one of {', '.join(_KINDS)}, got {kind}")
+            raise must_be("a layer", f"one of {', '.join(_KINDS)}", kind, TypeError)
         if kind == "Linear":
-            weights = module.weight.detach().cpu().numpy().astype(np.float64)
-            biases = (
-                np.zeros(len(weights))
-                if module.bias is None
-                else module.bias.detach().cpu().numpy().astype(np.float64)
+            both = module.weight, module.bias
+            weights, biases = (
+                0.0 if each is None else each.detach().cpu().numpy().astype(np.float64)
+                for each in both
             )
-            layers.append((weights, biases, "none"))
+            layers.append((weights, np.zeros(len(weights)) + biases, "none"))
         elif (activation := _KINDS[kind]) != "none":
             if not layers or layers[-1][2] != "none":
                 raise TypeError(f"{kind} must follow a linear layer")
             layers[-1] = (*layers[-1][:2], activation)
     if quantiles > 1:
         weights, biases, activation = layers[-1]
-        layers[-1] = (
-            weights.reshape(quantiles, -1, weights.shape[1]).mean(0),
-            biases.reshape(quantiles, -1).mean(0),
-            activation,
-        )
+        weights = weights.reshape(quantiles, -1, weights.shape[1]).mean(0)
+        layers[-1] = (weights, biases.reshape(quantiles, -1).mean(0), activation)
     return layers
 
 
 def _observations(task: str) -> NDArray[np.float32]:
     envs = gym.make_vec(f"acrobot_rs/{task}", num_envs=20)
     envs.action_space.seed(1)
-    return np.concatenate(
-        [
-            envs.reset(seed=1)[0],
-            *(envs.step(envs.action_space.sample())[0].copy() for _ in range(99)),
-        ]
-    )
+    seen = [envs.reset(seed=1)[0]]
+    for _ in range(99):
+        seen.append(envs.step(envs.action_space.sample())[0])
+    return np.concatenate(seen)
 
 
 def _expected(
@@ -233,11 +222,8 @@ def _expected(
 ) -> NDArray[Any]:
     """What the model itself answers."""
     if policy is not None:
-        return np.asarray(
-            model.predict(
-                seen if normalize is None else normalize.normalize_obs(seen), deterministic=True
-            )[0]
-        )
+        inputs = seen if normalize is None else normalize.normalize_obs(seen)
+        return np.asarray(model.predict(inputs, deterministic=True)[0])
     import torch
 
     with torch.no_grad():
@@ -265,13 +251,10 @@ def _compare(
         chosen = np.take_along_axis(x, expected.reshape(-1, 1), 1)[:, 0]
         differ = x.max(1) - chosen > 1e-4 * np.maximum(1, abs(x).max(1))
     else:
-        differ = (
-            abs(
-                np.clip(x[:, 0], -torque_limit, torque_limit)
-                - np.clip(expected[:, 0], -torque_limit, torque_limit)
-            )
-            > 1e-4 * torque_limit
+        torques, others = (
+            np.clip(each[:, 0], -torque_limit, torque_limit) for each in (x, expected)
         )
+        differ = abs(torques - others) > 1e-4 * torque_limit
     if differ.any():
         where = f"they differ on {differ.sum()} of {len(seen)} observations{note and '. '}{note}"
         raise ValueError(f"the file's actions must be those of the model; {where}")

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Batch
-from acrobot_rs.arrays import numbers, read_only, require
+from acrobot_rs.arrays import must_be, numbers, read_only, require
 from acrobot_rs.native_vector import Alone, Floats, NativeVectorEnv
 from acrobot_rs.parameters import Drawn, Parameters, _fixed, _hint
 
@@ -93,10 +93,10 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
         for name in (each for each in info_parameters if each not in self._NAMES):
             hint = _hint(str(name), self._NAMES)
-            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {hint}")
+            raise must_be("info_parameters", "names of parameters", f"{name!r}; {hint}")
         modes = [mode.value for mode in AutoresetMode]
         if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
-            raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
+            raise must_be("autoreset_mode", f"one of {modes}", repr(autoreset_mode))
         require(bool, "True or False", copy=copy, gymnasium_episodes=gymnasium_episodes)
         if threads is None:
             has_affinity = hasattr(os, "sched_getaffinity")
@@ -107,8 +107,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         for name, count in counts.items():
             if not 0 < count < 2**32:
                 no_limit = ", or None for no limit" if name == "max_episode_steps" else ""
-                rule = f"an integer from 1 to {2**32 - 1}{no_limit}"
-                raise ValueError(f"{name} must be {rule}, got {count}")
+                raise must_be(name, f"an integer from 1 to {2**32 - 1}{no_limit}", count)
         if gymnasium_episodes:
             arrays.warn_of_other_sines()
         mode = AutoresetMode(autoreset_mode)
@@ -163,7 +162,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         )
         if actions.dtype.kind == "u" and (actions > 2).any():  # which int64 may not have
             index = int(np.argmax(actions > 2))
-            raise InvalidAction(f"actions[{index}] must be 0, 1 or 2, got {actions[index]}")
+            raise must_be(f"actions[{index}]", "0, 1 or 2", actions[index], InvalidAction)
         with np.errstate(over="ignore"):  # an infinite torque acts as the bound
             # An array over packed bytes is not aligned, which Rust requires.
             return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), dtype)
