@@ -5,8 +5,9 @@
     python3 compare.py --quick         one short round, to try it
     python3 compare.py NAME SECONDS    plays one Python package, which is installed
 
-Each implementation plays a random policy once a round, in its own process: this file in the virtual environment of a
-Python package, or `src/main.rs`. It prints its name, versions, steps and processor time. The table has medians.
+Each implementation plays a random policy once a round, in its own process: this file in the virtual
+environment of a Python package, or `src/main.rs`. It prints its name, versions, steps and processor
+time. The table has medians.
 """
 
 import argparse
@@ -21,9 +22,9 @@ import time
 PAGE = pathlib.Path("../../docs/benchmarks.md")
 HEAD = "| one core | version | M steps/s | times Gymnasium |"
 CARGO = ["--quiet", "--release", "--locked"]
-# Steps of an episode. Vector environments play a whole episode between two readings of the clock, because their
-# episodes are in phase and sines of larger angles can take longer: gymnax begins an episode at 3.8 M steps/s and ends
-# it at 2.3.
+# Steps of an episode. Vector environments play a whole episode between two readings of the clock,
+# because their episodes are in phase and sines of larger angles can take longer: gymnax begins an
+# episode at 3.8 M steps/s and ends it at 2.3.
 LIMIT = 500
 
 
@@ -133,16 +134,25 @@ def together(envs, count):
     return run
 
 
-# For each implementation: its name in the table and, for one in Python, a function that makes it and returns a function
-# that plays some steps, and its packages. The first of these is the key of `REQUIREMENTS`.
+# For each implementation: its name in the table and, for one in Python, a function that makes it
+# and returns a function that plays some steps, and its packages. The first of these is the key of
+# `REQUIREMENTS`.
 IMPLEMENTATIONS = {
     "make": ("Gymnasium, `make`", make, ["gymnasium"]),
     "unwrapped": ("Gymnasium, `unwrapped`", unwrapped, ["gymnasium"]),
     "sync_vector_env": ("Gymnasium, `SyncVectorEnv` of 64", sync_vector_env, ["gymnasium"]),
     "envpool": ("EnvPool of 1,024", envpool, ["envpool"]),
-    "gymnax": ("gymnax and jax on the CPU, 4,096 in `jit`, `vmap` and `scan`", gymnax, ["gymnax", "jax"]),
+    "gymnax": (
+        "gymnax and jax on the CPU, 4,096 in `jit`, `vmap` and `scan`",
+        gymnax,
+        ["gymnax", "jax"],
+    ),
     "acrobot_make": ("acrobot_rs for Python, `make`", acrobot_make, ["acrobot_rs"]),
-    "acrobot_make_vec": ("acrobot_rs for Python, `make_vec` of 1,024", acrobot_make_vec, ["acrobot_rs"]),
+    "acrobot_make_vec": (
+        "acrobot_rs for Python, `make_vec` of 1,024",
+        acrobot_make_vec,
+        ["acrobot_rs"],
+    ),
     "ogym": ("ogym, f64",),
     "gmgn": ("gmgn, f64",),
     "rlevo": ("rlevo-environments, f32",),
@@ -176,13 +186,22 @@ def play(name, seconds):
 
 
 def install(package):
-    """A Python with this package. Each package has its own virtual environment, because gymnax needs an older Gymnasium.
-    EnvPool needs Python 3.12."""
+    """A Python with this package. Each package has its own virtual environment, because gymnax
+    needs an older Gymnasium. EnvPool needs Python 3.12."""
     folder = pathlib.Path(".venv", package)
     python = folder / "bin" / "python"
     subprocess.run(["uv", "venv", "--quiet", "--clear", "--python", "3.12", folder], check=True)
     # uv would not notice that the source of ours has changed.
-    command = ["uv", "pip", "install", "--quiet", "--refresh-package", "acrobot-rs", "--python", python]
+    command = [
+        "uv",
+        "pip",
+        "install",
+        "--quiet",
+        "--refresh-package",
+        "acrobot-rs",
+        "--python",
+        python,
+    ]
     subprocess.run([*command, *REQUIREMENTS[package]], check=True)
     return python
 
@@ -192,7 +211,9 @@ def measure(commands, rounds, seconds):
     versions, rates = {}, {name: [] for name in commands}
     for _ in range(rounds):
         for name, command in commands.items():
-            line = subprocess.run([*command, name, seconds], check=True, stdout=subprocess.PIPE, text=True).stdout
+            line = subprocess.run(
+                [*command, name, seconds], check=True, stdout=subprocess.PIPE, text=True
+            ).stdout
             print(line, end="", file=sys.stderr)
             _, *version, steps, elapsed = line.split()
             versions[name] = ", ".join(version)
@@ -222,9 +243,13 @@ def update(rows):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--update", action="store_true", help="write the table into docs/benchmarks.md")
+    parser.add_argument(
+        "--update", action="store_true", help="write the table into docs/benchmarks.md"
+    )
     parser.add_argument("--quick", action="store_true", help="one short round")
-    parser.add_argument("name", nargs="?", help="play this Python package only", choices=IMPLEMENTATIONS)
+    parser.add_argument(
+        "name", nargs="?", help="play this Python package only", choices=IMPLEMENTATIONS
+    )
     parser.add_argument("seconds", nargs="?", type=float)
     options = parser.parse_args()
     if options.name:

@@ -1,9 +1,11 @@
-"""Steps of dm_control's swing-up per second and core: dm_control, MuJoCo's own batch, and this package.
+"""Steps of dm_control's swing-up per second and core: dm_control, MuJoCo's own batch, and this
+package.
 
     pip install dm_control==1.0.50 mujoco==3.17.0 && pip install bindings/python
     MUJOCO_GL=disable python benches/compare/swingup.py
 
-Interleaved, the best of five. `mujoco.rollout` computes states alone; the others also observations, rewards and resets.
+Interleaved, the best of five. `mujoco.rollout` computes states alone; the others also observations,
+rewards and resets.
 """
 
 import time
@@ -63,4 +65,6 @@ def rate(run):
 runs = dm_control, mujoco_rollout, single, vector
 best = np.max([[rate(run) for run in runs] for _ in range(5)], axis=0)
 for run, each in zip(runs, best, strict=True):
-    print(f"{run.__name__:15} {each:14,.0f} steps per second, {each / best[0]:9,.1f} times dm_control, {each / best[1]:7,.1f} times mujoco.rollout")
+    print(
+        f"{run.__name__:15} {each:14,.0f} steps per second, {each / best[0]:9,.1f} times dm_control, {each / best[1]:7,.1f} times mujoco.rollout"
+    )

@@ -1,11 +1,12 @@
-"""Trains PPO with JAX on the vector environment until the mean return of 100 episodes passes -100. One file, as in CleanRL.
+"""Trains PPO with JAX on the vector environment until the mean return of 100 episodes passes -100.
+One file, as in CleanRL.
 
     pip install -r requirements.txt && pip install .
     python train_ppo.py                        seeds 1, 2 and 3
     python train_ppo.py 3 --save policy.bin    also saves the policy of the last seed, for a microcontroller
 
-Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in Gymnasium's own environment.
-Fails if a seed has not learnt after a million steps.
+Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in
+Gymnasium's own environment. Fails if a seed has not learnt after a million steps.
 """
 
 import argparse
@@ -39,7 +40,8 @@ optimizer = optax.chain(
 
 
 def layers(key, outputs, gain):
-    """Weights and biases of a perceptron with two hidden layers of 64 units. Weights are orthogonal, as is usual for PPO."""
+    """Weights and biases of a perceptron with two hidden layers of 64 units. Weights are
+    orthogonal, as is usual for PPO."""
     sizes = [6, 64, 64, outputs]
     gains = [2**0.5, 2**0.5, gain]
     return [
@@ -80,8 +82,9 @@ def act(parameters, key, observations):
 def roll_out(envs, parameters, key, observations):
     """Plays STEPS in each environment.
 
-    Returns arrays of shape (STEPS, ENVS, ...): observations, actions, following observations, rewards, whether the episode
-    terminated and whether it ended. Also returns the last observations, and the key of the next draw.
+    Returns arrays of shape (STEPS, ENVS, ...): observations, actions, following observations,
+    rewards, whether the episode terminated and whether it ended. Also returns the last
+    observations, and the key of the next draw.
     """
     rollout = []
     for _ in range(STEPS):
@@ -100,7 +103,8 @@ def roll_out(envs, parameters, key, observations):
 
 def advantages(parameters, observations, seen, rewards, terminated, ended):
     """Generalized advantage estimates."""
-    # A truncated episode has not terminated, so the value of its last observation estimates the rest.
+    # A truncated episode has not terminated, so the value of its last observation estimates the
+    # rest.
     errors = (
         rewards
         + DISCOUNT * ~terminated * values(parameters, seen)
@@ -130,7 +134,8 @@ def loss(parameters, batch):
 
 @jax.jit
 def learn(parameters, state, key, rollout):
-    """Optimizes the parameters for EPOCHS over the rollout. Returns them and the optimizer's state."""
+    """Optimizes the parameters for EPOCHS over the rollout. Returns them and the optimizer's state.
+    """
     observations, actions, seen, rewards, terminated, ended = rollout
     advantage = advantages(parameters, observations, seen, rewards, terminated, ended)
     targets = advantage + values(parameters, observations)
@@ -156,7 +161,8 @@ def learn(parameters, state, key, rollout):
 
 
 def evaluate(envs, parameters, key):
-    """The mean return of one new episode in each environment. Counting the first 100 that end would favour short ones."""
+    """The mean return of one new episode in each environment. Counting the first 100 that end would
+    favour short ones."""
     observations, _ = envs.reset()
     returns, running = np.zeros(envs.num_envs), np.ones(envs.num_envs, bool)
     while running.any():
@@ -168,7 +174,8 @@ def evaluate(envs, parameters, key):
 
 
 def train(seed):
-    """Trains until an evaluation passes. Returns the parameters, the steps and the last mean return."""
+    """Trains until an evaluation passes. Returns the parameters, the steps and the last mean
+    return."""
     envs = gymnasium.make_vec(
         NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP
     )

@@ -1,8 +1,9 @@
 """Estimates the mean cycles per instruction on a Cortex-M4F, for `figures.py`.
 
-The mean is over every instruction that QEMU executes in the loop of the firmware `minimal`. The timing of each is
-that of ARM's Technical Reference Manual (ARM DDI 0439, 3.3.1 and 7.2.3). The estimate assumes memory without wait states, and
-two cycles to refill the pipeline after a taken branch.
+The mean is over every instruction that QEMU executes in the loop of the firmware `minimal`. The
+timing of each is that of ARM's Technical Reference Manual (ARM DDI 0439, 3.3.1 and 7.2.3). The
+estimate assumes memory without wait states, and two cycles to refill the pipeline after a taken
+branch.
 """
 
 import functools
@@ -10,7 +11,16 @@ import re
 import subprocess
 
 STEPS = 200
-COSTS = {"vdiv": 14, "vsqrt": 14, "vmla": 3, "vmls": 3, "vnmla": 3, "vnmls": 3, "udiv": 7, "sdiv": 7}
+COSTS = {
+    "vdiv": 14,
+    "vsqrt": 14,
+    "vmla": 3,
+    "vmls": 3,
+    "vnmla": 3,
+    "vnmls": 3,
+    "udiv": 7,
+    "sdiv": 7,
+}
 REGISTERS = re.compile(r"[rsd](\d+)(?:-[rsd](\d+))?|lr|pc|ip|fp|sl|sb")
 
 
@@ -42,9 +52,13 @@ def cost(mnemonic, operands, taken, after_load):
 
 
 def per_instruction(image, most=None):
-    """The mean cycles per instruction of `STEPS` steps of the firmware `image`, or of its first `most` instructions."""
+    """The mean cycles per instruction of `STEPS` steps of the firmware `image`, or of its first
+    `most` instructions."""
     listing = subprocess.run(
-        ["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image], check=True, capture_output=True, text=True
+        ["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", image],
+        check=True,
+        capture_output=True,
+        text=True,
     ).stdout
     code = {}
     for line in listing.splitlines():
@@ -53,14 +67,16 @@ def per_instruction(image, most=None):
             code[int(match[1], 16)] = (match[2], match[3])
 
     qemu = subprocess.Popen(
-        "qemu-system-arm -machine mps2-an386 -nographic -singlestep -d exec,nochain -D /dev/stdout -kernel".split() + [image],
+        "qemu-system-arm -machine mps2-an386 -nographic -singlestep -d exec,nochain -D /dev/stdout -kernel".split()
+        + [image],
         stdout=subprocess.PIPE,
         text=True,
     )
     cycles = instructions = steps = 0
     previous, after_load = None, False
     for line in qemu.stdout:
-        # A line is: Trace 0: 0x7f0000000000 [00800400/0000014c/00000110/ff020201]. The second number is the address.
+        # A line is: Trace 0: 0x7f0000000000 [00800400/0000014c/00000110/ff020201]. The second
+        # number is the address.
         _, *fields = line.split("/", 2)
         if len(fields) < 2:
             continue
@@ -81,4 +97,3 @@ def per_instruction(image, most=None):
         previous = address
     qemu.kill()
     return cycles / instructions
-

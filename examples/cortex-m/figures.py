@@ -1,11 +1,14 @@
-"""Measures what the crate costs on microcontrollers, and compares it with the tables in `docs/embedded-figures.md`.
+"""Measures what the crate costs on microcontrollers, and compares it with the tables in
+`docs/embedded-figures.md`.
 
     python3 figures.py             prints every figure, and fails if one differs from the page
     python3 figures.py --update    writes the tables
     python3 figures.py cores       only the tables that are named: m4f, additions, balance, control, cores, stacks, sizes, levels
 
-`steps` counts instructions, stack and RAM, `bench`, `learn`, `policy` and `balance` count instructions. Flash is that of `minimal` minus that of the same firmware
-without an acrobot, or without an addition to it. `cycles.py` estimates the cycles per instruction. Each figure is the same in every run, the estimates too.
+`steps` counts instructions, stack and RAM, `bench`, `learn`, `policy` and `balance` count
+instructions. Flash is that of `minimal` minus that of the same firmware without an acrobot, or
+without an addition to it. `cycles.py` estimates the cycles per instruction. Each figure is the same
+in every run, the estimates too.
 """
 
 import argparse
@@ -23,8 +26,16 @@ import cycles
 DOCUMENT = pathlib.Path("../../docs/embedded-figures.md")
 M4F = "thumbv7em-none-eabihf"
 TUNED = "-C target-cpu=cortex-m4"
-ARITHMETICS = {"fast": "`Fast`", "micro": "`Micro`", "reference": "`Reference`", "portable": "`Portable`"}
-COLUMNS = ARITHMETICS | {"reference_libgcc": "`Reference`, libgcc", "portable_libgcc": "`Portable`, libgcc"}
+ARITHMETICS = {
+    "fast": "`Fast`",
+    "micro": "`Micro`",
+    "reference": "`Reference`",
+    "portable": "`Portable`",
+}
+COLUMNS = ARITHMETICS | {
+    "reference_libgcc": "`Reference`, libgcc",
+    "portable_libgcc": "`Portable`, libgcc",
+}
 ROWS = {
     "step": "instructions per step, with observation, end test and resets",
     "cycles": "cycles per step, estimated",
@@ -46,13 +57,20 @@ ROWS = {
     "ram": "RAM of the whole firmware that trains, bytes",
 }
 RAM_OF_AN500 = "-C link-arg=--defsym=RAM_ORIGIN=0x60000000"
-CORE_COLUMNS = ARITHMETICS | {"fast_soft_floats": "`Fast`, soft-floats", "micro_soft_floats": "`Micro`, soft-floats"}
-Core = collections.namedtuple("Core", "words target has_fpu rustflags machine", defaults=[False, "", ""])
+CORE_COLUMNS = ARITHMETICS | {
+    "fast_soft_floats": "`Fast`, soft-floats",
+    "micro_soft_floats": "`Micro`, soft-floats",
+}
+Core = collections.namedtuple(
+    "Core", "words target has_fpu rustflags machine", defaults=[False, "", ""]
+)
 # These rows exclude the first table, which has more figures of the Cortex-M4F.
 CORES = {
     "m0": Core("Cortex-M0", "thumbv6m-none-eabi"),
     "m3": Core("Cortex-M3", "thumbv7m-none-eabi"),
-    "m7": Core("Cortex-M7 with `f64`", M4F, True, f"-C target-cpu=cortex-m7 {RAM_OF_AN500}", "mps2-an500"),
+    "m7": Core(
+        "Cortex-M7 with `f64`", M4F, True, f"-C target-cpu=cortex-m7 {RAM_OF_AN500}", "mps2-an500"
+    ),
     "m33": Core("Cortex-M33 with FPU", "thumbv8m.main-none-eabihf", True),
     "rv32i": Core("RV32I", "riscv32i-unknown-none-elf"),
     "rv32imc": Core("RV32IMC", "riscv32imc-unknown-none-elf"),
@@ -98,7 +116,9 @@ LEVELS = ["2", '"s"', '"z"']
 def run(*command, rustflags="", machine="", minimal=""):
     environment = os.environ | {"RUSTFLAGS": rustflags, "MINIMAL": minimal}
     if machine:
-        environment["CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUNNER"] = f"../../.cargo/qemu arm {machine}"
+        environment["CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUNNER"] = (
+            f"../../.cargo/qemu arm {machine}"
+        )
     done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
     if done.returncode != 0:
         sys.exit(f"{done.stdout}failed: {' '.join(command)}")
@@ -106,7 +126,17 @@ def run(*command, rustflags="", machine="", minimal=""):
 
 
 def cargo(command, binary, target=M4F, features="", level="3", **settings):
-    options = ["--quiet", "--locked", "--release", "--target", target, "--features", features, "--bin", binary]
+    options = [
+        "--quiet",
+        "--locked",
+        "--release",
+        "--target",
+        target,
+        "--features",
+        features,
+        "--bin",
+        binary,
+    ]
     options += ["--config", f"profile.release.opt-level={level}"]
     return run("cargo", command, *options, **settings)
 
@@ -127,11 +157,15 @@ def image(binary, target=M4F, **options):
 def flash(path):
     """Bytes of code, constants and initial values."""
     sections = run("readelf", "--sections", "--wide", path)  # of any architecture
-    return sum(int(size, 16) for size in re.findall(r" \.(?:text|rodata|data) +PROGBITS +\w+ +\w+ +(\w+)", sections))
+    return sum(
+        int(size, 16)
+        for size in re.findall(r" \.(?:text|rodata|data) +PROGBITS +\w+ +\w+ +(\w+)", sections)
+    )
 
 
 def minimal(arithmetics, **options):
-    """For each arithmetic the path of the minimal firmware, which the next one overwrites, and the flash of the crate in it."""
+    """For each arithmetic the path of the minimal firmware, which the next one overwrites, and the
+    flash of the crate in it."""
     without = flash(image("minimal", minimal="without", **options))
     for arithmetic in arithmetics:
         path = image("minimal", minimal=arithmetic, **options)
@@ -140,13 +174,20 @@ def minimal(arithmetics, **options):
 
 def measure_m4f():
     figures = {}
-    for suffix, features, arithmetics in [("", "", ARITHMETICS), ("_libgcc", "libgcc", ["reference", "portable"])]:
+    for suffix, features, arithmetics in [
+        ("", "", ARITHMETICS),
+        ("_libgcc", "libgcc", ["reference", "portable"]),
+    ]:
         both = printed("steps", features=features) | printed("bench", features=features)
-        figures |= {(arithmetic + suffix, figure): value for (arithmetic, figure), value in both.items()}
+        figures |= {
+            (arithmetic + suffix, figure): value for (arithmetic, figure), value in both.items()
+        }
         for arithmetic, path, size in minimal(arithmetics, features=features):
             column = arithmetic + suffix
             figures[column, "flash"] = size
-            figures[column, "cycles"] = round(figures[column, "step"] * cycles.per_instruction(path))
+            figures[column, "cycles"] = round(
+                figures[column, "step"] * cycles.per_instruction(path)
+            )
     steps = dict(counted("step", ARITHMETICS, rustflags=TUNED))
     for arithmetic, path, _ in minimal(ARITHMETICS, rustflags=TUNED):
         each = round(steps[arithmetic] * cycles.per_instruction(path))
@@ -161,12 +202,15 @@ def measure_m4f():
 
 
 def measure_cores(measure, *arguments):
-    """The figures of each core: {(arithmetic, core): value}. `measure` returns those of one build: [(arithmetic, value)]."""
+    """The figures of each core: {(arithmetic, core): value}. `measure` returns those of one build:
+    [(arithmetic, value)]."""
     measure = functools.partial(measure, *arguments)
     figures = {}
     for name, core in CORES.items():
         options = {"target": core.target, "rustflags": core.rustflags, "machine": core.machine}
-        figures |= {(arithmetic, name): value for arithmetic, value in measure(ARITHMETICS, **options)}
+        figures |= {
+            (arithmetic, name): value for arithmetic, value in measure(ARITHMETICS, **options)
+        }
         if not core.has_fpu:
             soft = measure(["fast", "micro"], features="soft-floats", **options)
             figures |= {(f"{arithmetic}_soft_floats", name): value for arithmetic, value in soft}
@@ -196,7 +240,9 @@ def measure_balance():
     # Its messages name source files by their paths, whose length would count.
     home = os.environ.get("CARGO_HOME", pathlib.Path.home() / ".cargo")
     rustflags = f"--remap-path-prefix={home}="
-    return printed("balance", rustflags=rustflags) | {("10_Nm", "flash_bytes"): flash(image("balance", rustflags=rustflags))}
+    return printed("balance", rustflags=rustflags) | {
+        ("10_Nm", "flash_bytes"): flash(image("balance", rustflags=rustflags))
+    }
 
 
 def measure_additions():
@@ -205,17 +251,30 @@ def measure_additions():
 
     alone = size("fast")
     figures = printed("minimal", minimal="lqr_stack")
-    return figures | {("fast", name): size(name) - alone for name in ADDITIONS if ("fast", name) not in figures}
+    return figures | {
+        ("fast", name): size(name) - alone for name in ADDITIONS if ("fast", name) not in figures
+    }
 
 
 Table = collections.namedtuple("Table", "title columns rows measure")
 TABLES = {
     "m4f": Table("on a Cortex-M4F", COLUMNS, ROWS, measure_m4f),
-    "additions": Table("what a firmware adds to an acrobot", {"fast": "bytes"}, ADDITIONS, measure_additions),
+    "additions": Table(
+        "what a firmware adds to an acrobot", {"fast": "bytes"}, ADDITIONS, measure_additions
+    ),
     "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
-    "control": Table("instructions at 100 Hz, upright", ARITHMETICS, CONTROL, lambda: printed("bench", features="")),
-    "cores": Table("instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: measure_cores(counted, "step")),
-    "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: measure_cores(counted, "stack")),
+    "control": Table(
+        "instructions at 100 Hz, upright",
+        ARITHMETICS,
+        CONTROL,
+        lambda: printed("bench", features=""),
+    ),
+    "cores": Table(
+        "instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: measure_cores(counted, "step")
+    ),
+    "stacks": Table(
+        "bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: measure_cores(counted, "stack")
+    ),
     "sizes": Table("bytes of flash", CORE_COLUMNS, CORE_ROWS, lambda: measure_cores(sizes)),
     "levels": Table(
         "`opt-level` on a Cortex-M4F",
@@ -233,16 +292,28 @@ def written(table, figures):
     yield f"| {table.title} | {' | '.join(table.columns.values())} |"
     yield "|---|" + "---|" * len(table.columns)
     for row, words in table.rows.items():
-        yield f"| {words} | " + " | ".join(texts.get((column, row), "") for column in table.columns) + " |"
+        yield (
+            f"| {words} | "
+            + " | ".join(texts.get((column, row), "") for column in table.columns)
+            + " |"
+        )
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Measures what the crate costs on microcontrollers.")
-    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"one of {', '.join(TABLES)}; default: all")
-    parser.add_argument("--update", action="store_true", help="write the tables instead of comparing them")
+    parser = argparse.ArgumentParser(
+        description="Measures what the crate costs on microcontrollers."
+    )
+    parser.add_argument(
+        "tables", nargs="*", metavar="TABLE", help=f"one of {', '.join(TABLES)}; default: all"
+    )
+    parser.add_argument(
+        "--update", action="store_true", help="write the tables instead of comparing them"
+    )
     options = parser.parse_args()
     if unknown := set(options.tables) - TABLES.keys():
-        parser.error(f"there is no table {', '.join(sorted(unknown))}; there are: {', '.join(TABLES)}")
+        parser.error(
+            f"there is no table {', '.join(sorted(unknown))}; there are: {', '.join(TABLES)}"
+        )
     page = DOCUMENT.read_text().splitlines()
     lines = page.copy()
     for table in [TABLES[name] for name in options.tables or TABLES]:

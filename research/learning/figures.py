@@ -1,4 +1,5 @@
-"""Learns with `swing_up` over several seeds, and compares the figures with the tables in docs/learning.md.
+"""Learns with `swing_up` over several seeds, and compares the figures with the tables in
+docs/learning.md.
 
     python3 figures.py             fails if they differ: learning is bit-identical everywhere
     python3 figures.py --update    writes the tables again
@@ -38,13 +39,25 @@ TIMES = "| memory | steps | steps to −80: median, worst seed | to −75 | to �
 
 
 def learn(run, seed):
-    """The steps at which this seed's greedy policy reached each of the goals, its mean return in the end, and its misses."""
+    """The steps at which this seed's greedy policy reached each of the goals, its mean return in
+    the end, and its misses."""
     memory, steps, _ = run
-    command = [ROOT / "target/release/swing_up", "--quiet", "--memory", memory, "--steps", str(steps)]
+    command = [
+        ROOT / "target/release/swing_up",
+        "--quiet",
+        "--memory",
+        memory,
+        "--steps",
+        str(steps),
+    ]
     command += ["--seed", str(seed), "--evaluate", str(EVALUATE)]
-    *curve, last = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
+    *curve, last = subprocess.run(
+        command, check=True, stdout=subprocess.PIPE, text=True
+    ).stdout.splitlines()
     points = [(int(line.split()[1]), float(line.split()[3])) for line in curve]
-    reached = [min((at for at, mean in points if mean >= goal), default=float("inf")) for goal in GOALS]
+    reached = [
+        min((at for at, mean in points if mean >= goal), default=float("inf")) for goal in GOALS
+    ]
     words = last.split()
     line = dict(zip(words[::2], words[1::2]))
     return reached, float(line["greedy_mean"]), int(line["misses"])
@@ -52,11 +65,24 @@ def learn(run, seed):
 
 def measure():
     """The results of all seeds of each run."""
-    build = ["cargo", "build", "--quiet", "--release", "--locked", "--package=desktop", "--bin=swing_up"]
+    build = [
+        "cargo",
+        "build",
+        "--quiet",
+        "--release",
+        "--locked",
+        "--package=desktop",
+        "--bin=swing_up",
+    ]
     subprocess.run(build, check=True, cwd=ROOT)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        futures = [[pool.submit(learn, run, seed) for seed in range(FIRST_SEED, FIRST_SEED + run[-1])] for run in RUNS]
-        return [(run, [future.result() for future in of_seeds]) for run, of_seeds in zip(RUNS, futures)]
+        futures = [
+            [pool.submit(learn, run, seed) for seed in range(FIRST_SEED, FIRST_SEED + run[-1])]
+            for run in RUNS
+        ]
+        return [
+            (run, [future.result() for future in of_seeds]) for run, of_seeds in zip(RUNS, futures)
+        ]
 
 
 def returns(run, results):
@@ -65,14 +91,20 @@ def returns(run, results):
     mean, sd = statistics.mean(means), statistics.stdev(means)
     error = STUDENT[seeds] * sd / seeds**0.5
     cells = [f"{memory[:-1]} KiB", f"{steps:,}", f"{seeds}", f"{mean:.1f} ± {sd:.1f}"]
-    return cells + [f"{mean - error:.1f} to {mean + error:.1f}", f"{min(means):.1f}", f"{sum(misses)} of {1000 * seeds:,}"]
+    return cells + [
+        f"{mean - error:.1f} to {mean + error:.1f}",
+        f"{min(means):.1f}",
+        f"{sum(misses)} of {1000 * seeds:,}",
+    ]
 
 
 def times(run, results):
     memory, steps, _ = run
     reached, _, _ = zip(*results)
     cells = [f"{memory[:-1]} KiB", f"{steps:,}"]
-    return cells + [f"{thousands(statistics.median_low(at))}, {thousands(max(at))}" for at in zip(*reached)]
+    return cells + [
+        f"{thousands(statistics.median_low(at))}, {thousands(max(at))}" for at in zip(*reached)
+    ]
 
 
 def thousands(steps):
@@ -96,7 +128,9 @@ def main():
     if sys.argv[1:] == ["--update"]:
         PAGE.write_text("\n".join(lines) + "\n")
     elif lines != before:
-        sys.exit("The tables in docs/learning.md differ. If that is intended: python3 figures.py --update")
+        sys.exit(
+            "The tables in docs/learning.md differ. If that is intended: python3 figures.py --update"
+        )
 
 
 main()

@@ -1,10 +1,12 @@
-"""Trains Stable-Baselines3's agents with RL Zoo's settings, and evaluates them as docs/learning.md evaluates this project's learner.
+"""Trains Stable-Baselines3's agents with RL Zoo's settings, and evaluates them as docs/learning.md
+evaluates this project's learner.
 
     pip install stable-baselines3 sb3-contrib ../../bindings/python
     python race.py qrdqn 0 1 2    # an agent of AGENTS, and seeds
 
-Prints for each seed the mean return of 1,000 greedy episodes from fresh initial states, those that missed the goal, the seconds of one core, and the
-seconds until a greedy evaluation during the training passed -100, -80 and -70. Evaluations do not count as time.
+Prints for each seed the mean return of 1,000 greedy episodes from fresh initial states, those that
+missed the goal, the seconds of one core, and the seconds until a greedy evaluation during the
+training passed -100, -80 and -70. Evaluations do not count as time.
 """
 
 import sys
@@ -36,9 +38,19 @@ Q = {
     "exploration_final_eps": 0.1,
 }
 AGENTS = {
-    "qrdqn": (QRDQN, 1, 100_000, Q | {"policy_kwargs": {"net_arch": [256, 256], "n_quantiles": 25}}),
+    "qrdqn": (
+        QRDQN,
+        1,
+        100_000,
+        Q | {"policy_kwargs": {"net_arch": [256, 256], "n_quantiles": 25}},
+    ),
     "dqn": (DQN, 1, 100_000, Q | {"policy_kwargs": {"net_arch": [256, 256]}}),
-    "ppo": (PPO, 16, 1_000_000, {"n_steps": 256, "gae_lambda": 0.94, "gamma": 0.99, "n_epochs": 4, "ent_coef": 0.0}),
+    "ppo": (
+        PPO,
+        16,
+        1_000_000,
+        {"n_steps": 256, "gae_lambda": 0.94, "gamma": 0.99, "n_epochs": 4, "ent_coef": 0.0},
+    ),
 }
 
 
@@ -60,7 +72,13 @@ class Clock(BaseCallback):
 
     def __init__(self, normalize):
         super().__init__()
-        self.normalize, self.passed, self.pauses, self.next, self.began = normalize, {}, 0.0, 5000, time.process_time()
+        self.normalize, self.passed, self.pauses, self.next, self.began = (
+            normalize,
+            {},
+            0.0,
+            5000,
+            time.process_time(),
+        )
 
     def seconds(self):
         return time.process_time() - self.began - self.pauses
@@ -82,7 +100,9 @@ def main():
     name, *seeds = sys.argv[1:]
     kind, count, steps, settings = AGENTS[name]
     for seed in map(int, seeds):
-        envs = VecMonitor(AcrobotVecEnv(gym.make_vec(NAME, num_envs=count, autoreset_mode="SameStep", threads=1)))
+        envs = VecMonitor(
+            AcrobotVecEnv(gym.make_vec(NAME, num_envs=count, autoreset_mode="SameStep", threads=1))
+        )
         normalize = np.asarray
         if kind is PPO:
             envs = VecNormalize(envs, gamma=settings["gamma"])
@@ -92,8 +112,13 @@ def main():
         model.learn(steps, callback=clock)
         seconds = clock.seconds()
         returns = evaluate(model, normalize, 1000, 10**9 + seed)
-        times = ", ".join(f"{each}: {at:,} steps {s:.0f} s" for each, (at, s) in clock.passed.items())
-        print(f"{name} seed {seed}: {returns.mean():.1f}, {(returns <= -500).sum()} missed, {seconds:.0f} s; {times}", flush=True)
+        times = ", ".join(
+            f"{each}: {at:,} steps {s:.0f} s" for each, (at, s) in clock.passed.items()
+        )
+        print(
+            f"{name} seed {seed}: {returns.mean():.1f}, {(returns <= -500).sum()} missed, {seconds:.0f} s; {times}",
+            flush=True,
+        )
 
 
 main()

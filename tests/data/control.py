@@ -1,20 +1,23 @@
-"""Differentiates the equations of motion automatically and solves Riccati equations: writes control.txt to its folder.
+"""Differentiates the equations of motion automatically and solves Riccati equations: writes
+control.txt to its folder.
 
     pip install -r tests/data/requirements.txt
     python tests/data/control.py
 
-The equations are those that truth.py integrates, for any parameters, and autograd differentiates them and a Runge-Kutta
-step of them. The torques are Lagrange's equations from positions and energies alone, and the forces Newton's law from the
-second derivatives of positions in time.
+The equations are those that truth.py integrates, for any parameters, and autograd differentiates
+them and a Runge-Kutta step of them. The torques are Lagrange's equations from positions and
+energies alone, and the forces Newton's law from the second derivatives of positions in time.
 
-The gains solve the Riccati equation in 200 digits. SciPy's solve_discrete_are finds the same, with an error of up to 3e-6.
+The gains solve the Riccati equation in 200 digits. SciPy's solve_discrete_are finds the same, with
+an error of up to 3e-6.
 """
 
 import os
 from importlib.metadata import version
 from pathlib import Path
 
-# OpenBLAS and NumPy have other code, and so another rounding, for each processor. This chooses code with FMA.
+# OpenBLAS and NumPy have other code, and so another rounding, for each processor. This chooses code
+# with FMA.
 os.environ["OPENBLAS_CORETYPE"] = "Haswell"
 if "avx512f" in Path("/proc/cpuinfo").read_text():
     os.environ["NPY_DISABLE_CPU_FEATURES"] = "X86_V4 AVX512_ICL AVX512_SPR"
@@ -55,7 +58,12 @@ def terms(p, y, dynamics, math):
     d1 = m1 * lc1**2 + m2 * (l1**2 + lc2**2) + 2 * arm * math.cos(theta2) + i1 + i2
     d2 = m2 * lc2**2 + arm * math.cos(theta2) + i2
     phi2 = m2 * lc2 * g * math.sin(theta1 + theta2)
-    phi1 = -arm * dtheta2**2 * sin2 - 2 * arm * dtheta2 * dtheta1 * sin2 + (m1 * lc1 + m2 * l1) * g * math.sin(theta1) + phi2
+    phi1 = (
+        -arm * dtheta2**2 * sin2
+        - 2 * arm * dtheta2 * dtheta1 * sin2
+        + (m1 * lc1 + m2 * l1) * g * math.sin(theta1)
+        + phi2
+    )
     centrifugal = arm * dtheta1**2 * sin2 if dynamics == "book" else 0.0
     return np.array([[d1, d2], [d2, m2 * lc2**2 + i2]]), phi1, centrifugal, phi2
 
@@ -63,7 +71,9 @@ def terms(p, y, dynamics, math):
 def derivative(p, y, torque, dynamics, math=Floats):
     theta1, theta2, dtheta1, dtheta2 = y
     mass, phi1, centrifugal, phi2 = terms(p, (theta1, theta2, dtheta1, dtheta2), dynamics, math)
-    rates = math.solve(mass, np.array([-phi1 - p[10] * dtheta1, torque - centrifugal - phi2 - p[11] * dtheta2]))
+    rates = math.solve(
+        mass, np.array([-phi1 - p[10] * dtheta1, torque - centrifugal - phi2 - p[11] * dtheta2])
+    )
     return np.array([dtheta1, dtheta2, rates[0], rates[1]])
 
 
@@ -84,7 +94,9 @@ def linear(f, p, y, torque, dynamics):
 
 def point(theta, distance1, distance2, math=Floats):
     """The point at these distances along link 1 and along link 2."""
-    along = lambda angle, distance: np.array([distance * math.sin(angle), -distance * math.cos(angle)])
+    along = lambda angle, distance: np.array(
+        [distance * math.sin(angle), -distance * math.cos(angle)]
+    )
     return along(theta[0], distance1) + along(theta[0] + theta[1], distance2)
 
 
@@ -120,18 +132,23 @@ def exactly(f, p, y, torque, dynamics):
     h = mpmath.mpf(10) ** -60
     columns = []
     for unit in np.eye(5, dtype=int) * h:
-        above, below = (f(p, y + sign * unit[:4], torque + sign * unit[4], dynamics, Digits) for sign in (1, -1))
+        above, below = (
+            f(p, y + sign * unit[:4], torque + sign * unit[4], dynamics, Digits) for sign in (1, -1)
+        )
         columns.append((above - below) / (2 * h))
     return np.array(columns[:4]).T, columns[4]
 
 
 def exact_motion(p, y, accelerations, dynamics):
-    """As motion, by differences in 200 digits. The torques are those of the equations in `terms`."""
+    """As motion, by differences in 200 digits. The torques are those of the equations in `terms`.
+    """
     l1, l2, m1, m2, lc1, lc2, _, _, g, *_ = p
     theta, dtheta = y[:2], y[2:]
     h = mpmath.mpf(10) ** -60
     times = -h, mpmath.mpf(0), h
-    places = lambda *distances: [point(theta + dtheta * t + accelerations * t**2 / 2, *distances, Digits) for t in times]
+    places = lambda *distances: [
+        point(theta + dtheta * t + accelerations * t**2 / 2, *distances, Digits) for t in times
+    ]
     velocity = lambda before, _, after: (after - before) / (2 * h)
     acceleration = lambda before, now, after: (after - 2 * now + before) / h**2
     weight = np.array([0, g])
@@ -143,16 +160,23 @@ def exact_motion(p, y, accelerations, dynamics):
 
 
 def regulator(a, b, q, r):
-    """The gain and the cost to go that solve the Riccati equation: structured doubling in 200 digits, checked."""
+    """The gain and the cost to go that solve the Riccati equation: structured doubling in 200
+    digits, checked."""
     a, b, q = (mpmath.matrix(m.tolist()) for m in (a, b[:, None], q))
     r = mpmath.mpf(float(r))
     power, reach, cost = a, b * b.T / r, q
     while mpmath.mnorm(power) > 1e-50:
         w = (mpmath.eye(4) + reach * cost) ** -1
-        cost, reach, power = (cost + power.T * cost * w * power, reach + power * w * reach * power.T, power * w * power)
+        cost, reach, power = (
+            cost + power.T * cost * w * power,
+            reach + power * w * reach * power.T,
+            power * w * power,
+        )
     gain = b.T * cost * a / (r + (b.T * cost * b)[0])
     closed = a - b * gain
-    assert mpmath.mnorm(closed.T * cost * closed + q + r * gain.T * gain - cost) < 1e-90 * mpmath.mnorm(cost)
+    assert mpmath.mnorm(
+        closed.T * cost * closed + q + r * gain.T * gain - cost
+    ) < 1e-90 * mpmath.mnorm(cost)
     for _ in range(40):
         closed = closed * closed
     assert mpmath.mnorm(closed) < 1e-9
@@ -166,7 +190,12 @@ def texts(*arrays):
 def weights(rng):
     """Q and R, from one weight on the angles alone to a full matrix."""
     square = rng.normal(size=(4, 4))
-    for q in np.eye(4), np.diag([10.0, 10.0, 1.0, 1.0]), np.diag([1.0, 1.0, 0.0, 0.0]), square @ square.T:
+    for q in (
+        np.eye(4),
+        np.diag([10.0, 10.0, 1.0, 1.0]),
+        np.diag([1.0, 1.0, 0.0, 0.0]),
+        square @ square.T,
+    ):
         yield (q + q.T) / 2, 10.0 ** rng.integers(-2, 3)
 
 
@@ -175,11 +204,22 @@ def decades(rng, low, high, size=None):
 
 
 def models(rng):
-    """Models with weights: the acrobot with sensible and extreme weights, then anything over many decades."""
+    """Models with weights: the acrobot with sensible and extreme weights, then anything over many
+    decades."""
     for dt in 0.002, 0.01, 0.05:
         for angle in 0.0, np.pi:
-            a, b = linear(step, np.array([*DEFAULT[:9], dt, *NONE]), np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
-            for diagonal in (1.0, 1.0, 1.0, 1.0), (1000.0, 1000.0, 10.0, 10.0), (1.0, 1.0, 0.0, 0.0):
+            a, b = linear(
+                step,
+                np.array([*DEFAULT[:9], dt, *NONE]),
+                np.array([angle, 0.0, 0.0, 0.0]),
+                0.0,
+                "book",
+            )
+            for diagonal in (
+                (1.0, 1.0, 1.0, 1.0),
+                (1000.0, 1000.0, 10.0, 10.0),
+                (1.0, 1.0, 0.0, 0.0),
+            ):
                 for r in 1e-8, 1e-4, 1.0, 1e6, 1e8:
                     yield "acrobot", a, b, np.diag(diagonal), r
     for number in range(150):
@@ -199,7 +239,9 @@ def wide_models(rng):
     """Models whose numbers span up to 24 decades, half of them zeros in many."""
     for number in range(100):
         spread = 2 + number % 11
-        sparse = lambda size, kept: (rng.random(size) < kept) * decades(rng, -spread / 2, spread / 2, size)
+        sparse = lambda size, kept: (
+            (rng.random(size) < kept) * decades(rng, -spread / 2, spread / 2, size)
+        )
         a = rng.normal(size=(4, 4)) * sparse((4, 4), 0.7)
         a *= decades(rng, -1, 0.5) / max(1.0, np.abs(np.linalg.eigvals(a)).max())
         b = rng.normal(size=4) * sparse(4, 0.8) ** 2
@@ -208,7 +250,11 @@ def wide_models(rng):
 
 def case(rng, number, p):
     dynamics = ["book", "nips"][number % 2]
-    y, torque, accelerations = rng.uniform(-STATES, STATES), rng.uniform(-5, 5), rng.uniform(-20, 20, 2)
+    y, torque, accelerations = (
+        rng.uniform(-STATES, STATES),
+        rng.uniform(-5, 5),
+        rng.uniform(-20, 20, 2),
+    )
     yield f"case {dynamics} {texts(p, y, torque, accelerations)}"
     yield f"continuous {texts(*linear(derivative, p, y, torque, dynamics))}"
     yield f"discrete {texts(*linear(step, p, y, torque, dynamics))}"
@@ -233,14 +279,30 @@ def main():
                 lines.append(f"lqr {texts(angle, dt, a, b, q, r, gain, cost)}")
     for number in range(40):
         dynamics = ["book", "nips"][number % 2]
-        p = np.array([*decades(rng, -3, 3, 8), rng.normal() * decades(rng, -3, 3), decades(rng, -5, -2), *NONE])
+        p = np.array(
+            [
+                *decades(rng, -3, 3, 8),
+                rng.normal() * decades(rng, -3, 3),
+                decades(rng, -5, -2),
+                *NONE,
+            ]
+        )
         y = rng.uniform(-STATES, STATES)
-        torque, accelerations = rng.normal() * decades(rng, -3, 3), rng.normal(size=2) * decades(rng, -3, 3, 2)
-        p, y, torque, accelerations = (np.float32(x).astype(float) for x in (p, y, torque, accelerations))
+        torque, accelerations = (
+            rng.normal() * decades(rng, -3, 3),
+            rng.normal(size=2) * decades(rng, -3, 3, 2),
+        )
+        p, y, torque, accelerations = (
+            np.float32(x).astype(float) for x in (p, y, torque, accelerations)
+        )
         lines.append(f"case {dynamics} {texts(p, y, torque, accelerations)}")
         digits = [row * mpmath.mpf(1) for row in (p, y, accelerations)]
-        lines.append(f"continuous {texts(*exactly(derivative, *digits[:2], mpmath.mpf(float(torque)), dynamics))}")
-        lines.append(f"discrete {texts(*exactly(step, *digits[:2], mpmath.mpf(float(torque)), dynamics))}")
+        lines.append(
+            f"continuous {texts(*exactly(derivative, *digits[:2], mpmath.mpf(float(torque)), dynamics))}"
+        )
+        lines.append(
+            f"discrete {texts(*exactly(step, *digits[:2], mpmath.mpf(float(torque)), dynamics))}"
+        )
         lines.append(f"motion {texts(*exact_motion(*digits, dynamics))}")
     for kind, *model in [*models(rng), *wide_models(np.random.default_rng(6))]:
         given = [np.float32(x) for x in model]

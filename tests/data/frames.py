@@ -1,5 +1,5 @@
-"""Records 64 frames of Gymnasium's rgb_array rendering: writes frames.png, eight rows of eight, and frames.txt, the
-states, to its folder.
+"""Records 64 frames of Gymnasium's rgb_array rendering: writes frames.png, eight rows of eight, and
+frames.txt, the states, to its folder.
 
     pip install -r tests/data/requirements.txt
     python tests/data/frames.py
@@ -31,6 +31,9 @@ for state, (length1, length2) in zip(states, lengths.tolist()):
     frames.append(env.render())
 grid = np.asarray(frames).reshape(8, 8, 500, 500, 3).transpose(0, 2, 1, 3, 4).reshape(4000, 4000, 3)
 pygame.image.save(pygame.surfarray.make_surface(grid.transpose(1, 0, 2)), HERE / "frames.png")
-lines = [f"# gymnasium {gymnasium.__version__}, numpy {np.__version__}, pygame {pygame.version.ver}", "# theta1 theta2 length1 length2"]
+lines = [
+    f"# gymnasium {gymnasium.__version__}, numpy {np.__version__}, pygame {pygame.version.ver}",
+    "# theta1 theta2 length1 length2",
+]
 lines += [" ".join(map(repr, row)) for row in np.column_stack([states[:, :2], lengths]).tolist()]
 (HERE / "frames.txt").write_text("\n".join(lines) + "\n")

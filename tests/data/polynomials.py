@@ -1,11 +1,11 @@
-"""Prints the constants of polynomial.rs and table.rs in src/math/sines, as bits of f32, and the error of each
-polynomial. Fails if the source has other constants.
+"""Prints the constants of polynomial.rs and table.rs in src/math/sines, as bits of f32, and the
+error of each polynomial. Fails if the source has other constants.
 
     pip install -r tests/data/requirements.txt
     python tests/data/polynomials.py
 
-Minimax by linear programming. Each coefficient is rounded to f32 in turn, the one of the lowest power first, and
-the remaining ones are fitted again to compensate.
+Minimax by linear programming. Each coefficient is rounded to f32 in turn, the one of the lowest
+power first, and the remaining ones are fitted again to compensate.
 """
 
 import sys
@@ -21,13 +21,16 @@ def fit(r, target, powers):
     coefficients = []
     for i in range(len(powers)):
         basis = np.stack([r**power for power in powers[i:]], axis=1)
-        # The largest error is the last unknown, in units of 1e-7 so that all unknowns have a similar size.
+        # The largest error is the last unknown, in units of 1e-7 so that all unknowns have a
+        # similar size.
         bound = np.full((len(r), 1), 1e-7)
         constraints = np.block([[basis, -bound], [-basis, -bound]]) * 1e6
         limits = np.concatenate([target, -target]) * 1e6
         cost = [0.0] * basis.shape[1] + [1.0]
         tolerances = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
-        fitted = linprog(cost, constraints, limits, bounds=(None, None), method="highs", options=tolerances)
+        fitted = linprog(
+            cost, constraints, limits, bounds=(None, None), method="highs", options=tolerances
+        )
         coefficients.append(np.float32(fitted.x[0]))
         target = target - float(coefficients[-1]) * basis[:, 0]
     return coefficients, np.abs(target).max()
@@ -49,7 +52,10 @@ for name, end, sin_powers, cos_powers in [
     ("table", np.pi / 32, (3,), (2,)),
 ]:
     r = np.linspace(1e-4, end + 1e-6, 3000)
-    for function, target, powers in [("S", np.sin(r) - r, sin_powers), ("C", np.cos(r) - 1, cos_powers)]:
+    for function, target, powers in [
+        ("S", np.sin(r) - r, sin_powers),
+        ("C", np.cos(r) - 1, cos_powers),
+    ]:
         coefficients, error = fit(r, target, powers)
         check(name, function, bits(coefficients), f"within {error:.1e}")
 check("table", "sines", bits(np.sin(np.arange(9) * np.pi / 16)))

@@ -1,4 +1,5 @@
-"""Records Gymnasium's Acrobot: writes episodes.txt, episodes.bin, steps.bin, free.txt and seeds.txt to its folder.
+"""Records Gymnasium's Acrobot: writes episodes.txt, episodes.bin, steps.bin, free.txt and seeds.txt
+to its folder.
 
     pip install -r tests/data/requirements.txt
     python tests/data/record.py
@@ -105,8 +106,12 @@ def write_episodes():
 
 
 def write_free():
-    """Sixty episodes under random actions, without a reset: digests of all states up to some steps."""
-    lines = [f"# {VERSIONS}", "# SEED, and digests of the states' bits after each of 65, 100 and 200 random steps, with no reset"]
+    """Sixty episodes under random actions, without a reset: digests of all states up to some steps.
+    """
+    lines = [
+        f"# {VERSIONS}",
+        "# SEED, and digests of the states' bits after each of 65, 100 and 200 random steps, with no reset",
+    ]
     env = gymnasium.make("Acrobot-v1").unwrapped
     for seed in range(60):
         env.reset(seed=seed)
@@ -122,10 +127,10 @@ def write_free():
 
 
 def write_steps():
-    """Single steps from states all over the bounds: two thousand with the default parameters, four hundred with
-    others, and two hundred from angles that take up to 64 turns to wrap, which rounds differently from one remainder.
-    A record is l1, l2, m1, m2, lc1, lc2, I1 = I2, dt, the velocity bounds, the torques, NIPS (0 or 1), state, action,
-    next state, in f64."""
+    """Single steps from states all over the bounds: two thousand with the default parameters, four
+    hundred with others, and two hundred from angles that take up to 64 turns to wrap, which rounds
+    differently from one remainder. A record is l1, l2, m1, m2, lc1, lc2, I1 = I2, dt, the velocity
+    bounds, the torques, NIPS (0 or 1), state, action, next state, in f64."""
     env = gymnasium.make("Acrobot-v1").unwrapped
     default = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 0.2, 4 * np.pi, 9 * np.pi, -1.0, 0.0, 1.0]
     rng = np.random.default_rng(1)
@@ -133,7 +138,9 @@ def write_steps():
     for i in range(2600):
         params = default
         if 2000 <= i < 2400:
-            params = rng.uniform([0.3] * 7 + [0.01, 2.0, 5.0] + [-5.0] * 3, [2.0] * 7 + [0.2, 20.0, 40.0] + [5.0] * 3)
+            params = rng.uniform(
+                [0.3] * 7 + [0.01, 2.0, 5.0] + [-5.0] * 3, [2.0] * 7 + [0.2, 20.0, 40.0] + [5.0] * 3
+            )
             params = params.tolist()
         (env.LINK_LENGTH_1, env.LINK_LENGTH_2, env.LINK_MASS_1, env.LINK_MASS_2) = params[:4]
         (env.LINK_COM_POS_1, env.LINK_COM_POS_2, env.LINK_MOI, env.dt) = params[4:8]
@@ -141,7 +148,9 @@ def write_steps():
         env.AVAIL_TORQUE = params[10:]
         env.book_or_nips = ["book", "nips"][i % 2]
         # The velocities are within 1/4, 1/2, 3/4 and all of their bounds, equally often.
-        bounds = np.array([np.pi, np.pi, *(np.array([4 * np.pi, 9 * np.pi]) * (i // 2 % 4 + 1) / 4)])
+        bounds = np.array(
+            [np.pi, np.pi, *(np.array([4 * np.pi, 9 * np.pi]) * (i // 2 % 4 + 1) / 4)]
+        )
         if i >= 2400:
             bounds[:2] = 390.0
         state = rng.uniform(-bounds, bounds)
@@ -157,7 +166,23 @@ def hexes(words, digits):
 
 
 def write_seeds():
-    seeds = [0, 1, 2, 3, 7, 42, 123, 2**31, 2**32 - 1, 2**32, 2**32 + 1, 10**15, 2**63, 2**64 - 1, 2**64]
+    seeds = [
+        0,
+        1,
+        2,
+        3,
+        7,
+        42,
+        123,
+        2**31,
+        2**32 - 1,
+        2**32,
+        2**32 + 1,
+        10**15,
+        2**63,
+        2**64 - 1,
+        2**64,
+    ]
     seeds += [2**96 - 1, 2**96, 2**127 + 9, 2**128 - 1, 2**128, 2**160 + 5, 10**60, 2**1000 + 7]
     lines = [f"# {VERSIONS}", "# reset SEED: the initial state (bits of f32)"]
     env = gymnasium.make("Acrobot-v1").unwrapped
@@ -169,13 +194,17 @@ def write_seeds():
         space = Discrete(n)
         space.seed(seed)
         lines.append(f"sample {seed} {n} {' '.join(str(space.sample()) for _ in range(20))}")
-    lines.append("# box SEED: three samples of Acrobot-v1's observation space after seed(SEED) (bits of f32)")
+    lines.append(
+        "# box SEED: three samples of Acrobot-v1's observation space after seed(SEED) (bits of f32)"
+    )
     for seed in seeds:
         space = gymnasium.make("Acrobot-v1").observation_space
         space.seed(seed)
         samples = np.concatenate([space.sample() for _ in range(3)])
         lines.append(f"box {seed} {hexes(samples.view('<u4'), 8)}")
-    lines.append("# play ID SEED: 1000 random steps, a reset at each end: a digest of every step's observation (f32; for v0")
+    lines.append(
+        "# play ID SEED: 1000 random steps, a reset at each end: a digest of every step's observation (f32; for v0"
+    )
     lines.append("# the state), reward and ends, and the number of episodes")
     for version, seed in product([0, 1], range(10)):
         # Gymnasium no longer has Acrobot-v0, which differed in its limit and its observation.
@@ -184,19 +213,28 @@ def write_seeds():
         played.action_space.seed(seed)
         words, episodes = [], 0
         for _ in range(1000):
-            observation, reward, terminated, truncated, _ = played.step(played.action_space.sample())
+            observation, reward, terminated, truncated, _ = played.step(
+                played.action_space.sample()
+            )
             seen = [played.unwrapped.state, observation][version].astype("<f4").view("<u4")
             words += [*seen, reward == 0.0, terminated, truncated]
             if terminated or truncated:
                 episodes += 1
                 played.reset()
         lines.append(f"play Acrobot-v{version} {seed} {digest(words):016x} {episodes}")
-    lines.append("# mixed SEED: integers(3), uniform(-1, 2) (bits of f64), integers(5), four times over")
+    lines.append(
+        "# mixed SEED: integers(3), uniform(-1, 2) (bits of f64), integers(5), four times over"
+    )
     for seed in seeds:
         rng = np.random.default_rng(seed)
-        words = [f"{rng.integers(3)} {hexes(bits([rng.uniform(-1, 2)]), 16)} {rng.integers(5)}" for _ in range(4)]
+        words = [
+            f"{rng.integers(3)} {hexes(bits([rng.uniform(-1, 2)]), 16)} {rng.integers(5)}"
+            for _ in range(4)
+        ]
         lines.append(f"mixed {seed} {' '.join(words)}")
-    lines.append("# spawn SEED PATH: generate_state(4, uint64) of the descendant with that spawn_key")
+    lines.append(
+        "# spawn SEED PATH: generate_state(4, uint64) of the descendant with that spawn_key"
+    )
     paths = [(), (0,), (1,), (7,), (0, 0), (3, 2, 1), (2**32 - 1,), (2**32,), (2**40 + 1, 5)]
     for seed, path in product(seeds, paths):
         words = np.random.SeedSequence(seed, spawn_key=path).generate_state(4, np.uint64)

@@ -1,6 +1,6 @@
-"""Derives the constants of src/math/sines/correctly_rounded, bounds the errors of its two fast paths, and records
-MPFR's correctly rounded sines and cosines in sines.txt in its folder. Fails if the source has other constants or an
-error exceeds its margin.
+"""Derives the constants of src/math/sines/correctly_rounded, bounds the errors of its two fast
+paths, and records MPFR's correctly rounded sines and cosines in sines.txt in its folder. Fails if
+the source has other constants or an error exceeds its margin.
 
     pip install -r tests/data/requirements.txt
     python tests/data/sines.py          records the first digest of each family again, in seconds
@@ -67,8 +67,8 @@ PLACES = [64, 67, 71, 76, 76, 76, 68, 68]
 
 
 def fit(f):
-    """Near minimax: interpolates at Chebyshev's nodes. Each coefficient is rounded in turn, the one of the highest power
-    first, and the others are fitted again to compensate."""
+    """Near minimax: interpolates at Chebyshev's nodes. Each coefficient is rounded in turn, the one
+    of the highest power first, and the others are fitted again to compensate."""
     fixed = [mp.mpf(0)] * 8
     for last in reversed(range(8)):
         n = last + 1
@@ -82,7 +82,8 @@ def fit(f):
 
 
 def approximation(fixed, series):
-    """The least and the greatest difference of the polynomial from the function over 0 <= w <= 1, in units of 2^-64."""
+    """The least and the greatest difference of the polynomial from the function over 0 <= w <= 1,
+    in units of 2^-64."""
     difference = [(fixed[k] if k < 8 else 0) - c for k, c in enumerate(series)]
     slope = [k * c for k, c in enumerate(difference)][1:]
     curvature = sum(k * k * abs(c) for k, c in enumerate(difference))
@@ -114,8 +115,9 @@ def evaluation(fixed):
 
 # The fraction is cut below its 64th bit, and its square is up to 3 too low.
 SQUARE = between(-5, 0)
-# The product with 2/π is up to 4 units of 2^-128 too low, shifted to the left by at most 7 and by at most 53 zeros.
-REDUCTION = between(-mp.mpf(2) ** (2 + 7 + 53 - 64), 0)
+# The product with 2/π is up to 4 units of 2^-128 too low, shifted to the left by at most 7 and by
+# at most 53 zeros.
+REDUCTION = between(-(mp.mpf(2) ** (2 + 7 + 53 - 64)), 0)
 LIMIT = 3
 
 for name, f, series in [("sine", sine, SINE_SERIES), ("cosine", cosine, COSINE_SERIES)]:
@@ -128,7 +130,14 @@ for name, f, series in [("sine", sine, SINE_SERIES), ("cosine", cosine, COSINE_S
         total = sum(terms) / mp.sin(PI / 4) + REDUCTION * 2 + between(-1, 0)
     else:
         total = -(sum(terms) + SQUARE * between(0, COSINE_SERIES[0])) + between(-1, 0)
-    print(name, *[mp.iv.nstr(term, 3) for term in terms], "total", mp.iv.nstr(total, 3), "limit", LIMIT)
+    print(
+        name,
+        *[mp.iv.nstr(term, 3) for term in terms],
+        "total",
+        mp.iv.nstr(total, 3),
+        "limit",
+        LIMIT,
+    )
     if not (-LIMIT < total.a and total.b < LIMIT):
         sys.exit("the error exceeds the margin")
 
@@ -166,16 +175,27 @@ for i in range(65):
     for b in [B] if i else [B, B / 2**20]:
         result = s * mp.cos(b) - c * mp.sin(b) if i else mp.sin(b)
         cosine_rest, sine_rest = b**2 / 2, b**3 / 6
-        small = s * cosine_rest + 2 * b * mp.mpf(2) ** -26 + (mp.mpf(2) ** -26 if i else 0) + c * sine_rest
+        small = (
+            s * cosine_rest
+            + 2 * b * mp.mpf(2) ** -26
+            + (mp.mpf(2) ** -26 if i else 0)
+            + c * sine_rest
+        )
         errors = [
             s * (5 * ROUNDING * cosine_rest + b**8 / mp.factorial(8) + b * half_place(b)),
             c * (6 * ROUNDING * sine_rest + b**9 / mp.factorial(9) + 2 * ROUNDING * half_place(b)),
-            4 * ROUNDING * (2 * b * mp.mpf(2) ** -26 + (mp.mpf(2) ** -26 if i else 0) + c * sine_rest),
+            4
+            * ROUNDING
+            * (2 * b * mp.mpf(2) ** -26 + (mp.mpf(2) ** -26 if i else 0) + c * sine_rest),
             half_place(small),
             2 * half_place(small + half_place(s + b)),
         ]
         worst = max(worst, sum(errors) / abs(result))
-print("float.rs: the relative error is at most 2 to the", mp.nstr(mp.log(worst, 2), 4), "and its limit 2 to the -62")
+print(
+    "float.rs: the relative error is at most 2 to the",
+    mp.nstr(mp.log(worst, 2), 4),
+    "and its limit 2 to the -62",
+)
 if worst * (1 + mp.mpf(2) ** -10) > mp.mpf(2) ** -62:
     sys.exit("the error exceeds the margin")
 
@@ -210,12 +230,18 @@ FAMILIES = {
     "pi": lambda u: uniform(u, np.pi),
     "64": lambda u: uniform(u, 64.0),
     "2^20": lambda u: uniform(u, 2.0**20),
-    "tiny": lambda u: of_bits(u & MANTISSA | u & SIGN | (u64(1023 - 64) + (u >> u64(52) & u64(1023)) % u64(45)) << u64(52)),
-    "subnormal": lambda u: of_bits((u & MANTISSA) >> (u >> u64(52) & u64(1023)) % u64(52) | u & SIGN),
+    "tiny": lambda u: of_bits(
+        u & MANTISSA | u & SIGN | (u64(1023 - 64) + (u >> u64(52) & u64(1023)) % u64(45)) << u64(52)
+    ),
+    "subnormal": lambda u: of_bits(
+        (u & MANTISSA) >> (u >> u64(52) & u64(1023)) % u64(52) | u & SIGN
+    ),
     "quarters": next_to_quarters,
     "any": any_finite,
 }
-POWERS = np.cumprod(np.full(2 * CHUNK, u64(MULTIPLIER)), dtype=np.uint64)[::-1] * u64(pow(MULTIPLIER, -1, 2**64))
+POWERS = np.cumprod(np.full(2 * CHUNK, u64(MULTIPLIER)), dtype=np.uint64)[::-1] * u64(
+    pow(MULTIPLIER, -1, 2**64)
+)
 
 
 def rounded(x):
@@ -230,7 +256,8 @@ def digest(x):
 
 
 def hard(x):
-    """Whether sin x or cos x is so near to half way between two f64 that 66 bits do not decide the rounding."""
+    """Whether sin x or cos x is so near to half way between two f64 that 66 bits do not decide the
+    rounding."""
     with gmpy2.context(gmpy2.get_context(), precision=150):
         for y in gmpy2.sin_cos(gmpy2.mpfr(x)):
             _, mantissa = gmpy2.frexp(y)
@@ -241,7 +268,8 @@ def hard(x):
 
 
 def nearest_to_quarters(exponent):
-    """An m of 53 bits for which m 2^exponent is very near to a multiple of π/2, by a continued fraction."""
+    """An m of 53 bits for which m 2^exponent is very near to a multiple of π/2, by a continued
+    fraction."""
     x = Fraction(int(2 / PI * mp.mpf(2) ** 1500), 2**1500) * Fraction(2) ** exponent % 1
     (p, q), (last_p, last_q) = (0, 1), (1, 0)
     while x:
@@ -262,9 +290,23 @@ def hard_cases():
         m = nearest_to_quarters(exponent)
         if m < 2**53:
             yield float(mp.ldexp(m, exponent))
-    for x in [0.0, 5e-324, 2.0**-1022, 2.0**-28, 2.0**-27, 2.0**-26, 2.0**-25, 0.5, 1.0, 64.0, 2.0**20, 1.7976931348623157e308]:
+    for x in [
+        0.0,
+        5e-324,
+        2.0**-1022,
+        2.0**-28,
+        2.0**-27,
+        2.0**-26,
+        2.0**-25,
+        0.5,
+        1.0,
+        64.0,
+        2.0**20,
+        1.7976931348623157e308,
+    ]:
         yield from [x, -x, np.nextafter(x, 0), np.nextafter(x, 1)]
-    # Multiples of π/4, for links that hang, stand or are level, and of π/128, as in the table of float.rs.
+    # Multiples of π/4, for links that hang, stand or are level, and of π/128, as in the table of
+    # float.rs.
     for k in range(1, 200):
         yield from [k * (np.pi / 4), -k * (np.pi / 4), k * (np.pi / 128)]
 
@@ -273,7 +315,15 @@ def record():
     # This context also rounds subnormal results correctly.
     gmpy2.set_context(gmpy2.ieee(64))
     path = HERE / "sines.txt"
-    known = dict(line.rsplit(" ", 1) for line in path.read_text().splitlines() if line.startswith("family")) if path.exists() else {}
+    known = (
+        dict(
+            line.rsplit(" ", 1)
+            for line in path.read_text().splitlines()
+            if line.startswith("family")
+        )
+        if path.exists()
+        else {}
+    )
     lines = [
         f"# Correctly rounded by {gmpy2.mpfr_version()}. First digests of the sines and cosines of 250,000 arguments, from",
         "# draws of default_rng(chunk); then hard cases: the bits of x, sin x and cos x.",

@@ -3,10 +3,11 @@
     pip install -r tests/data/requirements.txt
     python tests/data/swingup.py
 
-Each line is a step: the angles from upright and their velocities, the action, the same after the step, the observation, and the rewards of swingup and of
-swingup_sparse. Ten episodes of 100 steps with random actions. Every other one begins near upright, where rewards are high.
-On a CPU with AVX-512 NumPy and OpenBLAS use an exponential and a dot product of their own, so this
-script chooses others.
+Each line is a step: the angles from upright and their velocities, the action, the same after the
+step, the observation, and the rewards of swingup and of swingup_sparse. Ten episodes of 100 steps
+with random actions. Every other one begins near upright, where rewards are high. On a CPU with
+AVX-512 NumPy and OpenBLAS use an exponential and a dot product of their own, so this script chooses
+others.
 """
 
 import os
@@ -23,9 +24,20 @@ from dm_control import suite
 
 
 def main():
-    lines = [f"# {', '.join(f'{name} {version(name)}' for name in ('dm_control', 'mujoco', 'numpy'))}"]
-    dense, sparse = (suite.load("acrobot", task, task_kwargs={"random": 1}) for task in ("swingup", "swingup_sparse"))
-    lines.append("# inertias " + " ".join(repr(float(x)) for x in dense.physics.named.model.body_inertia[["upper_arm", "lower_arm"], 1]))
+    lines = [
+        f"# {', '.join(f'{name} {version(name)}' for name in ('dm_control', 'mujoco', 'numpy'))}"
+    ]
+    dense, sparse = (
+        suite.load("acrobot", task, task_kwargs={"random": 1})
+        for task in ("swingup", "swingup_sparse")
+    )
+    lines.append(
+        "# inertias "
+        + " ".join(
+            repr(float(x))
+            for x in dense.physics.named.model.body_inertia[["upper_arm", "lower_arm"], 1]
+        )
+    )
     rng = np.random.default_rng(1)
     for episode in range(10):
         dense.reset()
@@ -41,8 +53,17 @@ def main():
             after = dense.physics.get_state().copy()
             with sparse.physics.reset_context():
                 sparse.physics.set_state(after)
-            observation = np.concatenate([step.observation[name] for name in ("orientations", "velocity")])
-            numbers = [*before, action, *after, *observation, step.reward, sparse.task.get_reward(sparse.physics)]
+            observation = np.concatenate(
+                [step.observation[name] for name in ("orientations", "velocity")]
+            )
+            numbers = [
+                *before,
+                action,
+                *after,
+                *observation,
+                step.reward,
+                sparse.task.get_reward(sparse.physics),
+            ]
             lines.append(" ".join(repr(float(x)) for x in numbers))
     (Path(__file__).parent / "swingup.txt").write_text("\n".join(lines) + "\n")
 

@@ -3,13 +3,15 @@
     pip install -r tests/data/requirements.txt
     python tests/data/truth.py
 
-The equations are those that R. S. Sutton and A. G. Barto print (Reinforcement Learning: An Introduction, 1998, figure
-11.4), and R. S. Sutton before them (Generalization in Reinforcement Learning, NIPS 8, 1996) without one term: here
-as two linear equations for the two accelerations, which LAPACK solves, and with sines instead of the cosines of angles
-minus pi/2. The work of the torques is integrated too.
+The equations are those that R. S. Sutton and A. G. Barto print (Reinforcement Learning: An
+Introduction, 1998, figure 11.4), and R. S. Sutton before them (Generalization in Reinforcement
+Learning, NIPS 8, 1996) without one term: here as two linear equations for the two accelerations,
+which LAPACK solves, and with sines instead of the cosines of angles minus pi/2. The work of the
+torques is integrated too.
 
-The script makes two checks. A run at a quarter of the tolerance gives the uncertainty of each row, which the row
-contains. The change of the energy, from the positions and velocities of the links, must equal the work of the torques.
+The script makes two checks. A run at a quarter of the tolerance gives the uncertainty of each row,
+which the row contains. The change of the energy, from the positions and velocities of the links,
+must equal the work of the torques.
 """
 
 import math
@@ -18,8 +20,8 @@ import platform
 from itertools import product
 from pathlib import Path
 
-# OpenBLAS has other code, and so another rounding, for each processor. This chooses code with FMA, which glibc's sines
-# use.
+# OpenBLAS has other code, and so another rounding, for each processor. This chooses code with FMA,
+# which glibc's sines use.
 os.environ["OPENBLAS_CORETYPE"] = "Haswell"
 
 import numpy as np
@@ -29,8 +31,14 @@ from scipy.integrate import solve_ivp
 TOLERANCE, FINER = 1e-13, 2.5e-14
 HOLD = 0.2  # s, for which a torque is held
 GRAVITY, LENGTH, CENTER, INERTIA = 9.8, 1.0, 0.5, 1.0  # of both links, whose masses are 1 kg
-STARTS = {"rest": ([0.05, -0.03, 0.02, 0.01], [1, 10, 100]), "fast": ([1.2, -0.7, 3.0, 2.0], [1, 10])}
-TORQUES = {"constant": np.ones(500), "switching": np.random.default_rng(9).integers(-1, 2, 500).astype(float)}
+STARTS = {
+    "rest": ([0.05, -0.03, 0.02, 0.01], [1, 10, 100]),
+    "fast": ([1.2, -0.7, 3.0, 2.0], [1, 10]),
+}
+TORQUES = {
+    "constant": np.ones(500),
+    "switching": np.random.default_rng(9).integers(-1, 2, 500).astype(float),
+}
 # Far above the difference that is found, far below the effect of a wrong sign.
 BALANCE = 1e-8  # J
 
@@ -48,15 +56,27 @@ def derivative(_, y, torque, dynamics):
         # Without the term the pendulum moves as under a torque that cancels it.
         torque = torque + centrifugal
     mass = [[d1, d2], [d2, CENTER**2 + INERTIA]]
-    return [dtheta1, dtheta2, *np.linalg.solve(mass, [-phi1, torque - centrifugal - phi2]), torque * dtheta2]
+    return [
+        dtheta1,
+        dtheta2,
+        *np.linalg.solve(mass, [-phi1, torque - centrifugal - phi2]),
+        torque * dtheta2,
+    ]
 
 
 def energy(theta1, theta2, dtheta1, dtheta2):
     """The energy of two rods, from the positions and velocities of their centres of mass."""
     across = np.array([np.cos(theta1), np.sin(theta1)]) * dtheta1
     turning = dtheta1 + dtheta2
-    second = LENGTH * across + CENTER * np.array([np.cos(theta1 + theta2), np.sin(theta1 + theta2)]) * turning
-    kinetic = (CENTER * across) @ (CENTER * across) + second @ second + INERTIA * (dtheta1**2 + turning**2)
+    second = (
+        LENGTH * across
+        + CENTER * np.array([np.cos(theta1 + theta2), np.sin(theta1 + theta2)]) * turning
+    )
+    kinetic = (
+        (CENTER * across) @ (CENTER * across)
+        + second @ second
+        + INERTIA * (dtheta1**2 + turning**2)
+    )
     heights = -CENTER * np.cos(theta1) - LENGTH * np.cos(theta1) - CENTER * np.cos(theta1 + theta2)
     return kinetic / 2 + GRAVITY * heights
 
@@ -66,7 +86,13 @@ def integrate(dynamics, start, torques, tolerance):
     rows = [np.array([*start, 0.0])]
     for torque in torques:
         solution = solve_ivp(
-            derivative, (0, HOLD), rows[-1], "DOP853", rtol=tolerance, atol=tolerance, args=(torque, dynamics)
+            derivative,
+            (0, HOLD),
+            rows[-1],
+            "DOP853",
+            rtol=tolerance,
+            atol=tolerance,
+            args=(torque, dynamics),
         )
         assert solution.success
         rows.append(solution.y[:, -1])
@@ -84,7 +110,9 @@ def main():
     for dynamics, start, plan in product(["book", "nips"], STARTS, TORQUES):
         y, times = STARTS[start]
         torques = TORQUES[plan][: round(times[-1] / HOLD)]
-        found, finer = (integrate(dynamics, y, torques, tolerance) for tolerance in (TOLERANCE, FINER))
+        found, finer = (
+            integrate(dynamics, y, torques, tolerance) for tolerance in (TOLERANCE, FINER)
+        )
         balance = [energy(*row[:4]) - energy(*y) - row[4] for row in found]
         worst = np.maximum(worst, np.abs(balance).max())  # unlike `max` it keeps NaN
         lines.append(f"start {dynamics} {start} {plan} {hexes(y)}")

@@ -1,7 +1,7 @@
 """Answers the kit with Gymnasium's own Acrobot.
 
-    python gymnasium_port.py acrobot-kit.jsonl > answers.jsonl
-    python gymnasium_port.py acrobot-kit.jsonl swapped > answers.jsonl    # with a fault that ports have had
+python gymnasium_port.py acrobot-kit.jsonl > answers.jsonl
+python gymnasium_port.py acrobot-kit.jsonl swapped > answers.jsonl    # with a fault that ports have had
 """
 
 import json
@@ -10,8 +10,21 @@ import sys
 import gymnasium
 import numpy as np
 
-NAMES = {"l1": "LINK_LENGTH_1", "l2": "LINK_LENGTH_2", "m1": "LINK_MASS_1", "m2": "LINK_MASS_2", "lc1": "LINK_COM_POS_1", "lc2": "LINK_COM_POS_2"}
-NAMES |= {"I1": "LINK_MOI", "dt": "dt", "max_vel_1": "MAX_VEL_1", "max_vel_2": "MAX_VEL_2", "torques": "AVAIL_TORQUE"}
+NAMES = {
+    "l1": "LINK_LENGTH_1",
+    "l2": "LINK_LENGTH_2",
+    "m1": "LINK_MASS_1",
+    "m2": "LINK_MASS_2",
+    "lc1": "LINK_COM_POS_1",
+    "lc2": "LINK_COM_POS_2",
+}
+NAMES |= {
+    "I1": "LINK_MOI",
+    "dt": "dt",
+    "max_vel_1": "MAX_VEL_1",
+    "max_vel_2": "MAX_VEL_2",
+    "torques": "AVAIL_TORQUE",
+}
 
 env = gymnasium.make("Acrobot-v1").unwrapped
 if sys.argv[2:] == ["swapped"]:

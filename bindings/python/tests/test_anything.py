@@ -1,4 +1,5 @@
-"""Any object can be an argument: invalid ones are rejected and change nothing, nothing panics, and no result is NaN.
+"""Any object can be an argument: invalid ones are rejected and change nothing, nothing panics, and
+no result is NaN.
 
 With more examples: ``python -m pytest --hypothesis-profile=long tests/test_anything.py``.
 """

@@ -1,6 +1,7 @@
 """The single environment is bit-identical to Gymnasium's, which runs beside it.
 
-With 2,000 configurations instead of 300: ``python -m pytest --hypothesis-profile=long tests/test_parity.py``.
+With 2,000 configurations instead of 300: ``python -m pytest --hypothesis-profile=long
+tests/test_parity.py``.
 """
 
 import acrobot_rs
@@ -60,7 +61,8 @@ def set_state(rng, envs):
 
 
 def compare(seed):
-    """Plays a configuration in both, every tenth time with the default parameters. Returns how many steps had too many turns."""
+    """Plays a configuration in both, every tenth time with the default parameters. Returns how many
+    steps had too many turns."""
     rng = np.random.default_rng(seed)
     envs = theirs, ours = gymnasium.make("Acrobot-v1").unwrapped, acrobot_rs.AcrobotEnv()
     default = seed % 10 == 0
@@ -124,7 +126,8 @@ def compare(seed):
 
 
 def test_configurations(monkeypatch):
-    """All parameters, changed during episodes too, resets with and without bounds, and states set by hand."""
+    """All parameters, changed during episodes too, resets with and without bounds, and states set
+    by hand."""
     monkeypatch.setattr(gymnasium.envs.classic_control.acrobot, "wrap", wrap)
     count = 2000 if settings.get_current_profile_name() == "long" else 300
     skipped = sum(compare(seed) for seed in range(count))

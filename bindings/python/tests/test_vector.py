@@ -242,7 +242,8 @@ def test_continuous_torques_give_the_episodes_of_single_environments(mode):
 
 
 def test_torques_in_float32_are_those_of_actions():
-    """Those beyond the bounds, which are those of AVAIL_TORQUE, or beyond float32, as the bounds."""
+    """Those beyond the bounds, which are those of AVAIL_TORQUE, or beyond float32, as the bounds.
+    """
 
     class Strong(AcrobotContinuousVectorEnv):
         AVAIL_TORQUE = (3.0, -2.0, 0.0)

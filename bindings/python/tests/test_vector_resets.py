@@ -1,4 +1,5 @@
-"""Streams, seeds, masks and autoresets are the documented ones, and with Gymnasium's episodes those of SyncVectorEnv."""
+"""Streams, seeds, masks and autoresets are the documented ones, and with Gymnasium's episodes those
+of SyncVectorEnv."""
 
 import copy
 import itertools
@@ -118,7 +119,8 @@ def test_other_sines_are_warned_of_once(monkeypatch):
 @pytest.mark.parametrize("noise", [0.0, 0.5])
 @MODES
 def test_gymnasium_s_episodes_bit_identically(mode, noise):
-    """Resets with seeds, bounds and masks, parameters of each environment, and thousands of steps of each."""
+    """Resets with seeds, bounds and masks, parameters of each environment, and thousands of steps
+    of each."""
     theirs, ours = pair(6, mode, max_episode_steps=150)
     for envs in (theirs, ours):
         envs.set_attr("torque_noise_max", noise)
@@ -166,7 +168,8 @@ def test_gymnasium_s_episodes_bit_identically(mode, noise):
 
 @MODES
 def test_observations_of_initial_states_bit_identically(mode):
-    """Gymnasium computes them in float32. One in 500 differs from the rounded sines of float64, so this takes thousands."""
+    """Gymnasium computes them in float32. One in 500 differs from the rounded sines of float64, so
+    this takes thousands."""
     theirs, ours = pair(500, mode, max_episode_steps=1)
     assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
     mask = np.arange(500) % 2 == 0
