@@ -230,7 +230,8 @@ def table(versions, rates):
     yield HEAD
     yield "|---|---|---|---|"
     for name, (words, *_) in IMPLEMENTATIONS.items():
-        yield f"| {words} | {versions[name]} | {digits(rates[name] / 1e6)} | {digits(rates[name] / rates['make'])} |"
+        millions, times = digits(rates[name] / 1e6), digits(rates[name] / rates["make"])
+        yield f"| {words} | {versions[name]} | {millions} | {times} |"
 
 
 def update(rows):

@@ -66,5 +66,6 @@ runs = dm_control, mujoco_rollout, single, vector
 best = np.max([[rate(run) for run in runs] for _ in range(5)], axis=0)
 for run, each in zip(runs, best, strict=True):
     print(
-        f"{run.__name__:15} {each:14,.0f} steps per second, {each / best[0]:9,.1f} times dm_control, {each / best[1]:7,.1f} times mujoco.rollout"
+        f"{run.__name__:15} {each:14,.0f} steps per second,",
+        f"{each / best[0]:9,.1f} times dm_control, {each / best[1]:7,.1f} times mujoco.rollout",
     )

@@ -3,7 +3,7 @@ One file, as in CleanRL.
 
     pip install -r requirements.txt && pip install .
     python train_ppo.py                        seeds 1, 2 and 3
-    python train_ppo.py 3 --save policy.bin    also saves the policy of the last seed, for a microcontroller
+    python train_ppo.py 3 --save policy.bin    also saves the last policy, for a microcontroller
 
 Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in
 Gymnasium's own environment. Fails if a seed has not learnt after a million steps.
@@ -134,8 +134,7 @@ def loss(parameters, batch):
 
 @jax.jit
 def learn(parameters, state, key, rollout):
-    """Optimizes the parameters for EPOCHS over the rollout. Returns them and the optimizer's state.
-    """
+    """Optimizes for EPOCHS over the rollout. Returns the parameters and the optimizer's state."""
     observations, actions, seen, rewards, terminated, ended = rollout
     advantage = advantages(parameters, observations, seen, rewards, terminated, ended)
     targets = advantage + values(parameters, observations)
@@ -234,7 +233,8 @@ def main():
         gymnasiums.reset(seed=seed)
         there = evaluate(gymnasiums, parameters, jax.random.key(0))
         print(
-            f"seed {seed}: {mean:.1f} after {steps:,} steps and {seconds:.1f} s; in Gymnasium's own {there:.1f}",
+            f"seed {seed}: {mean:.1f} after {steps:,} steps and {seconds:.1f} s;",
+            f"in Gymnasium's own {there:.1f}",
             flush=True,
         )
         learnt &= mean > THRESHOLD

@@ -67,8 +67,10 @@ def per_instruction(image, most=None):
             code[int(match[1], 16)] = (match[2], match[3])
 
     qemu = subprocess.Popen(
-        "qemu-system-arm -machine mps2-an386 -nographic -singlestep -d exec,nochain -D /dev/stdout -kernel".split()
-        + [image],
+        [
+            *"qemu-system-arm -machine mps2-an386 -nographic -singlestep".split(),
+            *("-d", "exec,nochain", "-D", "/dev/stdout", "-kernel", image),
+        ],
         stdout=subprocess.PIPE,
         text=True,
     )

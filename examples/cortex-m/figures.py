@@ -3,7 +3,8 @@
 
     python3 figures.py             prints every figure, and fails if one differs from the page
     python3 figures.py --update    writes the tables
-    python3 figures.py cores       only the tables that are named: m4f, additions, balance, control, cores, stacks, sizes, levels
+    python3 figures.py cores       only the tables that are named: m4f, additions, balance, control,
+                                   cores, stacks, sizes, levels
 
 `steps` counts instructions, stack and RAM, `bench`, `learn`, `policy` and `balance` count
 instructions. Flash is that of `minimal` minus that of the same firmware without an acrobot, or

@@ -34,7 +34,10 @@ RUNS = [
     ("64k", 1_000_000, 20),
     ("64k", 2_000_000, 20),
 ]
-RETURNS = "| memory | steps | seeds | greedy return: mean ± sd of the seeds | 95 % interval of the mean | worst seed | misses |"
+RETURNS = (
+    "| memory | steps | seeds | greedy return: mean ± sd of the seeds "
+    "| 95 % interval of the mean | worst seed | misses |"
+)
 TIMES = "| memory | steps | steps to −80: median, worst seed | to −75 | to −70 |"
 
 
@@ -128,9 +131,7 @@ def main():
     if sys.argv[1:] == ["--update"]:
         PAGE.write_text("\n".join(lines) + "\n")
     elif lines != before:
-        sys.exit(
-            "The tables in docs/learning.md differ. If that is intended: python3 figures.py --update"
-        )
+        sys.exit("docs/learning.md differs. If that is intended: python3 figures.py --update")
 
 
 main()

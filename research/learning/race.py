@@ -116,7 +116,8 @@ def main():
             f"{each}: {at:,} steps {s:.0f} s" for each, (at, s) in clock.passed.items()
         )
         print(
-            f"{name} seed {seed}: {returns.mean():.1f}, {(returns <= -500).sum()} missed, {seconds:.0f} s; {times}",
+            f"{name} seed {seed}: {returns.mean():.1f}, {(returns <= -500).sum()} missed,",
+            f"{seconds:.0f} s; {times}",
             flush=True,
         )
 

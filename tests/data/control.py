@@ -27,7 +27,10 @@ import mpmath
 from autograd import grad, jacobian
 from scipy.linalg import solve_discrete_are
 
-NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2 gravity dt friction1 friction2".split()
+NAMES = (
+    "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2 gravity dt "
+    "friction1 friction2"
+).split()
 LOW = [0.3, 0.3, 0.3, 0.3, 0.0, 0.0, 0.1, 0.1, -15.0, 0.002]
 HIGH = [2.0, 2.0, 3.0, 3.0, 1.0, 1.0, 2.0, 2.0, 15.0, 0.2]
 NONE = [0.0, 0.0]
@@ -140,8 +143,7 @@ def exactly(f, p, y, torque, dynamics):
 
 
 def exact_motion(p, y, accelerations, dynamics):
-    """As motion, by differences in 200 digits. The torques are those of the equations in `terms`.
-    """
+    """As motion, by differences in 200 digits. The torques follow from the equations in `terms`."""
     l1, l2, m1, m2, lc1, lc2, _, _, g, *_ = p
     theta, dtheta = y[:2], y[2:]
     h = mpmath.mpf(10) ** -60
@@ -297,12 +299,9 @@ def main():
         )
         lines.append(f"case {dynamics} {texts(p, y, torque, accelerations)}")
         digits = [row * mpmath.mpf(1) for row in (p, y, accelerations)]
-        lines.append(
-            f"continuous {texts(*exactly(derivative, *digits[:2], mpmath.mpf(float(torque)), dynamics))}"
-        )
-        lines.append(
-            f"discrete {texts(*exactly(step, *digits[:2], mpmath.mpf(float(torque)), dynamics))}"
-        )
+        arguments = (*digits[:2], mpmath.mpf(float(torque)), dynamics)
+        lines.append(f"continuous {texts(*exactly(derivative, *arguments))}")
+        lines.append(f"discrete {texts(*exactly(step, *arguments))}")
         lines.append(f"motion {texts(*exact_motion(*digits, dynamics))}")
     for kind, *model in [*models(rng), *wide_models(np.random.default_rng(6))]:
         given = [np.float32(x) for x in model]
@@ -311,8 +310,9 @@ def main():
         lines.append(f"model {kind} {numbers} {texts(gain)}")
     for number in range(40):
         lines += case(rng, number, np.array([*rng.uniform(LOW, HIGH), *decades(rng, -3, 0, 2)]))
+    packages = ("autograd", "mpmath", "numpy", "scipy")
     head = [
-        f"# {', '.join(f'{name} {version(name)}' for name in ('autograd', 'mpmath', 'numpy', 'scipy'))}",
+        f"# {', '.join(f'{name} {version(name)}' for name in packages)}",
         f"# case DYNAMICS {' '.join(NAMES)}, the state, the torque, two accelerations",
         "# continuous, discrete: A by rows, B",
         "# motion: torques, reaction, force in the elbow, velocities of elbow and tip",

@@ -93,8 +93,10 @@ def write_episodes():
     rows += [(2**32 + i, *kind, "random") for i, kind in enumerate(wild)]
     lines = [
         f"# {VERSIONS}",
-        "# Each row stands for a record in episodes.bin: 500 actions (u8), 501 states of 4 (f64), 500 rewards",
-        "# (i8), 500 terminated (u8), the initial observation (6 f32), a digest of the steps' observations (u64).",
+        "# Each row stands for a record in episodes.bin: 500 actions (u8), 501 states of 4 (f64), "
+        "500 rewards",
+        "# (i8), 500 terminated (u8), the initial observation (6 f32), a digest of the steps' "
+        "observations (u64).",
         f"library {library():016x}",
         "# seed low high dynamics noise dt",
     ]
@@ -106,11 +108,11 @@ def write_episodes():
 
 
 def write_free():
-    """Sixty episodes under random actions, without a reset: digests of all states up to some steps.
-    """
+    """Sixty episodes under random actions without a reset: digests of states up to some steps."""
     lines = [
         f"# {VERSIONS}",
-        "# SEED, and digests of the states' bits after each of 65, 100 and 200 random steps, with no reset",
+        "# SEED, and digests of the states' bits after each of 65, 100 and 200 random steps, "
+        "with no reset",
     ]
     env = gymnasium.make("Acrobot-v1").unwrapped
     for seed in range(60):
@@ -203,7 +205,8 @@ def write_seeds():
         samples = np.concatenate([space.sample() for _ in range(3)])
         lines.append(f"box {seed} {hexes(samples.view('<u4'), 8)}")
     lines.append(
-        "# play ID SEED: 1000 random steps, a reset at each end: a digest of every step's observation (f32; for v0"
+        "# play ID SEED: 1000 random steps, a reset at each end: a digest of every step's "
+        "observation (f32; for v0"
     )
     lines.append("# the state), reward and ends, and the number of episodes")
     for version, seed in product([0, 1], range(10)):

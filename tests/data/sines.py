@@ -325,7 +325,8 @@ def record():
         else {}
     )
     lines = [
-        f"# Correctly rounded by {gmpy2.mpfr_version()}. First digests of the sines and cosines of 250,000 arguments, from",
+        f"# Correctly rounded by {gmpy2.mpfr_version()}. First digests of the sines and cosines of "
+        "250,000 arguments, from",
         "# draws of default_rng(chunk); then hard cases: the bits of x, sin x and cos x.",
     ]
     for family, arguments in FAMILIES.items():

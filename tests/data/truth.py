@@ -128,7 +128,8 @@ def main():
         f"# DOP853 at rtol = atol = {TOLERANCE}; energy and work differ by {worst:.0e} J or less.",
         "# torques NAME: N m, for 0.2 s each",
         "# start DYNAMICS START TORQUES, and the state (bits of f64)",
-        f"# after SECONDS, the state, and the largest difference until then from the run at {FINER}",
+        "# after SECONDS, the state, and the largest difference until then from the run at "
+        f"{FINER}",
     ]
     (Path(__file__).parent / "truth.txt").write_text("\n".join(head + lines) + "\n")
 

@@ -111,9 +111,8 @@ def main(kit, answers, tolerance="1e-9"):
             states = [[number(x) for x in state] for state in run["states"]]
             got = [[number(x) for x in state] for state in answer["states"]]
             if len(got) != len(run["actions"]):
-                sys.exit(
-                    f"line {row} must have {len(run['actions'])} states, one for each action, got {len(got)}"
-                )
+                rule = f"{len(run['actions'])} states, one for each action"
+                sys.exit(f"line {row} must have {rule}, got {len(got)}")
             for i, action in enumerate(run["actions"]):
                 total += 1
                 distances = difference(got[i], states[i + 1])
@@ -129,7 +128,10 @@ def main(kit, answers, tolerance="1e-9"):
                 for name in failed:
                     wrong[name] += 1
                 if failed and first is None:
-                    first = f"first: line {row}, step {i}, {failed[0]}: from {states[i]} by action {action}\n  expected {states[i + 1]}\n  got      {got[i]}"
+                    first = (
+                        f"first: line {row}, step {i}, {failed[0]}: from {states[i]} by action "
+                        f"{action}\n  expected {states[i + 1]}\n  got      {got[i]}"
+                    )
                 if failed and len(samples) < 1000:
                     samples.append(
                         (states[i], action, run["params"], run["equations"], got[i], distances)

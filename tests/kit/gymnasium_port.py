@@ -1,7 +1,7 @@
 """Answers the kit with Gymnasium's own Acrobot.
 
 python gymnasium_port.py acrobot-kit.jsonl > answers.jsonl
-python gymnasium_port.py acrobot-kit.jsonl swapped > answers.jsonl    # with a fault that ports have had
+python gymnasium_port.py acrobot-kit.jsonl swapped > answers.jsonl    # a fault that ports have had
 """
 
 import json

@@ -18,7 +18,8 @@ from acrobot_rs.parameters import _NAMES as NAMES
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.vector import AutoresetMode
-from vectors import CONTINUOUS, MODES, assert_equal, different, make_vec, pair, rejects, reset_ended
+from vectors import CONTINUOUS, MODES, assert_equal, assert_resets_equal
+from vectors import different, make_vec, pair, rejects, reset_ended
 
 
 def test_attributes_and_types_are_those_of_sync_vector_env():
@@ -229,7 +230,7 @@ def test_continuous_torques_give_the_episodes_of_single_environments(mode):
     """Also if environments have different bounds of the torque."""
     theirs, ours = pair(6, mode, CONTINUOUS, CONTINUOUS, max_episode_steps=60)
     assert isinstance(ours, AcrobotContinuousVectorEnv) and ours.action_space == theirs.action_space
-    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
+    assert_resets_equal(theirs, ours, seed=1)
     torques = np.random.default_rng(0).uniform(-1.5, 1.5, (300, 6, 1)).astype(np.float32)
     for step, actions in enumerate(torques):
         if step == 150:
@@ -242,8 +243,7 @@ def test_continuous_torques_give_the_episodes_of_single_environments(mode):
 
 
 def test_torques_in_float32_are_those_of_actions():
-    """Those beyond the bounds, which are those of AVAIL_TORQUE, or beyond float32, as the bounds.
-    """
+    """Those beyond the bounds, also beyond float32, act as the bounds, those of AVAIL_TORQUE."""
 
     class Strong(AcrobotContinuousVectorEnv):
         AVAIL_TORQUE = (3.0, -2.0, 0.0)
@@ -253,7 +253,7 @@ def test_torques_in_float32_are_those_of_actions():
     discrete.AVAIL_TORQUE = Strong.AVAIL_TORQUE
     assert torques.single_action_space == gymnasium.spaces.Box(-2.0, 3.0, (1,), np.float32)
     assert torques.action_space == gymnasium.spaces.Box(-2.0, 3.0, (30, 1), np.float32)
-    assert_equal(discrete.reset(seed=1), torques.reset(seed=1))
+    assert_resets_equal(discrete, torques, seed=1)
     for kind in (
         np.float32([3, -2, 0]),
         np.array([np.inf, -9.0, 0.0]),

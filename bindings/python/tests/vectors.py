@@ -50,6 +50,11 @@ def assert_equal(one, other):
     )
 
 
+def assert_resets_equal(*envs, seed=None, options=None):
+    """Resets both, with options each of its own, from which SyncVectorEnv removes some."""
+    assert_equal(*(each.reset(seed=seed, options=options and {**options}) for each in envs))
+
+
 @contextlib.contextmanager
 def rejects(env, error, message=None):
     """Expects an error, and that nothing changes."""

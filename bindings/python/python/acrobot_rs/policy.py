@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from acrobot_rs.arrays import LARGEST, must_be, require
 
 Layer = tuple[Any, Any, str]
-"""Weights ``(outputs, inputs)``, biases ``(outputs,)``, and ``"none"``, ``"tanh"`` or ``"relu"``."""
+"""Weights ``(outputs, inputs)``, biases, and ``"none"``, ``"tanh"`` or ``"relu"``."""
 
 _ACTIVATIONS = ["none", "tanh", "relu"]
 _KINDS = {
