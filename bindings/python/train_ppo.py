@@ -206,22 +206,15 @@ def train(seed):
 
 def save(parameters, path):
     """Writes the actor for `crates/policy`, with the observations' scale in its first layer."""
-    *hidden, last = [
-        (np.asarray(weights).T, np.asarray(biases)) for weights, biases in parameters["actor"]
-    ]
+    *hidden, last = [(np.asarray(each[0]).T, np.asarray(each[1])) for each in parameters["actor"]]
     hidden[0] = (hidden[0][0] / np.asarray(SCALE), hidden[0][1])
     policy.write(path, [*((*layer, "tanh") for layer in hidden), (*last, "none")])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument(
-        "seeds",
-        nargs="*",
-        type=int,
-        default=[1, 2, 3],
-        help="integers of at least 0; default 1 2 3",
-    )
+    words = "integers of at least 0; default 1 2 3"
+    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help=words)
     parser.add_argument("--save", help="file for the policy of the last seed")
     arguments = parser.parse_args()
     gymnasiums = gymnasium.make_vec("Acrobot-v1", num_envs=EPISODES, vectorization_mode="sync")

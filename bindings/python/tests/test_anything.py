@@ -22,33 +22,22 @@ REJECTIONS = (
     gymnasium.error.Error,
 )
 
+BORDERS = [2**63, 2**64 - 1, -(2**63), 10**400, 1e300, 3.5e38, 5e-324, -0.0]
 NUMBERS = st.one_of(
-    st.integers(0, 2),
-    st.integers(),
-    st.floats(),
-    st.floats(0.01, 10.0),
-    st.booleans(),
-    st.sampled_from([2**63, 2**64 - 1, -(2**63), 10**400, 1e300, 3.5e38, 5e-324, -0.0]),
-    arrays.from_dtype(np.dtype(np.int64)),
-    arrays.from_dtype(np.dtype(np.float32)),
+    *(st.integers(0, 2), st.integers(), st.floats(), st.floats(0.01, 10.0), st.booleans()),
+    st.sampled_from(BORDERS),
+    *(arrays.from_dtype(np.dtype(each)) for each in (np.int64, np.float32)),
 )
+INTEGERS = arrays.integer_dtypes() | arrays.unsigned_integer_dtypes()
 ARRAYS = arrays.arrays(
-    arrays.integer_dtypes()
-    | arrays.unsigned_integer_dtypes()
-    | arrays.floating_dtypes()
-    | arrays.boolean_dtypes(),
+    INTEGERS | arrays.floating_dtypes() | arrays.boolean_dtypes(),
     arrays.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=4),
 )
+TEXTS = st.text(st.characters(), max_size=9) | st.binary(max_size=9)
+BOUND = st.sampled_from(["low", "high"])
 ANYTHING = st.recursive(
-    NUMBERS
-    | ARRAYS
-    | st.none()
-    | st.text(st.characters(), max_size=9)
-    | st.binary(max_size=9)
-    | st.builds(object),
-    lambda inner: (
-        st.lists(inner, max_size=4) | st.dictionaries(st.sampled_from(["low", "high"]), inner)
-    ),
+    NUMBERS | ARRAYS | st.none() | TEXTS | st.builds(object),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(BOUND, inner),
     max_leaves=4,
 )
 NAMES = st.sampled_from(tuple(dict.fromkeys((*_NAMES, *Swingup._NAMES))))

@@ -23,6 +23,8 @@ SINGLE = (
     *(AcrobotSwingupEnv, AcrobotSwingupSparseEnv),
 )
 DRAWN = {"FRICTION_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}
+OWN = {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}
+INFOS = {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]}
 #: Vector environments: the type, the mode, the noise and other arguments.
 VECTOR = (
     (AcrobotVectorEnv, "NextStep", 0.3),
@@ -30,19 +32,9 @@ VECTOR = (
     (AcrobotVectorEnv, "Disabled", Uniform(0.0, 0.3)),
     (AcrobotContinuousVectorEnv, "NextStep", Uniform(0.0, 0.3)),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gymnasium_episodes": True, "copy": False}),
-    (
-        AcrobotVectorEnv,
-        "SameStep",
-        LogUniform(0.1, 0.3),
-        {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)},
-    ),
+    (AcrobotVectorEnv, "SameStep", LogUniform(0.1, 0.3), OWN),
     (AcrobotSwingupVectorEnv, "SameStep", 0.1, DRAWN),
-    (
-        AcrobotVectorEnv,
-        "NextStep",
-        0.0,
-        {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]},
-    ),
+    (AcrobotVectorEnv, "NextStep", 0.0, INFOS),
 )
 
 
@@ -63,13 +55,8 @@ def play(envs, steps):
     played = []
     for _ in range(steps):
         *results, infos = envs.step(envs.action_space.sample())
-        played.append(
-            [
-                *map(np.copy, results),
-                envs.state.tobytes(),
-                {key: list(value) for key, value in infos.items()},
-            ]
-        )
+        lists = {key: list(value) for key, value in infos.items()}
+        played.append([*map(np.copy, results), envs.state.tobytes(), lists])
         ended = results[2] | results[3]
         if np.any(ended) and isinstance(envs, AcrobotEnv):
             envs.reset()
@@ -102,7 +89,7 @@ def number(value):
     return np.float64(value).tobytes()
 
 
-NAN, OWN = number(np.nan), b"\3" + number([-1, 0, 1])
+NAN, MINE = number(np.nan), b"\3" + number([-1, 0, 1])
 DAMAGED, NO_TORQUE = "the snapshot is damaged", "AVAIL_TORQUE must be one or more"
 
 
@@ -114,9 +101,9 @@ DAMAGED, NO_TORQUE = "the snapshot is damaged", "AVAIL_TORQUE must be one or mor
         (lambda good: good + b"\0", "the snapshot must have no bytes after its end, got 1"),
         (lambda good: b"\2" + good[1:], "the snapshot's version must be 1, got 2"),
         (lambda good: good.replace(number(0.25), NAN), DAMAGED),
-        (lambda good: good.replace(OWN, b"\0"), NO_TORQUE),
-        (lambda good: good.replace(OWN, OWN[:-8] + NAN), NO_TORQUE),
-        (lambda good: good.replace(OWN + number(0), OWN + number(-1)), "torque_noise_max must"),
+        (lambda good: good.replace(MINE, b"\0"), NO_TORQUE),
+        (lambda good: good.replace(MINE, MINE[:-8] + NAN), NO_TORQUE),
+        (lambda good: good.replace(MINE + number(0), MINE + number(-1)), "torque_noise_max must"),
     ],
 )
 def test_damaged_snapshots_are_rejected(damage, message):

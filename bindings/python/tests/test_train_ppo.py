@@ -61,12 +61,8 @@ def test_an_evaluation_counts_one_episode_of_each_environment():
 
 
 def test_it_learns():
-    run = subprocess.run(
-        [sys.executable, train_ppo.__file__, "1", "2", "3"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+    command = [sys.executable, train_ppo.__file__, "1", "2", "3"]
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
     means = [float(mean) for mean in re.findall(r"seed \d: (-[\d.]+) after", run.stdout)]
     assert len(means) == 3 and min(means) > -100, run.stdout
     assert "mean return" in run.stderr

@@ -48,12 +48,11 @@ for _kind, _id, _steps, _threshold in (
     ("AcrobotSwingup", "AcrobotSwingup-v0", 1000, None),
     ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", 1000, None),
 ):
+    _vector = f"{_kind}VectorEnv"
     register(
         id=f"acrobot_rs/{_id}",
         entry_point=f"acrobot_rs:{_kind}Env",
-        vector_entry_point=f"acrobot_rs:{_kind}VectorEnv"
-        if f"{_kind}VectorEnv" in __all__
-        else None,
+        vector_entry_point=f"acrobot_rs:{_vector}" if _vector in __all__ else None,
         reward_threshold=_threshold,
         max_episode_steps=_steps,
     )

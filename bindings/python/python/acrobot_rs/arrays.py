@@ -145,9 +145,8 @@ def seeds_of(
     """The digits of the seed whose children seed all environments, or of a seed for each."""
     if isinstance(seed, list | tuple):
         if len(seed) != num_envs:
-            raise ValueError(
-                f"seed must have one element for each of {num_envs} environments, got {len(seed)}"
-            )
+            rule = f"one element for each of {num_envs} environments"
+            raise ValueError(f"seed must have {rule}, got {len(seed)}")
         return None, [_digits(each) for each in seed]
     plain = plain_seed(seed)
     if plain is None or not gymnasium_episodes:
@@ -236,12 +235,6 @@ def final_infos(
     final_obs = np.full(len(ended), None, dtype=object)
     for index in np.flatnonzero(ended):
         final_obs[index] = finals[index].copy()
-    final_info = {
-        name: ended.copy() if name.startswith("_") else value for name, value in last.items()
-    }
-    return {
-        "final_obs": final_obs,
-        "_final_obs": ended,
-        "final_info": final_info,
-        "_final_info": ended.copy(),
-    }
+    infos = {name: ended.copy() if name[0] == "_" else value for name, value in last.items()}
+    masks = {"_final_obs": ended, "_final_info": ended.copy()}
+    return {"final_obs": final_obs, "final_info": infos, **masks}

@@ -208,9 +208,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         self._check_open()
         known = (*_ATTRIBUTES, *self._NAMES)
         if name not in known:
-            raise AttributeError(
-                f"the environments have no attribute {name!r}; they have {', '.join(known)}"
-            )
+            they_have = f"they have {', '.join(known)}"
+            raise AttributeError(f"the environments have no attribute {name!r}; {they_have}")
         if name in ("action_space", "observation_space"):
             name = f"single_{name}"
         if name == "render":
@@ -233,9 +232,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         self._check_open()
         if name not in self._NAMES:
-            raise AttributeError(
-                f"the environments have no parameter {name!r}; {_hint(name, self._NAMES)}"
-            )
+            hint = _hint(name, self._NAMES)
+            raise AttributeError(f"the environments have no parameter {name!r}; {hint}")
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)

@@ -121,7 +121,7 @@ def _reject_ignored(cls: type[Parameters], name: str) -> None:
         raise TypeError(f"{name} would have no effect on {cls.__name__}; {_IGNORED[name]}")
     names = cls._NAMES
     if name not in names and not name.startswith("_") and _near(name, names, 0.8):
-        raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name, names)}")
+        raise _unknown(cls, name)
 
 
 @functools.cache
@@ -137,6 +137,10 @@ def _hint(name: str, names: tuple[str, ...]) -> str:
     bound = re.search("(?i)torque_?(max|limit)|(max|limit)_?torque", name)
     meant = "AVAIL_TORQUE" if bound else _near(name, names, 0.5)
     return f"did you mean {meant}?" if meant else f"it has {', '.join(names)}"
+
+
+def _unknown(cls: type[Parameters], name: str) -> AttributeError:
+    return AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name, cls._NAMES)}")
 
 
 #: What parameters can be: of a single environment, besides floats, and of many.
@@ -334,9 +338,7 @@ class Parameters(arrays.Hints):
         _reject_ignored(cls, name)
         is_ours = cls.__module__.startswith("acrobot_rs.") and self._made
         if is_ours and not (name.startswith("_") or name in vars(self) or hasattr(cls, name)):
-            raise AttributeError(
-                f"{cls.__name__} has no parameter {name}; {_hint(name, cls._NAMES)}"
-            )
+            raise _unknown(cls, name)
 
     def __delattr__(self, name: str) -> None:
         """Set a parameter back to the value of its class."""

@@ -25,14 +25,9 @@ Layer = tuple[Any, Any, str]
 """Weights ``(outputs, inputs)``, biases, and ``"none"``, ``"tanh"`` or ``"relu"``."""
 
 _ACTIVATIONS = ["none", "tanh", "relu"]
-_KINDS = {
-    "Linear": None,
-    "Tanh": "tanh",
-    "ReLU": "relu",
-    "Identity": "none",
-    "Flatten": "none",
-    "Dropout": "none",
-}
+_KINDS = {"Linear": None, "Tanh": "tanh", "ReLU": "relu"} | dict.fromkeys(
+    ("Identity", "Flatten", "Dropout"), "none"
+)
 
 
 def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None = None) -> None:

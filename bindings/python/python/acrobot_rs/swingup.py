@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from acrobot_rs.env import AcrobotContinuousEnv
 from acrobot_rs.native_vector import Floats
-from acrobot_rs.parameters import Each, EachTorques, Parameters, _hint
+from acrobot_rs.parameters import Each, EachTorques, Parameters, _unknown
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 
 if TYPE_CHECKING:
@@ -49,9 +49,7 @@ class Swingup(Parameters):
     @property
     def LINK_MOI(self) -> float:  # type: ignore[override]
         """Each link has its own."""
-        raise AttributeError(
-            f"{type(self).__name__} has no parameter LINK_MOI; {_hint('LINK_MOI', self._NAMES)}"
-        )
+        raise _unknown(type(self), "LINK_MOI")
 
     def _limits(self) -> tuple[float, float, float, float]:
         return -1.0, 1.0, math.inf, math.inf
