@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -350,49 +351,41 @@ def test_a_call_during_a_step_is_rejected_and_changes_nothing():
         assert envs.dt == 0.2 and (envs.elapsed_steps == 1).all()
 
 
+MASK = {"reset_mask": np.ones(3, bool)}
+RESETS = ({}, {"seed": 2}, {"seed": [2] * 3}, {"seed": [2] * 3, "options": MASK})
+
+
 @pytest.mark.parametrize("copies", [True, False])
-@pytest.mark.parametrize("call", ["step", "reset", "seed", "seeds", "mask", "state"])
-def test_a_step_or_reset_beside_a_step_changes_nothing(copies, call):
+@pytest.mark.parametrize(
+    "arguments", [None, *RESETS, {"seed": 2, "options": {"state": np.zeros(4)}}]
+)
+def test_a_step_or_reset_beside_a_step_changes_nothing(copies, arguments):
     """Neither seeds nor observations that all calls share."""
     envs = AcrobotVectorEnv(3, copy=copies, autoreset_mode="Disabled")
     envs.reset(seed=1)
-    actions = np.full(envs.action_space.shape, 1)
-    calls = {
-        "step": lambda: envs.step(actions),
-        "reset": envs.reset,
-        "seed": lambda: envs.reset(seed=2),
-        "seeds": lambda: envs.reset(seed=[2] * 3),
-        "mask": lambda: envs.reset(seed=[2] * 3, options={"reset_mask": np.ones(3, bool)}),
-        "state": lambda: envs.reset(seed=2, options={"state": np.zeros(4)}),
-    }
+    actions = np.ones(3, int)
     twin = copy.deepcopy(envs)
     expected = twin.step(actions)
-    stepping, release = threading.Event(), threading.Event()
+    native, stepping, release = envs._native, threading.Event(), threading.Event()
 
-    class Slow:
+    def slow(*arguments):
         """Stops a step after its part in Rust."""
+        results = native.step(*arguments)
+        stepping.set()
+        release.wait(30)
+        return results
 
-        def step(self, *arguments):
-            results = envs_native.step(*arguments)
-            stepping.set()
-            release.wait(30)
-            return results
-
-        def __getattr__(self, name):
-            return getattr(envs_native, name)
-
-    envs_native, envs._native = envs._native, Slow()
+    envs._native = unittest.mock.Mock(wraps=native, **{"step.side_effect": slow})
     with ThreadPoolExecutor(1) as executor:
         step = executor.submit(envs.step, actions)
         assert stepping.wait(30)
-        before = envs_native.__getstate__(), envs.np_random_seed
+        before = native.__getstate__(), envs.np_random_seed
         try:
             with pytest.raises(RuntimeError, match="^another thread is stepping or resetting"):
-                calls[call]()
-            assert before == (envs_native.__getstate__(), envs.np_random_seed)
+                envs.step(actions) if arguments is None else envs.reset(**arguments)
+            assert before == (native.__getstate__(), envs.np_random_seed)
         finally:
             release.set()
         for one, other in zip(step.result()[:4], expected[:4], strict=True):
             np.testing.assert_array_equal(one, other)
-    envs._native = envs_native
-    assert envs_native.__getstate__() == twin._native.__getstate__()
+    assert native.__getstate__() == twin._native.__getstate__()
