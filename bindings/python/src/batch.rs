@@ -144,8 +144,7 @@ impl Batch {
     }
 
     /// Resets all acrobots, or those that the mask selects, to initial states within these bounds,
-    /// or to given states, which are finite. With a seed, each acrobot that is reset first takes the
-    /// stream of its child.
+    /// or to given finite states. With a seed, each first takes the stream of its child.
     fn reset(
         slf: &Bound<'_, Self>,
         seed: Option<&str>,
