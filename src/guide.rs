@@ -30,6 +30,8 @@ pages! {
     c "c.md",
     wasm "wasm.md",
     python "python.md",
+    python_many "python-many.md",
+    python_parameters "python-parameters.md",
     numbers "numbers.md",
     control "control.md",
     parity "parity.md",

@@ -1,11 +1,12 @@
-"""Trains PPO with JAX on the vector environment until the mean return of 100 episodes passes -100. One file, as in CleanRL.
+"""Trains PPO with JAX on the vector environment until the mean return of 100 episodes passes -100.
+One file, as in CleanRL.
 
     pip install -r requirements.txt && pip install .
     python train_ppo.py                        seeds 1, 2 and 3
-    python train_ppo.py 3 --save policy.bin    also saves the policy of the last seed, for a microcontroller
+    python train_ppo.py 3 --save policy.bin    also saves the last policy, for a microcontroller
 
-Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in Gymnasium's own environment.
-Fails if a seed has not learnt after a million steps.
+Prints for each seed the mean return, the steps and the seconds, and the policy's mean return in
+Gymnasium's own environment. Fails if a seed has not learnt after a million steps.
 """
 
 import argparse
@@ -33,11 +34,14 @@ EPISODES, EVALUATE_EVERY = 100, 5  # per evaluation; updates between two
 # The bounds of observations, which are divided by them.
 SCALE = jnp.array([1, 1, 1, 1, 4 * jnp.pi, 9 * jnp.pi])
 
-optimizer = optax.chain(optax.clip_by_global_norm(MAX_GRADIENT), optax.adam(LEARNING_RATE, eps=1e-5))
+optimizer = optax.chain(
+    optax.clip_by_global_norm(MAX_GRADIENT), optax.adam(LEARNING_RATE, eps=1e-5)
+)
 
 
 def layers(key, outputs, gain):
-    """Weights and biases of a perceptron with two hidden layers of 64 units. Weights are orthogonal, as is usual for PPO."""
+    """Weights and biases of a perceptron with two hidden layers of 64 units. Weights are
+    orthogonal, as is usual for PPO."""
     sizes = [6, 64, 64, outputs]
     gains = [2**0.5, 2**0.5, gain]
     return [
@@ -78,8 +82,9 @@ def act(parameters, key, observations):
 def roll_out(envs, parameters, key, observations):
     """Plays STEPS in each environment.
 
-    Returns arrays of shape (STEPS, ENVS, ...): observations, actions, following observations, rewards, whether the episode
-    terminated and whether it ended. Also returns the last observations, and the key of the next draw.
+    Returns arrays of shape (STEPS, ENVS, ...): observations, actions, following observations,
+    rewards, whether the episode terminated and whether it ended. Also returns the last
+    observations, and the key of the next draw.
     """
     rollout = []
     for _ in range(STEPS):
@@ -98,8 +103,13 @@ def roll_out(envs, parameters, key, observations):
 
 def advantages(parameters, observations, seen, rewards, terminated, ended):
     """Generalized advantage estimates."""
-    # A truncated episode has not terminated, so the value of its last observation estimates the rest.
-    errors = rewards + DISCOUNT * ~terminated * values(parameters, seen) - values(parameters, observations)
+    # A truncated episode has not terminated, so the value of its last observation estimates the
+    # rest.
+    errors = (
+        rewards
+        + DISCOUNT * ~terminated * values(parameters, seen)
+        - values(parameters, observations)
+    )
 
     def back(advantage, step):
         error, ended = step
@@ -124,12 +134,17 @@ def loss(parameters, batch):
 
 @jax.jit
 def learn(parameters, state, key, rollout):
-    """Optimizes the parameters for EPOCHS over the rollout. Returns them and the optimizer's state."""
+    """Optimizes for EPOCHS over the rollout. Returns the parameters and the optimizer's state."""
     observations, actions, seen, rewards, terminated, ended = rollout
     advantage = advantages(parameters, observations, seen, rewards, terminated, ended)
     targets = advantage + values(parameters, observations)
-    old = jnp.take_along_axis(log_probabilities(parameters, observations), actions[..., None], axis=2)[..., 0]
-    flat = [each.reshape(ENVS * STEPS, *each.shape[2:]) for each in (observations, actions, old, advantage, targets)]
+    old = jnp.take_along_axis(
+        log_probabilities(parameters, observations), actions[..., None], axis=2
+    )[..., 0]
+    flat = [
+        each.reshape(ENVS * STEPS, *each.shape[2:])
+        for each in (observations, actions, old, advantage, targets)
+    ]
 
     def minibatch(carry, indices):
         parameters, state = carry
@@ -138,12 +153,15 @@ def learn(parameters, state, key, rollout):
         return (optax.apply_updates(parameters, updates), state), None
 
     keys = jax.random.split(key, EPOCHS)
-    orders = jnp.concatenate([jax.random.permutation(each, ENVS * STEPS).reshape(MINIBATCHES, -1) for each in keys])
+    orders = jnp.concatenate(
+        [jax.random.permutation(each, ENVS * STEPS).reshape(MINIBATCHES, -1) for each in keys]
+    )
     return jax.lax.scan(minibatch, (parameters, state), orders)[0]
 
 
 def evaluate(envs, parameters, key):
-    """The mean return of one new episode in each environment. Counting the first 100 that end would favour short ones."""
+    """The mean return of one new episode in each environment. Counting the first 100 that end would
+    favour short ones."""
     observations, _ = envs.reset()
     returns, running = np.zeros(envs.num_envs), np.ones(envs.num_envs, bool)
     while running.any():
@@ -155,16 +173,23 @@ def evaluate(envs, parameters, key):
 
 
 def train(seed):
-    """Trains until an evaluation passes. Returns the parameters, the steps and the last mean return."""
-    envs = gymnasium.make_vec(NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
+    """Trains until an evaluation passes. Returns the parameters, the steps and the last mean
+    return."""
+    envs = gymnasium.make_vec(
+        NAME, num_envs=ENVS, autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP
+    )
     others = gymnasium.make_vec(NAME, num_envs=EPISODES)
-    of_envs, of_others, of_jax = (int(each) for each in np.random.SeedSequence(seed).generate_state(3))
+    of_envs, of_others, of_jax = (
+        int(each) for each in np.random.SeedSequence(seed).generate_state(3)
+    )
     observations, _ = envs.reset(seed=of_envs)
     others.reset(seed=of_others)
     init, key = jax.random.split(jax.random.key(of_jax))
     parameters = initial(init)
     state = optimizer.init(parameters)
-    with tqdm(total=UPDATES * ENVS * STEPS, desc=f"seed {seed}", unit="step", unit_scale=True, leave=False) as bar:
+    with tqdm(
+        total=UPDATES * ENVS * STEPS, desc=f"seed {seed}", unit="step", unit_scale=True, leave=False
+    ) as bar:
         for update in range(UPDATES + 1):
             if update % EVALUATE_EVERY == 0:
                 key, draw = jax.random.split(key)
@@ -181,14 +206,15 @@ def train(seed):
 
 def save(parameters, path):
     """Writes the actor for `crates/policy`, with the observations' scale in its first layer."""
-    *hidden, last = [(np.asarray(weights).T, np.asarray(biases)) for weights, biases in parameters["actor"]]
+    *hidden, last = [(np.asarray(each[0]).T, np.asarray(each[1])) for each in parameters["actor"]]
     hidden[0] = (hidden[0][0] / np.asarray(SCALE), hidden[0][1])
     policy.write(path, [*((*layer, "tanh") for layer in hidden), (*last, "none")])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help="integers of at least 0; default 1 2 3")
+    words = "integers of at least 0; default 1 2 3"
+    parser.add_argument("seeds", nargs="*", type=int, default=[1, 2, 3], help=words)
     parser.add_argument("--save", help="file for the policy of the last seed")
     arguments = parser.parse_args()
     gymnasiums = gymnasium.make_vec("Acrobot-v1", num_envs=EPISODES, vectorization_mode="sync")
@@ -199,7 +225,11 @@ def main():
         seconds = time.perf_counter() - before
         gymnasiums.reset(seed=seed)
         there = evaluate(gymnasiums, parameters, jax.random.key(0))
-        print(f"seed {seed}: {mean:.1f} after {steps:,} steps and {seconds:.1f} s; in Gymnasium's own {there:.1f}", flush=True)
+        print(
+            f"seed {seed}: {mean:.1f} after {steps:,} steps and {seconds:.1f} s;",
+            f"in Gymnasium's own {there:.1f}",
+            flush=True,
+        )
         learnt &= mean > THRESHOLD
     if arguments.save:
         save(parameters, arguments.save)

@@ -32,8 +32,8 @@ pub struct Batch {
 #[pymethods]
 impl Batch {
     #[new]
-    #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed="0", max_episode_steps=NonZeroU32::MAX, mode="NextStep",
-        engine="acrobot", continuous=false, threads=NonZeroU32::MIN))]
+    #[pyo3(signature = (num_envs=NonZeroU32::MIN, seed="0", max_episode_steps=NonZeroU32::MAX,
+        mode="NextStep", engine="acrobot", continuous=false, threads=NonZeroU32::MIN))]
     fn new(
         num_envs: NonZeroU32,
         seed: &str,
@@ -113,7 +113,7 @@ impl Batch {
         })
     }
 
-    /// Writes the numbers of a parameter: a row for each acrobot, of three numbers if the parameter is `AVAIL_TORQUE`.
+    /// Writes the numbers of a parameter: a row for each acrobot, of three of `AVAIL_TORQUE`.
     fn get(
         slf: &Bound<'_, Self>,
         name: &str,
@@ -131,7 +131,7 @@ impl Batch {
         Ok(())
     }
 
-    /// Gives acrobots streams of their own: those of `default_rng(seed)`, for each seed that is not `None`.
+    /// Gives acrobots the streams of `default_rng(seed)`, for each seed that is not `None`.
     fn seed(slf: &Bound<'_, Self>, seeds: Vec<Option<String>>) -> PyResult<()> {
         let this = &mut *alone(slf)?;
         let generators = with_batch!(&mut this.engine, many => many.batch.generators_mut());
@@ -144,8 +144,7 @@ impl Batch {
     }
 
     /// Resets all acrobots, or those that the mask selects, to initial states within these bounds,
-    /// or to given states, which are finite. With a seed, each acrobot that is reset first takes the
-    /// stream of its child.
+    /// or to given finite states. With a seed, each first takes the stream of its child.
     fn reset(
         slf: &Bound<'_, Self>,
         seed: Option<&str>,
@@ -159,10 +158,7 @@ impl Batch {
             bounds: Some(ResetBounds::new(low, high).map_err(rejected)?),
         };
         let mask = mask.as_ref().map(|mask| mask.as_slice()).transpose()?;
-        let states = states
-            .as_ref()
-            .map(|states| states.as_slice())
-            .transpose()?;
+        let states = states.as_ref().map(|rows| rows.as_slice()).transpose()?;
         let engine = &mut alone(slf)?.engine;
         let is_reset = |index: usize| mask.is_none_or(|mask| mask[index]);
         slf.py()
@@ -193,8 +189,9 @@ impl Batch {
         with_batch!(&this.engine, many => many.batch.observe(rows)).map_err(rejected)
     }
 
-    /// Steps, and writes the observations into an array. Releases Python's lock meanwhile. The environment converts the
-    /// actions that are in another type or shape, or rejects them. Returns rewards, terminated and truncated.
+    /// Steps without Python's lock, and writes the observations into an array. The environment
+    /// converts or rejects actions in another type or shape. Returns rewards, terminated and
+    /// truncated.
     #[pyo3(signature = (env, actions, observations, finals=None))]
     fn step<'py>(
         slf: &Bound<'py, Self>,
@@ -289,7 +286,7 @@ impl Batch {
         render(slf.py(), params, state, mode)
     }
 
-    /// Every protocol of pickle calls this, and `copy.deepcopy`. `__setstate__` replaces the smallest batch.
+    /// Every protocol of pickle calls this, and `copy.deepcopy`.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
         Ok((slf.get_type(), (), Self::__getstate__(slf)?))
     }

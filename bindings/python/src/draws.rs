@@ -40,8 +40,8 @@ impl Distribution {
             Self::Normal { mean, std } => {
                 // One of 10^15 draws would be farther from the mean.
                 let (low, high) = (low.max(mean - 8.0 * std), high.min(mean + 8.0 * std));
-                // A uniform draw is accepted by the density: one in seven. Only a generator or bounds that always give the
-                // same number get to the end.
+                // A uniform draw is accepted by the density: one in seven. Only a generator or
+                // bounds that always give the same number get to the end.
                 let accepted = (0..1000).find_map(|_| {
                     let drawn = uniform(rng, low, high);
                     let z = (drawn - mean) / std;

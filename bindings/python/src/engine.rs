@@ -76,7 +76,7 @@ macro_rules! with_batch {
 }
 pub(crate) use with_batch;
 
-/// A batch, and memory for its inputs. Numbers are `f64` outside: conversions from `f32` and back are exact.
+/// A batch, and memory for its inputs. Numbers are `f64` outside, which `f32` becomes exactly.
 #[derive(Serialize, Deserialize)]
 #[serde(bound(
     serialize = "A::Scalar: Serialize",
@@ -165,8 +165,8 @@ impl<A: Arithmetic> Many<A> {
         })
     }
 
-    /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of resets. Gives each acrobot
-    /// its own parameters if necessary.
+    /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of
+    /// resets. Gives each acrobot its own parameters if necessary.
     pub fn change(&mut self, params: &[Params], draws: Draws) -> PyResult<()> {
         for each in params {
             self.check(*each, &draws)?;
@@ -194,8 +194,8 @@ impl<A: Arithmetic> Many<A> {
         Ok(())
     }
 
-    /// Draws the parameters of acrobots that were reset. A range of the crate would have one distribution, another LINK_MOI
-    /// for each link, and no different values.
+    /// Draws the parameters of acrobots that were reset. A range of the crate would have one
+    /// distribution, another LINK_MOI for each link, and no different values.
     pub fn draw(&mut self, were_reset: impl Fn(&VecBatch<A>, usize) -> bool) -> Result<(), Error> {
         if self.draws.distributions.is_empty() {
             return Ok(());
@@ -263,8 +263,7 @@ impl<A: Arithmetic> Many<A> {
         }
     }
 
-    /// Steps on this thread, or on all threads of rayon's current pool. The results go into the buffers, not into the
-    /// `VecBatch`.
+    /// Steps on this thread, or on all threads of rayon's current pool, into the buffers.
     pub fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
         let (actions, torques) = (&self.actions, &self.torques);
         let batch = self.batch.deref_mut();

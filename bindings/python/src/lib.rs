@@ -1,4 +1,4 @@
-//! The native part of `acrobot_rs`, which calls the crate. Gymnasium's interface is written in Python, in `python/`.
+//! The native part of `acrobot_rs`. Gymnasium's interface is written in Python, in `python/`.
 
 mod batch;
 mod draws;
@@ -30,8 +30,8 @@ mod _native {
 }
 
 /// The torque of a continuous action, N m, which is within the smallest and the largest torque.
-/// Gymnasium's task has torques as actions. In a swing-up the action 1 is the largest torque, −1 the
-/// smallest and 0 none.
+/// Gymnasium's task has torques as actions. In a swing-up the action 1 is the largest torque, −1
+/// the smallest and 0 none.
 fn torque_of(task: Task, action: f64, low: f64, high: f64) -> f64 {
     let torque = match task {
         Task::Acrobot => action,
@@ -187,7 +187,7 @@ fn render<'py>(
     }
 }
 
-/// The version of this package's snapshots. The crate's snapshots, which they contain, have their own version.
+/// The version of this package's snapshots. Those of the crate, inside, have their own.
 const VERSION: u32 = 1;
 
 /// Serializes a snapshot, for pickle.

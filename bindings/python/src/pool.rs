@@ -3,7 +3,7 @@
 use pyo3::exceptions::{PyOSError, PyRuntimeError};
 use pyo3::prelude::*;
 
-/// Threads, and the process that started them: a child made by `fork` has none of them, and would wait forever.
+/// Threads, and the process that started them: a child made by `fork` would wait for them forever.
 pub struct Pool {
     process: u32,
     threads: Option<rayon::ThreadPool>,

@@ -1,6 +1,6 @@
 //! The single environments: one acrobot, bit-identical to Gymnasium's, or dm_control's swing-up.
 
-use acrobot::arithmetic::{Arithmetic, Host, Swingup, SwingupSparse};
+use acrobot::arithmetic::{Host, Swingup, SwingupSparse};
 use acrobot::physics::Task;
 use acrobot::{Observation, Portable, State, Step};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
@@ -54,25 +54,20 @@ impl One {
     }
 
     fn task(&self) -> Task {
-        fn of<A: Arithmetic>(_: &acrobot::Acrobot<A>) -> Task {
-            A::TASK
+        match self {
+            Self::Acrobot(_) => Task::Acrobot,
+            Self::Swingup(_) => Task::Swingup,
+            Self::SwingupSparse(_) => Task::SwingupSparse,
         }
-        with_one!(self, acrobot => of(acrobot))
     }
 
     fn params(&self) -> Params {
-        fn of<A: Arithmetic>(acrobot: &acrobot::Acrobot<A>) -> Params {
-            acrobot.params().cast()
-        }
-        with_one!(self, acrobot => of(acrobot))
+        with_one!(self, acrobot => *acrobot.params())
     }
 
     fn set_params(&mut self, params: Params) -> PyResult<()> {
-        fn set<A: Arithmetic>(acrobot: &mut acrobot::Acrobot<A>, params: Params) -> PyResult<()> {
-            let set = acrobot.set_params(params.cast());
-            set.map_err(|error| invalid(A::TASK, error))
-        }
-        with_one!(self, acrobot => set(acrobot, params))
+        with_one!(self, acrobot => acrobot.set_params(params))
+            .map_err(|error| invalid(self.task(), error))
     }
 
     fn state(&self) -> State {
@@ -193,8 +188,8 @@ impl Acrobot {
         PyArray1::from_slice(py, observation.as_ref())
     }
 
-    /// Steps by an action of the environment, whose generator draws the noise. Returns what `Env.step` does: observation,
-    /// reward, terminated, truncated and info.
+    /// Steps by an action of the environment, whose generator draws the noise. Returns what
+    /// `Env.step` does.
     fn step<'py>(
         slf: &Bound<'py, Self>,
         env: &Bound<'py, PyAny>,

@@ -1,4 +1,5 @@
-"""Any object can be an argument: invalid ones are rejected and change nothing, nothing panics, and no result is NaN.
+"""Any object can be an argument: invalid ones are rejected and change nothing, nothing panics, and
+no result is NaN.
 
 With more examples: ``python -m pytest --hypothesis-profile=long tests/test_anything.py``.
 """
@@ -21,36 +22,43 @@ REJECTIONS = (
     gymnasium.error.Error,
 )
 
+BORDERS = [2**63, 2**64 - 1, -(2**63), 10**400, 1e300, 3.5e38, 5e-324, -0.0]
 NUMBERS = st.one_of(
-    st.integers(0, 2),
-    st.integers(),
-    st.floats(),
-    st.floats(0.01, 10.0),
-    st.booleans(),
-    st.sampled_from([2**63, 2**64 - 1, -(2**63), 10**400, 1e300, 3.5e38, 5e-324, -0.0]),
-    arrays.from_dtype(np.dtype(np.int64)),
-    arrays.from_dtype(np.dtype(np.float32)),
+    *(st.integers(0, 2), st.integers(), st.floats(), st.floats(0.01, 10.0), st.booleans()),
+    st.sampled_from(BORDERS),
+    *(arrays.from_dtype(np.dtype(each)) for each in (np.int64, np.float32)),
 )
+INTEGERS = arrays.integer_dtypes() | arrays.unsigned_integer_dtypes()
 ARRAYS = arrays.arrays(
-    arrays.integer_dtypes() | arrays.unsigned_integer_dtypes() | arrays.floating_dtypes() | arrays.boolean_dtypes(),
+    INTEGERS | arrays.floating_dtypes() | arrays.boolean_dtypes(),
     arrays.array_shapes(min_dims=0, max_dims=3, min_side=0, max_side=4),
 )
+TEXTS = st.text(st.characters(), max_size=9) | st.binary(max_size=9)
+BOUND = st.sampled_from(["low", "high"])
 ANYTHING = st.recursive(
-    NUMBERS | ARRAYS | st.none() | st.text(st.characters(), max_size=9) | st.binary(max_size=9) | st.builds(object),
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.sampled_from(["low", "high"]), inner),
+    NUMBERS | ARRAYS | st.none() | TEXTS | st.builds(object),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(BOUND, inner),
     max_leaves=4,
 )
 NAMES = st.sampled_from(tuple(dict.fromkeys((*_NAMES, *Swingup._NAMES))))
 TORQUES = st.lists(NUMBERS, min_size=3, max_size=3)
 VALUES = st.one_of(NUMBERS, TORQUES, st.sampled_from(["book", "nips"]), ANYTHING)
 #: Also valid ones.
-BOUNDS = st.lists(NUMBERS | TORQUES, min_size=2, max_size=4) | st.just([0.5, 1.5]) | st.just([1.0, 0.1, 0.5, 1.5])
-DRAWN = st.builds(lambda kind, args: attempt(kind, *args), st.sampled_from([Uniform, LogUniform, Normal]), BOUNDS)
+BOUNDS = (
+    st.lists(NUMBERS | TORQUES, min_size=2, max_size=4)
+    | st.just([0.5, 1.5])
+    | st.just([1.0, 0.1, 0.5, 1.5])
+)
+DRAWN = st.builds(
+    lambda kind, args: attempt(kind, *args), st.sampled_from([Uniform, LogUniform, Normal]), BOUNDS
+)
 MANY = st.one_of(VALUES, st.lists(VALUES, max_size=4), DRAWN)
 MASKS = st.lists(st.booleans(), max_size=4) | ARRAYS
 STATES = st.lists(NUMBERS, min_size=4, max_size=4)
 KEYS = st.sampled_from(["low", "high", "reset_mask", "state", "state"]) | st.text() | st.integers()
-OPTIONS = st.none() | st.dictionaries(KEYS, MASKS | NUMBERS | STATES | st.lists(STATES, max_size=4) | ANYTHING)
+OPTIONS = st.none() | st.dictionaries(
+    KEYS, MASKS | NUMBERS | STATES | st.lists(STATES, max_size=4) | ANYTHING
+)
 MODES = st.sampled_from(["NextStep", "SameStep", "Disabled"])
 SEEDS = st.none() | st.integers(0, 2**200) | ANYTHING
 FEW = st.integers(1, 4)
@@ -72,7 +80,10 @@ def calls(seeds, values, states, *others):
         (lambda env: env.render_mode and env.render(),),
         *others,
     )
-    return st.lists(st.one_of([st.tuples(st.just(function), *arguments) for function, *arguments in functions]), max_size=20)
+    return st.lists(
+        st.one_of([st.tuples(st.just(function), *arguments) for function, *arguments in functions]),
+        max_size=20,
+    )
 
 
 def play(env, sequence):
@@ -134,7 +145,10 @@ def test_a_single_environment(kind, mode, sequence):
             lambda envs, action: envs.step(np.full(envs.action_space.shape, action))[0],
             st.integers(0, 2),
         ),
-        (lambda envs, actions: envs.step(actions)[0], st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING),
+        (
+            lambda envs, actions: envs.step(actions)[0],
+            st.lists(st.integers(0, 2), max_size=4) | ARRAYS | ANYTHING,
+        ),
     ),
 )
 def test_a_vector_environment(num_envs, limit, autoreset, copy, gymnasium_episodes, sequence):
@@ -164,7 +178,10 @@ def damaged(good):
         return bytes(bad[:end]) + more
 
     ends = st.just(len(good)) | st.integers(0, len(good))
-    return st.builds(apply, st.lists(change, max_size=4), ends, st.just(b"") | st.binary(max_size=4)) | st.binary()
+    return (
+        st.builds(apply, st.lists(change, max_size=4), ends, st.just(b"") | st.binary(max_size=4))
+        | st.binary()
+    )
 
 
 def played(env):
@@ -175,7 +192,9 @@ def played(env):
 
 
 SINGLES = played(acrobot_rs.AcrobotEnv())._native.__getstate__()
-BATCHES = played(acrobot_rs.AcrobotVectorEnv(2, 1, autoreset_mode="SameStep", dt=LogUniform(0.1, 0.2)))._native.__getstate__()
+BATCHES = played(
+    acrobot_rs.AcrobotVectorEnv(2, 1, autoreset_mode="SameStep", dt=LogUniform(0.1, 0.2))
+)._native.__getstate__()
 
 
 @given(

@@ -8,7 +8,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 
 
-PAGES = ["README.md", "docs/python.md", "docs/swingup.md", "bindings/python/README.md"]
+NAMES = "python", "python-many", "python-parameters", "swingup"
+PAGES = ["README.md", "bindings/python/README.md", *(f"docs/{name}.md" for name in NAMES)]
 
 
 @pytest.mark.parametrize("name", PAGES)
@@ -21,4 +22,6 @@ def test_code_runs_and_prints_what_its_comments_say(name, capsys, tmp_path, monk
     session = {}
     for block in blocks:
         exec(compile(block, page, "exec"), session)
-        assert capsys.readouterr().out.splitlines() == re.findall(r"^# prints (.*)", block, re.MULTILINE)
+        assert capsys.readouterr().out.splitlines() == re.findall(
+            r"^# prints (.*)", block, re.MULTILINE
+        )

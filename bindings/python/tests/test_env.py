@@ -1,4 +1,4 @@
-"""The single environment passes Gymnasium's own checks, and rejects what Gymnasium's environment rejects."""
+"""The single environment passes Gymnasium's checks, and rejects what Gymnasium's rejects."""
 
 import abc
 import collections
@@ -9,22 +9,29 @@ import re
 import sys
 import unittest.mock
 
-import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
+from acrobot_rs import (
+    AcrobotContinuousEnv,
+    AcrobotEnv,
+    AcrobotSwingupEnv,
+    AcrobotSwingupVectorEnv,
+    AcrobotV0Env,
+    AcrobotVectorEnv,
+)
 from acrobot_rs.parameters import _NAMES
 from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
-from vectors import rejects
+from vectors import CONTINUOUS, V1, rejects
 
-V1, V0, CONTINUOUS = "acrobot_rs/Acrobot-v1", "acrobot_rs/Acrobot-v0", "acrobot_rs/AcrobotContinuous-v0"
+V0 = "acrobot_rs/Acrobot-v0"
 
 
 @pytest.fixture
 def env():
     """A single environment without wrappers, in an initial state."""
-    env = acrobot_rs.AcrobotEnv()
+    env = AcrobotEnv()
     env.reset(seed=42)
     return env
 
@@ -38,13 +45,15 @@ def make(name, **kwargs):
 
 @pytest.mark.parametrize("name", [V1, V0, CONTINUOUS])
 def test_gymnasium_checks_pass_without_a_warning(name, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pygame", unittest.mock.MagicMock())  # the check opens a window
+    # The check opens a window.
+    monkeypatch.setitem(sys.modules, "pygame", unittest.mock.MagicMock())
     check_env(make(name, render_mode="rgb_array").unwrapped)
 
 
-@pytest.mark.parametrize("base", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env])
+@pytest.mark.parametrize("base", [AcrobotEnv, AcrobotV0Env])
 def test_the_observation_space_contains_initial_states_above_the_bounds_of_velocity(base):
-    check_env(type("Slow", (base,), {"MAX_VEL_1": 1e-30, "MAX_VEL_2": 0.05})(), skip_render_check=True)
+    slow = type("Slow", (base,), {"MAX_VEL_1": 1e-30, "MAX_VEL_2": 0.05})
+    check_env(slow(), skip_render_check=True)
 
 
 def test_registration_and_spaces_are_those_of_gymnasium():
@@ -62,7 +71,7 @@ def test_registration_and_spaces_are_those_of_gymnasium():
 
 
 def test_pictures(env):
-    pictures = acrobot_rs.AcrobotEnv(render_mode="rgb_array")
+    pictures = AcrobotEnv(render_mode="rgb_array")
     pictures.reset(seed=42)
     hanging = pictures.render()
     assert hanging.shape == (500, 500, 3) and hanging.dtype == np.uint8
@@ -73,13 +82,13 @@ def test_pictures(env):
     pictures.state = [np.pi, 0, 0, 0]
     assert list(pictures.render()[200, 250]) == [0, 204, 204]
 
-    texts = acrobot_rs.AcrobotEnv(render_mode="ansi")
+    texts = AcrobotEnv(render_mode="ansi")
     texts.reset(seed=42)
     assert len(texts.render().splitlines()) == 21
 
     with pytest.warns(UserWarning, match="without a render mode"):
         assert env.render() is None
-    with pytest.warns(UserWarning, match="render_mode='text' that is not in the possible render_modes"):
+    with pytest.warns(UserWarning, match="'text' that is not in the possible render_modes"):
         unknown = gymnasium.make(V1, render_mode="text")
     assert unknown.render_mode == "text"
     unknown.reset()
@@ -91,14 +100,14 @@ def test_a_window_shows_each_reset_and_step(monkeypatch):
     """Without a display: pygame is replaced by an object that records the calls."""
     monkeypatch.setitem(sys.modules, "pygame", None)
     with pytest.raises(gymnasium.error.DependencyNotInstalled, match="pygame is not installed"):
-        acrobot_rs.AcrobotEnv("human").reset()
+        AcrobotEnv("human").reset()
 
-    env = gymnasium.make(V1, render_mode="human")  # with Gymnasium's wrapper for windows this would warn
-
+    # With Gymnasium's wrapper for windows this would warn.
+    env = gymnasium.make(V1, render_mode="human")
     pygame = unittest.mock.MagicMock()
     pygame.display.set_mode.return_value = window = object()
     monkeypatch.setitem(sys.modules, "pygame", pygame)
-    picture = acrobot_rs.AcrobotEnv("rgb_array")
+    picture = AcrobotEnv("rgb_array")
     shown = pygame.surfarray.blit_array
     env.reset(seed=1)
     for calls in range(1, 5):
@@ -119,33 +128,37 @@ def test_a_window_shows_each_reset_and_step(monkeypatch):
     assert pygame.quit.called and env.unwrapped.screen is None and not env.unwrapped.isopen
 
 
-DISCRETE = "action must be an integer from 0 to 3, got "
-TORQUE = r"action must be a torque in N m, as an array of shape \(1,\), got "
+#: By the kind of environment: the message and invalid actions.
+INVALID = {
+    AcrobotEnv: ("action must be an integer from 0 to 3, got ", [
+        4, -1, 256, 2**70, np.array([1]), np.array([1, 2]), [1], np.True_, np.array(True),
+        np.timedelta64(1)]),
+    AcrobotContinuousEnv: (r"action must be a torque in N m, as an array of shape \(1,\), got ", [
+        1, np.float32(1.0), ["1"], [], [1.0, 1.0], [[1.0]], [None], [np.nan], np.float32([np.nan]),
+        np.zeros((1, 1), np.float32), np.zeros(2, np.float32), np.zeros(0, np.float32),
+        np.zeros((), np.float32), {0: 0.5}, collections.UserDict({0: 0.5}), [True],
+        np.array([True]), [1j], np.array([1j]), np.array(["0.5"]), np.array([0.5], object),
+        np.array([1], "m8[s]"), [10**400], [[1], [2, 3]]]),
+}  # fmt: skip
+NEITHER = (1.0, "1", None, b"\1", bytearray(b"\1"), {1}, {1: 1}, 1j, iter([0.5]))
 
 
 @pytest.mark.parametrize(
-    ("kind", "message", "action"),
-    [*((acrobot_rs.AcrobotEnv, DISCRETE, action) for action in (
-        4, -1, 256, 2**70, np.array([1]), np.array([1, 2]), [1], np.True_, np.array(True), np.timedelta64(1), iter([1]))),
-     *((acrobot_rs.AcrobotContinuousEnv, TORQUE, action) for action in (
-        1, np.float32(1.0), ["1"], [], [1.0, 1.0], [[1.0]], [None], [np.nan], np.float32([np.nan]), np.zeros((1, 1), np.float32),
-        np.zeros(2, np.float32), np.zeros(0, np.float32), np.zeros((), np.float32), {0: 0.5}, collections.UserDict({0: 0.5}),
-        [True], np.array([True]), [1j], np.array([1j]), np.array(["0.5"]), np.array([0.5], object), np.array([1], "m8[s]"),
-        [10**400], [[1], [2, 3]])),
-     *((kind, message, action) for kind, message in (
-        (acrobot_rs.AcrobotEnv, DISCRETE), (acrobot_rs.AcrobotContinuousEnv, TORQUE)) for action in (
-        1.0, "1", None, b"\1", bytearray(b"\1"), {1}, {1: 1}, 1j, iter([0.5])))],
-)  # fmt: skip
-def test_invalid_actions_are_rejected(kind, message, action):
+    ("kind", "action"), [(kind, each) for kind in INVALID for each in (*INVALID[kind][1], *NEITHER)]
+)
+def test_invalid_actions_are_rejected(kind, action):
     env = kind(AVAIL_TORQUE=[-1, 0, 1, 2], torque_noise_max=0.5)
     env.reset(seed=1)
-    with rejects(env, InvalidAction, message):
+    with rejects(env, InvalidAction, INVALID[kind][0]):
         env.step(action)
 
 
 @pytest.mark.parametrize("action", [2, np.int64(2), np.uint8(2), np.array(2)])
 def test_actions_can_be_integers_of_any_type(env, action):
     env.step(action)
+
+
+NUMBERS = set(_NAMES) - {"AVAIL_TORQUE", "book_or_nips"}
 
 
 @pytest.mark.parametrize(
@@ -159,9 +172,9 @@ def test_actions_can_be_integers_of_any_type(env, action):
         (ValueError, "torque_noise_max", (-0.1,)),
         (ValueError, "book_or_nips", ("paper",)),
         # A set has no order, and an iterator may have no end.
-        (TypeError, "AVAIL_TORQUE", (None, {-1.0, 0.0, 1.0}, iter([-1.0, 0.0, 1.0]), itertools.repeat(0.0, 10**6))),
+        (TypeError, "AVAIL_TORQUE", (None, {-1.0, 0.0, 1.0}, itertools.repeat(0.0, 10**6))),
         (TypeError, "book_or_nips", (1, None)),
-        *((TypeError, name, ("two", None, [1.0], 1j, True)) for name in _NAMES if name not in ("AVAIL_TORQUE", "book_or_nips")),
+        *((TypeError, name, ("two", None, [1.0], 1j, True)) for name in NUMBERS),
     ],
 )
 def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error):
@@ -169,7 +182,7 @@ def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error
         with rejects(env, error, f"^{name}.* must "):
             setattr(env, name, value)
         with pytest.raises(error, match=f"^{name}.* must "):
-            type("Changed", (acrobot_rs.AcrobotEnv,), {name: value})
+            type("Changed", (AcrobotEnv,), {name: value})
 
 
 @pytest.mark.parametrize(
@@ -185,7 +198,7 @@ def test_invalid_options_are_rejected(env, options, message):
 
 
 def test_the_first_step_needs_a_reset():
-    env = acrobot_rs.AcrobotEnv()
+    env = AcrobotEnv()
     assert env.state is None
     with pytest.raises(AssertionError, match="reset"):
         env.step(0)
@@ -198,7 +211,8 @@ def test_elements_of_the_state_can_be_assigned(env, steps):
         env.step(2)
     assert env.state is env.state
     env.state[1:] += [0.1, 0.2, 0.3]
-    twin, before = pickle.loads(pickle.dumps(env)), env.state  # before the step, which reads the elements too
+    # Before the step, which reads the elements too.
+    twin, before = pickle.loads(pickle.dumps(env)), env.state
     for each in (env, twin):
         each.step(0)
     before[0] = 7.0  # no longer the state
@@ -218,73 +232,86 @@ def test_the_state_can_be_set_from_any_four_numbers(env):
     assert env.state.dtype == np.float32 and list(env.state) == [0.0, 2.0, 4.0, 6.0]
     env.state = (1, 2, 3, 4)
     assert env.state.dtype == np.float64 and list(env.state) == [1.0, 2.0, 3.0, 4.0]
-    for state in ([1, 2, 3], "abcd", None, [[1], [2, 3]], 5.0, np.zeros((4, 1)), [0.0, 0.0, 0.0, np.nan], [True] * 4):
+    wrong = [1, 2, 3], "abcd", None, [[1], [2, 3]], 5.0, np.zeros((4, 1)), [True] * 4
+    for state in (*wrong, [0.0, 0.0, 0.0, np.nan]):
         with pytest.raises(ValueError, match="state must be .*four .*numbers, got |^dtheta2 must "):
             env.state = state
     assert list(env.state) == [1.0, 2.0, 3.0, 4.0]
 
 
+MEANT = {"LINK_MAS_1": "LINK_MASS_1", "link_moi": "LINK_MOI", "Dt": "dt"}
+UNUSED = "_dsdt", "_terminal", "_get_ob", "rk4", "wrap", "bound", "SCREEN_DIM"
+
+
 @pytest.mark.parametrize(
     ("name", "value", "error", "message"),
     [
-        *((name, 2.0, AttributeError, f"has no parameter {name}; did you mean {meant}?") for name, meant in (
-            ("LINK_MAS_1", "LINK_MASS_1"), ("link_moi", "LINK_MOI"), ("torque_noise", "torque_noise_max"), ("Dt", "dt"))),
-        *((name, lambda self: None, TypeError, f"{name} would have no effect on ") for name in (
-            "_dsdt", "_terminal", "_get_ob", "rk4", "wrap", "bound", "SCREEN_DIM")),
+        *((name, 2.0, AttributeError, f"; did you mean {meant}?") for name, meant in MEANT.items()),
+        *((name, lambda self: None, TypeError, " would have no effect on ") for name in UNUSED),
     ],
-)  # fmt: skip
+)
 def test_what_would_have_no_effect_is_rejected(env, name, value, error, message):
     """Misspelt parameters, and methods that are not called."""
-    own = type("Own", (acrobot_rs.AcrobotEnv,), {})()
+    own = type("Own", (AcrobotEnv,), {})()
     changes = (
         lambda: setattr(env, name, value),
         lambda: setattr(own, name, value),
         lambda: make(V1).set_wrapper_attr(name, value),
-        lambda: type("Changed", (acrobot_rs.AcrobotEnv,), {name: value}),
-        lambda: type("Changed", (type("Mixin", (), {name: value}), acrobot_rs.AcrobotEnv), {}),
-        lambda: unittest.mock.patch.object(acrobot_rs.AcrobotEnv, name, value, create=True)(make)(V1),
+        lambda: type("Changed", (AcrobotEnv,), {name: value}),
+        lambda: type("Changed", (type("Mixin", (), {name: value}), AcrobotEnv), {}),
+        lambda: unittest.mock.patch.object(AcrobotEnv, name, value, create=True)(make)(V1),
     )
     for change in changes:
-        with pytest.raises(error, match=re.escape(message)):
+        with pytest.raises(error, match=f"{name}{re.escape(message)}"):
             change()
     own.curriculum_level = 3
     env._LINK_MAS_1 = 2.0
 
 
-@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotContinuousEnv, acrobot_rs.AcrobotVectorEnv])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *(AcrobotEnv, AcrobotContinuousEnv, AcrobotSwingupEnv),
+        *(AcrobotVectorEnv, AcrobotSwingupVectorEnv),
+    ],
+)
 def test_an_unknown_name_is_rejected(kind):
-    env = kind()
-    for name, hint in [("mass_1", "did you mean LINK_MASS_1?"), ("MAX_TORQUE", "did you mean AVAIL_TORQUE?"), ("tau", "it has dt")]:
-        with pytest.raises(AttributeError, match=re.escape(f"{kind.__name__} has no parameter {name}; {hint}")):
-            setattr(env, name, 2.0)
-    message = "unexpected keyword argument 'rendermode'; did you mean render_mode?"
-    with pytest.raises(TypeError, match=message):
+    env, name = kind(), kind.__name__
+    known = {"mass_1": "did you mean LINK_MASS_1?", "MAX_TORQUE": "did you mean AVAIL_TORQUE?"}
+    for unknown, hint in (known | {"tau": "it has "}).items():
+        message = re.escape(f"{name} has no parameter {unknown}; {hint}")
+        with pytest.raises(AttributeError, match=message):
+            setattr(env, unknown, 2.0)
+    # In Python's words, which torchrl recognises.
+    words = rf"{name}.__init__\(\) got an unexpected keyword argument 'rendermode'"
+    with pytest.raises(TypeError, match=rf"{words}; did you mean render_mode\?"):
         kind(rendermode="ansi")
     # What Gymnasium and users set.
-    env.np_random, env.render_mode, env.metadata, env.spec = np.random.default_rng(1), "ansi", {**env.metadata}, None
+    env.np_random, env.render_mode = np.random.default_rng(1), "ansi"
+    env.metadata, env.spec = {**env.metadata}, None
 
 
 def test_parameters_are_arguments():
-    class Heavy(acrobot_rs.AcrobotEnv):
+    class Heavy(AcrobotEnv):
         LINK_MASS_1 = 3.0
 
     assert Heavy().LINK_MASS_1 == 3.0 and Heavy(LINK_MASS_1=4.0).LINK_MASS_1 == 4.0
     for name in (V0, CONTINUOUS, V1):
         env = make(name, LINK_MASS_1=2, AVAIL_TORQUE=[-2, 0, 3], MAX_VEL_1=9.0)
         for each in (env, copy.deepcopy(env), *([] if name == V0 else [env.spec.make()])):
-            assert each.unwrapped.LINK_MASS_1 == 2.0 and each.unwrapped.AVAIL_TORQUE == (-2.0, 0.0, 3.0)
+            assert each.unwrapped.LINK_MASS_1 == 2.0
+            assert each.unwrapped.AVAIL_TORQUE == (-2.0, 0.0, 3.0)
             assert each.observation_space.high[-2] == 9.0
-    for change in (lambda: make(V1, LINK_MASS_1=-1), lambda: env.set_wrapper_attr("LINK_MASS_1", -1)):
-        with pytest.raises(ValueError, match="^LINK_MASS_1 must be finite and above 0 kg, got -1"):
-            change()
+    with pytest.raises(ValueError, match="^LINK_MASS_1 must be finite and above 0 kg, got -1"):
+        env.set_wrapper_attr("LINK_MASS_1", -1)
     env.set_wrapper_attr("LINK_MASS_1", 5.0)
     assert env.unwrapped.LINK_MASS_1 == 5.0
 
 
 def test_spaces_follow_the_parameters():
-    env, samples = acrobot_rs.AcrobotContinuousEnv(), []
+    env, samples = AcrobotContinuousEnv(), []
     for _ in range(2):
-        env.action_space = before = acrobot_rs.AcrobotContinuousEnv().action_space
+        env.action_space = before = AcrobotContinuousEnv().action_space
         env.action_space.seed(1)
         env.AVAIL_TORQUE, env.LINK_MASS_1 = [1.0, 0.0, -1.0], 2.0
         assert env.action_space is before, "and its generator"
@@ -300,11 +327,11 @@ def test_spaces_follow_the_parameters():
     assert env.observation_space is mine
 
 
-def test_an_environment_takes_over_the_values_that_its_class_has_when_it_is_made():
-    class Heavy(acrobot_rs.AcrobotEnv, abc.ABC):
+def test_a_new_environment_copies_its_class_s_parameters():
+    class Heavy(AcrobotEnv, abc.ABC):
         LINK_MASS_1 = 3.0
 
-    heavy, plain, restored = Heavy(), acrobot_rs.AcrobotEnv(), Heavy()
+    heavy, plain, restored = Heavy(), AcrobotEnv(), Heavy()
     restored.LINK_MASS_1 = 4.0
     del restored.LINK_MASS_1
     with unittest.mock.patch.object(Heavy, "LINK_MASS_1", 2.0):
@@ -313,15 +340,16 @@ def test_an_environment_takes_over_the_values_that_its_class_has_when_it_is_made
     with unittest.mock.patch.object(plain, "LINK_MASS_1", 5.0):
         patched = copy.copy(plain)
     for env, mass in [(heavy, 3.0), (later, 2.0), (plain, 4.0), (patched, 5.0), (restored, 3.0)]:
-        other = acrobot_rs.AcrobotEnv()
+        other = AcrobotEnv()
         other.LINK_MASS_1 = mass
         assert env.LINK_MASS_1 == mass
         for each in (env, other):
             each.state = [1.0, 1.0, 0.0, 0.0]
             each.step(2)
         assert (env.state == other.state).all()
-    with unittest.mock.patch.object(Heavy, "LINK_MASS_1", 0.0), pytest.raises(ValueError, match="LINK_MASS_1 must be "):
-        Heavy()
+    with unittest.mock.patch.object(Heavy, "LINK_MASS_1", 0.0):
+        with pytest.raises(ValueError, match="LINK_MASS_1 must be "):
+            Heavy()
 
 
 def test_values_cannot_change_in_place(env):
@@ -329,7 +357,7 @@ def test_values_cannot_change_in_place(env):
     mass, torques = np.array(2.0), [-2.0, 0.0, 2.0]
     env.LINK_MASS_1 = mass
     env.AVAIL_TORQUE = torques
-    changed = type("Changed", (acrobot_rs.AcrobotEnv,), {"LINK_MASS_1": mass, "AVAIL_TORQUE": torques})
+    changed = type("Changed", (AcrobotEnv,), {"LINK_MASS_1": mass, "AVAIL_TORQUE": torques})
     mass[...], torques[0] = 3.0, 0.0
     for each in (env, changed, changed()):
         assert each.LINK_MASS_1 == 2.0 and each.AVAIL_TORQUE == (-2.0, 0.0, 2.0)
@@ -338,14 +366,13 @@ def test_values_cannot_change_in_place(env):
 @pytest.mark.parametrize("torques", [[-1.0, 0.0, 1.0], [0.5, -3.0, 2.0]])
 def test_continuous_torques_are_those_of_the_discrete_environment(torques):
     """Between and at the bounds. Torques outside are clipped."""
-    ours = type("Ours", (acrobot_rs.AcrobotContinuousEnv,), {"AVAIL_TORQUE": torques})()
+    ours = type("Ours", (AcrobotContinuousEnv,), {"AVAIL_TORQUE": torques})()
     low, high = min(torques), max(torques)
     assert ours.action_space == gymnasium.spaces.Box(low, high, (1,), np.float32)
-    assert ours.observation_space == acrobot_rs.AcrobotEnv().observation_space
-    between = float(np.float32(0.3))
-    actions = {-np.inf: low, low - 1: low, low: low, between: between, high: high, high + 1: high, np.inf: high}
-    discrete = acrobot_rs.AcrobotEnv()
-    discrete.AVAIL_TORQUE = list(actions.values())
+    assert ours.observation_space == AcrobotEnv().observation_space
+    inside = {each: each for each in (low, float(np.float32(0.3)), high)}
+    actions = {-np.inf: low, low - 1: low, **inside, high + 1: high, np.inf: high}
+    discrete = AcrobotEnv(AVAIL_TORQUE=list(actions.values()))
     for env in (ours, discrete):
         env.torque_noise_max = 0.1
     assert (ours.reset(seed=2)[0] == discrete.reset(seed=2)[0]).all()

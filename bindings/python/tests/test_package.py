@@ -1,4 +1,4 @@
-"""The installed package has what a registry shows, and plays recorded episodes. CI runs this on each Python."""
+"""The installed package has what a registry shows, and plays recorded episodes."""
 
 from importlib.metadata import distribution
 
@@ -15,22 +15,28 @@ def test_metadata():
     assert metadata["Requires-Python"] == ">=3.10"
     assert sorted(package.requires) == ["gymnasium>=1.1", "numpy>=1.26"]
     # Not the README of the crate, which is in the source distribution too.
-    assert (metadata["Description"] or metadata.get_payload()).lstrip().startswith("# Acrobot for Gymnasium")
+    text = metadata["Description"] or metadata.get_payload()
+    assert text.lstrip().startswith("# Acrobot for Gymnasium")
 
 
 def test_files():
     files = {path.name: path for path in distribution("acrobot-rs").files}
     assert "py.typed" in files
-    for name, words in [("LICENSE-MIT", "Permission is hereby granted"), ("LICENSE-APACHE", "Version 2.0, January 2004")]:
+    words = {
+        "LICENSE-MIT": "Permission is hereby granted",
+        "LICENSE-APACHE": "Version 2.0, January",
+    }
+    for name in words:
         assert files[name].parent.name == "licenses"
-        assert words in files[name].read_text()
+        assert words[name] in files[name].read_text()
 
 
 def test_recorded_velocities():
-    """All bits of a vector environment's velocities after some twelve episodes in each environment."""
+    """All bits of the velocities after some twelve episodes in each environment."""
     envs = gymnasium.make_vec("acrobot_rs/Acrobot-v1", num_envs=8)
     observations, _ = envs.reset(seed=42)
     for _ in range(1000):
         observations, *_ = envs.step(np.where(observations[:, 4] > 0, 0, 2))
-    recorded = [-1.2072487, 2.8623645, -0.43208173, 4.013114, -0.08323621, -2.5330896, -0.25388432, 1.6371081]
+    recorded = [-1.2072487, 2.8623645, -0.43208173, 4.013114]
+    recorded += [-0.08323621, -2.5330896, -0.25388432, 1.6371081]
     assert (observations[:, 5] == np.float32(recorded)).all()

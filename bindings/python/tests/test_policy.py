@@ -1,8 +1,11 @@
-"""Policies in files for the crate `crates/policy`: what is written, and what is rejected. Stand-ins have the attributes of torch's modules."""
+"""Policies in files for the crate `crates/policy`: what is written, and what is rejected.
+
+Stand-ins have the attributes of torch's modules.
+"""
 
 import struct
-import types
 import zlib
+from types import SimpleNamespace as Attributes
 
 import acrobot_rs
 import gymnasium as gym
@@ -25,7 +28,9 @@ class Tensor(np.ndarray):
 
 class Linear:
     def __init__(self, inputs, outputs):
-        self.weight, self.bias = (RNG.normal(size=size).view(Tensor) for size in [(outputs, inputs), (outputs,)])
+        self.weight, self.bias = (
+            RNG.normal(size=size).view(Tensor) for size in [(outputs, inputs), (outputs,)]
+        )
 
     def __call__(self, x):
         return x @ np.asarray(self.weight).T + np.asarray(self.bias)
@@ -54,13 +59,17 @@ class Model:
     envs, seen = None, acrobot_rs.AcrobotEnv().observation_space
 
     def __init__(self, kind, modules, space=gym.spaces.Discrete(3), quantiles=1, normalize=None):
+        quantile_net = Attributes(quantile_net=modules, n_quantiles=quantiles)
         networks = {
-            "ppo": {"mlp_extractor": types.SimpleNamespace(policy_net=modules[:-1]), "action_net": modules[-1]},
-            "dqn": {"q_net": types.SimpleNamespace(q_net=modules)},
-            "qrdqn": {"quantile_net": types.SimpleNamespace(quantile_net=modules, n_quantiles=quantiles)},
+            "ppo": {
+                "mlp_extractor": Attributes(policy_net=modules[:-1]),
+                "action_net": modules[-1],
+            },
+            "dqn": {"q_net": Attributes(q_net=modules)},
+            "qrdqn": {"quantile_net": quantile_net},
         }
         spaces = {"action_space": space, "observation_space": self.seen}
-        self.policy = types.SimpleNamespace(**spaces, **networks[kind])
+        self.policy = Attributes(**spaces, **networks[kind])
         self.modules, self.quantiles, self.normalize = modules, quantiles, normalize
 
     def get_vec_normalize_env(self):
@@ -90,7 +99,7 @@ class SwingupModel(Model):
 
 class Normalize:
     norm_obs, epsilon, clip_obs = True, 1e-8, 100.0
-    obs_rms = types.SimpleNamespace(mean=RNG.normal(size=6) / 4, var=RNG.uniform(0.2, 3, 6))
+    obs_rms = Attributes(mean=RNG.normal(size=6) / 4, var=RNG.uniform(0.2, 3, 6))
 
     def normalize_obs(self, x):
         return (x - self.obs_rms.mean) / np.sqrt(self.obs_rms.var + self.epsilon)
@@ -117,7 +126,8 @@ def test_a_file_has_the_header_and_the_numbers(tmp_path):
 @pytest.mark.parametrize("kind", ["ppo", "dqn", "qrdqn"])
 def test_models_of_stable_baselines3_are_saved_with_their_own_actions(kind, normalize, tmp_path):
     quantiles = 5 if kind == "qrdqn" else 1
-    model = Model(kind, [Linear(6, 8), Tanh(), Linear(8, 8), ReLU(), Linear(8, 3 * quantiles)], quantiles=quantiles, normalize=normalize)
+    modules = [Linear(6, 8), Tanh(), Linear(8, 8), ReLU(), Linear(8, 3 * quantiles)]
+    model = Model(kind, modules, quantiles=quantiles, normalize=normalize)
     policy.save(model, tmp_path / "p")  # compares the actions
     head, numbers = read(tmp_path / "p")
     assert head == (b"MLP1", 0, 6, 0.0, [(8, 1, 0), (8, 2, 0), (3, 0, 0)])
@@ -148,64 +158,73 @@ def test_an_action_of_a_swing_up_becomes_a_torque(torques, given, limit, tmp_pat
     np.testing.assert_allclose(numbers[-5:], limit * last, rtol=1e-6)
 
 
-def overflowing():
-    """1e30 times 1e30 is beyond float32, and infinity less infinity is no number."""
-    model = Model("dqn", [Linear(6, 2), Linear(2, 3)])
-    model.modules[0].weight[:], model.modules[1].weight[:] = 1e30, [[1e30, -1e30]] * 3
-    return model
-
-
 def test_clipped_observations_are_warned_of(tmp_path):
     normalize = Normalize()
     normalize.clip_obs = 10.0
+    model = Model("dqn", [Linear(6, 3)], normalize=normalize)
     with pytest.warns(UserWarning, match="VecNormalize clips extreme observations"):
-        policy.save(Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "p", np.zeros((1, 6)))
+        policy.save(model, tmp_path / "p", np.zeros((1, 6)))
     normalize.clip_obs = 0.5
     normalize.normalize_obs = lambda x: np.clip(Normalize().normalize_obs(x), -0.5, 0.5)
     message = "they differ on .* clips extreme observations, at clip_obs=0.5, and the file does not"
     with pytest.warns(UserWarning), pytest.raises(ValueError, match=message):
-        policy.save(Model("dqn", [Linear(6, 3)], normalize=normalize), tmp_path / "q")
+        policy.save(model, tmp_path / "q")
+
+
+def dqn(*modules):
+    return Model("dqn", modules)
+
+
+def overflowing():
+    """1e30 times 1e30 is beyond float32, and infinity less infinity is no number."""
+    model = dqn(Linear(6, 2), Linear(2, 3))
+    model.modules[0].weight[:], model.modules[1].weight[:] = 1e30, [[1e30, -1e30]] * 3
+    return model
+
+
+LIMIT = "torque_limit must be "
 
 
 @pytest.mark.parametrize(
-    ("error", "message", "save"),
+    ("error", "message", "model", "arguments"),
     [
-        (TypeError, "a layer must be one of Linear, Tanh.*, got GELU", lambda p: policy.save(Model("dqn", [Linear(6, 3), GELU()]), p)),
-        (TypeError, "Tanh must follow a linear layer", lambda p: policy.save(Model("dqn", [Tanh(), Linear(6, 3)]), p)),
-        (TypeError, "the policy must be that of PPO, A2C, DQN or QR-DQN", lambda p: policy.save(types.SimpleNamespace(policy=1), p)),
-        (TypeError, "model must be .*, got 5", lambda p: policy.save(5, p)),
-        (ValueError, r"layer 0 must have weights of shape \(outputs, 6\)", lambda p: policy.save(Model("dqn", [Linear(4, 3)]), p)),
-        (ValueError, "the last layer must have 3 outputs, or 1 with a torque_limit, got 2", lambda p: policy.save(Model("dqn", [Linear(6, 2)]), p)),
-        (ValueError, "the activation of layer 0 must be one of", lambda p: policy.write(p, [(np.ones((3, 6)), np.ones(3), "elu")])),
-        (ValueError, "the numbers of layer 0 must be finite", lambda p: policy.write(p, [(np.full((3, 6), np.nan), np.ones(3), "none")])),
-        (ValueError, "torque_limit must be finite and above 0 N m", lambda p: policy.write(p, [(np.ones((1, 6)), np.ones(1), "none")], -1)),
-        (ValueError, "torque_limit must be .* above 0 N m in float32, got 1e-50",
-         lambda p: policy.write(p, [(np.ones((1, 6)), np.ones(1), "none")], 1e-50)),
-        (ValueError, "the numbers of layer 0 must be finite",
-         lambda p: policy.write(p, [(np.full((3, 6), 1e300), np.ones(3), "none")])),
-        (ValueError, "outputs of the file must be finite; they are not on .* of 2000",
-         lambda p: policy.save(overflowing(), p)),
-        (ValueError, "it has Dropout in training mode",
-         lambda p: policy.save([Linear(6, 3), Dropout()], p)),
-        (ValueError, "torque_limit must be .* the model has no environment",
-         lambda p: policy.save(SwingupModel(), p)),
-        (ValueError, r"torque_limit must be .* differ: \[1.0, 2.0\]",
-         lambda p: policy.save(SwingupModel([[-1, 0, 1], [-2, 0, 2]]), p)),
-        (ValueError, r"torque_limit must be .* differ: \[-5.0, 5.0\]",
-         lambda p: policy.save(SwingupModel([5, 5, 5]), p)),
-        *((ValueError, "torque_limit must be finite and above 0 N m",
-           lambda p, limit=limit: policy.save(SwingupModel(), p, torque_limit=limit))
+        (TypeError, "a layer must be one of Linear, Tanh.*, got GELU", dqn(GELU()), {}),
+        (TypeError, "Tanh must follow a linear layer", dqn(Tanh(), Linear(6, 3)), {}),
+        (TypeError, "the policy must be that of PPO, A2C, DQN or QR-DQN", Attributes(policy=1), {}),
+        (TypeError, "model must be .*, got 5", 5, {}),
+        (ValueError, r"layer 0 must have weights of shape \(outputs, 6\)", dqn(Linear(4, 3)), {}),
+        (ValueError, "must have 3 outputs, or 1 with a torque_limit, got 2", dqn(Linear(6, 2)), {}),
+        (ValueError, "must be finite; they are not on .* of 2000", overflowing(), {}),
+        (ValueError, "it has Dropout in training mode", [Linear(6, 3), Dropout()], {}),
+        (ValueError, f"{LIMIT}.* the model has no environment", SwingupModel(), {}),
+        (ValueError, rf"{LIMIT}.*: \[1.0, 2.0\]", SwingupModel([[-1, 0, 1], [-2, 0, 2]]), {}),
+        (ValueError, rf"{LIMIT}.*: \[-5.0, 5.0\]", SwingupModel([5, 5, 5]), {}),
+        *((ValueError, f"{LIMIT}finite and above 0 N m", SwingupModel(), {"torque_limit": limit})
           for limit in (np.nan, np.inf, 1e39, -2.0)),
-        (TypeError, "torque_limit must be a number of N m, got '1'",
-         lambda p: policy.save(SwingupModel(), p, torque_limit="1")),
-        *((ValueError, "observations must be finite numbers of shape .*, got",
-           lambda p, seen=seen: policy.save(Model("dqn", [Linear(6, 3)]), p, seen))
+        (TypeError, f"{LIMIT}a number of N m, got '1'", SwingupModel(), {"torque_limit": "1"}),
+        *((ValueError, "observations must be .*, got", dqn(Linear(6, 3)), {"observations": seen})
           for seen in (np.zeros((0, 6)), np.zeros((5, 4)), np.zeros(6), np.full((3, 6), np.nan))),
         (ValueError, "bounds of the action space must be .*opposite, got -1.0 and 2.0",
-         lambda p: policy.save(Model("ppo", [Linear(6, 1)], gym.spaces.Box(-1, 2, (1,))), p)),
+         Model("ppo", [Linear(6, 1)], gym.spaces.Box(-1, 2, (1,))), {}),
     ],
 )  # fmt: skip
-def test_other_models_are_rejected(error, message, save, tmp_path):
+def test_other_models_are_rejected(error, message, model, arguments, tmp_path):
     with pytest.raises(error, match=message):
-        save(tmp_path / "p")
+        policy.save(model, tmp_path / "p", **arguments)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("message", "outputs", "weight", "activation", "limit"),
+    [
+        ("the activation of layer 0 must be one of", 3, 1.0, "elu", None),
+        *(("numbers of layer 0 must be finite", 3, each, "none", None) for each in (np.nan, 1e300)),
+        (f"{LIMIT}finite and above 0 N m", 1, 1.0, "none", -1),
+        (f"{LIMIT}.* above 0 N m in float32, got 1e-50", 1, 1.0, "none", 1e-50),
+    ],
+)
+def test_other_layers_are_rejected(message, outputs, weight, activation, limit, tmp_path):
+    layer = np.full((outputs, 6), weight), np.ones(outputs), activation
+    with pytest.raises(ValueError, match=message):
+        policy.write(tmp_path / "p", [layer], limit)
     assert not list(tmp_path.iterdir())

@@ -18,7 +18,9 @@ def test_advantages_are_the_discounted_errors_until_the_end_of_the_episode():
     terminated, truncated = rng.random((2, *shape)) < 0.1
     ended = terminated | truncated
     parameters = train_ppo.initial(jax.random.key(0))
-    value, following = (np.asarray(train_ppo.values(parameters, each)) for each in (observations, seen))
+    value, following = (
+        np.asarray(train_ppo.values(parameters, each)) for each in (observations, seen)
+    )
 
     expected = np.zeros(shape)
     for step, env in np.ndindex(shape):
@@ -59,7 +61,8 @@ def test_an_evaluation_counts_one_episode_of_each_environment():
 
 
 def test_it_learns():
-    run = subprocess.run([sys.executable, train_ppo.__file__, "1", "2", "3"], capture_output=True, text=True, check=True)
+    command = [sys.executable, train_ppo.__file__, "1", "2", "3"]
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
     means = [float(mean) for mean in re.findall(r"seed \d: (-[\d.]+) after", run.stdout)]
     assert len(means) == 3 and min(means) > -100, run.stdout
     assert "mean return" in run.stderr

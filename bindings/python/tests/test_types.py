@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from test_docs import ROOT
+from test_docs import NAMES, ROOT
 
 PROGRAM = """\
 import acrobot_rs
@@ -62,7 +62,7 @@ acrobot_rs.AcrobotSwingupVectorEnv(2, FRICTION_1="much")
 def test_checkers(checker, tmp_path):
     pytest.importorskip(checker[0])
     texts = {"program.py": PROGRAM, "wrong.py": WRONG}
-    for name in ("python", "swingup"):
+    for name in NAMES:
         page = (ROOT / f"docs/{name}.md").read_text()
         blocks = re.findall(r"^```py(?:thon)?\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
         texts[f"{name}.py"] = "\n".join(["# pyright: reportMissingImports=false", *blocks])

@@ -7,25 +7,27 @@ import pickle
 import subprocess
 import sys
 import threading
+import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import Uniform
+from acrobot_rs import AcrobotEnv, AcrobotSwingupVectorEnv, AcrobotVectorEnv, Uniform
 from acrobot_rs.parameters import _NAMES as NAMES
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.vector import AutoresetMode
-from vectors import CONTINUOUS, MODES, assert_equal, different, make_vec, pair, rejects, reset_ended
+from vectors import CONTINUOUS, MODES, assert_equal, assert_resets_equal
+from vectors import different, make_vec, pair, rejects, reset_ended
 
 
 def test_attributes_and_types_are_those_of_sync_vector_env():
     theirs, ours = pair(5)
-    names = ("num_envs", "observation_space", "action_space", "single_observation_space", "single_action_space")
-    for name in (*names, "autoreset_mode", "render_mode", "copy", "closed"):
+    names = "num_envs", "autoreset_mode", "render_mode", "copy", "closed"
+    spaces = [f"{kind}_space" for kind in ("observation", "action")]
+    for name in (*names, *spaces, *(f"single_{space}" for space in spaces)):
         assert getattr(ours, name) == getattr(theirs, name)
     assert repr(ours) == "AcrobotVectorEnv(acrobot_rs/Acrobot-v1, num_envs=5)"
     assert ours.unwrapped is ours and ours.spec.max_episode_steps == 500
@@ -39,9 +41,10 @@ def test_attributes_and_types_are_those_of_sync_vector_env():
         assert observations in envs.observation_space and infos == {}
         observations, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
         assert observations in envs.observation_space and infos == {}
-        for signals, dtype in [(rewards, np.float32), (terminated, np.bool_), (truncated, np.bool_)]:
-            assert signals.shape == (5,) and signals.dtype == dtype
-    assert acrobot_rs.AcrobotVectorEnv.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+        for signals in (rewards, terminated, truncated):
+            assert signals.shape == (5,)
+        assert rewards.dtype == np.float32 and terminated.dtype == truncated.dtype == np.bool_
+    assert AcrobotVectorEnv.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
 
 
 def test_observations_are_copies_or_one_array():
@@ -56,39 +59,32 @@ def test_observations_are_copies_or_one_array():
             assert (one != other).any() == copies
 
 
+#: `test_env.py` tries what is no array of numbers.
+INVALID = {
+    AcrobotVectorEnv: [
+        [0, 1, 2, 3], [0, 0, 0, -1], [0, 0, 256, 0], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]],
+        [0.0, 1.0, 2.0, 0.0], 1, [True] * 4,
+        *(np.array([2, number, 0, number], np.uint64) for number in (2**64 - 1, 2**63, 3)),
+        b"\0\1\2\0", np.zeros((4, 1), np.float32)],
+    AcrobotContinuousVectorEnv: [
+        [[0.5]], [0.5] * 4, [[0.5, 0.5]] * 4, [[np.nan], [0.0], [0.0], [0.0]], [["0"]] * 4,
+        [[True]] * 4, [[1j]] * 4, np.zeros(4, np.int64), np.zeros(4, np.float32),
+        np.zeros((4, 1), object)],
+}  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    ("kind", "actions"),
-    [*((acrobot_rs.AcrobotVectorEnv, actions) for actions in (
-        [0, 1, 2, 3], [0, 0, 0, -1], [0, 0, 256, 0], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]], [0.0, 1.0, 2.0, 0.0], 1, [True] * 4,
-        np.array([0, 0, 0, 2**63], dtype=np.uint64), b"\0\1\2\0", np.zeros((4, 1), np.float32))),
-     *((AcrobotContinuousVectorEnv, actions) for actions in (
-        [[0.5]], [0.5] * 4, [[0.5, 0.5]] * 4, [[np.nan], [0.0], [0.0], [0.0]], [["0"]] * 4, [[True]] * 4, [[1j]] * 4,
-        np.zeros(4, np.int64), np.zeros(4, np.float32), np.zeros((4, 1), object)))],
-)  # fmt: skip
+    ("kind", "actions"), [(kind, each) for kind in INVALID for each in INVALID[kind]]
+)
 def test_invalid_actions_are_rejected(kind, actions):
-    """`test_env.py` tries what is no array of numbers."""
+    """The message has the action itself, not what it becomes as int64."""
     envs = kind(4)
     envs.reset(seed=1)
-    with rejects(envs, InvalidAction, r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number)"):
+    message = r"actions must be \w+ of shape \(4, ?1?\), got |actions\[\d\] must be (0|a number)"
+    if getattr(actions, "dtype", None) == np.uint64:
+        message = rf"actions\[1\] must be 0, 1 or 2, got {actions[1]}$"
+    with rejects(envs, InvalidAction, message):
         envs.step(actions)
-
-
-@pytest.mark.parametrize("number", [2**64 - 1, 2**63, 3])
-def test_the_action_given_is_in_the_message(number):
-    """Not what it becomes as int64."""
-    envs = make_vec(3)
-    envs.reset(seed=1)
-    with rejects(envs, InvalidAction, rf"actions\[1\] must be .*, got {number}$"):
-        envs.step(np.array([2, number, number], np.uint64))
-
-
-def test_torques_beyond_float32_act_as_the_bound():
-    """Without a warning of NumPy's."""
-    envs, twin = AcrobotContinuousVectorEnv(2), AcrobotContinuousVectorEnv(2)
-    for each, torques in ((envs, [[1e300], [-3.5e38]]), (twin, [[1.0], [-1.0]])):
-        each.reset(seed=1)
-        each.step(torques)
-    assert (envs.state == twin.state).all()
 
 
 @pytest.mark.parametrize(
@@ -106,6 +102,9 @@ def test_actions_can_be_integers_of_any_type(convert):
     np.testing.assert_equal(envs.step(convert(actions)), twin.step(actions))
 
 
+COUNTS = "num_envs", "max_episode_steps", "threads"
+
+
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -114,21 +113,23 @@ def test_actions_can_be_integers_of_any_type(convert):
         *(("autoreset_mode", mode) for mode in ("nextstep", None, 1, [])),
         ("threads", 0),
         ("render_mode", "human"),
-        *((name, value) for name in ("num_envs", "max_episode_steps", "threads") for value in (2.0, "2", True)),
+        *((name, value) for name in COUNTS for value in (2.0, "2", True)),
         *((name, value) for name in ("copy", "gymnasium_episodes") for value in (1, "False", None)),
         *(("info_parameters", value) for value in (True, None, "dt", [0])),
     ],
 )
 def test_invalid_arguments_are_rejected(name, value):
     with pytest.raises((TypeError, ValueError), match=f"^{name} must be .*, got "):
-        acrobot_rs.AcrobotVectorEnv(**{"num_envs": 2, name: value})
+        AcrobotVectorEnv(**{"num_envs": 2, name: value})
 
 
 @pytest.mark.parametrize(
     ("call", "message"),
-    [("acrobot_rs.AcrobotVectorEnv(2**32 - 1)", "num_envs must be so few that they fit into memory, got 4294967295"),
-     ("batch.step(None, actions, observations)", "a step does not fit into memory")],
-)  # fmt: skip
+    [
+        ("acrobot_rs.AcrobotVectorEnv(2**32 - 1)", "num_envs must be so few that they fit into"),
+        ("batch.step(None, actions, observations)", "a step does not fit into memory"),
+    ],
+)
 def test_a_call_that_does_not_fit_into_memory_raises(call, message):
     """In a process that may use 2 MB more than it has when the call begins."""
     code = f"""if True:
@@ -153,21 +154,17 @@ def test_pictures_are_those_of_single_environments():
     envs.LINK_LENGTH_1 = [1.0, 0.3]
     envs.reset(seed=1, options={"low": -2.0, "high": 2.0})
     for frame, state, length in zip(envs.render(), envs.state, (1.0, 0.3), strict=True):
-        single = acrobot_rs.AcrobotEnv("rgb_array")
+        single = AcrobotEnv("rgb_array")
         single.LINK_LENGTH_1, single.state = length, state
         assert (frame == single.render()).all()
-    with pytest.warns(UserWarning, match="without a render mode"):
-        assert make_vec(2).render() is None
 
 
 def test_attributes_of_each_environment():
+    """`test_programs.py` tries unknown names."""
     theirs, ours = pair(3, render_mode="rgb_array")
     states = np.random.default_rng(0).uniform(-1, 1, (3, 4))
     for envs in (theirs, ours):
         envs.reset(seed=1)
-        for get in (envs.call, envs.get_attr):
-            with pytest.raises(AttributeError):
-                get("length")
         for values in ([1.0], (1.0,) * 4):
             with pytest.raises(ValueError, match="3"):
                 envs.set_attr("LINK_MOI", values)
@@ -180,15 +177,13 @@ def test_attributes_of_each_environment():
         for get in ("get_attr", "call"):
             expected, found = getattr(theirs, get)(name), getattr(ours, get)(name)
             assert isinstance(found, tuple)
-            # A list in Gymnasium, where a change of it would have an effect.
-            np.testing.assert_equal([list(x) if name == "AVAIL_TORQUE" else x for x in found], [*expected])
+            if name == "AVAIL_TORQUE":  # a list in Gymnasium, where a change of it has an effect
+                found = [list(torques) for torques in found]
+            np.testing.assert_equal([*found], [*expected])
     assert ours.get_attr("elapsed_steps") == theirs.get_attr("_elapsed_steps")
     assert len(ours.call("render")) == 3 and (ours.call("render")[2] == ours.render()[2]).all()
-    with pytest.raises(AttributeError, match="no attribute 'length'; they have .*elapsed_steps.*LINK_LENGTH_1"):
-        ours.call("length")
-    for name, error in [("state", ValueError), ("length", AttributeError), ("elapsed_steps", AttributeError)]:
-        with rejects(ours, error, name):
-            ours.set_attr(name, [1.0] * 3)
+    with rejects(ours, ValueError, "state"):
+        ours.set_attr("state", [1.0] * 3)
 
 
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
@@ -207,12 +202,14 @@ def test_states_can_be_set(gymnasium_episodes):
     for array in (envs.state, envs.elapsed_steps):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1
-    for row, column, number in [(39, 3, np.nan), (0, 2, -np.inf), *([] if gymnasium_episodes else [(7, 0, 1e39)])]:
+    beyond = [] if gymnasium_episodes else [(7, 0, 1e39)]
+    for row, column, number in [(39, 3, np.nan), (0, 2, -np.inf), *beyond]:
         bad = states.astype(np.float64) + 1.0
         bad[row, column] = number
-        with pytest.raises(ValueError, match=rf"state\[{row}, {column}\] must be a finite number, got "):
+        message = rf"state\[{row}, {column}\] must be a finite number, got "
+        with pytest.raises(ValueError, match=message):
             envs.state = bad
-    for bad in [states[:39], states.T, states[0], None, [["1"] * 4] * 40, states > 0]:
+    for bad in (states[:39], states.T, states[0]):
         with pytest.raises(ValueError, match=r"state must be numbers of shape \(40, 4\), got"):
             envs.state = bad
     assert (envs.state == states).all()
@@ -221,10 +218,10 @@ def test_states_can_be_set(gymnasium_episodes):
 def test_after_close_nothing_works():
     envs = make_vec(2, render_mode="ansi")
     envs.reset()
-    for _ in range(2):
-        envs.close()
-    assert envs.closed
-    for call in (envs.reset, envs.render, lambda: envs.step([0, 1]), lambda: envs.call("dt"), lambda: envs.set_attr("dt", 0.1)):
+    envs.close()
+    envs.close()
+    others = (lambda: envs.step([0, 1]), lambda: envs.call("dt"), lambda: envs.set_attr("dt", 0.1))
+    for call in (envs.reset, envs.render, *others):
         with pytest.raises(ClosedEnvironmentError, match="closed"):
             call()
 
@@ -232,13 +229,11 @@ def test_after_close_nothing_works():
 @MODES
 def test_continuous_torques_give_the_episodes_of_single_environments(mode):
     """Also if environments have different bounds of the torque."""
-    theirs = gymnasium.make_vec(
-        CONTINUOUS, num_envs=6, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, max_episode_steps=60
-    )
-    ours = gymnasium.make_vec(CONTINUOUS, num_envs=6, autoreset_mode=mode, gymnasium_episodes=True, max_episode_steps=60)
+    theirs, ours = pair(6, mode, CONTINUOUS, CONTINUOUS, max_episode_steps=60)
     assert isinstance(ours, AcrobotContinuousVectorEnv) and ours.action_space == theirs.action_space
-    assert_equal(theirs.reset(seed=1), ours.reset(seed=1))
-    for step, actions in enumerate(np.random.default_rng(0).uniform(-1.5, 1.5, (300, 6, 1)).astype(np.float32)):
+    assert_resets_equal(theirs, ours, seed=1)
+    torques = np.random.default_rng(0).uniform(-1.5, 1.5, (300, 6, 1)).astype(np.float32)
+    for step, actions in enumerate(torques):
         if step == 150:
             for envs in (theirs, ours):
                 envs.set_attr("AVAIL_TORQUE", different(6, 0)["AVAIL_TORQUE"].tolist())
@@ -249,17 +244,19 @@ def test_continuous_torques_give_the_episodes_of_single_environments(mode):
 
 
 def test_torques_in_float32_are_those_of_actions():
-    """Torques beyond the bounds, which are those of AVAIL_TORQUE, act as the bounds."""
+    """Those beyond the bounds, also beyond float32, act as the bounds, those of AVAIL_TORQUE."""
 
     class Strong(AcrobotContinuousVectorEnv):
         AVAIL_TORQUE = (3.0, -2.0, 0.0)
 
-    discrete, torques = make_vec(30, autoreset_mode="SameStep", max_episode_steps=60), Strong(30, 60, None, "SameStep")
+    discrete = make_vec(30, autoreset_mode="SameStep", max_episode_steps=60)
+    torques = Strong(30, 60, None, "SameStep")
     discrete.AVAIL_TORQUE = Strong.AVAIL_TORQUE
     assert torques.single_action_space == gymnasium.spaces.Box(-2.0, 3.0, (1,), np.float32)
     assert torques.action_space == gymnasium.spaces.Box(-2.0, 3.0, (30, 1), np.float32)
-    assert_equal(discrete.reset(seed=1), torques.reset(seed=1))
-    for kind in (np.float32([3, -2, 0]), np.float64([np.inf, -9.0, 0.0])):
+    assert_resets_equal(discrete, torques, seed=1)
+    below = (np.array(each) for each in ([np.inf, -9.0, 0.0], [1e300, -1e39, 0.0]))
+    for kind in (np.float32([3, -2, 0]), *below):
         for actions in np.random.default_rng(0).integers(3, size=(100, 30)):
             assert_equal(discrete.step(actions), torques.step(kind[actions][:, None]))
     discrete.step([0] * 30)
@@ -270,11 +267,11 @@ def test_torques_in_float32_are_those_of_actions():
 @pytest.mark.parametrize(
     ("kind", "count", "arguments"),
     [
-        (acrobot_rs.AcrobotSwingupVectorEnv, 40_003, {}),
-        *((kind, count, {"torque_noise_max": 0.5, "gymnasium_episodes": count < 40_000})
-            for kind in (acrobot_rs.AcrobotVectorEnv, AcrobotContinuousVectorEnv) for count in (40_003, 3_003)),
+        (AcrobotSwingupVectorEnv, 40_003, {}),
+        *((kind, 40_003, {"torque_noise_max": 0.5}) for kind in INVALID),
+        *((kind, 3_003, {"torque_noise_max": 0.5, "gymnasium_episodes": True}) for kind in INVALID),
     ],
-)  # fmt: skip
+)
 def test_threads_change_no_bit(kind, count, arguments):
     plays = []
     for threads in (1, 3, None):
@@ -312,7 +309,9 @@ def test_threads_in_a_forked_process():
     envs.reset(seed=1)
     envs.step(actions)
     ours, theirs = multiprocessing.Pipe()
-    child = multiprocessing.get_context("fork").Process(target=lambda: theirs.send(envs.step(actions)[0]))
+    child = multiprocessing.get_context("fork").Process(
+        target=lambda: theirs.send(envs.step(actions)[0])
+    )
     child.start()
     try:
         assert ours.poll(30), "the child hangs"
@@ -322,19 +321,22 @@ def test_threads_in_a_forked_process():
         child.join()
 
 
-@pytest.mark.parametrize("copies", [True, False])
-def test_a_call_during_a_step_is_rejected_and_changes_nothing(copies):
+def test_a_call_during_a_step_is_rejected_and_changes_nothing():
     count = 500_000  # so many that a step takes long enough for another call
-    kwargs = {"gymnasium_episodes": True, "render_mode": "ansi", "copy": copies}
-    envs = acrobot_rs.AcrobotVectorEnv(count, **kwargs)
+    envs = AcrobotVectorEnv(count, gymnasium_episodes=True, render_mode="ansi")
     states, actions = np.zeros((count, 4)), np.ones(count, np.int64)
+    attributes = [("state", states), ("dt", 0.1), ("dt", Uniform(0.1, 0.2)), ("dt", [0.1])]
+    functions = [pickle.dumps, copy.deepcopy, lambda envs: envs._native.__setstate__(b"")]
     calls = [
-        *(lambda: envs.state, lambda: setattr(envs, "state", states), lambda: envs.elapsed_steps, lambda: envs.render()),
-        *(lambda: setattr(envs, "dt", 0.1), lambda: setattr(envs, "dt", Uniform(0.1, 0.2)), lambda: setattr(envs, "dt", [0.1])),
-        *(lambda: envs.step(actions), envs.reset, lambda: envs._native.seed(["1"])),
-        *(lambda: pickle.dumps(envs), lambda: copy.deepcopy(envs), lambda: envs._native.__setstate__(b"")),
+        *((lambda pair=pair: setattr(envs, *pair)) for pair in attributes),
+        *((lambda function=function: function(envs)) for function in functions),
+        *(lambda: envs.state, lambda: envs.elapsed_steps, envs.render),
+        lambda: envs._native.seed(["1"]),
     ]
-    busy = "^another thread is stepping or resetting an environment; change parameters and call methods between its steps$"
+    busy = (
+        "^another thread is stepping or resetting an environment; "
+        "change parameters and call methods between its steps$"
+    )
     for call in calls:
         envs.reset()
         with ThreadPoolExecutor(1) as executor:
@@ -349,50 +351,41 @@ def test_a_call_during_a_step_is_rejected_and_changes_nothing(copies):
         assert envs.dt == 0.2 and (envs.elapsed_steps == 1).all()
 
 
-@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotVectorEnv, acrobot_rs.AcrobotSwingupVectorEnv])
+MASK = {"reset_mask": np.ones(3, bool)}
+RESETS = ({}, {"seed": 2}, {"seed": [2] * 3}, {"seed": [2] * 3, "options": MASK})
+
+
 @pytest.mark.parametrize("copies", [True, False])
-@pytest.mark.parametrize("call", ["step", "reset", "seed", "seeds", "mask", "state"])
-def test_a_step_or_reset_beside_a_step_changes_nothing(kind, copies, call):
+@pytest.mark.parametrize(
+    "arguments", [None, *RESETS, {"seed": 2, "options": {"state": np.zeros(4)}}]
+)
+def test_a_step_or_reset_beside_a_step_changes_nothing(copies, arguments):
     """Neither seeds nor observations that all calls share."""
-    envs = kind(3, copy=copies, autoreset_mode="Disabled")
+    envs = AcrobotVectorEnv(3, copy=copies, autoreset_mode="Disabled")
     envs.reset(seed=1)
-    actions = np.full(envs.action_space.shape, 1)
-    calls = {
-        "step": lambda: envs.step(actions),
-        "reset": envs.reset,
-        "seed": lambda: envs.reset(seed=2),
-        "seeds": lambda: envs.reset(seed=[2] * 3),
-        "mask": lambda: envs.reset(seed=[2] * 3, options={"reset_mask": np.ones(3, bool)}),
-        "state": lambda: envs.reset(seed=2, options={"state": np.zeros(4)}),
-    }
+    actions = np.ones(3, int)
     twin = copy.deepcopy(envs)
     expected = twin.step(actions)
-    stepping, release = threading.Event(), threading.Event()
+    native, stepping, release = envs._native, threading.Event(), threading.Event()
 
-    class Slow:
+    def slow(*arguments):
         """Stops a step after its part in Rust."""
+        results = native.step(*arguments)
+        stepping.set()
+        release.wait(30)
+        return results
 
-        def step(self, *arguments):
-            results = envs_native.step(*arguments)
-            stepping.set()
-            release.wait(30)
-            return results
-
-        def __getattr__(self, name):
-            return getattr(envs_native, name)
-
-    envs_native, envs._native = envs._native, Slow()
+    envs._native = unittest.mock.Mock(wraps=native, **{"step.side_effect": slow})
     with ThreadPoolExecutor(1) as executor:
         step = executor.submit(envs.step, actions)
         assert stepping.wait(30)
-        before = envs_native.__getstate__(), envs.np_random_seed
+        before = native.__getstate__(), envs.np_random_seed
         try:
             with pytest.raises(RuntimeError, match="^another thread is stepping or resetting"):
-                calls[call]()
-            assert before == (envs_native.__getstate__(), envs.np_random_seed)
+                envs.step(actions) if arguments is None else envs.reset(**arguments)
+            assert before == (native.__getstate__(), envs.np_random_seed)
         finally:
             release.set()
         for one, other in zip(step.result()[:4], expected[:4], strict=True):
             np.testing.assert_array_equal(one, other)
-    envs._native = envs_native
-    assert envs_native.__getstate__() == twin._native.__getstate__()
+    assert native.__getstate__() == twin._native.__getstate__()

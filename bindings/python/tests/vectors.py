@@ -22,17 +22,21 @@ with warnings.catch_warnings(record=True) as OTHER_SINES:
 
 
 def make_vec(num_envs, **kwargs):
-    return gymnasium.make_vec(V1, num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs)
-
-
-def pair(num_envs, mode="NextStep", **kwargs):
-    """Gymnasium's SyncVectorEnv of Gymnasium's Acrobot, and ours with the same episodes."""
-    if OTHER_SINES:
-        pytest.skip(str(OTHER_SINES[0].message))
-    theirs = gymnasium.make_vec(
-        "Acrobot-v1", num_envs=num_envs, vectorization_mode="sync", vector_kwargs={"autoreset_mode": mode}, **kwargs
+    return gymnasium.make_vec(
+        V1, num_envs=num_envs, vectorization_mode="vector_entry_point", **kwargs
     )
-    return theirs, make_vec(num_envs, autoreset_mode=mode, gymnasium_episodes=True, **kwargs)
+
+
+def pair(num_envs, mode="NextStep", theirs="Acrobot-v1", ours=V1, **kwargs):
+    """Gymnasium's SyncVectorEnv of an environment, by default Gymnasium's, and ours like it."""
+    if OTHER_SINES and theirs == "Acrobot-v1":
+        pytest.skip(str(OTHER_SINES[0].message))
+    sync = {"vectorization_mode": "sync", "vector_kwargs": {"autoreset_mode": mode}}
+    kwargs["num_envs"] = num_envs
+    return (
+        gymnasium.make_vec(theirs, **sync, **kwargs),
+        gymnasium.make_vec(ours, autoreset_mode=mode, gymnasium_episodes=True, **kwargs),
+    )
 
 
 def assert_equal(one, other):
@@ -41,7 +45,14 @@ def assert_equal(one, other):
         assert a.dtype == b.dtype
         np.testing.assert_array_equal(a, b)
     # Lists, because NumPy does not compare arrays of arrays.
-    np.testing.assert_equal(*({key: list(value) for key, value in each[-1].items()} for each in (one, other)))
+    np.testing.assert_equal(
+        *({key: list(value) for key, value in each[-1].items()} for each in (one, other))
+    )
+
+
+def assert_resets_equal(*envs, seed=None, options=None):
+    """Resets both, with options each of its own, from which SyncVectorEnv removes some."""
+    assert_equal(*(each.reset(seed=seed, options=options and {**options}) for each in envs))
 
 
 @contextlib.contextmanager
@@ -69,5 +80,7 @@ def different(count, seed):
     values["AVAIL_TORQUE"] = rng.uniform(-2, 2, (count, 3))
     values["torque_noise_max"] = rng.choice([0.0, 0.5], count)
     values["book_or_nips"] = rng.choice(["book", "nips"], count).tolist()
-    assert values.keys() == set(NAMES) - {"gravity"}, "Gymnasium's environment has no name for gravity"
+    assert values.keys() == set(NAMES) - {"gravity"}, (
+        "Gymnasium's environment has no name for gravity"
+    )
     return values

@@ -1,7 +1,7 @@
-"""Gymnasium's Acrobot in Rust: bit-identical episodes, and a vector environment thousands of times as fast.
+"""Gymnasium's Acrobot in Rust: bit-identical episodes, and a much faster vector environment.
 
-Importing this package registers ``acrobot_rs/Acrobot-v1``, ``acrobot_rs/AcrobotContinuous-v0`` and ``acrobot_rs/Acrobot-v0``, and dm_control's
-``acrobot_rs/AcrobotSwingup-v0`` and ``acrobot_rs/AcrobotSwingupSparse-v0``:
+Importing this package registers ``Acrobot-v1``, ``AcrobotContinuous-v0`` and ``Acrobot-v0``, and
+dm_control's ``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``acrobot_rs/``:
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -48,10 +48,11 @@ for _kind, _id, _steps, _threshold in (
     ("AcrobotSwingup", "AcrobotSwingup-v0", 1000, None),
     ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", 1000, None),
 ):
+    _vector = f"{_kind}VectorEnv"
     register(
         id=f"acrobot_rs/{_id}",
         entry_point=f"acrobot_rs:{_kind}Env",
-        vector_entry_point=f"acrobot_rs:{_kind}VectorEnv" if f"{_kind}VectorEnv" in __all__ else None,
+        vector_entry_point=f"acrobot_rs:{_vector}" if _vector in __all__ else None,
         reward_threshold=_threshold,
         max_episode_steps=_steps,
     )

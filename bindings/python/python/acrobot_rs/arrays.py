@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import functools
 import math
@@ -18,9 +19,15 @@ from numpy.typing import NDArray
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 
-
 #: The options of ``reset``. Not all environments have all.
 _OPTIONS = ("low", "high", "reset_mask", "state")
+#: A Box, a reset and a policy have float32, which rounds other numbers with a warning.
+LARGEST = float(np.finfo(np.float32).max)
+
+
+def must_be(name: str, rule: str, got: Any, error: type[Exception] = ValueError) -> Exception:
+    """An error in the form of the crate's."""
+    return error(f"{name} must be {rule}, got {got}")
 
 
 def reset_bounds(
@@ -29,9 +36,9 @@ def reset_bounds(
     """The bounds of initial states, rad and rad/s: the options, or ``-bound`` and ``bound``."""
     check_keys(options, known)
     low, high = maybe_parse_reset_bounds(options, -bound, bound)
-    largest = float(np.finfo(np.float32).max)  # a float32 would round the bounds, with a warning
-    if not (abs(low) <= largest and abs(high) <= largest):
-        raise ValueError(f"low and high must be finite numbers in the range of float32, got {low} and {high}")
+    if not (abs(low) <= LARGEST and abs(high) <= LARGEST):
+        rule = "finite numbers in the range of float32"
+        raise must_be("low and high", rule, f"{low} and {high}")
     if options and "state" in options and ("low" in options or "high" in options):
         raise ValueError(f"options must have either state or low and high, got {list(options)}")
     return low, high
@@ -42,14 +49,13 @@ def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
 
     Keys that resemble none of them belong to other programs.
     """
-    if not isinstance(options, Mapping | None):
-        raise TypeError(f"options must be a dict or None, got {options!r}")
+    require(Mapping | None, "a dict or None", options=options)
     for key in options or ():
         name = key.lower() if isinstance(key, str) else ""
         near = difflib.get_close_matches(name, _OPTIONS, n=1, cutoff=0.52)
         if near and key not in known:
             meant = f"; did you mean {near[0]!r}?" if near[0] in known else ""
-            raise ValueError(f"the keys of options must be among {list(known)}, got {key!r}{meant}")
+            raise must_be("the keys of options", f"among {list(known)}", f"{key!r}{meant}")
 
 
 def render_mode(mode: str | None, metadata: dict[str, Any]) -> str | None:
@@ -57,17 +63,17 @@ def render_mode(mode: str | None, metadata: dict[str, Any]) -> str | None:
     modes = metadata["render_modes"]
     # A comparison with an array is no bool.
     if mode is not None and not (isinstance(mode, str) and mode in modes):
-        raise ValueError(f"render_mode must be None or one of {modes}, got {mode!r}")
+        raise must_be("render_mode", f"None or one of {modes}", repr(mode))
     return mode
 
 
-def reset_mask(options: dict[str, Any] | None, num_envs: int) -> NDArray[np.bool_] | None:
+def reset_mask(options: dict[str, Any], num_envs: int) -> NDArray[np.bool_] | None:
     """The environments to reset: ``options["reset_mask"]``."""
-    if options is None or "reset_mask" not in options:
+    if "reset_mask" not in options:
         return None
     mask = np.asarray(options["reset_mask"])
     if mask.dtype != np.bool_:
-        raise TypeError(f"reset_mask must be an array of bool, got {mask!r}")
+        raise must_be("reset_mask", "an array of bool", repr(mask), TypeError)
     if mask.shape != (num_envs,):
         raise ValueError(f"reset_mask must have shape ({num_envs},), got shape {mask.shape}")
     if not mask.any():
@@ -76,25 +82,29 @@ def reset_mask(options: dict[str, Any] | None, num_envs: int) -> NDArray[np.bool
 
 
 def numbers(
-    name: str, rule: str, value: Any, shape: tuple[int, ...], kinds: str = "fiu", error: type[Exception] = ValueError
+    name: str,
+    rule: str,
+    value: Any,
+    shape: tuple[int, ...],
+    kinds: str = "fiu",
+    error: type[Exception] = ValueError,
 ) -> NDArray[Any]:
     """Actions or states as an array.
 
-    They may be an array, or a list or another sequence that NumPy converts to one, of this shape, and of integers (``iu``) or
-    floats (``f``). Texts, bytes, bools, complex numbers, other objects, sets, mappings and iterators are rejected.
+    They may be an array, a list or another sequence that NumPy converts to one, of this shape and
+    of integers (``iu``) or floats (``f``). Texts, bytes, bools, complex numbers, other objects,
+    sets, mappings and iterators are rejected.
     """
     array = None
     # NumPy takes the bytes of a bytearray, and the keys of some mappings.
     if not isinstance(value, bytearray | Mapping):
-        try:
+        with contextlib.suppress(TypeError, ValueError):  # rows of different lengths
             array = np.asarray(value)
-        except (TypeError, ValueError):  # rows of different lengths
-            pass
     if array is not None and array.dtype.kind in kinds and array.shape == shape:
         return array
     is_numeric = array is not None and array.dtype.kind in "biufc"
     found = f"{array.dtype} of shape {array.shape}" if is_numeric else reprlib.repr(value)
-    raise error(f"{name} must be {rule}, got {found}")
+    raise must_be(name, rule, found, error)
 
 
 def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> NDArray[np.float64]:
@@ -105,15 +115,15 @@ def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> N
         finite = np.isfinite(states.astype(dtype))
     if not finite.all():
         row, column = np.argwhere(~finite)[0]
-        raise ValueError(f"state[{row}, {column}] must be a finite number, got {states[row, column]}")
+        raise must_be(f"state[{row}, {column}]", "a finite number", states[row, column])
     return np.ascontiguousarray(states, np.float64)
 
 
-def require(kind: type, rule: str, **arguments: Any) -> None:
-    """Reject arguments of another type, by their names. A bool is no integer here, and a text no sequence."""
+def require(kind: Any, rule: str, **arguments: Any) -> None:
+    """Reject arguments of another type. A bool is no integer here, and a text no sequence."""
     for name, value in arguments.items():
         if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool | str)):
-            raise TypeError(f"{name} must be {rule}, got {value!r}")
+            raise must_be(name, rule, repr(value), TypeError)
 
 
 def values_of_each(name: str, value: Any) -> list[Any] | None:
@@ -122,16 +132,21 @@ def values_of_each(name: str, value: Any) -> list[Any] | None:
         value = value.tolist()
     if not isinstance(value, list | tuple):
         return None
-    if name == "AVAIL_TORQUE" and not any(isinstance(one, list | tuple | np.ndarray) for one in value):
+    if name == "AVAIL_TORQUE" and not any(
+        isinstance(one, list | tuple | np.ndarray) for one in value
+    ):
         return None
     return list(value)
 
 
-def seeds_of(seed: Seed, num_envs: int, gymnasium_episodes: bool) -> tuple[str | None, list[str | None] | None]:
-    """The digits of the seed whose children seed all environments, or of a seed for each environment."""
+def seeds_of(
+    seed: Seed, num_envs: int, gymnasium_episodes: bool
+) -> tuple[str | None, list[str | None] | None]:
+    """The digits of the seed whose children seed all environments, or of a seed for each."""
     if isinstance(seed, list | tuple):
         if len(seed) != num_envs:
-            raise ValueError(f"seed must have one element for each of {num_envs} environments, got {len(seed)}")
+            rule = f"one element for each of {num_envs} environments"
+            raise ValueError(f"seed must have {rule}, got {len(seed)}")
         return None, [_digits(each) for each in seed]
     plain = plain_seed(seed)
     if plain is None or not gymnasium_episodes:
@@ -140,19 +155,18 @@ def seeds_of(seed: Seed, num_envs: int, gymnasium_episodes: bool) -> tuple[str |
 
 
 def plain_seed(seed: Any) -> int | None:
-    """A seed as Python's ``int``, which Gymnasium requires, also if it is one of NumPy's integers."""
+    """A seed, also one of NumPy's integers, as Python's ``int``, which Gymnasium requires."""
     if seed is None:
         return None
     # Gymnasium accepts True as 1.
     if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
-        raise Error(f"seed must be an integer of at least 0, got {seed!r}")
+        raise must_be("seed", "an integer of at least 0", repr(seed), Error)
     return int(seed)
 
 
 def _digits(seed: Any) -> str | None:
     """The digits of a seed. `str` rejects more than 4,300."""
-    plain = plain_seed(seed)
-    return None if plain is None else str(plain)
+    return None if seed is None else str(plain_seed(seed))
 
 
 class Missing:
@@ -191,16 +205,27 @@ def read_only(array: NDArray[Any]) -> NDArray[Any]:
 
 @functools.cache
 def warn_of_other_sines() -> None:
-    """Warn, once, if NumPy does not round sines as the C library does, because Gymnasium's episodes contain NumPy's."""
+    """Warn, once, if NumPy does not round sines as the C library does.
+
+    Gymnasium's episodes contain NumPy's.
+    """
     angles = np.random.default_rng(0).uniform(-2 * np.pi, 2 * np.pi, 10_000)
     pairs = zip(angles.tolist(), np.sin(angles).tolist(), np.cos(angles).tolist(), strict=True)
-    count = sum((sine, cosine) != (math.sin(angle), math.cos(angle)) for angle, sine, cosine in pairs)
+    count = sum(
+        (sine, cosine) != (math.sin(angle), math.cos(angle)) for angle, sine, cosine in pairs
+    )
     if count:
-        what = f"NumPy rounds the sine or cosine of {count:,} of 10,000 angles differently from the C library here"
-        warnings.warn(f"gymnasium_episodes: {what}, so episodes follow Gymnasium's but are not bit-identical", stacklevel=3)
+        warnings.warn(
+            f"gymnasium_episodes: NumPy rounds the sine or cosine of {count:,} of 10,000 angles "
+            "differently from the C library here, so episodes follow Gymnasium's but are not "
+            "bit-identical",
+            stacklevel=3,
+        )
 
 
-def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dict[str, Any]) -> dict[str, Any]:
+def final_infos(
+    finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dict[str, Any]
+) -> dict[str, Any]:
     """Infos as in ``SyncVectorEnv``: last observations and infos, and which episodes ended.
 
     An observation is ``None`` where no episode ended.
@@ -210,5 +235,6 @@ def final_infos(finals: NDArray[np.float32], ended: NDArray[np.bool_], last: dic
     final_obs = np.full(len(ended), None, dtype=object)
     for index in np.flatnonzero(ended):
         final_obs[index] = finals[index].copy()
-    final_info = {name: ended.copy() if name.startswith("_") else value for name, value in last.items()}
-    return {"final_obs": final_obs, "_final_obs": ended, "final_info": final_info, "_final_info": ended.copy()}
+    infos = {name: ended.copy() if name[0] == "_" else value for name, value in last.items()}
+    masks = {"_final_obs": ended, "_final_info": ended.copy()}
+    return {"final_obs": final_obs, "final_info": infos, **masks}

@@ -11,7 +11,7 @@ from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.arrays import numbers, plain_seed, reset_bounds
+from acrobot_rs.arrays import must_be, numbers, plain_seed, reset_bounds
 from acrobot_rs.parameters import Parameters
 
 if TYPE_CHECKING:
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 
 class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
-    """Gymnasium's ``Acrobot-v1``: two links hang from a joint, and a motor between the links must swing them up.
+    """Gymnasium's ``Acrobot-v1``: a motor between two hanging links must swing them up.
 
     ## Description
 
-    A seed gives the same initial states, torque noise and episode ends as in Gymnasium's environment. On x86-64 Linux
-    with glibc, states, rewards and observations are bit-identical.
+    A seed gives the same initial states, torque noise and episode ends as in Gymnasium's
+    environment. On x86-64 Linux with glibc, states, rewards and observations are bit-identical.
 
     ## Action Space
 
-    ``Discrete(3)``: a torque of -1 (action 0), 0 (1) or 1 N m (2) between the links. With ``n`` numbers in ``AVAIL_TORQUE``
-    it is ``Discrete(n)``.
+    ``Discrete(3)``: a torque of -1 (action 0), 0 (1) or 1 N m (2) between the links. With ``n``
+    numbers in ``AVAIL_TORQUE`` it is ``Discrete(n)``.
 
     ## Observation Space
 
@@ -46,7 +46,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     | 4   | angular velocity of theta1, rad/s  | -4 pi | 4 pi |
     | 5   | angular velocity of theta2, rad/s  | -9 pi | 9 pi |
 
-    theta1 is the angle of link 1, 0 hanging straight down. theta2 is the angle of link 2 relative to link 1.
+    theta1 is the angle of link 1, 0 hanging straight down, theta2 that of link 2 from link 1.
 
     ## Rewards
 
@@ -54,20 +54,22 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     ## Starting State
 
-    All four numbers of the state are drawn uniformly from -0.1 to 0.1 (rad, rad/s), or from ``options["low"]`` to
-    ``options["high"]`` of ``reset``.
+    All four numbers of the state are drawn uniformly from -0.1 to 0.1 (rad, rad/s), or from
+    ``options["low"]`` to ``options["high"]`` of ``reset``.
 
     ## Episode End
 
-    1. Termination: ``-cos(theta1) - cos(theta1 + theta2) > 1``. The tip is then more than one link above the joint.
+    1. Termination: ``-cos(theta1) - cos(theta1 + theta2) > 1``. The tip is then more than one link
+       above the joint.
     2. Truncation: after 500 steps, by ``gymnasium.make``.
 
     ## Arguments
 
-    ``render_mode``: ``None``, ``"human"`` (a window, by pygame, which each reset and step updates), ``"rgb_array"`` (an array
-    of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines of braille characters and a line of numbers).
+    ``render_mode``: ``None``, ``"human"`` (a window, by pygame, which each reset and step updates),
+    ``"rgb_array"`` (an array of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines of
+    braille characters and a line of numbers). And parameters, for example ``LINK_MASS_1=2.0``.
 
-    Parameters, for example ``LINK_MASS_1=2.0``.
+    A rejected call raises an error that says what is valid, and changes nothing.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -104,11 +106,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     ) -> None:
         """Make an environment. Reset it before its first step.
 
-        An unknown render mode is rejected by ``render``, because ``gymnasium.make`` only warns of it.
-
-        Raises:
-            TypeError: If a parameter is unknown or of a wrong type.
-            ValueError: If a parameter is invalid.
+        ``render`` rejects an unknown render mode, because ``gymnasium.make`` only warns of it.
         """
         super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS, self._TASK), None, parameters)
         self.render_mode = render_mode
@@ -119,7 +117,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         self._made = True
 
     def set_wrapper_attr(self, name: str, value: Any, **kwargs: Any) -> bool:
-        """As in Gymnasium, but an unknown name is rejected: a wrapper would keep it, without an effect."""
+        """As in Gymnasium, but rejects an unknown name, which would have no effect."""
         self._check_name(name)
         return super().set_wrapper_attr(name, value, **kwargs)
 
@@ -129,10 +127,10 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     @property
     def state(self) -> NDArray[np.floating[Any]] | None:
-        """theta1, theta2 (rad) and their velocities (rad/s), of shape ``(4,)``; ``None`` before the first reset.
+        """theta1, theta2 (rad) and their velocities (rad/s); ``None`` before the first reset.
 
-        ``float32`` after a reset and ``float64`` after a step, as in Gymnasium. An element can be assigned, and acts from the
-        next step. Assigning four finite numbers copies them.
+        ``float32`` after a reset and ``float64`` after a step, as in Gymnasium. An element can be
+        assigned, and acts from the next step. Assigning four finite numbers copies them.
         """
         return self._native.state
 
@@ -149,7 +147,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         """Begin an episode.
 
         Args:
-            seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its stream continues.
+            seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its
+                stream continues.
             options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by
                 default -0.1 and 0.1. Or ``"state"``, the initial state itself, which replaces the
                 drawn one.
@@ -158,9 +157,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             The observation of the initial state, and an empty info.
 
         Raises:
-            TypeError: If options are not a ``dict``. Nothing changes then.
-            ValueError: If a number is not finite, if low is above high, or if another key resembles
-                one of these. Nothing changes then.
+            TypeError, ValueError, gymnasium.error.Error: If options or the seed are invalid.
         """
         low, high = reset_bounds(options, self._BOUND, ("low", "high", "state"))
         seed = plain_seed(seed)
@@ -170,7 +167,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             given = numbers("state", rule, options["state"], (4,))
             with np.errstate(over="ignore"):
                 if not np.isfinite(given.astype(np.float32)).all():
-                    raise ValueError(f"state must be {rule}, got {given}")
+                    raise must_be("state", rule, given)
         super().reset(seed=seed)
         observation = self._begin(low, high, given)
         if self.render_mode == "human":
@@ -189,19 +186,21 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         first, second = (np.cos(s[0]), np.sin(s[0])), (np.cos(s[1]), np.sin(s[1]))
         return np.array([*first, *second, *s[2:]], dtype=np.float32)
 
-    def step(self, action: ArrayLike) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+    def step(
+        self, action: ArrayLike
+    ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Apply a torque for ``dt``.
 
         Args:
-            action: An element of the action space. ``Discrete(3)``: 0, 1 or 2, a torque of -1, 0 or 1 N m. ``Box``: an array
-                of one torque, N m.
+            action: An element of the action space. ``Box``: an array of one torque, N m.
 
         Returns:
-            The observation; the reward, -1.0, or 0.0 if the step reaches the goal; whether it does; ``False``, because the
-            wrapper of ``gymnasium.make`` counts the steps and truncates; and an empty info.
+            The observation; the reward, -1.0, or 0.0 if the step reaches the goal; whether it does;
+            ``False``, because the wrapper of ``gymnasium.make`` counts the steps and truncates; and
+            an empty info.
 
         Raises:
-            gymnasium.error.InvalidAction: If the action is another one. Nothing changes then.
+            gymnasium.error.InvalidAction: If the action is another one.
             ValueError: If a number that is not finite was assigned to an element of ``state``.
             AssertionError: If the environment was never reset.
         """
@@ -211,13 +210,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         return result
 
     def render(self) -> NDArray[np.uint8] | str | None:
-        """An array of shape ``(500, 500, 3)`` or a text, depending on the render mode; ``"human"`` shows it in a window.
+        """An array of shape ``(500, 500, 3)`` or a text, or with ``"human"`` a window.
 
         Without a render mode, warns and returns ``None``.
-
-        Raises:
-            ValueError: If the render mode is unknown.
-            gymnasium.error.DependencyNotInstalled: If ``"human"`` does not find pygame.
         """
         if self.render_mode is None:
             self._warn_of_no_render_mode()
@@ -255,10 +250,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 class AcrobotContinuousEnv(AcrobotEnv):
     """:class:`AcrobotEnv` with any torque between two bounds as its action.
 
-    The action space is a ``Box`` of shape ``(1,)``, ``float32``: a torque in N m. Its bounds are the smallest and the largest
-    number in ``AVAIL_TORQUE``, by default -1 and 1. A torque outside is clipped. ``step`` takes an array or a list of one
-    number, and rejects NaN and other shapes.
-    Observations, rewards and the end of an episode are those of :class:`AcrobotEnv`.
+    The action space is a ``Box`` of shape ``(1,)``, ``float32``: a torque in N m. Its bounds are
+    the smallest and the largest number in ``AVAIL_TORQUE``, by default -1 and 1. A torque outside
+    is clipped. NaN and other shapes are rejected.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -274,15 +268,15 @@ class AcrobotContinuousEnv(AcrobotEnv):
         rule = f"{self._ACTION}, as an array of shape (1,)"
         torque = float(numbers("action", rule, action, (1,), error=InvalidAction)[0])
         if math.isnan(torque):
-            raise InvalidAction(f"action must be {rule}, got {action!r}")
+            raise must_be("action", rule, repr(action), InvalidAction)
         return torque
 
 
 class AcrobotV0Env(AcrobotEnv):
-    """``Acrobot-v0``, which Gymnasium has removed: like :class:`AcrobotEnv`, but the observation is the state.
+    """``Acrobot-v0``, which Gymnasium has removed: :class:`AcrobotEnv`, which observes the state.
 
-    The observation is theta1, theta2 (within pi, rad) and their velocities (within 4 pi and 9 pi, rad/s), ``float32`` of
-    shape ``(4,)``. ``gymnasium.make`` truncates episodes after 200 steps.
+    The observation is theta1, theta2 (within pi, rad) and their velocities (within 4 pi and 9 pi,
+    rad/s), ``float32``. ``gymnasium.make`` truncates episodes after 200 steps.
     """
 
     _ANGLES = True

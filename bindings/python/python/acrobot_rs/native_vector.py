@@ -1,10 +1,8 @@
-"""What the vector environments of both tasks share."""
+"""Resets, steps, states and attributes of the vector environments of both tasks."""
 
 from __future__ import annotations
 
-import os
 import threading
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -14,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Batch
-from acrobot_rs.arrays import Seed, read_only, require
+from acrobot_rs.arrays import Seed, read_only
 from acrobot_rs.parameters import Drawn, _hint
 
 Floats = NDArray[np.float32]
@@ -52,7 +50,7 @@ class Alone:
 
 
 class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray]):
-    """What the vector environments of both tasks share."""
+    """What the vector environments of both tasks share. A rejected call changes nothing."""
 
     num_envs: int
     max_episode_steps: int | None
@@ -75,83 +73,30 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
     #: The array that all calls return, or ``None`` if each returns a new one.
     _observations: Floats | None
 
-    def _make(
-        self,
-        num_envs: int,
-        max_episode_steps: int | None,
-        autoreset_mode: Any,
-        copy: bool,
-        engine: str,
-        continuous: bool,
-        threads: int | None,
-    ) -> Batch:
-        """The native part. Checks its arguments and keeps them."""
-        modes = [mode.value for mode in AutoresetMode]
-        if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
-            raise ValueError(f"autoreset_mode must be one of {modes}, got {autoreset_mode!r}")
-        require(bool, "True or False", copy=copy)
-        if threads is None:
-            threads = (
-                len(os.sched_getaffinity(0))
-                if hasattr(os, "sched_getaffinity")
-                else os.cpu_count() or 1
-            )
-        limit = 2**32 - 1 if max_episode_steps is None else max_episode_steps
-        counts = {"num_envs": num_envs, "max_episode_steps": limit, "threads": threads}
-        require(Integral, "an integer", **counts)
-        for name, count in counts.items():
-            if not 0 < count < 2**32:
-                no_limit = ", or None for no limit" if name == "max_episode_steps" else ""
-                raise ValueError(
-                    f"{name} must be an integer from 1 to {2**32 - 1}{no_limit}, got {count}"
-                )
-        mode = AutoresetMode(autoreset_mode)
-        native = Batch(
-            num_envs, str(self.np_random_seed), limit, mode.value, engine, continuous, threads
-        )
-        self._alone = Alone()
-        self.autoreset_mode = mode
-        self.metadata = {**self.metadata, "autoreset_mode": mode}
-        self.num_envs = num_envs
-        self.max_episode_steps = max_episode_steps
-        self.copy = copy
-        self._observations = None if copy else self._empty()
-        self._same_step = mode is AutoresetMode.SAME_STEP
-        self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
-        return native
-
     def reset(
         self, *, seed: Seed = None, options: dict[str, Any] | None = None
     ) -> tuple[Floats, dict[str, Any]]:
         """Begin an episode in each environment.
 
         Args:
-            seed: An integer of at least 0 with at most 4,300 digits. Its children seed the
+            seed: An integer of at least 0 with at most 4,300 digits, whose children seed the
                 environments' streams; with ``gymnasium_episodes``, ``seed + i`` seeds environment
-                ``i``. Or a list with an integer or ``None`` for each environment: its element seeds
-                environment ``i`` as it seeds a single one. Where the seed is ``None`` the stream
-                continues. A list does not change ``np_random``.
-            options: ``"reset_mask"``: an array of ``bool`` of shape ``(num_envs,)``; environments
-                whose element is false are neither seeded nor reset. ``"state"``: the initial
-                states, of shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all: theta1,
-                theta2 (rad) and their velocities (rad/s). They replace the drawn ones, so streams
-                and drawn parameters are as without them. Or ``"low"`` and ``"high"``: the bounds of
-                the drawn ones, rad and rad/s, by default -0.1 and 0.1; in the swing-up those of the
-                angles, by default -pi and pi. Autoresets ignore all options.
+                ``i``. Or a list with an integer or ``None`` for each environment. With ``None``
+                streams continue.
+            options: ``"reset_mask"``: an array of ``bool``; environments whose element is false are
+                neither seeded nor reset. ``"state"``: the initial states, of shape
+                ``(num_envs, 4)``, or ``(4,)`` for the same one in all, which replace the drawn
+                ones: theta1, theta2 (rad) and their velocities (rad/s). Or ``"low"`` and
+                ``"high"``: the bounds of the drawn ones, by default -0.1 and 0.1; in the swing-up
+                those of the angles, by default -pi and pi. Autoresets ignore all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
             without ``info_parameters``.
 
         Raises:
-            TypeError: If the mask is not an array of ``bool``, or options are not a ``dict``.
-                Nothing changes then.
-            ValueError: If a number is not finite, if low is above high, if the mask has another
-                shape or no true element, if the states or the list of seeds have another length, or
-                if another key resembles one of these. Nothing changes then.
-            gymnasium.error.Error: If a seed is not an integer of at least 0. Nothing changes then.
-            RuntimeError: If another thread is stepping or resetting the environments. Nothing
-                changes then.
+            TypeError, ValueError, gymnasium.error.Error: If options or a seed are invalid.
+            RuntimeError: If another thread is stepping or resetting the environments.
         """
         known = ("low", "high", "reset_mask", "state")
         low, high = arrays.reset_bounds(options, self._BOUND, known)
@@ -195,12 +140,11 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
         Raises:
             gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the
-                array. No environment steps then.
+                array.
             gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an
-                episode has ended and its environment was not reset. No environment steps then.
+                episode has ended and its environment was not reset.
             gymnasium.error.ClosedEnvironmentError: After ``close``.
-            RuntimeError: If another thread is stepping or resetting the environments. No
-                environment steps then.
+            RuntimeError: If another thread is stepping or resetting the environments.
         """
         with self._alone:
             self._check_ready()
@@ -227,12 +171,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
         To set the states, assign an array of this shape. To set some, change rows of
         ``state.copy()`` and assign it. Episodes and numbers of steps continue:
-        ``reset(options={"state": states})`` begins episodes instead. In mode ``NextStep`` the next
-        step resets the ended episodes all the same.
-
-        Raises:
-            ValueError: If the shape is another one, or if a number is not finite. No state changes
-                then.
+        ``reset(options={"state": states})`` begins episodes instead. In mode ``NextStep`` the step
+        after an episode's end still resets, even if you set its state.
         """
         states = np.empty((self.num_envs, 4), np.float64)
         self._native.states(states)
@@ -263,21 +203,13 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """The value of an attribute for each environment, or the results of its method ``render``.
 
-        Args:
-            name: A parameter, ``"state"``, ``"elapsed_steps"`` or another attribute that the error
-                message lists.
-            *args: The arguments of the method.
-            **kwargs: The keyword arguments of the method.
-
-        Raises:
-            AttributeError: If the name is unknown.
+        The error for an unknown name, an ``AttributeError``, lists the attributes.
         """
         self._check_open()
         known = (*_ATTRIBUTES, *self._NAMES)
         if name not in known:
-            raise AttributeError(
-                f"the environments have no attribute {name!r}; they have {', '.join(known)}"
-            )
+            they_have = f"they have {', '.join(known)}"
+            raise AttributeError(f"the environments have no attribute {name!r}; {they_have}")
         if name in ("action_space", "observation_space"):
             name = f"single_{name}"
         if name == "render":
@@ -300,7 +232,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         self._check_open()
         if name not in self._NAMES:
-            raise AttributeError(f"the environments have no parameter {name!r}; {_hint(name, self._NAMES)}")
+            hint = _hint(name, self._NAMES)
+            raise AttributeError(f"the environments have no parameter {name!r}; {hint}")
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if not isinstance(value, Drawn):
             return np.full((self.num_envs, 3) if is_row else self.num_envs, value)
@@ -316,18 +249,10 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         return infos | {f"_{name}": np.ones(self.num_envs, np.bool_) for name in infos}
 
     def set_attr(self, name: str, values: Any) -> None:
-        """Set a parameter or the state.
+        """Set a parameter or ``"state"``.
 
-        Args:
-            name: A parameter or ``"state"``.
-            values: One value for all environments, or a list, tuple or array with a value for each.
-                A parameter can also be drawn, for example an :class:`acrobot_rs.Uniform`.
-
-        Raises:
-            AttributeError: If the name is neither a parameter nor ``"state"``.
-            TypeError: If a value is of a wrong type. Nothing changes then.
-            ValueError: If a value is invalid, or if a list has another length. Nothing changes
-                then.
+        ``values`` is one value for all environments, or a list, tuple or array with a value for
+        each. A parameter can also be drawn, for example by an :class:`acrobot_rs.Uniform`.
         """
         self._check_open()
         known = ("state", *self._NAMES)

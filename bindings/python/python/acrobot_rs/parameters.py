@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Acrobot, Batch
-from acrobot_rs.arrays import numbers
+from acrobot_rs.arrays import LARGEST, must_be, numbers
 
 #: The names of the parameters. The class below defines them.
 _NAMES: tuple[str, ...] = ()
-_EQUATIONS = "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
+_EQUATIONS = (
+    "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
+)
 #: What Gymnasium's environment calls or reads, but ours does not, and what to do instead.
 _IGNORED = dict.fromkeys(("_dsdt", "rk4", "wrap", "bound"), _EQUATIONS) | {
     "_get_ob": "change observations with a wrapper",
@@ -32,7 +34,7 @@ _IGNORED = dict.fromkeys(("_dsdt", "rk4", "wrap", "bound"), _EQUATIONS) | {
 
 
 class Drawn:
-    """A parameter of a vector environment that each reset draws between two bounds, in each environment that it resets."""
+    """A parameter that each reset draws between two bounds, in each environment that it resets."""
 
     low: Any
     high: Any
@@ -44,23 +46,27 @@ class Drawn:
         for name, value in list(vars(self).items()):
             if name == "kind":
                 continue
-            is_row = self.kind == "Uniform" and (isinstance(value, list | tuple) or np.ndim(value) > 0)
+            is_row = self.kind == "Uniform" and (
+                isinstance(value, list | tuple) or np.ndim(value) > 0
+            )
             rule = "three finite numbers" if is_row else "a finite number"
             array = numbers(name, rule, value, (3,) if is_row else (), error=TypeError)
             if not np.isfinite(array).all():
-                raise ValueError(f"{name} must be {rule}, got {value!r}")
+                raise must_be(name, rule, repr(value))
             object.__setattr__(self, name, tuple(map(float, array)) if is_row else float(array))
         if np.shape(self.low) != np.shape(self.high) or np.greater(self.low, self.high).any():
-            raise ValueError(f"low must be at most high, and of the same length, got {self}")
+            raise must_be("low", "at most high, and of the same length", self)
         if self.kind == "LogUniform" and self.low <= 0:
-            raise ValueError(f"low must be above 0, got {self}")
+            raise must_be("low", "above 0", self)
         if self.kind == "Normal" and not (self.std > 0 and self.low <= self.mean <= self.high):
-            raise ValueError(f"std must be above 0, and mean from low to high, got {self}")
+            raise must_be("std", "above 0, and mean from low to high", self)
 
 
 @dataclasses.dataclass(frozen=True)
 class Uniform(Drawn):
-    """A parameter that each reset draws uniformly. The bounds of ``AVAIL_TORQUE`` are three numbers each.
+    """A parameter that each reset draws uniformly.
+
+    The bounds of ``AVAIL_TORQUE`` are three numbers each.
 
     >>> import acrobot_rs
     >>> envs = acrobot_rs.AcrobotVectorEnv(1024, LINK_MASS_1=acrobot_rs.Uniform(0.8, 1.2))
@@ -115,7 +121,7 @@ def _reject_ignored(cls: type[Parameters], name: str) -> None:
         raise TypeError(f"{name} would have no effect on {cls.__name__}; {_IGNORED[name]}")
     names = cls._NAMES
     if name not in names and not name.startswith("_") and _near(name, names, 0.8):
-        raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name, names)}")
+        raise _unknown(cls, name)
 
 
 @functools.cache
@@ -131,6 +137,10 @@ def _hint(name: str, names: tuple[str, ...]) -> str:
     bound = re.search("(?i)torque_?(max|limit)|(max|limit)_?torque", name)
     meant = "AVAIL_TORQUE" if bound else _near(name, names, 0.5)
     return f"did you mean {meant}?" if meant else f"it has {', '.join(names)}"
+
+
+def _unknown(cls: type[Parameters], name: str) -> AttributeError:
+    return AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name, cls._NAMES)}")
 
 
 #: What parameters can be: of a single environment, besides floats, and of many.
@@ -175,64 +185,50 @@ if TYPE_CHECKING:
 
 
 class Parameters(arrays.Hints):
-    """The parameters of the physics, with Gymnasium's names. Set them as arguments, on an environment or in a subclass.
+    """The parameters of the physics, with Gymnasium's names.
 
-    A value is checked immediately and acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError``
-    that says what is valid, and an unknown name an ``AttributeError``. An environment takes over the values that its class
-    has when it is made. The spaces follow the parameters.
+    Set them as arguments, on an environment or in a subclass. A value is checked immediately and
+    acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError`` that says
+    what is valid, and an unknown name an ``AttributeError``. A new environment copies its class's
+    parameters. The spaces follow them.
     """
 
-    #: Duration of one step, s; above 0.
-    dt: Each = 0.2
-    #: Length of link 1, m; above 0.
-    LINK_LENGTH_1: Each = 1.0
-    #: Length of link 2, m; above 0. It changes pictures only: neither the equations of motion nor the goal contain it.
-    LINK_LENGTH_2: Each = 1.0
-    #: Mass of link 1, kg; above 0.
-    LINK_MASS_1: Each = 1.0
-    #: Mass of link 2, kg; above 0.
-    LINK_MASS_2: Each = 1.0
-    #: Distance of link 1's centre of mass from its joint, m; 0 or more.
-    LINK_COM_POS_1: Each = 0.5
-    #: Distance of link 2's centre of mass from its joint, m; 0 or more.
-    LINK_COM_POS_2: Each = 0.5
-    #: Moment of inertia of each link about its centre of mass, kg m²; 0 or more.
-    LINK_MOI: Each = 1.0
-    #: Acceleration of gravity, m/s², downwards; finite. Gymnasium's environment has no name for it.
-    gravity: Each = 9.8
-    #: Bound of link 1's velocity after a step, rad/s; above 0.
-    MAX_VEL_1: Each = 4 * math.pi
-    #: Bound of link 2's velocity, relative to link 1, after a step, rad/s; above 0.
-    MAX_VEL_2: Each = 9 * math.pi
-    #: Torques of the actions 0, 1 and 2, N m. A single environment may have another number of actions.
+    dt: Each = 0.2  #: duration of a step, s; above 0
+    LINK_LENGTH_1: Each = 1.0  #: m; above 0
+    LINK_LENGTH_2: Each = 1.0  #: m; above 0; changes pictures only
+    LINK_MASS_1: Each = 1.0  #: kg; above 0
+    LINK_MASS_2: Each = 1.0  #: kg; above 0
+    LINK_COM_POS_1: Each = 0.5  #: centre of mass from the joint, m; 0 or more
+    LINK_COM_POS_2: Each = 0.5  #: centre of mass from the joint, m; 0 or more
+    LINK_MOI: Each = 1.0  #: moment of inertia of each link about its centre, kg m²; 0 or more
+    gravity: Each = 9.8  #: acceleration, downwards, m/s²; finite; Gymnasium's cannot change
+    MAX_VEL_1: Each = 4 * math.pi  #: bound of link 1's velocity after a step, rad/s; above 0
+    MAX_VEL_2: Each = 9 * math.pi  #: bound of link 2's, relative to link 1, rad/s; above 0
+    #: Torques of the actions 0, 1 and 2, N m. A single environment may have more or fewer.
     AVAIL_TORQUE: EachTorques = (-1.0, 0.0, 1.0)
-    #: Each step adds a uniform draw from [-torque_noise_max, torque_noise_max) to the torque, N m; 0 or more. 0 draws nothing.
+    #: Each step adds a uniform draw within ± this to the torque, N m; 0 or more. 0 draws nothing.
     torque_noise_max: Each = 0.0
-    #: The equations of motion: those of Sutton and Barto's book, or those printed in the 1996 paper.
+    #: The equations of motion: of Sutton and Barto's book, or as printed in the 1996 paper.
     book_or_nips: EachEquations = "book"
 
-    #: The width and the height of pictures, in pixels. It cannot be changed.
-    SCREEN_DIM = 500
+    SCREEN_DIM = 500  #: width and height of pictures, pixels; cannot change
 
     metadata: dict[str, Any]
     spec: Any
     render_mode: str | None
     _native: Acrobot | Batch
-    #: The names of the parameters.
     _NAMES: tuple[str, ...] = ()
     #: The task, by its name in Rust.
     _TASK = "acrobot"
     #: The default bound of initial states, rad and rad/s.
     _BOUND = 0.1
-    #: Whether actions are numbers in a ``Box``.
+    #: Whether actions are numbers in a ``Box``, and what they are.
     _CONTINUOUS = False
-    #: What a continuous action is.
     _ACTION = "a torque in N m"
     #: Whether the observation is the state itself, as in ``Acrobot-v0``.
     _ANGLES = False
-    #: What cannot change after the construction.
+    #: What cannot change after the construction, and whether it has ended.
     _CHOSEN = ()
-    #: Whether the construction has ended.
     _made = False
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
@@ -248,7 +244,7 @@ class Parameters(arrays.Hints):
 
     @classmethod
     def _check_names(cls) -> None:
-        """Reject attributes of this class, and of those that it inherits from, that would have no effect."""
+        """Reject attributes of this class and its bases that would have no effect."""
         for base in cls.__mro__:
             # A class with names defines the parameters.
             ours = base is arrays.Hints or "_NAMES" in vars(base)
@@ -259,7 +255,7 @@ class Parameters(arrays.Hints):
     def __init__(
         self, native: Acrobot | Batch, render_mode: str | None, parameters: Mapping[str, Any]
     ) -> None:
-        """Pass the parameters to the native part: these, and those of the class, which may have changed."""
+        """Pass these parameters, and those of the class, to the native part."""
         self._check_names()
         self._check_arguments(parameters)
         self._native = native
@@ -281,10 +277,12 @@ class Parameters(arrays.Hints):
             raise TypeError(f"{words}; {hint}")
 
     def _pass(self, name: str, value: Any) -> Any:
-        """Pass a parameter to the native part, which checks it. Return it as an object that cannot change."""
+        """Pass a parameter to the native part, which checks it. Return it unchangeable."""
         if isinstance(value, Drawn):
-            rule = "a number, because only gymnasium.make_vec draws parameters, also with num_envs=1"
-            raise TypeError(f"{name} must be {rule}, got {value!r}")
+            rule = (
+                "a number, because only gymnasium.make_vec draws parameters, also with num_envs=1"
+            )
+            raise must_be(name, rule, repr(value), TypeError)
         self._native.set(name, value)
         return _fixed(name, value)
 
@@ -299,18 +297,20 @@ class Parameters(arrays.Hints):
             actions = spaces.Discrete(np.shape(torques)[-1])
         others = [np.pi] * 2 if self._ANGLES else [1.0] * 4
         highest = np.array([*others, *velocities], dtype=np.float32)
-        return {"action_space": actions, "observation_space": spaces.Box(-highest, highest, dtype=np.float32)}
+        return {
+            "action_space": actions,
+            "observation_space": spaces.Box(-highest, highest, dtype=np.float32),
+        }
 
     def _limits(self) -> tuple[float, float, float, float]:
         """What the spaces contain: actions from one number to another, and velocities, rad/s."""
         torque: Any = self.AVAIL_TORQUE
         lows, highs = (getattr(torque, each, torque) for each in ("low", "high"))
-        largest = float(np.finfo(np.float32).max)  # a Box rejects what float32 cannot have
         bounds: tuple[Any, ...] = (self.MAX_VEL_1, self.MAX_VEL_2)
         velocities = (np.max(getattr(each, "high", each)) for each in bounds)
         # After a step, or after a reset with the default bounds of 0.1, rad/s.
         first, second = (max(each, self._BOUND) for each in velocities)
-        return max(np.min(lows), -largest), min(np.max(highs), largest), first, second
+        return max(np.min(lows), -LARGEST), min(np.max(highs), LARGEST), first, second
 
     if not TYPE_CHECKING:  # a checker would accept all names
 
@@ -331,14 +331,14 @@ class Parameters(arrays.Hints):
                     super().__setattr__(space, new)
 
     def _check_name(self, name: str) -> None:
-        """Reject the assignment of an attribute that would have no effect. A subclass may have other attributes."""
+        """Reject an attribute that would have no effect. A subclass may have others."""
         cls = type(self)
         if self._made and name in self._CHOSEN:
             raise AttributeError(f"{name} cannot change after {cls.__name__} was made")
         _reject_ignored(cls, name)
         is_ours = cls.__module__.startswith("acrobot_rs.") and self._made
         if is_ours and not (name.startswith("_") or name in vars(self) or hasattr(cls, name)):
-            raise AttributeError(f"{cls.__name__} has no parameter {name}; {_hint(name, cls._NAMES)}")
+            raise _unknown(cls, name)
 
     def __delattr__(self, name: str) -> None:
         """Set a parameter back to the value of its class."""
@@ -354,8 +354,8 @@ class Parameters(arrays.Hints):
     def _warn_of_no_render_mode(self) -> None:
         call = f'gymnasium.make("{self.spec.id}", ' if self.spec else f"{type(self).__name__}("
         logger.warn(
-            "render returns None, because the environment was made without a render mode. Make it with one: "
-            f'{call}render_mode="rgb_array")'
+            "render returns None, because the environment was made without a render mode. Make it "
+            f'with one: {call}render_mode="rgb_array")'
         )
 
 

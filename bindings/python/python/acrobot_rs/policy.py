@@ -1,6 +1,7 @@
-"""Saves a trained perceptron for the crate ``crates/policy``, which plays it on a microcontroller or in a browser.
+"""Saves a trained perceptron for the crate ``crates/policy``: on a microcontroller, in a browser.
 
-:func:`save` takes a model and compares the file's actions with the model's. :func:`write` takes arrays. Neither needs torch beside the model.
+:func:`save` takes a model and compares the file's actions with the model's. :func:`write` takes
+arrays. Neither needs torch beside the model.
 """
 
 from __future__ import annotations
@@ -18,13 +19,15 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from acrobot_rs.arrays import require
+from acrobot_rs.arrays import LARGEST, must_be, require
 
 Layer = tuple[Any, Any, str]
-"""Weights of shape ``(outputs, inputs)``, biases of shape ``(outputs,)``, and ``"none"``, ``"tanh"`` or ``"relu"``."""
+"""Weights ``(outputs, inputs)``, biases, and ``"none"``, ``"tanh"`` or ``"relu"``."""
 
 _ACTIVATIONS = ["none", "tanh", "relu"]
-_KINDS = {"Linear": None, "Tanh": "tanh", "ReLU": "relu", "Identity": "none", "Flatten": "none", "Dropout": "none"}
+_KINDS = {"Linear": None, "Tanh": "tanh", "ReLU": "relu"} | dict.fromkeys(
+    ("Identity", "Flatten", "Dropout"), "none"
+)
 
 
 def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None = None) -> None:
@@ -32,7 +35,8 @@ def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None 
 
     Args:
         path: The file.
-        layers: The first has 6 inputs; the last has 3 outputs, the scores of the actions, or 1, a torque, N m.
+        layers: The first has 6 inputs; the last has 3 outputs, the scores of the actions, or 1, a
+            torque, N m.
         torque_limit: The largest torque, N m, of a policy with one output. ``None`` for scores.
 
     Raises:
@@ -51,7 +55,8 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
             rule = f"weights of shape (outputs, {inputs}) and biases of shape (outputs,)"
             raise ValueError(f"layer {i} must have {rule}, got {weights.shape} and {biases.shape}")
         if activation not in _ACTIVATIONS:
-            raise ValueError(f"the activation of layer {i} must be one of {_ACTIVATIONS}, got {activation!r}")
+            name = f"the activation of layer {i}"
+            raise must_be(name, f"one of {_ACTIVATIONS}", repr(activation))
         numbers = np.column_stack([biases, weights])
         if not np.isfinite(numbers).all():
             raise ValueError(f"the numbers of layer {i} must be finite in float32")
@@ -60,7 +65,8 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
         inputs = outputs
     scores = torque_limit is None
     if inputs != (3 if scores else 1) or not 1 <= len(layers) < 256:
-        raise ValueError(f"the last layer must have {'3 outputs, or 1 with a torque_limit' if scores else '1 output'}, got {inputs}")
+        rule = "3 outputs, or 1 with a torque_limit" if scores else "1 output"
+        raise ValueError(f"the last layer must have {rule}, got {inputs}")
     limit = 0.0 if torque_limit is None else _checked(torque_limit)
     content = struct.pack("<4sBBHf", b"MLP1", len(layers), not scores, 6, limit) + head + body
     return content + struct.pack("<I", zlib.crc32(content))
@@ -70,20 +76,27 @@ def _checked(torque_limit: float) -> float:
     require(Real, "a number of N m", torque_limit=torque_limit)
     limit = float(torque_limit)
     # Up to 2^-150 it is 0 in float32.
-    if not 2.0**-150 < limit <= float(np.finfo(np.float32).max):
-        rule = "finite and above 0 N m in float32"
-        raise ValueError(f"torque_limit must be {rule}, got {torque_limit}")
+    if not 2.0**-150 < limit <= LARGEST:
+        raise must_be("torque_limit", "finite and above 0 N m in float32", torque_limit)
     return limit
 
 
-def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None = None, torque_limit: float | None = None) -> None:
-    """Write a model's greedy or mean policy. Means and deviations of ``VecNormalize`` become part of the first layer.
+def save(
+    model: Any,
+    path: str | Path,
+    observations: NDArray[np.float32] | None = None,
+    torque_limit: float | None = None,
+) -> None:
+    """Write a model's greedy or mean policy.
+
+    Means and deviations of ``VecNormalize`` become part of the first layer.
 
     Args:
-        model: A model of Stable-Baselines3 (PPO, A2C, DQN) or sb3-contrib (QR-DQN) with ``MlpPolicy``, or a ``torch.nn.Sequential`` of linear
-            layers, tanh and ReLU.
+        model: A model of Stable-Baselines3 (PPO, A2C, DQN) or sb3-contrib (QR-DQN) with
+            ``MlpPolicy``, or a ``torch.nn.Sequential`` of linear layers, tanh and ReLU.
         path: The file.
-        observations: On which the file's actions are compared with the model's: an array of shape ``(n, 6)``. Default: 2,000 of random episodes.
+        observations: On which the file's actions are compared with the model's: an array of shape
+            ``(n, 6)``. By default 2,000 of random episodes.
         torque_limit: The largest torque, N m, of a ``Sequential`` with one output. Of a model of
             Stable-Baselines3, the torque of its largest action. By default this is the action
             itself, and in a swing-up the largest in its environment's ``AVAIL_TORQUE``.
@@ -96,7 +109,8 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
     """
     policy = getattr(model, "policy", None)
     if policy is None and not isinstance(model, Iterable):
-        raise TypeError(f"model must be one of Stable-Baselines3 or a torch.nn.Sequential, got {model!r}")
+        rule = "one of Stable-Baselines3 or a torch.nn.Sequential"
+        raise must_be("model", rule, repr(model), TypeError)
     modules, quantiles = (model, 1) if policy is None else _modules_of(policy)
     layers = _layers(modules, quantiles)
     if policy is None and any(type(each).__name__ == "Dropout" and each.training for each in model):
@@ -107,8 +121,8 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
     if policy is not None and isinstance(policy.action_space, gym.spaces.Box):
         low, high = float(policy.action_space.low[0]), float(policy.action_space.high[0])
         if not 0 < high == -low < np.inf:
-            rule = "finite and opposite"
-            raise ValueError(f"the bounds of the action space must be {rule}, got {low} and {high}")
+            name, got = "the bounds of the action space", f"{low} and {high}"
+            raise must_be(name, "finite and opposite", got)
         if torque_limit is None:
             torque_limit = _largest_torque(model.get_env()) if is_swingup else high
         scale = _checked(torque_limit) / high
@@ -129,8 +143,8 @@ def save(model: Any, path: str | Path, observations: NDArray[np.float32] | None 
         observations = _observations("AcrobotSwingup-v0" if is_swingup else "Acrobot-v1")
     seen = np.asarray(observations, np.float32)
     if seen.shape[1:] != (6,) or not seen.size or not np.isfinite(seen).all():
-        rule = "finite numbers of shape (n, 6)"
-        raise ValueError(f"observations must be {rule}, got {reprlib.repr(observations)}")
+        got = reprlib.repr(observations)
+        raise must_be("observations", "finite numbers of shape (n, 6)", got)
     expected = scale * _expected(model, policy, normalize, modules, seen)
     _compare(layers, seen, expected, torque_limit, note)
     Path(path).write_bytes(content)
@@ -149,7 +163,7 @@ def _largest_torque(envs: Any) -> float:
 
 
 def _modules_of(policy: Any) -> tuple[list[Any], int]:
-    """The layers of a policy of Stable-Baselines3, and how many quantiles each score is the mean of."""
+    """A policy's layers in Stable-Baselines3, and how many quantiles make each score."""
     extractor = type(getattr(policy, "features_extractor", None)).__name__
     if extractor not in ("FlattenExtractor", "NoneType"):
         raise TypeError(f"the features extractor must be FlattenExtractor, got {extractor}")
@@ -161,7 +175,8 @@ def _modules_of(policy: Any) -> tuple[list[Any], int]:
         return list(policy.quantile_net.quantile_net), policy.quantile_net.n_quantiles
     if hasattr(policy, "q_net"):
         return list(policy.q_net.q_net), 1
-    raise TypeError(f"the policy must be that of PPO, A2C, DQN or QR-DQN, got {type(policy).__name__}")
+    rule = "that of PPO, A2C, DQN or QR-DQN"
+    raise must_be("the policy", rule, type(policy).__name__, TypeError)
 
 
 def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
@@ -169,31 +184,41 @@ def _layers(modules: Iterable[Any], quantiles: int) -> list[Layer]:
     for module in modules:
         kind = type(module).__name__
         if kind not in _KINDS:
-            raise TypeError(f"a layer must be one of {', '.join(_KINDS)}, got {kind}")
+            raise must_be("a layer", f"one of {', '.join(_KINDS)}", kind, TypeError)
         if kind == "Linear":
-            weights = module.weight.detach().cpu().numpy().astype(np.float64)
-            biases = np.zeros(len(weights)) if module.bias is None else module.bias.detach().cpu().numpy().astype(np.float64)
-            layers.append((weights, biases, "none"))
+            both = module.weight, module.bias
+            weights, biases = (
+                0.0 if each is None else each.detach().cpu().numpy().astype(np.float64)
+                for each in both
+            )
+            layers.append((weights, np.zeros(len(weights)) + biases, "none"))
         elif (activation := _KINDS[kind]) != "none":
             if not layers or layers[-1][2] != "none":
                 raise TypeError(f"{kind} must follow a linear layer")
             layers[-1] = (*layers[-1][:2], activation)
     if quantiles > 1:
         weights, biases, activation = layers[-1]
-        layers[-1] = (weights.reshape(quantiles, -1, weights.shape[1]).mean(0), biases.reshape(quantiles, -1).mean(0), activation)
+        weights = weights.reshape(quantiles, -1, weights.shape[1]).mean(0)
+        layers[-1] = (weights, biases.reshape(quantiles, -1).mean(0), activation)
     return layers
 
 
 def _observations(task: str) -> NDArray[np.float32]:
     envs = gym.make_vec(f"acrobot_rs/{task}", num_envs=20)
     envs.action_space.seed(1)
-    return np.concatenate([envs.reset(seed=1)[0], *(envs.step(envs.action_space.sample())[0].copy() for _ in range(99))])
+    seen = [envs.reset(seed=1)[0]]
+    for _ in range(99):
+        seen.append(envs.step(envs.action_space.sample())[0])
+    return np.concatenate(seen)
 
 
-def _expected(model: Any, policy: Any, normalize: Any, modules: Any, seen: NDArray[np.float32]) -> NDArray[Any]:
+def _expected(
+    model: Any, policy: Any, normalize: Any, modules: Any, seen: NDArray[np.float32]
+) -> NDArray[Any]:
     """What the model itself answers."""
     if policy is not None:
-        return np.asarray(model.predict(seen if normalize is None else normalize.normalize_obs(seen), deterministic=True)[0])
+        inputs = seen if normalize is None else normalize.normalize_obs(seen)
+        return np.asarray(model.predict(inputs, deterministic=True)[0])
     import torch
 
     with torch.no_grad():
@@ -221,7 +246,10 @@ def _compare(
         chosen = np.take_along_axis(x, expected.reshape(-1, 1), 1)[:, 0]
         differ = x.max(1) - chosen > 1e-4 * np.maximum(1, abs(x).max(1))
     else:
-        differ = abs(np.clip(x[:, 0], -torque_limit, torque_limit) - np.clip(expected[:, 0], -torque_limit, torque_limit)) > 1e-4 * torque_limit
+        torques, others = (
+            np.clip(each[:, 0], -torque_limit, torque_limit) for each in (x, expected)
+        )
+        differ = abs(torques - others) > 1e-4 * torque_limit
     if differ.any():
         where = f"they differ on {differ.sum()} of {len(seen)} observations{note and '. '}{note}"
         raise ValueError(f"the file's actions must be those of the model; {where}")

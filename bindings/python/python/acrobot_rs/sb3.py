@@ -1,4 +1,4 @@
-"""The vector environment for Stable-Baselines3, which does not take Gymnasium's vector environments.
+"""The vector environment for Stable-Baselines3, which does not take Gymnasium's.
 
 This module needs ``stable-baselines3``, which the package does not install.
 """
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
 from acrobot_rs.parameters import Drawn
+from acrobot_rs.arrays import must_be
 from acrobot_rs.native_vector import NativeVectorEnv
 
 Indices = int | Iterable[int] | None
@@ -24,38 +25,31 @@ Indices = int | Iterable[int] | None
 class AcrobotVecEnv(VecEnv):
     """A vector environment of this package, of either task, as Stable-Baselines3's ``VecEnv``.
 
-    Its results are those of ``DummyVecEnv``: a step that ends an episode also resets, and the environment's info has
-    ``"terminal_observation"`` and ``"TimeLimit.truncated"``. Returns of episodes are logged by Stable-Baselines3's
-    ``VecMonitor``.
+    Its results are those of ``DummyVecEnv``: a step that ends an episode also resets, and the
+    environment's info has ``"terminal_observation"`` and ``"TimeLimit.truncated"``.
+    Stable-Baselines3's ``VecMonitor`` logs the returns of episodes.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
     >>> from acrobot_rs.sb3 import AcrobotVecEnv
-    >>> envs = AcrobotVecEnv(gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=64, autoreset_mode="SameStep"))
-    >>> envs.reset().shape
+    >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=64, autoreset_mode="SameStep")
+    >>> AcrobotVecEnv(envs).reset().shape
     (64, 6)
     """
 
     def __init__(self, envs: VectorEnv[Any, Any, Any]) -> None:
-        """Take environments over.
-
-        Args:
-            envs: Environments with ``autoreset_mode="SameStep"``.
-
-        Raises:
-            TypeError: If they are not of this package.
-            ValueError: If they have another autoreset mode.
-        """
+        """Take over environments of this package with ``autoreset_mode="SameStep"``."""
         if not isinstance(envs, NativeVectorEnv):
-            raise TypeError(f"AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec, got {type(envs).__name__}")
-        if envs.autoreset_mode is not AutoresetMode.SAME_STEP:
-            raise ValueError(f'autoreset_mode must be "SameStep", got "{envs.autoreset_mode.value}"')
+            message = "AcrobotVecEnv needs an AcrobotVectorEnv from gym.make_vec"
+            raise TypeError(f"{message}, got {type(envs).__name__}")
+        if (mode := envs.autoreset_mode) is not AutoresetMode.SAME_STEP:
+            raise must_be("autoreset_mode", '"SameStep"', f'"{mode.value}"')
         self.envs = envs
         self._actions: NDArray[Any] | None = None
         super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
 
     def reset(self) -> NDArray[np.float32]:
-        """Begin all episodes, with the seeds of :meth:`seed` and the options of ``set_options``, if there are new ones."""
+        """Begin all episodes, with new seeds of :meth:`seed` and options of ``set_options``."""
         if any(options != self._options[0] for options in self._options):
             raise ValueError("options must be the same for all environments")
         observations, _ = self.envs.reset(seed=self._seeds, options=dict(self._options[0]))
@@ -67,26 +61,25 @@ class AcrobotVecEnv(VecEnv):
         """Keep the actions. :meth:`step_wait` steps."""
         self._actions = actions
 
-    def step_wait(self) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
+    def step_wait(
+        self,
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
         """Step, and reset the environments whose episode ends.
 
-        Returns:
-            Observations, rewards, whether the episodes ended, and an info for each environment.
-
-        Raises:
-            gymnasium.error.NoAsyncCallError: If there were no actions since the last step.
+        Returns observations, rewards, whether the episodes ended, and an info for each environment.
         """
         if self._actions is None:
             raise NoAsyncCallError("call step_async with the actions before each step_wait", "step")
         actions, self._actions = self._actions, None
         # Those of the ended episode, if one ends, as in DummyVecEnv.
-        parameters = {name: self.envs.get_parameter(name).tolist() for name in self.envs.info_parameters}
+        names = self.envs.info_parameters
+        parameters = {name: self.envs.get_parameter(name).tolist() for name in names}
         observations, rewards, terminated, truncated, infos = self.envs.step(actions)
         ended = terminated | truncated
-        each: list[dict[str, Any]] = [{"TimeLimit.truncated": False} for _ in range(self.num_envs)]
-        for name, values in parameters.items():
-            for info, value in zip(each, values, strict=True):
-                info[name] = value
+        each: list[dict[str, Any]] = [
+            {"TimeLimit.truncated": False, **{name: parameters[name][index] for name in names}}
+            for index in range(self.num_envs)
+        ]
         for index in np.flatnonzero(ended):
             each[index]["TimeLimit.truncated"] = bool(truncated[index] and not terminated[index])
             each[index]["terminal_observation"] = infos["final_obs"][index]
@@ -94,14 +87,12 @@ class AcrobotVecEnv(VecEnv):
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
         """The value of an attribute for each of these. See :meth:`NativeVectorEnv.call`."""
-        values = self.envs.get_attr(attr_name)
-        return [values[index] for index in self._get_indices(indices)]
+        return self.env_method(attr_name, indices=indices)
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
         """Set a parameter or the state of these environments. See :meth:`NativeVectorEnv.set_attr`.
 
-        Raises:
-            ValueError: If a parameter is or will be drawn, and these are not all environments. Nothing changes then.
+        A parameter that is or will be drawn can only be set in all.
         """
         values = self.envs.get_attr(attr_name)
         indices = list(self._get_indices(indices))
@@ -110,18 +101,25 @@ class AcrobotVecEnv(VecEnv):
         if isinstance(value, Drawn) and chosen.all():
             self.envs.set_attr(attr_name, value)
         elif chosen.any():
-            if not chosen.all() and (isinstance(value, Drawn) or isinstance(getattr(self.envs, attr_name), Drawn)):
+            is_drawn = isinstance(value, Drawn) or isinstance(getattr(self.envs, attr_name), Drawn)
+            if is_drawn and not chosen.all():
                 rule = "set in all environments, if it is or will be drawn"
-                raise ValueError(f"{attr_name} must be {rule}, got indices {indices}")
-            self.envs.set_attr(attr_name, [value if new else old for new, old in zip(chosen, values, strict=True)])
-        self.observation_space, self.action_space = self.envs.single_observation_space, self.envs.single_action_space
+                raise must_be(attr_name, rule, f"indices {indices}")
+            both = zip(chosen, values, strict=True)
+            self.envs.set_attr(attr_name, [value if new else old for new, old in both])
+        self.observation_space = self.envs.single_observation_space
+        self.action_space = self.envs.single_action_space
 
-    def env_method(self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any) -> list[Any]:
-        """The results of a method, which can only be ``render``, for each of these environments."""
+    def env_method(
+        self, method_name: str, *args: Any, indices: Indices = None, **kwargs: Any
+    ) -> list[Any]:
+        """The results of a method, which can only be ``render``, for each of these."""
         values = self.envs.call(method_name, *args, **kwargs)
         return [values[index] for index in self._get_indices(indices)]
 
-    def env_is_wrapped(self, wrapper_class: type[gymnasium.Wrapper], indices: Indices = None) -> list[bool]:
+    def env_is_wrapped(
+        self, wrapper_class: type[gymnasium.Wrapper], indices: Indices = None
+    ) -> list[bool]:
         """``False`` for each of these environments: they have no wrappers."""
         return [False for _ in self._get_indices(indices)]
 

@@ -1,4 +1,4 @@
-"""dm_control's ``acrobot-swingup``: swing up from anywhere, with friction and a weak motor, and stay up."""
+"""dm_control's ``acrobot-swingup``: swing up from anywhere, with friction, and stay up."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from acrobot_rs.env import AcrobotContinuousEnv
 from acrobot_rs.native_vector import Floats
-from acrobot_rs.parameters import Each, EachTorques, Parameters, _hint
+from acrobot_rs.parameters import Each, EachTorques, Parameters, _unknown
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 
 if TYPE_CHECKING:
@@ -28,14 +28,10 @@ class Swingup(Parameters):
     -1. The spaces do not change.
     """
 
-    #: Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more.
-    LINK_MOI_1: Each = 0.09557031250000002
-    #: Moment of inertia of link 2 about its centre of mass, kg m²; 0 or more.
-    LINK_MOI_2: Each = 0.09530365719649563
-    #: Viscous friction of the fixed joint, N m s/rad; 0 or more.
-    FRICTION_1: Each = 0.05
-    #: Viscous friction of the joint between the links, N m s/rad; 0 or more.
-    FRICTION_2: Each = 0.05
+    LINK_MOI_1: Each = 0.09557031250000002  #: about its centre of mass, kg m²; 0 or more
+    LINK_MOI_2: Each = 0.09530365719649563  #: about its centre of mass, kg m²; 0 or more
+    FRICTION_1: Each = 0.05  #: viscous, of the fixed joint, N m s/rad; 0 or more
+    FRICTION_2: Each = 0.05  #: viscous, of the joint between the links, N m s/rad; 0 or more
     gravity: Each = 9.81
     dt: Each = 0.01
     MAX_VEL_1: Each = 1e30
@@ -53,9 +49,7 @@ class Swingup(Parameters):
     @property
     def LINK_MOI(self) -> float:  # type: ignore[override]
         """Each link has its own."""
-        raise AttributeError(
-            f"{type(self).__name__} has no parameter LINK_MOI; {_hint('LINK_MOI', self._NAMES)}"
-        )
+        raise _unknown(type(self), "LINK_MOI")
 
     def _limits(self) -> tuple[float, float, float, float]:
         return -1.0, 1.0, math.inf, math.inf
@@ -113,7 +107,7 @@ class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
 
 
 class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
-    """dm_control's ``acrobot-swingup_sparse``: :class:`AcrobotSwingupEnv` with a reward of 0 beyond 0.2 m from the target."""
+    """dm_control's ``acrobot-swingup_sparse``: no reward beyond 0.2 m from the target."""
 
     _TASK = "swingup_sparse"
 
@@ -123,8 +117,8 @@ class AcrobotSwingupVectorEnv(
 ):
     """Many :class:`AcrobotSwingupEnv`, computed in ``float32``, bit-identically on every machine.
 
-    Actions have the shape ``(num_envs, 1)``. All else is as in :class:`acrobot_rs.AcrobotVectorEnv`,
-    without ``gymnasium_episodes``. The parameters are those of :class:`Swingup`.
+    Actions have the shape ``(num_envs, 1)``. All else is as in
+    :class:`acrobot_rs.AcrobotVectorEnv`, without ``gymnasium_episodes``.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -149,14 +143,8 @@ class AcrobotSwingupVectorEnv(
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
         self._check_arguments(parameters)  # gymnasium_episodes is none
         super().__init__(
-            num_envs,
-            max_episode_steps,
-            render_mode,
-            autoreset_mode,
-            copy,
-            False,
-            threads,
-            info_parameters,
+            *(num_envs, max_episode_steps, render_mode, autoreset_mode, copy),
+            *(False, threads, info_parameters),
             **parameters,
         )
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,8 +15,9 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
-from acrobot_rs.arrays import numbers, read_only, require
-from acrobot_rs.native_vector import Floats, NativeVectorEnv
+from acrobot_rs._native import Batch
+from acrobot_rs.arrays import must_be, numbers, read_only, require
+from acrobot_rs.native_vector import Alone, Floats, NativeVectorEnv
 from acrobot_rs.parameters import Drawn, Parameters, _fixed, _hint
 
 if TYPE_CHECKING:
@@ -26,16 +29,16 @@ if TYPE_CHECKING:
 class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
-    They are computed in ``float32``, bit-identically on every machine. Each step is as close to Gymnasium's as ``float32``
-    is, but whole episodes drift apart, because an Acrobot is chaotic.
+    They are computed in ``float32``, bit-identically on every machine. Each step is as close to
+    Gymnasium's as ``float32`` is, but whole episodes drift apart, because an acrobot is chaotic.
 
-    Environment ``i`` draws from the ``i``-th child of the seed, ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
-    So more environments do not change the first ones, and two seeds share no stream. ``SyncVectorEnv`` seeds environment
-    ``i`` with ``seed + i``.
+    Environment ``i`` draws from the ``i``-th child of the seed,
+    ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
 
-    A parameter has one value for all environments, a list or an array with one for each, or an :class:`acrobot_rs.Uniform`,
-    :class:`acrobot_rs.LogUniform` or :class:`acrobot_rs.Normal`, from which each reset draws. Reading it gives what was set,
-    different values as an array, and :meth:`get_parameter` what each environment has. ``book_or_nips`` cannot be drawn.
+    A parameter has one value for all environments, a list or an array with one for each, or an
+    :class:`acrobot_rs.Uniform`, :class:`acrobot_rs.LogUniform` or :class:`acrobot_rs.Normal`, from
+    which each reset draws. Reading it gives what was set, and :meth:`get_parameter` what each
+    environment has.
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
@@ -67,40 +70,62 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         """Make environments. Reset them before their first step.
 
         Args:
-            num_envs: The number of environments, at least 1.
-            max_episode_steps: The steps after which an episode is truncated, at least 1. With
-                ``None`` there is no limit below 2**32 - 1.
+            num_envs: The number of environments.
+            max_episode_steps: The steps after which an episode is truncated. ``None``: no limit.
             render_mode: ``None``, ``"rgb_array"`` or ``"ansi"``.
-            autoreset_mode: ``NextStep``: the step after an episode's end resets, ignores its action and returns a reward of 0.
-                ``SameStep``: the step that ends an episode also resets, and ``infos["final_obs"]`` has the episode's last
-                observation. ``Disabled``: a ``reset`` of all, or one with a ``"reset_mask"``, must reset an environment whose
-                episode has ended before the next step.
-            copy: Whether each call returns observations in a new array. Otherwise all calls return the same array.
-            gymnasium_episodes: Whether to play the episodes of Gymnasium's ``Acrobot-v1`` in ``SyncVectorEnv``: computed in
-                ``float64``, environment ``i`` seeded with ``seed + i``, and rewards as ``float64``. All results are
-                bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are. Steps take longer.
-            threads: The threads that compute a step; ``None``: as many as the process has cores. They change no bit. More
-                than one is faster only for more than 16,384 environments, or 1,024 with ``gymnasium_episodes``.
+            autoreset_mode: ``NextStep``: the step after an episode's end resets, ignores its action
+                and returns a reward of 0. ``SameStep``: the step that ends an episode also resets,
+                and ``infos["final_obs"]`` has the episode's last observation. ``Disabled``: an
+                environment whose episode has ended must be reset before the next step.
+            copy: Whether each call returns observations in a new array, not in the same one.
+            gymnasium_episodes: Whether to play the episodes of Gymnasium's ``Acrobot-v1`` in
+                ``SyncVectorEnv``, bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are.
+            threads: The threads that compute a step; ``None``: as many as the process has cores.
+                They change no bit, and help above 16,384 environments, or 1,024 with
+                ``gymnasium_episodes``.
             info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
             **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
 
         Raises:
-            TypeError: If a parameter is unknown or of a wrong type.
-            ValueError: If a number is out of its range, or if a mode or a name in ``info_parameters`` is unknown.
+            TypeError, ValueError: If an argument is invalid.
             MemoryError: If the environments do not fit into memory.
         """
         require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
         for name in (each for each in info_parameters if each not in self._NAMES):
             hint = _hint(str(name), self._NAMES)
-            raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {hint}")
-        self.info_parameters = tuple(info_parameters)
-        require(bool, "True or False", gymnasium_episodes=gymnasium_episodes)
+            raise must_be("info_parameters", "names of parameters", f"{name!r}; {hint}")
+        modes = [mode.value for mode in AutoresetMode]
+        if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
+            raise must_be("autoreset_mode", f"one of {modes}", repr(autoreset_mode))
+        require(bool, "True or False", copy=copy, gymnasium_episodes=gymnasium_episodes)
+        if threads is None:
+            has_affinity = hasattr(os, "sched_getaffinity")
+            threads = len(os.sched_getaffinity(0)) if has_affinity else os.cpu_count() or 1
+        limit = 2**32 - 1 if max_episode_steps is None else max_episode_steps
+        counts = {"num_envs": num_envs, "max_episode_steps": limit, "threads": threads}
+        require(Integral, "an integer", **counts)
+        for name, count in counts.items():
+            if not 0 < count < 2**32:
+                no_limit = ", or None for no limit" if name == "max_episode_steps" else ""
+                raise must_be(name, f"an integer from 1 to {2**32 - 1}{no_limit}", count)
         if gymnasium_episodes:
             arrays.warn_of_other_sines()
+        mode = AutoresetMode(autoreset_mode)
         engine = "gymnasium" if gymnasium_episodes else self._TASK
-        native = self._make(
-            num_envs, max_episode_steps, autoreset_mode, copy, engine, self._CONTINUOUS, threads
+        native = Batch(
+            *(num_envs, str(self.np_random_seed), limit, mode.value, engine),
+            *(self._CONTINUOUS, threads),
         )
+        self._alone = Alone()
+        self.autoreset_mode = mode
+        self.metadata = {**self.metadata, "autoreset_mode": mode}
+        self.num_envs = num_envs
+        self.max_episode_steps = max_episode_steps
+        self.copy = copy
+        self.info_parameters = tuple(info_parameters)
+        self._observations = None if copy else self._empty()
+        self._same_step = mode is AutoresetMode.SAME_STEP
+        self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
         super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
         self._made = True
@@ -127,23 +152,27 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         return _fixed(name, each[0])
 
     def _inputs(self, actions: ArrayLike) -> NDArray[Any]:
-        """The actions, checked and converted to an array that the native part reads. It calls this where necessary."""
-        what, kinds, dtype = ("numbers", "fiu", np.float32) if self._CONTINUOUS else ("integers", "iu", np.int64)
+        """The actions as an array that the native part reads. It calls this where necessary."""
+        what, kinds, dtype = (
+            ("numbers", "fiu", np.float32) if self._CONTINUOUS else ("integers", "iu", np.int64)
+        )
         shape = self.action_space.shape
-        actions = numbers("actions", f"{what} of shape {shape}", actions, shape, kinds, InvalidAction)
+        actions = numbers(
+            "actions", f"{what} of shape {shape}", actions, shape, kinds, InvalidAction
+        )
         if actions.dtype.kind == "u" and (actions > 2).any():  # which int64 may not have
             index = int(np.argmax(actions > 2))
-            raise InvalidAction(f"actions[{index}] must be 0, 1 or 2, got {actions[index]}")
+            raise must_be(f"actions[{index}]", "0, 1 or 2", actions[index], InvalidAction)
         with np.errstate(over="ignore"):  # an infinite torque acts as the bound
             # An array over packed bytes is not aligned, which Rust requires.
             return np.ascontiguousarray(actions if actions.flags.aligned else actions.copy(), dtype)
 
 
 class AcrobotContinuousVectorEnv(AcrobotVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
-    """As :class:`AcrobotVectorEnv`, but the actions are torques: ``float32`` of shape ``(num_envs, 1)``, in N m.
+    """As :class:`AcrobotVectorEnv`, but the actions are torques, N m: ``(num_envs, 1)`` floats.
 
-    A torque beyond the bounds of the action space, which are the smallest and the largest of ``AVAIL_TORQUE``, acts as the
-    nearest bound.
+    The bounds of the action space are the smallest and the largest of ``AVAIL_TORQUE``. A torque
+    beyond acts as the nearest bound.
 
     >>> import acrobot_rs.vector
     >>> envs = acrobot_rs.vector.AcrobotContinuousVectorEnv(num_envs=1024)
