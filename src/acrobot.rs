@@ -291,13 +291,7 @@ impl<A: Arithmetic, R: defmt::Format> defmt::Format for Acrobot<A, R> {
     /// Parameters, state and generator.
     fn format(&self, f: defmt::Formatter<'_>) {
         let (params, state, rng) = (self.params(), self.state(), &self.rng);
-        defmt::write!(
-            f,
-            "Acrobot {{ params: {}, state: {}, rng: {} }}",
-            params,
-            state,
-            rng
-        );
+        defmt::write!(f, "Acrobot {{ params: {}, state: {}, rng: {} }}", params, state, rng);
     }
 }
 
@@ -335,9 +329,8 @@ mod snapshot {
     impl<'de, A: Arithmetic, R: Deserialize<'de>> Deserialize<'de> for Acrobot<A, R> {
         /// Rejects what `set_params` and `set_state` reject.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot::<Header<A, false>, _, _, _> {
-                params, state, rng, ..
-            } = Snapshot::deserialize(deserializer)?;
+            let Snapshot::<Header<A, false>, _, _, _> { params, state, rng, .. } =
+                Snapshot::deserialize(deserializer)?;
             let pendulum = Pendulum::new(params, state).map_err(D::Error::custom)?;
             Ok(Self::from_pendulum(pendulum, rng))
         }

@@ -218,9 +218,7 @@ impl<A: Arithmetic, const TASK: u8> Damped<A, TASK> {
         let mut joined = [0; 64];
         let (first, rest) = joined.split_at_mut(Self::PREFIX.len());
         first.copy_from_slice(Self::PREFIX.as_bytes());
-        rest.split_at_mut(A::NAME.len())
-            .0
-            .copy_from_slice(A::NAME.as_bytes());
+        rest.split_at_mut(A::NAME.len()).0.copy_from_slice(A::NAME.as_bytes());
         joined
     };
 }

@@ -103,11 +103,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     /// or none.
     pub fn new(seed: impl Into<SeedSequence>, mut storage: S) -> Result<Self, Error> {
         const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
-        let SlicesMut {
-            blocks,
-            generators,
-            lane_params,
-        } = storage.slices_mut();
+        let SlicesMut { blocks, generators, lane_params } = storage.slices_mut();
         if generators.is_empty() {
             return Err(Error::EmptyBatch);
         }
@@ -364,11 +360,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 
 /// A block with its generators, of which the last has fewer than `N`, and its own parameters, if
 /// any.
-type Part<'a, A, const N: usize> = (
-    &'a mut Block<A, N>,
-    &'a mut [Pcg64],
-    Option<&'a mut LaneParams<A, N>>,
-);
+type Part<'a, A, const N: usize> =
+    (&'a mut Block<A, N>, &'a mut [Pcg64], Option<&'a mut LaneParams<A, N>>);
 
 fn each_block<A: Arithmetic, const N: usize>(
     storage: &mut impl Storage<A, N>,

@@ -122,22 +122,14 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::OutOfRange {
-                name,
-                value,
-                unit,
-                rule,
-            } => write!(f, "{name} must be {rule} {unit}, got {value}"),
+            Self::OutOfRange { name, value, unit, rule } => {
+                write!(f, "{name} must be {rule} {unit}, got {value}")
+            }
             Self::NoInertia { name, value } => write!(
                 f,
                 "{name} must be above 0 kg m² if the centre of mass is on the joint, got {value}"
             ),
-            Self::ReversedRange {
-                name,
-                low,
-                high,
-                unit,
-            } => write!(
+            Self::ReversedRange { name, low, high, unit } => write!(
                 f,
                 "the lower {name} must not be above the upper one, got {low} and {high} {unit}"
             ),
@@ -145,11 +137,9 @@ impl fmt::Display for Error {
             Self::EmptyBatch => write!(f, "{}, got 0 generators", self.message()),
             #[cfg(feature = "alloc")]
             Self::OutOfMemory { len } => write!(f, "{}, got {len} acrobots", self.message()),
-            Self::WrongLength {
-                name,
-                len,
-                expected,
-            } => write!(f, "{name} must have {expected} elements, got {len}"),
+            Self::WrongLength { name, len, expected } => {
+                write!(f, "{name} must have {expected} elements, got {len}")
+            }
             Self::NoSuchIndex { index, len } => {
                 write!(f, "member index must be below {len}, got {index}")
             }
@@ -207,12 +197,7 @@ impl Range {
         };
         match holds && value.is_finite() {
             true => Ok(()),
-            false => Err(Error::OutOfRange {
-                name,
-                value,
-                unit,
-                rule,
-            }),
+            false => Err(Error::OutOfRange { name, value, unit, rule }),
         }
     }
 }

@@ -41,19 +41,13 @@ impl From<u64> for ResetOptions {
 impl From<SeedSequence> for ResetOptions {
     /// This seed, and the default bounds.
     fn from(seed: SeedSequence) -> Self {
-        Self {
-            seed: Some(seed),
-            bounds: None,
-        }
+        Self { seed: Some(seed), bounds: None }
     }
 }
 
 impl From<ResetBounds> for ResetOptions {
     /// These bounds, and no seed.
     fn from(bounds: ResetBounds) -> Self {
-        Self {
-            seed: None,
-            bounds: Some(bounds),
-        }
+        Self { seed: None, bounds: Some(bounds) }
     }
 }

@@ -47,11 +47,7 @@ struct Fields<Text> {
 
 impl<Text: fmt::Debug> fmt::Display for Fields<Text> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            of,
-            version,
-            arithmetic,
-        } = self;
+        let Self { of, version, arithmetic } = self;
         write!(f, "{of:?}, version {version}, arithmetic {arithmetic:?}")
     }
 }
@@ -63,10 +59,7 @@ impl<A: Arithmetic, const BATCH: bool> Header<A, BATCH> {
     pub(crate) const SIZE: usize = 3 + Self::FIELDS.of.len() + A::NAME.len();
 
     const FIELDS: Fields<&'static str> = {
-        assert!(
-            A::NAME.len() <= LIMIT,
-            "an arithmetic's NAME must have at most 16 bytes"
-        );
+        assert!(A::NAME.len() <= LIMIT, "an arithmetic's NAME must have at most 16 bytes");
         Fields {
             of: if BATCH { "batch" } else { "acrobot" },
             version: VERSION,

@@ -39,11 +39,7 @@ impl<E> TimeLimit<E> {
     /// Truncates episodes after `limit` steps.
     #[must_use]
     pub const fn new(inner: E, limit: NonZeroU32) -> Self {
-        Self {
-            inner,
-            limit,
-            elapsed: 0,
-        }
+        Self { inner, limit, elapsed: 0 }
     }
 
     /// Truncates episodes after 500 steps, as `Acrobot-v1` does.

@@ -73,10 +73,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
     #[must_use]
     pub const fn new() -> Self {
         const { assert!(N > 0, "a trajectory needs room for at least one transition") };
-        Self {
-            transitions: Deque::new(),
-            pushed: 0,
-        }
+        Self { transitions: Deque::new(), pushed: 0 }
     }
 
     /// Steps an acrobot and adds the transition.

@@ -199,12 +199,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
             Autoreset::SameStep => ended,
             Autoreset::Disabled => [false; N],
         };
-        Results {
-            rewards,
-            terminated,
-            truncated,
-            resets,
-        }
+        Results { rewards, terminated, truncated, resets }
     }
 
     /// Resets lanes whose episodes ended, writes the results, and removes the written elements from

@@ -27,13 +27,7 @@ impl<'a> StepBuffers<'a> {
         terminated: &'a mut [bool],
         truncated: &'a mut [bool],
     ) -> Self {
-        Self {
-            rewards,
-            terminated,
-            truncated,
-            observations: None,
-            final_observations: None,
-        }
+        Self { rewards, terminated, truncated, observations: None, final_observations: None }
     }
 
     /// The same buffers, and one for the observations.
@@ -102,10 +96,6 @@ pub(super) fn set<T>(to: &mut [T], index: usize, x: T) {
 pub(super) fn check_length(name: &'static str, len: usize, expected: usize) -> Result<(), Error> {
     match len == expected {
         true => Ok(()),
-        false => Err(Error::WrongLength {
-            name,
-            len,
-            expected,
-        }),
+        false => Err(Error::WrongLength { name, len, expected }),
     }
 }

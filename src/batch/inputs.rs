@@ -104,10 +104,7 @@ fn read<T: Copy, U: Copy, const N: usize>(
 ) -> [U; N] {
     let mut to = [rest; N];
     match <&[T; N]>::try_from(from) {
-        Ok(from) => to
-            .iter_mut()
-            .zip(from)
-            .for_each(|(to, &x)| *to = convert(x)),
+        Ok(from) => to.iter_mut().zip(from).for_each(|(to, &x)| *to = convert(x)),
         Err(_) => read_partial(&mut to, from, convert),
     }
     to
@@ -117,7 +114,5 @@ fn read<T: Copy, U: Copy, const N: usize>(
 #[cold]
 #[inline(never)]
 fn read_partial<T: Copy, U>(to: &mut [U], from: &[T], convert: impl Fn(T) -> U) {
-    to.iter_mut()
-        .zip(from)
-        .for_each(|(to, &x)| *to = convert(x));
+    to.iter_mut().zip(from).for_each(|(to, &x)| *to = convert(x));
 }

@@ -74,11 +74,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
             Parameters::Shared(model) if model.params.same(&member.params) => {}
             _ => self.set_params_of(index, member.params)?,
         }
-        let SlicesMut {
-            blocks,
-            generators,
-            lane_params,
-        } = self.storage.slices_mut();
+        let SlicesMut { blocks, generators, lane_params } = self.storage.slices_mut();
         let mut generators = generators.get_mut(index - index % N..);
         let generators = take_mut(generators.get_or_insert_default(), N);
         if let (Some(block), Some(rng)) = (blocks.get_mut(index / N), generators.get_mut(index % N))

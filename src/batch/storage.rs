@@ -59,19 +59,11 @@ where
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
 {
     fn slices(&self) -> Slices<'_, A, N> {
-        Slices {
-            blocks: self.0.as_ref(),
-            generators: self.1.as_ref(),
-            lane_params: &[],
-        }
+        Slices { blocks: self.0.as_ref(), generators: self.1.as_ref(), lane_params: &[] }
     }
 
     fn slices_mut(&mut self) -> SlicesMut<'_, A, N> {
-        SlicesMut {
-            blocks: self.0.as_mut(),
-            generators: self.1.as_mut(),
-            lane_params: &mut [],
-        }
+        SlicesMut { blocks: self.0.as_mut(), generators: self.1.as_mut(), lane_params: &mut [] }
     }
 }
 

@@ -28,14 +28,7 @@ impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
     /// 16 % slower.
     #[inline(always)]
     pub(super) fn step<const HIDE: bool>(self) {
-        let Self {
-            settings,
-            blocks,
-            mut generators,
-            lane_params,
-            mut inputs,
-            mut buffers,
-        } = self;
+        let Self { settings, blocks, mut generators, lane_params, mut inputs, mut buffers } = self;
         if let Parameters::Shared(model) = &settings.parameters {
             let shared = LaneParams::shared(model);
             for block in blocks {

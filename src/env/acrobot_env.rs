@@ -71,10 +71,7 @@ impl<A: Arithmetic, O: ObservationKind> AcrobotEnv<A, O> {
     /// An environment in the initial state of seed 0, with the errors of
     /// [`DynAcrobot::set_params`].
     pub fn new(params: Params, render_mode: RenderMode) -> Result<Self, Rejected> {
-        let mut env = Self {
-            render_mode,
-            ..Self::default()
-        };
+        let mut env = Self { render_mode, ..Self::default() };
         DynAcrobot::set_params(&mut env.acrobot, params)?;
         Ok(env)
     }
@@ -83,11 +80,7 @@ impl<A: Arithmetic, O: ObservationKind> AcrobotEnv<A, O> {
 impl<A: Arithmetic, O> Default for AcrobotEnv<A, O> {
     /// Gymnasium's parameters, and no render mode.
     fn default() -> Self {
-        Self {
-            acrobot: Acrobot::new(0),
-            render_mode: RenderMode::None,
-            view: PhantomData,
-        }
+        Self { acrobot: Acrobot::new(0), render_mode: RenderMode::None, view: PhantomData }
     }
 }
 
@@ -205,19 +198,14 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
 /// The error of a number that is valid as `given`, and not after it was rounded to `f32`.
 fn as_given(error: Rejected, given: &[(&'static str, f64)]) -> Rejected {
     let (name, rounded, unit) = match error {
-        Rejected::OutOfRange {
-            name, value, unit, ..
-        } => (name, value, unit),
+        Rejected::OutOfRange { name, value, unit, .. } => (name, value, unit),
         Rejected::NoInertia { name, value } => (name, value, "kg m²"),
         _ => return error,
     };
     match given.iter().find(|(other, _)| *other == name) {
-        Some(&(_, value)) if value != rounded => Rejected::OutOfRange {
-            name,
-            value,
-            unit,
-            rule: "within its range as f32, in",
-        },
+        Some(&(_, value)) if value != rounded => {
+            Rejected::OutOfRange { name, value, unit, rule: "within its range as f32, in" }
+        }
         _ => error,
     }
 }

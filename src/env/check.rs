@@ -95,9 +95,7 @@ where
     let truncated = |episode: &Episode<_>| episode.steps.last().is_some_and(|step| step.truncated);
     let (len, next_len) = (first.steps.len(), next.steps.len());
     let shortened = truncated(&first) && truncated(&next) && next_len < len;
-    require(!shortened, AFTER_END, || {
-        format!("truncated after {len} and then {next_len} steps")
-    })?;
+    require(!shortened, AFTER_END, || format!("truncated after {len} and then {next_len} steps"))?;
     same(AFTER_END, &first, &play(&mut played, Some(seed), &actions)?)?;
 
     let (before, after) = actions.split_at(first.steps.len() / 2);
@@ -166,9 +164,7 @@ fn same<O: fmt::Debug + PartialEq>(
     x: &Episode<O>,
     y: &Episode<O>,
 ) -> Result<(), Violation> {
-    require(x.start == y.start, rule, || {
-        format!("starts at {:?} and at {:?}", x.start, y.start)
-    })?;
+    require(x.start == y.start, rule, || format!("starts at {:?} and at {:?}", x.start, y.start))?;
     same_steps(rule, &x.steps, &y.steps)
 }
 

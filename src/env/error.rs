@@ -20,18 +20,15 @@ pub enum Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::UnknownId(id) => write!(
-                f,
-                r#"the id must be "Acrobot-v1" or "Acrobot-v0", got {id:?}"#
-            ),
-            Self::NoRenderMode => write!(
-                f,
-                "the render mode must be RgbArray, Ansi or Human to render, got None"
-            ),
-            Self::DisplayBusy => write!(
-                f,
-                "the function of a display must not render on that display"
-            ),
+            Self::UnknownId(id) => {
+                write!(f, r#"the id must be "Acrobot-v1" or "Acrobot-v0", got {id:?}"#)
+            }
+            Self::NoRenderMode => {
+                write!(f, "the render mode must be RgbArray, Ansi or Human to render, got None")
+            }
+            Self::DisplayBusy => {
+                write!(f, "the function of a display must not render on that display")
+            }
             Self::Invalid(error) => error.fmt(f),
         }
     }

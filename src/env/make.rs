@@ -93,9 +93,7 @@ pub fn acrobot_v0<A: Arithmetic>(
 
 impl fmt::Debug for DynEnv {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("DynEnv")
-            .field("state", &self.unwrapped().state())
-            .finish_non_exhaustive()
+        f.debug_struct("DynEnv").field("state", &self.unwrapped().state()).finish_non_exhaustive()
     }
 }
 

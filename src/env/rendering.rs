@@ -45,10 +45,7 @@ impl Display {
     /// [`render`](super::Env::render) returns [`Error::DisplayBusy`]. `show` must not wait for
     /// another thread that uses this display: both would wait forever.
     pub fn new(show: impl FnMut(&Frame) + Send + 'static) -> Self {
-        Self(Arc::new(Shared {
-            thread: Mutex::new(None),
-            show: Mutex::new(show),
-        }))
+        Self(Arc::new(Shared { thread: Mutex::new(None), show: Mutex::new(show) }))
     }
 
     fn show(&self, frame: &Frame) -> Result<(), Error> {

@@ -43,10 +43,7 @@ pub struct DiscreteSpace<T: 'static> {
 
 impl DiscreteSpace<Action> {
     /// Acrobot's three actions.
-    pub const ACTIONS: Self = Self {
-        elements: &Action::ALL,
-        n: NonZeroU32::new(3).unwrap(),
-    };
+    pub const ACTIONS: Self = Self { elements: &Action::ALL, n: NonZeroU32::new(3).unwrap() };
 }
 
 impl<T> DiscreteSpace<T> {
@@ -123,10 +120,7 @@ impl<T: AsRef<[f32]>> BoxSpace<T> {
 impl<T> BoxSpace<T> {
     /// The same bounds as vectors of another type.
     pub(super) fn map<U>(self, convert: impl Fn(T) -> U) -> BoxSpace<U> {
-        BoxSpace {
-            low: convert(self.low),
-            high: convert(self.high),
-        }
+        BoxSpace { low: convert(self.low), high: convert(self.high) }
     }
 }
 

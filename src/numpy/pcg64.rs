@@ -232,12 +232,8 @@ mod snapshot {
 
     impl<'de> Deserialize<'de> for Pcg64 {
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot {
-                seed: [a, b, c, d, e, f, g, h],
-                position,
-                has_half,
-                half,
-            } = Snapshot::deserialize(deserializer)?;
+            let Snapshot { seed: [a, b, c, d, e, f, g, h], position, has_half, half } =
+                Snapshot::deserialize(deserializer)?;
             let hash = [[a, b], [c, d], [e, f], [g, h]];
             let hash = hash.map(|[low, high]| u64::from(high) << 32 | u64::from(low));
             let mut running = Running::new(hash);

@@ -52,11 +52,7 @@ impl SeedSequence {
         while let [rest @ .., 0] = words {
             words = rest;
         }
-        let mut sequence = Self {
-            pool: [0; 4],
-            hash_multiplier: 0x43b0_d7e5,
-            spawned: 0,
-        };
+        let mut sequence = Self { pool: [0; 4], hash_multiplier: 0x43b0_d7e5, spawned: 0 };
         let mut i = 0;
         while i < 4 {
             let mut word = 0;
@@ -100,10 +96,7 @@ impl SeedSequence {
     }
 
     fn descend(&self, mut index: u128) -> Self {
-        let mut child = Self {
-            spawned: 0,
-            ..self.clone()
-        };
+        let mut child = Self { spawned: 0, ..self.clone() };
         loop {
             child.absorb(index as u32);
             index >>= 32;
@@ -152,9 +145,7 @@ impl SeedSequence {
 }
 
 const fn mix(x: u32, y: u32) -> u32 {
-    let mixed = x
-        .wrapping_mul(0xca01_f9dd)
-        .wrapping_sub(y.wrapping_mul(0x4973_f715));
+    let mixed = x.wrapping_mul(0xca01_f9dd).wrapping_sub(y.wrapping_mul(0x4973_f715));
     mixed ^ (mixed >> SHIFT)
 }
 

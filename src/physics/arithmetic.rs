@@ -74,10 +74,7 @@ pub(crate) const fn default_model<A: Arithmetic>() -> Model<A::Scalar> {
         Task::Swingup | Task::SwingupSparse => swingup,
     };
     if !A::HAS_FRICTION {
-        model.params.friction = Viscous {
-            joint1: A::Scalar::ZERO,
-            joint2: A::Scalar::ZERO,
-        };
+        model.params.friction = Viscous { joint1: A::Scalar::ZERO, joint2: A::Scalar::ZERO };
     }
     model
 }
@@ -85,11 +82,7 @@ pub(crate) const fn default_model<A: Arithmetic>() -> Model<A::Scalar> {
 /// The model of valid parameters.
 #[inline]
 pub(crate) fn model<A: Arithmetic>(params: Params<A::Scalar>) -> Model<A::Scalar> {
-    let lengths = [
-        params.length1,
-        params.center_of_mass1,
-        params.center_of_mass2,
-    ];
+    let lengths = [params.length1, params.center_of_mass1, params.center_of_mass2];
     A::Scalar::model(A::FORM, params, lengths.map(A::square))
 }
 

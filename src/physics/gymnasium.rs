@@ -19,31 +19,16 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     sin_cos: Option<[SinCos<V>; 2]>,
     torque: V,
 ) -> [V; 4] {
-    let &Constants {
-        coupling,
-        link2,
-        gravity1,
-        gravity2,
-        nips,
-        own,
-        ..
-    } = &model.constants;
+    let &Constants { coupling, link2, gravity1, gravity2, nips, own, .. } = &model.constants;
     let [link1, arms_squared, arms_product, ..] = own; // kg m², m², m²
     let [.., lc2_squared, twice_coupling] = own; // m², kg m²
-    let &Params {
-        mass2: m2,
-        inertia1,
-        inertia2,
-        ..
-    } = &model.params;
+    let &Params { mass2: m2, inertia1, inertia2, .. } = &model.params;
     let (sin2, cos2) = match sin_cos {
         Some([_, second]) => second,
         None => A::sin_cos_near(theta2),
     };
-    let (quarter, two) = (
-        V::splat(A::Scalar::PI * A::Scalar::HALF),
-        V::splat(A::Scalar::from_f64(2.0)),
-    );
+    let (quarter, two) =
+        (V::splat(A::Scalar::PI * A::Scalar::HALF), V::splat(A::Scalar::from_f64(2.0)));
     let square = |x: V| x.map(A::square);
 
     // Computed first, because no float stays in a register across a call on x86-64.
@@ -91,11 +76,7 @@ pub(super) fn reaches_goal<A: Arithmetic, V: Numbers<A::Scalar>>(
 ) -> V::Mask {
     let height = cos1.zip(theta2 + theta1, |cos1, sum| {
         // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
-        if cos1 >= A::Scalar::ZERO {
-            A::Scalar::ZERO
-        } else {
-            -cos1 - A::cos(sum)
-        }
+        if cos1 >= A::Scalar::ZERO { A::Scalar::ZERO } else { -cos1 - A::cos(sum) }
     });
     height.above(A::Scalar::ONE)
 }

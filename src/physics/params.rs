@@ -174,11 +174,7 @@ impl<S: Copy> Params<S> {
             dt: f(self.dt, other.dt),
             max_velocity1: f(self.max_velocity1, other.max_velocity1),
             max_velocity2: f(self.max_velocity2, other.max_velocity2),
-            torques: [
-                f(negative, torques[0]),
-                f(zero, torques[1]),
-                f(positive, torques[2]),
-            ],
+            torques: [f(negative, torques[0]), f(zero, torques[1]), f(positive, torques[2])],
             torque_noise: f(self.torque_noise, other.torque_noise),
             dynamics: self.dynamics,
             friction: Viscous {

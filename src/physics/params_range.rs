@@ -44,12 +44,7 @@ impl<S: Real> ParamsRange<S> {
         for ((name, low, unit, _), (_, high, ..)) in low.fields().into_iter().zip(high.fields()) {
             let (low, high) = (low.to_f64(), high.to_f64());
             if low > high {
-                return Err(Error::ReversedRange {
-                    name,
-                    low,
-                    high,
-                    unit,
-                });
+                return Err(Error::ReversedRange { name, low, high, unit });
             }
             let width = high - low;
             if !width.is_finite() {

@@ -70,12 +70,7 @@ impl<A: Arithmetic> Pendulum<A> {
 
     /// A pendulum with this model in a state that is known to be finite.
     const fn from_model(model: Model<A::Scalar>, y: [A::Scalar; 4]) -> Self {
-        Self {
-            model,
-            y,
-            sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2],
-            is_current: false,
-        }
+        Self { model, y, sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2], is_current: false }
     }
 
     /// As [`new`](Self::new), with parameters and a state that are known to be valid.
@@ -244,11 +239,7 @@ impl<A: Arithmetic> Pendulum<A> {
     #[must_use]
     #[inline]
     pub fn sin_cos(&self) -> [(A::Scalar, A::Scalar); 2] {
-        if self.is_current {
-            self.sin_cos
-        } else {
-            sin_cos::<A>(self.angles())
-        }
+        if self.is_current { self.sin_cos } else { sin_cos::<A>(self.angles()) }
     }
 
     #[inline]
@@ -329,8 +320,5 @@ pub(crate) fn sin_cos<A: Arithmetic>(angles: [A::Scalar; 2]) -> [SinCos<A::Scala
         A::sin_cos(x)
     }
     let [theta1, theta2] = angles;
-    [
-        sin_cos_out_of_line::<A>(theta1),
-        sin_cos_out_of_line::<A>(theta2),
-    ]
+    [sin_cos_out_of_line::<A>(theta1), sin_cos_out_of_line::<A>(theta2)]
 }

@@ -45,8 +45,6 @@ fn exp2<S: Real, V: Numbers<S>>(x: V) -> V {
     let factorials = [720.0, 120.0, 24.0, 6.0, 2.0, 1.0, 1.0];
     let series = factorials
         .into_iter()
-        .fold(number(1.0 / 5040.0), |sum, factorial| {
-            sum * y + number(1.0 / factorial)
-        });
+        .fold(number(1.0 / 5040.0), |sum, factorial| sum * y + number(1.0 / factorial));
     series * whole.map(S::power_of_two)
 }

@@ -36,12 +36,7 @@ impl<S> From<[S; 4]> for State<S> {
     /// From \[θ1, θ2, θ̇1, θ̇2\], Gymnasium's order.
     #[inline]
     fn from([theta1, theta2, dtheta1, dtheta2]: [S; 4]) -> Self {
-        Self {
-            theta1,
-            theta2,
-            dtheta1,
-            dtheta2,
-        }
+        Self { theta1, theta2, dtheta1, dtheta2 }
     }
 }
 
@@ -55,18 +50,11 @@ impl<S> From<State<S>> for [S; 4] {
 
 impl<S: Real> State<S> {
     /// Hanging at rest: all four numbers are 0.
-    pub const HANGING: Self = Self {
-        theta1: S::ZERO,
-        theta2: S::ZERO,
-        dtheta1: S::ZERO,
-        dtheta2: S::ZERO,
-    };
+    pub const HANGING: Self =
+        Self { theta1: S::ZERO, theta2: S::ZERO, dtheta1: S::ZERO, dtheta2: S::ZERO };
 
     /// Standing upright at rest: θ1 is π, the others are 0.
-    pub const UPRIGHT: Self = Self {
-        theta1: S::PI,
-        ..Self::HANGING
-    };
+    pub const UPRIGHT: Self = Self { theta1: S::PI, ..Self::HANGING };
 
     /// The same state in another scalar. Each number is rounded to the nearest.
     #[must_use]
@@ -122,16 +110,11 @@ pub struct ResetBounds {
 
 impl ResetBounds {
     /// Gymnasium's bounds: from −0.1 to 0.1.
-    pub const DEFAULT: Self = Self {
-        low: -0.1,
-        high: 0.1,
-    };
+    pub const DEFAULT: Self = Self { low: -0.1, high: 0.1 };
 
     /// Any angle: from −π to π.
-    pub(crate) const ANYWHERE: Self = Self {
-        low: -core::f64::consts::PI,
-        high: core::f64::consts::PI,
-    };
+    pub(crate) const ANYWHERE: Self =
+        Self { low: -core::f64::consts::PI, high: core::f64::consts::PI };
 
     /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state. Beyond ±π
     /// and the velocity bounds, the first step wraps the angles and bounds the velocities.
@@ -150,12 +133,7 @@ impl ResetBounds {
         }
         match low <= high {
             true => Ok(Self { low, high }),
-            false => Err(Error::ReversedRange {
-                name: "reset bound",
-                low,
-                high,
-                unit,
-            }),
+            false => Err(Error::ReversedRange { name: "reset bound", low, high, unit }),
         }
     }
 

@@ -70,12 +70,7 @@ fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     let zeros = ((theta1 * zero + theta2 * zero) + dtheta1 * zero) + dtheta2 * zero;
     if !zeros.all_within(zero) {
         let or = |x, otherwise| zeros.select_within(A::Scalar::ZERO, x, otherwise);
-        *y = [
-            or(theta1, before1),
-            or(theta2, before2),
-            or(dtheta1, zero),
-            or(dtheta2, zero),
-        ];
+        *y = [or(theta1, before1), or(theta2, before2), or(dtheta1, zero), or(dtheta2, zero)];
     }
     let [theta1, theta2, dtheta1, dtheta2] = *y;
     *y = [

@@ -66,20 +66,12 @@ impl Frame {
             });
         }
         bytes.resize(len, 0);
-        Ok(Self {
-            width,
-            height,
-            bytes,
-        })
+        Ok(Self { width, height, bytes })
     }
 
     /// As [`new`](Self::new), for a size that is known to be small.
     fn black(width: u32, height: u32) -> Self {
-        Self {
-            width,
-            height,
-            bytes: std::vec![0; 3 * (width * height) as usize],
-        }
+        Self { width, height, bytes: std::vec![0; 3 * (width * height) as usize] }
     }
 
     /// The width, pixels.
@@ -151,10 +143,6 @@ pub(crate) fn text(figure: &Figure) -> String {
         }
         char::from_u32(0x2800 + dots)
     };
-    let line = |line| {
-        (0..COLUMNS)
-            .filter_map(|column| character(line, column))
-            .collect()
-    };
+    let line = |line| (0..COLUMNS).filter_map(|column| character(line, column)).collect();
     core::array::from_fn::<String, LINES, _>(line).join("\n")
 }

@@ -95,10 +95,7 @@ impl Scene {
             let end = start.checked_add(side.try_into().ok()?)?;
             (end > start).then(|| end - 1)
         };
-        let last = Point::new(
-            last(area.top_left.x, width)?,
-            last(area.top_left.y, height)?,
-        );
+        let last = Point::new(last(area.top_left.x, width)?, last(area.top_left.y, height)?);
         // Half the shorter side in pixels; the fixed joint is in the middle of the area.
         let half = width.min(height) as f32 / 2.0;
         let metre = figure.metre * half;

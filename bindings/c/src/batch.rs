@@ -74,11 +74,7 @@ impl Holder for acrobot_batch_t {
     }
 
     fn check_address(placed: &Placed, this: *const Self) -> Result<(), Rejected> {
-        if placed.address == this.addr() {
-            Ok(())
-        } else {
-            Err(ACROBOT_ERROR_MOVED.into())
-        }
+        if placed.address == this.addr() { Ok(()) } else { Err(ACROBOT_ERROR_MOVED.into()) }
     }
 }
 
@@ -93,11 +89,7 @@ const _: () = {
 
 /// Rejects an array that does not have one element for each acrobot.
 fn check_count(placed: &Placed, count: usize) -> Result<(), Rejected> {
-    if placed.batch.len() == count {
-        Ok(())
-    } else {
-        Err(ACROBOT_ERROR_WRONG_COUNT.into())
-    }
+    if placed.batch.len() == count { Ok(()) } else { Err(ACROBOT_ERROR_WRONG_COUNT.into()) }
 }
 
 fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
@@ -147,10 +139,7 @@ pub unsafe extern "C" fn acrobot_batch_init(
         }
         let blocks = slice::from_raw_parts_mut(blocks, block_count);
         let generators = slice::from_raw_parts_mut(generators, count);
-        let value = Placed {
-            address: to.addr(),
-            batch: Batch::new(seed, (blocks, generators))?,
-        };
+        let value = Placed { address: to.addr(), batch: Batch::new(seed, (blocks, generators))? };
         Holder::init(to, value)?;
         batch.write(to);
         Ok(())
@@ -316,9 +305,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     batch: *const acrobot_batch_t,
     params: *mut acrobot_params_t,
 ) -> acrobot_status_t {
-    get(batch, params, |placed| {
-        Ok(placed.batch.params_of(0).unwrap_or(Params::DEFAULT).into())
-    })
+    get(batch, params, |placed| Ok(placed.batch.params_of(0).unwrap_or(Params::DEFAULT).into()))
 }
 
 /// Sets the parameters of all acrobots for the next steps. `error` may be null.

@@ -4,10 +4,7 @@
 
 #![no_std]
 #![expect(non_camel_case_types, reason = "the names of the header")]
-#![expect(
-    clippy::missing_safety_doc,
-    reason = "the header states it once, in cbindgen.toml"
-)]
+#![expect(clippy::missing_safety_doc, reason = "the header states it once, in cbindgen.toml")]
 #![expect(
     unsafe_op_in_unsafe_fn,
     reason = "each function of the header is unsafe as a whole: it gets pointers"

@@ -41,10 +41,7 @@ pub trait Holder: Sized {
     /// Writes the value.
     unsafe fn init(this: *mut Self, value: Self::Value) -> Result<(), Rejected> {
         check(this)?;
-        let tagged = Tagged {
-            tag: Self::TAG,
-            value,
-        };
+        let tagged = Tagged { tag: Self::TAG, value };
         // Does not compile if the holder is too small or not aligned enough on this target.
         const {
             assert!(size_of::<Tagged<Self>>() <= size_of::<Self>());
@@ -91,9 +88,8 @@ pub unsafe fn change<H: Holder, T>(
     status(|| {
         check_result(error, holder)?;
         check_result(result, holder)?;
-        let value = H::value_mut(holder)
-            .and_then(call)
-            .inspect_err(|rejected| rejected.explain(error))?;
+        let value =
+            H::value_mut(holder).and_then(call).inspect_err(|rejected| rejected.explain(error))?;
         if !result.is_null() {
             result.write(value);
         }
@@ -123,10 +119,7 @@ pub struct Span {
 
 impl Span {
     pub fn new<T>(start: *const T, count: usize) -> Self {
-        Self {
-            start: start.addr(),
-            bytes: count.saturating_mul(size_of::<T>()),
-        }
+        Self { start: start.addr(), bytes: count.saturating_mul(size_of::<T>()) }
     }
 
     pub fn of<T>(array: *const [T]) -> Self {

@@ -44,9 +44,7 @@ pub unsafe extern "C" fn acrobot_reset(
     acrobot: *mut acrobot_t,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    change(acrobot, observation, ptr::null_mut(), |acrobot| {
-        Ok(acrobot.reset().into())
-    })
+    change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(acrobot.reset().into()))
 }
 
 /// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode. `observation` may be null.
@@ -112,9 +110,7 @@ pub unsafe extern "C" fn acrobot_observe(
     acrobot: *const acrobot_t,
     observation: *mut acrobot_observation_t,
 ) -> acrobot_status_t {
-    get(acrobot, observation, |acrobot| {
-        Ok(acrobot.inner().observation().into())
-    })
+    get(acrobot, observation, |acrobot| Ok(acrobot.inner().observation().into()))
 }
 
 /// The number of steps since the last reset.
@@ -142,9 +138,7 @@ pub unsafe extern "C" fn acrobot_set_state(
     state: *const acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
-    change(acrobot, ptr::null_mut(), error, |acrobot| {
-        Ok(acrobot.set_state(read(state)?.into())?)
-    })
+    change(acrobot, ptr::null_mut(), error, |acrobot| Ok(acrobot.set_state(read(state)?.into())?))
 }
 
 /// The parameters.
@@ -174,9 +168,7 @@ pub unsafe extern "C" fn acrobot_energy(
     acrobot: *const acrobot_t,
     energy: *mut f32,
 ) -> acrobot_status_t {
-    get(acrobot, energy, |acrobot| {
-        Ok(acrobot.inner().pendulum().energy())
-    })
+    get(acrobot, energy, |acrobot| Ok(acrobot.inner().pendulum().energy()))
 }
 
 /// The height of the tip above the fixed joint, m.
@@ -185,7 +177,5 @@ pub unsafe extern "C" fn acrobot_tip_height(
     acrobot: *const acrobot_t,
     height: *mut f32,
 ) -> acrobot_status_t {
-    get(acrobot, height, |acrobot| {
-        Ok(acrobot.inner().pendulum().tip_height())
-    })
+    get(acrobot, height, |acrobot| Ok(acrobot.inner().pendulum().tip_height()))
 }

@@ -59,13 +59,7 @@ pub struct Rejected {
 
 impl Rejected {
     pub fn number(name: &'static str, value: f64, unit: &'static str, rule: &'static str) -> Self {
-        Self {
-            status: ACROBOT_ERROR_OUT_OF_RANGE,
-            name,
-            value,
-            unit,
-            rule,
-        }
+        Self { status: ACROBOT_ERROR_OUT_OF_RANGE, name, value, unit, rule }
     }
 
     /// Fills the caller's error if a number is out of range. Inlined, because a function without an error should not
@@ -87,22 +81,14 @@ impl Rejected {
 
 impl From<acrobot_status_t> for Rejected {
     fn from(status: acrobot_status_t) -> Self {
-        Self {
-            status,
-            ..Self::number("", 0.0, "", "")
-        }
+        Self { status, ..Self::number("", 0.0, "", "") }
     }
 }
 
 impl From<Error> for Rejected {
     fn from(error: Error) -> Self {
         match error {
-            Error::OutOfRange {
-                name,
-                value,
-                unit,
-                rule,
-            } => Self::number(name, value, unit, rule),
+            Error::OutOfRange { name, value, unit, rule } => Self::number(name, value, unit, rule),
             Error::NoInertia { name, value } => {
                 let rule = "(with the centre of mass on the joint) above 0";
                 Self::number(name, value, "kg m²", rule)

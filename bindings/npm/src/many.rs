@@ -12,11 +12,7 @@ use crate::memory::{self, set_bytes, set_numbers};
 const LANES: usize = 4;
 
 /// Vectors for parameters of each acrobot, too, or for none. The step is compiled for both, which takes 13 KB.
-type Memory = (
-    Vec<Block<Fast, LANES>>,
-    Vec<Pcg64>,
-    Vec<LaneParams<Fast, LANES>>,
-);
+type Memory = (Vec<Block<Fast, LANES>>, Vec<Pcg64>, Vec<LaneParams<Fast, LANES>>);
 
 /// A batch with its memory, and what JavaScript reads and writes.
 pub struct Many {
@@ -78,8 +74,7 @@ pub extern "C" fn batch_new(
     own_params: bool,
 ) -> Option<Box<Many>> {
     let mut many = memory::keep(Many::new(words, count, own_params)?)?;
-    many.batch
-        .set_limit(NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN));
+    many.batch.set_limit(NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN));
     many.batch.set_autoreset(match autoreset {
         0 => Autoreset::NextStep,
         1 => Autoreset::SameStep,
@@ -192,9 +187,5 @@ pub extern "C" fn batch_load(many: &mut Many, index: usize, len: usize) -> usize
     };
     // The first brings the parameters, if all acrobots share them.
     let shared = index > 0 || many.own_params || many.batch.set_params(member.params).is_ok();
-    if shared && many.batch.set_member(index, member).is_ok() {
-        used
-    } else {
-        0
-    }
+    if shared && many.batch.set_member(index, member).is_ok() { used } else { 0 }
 }

@@ -88,20 +88,12 @@ pub fn get_params() -> Params<f32> {
 pub fn reason(result: Result<(), Error>) -> usize {
     let (name, rule, unit) = match result {
         Ok(()) => return 0,
-        Err(Error::OutOfRange {
-            name, rule, unit, ..
-        }) => (name, rule, unit),
-        Err(Error::NoInertia { name, .. }) => (
-            name,
-            "above 0",
-            "kg m² if the centre of mass is on the joint",
-        ),
+        Err(Error::OutOfRange { name, rule, unit, .. }) => (name, rule, unit),
+        Err(Error::NoInertia { name, .. }) => {
+            (name, "above 0", "kg m² if the centre of mass is on the joint")
+        }
         // Parameters and states have no other errors.
         Err(_) => ("", "", ""),
     };
-    set_bytes(
-        [name, "\n", rule, "\n", unit]
-            .into_iter()
-            .flat_map(str::bytes),
-    )
+    set_bytes([name, "\n", rule, "\n", unit].into_iter().flat_map(str::bytes))
 }

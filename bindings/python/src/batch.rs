@@ -53,12 +53,7 @@ impl Batch {
             many.batch.set_limit(max_episode_steps);
             many.batch.set_autoreset(mode);
         });
-        Ok(Self {
-            engine,
-            continuous,
-            threads,
-            pool: None,
-        })
+        Ok(Self { engine, continuous, threads, pool: None })
     }
 
     fn __len__(&self) -> usize {

@@ -22,10 +22,7 @@ impl Distribution {
         let number = |name| drawn.getattr(name)?.extract();
         let kind: String = drawn.getattr("kind")?.extract()?;
         Ok(match kind.as_str() {
-            "Normal" => Self::Normal {
-                mean: number("mean")?,
-                std: number("std")?,
-            },
+            "Normal" => Self::Normal { mean: number("mean")?, std: number("std")? },
             "LogUniform" => Self::LogUniform,
             _ => Self::Uniform,
         })

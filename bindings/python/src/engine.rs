@@ -78,10 +78,7 @@ pub(crate) use with_batch;
 
 /// A batch, and memory for its inputs. Numbers are `f64` outside, which `f32` becomes exactly.
 #[derive(Serialize, Deserialize)]
-#[serde(bound(
-    serialize = "A::Scalar: Serialize",
-    deserialize = "A::Scalar: Deserialize<'de>"
-))]
+#[serde(bound(serialize = "A::Scalar: Serialize", deserialize = "A::Scalar: Deserialize<'de>"))]
 pub struct Many<A: Arithmetic> {
     pub batch: VecBatch<A>,
     /// Whether each acrobot has its own parameters, which takes more memory.
@@ -294,11 +291,7 @@ fn read<T: Copy + std::fmt::Display, U>(
     }
     to.clear();
     reserve(to, from.len())?;
-    to.extend(
-        from.iter()
-            .enumerate()
-            .map(|(index, &input)| convert(index, input)),
-    );
+    to.extend(from.iter().enumerate().map(|(index, &input)| convert(index, input)));
     Ok(())
 }
 

@@ -52,12 +52,8 @@ const NUMBERS: [Number; 20] = [
     ("LINK_LENGTH_2", "length2", |p| &mut p.length2),
     ("LINK_MASS_1", "mass1", |p| &mut p.mass1),
     ("LINK_MASS_2", "mass2", |p| &mut p.mass2),
-    ("LINK_COM_POS_1", "center_of_mass1", |p| {
-        &mut p.center_of_mass1
-    }),
-    ("LINK_COM_POS_2", "center_of_mass2", |p| {
-        &mut p.center_of_mass2
-    }),
+    ("LINK_COM_POS_1", "center_of_mass1", |p| &mut p.center_of_mass1),
+    ("LINK_COM_POS_2", "center_of_mass2", |p| &mut p.center_of_mass2),
     ("LINK_MOI", "inertia1", |p| &mut p.inertia1),
     ("LINK_MOI", "inertia2", |p| &mut p.inertia2),
     ("LINK_MOI_1", "inertia1", |p| &mut p.inertia1),

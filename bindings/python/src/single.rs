@@ -109,13 +109,8 @@ impl Inner {
             let message = must_be("AVAIL_TORQUE", rule, format_args!("{torques:?}"));
             return Err(PyValueError::new_err(message));
         }
-        let params = Params {
-            torque_noise: self.noise,
-            ..self.acrobot.params()
-        };
-        params
-            .validate()
-            .map_err(|error| invalid(self.acrobot.task(), error))
+        let params = Params { torque_noise: self.noise, ..self.acrobot.params() };
+        params.validate().map_err(|error| invalid(self.acrobot.task(), error))
     }
 }
 
@@ -229,13 +224,7 @@ impl Acrobot {
         } else {
             PyArray1::from_slice(py, step.observation.as_ref())
         };
-        Ok((
-            observation,
-            f64::from(step.reward),
-            step.terminated,
-            false,
-            PyDict::new(py),
-        ))
+        Ok((observation, f64::from(step.reward), step.terminated, false, PyDict::new(py)))
     }
 
     fn render<'py>(&mut self, py: Python<'py>, mode: &str) -> PyResult<Bound<'py, PyAny>> {

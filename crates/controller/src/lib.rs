@@ -62,10 +62,7 @@ impl Controller {
             [0.0, 0.0, 1.0, 0.0],
             [0.0, 0.0, 0.0, 1.0],
         ];
-        let ahead = Params {
-            dt: 2.0 * params.dt,
-            ..params
-        };
+        let ahead = Params { dt: 2.0 * params.dt, ..params };
         Ok(Self {
             regulator: machine.regulator(0.0, &weights, 1.0)?,
             upright: machine.energy(),

@@ -36,10 +36,7 @@ struct Path {
 
 impl Path {
     fn then(self, action: usize) -> Self {
-        Self {
-            actions: self.actions | (action as u128) << self.len,
-            len: self.len + 1,
-        }
+        Self { actions: self.actions | (action as u128) << self.len, len: self.len + 1 }
     }
 
     fn first(self) -> Action {
@@ -48,10 +45,7 @@ impl Path {
 
     /// The actions after the first.
     fn rest(self) -> Option<Self> {
-        (self.len > 1).then(|| Self {
-            actions: self.actions >> 1,
-            len: self.len - 1,
-        })
+        (self.len > 1).then(|| Self { actions: self.actions >> 1, len: self.len - 1 })
     }
 }
 
@@ -65,11 +59,7 @@ struct Node {
 
 impl Default for Search {
     fn default() -> Self {
-        Self {
-            model: Pendulum::hanging(),
-            beam: [Node::default(); 2 * BEAM],
-            plan: None,
-        }
+        Self { model: Pendulum::hanging(), beam: [Node::default(); 2 * BEAM], plan: None }
     }
 }
 
@@ -98,10 +88,7 @@ impl Search {
         depth: u32,
         value: impl Fn(&State<f32>) -> f32,
     ) -> (Path, bool) {
-        self.beam[0] = Node {
-            state,
-            ..Node::default()
-        };
+        self.beam[0] = Node { state, ..Node::default() };
         let mut followed = 1;
         for _ in 0..depth {
             let from = self.beam;

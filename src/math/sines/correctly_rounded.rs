@@ -22,11 +22,8 @@ mod integer;
 mod wide;
 
 /// Whether the machine has instructions for `f64`. Results do not depend on it.
-const HAS_F64: bool = cfg!(any(
-    target_pointer_width = "64",
-    target_arch = "wasm32",
-    target_arch = "x86"
-));
+const HAS_F64: bool =
+    cfg!(any(target_pointer_width = "64", target_arch = "wasm32", target_arch = "x86"));
 
 /// Sine and cosine, correctly rounded. NaN for infinity and NaN.
 #[inline(always)]
@@ -41,10 +38,7 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
         let angle = integer::Angle::new(x);
         [angle.sin(), angle.cos()]
     };
-    (
-        sin.unwrap_or_else(|| wide::sine(x, 0)),
-        cos.unwrap_or_else(|| wide::sine(x, 1)),
-    )
+    (sin.unwrap_or_else(|| wide::sine(x, 0)), cos.unwrap_or_else(|| wide::sine(x, 1)))
 }
 
 /// Cosine, correctly rounded; otherwise as [`sin_cos`].
@@ -53,11 +47,7 @@ pub fn cos(x: f64) -> f64 {
     if !has_fast_path(x) {
         return apart(x).1;
     }
-    let cos = if HAS_F64 {
-        float::Angle::new(x).cos()
-    } else {
-        integer::Angle::new(x).cos()
-    };
+    let cos = if HAS_F64 { float::Angle::new(x).cos() } else { integer::Angle::new(x).cos() };
     cos.unwrap_or_else(|| wide::sine(x, 1))
 }
 

@@ -20,11 +20,7 @@ pub fn cos(x: f64) -> f64 {
 /// much of a step.
 #[inline(always)]
 pub fn square(x: f64) -> f64 {
-    if is_far_from_a_tie(x) {
-        x * x
-    } else {
-        power(x)
-    }
+    if is_far_from_a_tie(x) { x * x } else { power(x) }
 }
 
 #[cold]
@@ -51,11 +47,7 @@ fn is_far_from_a_tie(x: f64) -> bool {
     let is_moderate = (x.to_bits() << 1).wrapping_sub((1023 - 60) << 53) < 120 << 53;
     let mantissa_of_x = mantissa(x);
     // From √2 on, the square of the mantissa has one more bit before its last place.
-    let kept = if mantissa_of_x > mantissa(core::f64::consts::SQRT_2) {
-        11
-    } else {
-        12
-    };
+    let kept = if mantissa_of_x > mantissa(core::f64::consts::SQRT_2) { 11 } else { 12 };
     let rest = mantissa_of_x.wrapping_mul(mantissa_of_x) << kept;
     is_moderate & (rest.wrapping_sub((1 << 63) - NEAR) > 2 * NEAR)
 }

@@ -13,17 +13,11 @@ pub fn sin_cos<V: Numbers<f32>>(x: V) -> (V, V) {
     const MAGIC: f32 = 12_582_912.0;
     /// sin r = r + r³(S0 + S1 r² + S2 r⁴), error 1.8e-9. Minimax over |r| ≤ π/4, each coefficient rounded to `f32`
     /// before the next was fitted (`tests/data/polynomials.py`).
-    const S: [f32; 3] = [
-        f32::from_bits(0xbe2a_aaa0),
-        f32::from_bits(0x3c08_82df),
-        f32::from_bits(0xb94c_6e8b),
-    ];
+    const S: [f32; 3] =
+        [f32::from_bits(0xbe2a_aaa0), f32::from_bits(0x3c08_82df), f32::from_bits(0xb94c_6e8b)];
     /// cos r = 1 + C0 r² + C1 r⁴ + C2 r⁶, error 3.3e-8. Fitted as `S`.
-    const C: [f32; 3] = [
-        f32::from_bits(0xbeff_ffdd),
-        f32::from_bits(0x3d2a_9fd5),
-        f32::from_bits(0xbab2_3c11),
-    ];
+    const C: [f32; 3] =
+        [f32::from_bits(0xbeff_ffdd), f32::from_bits(0x3d2a_9fd5), f32::from_bits(0xbab2_3c11)];
 
     let c = V::splat;
     let shifted = x * c(core::f32::consts::FRAC_2_PI) + c(MAGIC);
@@ -62,10 +56,7 @@ fn rotate_by_products(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
     const SINES: [f32; 5] = [0.0, 1.0, 0.0, -1.0, 0.0];
     let i = (turns & 3) as usize;
     let (turned_sin, turned_cos) = (SINES[i], SINES[i + 1]);
-    (
-        sin * turned_cos + cos * turned_sin,
-        cos * turned_cos - sin * turned_sin,
-    )
+    (sin * turned_cos + cos * turned_sin, cos * turned_cos - sin * turned_sin)
 }
 
 /// Selects and negates: without an FPU that saves four products and two sums. No −0 results, as from the products.
@@ -89,10 +80,7 @@ fn rotate_by_bits(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
     let kept = (sin.to_bits() ^ cos.to_bits()) & even;
     let turned_sin = cos.to_bits() ^ kept ^ (turns << 30 & SIGN);
     let turned_cos = sin.to_bits() ^ kept ^ (turns.wrapping_add(1) << 30 & SIGN);
-    (
-        f32::from_bits(turned_sin) + 0.0,
-        f32::from_bits(turned_cos) + 0.0,
-    )
+    (f32::from_bits(turned_sin) + 0.0, f32::from_bits(turned_cos) + 0.0)
 }
 
 #[cfg(test)]

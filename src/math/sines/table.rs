@@ -22,10 +22,7 @@ pub fn sin_cos(x: f32) -> (f32, f32) {
     let cos = 1.0 + z * C;
 
     let (multiple_sin, multiple_cos) = sixteenths(shifted.to_bits());
-    (
-        multiple_sin * cos + multiple_cos * sin,
-        multiple_cos * cos - multiple_sin * sin,
-    )
+    (multiple_sin * cos + multiple_cos * sin, multiple_cos * cos - multiple_sin * sin)
 }
 
 /// Sine and cosine of `number` sixteenths of half a turn.
@@ -56,11 +53,7 @@ const fn sines() -> [f32; 40] {
     let mut i = 0;
     while i < 40 {
         let within_half = i % 16;
-        let from_zero = if within_half < 8 {
-            within_half
-        } else {
-            16 - within_half
-        };
+        let from_zero = if within_half < 8 { within_half } else { 16 - within_half };
         let sine = f32::from_bits(QUARTER[from_zero]);
         sines[i] = if i % 32 < 16 { sine } else { 0.0 - sine };
         i += 1;

@@ -75,14 +75,12 @@ impl fmt::Display for ControlError {
                 f,
                 "the torque must reach each motion that grows or persists, but does not reach one"
             ),
-            Self::NotDetectable => write!(
-                f,
-                "q must weight each motion that persists, but does not weight one"
-            ),
-            Self::IllConditioned { error } => write!(
-                f,
-                "the relative error of the gain must be at most 1e-9, got {error:e}"
-            ),
+            Self::NotDetectable => {
+                write!(f, "q must weight each motion that persists, but does not weight one")
+            }
+            Self::IllConditioned { error } => {
+                write!(f, "the relative error of the gain must be at most 1e-9, got {error:e}")
+            }
         }
     }
 }

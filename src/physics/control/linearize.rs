@@ -80,14 +80,7 @@ pub(super) fn partials<A: Arithmetic>(
     torque: A::Scalar,
 ) -> ([A::Scalar; 2], [[A::Scalar; 2]; 5]) {
     let one = A::Scalar::from_f64(1.0);
-    let Constants {
-        coupling,
-        link2,
-        gravity1,
-        gravity2,
-        nips,
-        ..
-    } = model.constants;
+    let Constants { coupling, link2, gravity1, gravity2, nips, .. } = model.constants;
     let params = &model.params;
     let (l1, lc1) = (params.length1, params.center_of_mass1);
     let link1 = params.mass1 * (lc1 * lc1) + params.inertia1;
@@ -126,10 +119,7 @@ pub(super) fn partials<A: Arithmetic>(
             coupling_cos * (dbeta * dbeta - nips * dalpha_squared) + coupling_sin * ddbeta,
             fall - coupling_cos * (book * dalpha_squared) + coupling_sin * ddalpha,
         ],
-        [
-            twice_sin * (dbeta - nips * dalpha) - joint1,
-            -(twice_sin * (book * dalpha)),
-        ],
+        [twice_sin * (dbeta - nips * dalpha) - joint1, -(twice_sin * (book * dalpha))],
         [twice_sin * dbeta + joint2, -joint2],
         [-one, one],
     ]

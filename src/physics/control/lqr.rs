@@ -87,10 +87,8 @@ pub fn lqr<S: Real>(
 
     let problem = Problem { a, b, q, r };
     let (gain, cost_to_go) = problem.solve()?;
-    let regulator = Lqr {
-        gain: gain.map(S::from_f64),
-        cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)),
-    };
+    let regulator =
+        Lqr { gain: gain.map(S::from_f64), cost_to_go: cost_to_go.map(|row| row.map(S::from_f64)) };
     check_finite("gain", &regulator.gain)?;
     check_finite("cost_to_go", regulator.cost_to_go.as_flattened())?;
     if !problem.is_stable(&regulator.gain.map(S::to_f64)) {
@@ -160,12 +158,8 @@ impl Problem {
         for _ in 0..DOUBLINGS {
             let mut w = identity();
             add(&mut w, 1.0, &product(&g, &p));
-            let mut rows = [
-                [w[0], a[0], g[0]],
-                [w[1], a[1], g[1]],
-                [w[2], a[2], g[2]],
-                [w[3], a[3], g[3]],
-            ];
+            let mut rows =
+                [[w[0], a[0], g[0]], [w[1], a[1], g[1]], [w[2], a[2], g[2]], [w[3], a[3], g[3]]];
             eliminate(&mut rows)?;
             let mut change = product(&a, &product(&rows.map(|[.., w_g]| w_g), &transpose(&a)));
             symmetrize(&mut change);
@@ -317,11 +311,7 @@ fn has_vanished(m: &Matrix) -> bool {
 fn check_symmetric(q: &Matrix) -> Result<(), ControlError> {
     for (&upper, &lower) in q.as_flattened().iter().zip(transpose(q).as_flattened()) {
         if upper != lower {
-            return Err(ControlError::NotSymmetric {
-                name: "q",
-                upper,
-                lower,
-            });
+            return Err(ControlError::NotSymmetric { name: "q", upper, lower });
         }
     }
     Ok(())

@@ -94,9 +94,7 @@ fn SysTick() {
 
 #[entry]
 fn main() -> ! {
-    let Some(peripherals) = Peripherals::take() else {
-        process::exit(1)
-    };
+    let Some(peripherals) = Peripherals::take() else { process::exit(1) };
     let mut syst = peripherals.SYST;
     syst.set_clock_source(SystClkSource::Core);
     syst.set_reload(PERIOD - 1);
@@ -121,11 +119,7 @@ fn main() -> ! {
 /// Plays episodes with a largest torque, N m. Prints the figures, times and errors rounded up, and returns how many acrobots
 /// were not caught.
 fn run(next_tick: fn(), limit: f32, name: &str, episodes: u32) -> Result<u32, ControlError> {
-    let params = Params {
-        dt: 1.0 / RATE as f32,
-        torque_noise: DISTURBANCE,
-        ..Params::DEFAULT
-    };
+    let params = Params { dt: 1.0 / RATE as f32, torque_noise: DISTURBANCE, ..Params::DEFAULT };
     let (mut uncaught, mut ticks, mut caught, mut longest) = (0, 0, 0, 0);
     let (mut error, mut counts, mut slowest) = (0_f32, 0, 0);
     for seed in 0..episodes {

@@ -40,11 +40,7 @@ const fn sines() -> [[f64; 2]; 320] {
             index @ ..32 => split(&octant_sine(&[index << 59, 0, 0], false)),
             index => split(&octant_sine(&[(64 - index) << 59, 0, 0], true)),
         };
-        table[i] = if i % 256 < 128 {
-            [high, low]
-        } else {
-            [-high, -low]
-        };
+        table[i] = if i % 256 < 128 { [high, low] } else { [-high, -low] };
         i += 1;
     }
     table

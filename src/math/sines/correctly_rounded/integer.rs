@@ -117,11 +117,7 @@ impl Angle {
         }
         let zeros = ((product >> 96) as u32).leading_zeros();
         let mantissa = ((product << (zeros % 32)) >> 64) as u64;
-        round(
-            mantissa,
-            exponent - zeros,
-            sign ^ u64::from(self.octant) << 63,
-        )
+        round(mantissa, exponent - zeros, sign ^ u64::from(self.octant) << 63)
     }
 }
 

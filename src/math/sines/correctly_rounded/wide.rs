@@ -39,11 +39,7 @@ pub(super) static TWO_OVER_PI: [u64; 21] = [
     0xa9e3_9161_5ee6_1b08,
 ];
 
-const QUARTER_PI: Fraction = [
-    0xc90f_daa2_2168_c234,
-    0xc4c6_628b_80dc_1cd1,
-    0x2902_4e08_8a67_cc74,
-];
+const QUARTER_PI: Fraction = [0xc90f_daa2_2168_c234, 0xc4c6_628b_80dc_1cd1, 0x2902_4e08_8a67_cc74];
 
 /// 1/n! for n from 2 to 47, in pairs of an even n and the next odd n.
 const INVERSE_FACTORIALS: &[[Fraction; 2]] = &inverse_factorials();
@@ -128,20 +124,13 @@ pub(super) const fn octant_sine(fraction: &Fraction, is_cosine: bool) -> Fractio
         sum = product(&square, &difference(term, &sum));
         terms = smaller;
     }
-    if is_cosine {
-        difference(&[u64::MAX; 3], &sum)
-    } else {
-        difference(&r, &product(&r, &sum))
-    }
+    if is_cosine { difference(&[u64::MAX; 3], &sum) } else { difference(&r, &product(&r, &sum)) }
 }
 
 /// The `f64` nearest to a fraction.
 fn round([first, second, third]: Fraction) -> f64 {
-    let (upper, lower, exponent) = if first == 0 {
-        (second, third, 1021 - 64)
-    } else {
-        (first, second, 1021)
-    };
+    let (upper, lower, exponent) =
+        if first == 0 { (second, third, 1021 - 64) } else { (first, second, 1021) };
     let zeros = upper.leading_zeros() % 64;
     let mantissa = upper << zeros | lower >> 1 >> (63 - zeros);
     let last_place = (exponent - u64::from(zeros)) << 52;
