@@ -1,4 +1,5 @@
-// Prints the package's rows of docs/wasm.md: sizes, and steps per second in Node.js. Builds the package first.
+// Prints the package's rows of docs/wasm.md: sizes, and steps per second in Node.js. Builds the
+// package first.
 
 import { execFileSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";

@@ -1,4 +1,5 @@
-// Prints to standard output on a host, and through the debugger on a microcontroller (semihosting.c).
+// Prints to standard output on a host, and through the debugger on a microcontroller
+// (semihosting.c).
 
 #ifndef CONSOLE_H
 #define CONSOLE_H

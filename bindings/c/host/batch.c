@@ -1,4 +1,5 @@
-// A batch in static memory: a rejected parameter, and how many episodes end under torque against link 1's velocity.
+// A batch in static memory: a rejected parameter, and how many episodes end under torque against
+// link 1's velocity.
 
 #include <stdio.h>
 

@@ -19,11 +19,12 @@ pub const ACROBOT_ACTION_POSITIVE: c_int = 2;
 /// The equations of Sutton & Barto's book: the physical double pendulum. Gymnasium's default.
 pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 
-/// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is not conserved.
+/// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is
+/// not conserved.
 pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
-/// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine of each angle of the
-/// acrobot_state_t, and its angular velocities, rad/s.
+/// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine
+/// of each angle of the acrobot_state_t, and its angular velocities, rad/s.
 #[repr(C)]
 pub struct acrobot_observation_t {
     pub cos_theta1: f32,
@@ -71,7 +72,8 @@ impl From<Step> for acrobot_step_t {
     }
 }
 
-/// A state. After a step the angles are within ±π and the velocities within their bounds. Each number must be finite.
+/// A state. After a step the angles are within ±π and the velocities within their bounds. Each
+/// number must be finite.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_state_t {
@@ -118,8 +120,8 @@ pub struct acrobot_params_t {
     pub center_of_mass1: f32,
     /// Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
     pub center_of_mass2: f32,
-    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on
-    /// the joint. Default 1.
+    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
+    /// centre of mass is on the joint. Default 1.
     pub inertia1: f32,
     /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
     pub inertia2: f32,
@@ -131,10 +133,11 @@ pub struct acrobot_params_t {
     pub max_velocity1: f32,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
     pub max_velocity2: f32,
-    /// Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and 1.
+    /// Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and
+    /// 1.
     pub torques: [f32; 3],
-    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque; 0, the default,
-    /// draws nothing.
+    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
+    /// torque; 0, the default, draws nothing.
     pub torque_noise: f32,
     /// The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
     pub dynamics: c_int,

@@ -1,4 +1,5 @@
-//! The caller's memory: what is checked before a reference into it is made. The header demands that pointers are valid.
+//! The caller's memory: what is checked before a reference into it is made. The header demands that
+//! pointers are valid.
 
 use core::ptr;
 
@@ -81,7 +82,8 @@ pub struct Tagged<T: Holder> {
     value: T::Value,
 }
 
-/// Changes a holder's value. Writes the call's result, and why a number was rejected, unless these pointers are null.
+/// Changes a holder's value. Writes the call's result, and why a number was rejected, unless these
+/// pointers are null.
 pub unsafe fn change<H: Holder, T>(
     holder: *mut H,
     result: *mut T,

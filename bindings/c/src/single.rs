@@ -16,8 +16,9 @@ pub const ACROBOT_SIZE: usize = 240;
 /// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
 pub const ACROBOT_ALIGN: usize = 16;
 
-/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
-/// call acrobot_init before any other function. It contains no pointer, so you may copy and move it.
+/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or
+/// into a struct, and call acrobot_init before any other function. It contains no pointer, so you
+/// may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
@@ -31,8 +32,8 @@ impl Holder for acrobot_t {
 
 const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
-/// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
-/// starts from scratch.
+/// Makes an acrobot with the default parameters, in the initial state of Gymnasium's
+/// `reset(seed=seed)`. A second call starts from scratch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
     status(|| Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))))
@@ -49,7 +50,8 @@ pub unsafe extern "C" fn acrobot_reset(
     })
 }
 
-/// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode. `observation` may be null.
+/// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode.
+/// `observation` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_with_seed(
     acrobot: *mut acrobot_t,
@@ -61,8 +63,9 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
     })
 }
 
-/// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and rad/s. The default
-/// is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`. `observation` and `error` may be null.
+/// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
+/// rad/s. The default is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`.
+/// `observation` and `error` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_within(
     acrobot: *mut acrobot_t,
@@ -77,8 +80,9 @@ pub unsafe extern "C" fn acrobot_reset_within(
     })
 }
 
-/// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
-/// When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
+/// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or
+/// ACROBOT_ACTION_POSITIVE. When the episode has ended, call acrobot_reset; otherwise the acrobot
+/// steps on, as in Gymnasium.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step(
     acrobot: *mut acrobot_t,
@@ -92,7 +96,8 @@ pub unsafe extern "C" fn acrobot_step(
     })
 }
 
-/// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it. `error` may be null.
+/// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
+/// `error` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step_torque(
     acrobot: *mut acrobot_t,

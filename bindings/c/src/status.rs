@@ -22,7 +22,8 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_MOVED = 5,
     /// The action is not 0, 1 or 2.
     ACROBOT_ERROR_UNKNOWN_ACTION = 6,
-    /// A number is outside its range, infinite or NaN. The argument `error` of the function, if it has one, names it.
+    /// A number is outside its range, infinite or NaN. The argument `error` of the function, if it
+    /// has one, names it.
     ACROBOT_ERROR_OUT_OF_RANGE = 7,
     /// The count is not that of the batch's acrobots, or a new batch would have none.
     ACROBOT_ERROR_WRONG_COUNT = 8,
@@ -34,8 +35,9 @@ pub enum acrobot_status_t {
 
 use acrobot_status_t::*;
 
-/// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
-/// with a zero byte. Print it by `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
+/// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The
+/// texts are UTF-8 and end with a zero byte. Print it by `printf("%s must be %s, got %g",
+/// error.name, error.rule, error.value)`.
 #[repr(C)]
 pub struct acrobot_error_t {
     /// The value that was rejected, in `unit`.
@@ -48,7 +50,8 @@ pub struct acrobot_error_t {
     pub rule: [c_char; 64],
 }
 
-/// Why a call was rejected. The other fields belong to ACROBOT_ERROR_OUT_OF_RANGE: `name must be rule unit, got value`.
+/// Why a call was rejected. The other fields belong to ACROBOT_ERROR_OUT_OF_RANGE: `name must be
+/// rule unit, got value`.
 pub struct Rejected {
     status: acrobot_status_t,
     name: &'static str,
@@ -68,8 +71,8 @@ impl Rejected {
         }
     }
 
-    /// Fills the caller's error if a number is out of range. Inlined, because a function without an error should not
-    /// contain it.
+    /// Fills the caller's error if a number is out of range. Inlined, because a function without an
+    /// error should not contain it.
     #[inline(always)]
     pub unsafe fn explain(&self, error: *mut acrobot_error_t) {
         if !error.is_null() && matches!(self.status, ACROBOT_ERROR_OUT_OF_RANGE) {
@@ -150,7 +153,8 @@ fn text<const N: usize>(texts: [&str; 3]) -> [c_char; N] {
     to
 }
 
-/// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
+/// The text of a status, in English. It is constant: do not free it. An unknown status has a text,
+/// too.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
     let text = match status {

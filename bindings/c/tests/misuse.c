@@ -35,8 +35,8 @@ static const size_t SIZES[] = {ACROBOT_SIZE, ACROBOT_ACTION_SPACE_SIZE, ACROBOT_
 enum { NEEDED, OPTIONAL, NONE };
 enum { OK = ACROBOT_OK, OUT_OF_RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
 
-// Every pointer through which a function writes a result or an error, whether it may be null, and the status. NONE: the
-// function has no such pointer.
+// Every pointer through which a function writes a result or an error, whether it may be null, and
+// the status. NONE: the function has no such pointer.
 #define CALLS(CALL) \
     CALL(ALONE, acrobot_observation_t, OPTIONAL, OK, acrobot_reset(acrobot, out)) \
     CALL(ALONE, acrobot_observation_t, OPTIONAL, OK, acrobot_reset_with_seed(acrobot, 7, out)) \
@@ -148,7 +148,8 @@ static void holders(void)
     CHECK(same(other, saved, sizeof other));
 }
 
-// Tries each address in the arena. A pointer into the held bytes must be rejected, and none of them change.
+// Tries each address in the arena. A pointer into the held bytes must be rejected, and none of them
+// change.
 static void pointers(void)
 {
     for (int i = 0; i < ROWS; i++) {

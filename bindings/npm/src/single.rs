@@ -8,7 +8,8 @@ use crate::memory::{self, set_numbers};
 
 type Env = TimeLimit<Acrobot<Fast>>;
 
-/// Makes an acrobot that JavaScript resets, and returns its address, or 0 if there is no memory for it.
+/// Makes an acrobot that JavaScript resets, and returns its address, or 0 if there is no memory for
+/// it.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_new(max_steps: u32) -> Option<Box<Env>> {
     let limit = NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN);
@@ -28,8 +29,8 @@ pub extern "C" fn acrobot_reset(env: &mut Env, words: usize) {
     set_numbers(env.reset_with(options).to_array());
 }
 
-/// Steps with an action from 0 to 2. In the result, bit 0 says that the step reached the goal, and bit 1 that the episode
-/// was truncated.
+/// Steps with an action from 0 to 2. In the result, bit 0 says that the step reached the goal, and
+/// bit 1 that the episode was truncated.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_step(env: &mut Env, action: u8) -> u32 {
     let step = env.step(Action::try_from(action).unwrap_or(Action::Zero));

@@ -1,4 +1,5 @@
-// Reading an argument can run code of the caller: getters, proxies. It can also be memory that other threads write.
+// Reading an argument can run code of the caller: getters, proxies. It can also be memory that
+// other threads write.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -19,7 +20,9 @@ function acting(object, act) {
   return Object.defineProperties(Array.isArray(object) ? [] : {}, Object.fromEntries(getters));
 }
 
-/** A proxy that calls `act` before each property is read. Methods get the object and not the proxy. */
+/**
+ * A proxy that calls `act` before each property is read. Methods get the object and not the proxy.
+ */
 function proxy(object, act) {
   const get = (target, name) => {
     act(name);
@@ -46,7 +49,10 @@ const USES = [
   { given: SNAPSHOT, kind: "acrobot", use: (acrobot, snapshot) => acrobot.restore(snapshot) },
 ];
 
-/** The uses, each with the ways to `wrap` the object so that reading it acts. The elements of a typed array have no getters. */
+/**
+ * The uses, each with the ways to `wrap` the object so that reading it acts. The elements of a
+ * typed array have no getters.
+ */
 const CASES = USES.flatMap((use) => (ArrayBuffer.isView(use.given) ? [proxy] : [acting, proxy]).map((wrap) => ({ ...use, wrap })));
 
 const make = (kind) => (kind === "batch" ? new Batch({ seed: 1, count: 3 }) : new Acrobot({ seed: 1 }));

@@ -12,7 +12,10 @@ import { instance, sealed } from "./module.mjs";
 const COUNT = 21; // the last block is partly filled
 const OPTIONS = { seed: 42n, count: COUNT, maxSteps: 25, params: { torqueNoise: 0.5, mass1: 1.5 } };
 
-/** The acrobots of a batch alone, each with a child of the seed as NumPy's `SeedSequence` spawns it. Index 0 has no such seed. */
+/**
+ * The acrobots of a batch alone, each with a child of the seed as NumPy's `SeedSequence` spawns it.
+ * Index 0 has no such seed.
+ */
 const alone = ({ seed, maxSteps, params }) =>
   Array.from({ length: COUNT }, (_, i) => new Acrobot({ seed: seed + (BigInt(i) << 128n), maxSteps, params }));
 
@@ -167,7 +170,8 @@ test('with "Disabled" a snapshot is that of Rust, then `ended`, each with a chec
 });
 
 test("a batch's snapshot has the bytes of Rust's postcard, and any other is rejected", () => {
-  // What version 1 stored for two acrobots with own parameters from a range: here both have those of the first.
+  // What version 1 stored for two acrobots with own parameters from a range: here both have those
+  // of the first.
   const stored = readFileSync(new URL("../../../tests/data/snapshots_1.txt", import.meta.url), "utf8");
   const rust = Buffer.from(/^03056261746368.*$/m.exec(stored)[0], "hex");
   const bounds = Buffer.from(Float64Array.of(-0.1, 0.1).buffer);

@@ -1,3 +1,4 @@
+import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { gzipSync, inflateRawSync } from "node:zlib";
 
@@ -11,5 +12,27 @@ export async function instance() {
   return { ...classes, size: () => wasm().memory.buffer.byteLength };
 }
 
-/** The bytes with their CRC-32 as zlib computes it: the end of a gzip file has it, before four bytes of length. */
+/** The bytes with their CRC-32 as zlib computes it: a gzip file ends in it and four bytes of length. */
 export const sealed = (bytes) => Buffer.concat([bytes, gzipSync(bytes).subarray(-8, -4)]);
+
+/** The same numbers below `n` in each test run, from a linear congruential generator. */
+export function randoms() {
+  let state = 1;
+  return (n) => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    return Math.floor((state / 2 ** 32) * n);
+  };
+}
+
+/**
+ * Asserts that calls throw, and that nothing changes. A row has the error's name, the rule, and pairs
+ * of the value in the message and a call.
+ */
+export function assertRejected(rows, unchanged = () => {}) {
+  for (const [name, rule, ...cases] of rows) {
+    for (const [value, call] of cases) {
+      assert.throws(call, { name, message: `${rule}, got ${value}` });
+      unchanged(call);
+    }
+  }
+}

@@ -1,4 +1,5 @@
-// The packed package, installed in a fresh project, runs in Node.js, in bundles and in a browser. So does the code of its documentation.
+// The packed package, installed in a fresh project, runs in Node.js, in bundles and in a browser.
+// So does the code of its documentation.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -41,7 +42,9 @@ function blocks(page, language) {
 const PROGRAMS = ["docs/wasm.md", "README.md", "bindings/npm/README.md"].flatMap((page) => blocks(page, "js"));
 const printed = (program) => program.match(/^\/\/ prints: (.*)/m)?.[1] ?? "";
 
-/** Runs first in a page: records what its console has, and its errors. WebDriver has no such events. */
+/**
+ * Runs first in a page: records what its console has, and its errors. WebDriver has no such events.
+ */
 function record() {
   window.recorded = { lines: [], errors: [] };
   console.log = (line) => window.recorded.lines.push(line);
@@ -49,7 +52,10 @@ function record() {
   addEventListener("unhandledrejection", ({ reason }) => window.recorded.errors.push(String(reason)));
 }
 
-/** Opens a page in a browser and calls `play` with it. Asserts that there are no errors. Returns what the console has. */
+/**
+ * Opens a page in a browser and calls `play` with it. Asserts that there are no errors. Returns
+ * what the console has.
+ */
 async function open(html, play = () => {}) {
   writeFileSync(join(folder, "index.html"), `<link rel="icon" href="data:,"><script src="record.js"></script>${html}`);
   const page = await browser.newPage();
@@ -67,7 +73,7 @@ test("the package has at most 120 KB and these files", () => {
   const entries = ["index", "policies"].flatMap((entry) =>
     ["cjs", "d.cts", "d.ts", "js"].map((type) => `${entry}.${type}`),
   );
-  const others = ["LICENSE-APACHE", "LICENSE-MIT", "README.md", "package.json"];
+  const others = ["LICENSE-APACHE", "LICENSE-MIT", "LICENSE-tiny-inflate", "README.md", "package.json"];
   assert.deepEqual(paths, [...others, ...entries].sort());
   assert.ok(unpackedSize <= 120_000, `the package must have at most 120,000 bytes, got ${unpackedSize}`);
   assert.equal(name, "acrobot-rs");
@@ -121,7 +127,9 @@ test("no linter of packages has a warning", () => {
   assert.match(lint("attw", "--format", "ascii"), /No problems found/);
 });
 
-/** A bundle of a program for es2020, which has no top-level await; Vite 6 and others compile for it. */
+/**
+ * A bundle of a program for es2020, which has no top-level await; Vite 6 and others compile for it.
+ */
 const bundled = (contents, format, minify) => {
   const stdin = { contents, resolveDir: folder };
   const options = { stdin, bundle: true, format, minify, target: "es2020", globalName: "bundle" };
@@ -210,7 +218,10 @@ test("a picture is Gymnasium's, with the torque of the last step", async () => {
       let close = 0;
       for (let i = 0; i < theirs.length; i += 4) close += [0, 1, 2].every((j) => Math.abs(theirs[i + j] - drawn[i + j]) <= 32);
 
-      /** The side of the elbow on which most pixels in the torque's colour are: the arrow's head is there. 0 without an arrow. */
+      /**
+       * The side of the elbow on which most pixels in the torque's colour are: the arrow's head is
+       * there. 0 without an arrow.
+       */
       const head = () => {
         const [data, elbow] = [pixels(), 250 + (250 / 2.2) * Math.sin(acrobot.state.theta1)];
         let side = 0;

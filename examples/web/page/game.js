@@ -17,7 +17,10 @@ export class Game {
     this.begin(seed, params);
   }
 
-  /** Begins an episode. Throws if the package rejects the parameters. Then the current episode continues. */
+  /**
+   * Begins an episode. Throws if the package rejects the parameters. Then the current episode
+   * continues.
+   */
   begin(seed, params = this.params) {
     this.acrobot.setParams(params);
     this.acrobot.reset(seed);
@@ -53,7 +56,10 @@ export class Game {
     return this.#rows.at(-1);
   }
 
-  /** Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames than the physics takes steps. */
+  /**
+   * Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames
+   * than the physics takes steps.
+   */
   draw(context, part, colors) {
     const { state } = this.acrobot;
     const { theta1, theta2 } = this.between(part);
@@ -70,8 +76,9 @@ export class Game {
   }
 
   /**
-   * Where the tip was in the last `seconds` before a part of the last step, at equal intervals of time, so that a trail does not
-   * depend on the frames: up to `count` points [x, y] in m, the newest first.
+   * Where the tip was in the last `seconds` before a part of the last step, at equal intervals of
+   * time, so that a trail does not depend on the frames: up to `count` points [x, y] in m, the
+   * newest first.
    */
   trail(part, seconds, count) {
     const { dt, length1, length2 } = this.params;
@@ -117,13 +124,14 @@ export function shortest(number) {
 }
 
 /**
- * Interpolates an angle by the cubic Hermite polynomial, which has the angles `a` and `b` and the velocities before and after a step
- * of `dt`.
+ * Interpolates an angle by the cubic Hermite polynomial, which has the angles `a` and `b` and the
+ * velocities before and after a step of `dt`.
  */
 function angleBetween(a, b, before, after, dt, part) {
   const [start, end] = [before * dt, after * dt];
   const mean = (start + end) / 2;
-  // Angles are modulo 2π. Of the possible rotations take the one closest to that at the mean velocity.
+  // Angles are modulo 2π. Of the possible rotations take the one closest to that at the mean
+  // velocity.
   const turned = b - a + 2 * Math.PI * Math.round((mean - (b - a)) / (2 * Math.PI));
   const [part2, part3] = [part ** 2, part ** 3];
   const angle = a + turned * (3 * part2 - 2 * part3) + start * (part3 - 2 * part2 + part) + end * (part3 - part2);

@@ -1,5 +1,5 @@
-// The panel "Physics": a choice of equations, and a slider and a field for each parameter. The field shows why a value is
-// rejected.
+// The panel "Physics": a choice of equations, and a slider and a field for each parameter. The
+// field shows why a value is rejected.
 
 import { minus } from "./plot.js";
 import { DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
@@ -18,7 +18,10 @@ export function attempt(field, reason, set) {
   }
 }
 
-/** `get` returns the parameters, and `set` takes them or throws. Returns a function that shows the current parameters. */
+/**
+ * `get` returns the parameters, and `set` takes them or throws. Returns a function that shows the
+ * current parameters.
+ */
 export function parametersPanel(get, set) {
   const fields = PARAMETERS.map(({ name, label, unit, end, step, hint }) => {
     const field = document.createElement("div");

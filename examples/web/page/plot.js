@@ -1,4 +1,5 @@
-// Draws line plots at the display's resolution: over the steps of an episode, or over the episodes of a training.
+// Draws line plots at the display's resolution: over the steps of an episode, or over the episodes
+// of a training.
 
 const MARGIN = { left: 40, right: 8, top: 8, bottom: 22 };
 
@@ -14,9 +15,9 @@ export function color(name) {
 }
 
 /**
- * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of `marks` is a value, drawn as a
- * dashed horizontal line, and `unit` is that of x. If there is a `period`, as of an angle, a line leaves the plot at one edge
- * and returns at the other.
+ * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of
+ * `marks` is a value, drawn as a dashed horizontal line, and `unit` is that of x. If there is a
+ * `period`, as of an angle, a line leaves the plot at one edge and returns at the other.
  */
 export function plot(canvas, { series, range, start = 0, end, unit, marks = [], period = Infinity }) {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -84,7 +85,8 @@ const label = (value) => minus(String(Number(value.toPrecision(3))));
 
 /** The range of some values, made a little wider, so that it is never empty. */
 export function rangeOf(values) {
-  // Not `Math.min(...values)`: a call takes about 100,000 arguments, and a training can have a million episodes.
+  // Not `Math.min(...values)`: a call takes about 100,000 arguments, and a training can have a
+  // million episodes.
   let [low, high] = [Infinity, -Infinity];
   for (const value of values) [low, high] = [Math.min(low, value), Math.max(high, value)];
   const room = (high - low || 1) * 0.06;

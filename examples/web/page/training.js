@@ -1,4 +1,5 @@
-// The panel "Train a policy": trains in a worker, draws the learning curve, loads and saves weights.
+// The panel "Train a policy": trains in a worker, draws the learning curve, loads and saves
+// weights.
 
 import { Perceptron } from "./acrobot-rs/policies.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
@@ -23,7 +24,10 @@ export function trainingPanel(learner, { ready, drive }) {
     plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), unit: "episodes", marks: [SOLVED] });
   };
 
-  /** Loads weights or a perceptron for the learnt policy. Throws an `Error` with the reason if they are rejected. */
+  /**
+   * Loads weights or a perceptron for the learnt policy. Throws an `Error` with the reason if they
+   * are rejected.
+   */
   const take = (bytes) => {
     const isPerceptron = String.fromCharCode(...bytes.subarray(0, 4)) === "MLP1";
     const policy = isPerceptron ? new Perceptron(bytes) : learner;

@@ -1,4 +1,5 @@
-// The page on a phone, on its side too, and on a desktop: what is touched, and the layout. Leaves screenshots.
+// The page on a phone, on its side too, and on a desktop: what is touched, and the layout. Leaves
+// screenshots.
 
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
@@ -14,7 +15,10 @@ const SCREENS = {
   desktop: { viewport: { width: 1280, height: 900 } },
 };
 
-/** Returns a function that touches an element: the type of the event, and for each finger the part of the element's width, from the left. */
+/**
+ * Returns a function that touches an element: the type of the event, and for each finger the part
+ * of the element's width, from the left.
+ */
 async function fingers(page, selector) {
   await page.locator(selector).scrollIntoViewIfNeeded();
   const { x, y, width, height } = await page.locator(selector).boundingBox();
@@ -64,7 +68,10 @@ function recordLabels() {
   };
 }
 
-/** What overlaps on the page: pairs of controls and texts, and of a plot's labels. What is outside of a plot, too. */
+/**
+ * What overlaps on the page: pairs of controls and texts, and of a plot's labels. What is outside
+ * of a plot, too.
+ */
 const overlaps = (page) =>
   page.evaluate(() => {
     const pairs = (boxes, room) => {

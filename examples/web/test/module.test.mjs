@@ -1,4 +1,5 @@
-// The page's functions, tested in Node: links, numbers as text, the interpolated picture, the trail.
+// The page's functions, tested in Node: links, numbers as text, the interpolated picture, the
+// trail.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

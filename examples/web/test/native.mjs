@@ -18,7 +18,9 @@ function program(name, args) {
   return { status, stdout, stderr };
 }
 
-/** The bits of θ1, θ2, θ̇1 and θ̇2 in single precision, of the initial state and after each action. */
+/**
+ * The bits of θ1, θ2, θ̇1 and θ̇2 in single precision, of the initial state and after each action.
+ */
 export function trace(seed, actions, ...args) {
   const { status, stdout, stderr } = program("trace", ["--seed", seed, ...args, actions.join("")]);
   if (status !== 0) throw new Error(stderr);
