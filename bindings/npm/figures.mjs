@@ -38,7 +38,8 @@ const size = (path) => {
   const code = readFileSync(path);
   return `${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)}`;
 };
-const [{ size: packed, unpackedSize }] = JSON.parse(execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"], { encoding: "utf8" }));
+const report = execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"]);
+const [{ size: packed, unpackedSize }] = JSON.parse(report);
 console.log(`
 | on one core, in Node.js ${process.versions.node.split(".")[0]} | |
 |---|---|

@@ -10,7 +10,8 @@ import { deflateRawSync } from "node:zlib";
 import { buildSync } from "esbuild";
 
 const here = fileURLToPath(new URL(".", import.meta.url));
-const run = (command, args, env) => execFileSync(command, args, { cwd: here, stdio: "inherit", env });
+const run = (command, args, env) =>
+  execFileSync(command, args, { cwd: here, stdio: "inherit", env });
 
 /**
  * A loop is unrolled fully or not at all, and only up to 16 iterations, the lanes of a batch's
@@ -46,7 +47,8 @@ function compile(library) {
 /** The files of the package, and the library of the module that each has inside. */
 const ENTRIES = { "index.js": "acrobot_npm", "policies.js": "acrobot_learner" };
 
-const build = (options) => buildSync({ absWorkingDir: here, bundle: true, format: "esm", ...options });
+const build = (options) =>
+  buildSync({ absWorkingDir: here, bundle: true, format: "esm", ...options });
 
 /** Writes each file with its module into a folder: a browser loads it with one request. */
 export function bundle(folder) {
@@ -54,7 +56,8 @@ export function bundle(folder) {
   build({ entryPoints: ["tiny-inflate"], minify: true, outfile: "target/inflate.js" });
   for (const [file, library] of Object.entries(ENTRIES)) {
     const module = compile(library);
-    const names = WebAssembly.Module.exports(new WebAssembly.Module(module)).map(({ name }) => name);
+    const exports = WebAssembly.Module.exports(new WebAssembly.Module(module));
+    const names = exports.map(({ name }) => name);
     // A string, because all bundlers and servers pass strings on unchanged, and a constructor can
     // decode it without waiting.
     const deflated = deflateRawSync(module, { level: 9, memLevel: 9 }).toString("base64");

@@ -12,7 +12,7 @@ export async function instance() {
   return { ...classes, size: () => wasm().memory.buffer.byteLength };
 }
 
-/** The bytes with their CRC-32 as zlib computes it: a gzip file ends in it and four bytes of length. */
+/** The bytes with zlib's CRC-32, after which four bytes of length end a gzip file. */
 export const sealed = (bytes) => Buffer.concat([bytes, gzipSync(bytes).subarray(-8, -4)]);
 
 /** The same numbers below `n` in each test run, from a linear congruential generator. */
@@ -24,10 +24,7 @@ export function randoms() {
   };
 }
 
-/**
- * Asserts that calls throw, and that nothing changes. A row has the error's name, the rule, and pairs
- * of the value in the message and a call.
- */
+/** Rows of the error's name, the rule, and pairs of a call and the value in its error's message. */
 export function assertRejected(rows, unchanged = () => {}) {
   for (const [name, rule, ...cases] of rows) {
     for (const [value, call] of cases) {
