@@ -271,7 +271,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
 }
 
 /// Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP,
-/// ACROBOT_AUTORESET_SAME_STEP or ACROBOT_AUTORESET_DISABLED. `error` may be null.
+/// ACROBOT_AUTORESET_SAME_STEP or ACROBOT_AUTORESET_DISABLED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     batch: *mut acrobot_batch_t,
@@ -302,8 +302,7 @@ pub unsafe extern "C" fn acrobot_batch_state(
     })
 }
 
-/// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change. `error`
-/// may be null.
+/// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_state(
     batch: *mut acrobot_batch_t,
@@ -327,7 +326,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     })
 }
 
-/// Sets the parameters of all acrobots for the next steps. `error` may be null.
+/// Sets the parameters of all acrobots for the next steps.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_params(
     batch: *mut acrobot_batch_t,

@@ -37,13 +37,21 @@ pub struct acrobot_observation_t {
 
 impl From<Observation> for acrobot_observation_t {
     fn from(observation: Observation) -> Self {
+        let [
+            cos_theta1,
+            sin_theta1,
+            cos_theta2,
+            sin_theta2,
+            dtheta1,
+            dtheta2,
+        ] = observation.to_array();
         Self {
-            cos_theta1: observation.cos_theta1(),
-            sin_theta1: observation.sin_theta1(),
-            cos_theta2: observation.cos_theta2(),
-            sin_theta2: observation.sin_theta2(),
-            dtheta1: observation.dtheta1(),
-            dtheta2: observation.dtheta2(),
+            cos_theta1,
+            sin_theta1,
+            cos_theta2,
+            sin_theta2,
+            dtheta1,
+            dtheta2,
         }
     }
 }
@@ -89,11 +97,12 @@ pub struct acrobot_state_t {
 
 impl From<State<f32>> for acrobot_state_t {
     fn from(state: State<f32>) -> Self {
+        let [theta1, theta2, dtheta1, dtheta2] = state.into();
         Self {
-            theta1: state.theta1,
-            theta2: state.theta2,
-            dtheta1: state.dtheta1,
-            dtheta2: state.dtheta2,
+            theta1,
+            theta2,
+            dtheta1,
+            dtheta2,
         }
     }
 }
@@ -114,16 +123,16 @@ pub struct acrobot_params_t {
     pub length2: f32,
     /// Mass of link 1, kg; above 0. Default 1.
     pub mass1: f32,
-    /// Mass of link 2, kg; above 0. Default 1.
+    /// Mass of link 2, kg; as `mass1`.
     pub mass2: f32,
     /// Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
     pub center_of_mass1: f32,
-    /// Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
+    /// Distance of link 2's centre of mass from its joint, m; as `center_of_mass1`.
     pub center_of_mass2: f32,
     /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
     /// centre of mass is on the joint. Default 1.
     pub inertia1: f32,
-    /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
+    /// As `inertia1`, of link 2.
     pub inertia2: f32,
     /// Acceleration of gravity, m/s², downwards; finite. Default 9.8.
     pub gravity: f32,
@@ -145,22 +154,22 @@ pub struct acrobot_params_t {
 
 /// A struct of another type with the same parameters. Only `dynamics` has another type, too.
 macro_rules! same_params {
-    ($type:ident, $params:expr, $dynamics:expr $(, $friction:ident)?) => {
+    ($type:ident, $from:ident, $dynamics:expr $(, $friction:ident)?) => {
         $type {
-            length1: $params.length1,
-            length2: $params.length2,
-            mass1: $params.mass1,
-            mass2: $params.mass2,
-            center_of_mass1: $params.center_of_mass1,
-            center_of_mass2: $params.center_of_mass2,
-            inertia1: $params.inertia1,
-            inertia2: $params.inertia2,
-            gravity: $params.gravity,
-            dt: $params.dt,
-            max_velocity1: $params.max_velocity1,
-            max_velocity2: $params.max_velocity2,
-            torques: $params.torques,
-            torque_noise: $params.torque_noise,
+            length1: $from.length1,
+            length2: $from.length2,
+            mass1: $from.mass1,
+            mass2: $from.mass2,
+            center_of_mass1: $from.center_of_mass1,
+            center_of_mass2: $from.center_of_mass2,
+            inertia1: $from.inertia1,
+            inertia2: $from.inertia2,
+            gravity: $from.gravity,
+            dt: $from.dt,
+            max_velocity1: $from.max_velocity1,
+            max_velocity2: $from.max_velocity2,
+            torques: $from.torques,
+            torque_noise: $from.torque_noise,
             dynamics: $dynamics,
             $($friction: acrobot::physics::Viscous::default(),)?
         }

@@ -65,7 +65,7 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
 
 /// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
 /// rad/s. The default is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`.
-/// `observation` and `error` may be null.
+/// `observation` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_within(
     acrobot: *mut acrobot_t,
@@ -97,7 +97,6 @@ pub unsafe extern "C" fn acrobot_step(
 }
 
 /// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
-/// `error` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step_torque(
     acrobot: *mut acrobot_t,
@@ -140,7 +139,7 @@ pub unsafe extern "C" fn acrobot_state(
     get(acrobot, state, |acrobot| Ok(acrobot.state().into()))
 }
 
-/// Sets the state. The number of steps does not change. `error` may be null.
+/// Sets the state. The number of steps does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_state(
     acrobot: *mut acrobot_t,
@@ -161,7 +160,7 @@ pub unsafe extern "C" fn acrobot_params(
     get(acrobot, params, |acrobot| Ok((*acrobot.params()).into()))
 }
 
-/// Sets the parameters for the next steps. The state does not change. `error` may be null.
+/// Sets the parameters for the next steps. The state does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_params(
     acrobot: *mut acrobot_t,

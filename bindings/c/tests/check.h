@@ -18,6 +18,9 @@ static int failures = 0;
         } \
     } while (0)
 
+#define ACCEPTED(call) CHECK((call) == ACROBOT_OK)
+#define REJECTED(error, call) CHECK((call) == ACROBOT_ERROR_##error)
+
 static inline int report(const char *name)
 {
     print(name);
