@@ -26,10 +26,12 @@ export function parametersPanel(get, set) {
   const fields = PARAMETERS.map(({ name, label, unit, end, step, hint }) => {
     const field = document.createElement("div");
     field.className = "field parameter";
+    const described = `aria-describedby="${name}-hint ${name}-reason"`;
+    const range = `type="range" min="0" max="${end}" step="${step}"`;
     field.innerHTML = `
       <label for="${name}">${label}</label>
-      <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-hint ${name}-reason">
-      <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-hint ${name}-reason">
+      <input ${range} aria-label="${label}, ${unit}" ${described}>
+      <input id="${name}" inputmode="decimal" autocomplete="off" ${described}>
       <span class="hint">${unit}</span>
       <p id="${name}-reason" class="reason" role="alert"></p>
       <p id="${name}-hint" class="hint">${hint}</p>`;

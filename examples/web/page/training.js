@@ -21,7 +21,8 @@ export function trainingPanel(learner, { ready, drive }) {
   const draw = () => {
     const range = rangeOf([...means, 2 * SOLVED, 0]);
     const series = [{ values: means, color: color("--link") }];
-    plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), unit: "episodes", marks: [SOLVED] });
+    const end = Math.max(means.length, WINDOW);
+    plot($("curve"), { series, range, start: 1, end, unit: "episodes", marks: [SOLVED] });
   };
 
   /**
@@ -51,7 +52,8 @@ export function trainingPanel(learner, { ready, drive }) {
     let seed;
     try {
       if (!Number.isInteger(episodes) || episodes < 1 || episodes > EPISODES) {
-        throw new Error(`episodes must be an integer from 1 to 1,000,000, got ${$("episodes").value || "an empty text"}`);
+        const got = $("episodes").value || "an empty text";
+        throw new Error(`episodes must be an integer from 1 to 1,000,000, got ${got}`);
       }
       seed = parseSeed($("training-seed").value);
     } catch (error) {
