@@ -1,5 +1,4 @@
-// Prints the package's rows of docs/wasm.md: sizes, and steps per second in Node.js. Builds the
-// package first.
+// Builds the package, and prints its rows of docs/wasm.md: sizes, and steps per second in Node.js.
 
 import { execFileSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";

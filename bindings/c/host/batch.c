@@ -1,5 +1,4 @@
-// A batch in static memory: a rejected parameter, and how many episodes end under torque against
-// link 1's velocity.
+// A batch in static memory: a rejected parameter, and how many episodes a policy ends.
 
 #include <stdio.h>
 

@@ -1,5 +1,4 @@
-// Gymnasium's Acrobot in C and C++: one acrobot, or a batch, in single precision, with the limit of
-// 500 steps.
+// Gymnasium's Acrobot in C and C++: one or a batch, in single precision, at most 500 steps.
 //
 // - You provide the memory, and may reuse it at any time. No function allocates.
 // - No function aborts or has global state. One that can fail returns an acrobot_status_t. Unless
@@ -49,8 +48,7 @@
 // The equations of Sutton & Barto's book: the physical double pendulum. Gymnasium's default.
 #define ACROBOT_DYNAMICS_BOOK 0
 
-// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is
-// not conserved.
+// The equations of Sutton's paper of 1996 (NIPS 8), which do not conserve energy.
 #define ACROBOT_DYNAMICS_NIPS 1
 
 // The bytes of an acrobot_t: the most that any target needs.
@@ -92,8 +90,7 @@ typedef enum {
   ACROBOT_ERROR_MOVED = 5,
   // The action is not 0, 1 or 2.
   ACROBOT_ERROR_UNKNOWN_ACTION = 6,
-  // A number is outside its range, infinite or NaN. The argument `error` of the function, if it
-  // has one, names it.
+  // A number is outside its range, infinite or NaN. An argument `error` says which.
   ACROBOT_ERROR_OUT_OF_RANGE = 7,
   // The count is not that of the batch's acrobots, or a new batch would have none.
   ACROBOT_ERROR_WRONG_COUNT = 8,
@@ -108,8 +105,7 @@ typedef enum {
 typedef struct acrobot_batch_t acrobot_batch_t;
 
 // One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or
-// into a struct, and call acrobot_init before any other function. It contains no pointer, so you
-// may copy and move it.
+// into a struct, and call acrobot_init first. It contains no pointer: you may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
@@ -151,8 +147,7 @@ typedef struct {
   bool truncated;
 } acrobot_step_t;
 
-// A state. After a step the angles are within ±π and the velocities within their bounds. Each
-// number must be finite.
+// A state of finite numbers. A step wraps the angles to ±π and bounds the velocities.
 typedef struct {
   // Angle of link 1, rad; 0 = hanging straight down, counter-clockwise positive.
   float theta1;
@@ -191,8 +186,7 @@ typedef struct {
   float max_velocity1;
   // Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
   float max_velocity2;
-  // Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and
-  // 1.
+  // Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
   float torques[3];
   // Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
   // torque; 0, the default, draws nothing.
@@ -201,8 +195,7 @@ typedef struct {
   int dynamics;
 } acrobot_params_t;
 
-// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and
-// move it.
+// Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
 } acrobot_action_space_t;
@@ -226,8 +219,7 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// The text of a status, in English. It is constant: do not free it. An unknown status has a text,
-// too.
+// The text of a status, in English, also of an unknown one. It is constant: do not free it.
 const char *acrobot_status_text(int status);
 
 // Makes an acrobot with the default parameters, in the initial state of Gymnasium's
@@ -291,8 +283,7 @@ acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
 // The height of the tip above the fixed joint, m.
 acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 
-// The deviation of the state from a finite `target`. Angles are wrapped to ±π, so it is continuous
-// upright.
+// The deviation of the state from a finite `target`, with angles wrapped to ±π.
 acrobot_status_t acrobot_deviation(const acrobot_t *acrobot,
                                    const acrobot_state_t *target,
                                    acrobot_state_t *deviation);
@@ -319,8 +310,7 @@ acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space,
 // Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
 acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_space, uint8_t *action);
 
-// The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if
-// that is larger.
+// The bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
 size_t acrobot_batch_size(size_t count);
 
 // Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default

@@ -17,8 +17,7 @@ pub const ACROBOT_BATCH_ALIGN: usize = 64;
 // cbindgen.toml has these numbers, too: ACROBOT_BATCH_SIZE.
 const HEADER: usize = 256;
 const GENERATOR: usize = 48;
-/// Acrobots that are stepped side by side. A microcontroller has no SIMD for floats, so it steps
-/// one after the other.
+/// Acrobots that are stepped side by side. Microcontrollers have no SIMD for floats.
 const LANES: usize = if usize::BITS == 64 { 16 } else { 1 };
 const BLOCK: usize = if usize::BITS == 64 { 640 } else { 64 };
 
@@ -105,8 +104,7 @@ fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
     Span::new(batch.cast::<u8>(), acrobot_batch_size(count))
 }
 
-/// The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if
-/// that is larger.
+/// The bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
     let blocks = count.div_ceil(LANES);

@@ -8,8 +8,7 @@ use crate::memory::{change, check, get, read};
 use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
-/// The deviation of the state from a finite `target`. Angles are wrapped to ±π, so it is continuous
-/// upright.
+/// The deviation of the state from a finite `target`, with angles wrapped to ±π.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_deviation(
     acrobot: *const acrobot_t,

@@ -19,8 +19,7 @@ pub const ACROBOT_ACTION_POSITIVE: c_int = 2;
 /// The equations of Sutton & Barto's book: the physical double pendulum. Gymnasium's default.
 pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 
-/// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is
-/// not conserved.
+/// The equations of Sutton's paper of 1996 (NIPS 8), which do not conserve energy.
 pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
 /// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine
@@ -80,8 +79,7 @@ impl From<Step> for acrobot_step_t {
     }
 }
 
-/// A state. After a step the angles are within ±π and the velocities within their bounds. Each
-/// number must be finite.
+/// A state of finite numbers. A step wraps the angles to ±π and bounds the velocities.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_state_t {
@@ -142,8 +140,7 @@ pub struct acrobot_params_t {
     pub max_velocity1: f32,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
     pub max_velocity2: f32,
-    /// Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and
-    /// 1.
+    /// Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
     pub torques: [f32; 3],
     /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
     /// torque; 0, the default, draws nothing.

@@ -17,8 +17,7 @@ pub const ACROBOT_SIZE: usize = 240;
 pub const ACROBOT_ALIGN: usize = 16;
 
 /// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or
-/// into a struct, and call acrobot_init before any other function. It contains no pointer, so you
-/// may copy and move it.
+/// into a struct, and call acrobot_init first. It contains no pointer: you may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],

@@ -22,8 +22,7 @@ pub enum acrobot_status_t {
     ACROBOT_ERROR_MOVED = 5,
     /// The action is not 0, 1 or 2.
     ACROBOT_ERROR_UNKNOWN_ACTION = 6,
-    /// A number is outside its range, infinite or NaN. The argument `error` of the function, if it
-    /// has one, names it.
+    /// A number is outside its range, infinite or NaN. An argument `error` says which.
     ACROBOT_ERROR_OUT_OF_RANGE = 7,
     /// The count is not that of the batch's acrobots, or a new batch would have none.
     ACROBOT_ERROR_WRONG_COUNT = 8,
@@ -50,8 +49,7 @@ pub struct acrobot_error_t {
     pub rule: [c_char; 64],
 }
 
-/// Why a call was rejected. The other fields belong to ACROBOT_ERROR_OUT_OF_RANGE: `name must be
-/// rule unit, got value`.
+/// Why a call was rejected; for ACROBOT_ERROR_OUT_OF_RANGE `name must be rule unit, got value`.
 pub struct Rejected {
     status: acrobot_status_t,
     name: &'static str,
@@ -153,8 +151,7 @@ fn text<const N: usize>(texts: [&str; 3]) -> [c_char; N] {
     to
 }
 
-/// The text of a status, in English. It is constant: do not free it. An unknown status has a text,
-/// too.
+/// The text of a status, in English, also of an unknown one. It is constant: do not free it.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
     let text = match status {

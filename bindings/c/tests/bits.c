@@ -21,8 +21,7 @@ static void add_floats(uint64_t *digest, const void *floats, int count)
     }
 }
 
-// The states of Rust's digests are doubles. Only numbers that are neither infinite nor NaN come
-// here.
+// The states of Rust's digests are doubles. Only finite numbers come here.
 static void add_seen(uint64_t *digest, const acrobot_t *acrobot,
                      const acrobot_observation_t *observation)
 {

@@ -28,8 +28,7 @@ static inline int report(const char *name)
     return failures == 0 ? 0 : 1;
 }
 
-// Also compares the bytes between fields, which nothing writes; valgrind.supp excuses that in this
-// function alone.
+// Also compares the bytes between fields, which nothing writes: valgrind.supp excuses that here.
 __attribute__((noinline, unused)) static bool same(const void *left, const void *right, size_t size)
 {
     const uint8_t *a = (const uint8_t *)left, *b = (const uint8_t *)right;

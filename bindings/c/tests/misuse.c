@@ -151,8 +151,7 @@ static void holders(void)
     CHECK(same(other, saved, sizeof other));
 }
 
-// Tries each address in the arena. A pointer into the held bytes must be rejected, and none of them
-// change.
+// Tries each address in the arena: one in the held bytes must be rejected, and none of them change.
 static void pointers(void)
 {
     for (int i = 0; i < ROWS; i++) {

@@ -33,10 +33,7 @@ const BATCH = [
   ...new Uint8Array(Float64Array.of(-0.1, 0.1).buffer),
 ];
 
-/**
- * An integer in seven bits a byte, the lowest first. The highest bit of each byte says whether more
- * follow.
- */
+/** An integer in seven bits a byte, the lowest first. The highest bit says whether more follow. */
 const varint = (value) =>
   value < 128 ? [value] : [(value % 128) | 128, ...varint(Math.floor(value / 128))];
 
@@ -53,10 +50,7 @@ export class Batch extends Kept {
   #names;
   /** Views of the arrays. */
   #views;
-  /**
-   * Copies of the results in JavaScript's memory, because views of the module's memory end when
-   * that memory grows.
-   */
+  /** Copies of the results: views of the module's memory end when that memory grows. */
   #results = {};
   /** Whether states have changed since the observations were written. */
   #stale = false;
@@ -164,8 +158,7 @@ export class Batch extends Kept {
     let given = actions;
     // The module can check bytes.
     if (!isBytes(actions) || actions.byteLength !== this.#count) {
-      // Reading others can run code that frees the batch or makes the module's memory grow, so they
-      // are read first.
+      // Reading others can run code that frees the batch or makes the memory grow: first.
       given = elements("actions", actions, this.#count, isAction, ACTION);
     }
     const address = this.#address;

@@ -67,9 +67,7 @@ export function readParams(kind, address, index) {
   return Object.freeze({ ...params, dynamics: DYNAMICS[bytes()[DYNAMICS_AT]] });
 }
 
-/**
- * Changed parameters by their names, as `SLOTS` has them. Reading them can run code of the caller.
- */
+/** Changed parameters by their names in `SLOTS`. Reading them can run code of the caller. */
 export function readChanges(changes) {
   const given = checked("params", changes, [...NUMBERS, "dynamics"]);
   if ("torques" in given) {
@@ -89,10 +87,7 @@ export function readChanges(changes) {
   return given;
 }
 
-/**
- * Changes what `readChanges` returns in the parameters of acrobot `index`, by a function of the
- * module.
- */
+/** Changes what `readChanges` returns in the parameters of acrobot `index`. */
 export function writeParams(kind, address, index, given, set = `${kind}_set_params`) {
   wasm()[`${kind}_params`](address, index);
   for (const [name, value] of Object.entries(given)) {

@@ -21,10 +21,7 @@ export function setModule(module) {
   compiled = module;
 }
 
-/**
- * The functions of a new instance. A content security policy rejects the module, or in WebKit its
- * instance.
- */
+/** The functions of a new instance, which a content security policy may reject. */
 export function instantiate() {
   try {
     compiled ??= new WebAssembly.Module(moduleBytes());
@@ -47,10 +44,7 @@ export function wasm() {
 let numbersView = new Float32Array();
 let bytesView = new Uint8Array();
 
-/**
- * The memory for sixteen numbers. Like every view of the module's memory, it has length 0 once that
- * memory has grown.
- */
+/** The memory for sixteen numbers. Every view of memory has length 0 once the memory has grown. */
 export function numbers() {
   if (numbersView.length === 0) {
     const { memory, bytes } = wasm();
@@ -120,9 +114,8 @@ export function invalidSingle(rule, value) {
 }
 
 /**
- * A copy of `given`, which must be an object without other properties than `names`. Each is read
- * once, because that can run code of the caller, which may use the package and change the module's
- * memory.
+ * A copy of an object with no properties but `names`. Each is read once, because that can run code
+ * of the caller, which may change the module's memory.
  */
 export function checked(what, given, names) {
   if (typeof given !== "object" || given === null || Array.isArray(given)) {

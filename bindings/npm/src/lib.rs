@@ -1,5 +1,4 @@
-//! The WebAssembly module of the npm package `acrobot-rs`: exported functions that its JavaScript
-//! calls.
+//! The WebAssembly module of the npm package `acrobot-rs`: functions that its JavaScript calls.
 //!
 //! JavaScript keeps the address of each acrobot and of each batch in a private field, until it
 //! frees it. Longer data passes through the memory in `memory`. The JavaScript checks numbers,

@@ -1,5 +1,4 @@
-//! What the exported functions share: memory for acrobots and batches, and to exchange values with
-//! JavaScript.
+//! What the exported functions share: memory for acrobots, and to exchange values.
 
 use std::alloc::{Layout, alloc};
 use std::cell::Cell;

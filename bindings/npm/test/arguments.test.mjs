@@ -1,5 +1,4 @@
-// Reading an argument can run code of the caller: getters, proxies. It can also be memory that
-// other threads write.
+// Reading an argument can run code of the caller, or be of memory that other threads write.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -55,10 +55,7 @@ function record() {
   addEventListener("unhandledrejection", ({ reason }) => errors.push(String(reason)));
 }
 
-/**
- * Opens a page in a browser and calls `play` with it. Asserts that there are no errors. Returns
- * what the console has.
- */
+/** Opens a page and calls `play` with it. Without errors, returns what the console has. */
 async function open(html, play = () => {}) {
   const head = '<link rel="icon" href="data:,"><script src="record.js"></script>';
   write("index.html", head + html);

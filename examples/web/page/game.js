@@ -17,10 +17,7 @@ export class Game {
     this.begin(seed, params);
   }
 
-  /**
-   * Begins an episode. Throws if the package rejects the parameters. Then the current episode
-   * continues.
-   */
+  /** Begins an episode, or throws if the package rejects the parameters. */
   begin(seed, params = this.params) {
     this.acrobot.setParams(params);
     this.acrobot.reset(seed);
@@ -132,8 +129,7 @@ export function shortest(number) {
  */
 function angleBetween(a, b, start, end, part) {
   const mean = (start + end) / 2;
-  // Angles are modulo 2π. Of the possible rotations take the one closest to that at the mean
-  // velocity.
+  // Angles are modulo 2π: take the turns closest to those at the mean velocity.
   const turned = b - a + 2 * Math.PI * Math.round((mean - (b - a)) / (2 * Math.PI));
   const [part2, part3] = [part ** 2, part ** 3];
   const bend = start * (part3 - 2 * part2 + part) + end * (part3 - part2);

@@ -43,10 +43,7 @@ export function encodeRun({ seed, params, actions }) {
   return `#${fields}`;
 }
 
-/**
- * The run in an address. Throws an `Error` with the reason if there is none. The package checks the
- * parameters later.
- */
+/** The run in an address, with unchecked parameters. Throws an `Error` with the reason. */
 export function decodeRun(hash) {
   const fields = new URLSearchParams(hash.slice(1));
   const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];

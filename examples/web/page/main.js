@@ -39,10 +39,7 @@ function start() {
   let recorded = [];
   /** The policies that have played this episode. */
   const players = new Set();
-  /**
-   * The fewest steps to the goal, for each policy that played a whole episode, and for each set of
-   * parameters.
-   */
+  /** The fewest steps to the goal, for each policy and set of parameters. */
   const best = new Map();
   const record = () => JSON.stringify([$("policy").value, game.params]);
   const held = { left: false, right: false };

@@ -18,10 +18,7 @@ export function attempt(field, reason, set) {
   }
 }
 
-/**
- * `get` returns the parameters, and `set` takes them or throws. Returns a function that shows the
- * current parameters.
- */
+/** `get` returns the parameters, `set` takes them or throws. Returns a function that shows them. */
 export function parametersPanel(get, set) {
   const fields = PARAMETERS.map(({ name, label, unit, end, step, hint }) => {
     const field = document.createElement("div");

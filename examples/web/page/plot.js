@@ -1,5 +1,4 @@
-// Draws line plots at the display's resolution: over the steps of an episode, or over the episodes
-// of a training.
+// Draws line plots at the display's resolution, over steps or episodes.
 
 const MARGIN = { left: 40, right: 8, top: 8, bottom: 22 };
 
@@ -92,8 +91,7 @@ const label = (value) => minus(String(Number(value.toPrecision(3))));
 
 /** The range of some values, made a little wider, so that it is never empty. */
 export function rangeOf(values) {
-  // Not `Math.min(...values)`: a call takes about 100,000 arguments, and a training can have a
-  // million episodes.
+  // Not `Math.min(...values)`: a call takes 100,000 arguments, a training a million episodes.
   let [low, high] = [Infinity, -Infinity];
   for (const value of values) [low, high] = [Math.min(low, value), Math.max(high, value)];
   const room = (high - low || 1) * 0.06;

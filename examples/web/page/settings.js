@@ -3,10 +3,7 @@
 /** The most steps of an episode. */
 export const LIMIT = 500;
 
-/**
- * The parameters that the page can set: name, label, unit, Gymnasium's value, the slider's end and
- * step, and a hint.
- */
+/** Name, label, unit, Gymnasium's value, the slider's end and step, and a hint. */
 export const PARAMETERS = [
   ["dt", "Time step dt", "s", 0.2, 0.5, 0.01],
   ["mass1", "Mass of link 1", "kg", 1, 4, 0.05],

@@ -1,5 +1,4 @@
-// The panel "Train a policy": trains in a worker, draws the learning curve, loads and saves
-// weights.
+// The panel "Train a policy": a worker, the learning curve, and files of weights.
 
 import { Perceptron } from "./acrobot-rs/policies.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
@@ -25,10 +24,7 @@ export function trainingPanel(learner, { ready, drive }) {
     plot($("curve"), { series, range, start: 1, end, unit: "episodes", marks: [SOLVED] });
   };
 
-  /**
-   * Loads weights or a perceptron for the learnt policy. Throws an `Error` with the reason if they
-   * are rejected.
-   */
+  /** Loads weights or a perceptron for the learnt policy, or throws the reason. */
   const take = (bytes) => {
     const isPerceptron = String.fromCharCode(...bytes.subarray(0, 4)) === "MLP1";
     const policy = isPerceptron ? new Perceptron(bytes) : learner;

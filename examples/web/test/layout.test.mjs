@@ -1,5 +1,4 @@
-// The page on a phone, on its side too, and on a desktop: what is touched, and the layout. Leaves
-// screenshots.
+// What is touched, and the layout, on a phone and on a desktop. Leaves screenshots.
 
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
@@ -80,10 +79,7 @@ function recordLabels() {
   };
 }
 
-/**
- * What overlaps on the page: pairs of controls and texts, and of a plot's labels. What is outside
- * of a plot, too.
- */
+/** Pairs of controls and texts, or of a plot's labels, that overlap; labels outside of a plot. */
 const overlaps = (page) =>
   page.evaluate(() => {
     const pairs = (boxes, room) => {

@@ -10,8 +10,8 @@ import { inChromium } from "../../../bindings/npm/browser.mjs";
 import { Learner } from "../dist/acrobot-rs/policies.js";
 import { ACTIONS, bits, trace } from "./native.mjs";
 import {
-  downloaded, folder, linkedActions, onPage, open, paused, press, says, shownBits, stepped, steps,
-  text,
+  downloaded, folder, linkedActions, onPage, open, paused, press, says, shownBits, shows, showsBits,
+  stepped, steps, text,
 } from "./player.mjs";
 
 onPage("the page loads, plays a policy, and has a strict content security policy", async (page) => {
@@ -19,7 +19,7 @@ onPage("the page loads, plays a policy, and has a strict content security policy
   assert.doesNotMatch(policy, /unsafe-inline|unsafe-eval(?<!wasm-unsafe-eval)/);
   assert.match(policy, /default-src 'none'/);
   await stepped(page, 2);
-  assert.equal(await text(page, "#status"), "Bang-bang plays. To take over, press ← or →.");
+  await shows(page, "#status", "Bang-bang plays. To take over, press ← or →.");
   const drawn = await page.evaluate(() => {
     const context = document.querySelector("#picture").getContext("2d");
     const { data } = context.getImageData(0, 0, 900, 900);
@@ -33,9 +33,9 @@ onPage("the page loads, plays a policy, and has a strict content security policy
 onPage("keys apply torque, and states are bit-identical to native", async (page) => {
   await paused(page, 42);
   await press(page, ACTIONS);
-  assert.deepEqual(await shownBits(page), trace("42", ACTIONS).at(-1));
-  assert.equal(await text(page, "#step"), String(ACTIONS.length));
-  assert.equal(await text(page, "#return"), `−${ACTIONS.length}`);
+  await showsBits(page, trace("42", ACTIONS).at(-1));
+  await shows(page, "#step", String(ACTIONS.length));
+  await shows(page, "#return", `−${ACTIONS.length}`);
 
   // The page decides when it steps, so the actions are read from its link.
   await page.keyboard.press("Space");
@@ -49,7 +49,7 @@ onPage("keys apply torque, and states are bit-identical to native", async (page)
   const actions = await linkedActions(page);
   const played = actions.slice(ACTIONS.length);
   assert.ok(played.includes(2) && played.includes(0), `${played}`);
-  assert.deepEqual(await shownBits(page), trace("42", actions).at(-1));
+  await showsBits(page, trace("42", actions).at(-1));
 });
 
 /** What the package of this address computes: a batch with noise and resets, and a snapshot. */
@@ -76,7 +76,7 @@ onPage("seeds give Gymnasium's initial states, and invalid seeds are rejected", 
   const seed = "123456789012345678901234567890";
   await paused(page, seed);
   const [start] = trace(seed, []);
-  assert.deepEqual(await shownBits(page), start);
+  await showsBits(page, start);
   for (const [bad, got] of [
     ["", "an empty text"],
     ["-1", "'-' as character 1"],
@@ -84,13 +84,13 @@ onPage("seeds give Gymnasium's initial states, and invalid seeds are rejected", 
   ]) {
     await page.fill("#seed", bad);
     const rule = "seed must be a decimal integer of at least 0 with at most 600 digits";
-    assert.equal(await text(page, "#seed-reason"), `${rule}, got ${got}`);
+    await shows(page, "#seed-reason", `${rule}, got ${got}`);
     assert.equal(await page.getAttribute("#seed", "aria-invalid"), "true");
-    assert.deepEqual(await shownBits(page), start);
+    await showsBits(page, start);
   }
   await page.fill("#seed", "5");
-  assert.equal(await text(page, "#seed-reason"), "");
-  assert.deepEqual(await shownBits(page), trace("5", [])[0]);
+  await shows(page, "#seed-reason", "");
+  await showsBits(page, trace("5", [])[0]);
 });
 
 onPage("reset, pause and next seed do what they say", async (page) => {
@@ -99,19 +99,19 @@ onPage("reset, pause and next seed do what they say", async (page) => {
   await press(page, [2, 2, 2]);
   const before = await shownBits(page);
   await page.waitForTimeout(500);
-  assert.deepEqual(await shownBits(page), before);
+  await showsBits(page, before);
   await page.keyboard.press("r");
-  assert.deepEqual(await shownBits(page), start);
-  assert.equal(await text(page, "#step"), "0");
+  await showsBits(page, start);
+  await shows(page, "#step", "0");
   await page.click("#next");
   assert.equal(await page.inputValue("#seed"), "43");
-  assert.deepEqual(await shownBits(page), trace("43", [])[0]);
+  await showsBits(page, trace("43", [])[0]);
   await page.click("#single");
   await page.click("#reset");
-  assert.equal(await text(page, "#step"), "0");
+  await shows(page, "#step", "0");
   await page.click("#pause");
   await stepped(page, 1);
-  assert.equal(await text(page, "#pause"), "Pause");
+  await shows(page, "#pause", "Pause");
 });
 
 onPage("when paused, the picture shows the last step, as the numbers do", async (page) => {
@@ -121,14 +121,14 @@ onPage("when paused, the picture shows the last step, as the numbers do", async 
   // A step now takes 0.8 s, so the page is amid a step when it pauses.
   await page.selectOption("#pace", "0.25");
   await page.click("#pause");
-  assert.equal(await text(page, "#status"), "Paused.");
+  await shows(page, "#status", "Paused.");
   const [state, last] = [await shownBits(page), await picture()];
   const actions = await linkedActions(page);
   await page.selectOption("#policy", "keys");
   await page.click("#reset");
   assert.ok((await shownBits(page)) && (await picture()) !== last);
   await press(page, actions);
-  assert.deepEqual(await shownBits(page), state);
+  await showsBits(page, state);
   assert.ok((await picture()) === last, "the picture differs from that of the last step");
 });
 
@@ -140,7 +140,7 @@ onPage("after a policy's goal the next seed follows, and a key takes over", asyn
   await says(page, "#status", /^Seed 43\. Bang-bang plays\./);
   await page.focus("#stage");
   await page.keyboard.press("ArrowLeft");
-  assert.equal(await text(page, "#status"), "You play.");
+  await shows(page, "#status", "You play.");
   assert.equal(await page.inputValue("#policy"), "keys");
 });
 
@@ -156,26 +156,26 @@ onPage("parameters act as in the crate, and invalid ones are rejected", async (p
   for (const value of ["-0.1", "0", "abc", " ", "1e999"]) {
     await page.fill("#dt", value);
     const reason = `dt must be finite and above 0 s, got ${shown[value] ?? value}`;
-    assert.equal(await text(page, "#dt-reason"), reason);
+    await shows(page, "#dt-reason", reason);
   }
   assert.equal(await page.getAttribute("#dt", "aria-invalid"), "true");
-  assert.deepEqual(await shownBits(page), state);
+  await showsBits(page, state);
 
   const slider = ".parameter:has(#mass1) [type=range]";
   await page.fill(slider, "0");
-  assert.equal(await text(page, "#mass1-reason"), "mass1 must be finite and above 0 kg, got 0");
-  assert.deepEqual(await shownBits(page), state);
+  await shows(page, "#mass1-reason", "mass1 must be finite and above 0 kg, got 0");
+  await showsBits(page, state);
   await page.fill(slider, "2");
-  assert.equal(await text(page, "#mass1-reason"), "");
+  await shows(page, "#mass1-reason", "");
   assert.equal(await page.inputValue("#mass1"), "2");
-  assert.equal(await text(page, "#step"), "0");
+  await shows(page, "#step", "0");
   await press(page, ACTIONS);
   assert.notDeepEqual(await shownBits(page), state);
 
   await page.click("#defaults");
   assert.equal(await page.inputValue("#mass1"), "1");
   await press(page, ACTIONS);
-  assert.deepEqual(await shownBits(page), trace("42", ACTIONS).at(-1));
+  await showsBits(page, trace("42", ACTIONS).at(-1));
 });
 
 onPage("a tiny time step does not freeze the page", async (page) => {
@@ -204,16 +204,16 @@ test("a link replays a run, and an invalid link is rejected", async () => {
   await open({ hash }, async (page) => {
     await page.selectOption("#pace", "4");
     await says(page, "#status", /^The replay has ended\.$/);
-    assert.deepEqual(await shownBits(page), state);
+    await showsBits(page, state);
     assert.equal(await page.inputValue("#length2"), "1.5");
   });
   await open({ hash: "#seed=7" }, async (page) => {
     await says(page, "#pause", /^Play$/);
-    assert.equal(await text(page, "#status"), "The link has no actions.");
+    await shows(page, "#status", "The link has no actions.");
     assert.equal(await page.inputValue("#seed"), "7");
   });
   await open({ hash: "#seed=4&mass1=0" }, async (page) => {
-    assert.equal(await text(page, "#link-reason"), "mass1 must be finite and above 0 kg, got 0");
+    await shows(page, "#link-reason", "mass1 must be finite and above 0 kg, got 0");
     assert.equal(await page.inputValue("#seed"), "42");
     assert.equal(await page.inputValue("#mass1"), "1");
   });
@@ -290,13 +290,13 @@ onPage("loaded weights reach the goal, and invalid ones are rejected", async (pa
   await says(page, "#training-status", /^policy\.bin is loaded\.$/);
   await page.fill("#seed", "1");
   await steps(page, 200);
-  assert.equal(await text(page, "#verdict"), "101 steps");
+  await shows(page, "#verdict", "101 steps");
   for (const [episodes, seed] of [["0", "1"], ["1.5", "1"], ["1e9", "1"], ["10", "x"]]) {
     await page.fill("#episodes", episodes);
     await page.fill("#training-seed", seed);
     await page.click("#train");
     assert.match(await text(page, "#training-reason"), / must be /);
-    assert.equal(await text(page, "#train"), "Train");
+    await shows(page, "#train", "Train");
   }
 });
 
@@ -313,11 +313,11 @@ for (const [missing, message, options] of [
 
 const calm = { ...inChromium, reducedMotion: "reduce" };
 onPage("with reduced motion the page begins paused and moves step by step", calm, async (page) => {
-  assert.equal(await text(page, "#pause"), "Play");
+  await shows(page, "#pause", "Play");
   assert.match(await text(page, "#between"), /Reduced motion/);
   assert.match(await text(page, "#status"), /^Press Play/);
   await page.waitForTimeout(500);
-  assert.equal(await text(page, "#step"), "0");
+  await shows(page, "#step", "0");
 });
 
 onPage("the fewest steps are those of who played, with these parameters", async (page) => {
@@ -325,22 +325,22 @@ onPage("the fewest steps are those of who played, with these parameters", async 
   await page.selectOption("#policy", "bang_bang");
   await steps(page, 200);
   const best = await text(page, "#best");
-  assert.equal(await text(page, "#verdict"), `${best} steps`);
-  assert.equal(await text(page, "#status"), "The episode has ended. Press Restart or Next seed.");
-  assert.equal(await text(page, "#best-label"), "Fewest steps of Bang-bang");
+  await shows(page, "#verdict", `${best} steps`);
+  await shows(page, "#status", "The episode has ended. Press Restart or Next seed.");
+  await shows(page, "#best-label", "Fewest steps of Bang-bang");
   await page.selectOption("#policy", "keys");
-  assert.equal(await text(page, "#best"), "–");
-  assert.equal(await text(page, "#best-label"), "Your fewest steps");
+  await shows(page, "#best", "–");
+  await shows(page, "#best-label", "Your fewest steps");
   await page.selectOption("#policy", "bang_bang");
   await page.fill("#gravity", "9");
-  assert.equal(await text(page, "#best"), "–");
+  await shows(page, "#best", "–");
   await page.click("#defaults");
-  assert.equal(await text(page, "#best"), best);
+  await shows(page, "#best", best);
   // An episode that two have played counts for nobody.
   await page.selectOption("#policy", "keys");
   await press(page, [2]);
   await page.selectOption("#policy", "energy_law");
   await steps(page, 200);
   assert.match(await text(page, "#verdict"), /steps$/);
-  assert.equal(await text(page, "#best"), "–");
+  await shows(page, "#best", "–");
 });

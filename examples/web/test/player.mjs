@@ -93,6 +93,15 @@ export const shownBits = async (page) => {
   });
 };
 
+/** Asserts what an element's text is. */
+export async function shows(page, selector, expected) {
+  assert.equal(await text(page, selector), expected);
+}
+
+export async function showsBits(page, expected) {
+  assert.deepEqual(await shownBits(page), expected);
+}
+
 /** Pauses the page in the initial state of a seed, and lets the keys play. */
 export async function paused(page, seed) {
   await page.selectOption("#policy", "keys");

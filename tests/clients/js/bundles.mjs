@@ -1,5 +1,4 @@
-// Bundles a program with each bundler, in each format, with and without minifying, and runs the
-// bundles in Node.js.
+// Bundles a program with each bundler, in each format, minified or not, and runs the bundles.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

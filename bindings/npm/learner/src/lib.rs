@@ -63,8 +63,7 @@ pub extern "C" fn train() -> f32 {
     })
 }
 
-/// Writes the weights into the buffer, in the format of `swing_up --save`. Returns the number of
-/// bytes.
+/// Writes the weights into the buffer, as `swing_up --save` does, and returns their length.
 #[unsafe(no_mangle)]
 pub extern "C" fn save() -> usize {
     TRAINING.with_borrow(|training| {
