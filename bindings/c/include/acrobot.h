@@ -2,11 +2,12 @@
 //
 // - You provide the memory, and may reuse it at any time. No function allocates.
 // - No function aborts or has global state. One that can fail returns an acrobot_status_t. Unless
-//   it is ACROBOT_OK, no acrobot has changed, nor a result, if its comment says nothing else.
+//   it is ACROBOT_OK, acrobots and results are unchanged, if its comment says nothing else.
 // - A pointer must be null or point to what its type says; `error` may always be null. The
 //   functions report null, misaligned pointers and zeroed memory, but not freed memory.
 // - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
 //   and a result or error that would overwrite the acrobot or the batch.
+// - Arrays have `count` elements, one for each acrobot.
 // - Threads and interrupts may use different acrobots at the same time. Sharing one takes a lock.
 
 
@@ -78,21 +79,21 @@
 typedef enum {
   // The function has done its work.
   ACROBOT_OK = 0,
-  // A pointer is null that must not be null.
+  // A pointer is null that must not be.
   ACROBOT_ERROR_NULL = 1,
-  // A pointer is not aligned as its type demands; memory for a batch by ACROBOT_BATCH_ALIGN.
+  // A pointer is not aligned as its type demands; a batch needs ACROBOT_BATCH_ALIGN.
   ACROBOT_ERROR_MISALIGNED = 2,
-  // The memory has fewer bytes than the batch needs.
+  // The memory is too small for the batch.
   ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
-  // The memory was not initialized by the `_init` function of its type, or has been overwritten.
+  // No `_init` function has initialized the memory, or it has been overwritten.
   ACROBOT_ERROR_NOT_INITIALIZED = 4,
-  // The memory of a batch was copied to another address.
+  // The batch was copied to another address.
   ACROBOT_ERROR_MOVED = 5,
   // The action is not 0, 1 or 2.
   ACROBOT_ERROR_UNKNOWN_ACTION = 6,
   // A number is outside its range, infinite or NaN. An argument `error` says which.
   ACROBOT_ERROR_OUT_OF_RANGE = 7,
-  // The count is not that of the batch's acrobots, or a new batch would have none.
+  // The count is 0, or not that of the batch.
   ACROBOT_ERROR_WRONG_COUNT = 8,
   // The index is not below the count.
   ACROBOT_ERROR_NO_SUCH_INDEX = 9,
@@ -100,8 +101,8 @@ typedef enum {
   ACROBOT_ERROR_OVERLAP = 10,
 } acrobot_status_t;
 
-// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into
-// this memory, so do not move or copy it.
+// A batch of acrobots in the memory of acrobot_batch_init. It contains pointers into this memory,
+// so do not move or copy it.
 typedef struct acrobot_batch_t acrobot_batch_t;
 
 // One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or
@@ -200,7 +201,7 @@ typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
 } acrobot_action_space_t;
 
-// Where acrobot_batch_step writes. Each array has one element for each acrobot.
+// Where acrobot_batch_step writes.
 typedef struct {
   // −1, or 0 if the acrobot terminated or was only reset.
   float *rewards;
@@ -211,7 +212,7 @@ typedef struct {
   // The observations of the new states; null if you do not need them.
   acrobot_observation_t *observations;
   // With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step
-  // ended. Elements of other acrobots are not written. Null if you do not need them.
+  // ended; other elements are not written. Null if you do not need them.
   acrobot_observation_t *final_observations;
 } acrobot_batch_results_t;
 
@@ -222,8 +223,8 @@ extern "C" {
 // The text of a status, in English, also of an unknown one. It is constant: do not free it.
 const char *acrobot_status_text(int status);
 
-// Makes an acrobot with the default parameters, in the initial state of Gymnasium's
-// `reset(seed=seed)`. A second call starts from scratch.
+// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`. A
+// second call starts from scratch.
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
 
 // Draws the next initial state and begins an episode. `observation` may be null.
@@ -244,9 +245,8 @@ acrobot_status_t acrobot_reset_within(acrobot_t *acrobot,
                                       acrobot_observation_t *observation,
                                       acrobot_error_t *error);
 
-// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or
-// ACROBOT_ACTION_POSITIVE. When the episode has ended, call acrobot_reset; otherwise the acrobot
-// steps on, as in Gymnasium.
+// Applies the torque of an action, one of the ACROBOT_ACTION numbers, for one dt. When the episode
+// has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 acrobot_status_t acrobot_step(acrobot_t *acrobot, int action, acrobot_step_t *step);
 
 // Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
@@ -313,25 +313,24 @@ acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_spac
 // The bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
 size_t acrobot_batch_size(size_t count);
 
-// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default
-// parameters and is in its initial state. Acrobot `i` is seeded with the `i`-th child of `seed`,
-// NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the address of the batch, and
-// must not point into the batch's own bytes.
+// Makes a batch of `count` acrobots in `memory`, which has `size` bytes, with the default
+// parameters and in initial states. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's
+// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address, and must not point
+// into its bytes.
 acrobot_status_t acrobot_batch_init(void *memory,
                                     size_t size,
                                     size_t count,
                                     uint64_t seed,
                                     acrobot_batch_t **batch);
 
-// Applies an action to each acrobot for one dt. `actions` and the arrays of `results` have `count`
-// elements, one for each acrobot. If one action is rejected, no acrobot steps, but `terminated`
-// and `truncated` become false.
+// Applies an action to each acrobot for one dt. If one is rejected, no acrobot steps, but
+// `terminated` and `truncated` become false.
 acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
                                     const uint8_t *actions,
                                     const acrobot_batch_results_t *results,
                                     size_t count);
 
-// Writes the observations of the states. The array has `count` elements, one for each acrobot.
+// Writes the observations of the states.
 acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
                                        acrobot_observation_t *observations,
                                        size_t count);
@@ -345,13 +344,11 @@ acrobot_status_t acrobot_batch_reset(acrobot_batch_t *batch);
 // As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
 acrobot_status_t acrobot_batch_reset_with_seed(acrobot_batch_t *batch, uint64_t seed);
 
-// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count`
-// elements, one for each acrobot. If a byte is neither true nor false, the function returns
-// ACROBOT_ERROR_OUT_OF_RANGE.
+// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. For a byte that is
+// neither true nor false it returns ACROBOT_ERROR_OUT_OF_RANGE.
 acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *mask, size_t count);
 
-// Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP,
-// ACROBOT_AUTORESET_SAME_STEP or ACROBOT_AUTORESET_DISABLED.
+// Sets when acrobots are reset whose episode has ended: one of the ACROBOT_AUTORESET numbers.
 acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
                                              int autoreset,
                                              acrobot_error_t *error);

@@ -32,14 +32,14 @@ pub const ACROBOT_AUTORESET_SAME_STEP: c_int = 1;
 /// They step on until acrobot_batch_reset_masked or another reset.
 pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 
-/// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into
-/// this memory, so do not move or copy it.
+/// A batch of acrobots in the memory of acrobot_batch_init. It contains pointers into this memory,
+/// so do not move or copy it.
 #[repr(align(64))]
 pub struct acrobot_batch_t {
     _header: [u8; HEADER],
 }
 
-/// Where acrobot_batch_step writes. Each array has one element for each acrobot.
+/// Where acrobot_batch_step writes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_batch_results_t {
@@ -52,7 +52,7 @@ pub struct acrobot_batch_results_t {
     /// The observations of the new states; null if you do not need them.
     pub observations: *mut acrobot_observation_t,
     /// With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step
-    /// ended. Elements of other acrobots are not written. Null if you do not need them.
+    /// ended; other elements are not written. Null if you do not need them.
     pub final_observations: *mut acrobot_observation_t,
 }
 
@@ -114,10 +114,10 @@ pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
         .saturating_add(HEADER)
 }
 
-/// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default
-/// parameters and is in its initial state. Acrobot `i` is seeded with the `i`-th child of `seed`,
-/// NumPy's `SeedSequence(seed).spawn(count)[i]`. `batch` receives the address of the batch, and
-/// must not point into the batch's own bytes.
+/// Makes a batch of `count` acrobots in `memory`, which has `size` bytes, with the default
+/// parameters and in initial states. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's
+/// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address, and must not point
+/// into its bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,
@@ -158,9 +158,8 @@ pub unsafe extern "C" fn acrobot_batch_init(
     })
 }
 
-/// Applies an action to each acrobot for one dt. `actions` and the arrays of `results` have `count`
-/// elements, one for each acrobot. If one action is rejected, no acrobot steps, but `terminated`
-/// and `truncated` become false.
+/// Applies an action to each acrobot for one dt. If one is rejected, no acrobot steps, but
+/// `terminated` and `truncated` become false.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_step(
     batch: *mut acrobot_batch_t,
@@ -200,7 +199,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
     })
 }
 
-/// Writes the observations of the states. The array has `count` elements, one for each acrobot.
+/// Writes the observations of the states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_observe(
     batch: *const acrobot_batch_t,
@@ -246,9 +245,8 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     })
 }
 
-/// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count`
-/// elements, one for each acrobot. If a byte is neither true nor false, the function returns
-/// ACROBOT_ERROR_OUT_OF_RANGE.
+/// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. For a byte that is
+/// neither true nor false it returns ACROBOT_ERROR_OUT_OF_RANGE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_masked(
     batch: *mut acrobot_batch_t,
@@ -268,8 +266,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
     })
 }
 
-/// Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP,
-/// ACROBOT_AUTORESET_SAME_STEP or ACROBOT_AUTORESET_DISABLED.
+/// Sets when acrobots are reset whose episode has ended: one of the ACROBOT_AUTORESET numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     batch: *mut acrobot_batch_t,

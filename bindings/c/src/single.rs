@@ -31,8 +31,8 @@ impl Holder for acrobot_t {
 
 const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
-/// Makes an acrobot with the default parameters, in the initial state of Gymnasium's
-/// `reset(seed=seed)`. A second call starts from scratch.
+/// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`. A
+/// second call starts from scratch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
     status(|| Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))))
@@ -79,9 +79,8 @@ pub unsafe extern "C" fn acrobot_reset_within(
     })
 }
 
-/// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or
-/// ACROBOT_ACTION_POSITIVE. When the episode has ended, call acrobot_reset; otherwise the acrobot
-/// steps on, as in Gymnasium.
+/// Applies the torque of an action, one of the ACROBOT_ACTION numbers, for one dt. When the episode
+/// has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step(
     acrobot: *mut acrobot_t,

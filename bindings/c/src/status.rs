@@ -10,21 +10,21 @@ use acrobot::physics::control::ControlError;
 pub enum acrobot_status_t {
     /// The function has done its work.
     ACROBOT_OK = 0,
-    /// A pointer is null that must not be null.
+    /// A pointer is null that must not be.
     ACROBOT_ERROR_NULL = 1,
-    /// A pointer is not aligned as its type demands; memory for a batch by ACROBOT_BATCH_ALIGN.
+    /// A pointer is not aligned as its type demands; a batch needs ACROBOT_BATCH_ALIGN.
     ACROBOT_ERROR_MISALIGNED = 2,
-    /// The memory has fewer bytes than the batch needs.
+    /// The memory is too small for the batch.
     ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
-    /// The memory was not initialized by the `_init` function of its type, or has been overwritten.
+    /// No `_init` function has initialized the memory, or it has been overwritten.
     ACROBOT_ERROR_NOT_INITIALIZED = 4,
-    /// The memory of a batch was copied to another address.
+    /// The batch was copied to another address.
     ACROBOT_ERROR_MOVED = 5,
     /// The action is not 0, 1 or 2.
     ACROBOT_ERROR_UNKNOWN_ACTION = 6,
     /// A number is outside its range, infinite or NaN. An argument `error` says which.
     ACROBOT_ERROR_OUT_OF_RANGE = 7,
-    /// The count is not that of the batch's acrobots, or a new batch would have none.
+    /// The count is 0, or not that of the batch.
     ACROBOT_ERROR_WRONG_COUNT = 8,
     /// The index is not below the count.
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,

@@ -158,7 +158,7 @@ export class Batch extends Kept {
     let given = actions;
     // The module can check bytes.
     if (!isBytes(actions) || actions.byteLength !== this.#count) {
-      // Reading others can run code that frees the batch or makes the memory grow: first.
+      // Reading others can run code that frees the batch or makes memory grow, so it comes first.
       given = elements("actions", actions, this.#count, isAction, ACTION);
     }
     const address = this.#address;
