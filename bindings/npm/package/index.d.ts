@@ -35,15 +35,15 @@ export interface State {
 export interface Params {
   /** Length of link 1, m; above 0. Default: 1. */
   length1: number;
-  /** Length of link 2, m; as `length1`. It changes only the tip's height and pictures. */
+  /** As `length1`, of link 2. It changes only the tip's height and pictures. */
   length2: number;
   /** Mass of link 1, kg; above 0. Default: 1. */
   mass1: number;
-  /** Mass of link 2, kg; as `mass1`. */
+  /** As `mass1`, of link 2. */
   mass2: number;
   /** Distance of link 1's centre of mass from its joint, m; 0 or more. Default: 0.5. */
   centerOfMass1: number;
-  /** Distance of link 2's centre of mass from its joint, m; as `centerOfMass1`. */
+  /** As `centerOfMass1`, of link 2. */
   centerOfMass2: number;
   /** Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more. Default: 1. */
   inertia1: number;
@@ -55,7 +55,7 @@ export interface Params {
   dt: number;
   /** Bound of |dtheta1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default: 4π. */
   maxVelocity1: number;
-  /** Bound of |dtheta2|, as `maxVelocity1`. Default: 9π. */
+  /** As `maxVelocity1`, of dtheta2. Default: 9π. */
   maxVelocity2: number;
   /** Torques of the three actions, N m, counter-clockwise; finite. Default: [-1, 0, 1]. */
   torques: readonly [number, number, number];
@@ -164,15 +164,15 @@ export interface BatchOptions extends Options {
 
 /**
  * Arrays with an element, or a row of six numbers, for each acrobot. The next step overwrites them,
- * or makes new ones if you have transferred them to another thread.
+ * or makes new ones if these were transferred to another thread.
  */
 export interface BatchStep {
   observations: Float32Array;
   /** −1, or 0 if the acrobot terminated or was only reset. */
   rewards: Float32Array;
-  /** 1 if the goal is reached, otherwise 0. */
+  /** 1 at the goal, otherwise 0. */
   terminated: Uint8Array;
-  /** 1 if the episode has reached `maxSteps`, otherwise 0. */
+  /** 1 after `maxSteps` steps, otherwise 0. */
   truncated: Uint8Array;
   /** 1 if either is; with "Disabled", until the step after the reset. For `resetMasked`. */
   ended: Uint8Array;
@@ -202,7 +202,7 @@ export class Batch extends Kept {
    * episode continues: −1 a step, 0 at the goal.
    */
   step(actions: ArrayLike<number>): BatchStep;
-  /** A random action for each acrobot, from `Math.random`: a new array. */
+  /** As `Acrobot.sample`, for each acrobot: a new array. */
   sample(): Uint8Array;
   /** The state of an acrobot: a frozen copy. */
   state(index: number): Readonly<State>;
@@ -224,7 +224,7 @@ export class Batch extends Kept {
   draw(context: Context, index: number, options?: DrawOptions): void;
 }
 
-/** The WebAssembly module inside this file, for a program that compiles it elsewhere. */
+/** The WebAssembly module inside this file, to compile it elsewhere. */
 export function moduleBytes(): Uint8Array;
 
 /** Takes the compiled `WebAssembly.Module` before the first acrobot, where code may not compile. */
