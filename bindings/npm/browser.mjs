@@ -1,5 +1,6 @@
-// Serves a folder, and launches a browser without a window: for the tests of the package, and of the page in ../../examples/web. The browser is Debian's
-// Chromium by Playwright, or with `ENGINE=firefox` or `webkit` one by WebDriver.
+// Serves a folder, and launches a browser without a window: for the tests of the package, and of
+// the page in ../../examples/web. The browser is Debian's Chromium by Playwright, or with
+// `ENGINE=firefox` or `webkit` one by WebDriver.
 
 import { context } from "esbuild";
 import { chromium } from "playwright-core";

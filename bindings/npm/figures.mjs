@@ -1,4 +1,4 @@
-// Prints the package's rows of docs/wasm.md: sizes, and steps per second in Node.js. Builds the package first.
+// Builds the package, and prints its rows of docs/wasm.md: sizes, and steps per second in Node.js.
 
 import { execFileSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
@@ -37,7 +37,8 @@ const size = (path) => {
   const code = readFileSync(path);
   return `${kilobytes(code.length)}, with gzip ${kilobytes(gzipSync(code).length)}`;
 };
-const [{ size: packed, unpackedSize }] = JSON.parse(execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"], { encoding: "utf8" }));
+const report = execFileSync("npm", ["pack", "--json", "--dry-run", "./dist"]);
+const [{ size: packed, unpackedSize }] = JSON.parse(report);
 console.log(`
 | on one core, in Node.js ${process.versions.node.split(".")[0]} | |
 |---|---|

@@ -7,13 +7,19 @@ import { DriverService } from "selenium-webdriver/remote/index.js";
 const ENGINES = {
   firefox: {
     program: "geckodriver",
-    capabilities: { browserName: "firefox", "moz:firefoxOptions": { binary: "/usr/bin/firefox-esr" } },
+    capabilities: {
+      browserName: "firefox",
+      "moz:firefoxOptions": { binary: "/usr/bin/firefox-esr" },
+    },
   },
   webkit: {
     program: "WebKitWebDriver",
     capabilities: {
       browserName: "MiniBrowser",
-      "webkitgtk:browserOptions": { binary: "/usr/lib/x86_64-linux-gnu/webkit2gtk-4.1/MiniBrowser", args: ["--automation"] },
+      "webkitgtk:browserOptions": {
+        binary: "/usr/lib/x86_64-linux-gnu/webkit2gtk-4.1/MiniBrowser",
+        args: ["--automation"],
+      },
     },
   },
 };
@@ -25,7 +31,8 @@ const KEYS = { ArrowLeft: "\uE012", ArrowRight: "\uE014", Space: " " };
 export async function launch(engine) {
   const { program, capabilities } = ENGINES[engine];
   const service = new DriverService.Builder(program).setLoopback(true).build();
-  const driver = await new Builder().usingServer(await service.start()).withCapabilities(new Capabilities(capabilities)).build();
+  const builder = new Builder().usingServer(await service.start());
+  const driver = await builder.withCapabilities(new Capabilities(capabilities)).build();
   await driver.manage().setTimeouts({ script: 30_000 });
   const close = async () => {
     await driver.quit();
@@ -36,13 +43,16 @@ export async function launch(engine) {
 
 function page(driver) {
   const find = (selector) => driver.findElement(By.css(selector));
-  const evaluate = (code, argument) => driver.executeScript(`return (${code})(arguments[0])`, argument);
-  const setValue = async (selector, value) => {
-    const input = await find(selector);
-    const set = `const [input, value] = arguments; input.focus(); input.value = value;
-      for (const name of ["input", "change"]) input.dispatchEvent(new Event(name, { bubbles: true }));`;
-    await driver.executeScript(set, input, value);
-  };
+  const evaluate = (code, argument) =>
+    driver.executeScript(`return (${code})(arguments[0])`, argument);
+  const setValue = (selector, value) =>
+    evaluate(([selector, value]) => {
+      const input = document.querySelector(selector);
+      input.focus();
+      input.value = value;
+      input.dispatchEvent(new Event("input", { bubbles: true }));
+      input.dispatchEvent(new Event("change", { bubbles: true }));
+    }, [selector, value]);
   const key = (name) => KEYS[name] ?? name;
   return {
     goto: async (url) => {
@@ -59,7 +69,8 @@ function page(driver) {
     inputValue: async (selector) => (await find(selector)).getProperty("value"),
     getAttribute: async (selector, name) => (await find(selector)).getDomAttribute(name),
     waitForSelector: (selector) => driver.wait(until.elementLocated(By.css(selector)), 30_000),
-    waitForFunction: (code, argument) => driver.wait(() => evaluate(code, argument), 30_000, String(code)),
+    waitForFunction: (code, argument) =>
+      driver.wait(() => evaluate(code, argument), 30_000, String(code)),
     waitForTimeout: (time) => driver.sleep(time),
     setInputFiles: async (selector, path) => (await find(selector)).sendKeys(path),
     keyboard: {

@@ -1,4 +1,4 @@
-// Prints to standard output on a host, and through the debugger on a microcontroller (semihosting.c).
+// Prints to standard output on a host, and by semihosting.c on a microcontroller.
 
 #ifndef CONSOLE_H
 #define CONSOLE_H

@@ -16,7 +16,8 @@ int main(void)
     }
     while (status == ACROBOT_OK) {
         // Torque against the velocity of link 1.
-        int action = step.observation.dtheta1 > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
+        float velocity = step.observation.dtheta1;
+        int action = velocity > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
         status = acrobot_step(&acrobot, action, &step);
         if (status == ACROBOT_OK && (step.terminated || step.truncated)) {
             break;

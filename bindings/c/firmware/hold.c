@@ -3,7 +3,8 @@
 #include "acrobot.h"
 #include "console.h"
 
-static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1f, 0, 0, 0}, WEIGHTS = {1, 1, 1, 1};
+static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, LEANING = {3.1f, 0, 0, 0};
+static const acrobot_state_t WEIGHTS = {1, 1, 1, 1};
 static const float LIMIT = 10;
 
 static acrobot_t acrobot; // stands for the machine
@@ -30,7 +31,8 @@ int main(void)
     }
     for (int tick = 0; tick < 1000 && status == ACROBOT_OK; tick++) {
         status = acrobot_deviation(&acrobot, &UPRIGHT, &x);
-        float torque = -(gain.theta1 * x.theta1 + gain.theta2 * x.theta2 + gain.dtheta1 * x.dtheta1 + gain.dtheta2 * x.dtheta2);
+        float torque = -(gain.theta1 * x.theta1 + gain.theta2 * x.theta2 +
+                         gain.dtheta1 * x.dtheta1 + gain.dtheta2 * x.dtheta2);
         torque = torque > LIMIT ? LIMIT : torque < -LIMIT ? -LIMIT : torque;
         if (status == ACROBOT_OK) {
             status = acrobot_step_torque(&acrobot, torque, &step, NULL);

@@ -1,4 +1,4 @@
-// Semihosting: the debugger, here QEMU, prints and ends the program. On a board without a debugger, print by a UART.
+// Semihosting: the debugger, here QEMU, prints and ends the program. Without one, print by a UART.
 
 #include "console.h"
 

@@ -1,4 +1,4 @@
-// What runs before `main`: the vector table, the FPU and the sections of RAM. Your board's SDK has its own.
+// What runs before `main`: vectors, FPU and the sections of RAM. Your board's SDK has its own.
 
 #include "console.h"
 
@@ -18,7 +18,7 @@ static void fault(void)
 void reset(void)
 {
 #ifdef __ARM_FP
-    // Coprocessor Access Control Register: full access to the FPU, before the first instruction that uses it.
+    // Coprocessor Access Control Register: full access to the FPU, before it is used.
     volatile uint32_t *cpacr = (volatile uint32_t *)0xE000ED88;
     *cpacr |= 0xFu << 20;
     __asm__ volatile("dsb\nisb");

@@ -1,4 +1,4 @@
-// A batch in static memory: a rejected parameter, and how many episodes end under torque against link 1's velocity.
+// A batch in static memory: a rejected parameter, and how many episodes a policy ends.
 
 #include <stdio.h>
 
@@ -47,7 +47,8 @@ int main(void)
     }
     for (int step = 0; step < 1000; step++) {
         for (int i = 0; i < COUNT; i++) {
-            actions[i] = observations[i].dtheta1 > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
+            float velocity = observations[i].dtheta1;
+            actions[i] = velocity > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
         }
         status = acrobot_batch_step(batch, actions, &results, COUNT);
         if (status != ACROBOT_OK) {

@@ -1,12 +1,13 @@
-// Gymnasium's Acrobot in C and C++: one acrobot, or a batch, in single precision and with the limit of 500 steps.
+// Gymnasium's Acrobot in C and C++: one or a batch, in single precision, at most 500 steps.
 //
-// - You provide the memory, and may reuse it at any time. No function allocates, and there is nothing to free.
-// - No function aborts or has global state. A function that can fail returns an acrobot_status_t. Unless it is
-//   ACROBOT_OK, no acrobot has changed, and results are as before the call if the function's comment says nothing else.
-// - A pointer must be null or point to what its type says. The functions report pointers that are null or misaligned,
-//   and zeroed memory that no acrobot_init has seen. They cannot detect a pointer to freed memory.
-// - The arguments of a call, and arrays of a struct, must not overlap. The functions report a result or error that would
-//   overwrite the acrobot or the batch, and arrays that overlap.
+// - You provide the memory, and may reuse it at any time. No function allocates.
+// - No function aborts or has global state. One that can fail returns an acrobot_status_t. Unless
+//   it is ACROBOT_OK, acrobots and results are unchanged, if its comment says nothing else.
+// - A pointer must be null or point to what its type says; `error` may always be null. The
+//   functions report null, misaligned pointers and zeroed memory, but not freed memory.
+// - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
+//   and a result or error that would overwrite the acrobot or the batch.
+// - Arrays have `count` elements, one for each acrobot.
 // - Threads and interrupts may use different acrobots at the same time. Sharing one takes a lock.
 
 
@@ -23,7 +24,7 @@
 #if defined(_MSC_VER)
 #define ACROBOT_ALIGNED(bytes) __declspec(align(bytes))
 #else
-// Aligns a type or a variable, in C99 too: ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[…];
+// Also in C99: ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[…];
 #define ACROBOT_ALIGNED(bytes) __attribute__((aligned(bytes)))
 #endif
 #endif
@@ -48,7 +49,7 @@
 // The equations of Sutton & Barto's book: the physical double pendulum. Gymnasium's default.
 #define ACROBOT_DYNAMICS_BOOK 0
 
-// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is not conserved.
+// The equations of Sutton's paper of 1996 (NIPS 8), which do not conserve energy.
 #define ACROBOT_DYNAMICS_NIPS 1
 
 // The bytes of an acrobot_t: the most that any target needs.
@@ -63,36 +64,36 @@
 // The alignment of the memory for a batch, bytes.
 #define ACROBOT_BATCH_ALIGN 64
 
-// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
-// observation and a reward of 0. The default, as in Gymnasium.
+// Acrobots whose episode has ended are reset in the next step, which ignores its action and
+// returns the initial observation and a reward of 0. The default, as in Gymnasium.
 #define ACROBOT_AUTORESET_NEXT_STEP 0
 
-// They are reset in the step that ends the episode. It returns the initial observation of the next episode, and the
-// last one of the ended episode in `final_observations`.
+// They are reset in the step that ends the episode. It returns the initial observation of the next
+// episode, and the last one of the ended episode in `final_observations`.
 #define ACROBOT_AUTORESET_SAME_STEP 1
 
 // They step on until acrobot_batch_reset_masked or another reset.
 #define ACROBOT_AUTORESET_DISABLED 2
 
 // What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
-typedef enum acrobot_status_t {
+typedef enum {
   // The function has done its work.
   ACROBOT_OK = 0,
-  // A pointer is null that must not be null.
+  // A pointer is null that must not be.
   ACROBOT_ERROR_NULL = 1,
-  // A pointer is not aligned as its type demands; memory for a batch by ACROBOT_BATCH_ALIGN.
+  // A pointer is not aligned as its type demands; a batch needs ACROBOT_BATCH_ALIGN.
   ACROBOT_ERROR_MISALIGNED = 2,
-  // The memory has fewer bytes than the batch needs.
+  // The memory is too small for the batch.
   ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
-  // The memory was not initialized by the `_init` function of its type, or has been overwritten.
+  // No `_init` function has initialized the memory, or it has been overwritten.
   ACROBOT_ERROR_NOT_INITIALIZED = 4,
-  // The memory of a batch was copied to another address.
+  // The batch was copied to another address.
   ACROBOT_ERROR_MOVED = 5,
   // The action is not 0, 1 or 2.
   ACROBOT_ERROR_UNKNOWN_ACTION = 6,
-  // A number is outside its range, infinite or NaN. The argument `error` of the function, if it has one, names it.
+  // A number is outside its range, infinite or NaN. An argument `error` says which.
   ACROBOT_ERROR_OUT_OF_RANGE = 7,
-  // The count is not that of the batch's acrobots, or a new batch would have none.
+  // The count is 0, or not that of the batch.
   ACROBOT_ERROR_WRONG_COUNT = 8,
   // The index is not below the count.
   ACROBOT_ERROR_NO_SUCH_INDEX = 9,
@@ -100,19 +101,19 @@ typedef enum acrobot_status_t {
   ACROBOT_ERROR_OVERLAP = 10,
 } acrobot_status_t;
 
-// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
-// not move or copy it.
+// A batch of acrobots in the memory of acrobot_batch_init. It contains pointers into this memory,
+// so do not move or copy it.
 typedef struct acrobot_batch_t acrobot_batch_t;
 
-// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
-// call acrobot_init before any other function. It contains no pointer, so you may copy and move it.
-typedef struct ACROBOT_ALIGNED(16) acrobot_t {
+// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or
+// into a struct, and call acrobot_init first. It contains no pointer: you may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
 
-// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine of each angle of the
-// acrobot_state_t, and its angular velocities, rad/s.
-typedef struct acrobot_observation_t {
+// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine
+// of each angle of the acrobot_state_t, and its angular velocities, rad/s.
+typedef struct {
   float cos_theta1;
   float sin_theta1;
   float cos_theta2;
@@ -121,9 +122,10 @@ typedef struct acrobot_observation_t {
   float dtheta2;
 } acrobot_observation_t;
 
-// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
-// with a zero byte. Print it by `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
-typedef struct acrobot_error_t {
+// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The
+// texts are UTF-8 and end with a zero byte. Print it by `printf("%s must be %s, got %g",
+// error.name, error.rule, error.value)`.
+typedef struct {
   // The value that was rejected, in `unit`.
   double value;
   // The field or argument: `"dt"`.
@@ -135,9 +137,9 @@ typedef struct acrobot_error_t {
 } acrobot_error_t;
 
 // The result of a step.
-typedef struct acrobot_step_t {
+typedef struct {
   // The observation of the new state.
-  struct acrobot_observation_t observation;
+  acrobot_observation_t observation;
   // −1, or 0 if `terminated`.
   float reward;
   // Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
@@ -146,8 +148,8 @@ typedef struct acrobot_step_t {
   bool truncated;
 } acrobot_step_t;
 
-// A state. After a step the angles are within ±π and the velocities within their bounds. Each number must be finite.
-typedef struct acrobot_state_t {
+// A state of finite numbers. A step wraps the angles to ±π and bounds the velocities.
+typedef struct {
   // Angle of link 1, rad; 0 = hanging straight down, counter-clockwise positive.
   float theta1;
   // Angle of link 2 relative to link 1, rad; 0 = in line with it.
@@ -159,23 +161,23 @@ typedef struct acrobot_state_t {
 } acrobot_state_t;
 
 // Parameters, in SI units. To change one, read all with acrobot_params, and set them.
-typedef struct acrobot_params_t {
+typedef struct {
   // Length of link 1, m; above 0. Default 1.
   float length1;
   // Length of link 2, m; above 0. Default 1. Only the height of the tip depends on it.
   float length2;
   // Mass of link 1, kg; above 0. Default 1.
   float mass1;
-  // Mass of link 2, kg; above 0. Default 1.
+  // Mass of link 2, kg; as `mass1`.
   float mass2;
   // Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
   float center_of_mass1;
-  // Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
+  // Distance of link 2's centre of mass from its joint, m; as `center_of_mass1`.
   float center_of_mass2;
-  // Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on
-  // the joint. Default 1.
+  // Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
+  // centre of mass is on the joint. Default 1.
   float inertia1;
-  // Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
+  // As `inertia1`, of link 2.
   float inertia2;
   // Acceleration of gravity, m/s², downwards; finite. Default 9.8.
   float gravity;
@@ -185,22 +187,22 @@ typedef struct acrobot_params_t {
   float max_velocity1;
   // Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
   float max_velocity2;
-  // Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and 1.
+  // Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
   float torques[3];
-  // Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque; 0, the default,
-  // draws nothing.
+  // Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
+  // torque; 0, the default, draws nothing.
   float torque_noise;
   // The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
   int dynamics;
 } acrobot_params_t;
 
-// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it.
-typedef struct ACROBOT_ALIGNED(16) acrobot_action_space_t {
+// Draws random actions: Gymnasium's `action_space`. You may copy and move it.
+typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
 } acrobot_action_space_t;
 
-// Where acrobot_batch_step writes. Each array has one element for each acrobot.
-typedef struct acrobot_batch_results_t {
+// Where acrobot_batch_step writes.
+typedef struct {
   // −1, or 0 if the acrobot terminated or was only reset.
   float *rewards;
   // Whether the new state is a goal state.
@@ -208,175 +210,167 @@ typedef struct acrobot_batch_results_t {
   // Whether the limit of 500 steps is reached.
   bool *truncated;
   // The observations of the new states; null if you do not need them.
-  struct acrobot_observation_t *observations;
-  // With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step ended. Elements of other
-  // acrobots are not written. Null if you do not need them.
-  struct acrobot_observation_t *final_observations;
+  acrobot_observation_t *observations;
+  // With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step
+  // ended; other elements are not written. Null if you do not need them.
+  acrobot_observation_t *final_observations;
 } acrobot_batch_results_t;
 
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
 
-// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
+// The text of a status, in English, also of an unknown one. It is constant: do not free it.
 const char *acrobot_status_text(int status);
 
-// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
-// starts from scratch.
-enum acrobot_status_t acrobot_init(struct acrobot_t *acrobot,
-                                   uint64_t seed);
+// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`. A
+// second call starts from scratch.
+acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
 
 // Draws the next initial state and begins an episode. `observation` may be null.
-enum acrobot_status_t acrobot_reset(struct acrobot_t *acrobot,
-                                    struct acrobot_observation_t *observation);
+acrobot_status_t acrobot_reset(acrobot_t *acrobot, acrobot_observation_t *observation);
 
-// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode. `observation` may be null.
-enum acrobot_status_t acrobot_reset_with_seed(struct acrobot_t *acrobot,
-                                              uint64_t seed,
-                                              struct acrobot_observation_t *observation);
+// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode.
+// `observation` may be null.
+acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot,
+                                         uint64_t seed,
+                                         acrobot_observation_t *observation);
 
-// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and rad/s. The default
-// is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`. `observation` and `error` may be null.
-enum acrobot_status_t acrobot_reset_within(struct acrobot_t *acrobot,
-                                           double low,
-                                           double high,
-                                           struct acrobot_observation_t *observation,
-                                           struct acrobot_error_t *error);
+// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
+// rad/s. The default is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`.
+// `observation` may be null.
+acrobot_status_t acrobot_reset_within(acrobot_t *acrobot,
+                                      double low,
+                                      double high,
+                                      acrobot_observation_t *observation,
+                                      acrobot_error_t *error);
 
-// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
-// When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
-enum acrobot_status_t acrobot_step(struct acrobot_t *acrobot,
-                                   int action,
-                                   struct acrobot_step_t *step);
+// Applies the torque of an action, one of the ACROBOT_ACTION numbers, for one dt. When the episode
+// has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
+acrobot_status_t acrobot_step(acrobot_t *acrobot, int action, acrobot_step_t *step);
 
-// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it. `error` may be null.
-enum acrobot_status_t acrobot_step_torque(struct acrobot_t *acrobot,
-                                          float torque,
-                                          struct acrobot_step_t *step,
-                                          struct acrobot_error_t *error);
+// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
+acrobot_status_t acrobot_step_torque(acrobot_t *acrobot,
+                                     float torque,
+                                     acrobot_step_t *step,
+                                     acrobot_error_t *error);
 
 // The observation of the state.
-enum acrobot_status_t acrobot_observe(const struct acrobot_t *acrobot,
-                                      struct acrobot_observation_t *observation);
+acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t *observation);
 
 // The number of steps since the last reset.
-enum acrobot_status_t acrobot_elapsed(const struct acrobot_t *acrobot, uint32_t *steps);
+acrobot_status_t acrobot_elapsed(const acrobot_t *acrobot, uint32_t *steps);
 
 // The state.
-enum acrobot_status_t acrobot_state(const struct acrobot_t *acrobot, struct acrobot_state_t *state);
+acrobot_status_t acrobot_state(const acrobot_t *acrobot, acrobot_state_t *state);
 
-// Sets the state. The number of steps does not change. `error` may be null.
-enum acrobot_status_t acrobot_set_state(struct acrobot_t *acrobot,
-                                        const struct acrobot_state_t *state,
-                                        struct acrobot_error_t *error);
+// Sets the state. The number of steps does not change.
+acrobot_status_t acrobot_set_state(acrobot_t *acrobot,
+                                   const acrobot_state_t *state,
+                                   acrobot_error_t *error);
 
 // The parameters.
-enum acrobot_status_t acrobot_params(const struct acrobot_t *acrobot,
-                                     struct acrobot_params_t *params);
+acrobot_status_t acrobot_params(const acrobot_t *acrobot, acrobot_params_t *params);
 
-// Sets the parameters for the next steps. The state does not change. `error` may be null.
-enum acrobot_status_t acrobot_set_params(struct acrobot_t *acrobot,
-                                         const struct acrobot_params_t *params,
-                                         struct acrobot_error_t *error);
+// Sets the parameters for the next steps. The state does not change.
+acrobot_status_t acrobot_set_params(acrobot_t *acrobot,
+                                    const acrobot_params_t *params,
+                                    acrobot_error_t *error);
 
 // The total energy of the state, J.
-enum acrobot_status_t acrobot_energy(const struct acrobot_t *acrobot, float *energy);
+acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
 
 // The height of the tip above the fixed joint, m.
-enum acrobot_status_t acrobot_tip_height(const struct acrobot_t *acrobot, float *height);
+acrobot_status_t acrobot_tip_height(const acrobot_t *acrobot, float *height);
 
-// The deviation of the state from a finite `target`. Angles are wrapped to ±π, so it is continuous upright.
-enum acrobot_status_t acrobot_deviation(const struct acrobot_t *acrobot,
-                                        const struct acrobot_state_t *target,
-                                        struct acrobot_state_t *deviation);
+// The deviation of the state from a finite `target`, with angles wrapped to ±π.
+acrobot_status_t acrobot_deviation(const acrobot_t *acrobot,
+                                   const acrobot_state_t *target,
+                                   acrobot_state_t *deviation);
 
-// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at `target`, once for all. The
-// torque in each dt is −(gain.theta1 · x.theta1 + gain.theta2 · x.theta2 + gain.dtheta1 · x.dtheta1 + gain.dtheta2 ·
-// x.dtheta2) for a deviation x; clamp it to that of your motor.
+// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at
+// `target`. The torque in each dt is −gain · x for a deviation x, a sum of four products; clamp it
+// to that of your motor.
 //
-// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and accelerations of at most 0.01
-// rad/s². `q` has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` is that of the
-// squared torque, above 0, in 1/(N m)². Without a regulator for these and the parameters, for example without gravity,
-// the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
-enum acrobot_status_t acrobot_lqr(struct acrobot_t *acrobot,
-                                  const struct acrobot_state_t *target,
-                                  const struct acrobot_state_t *q,
-                                  float r,
-                                  struct acrobot_state_t *gain,
-                                  struct acrobot_error_t *error);
+// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
+// accelerations of at most 0.01 rad/s². `q` has the weights of the four squared deviations, 0 or
+// more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)².
+// Without a regulator for these and the parameters, for example without gravity, the status is
+// ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change.
+acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
+                             const acrobot_state_t *target,
+                             const acrobot_state_t *q,
+                             float r,
+                             acrobot_state_t *gain,
+                             acrobot_error_t *error);
 
 // Gymnasium's `action_space.seed(seed)`.
-enum acrobot_status_t acrobot_action_space_init(struct acrobot_action_space_t *action_space,
-                                                uint64_t seed);
+acrobot_status_t acrobot_action_space_init(acrobot_action_space_t *action_space, uint64_t seed);
 
 // Draws an action, all equally likely: Gymnasium's `action_space.sample()`.
-enum acrobot_status_t acrobot_action_space_sample(struct acrobot_action_space_t *action_space,
-                                                  uint8_t *action);
+acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_space, uint8_t *action);
 
-// The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if that is larger.
+// The bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
 size_t acrobot_batch_size(size_t count);
 
-// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
-// initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
-// `batch` receives the address of the batch, and must not point into the batch's own bytes.
-enum acrobot_status_t acrobot_batch_init(void *memory,
-                                         size_t size,
-                                         size_t count,
-                                         uint64_t seed,
-                                         struct acrobot_batch_t **batch);
+// Makes a batch of `count` acrobots in `memory`, which has `size` bytes, with the default
+// parameters and in initial states. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's
+// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address, and must not point
+// into its bytes.
+acrobot_status_t acrobot_batch_init(void *memory,
+                                    size_t size,
+                                    size_t count,
+                                    uint64_t seed,
+                                    acrobot_batch_t **batch);
 
-// Applies an action to each acrobot for one dt. `actions` and the arrays of `results` have `count` elements, one for
-// each acrobot. If one action is rejected, no acrobot steps, but `terminated` and `truncated` become false.
-enum acrobot_status_t acrobot_batch_step(struct acrobot_batch_t *batch,
-                                         const uint8_t *actions,
-                                         const struct acrobot_batch_results_t *results,
-                                         size_t count);
+// Applies an action to each acrobot for one dt. If one is rejected, no acrobot steps, but
+// `terminated` and `truncated` become false.
+acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
+                                    const uint8_t *actions,
+                                    const acrobot_batch_results_t *results,
+                                    size_t count);
 
-// Writes the observations of the states. The array has `count` elements, one for each acrobot.
-enum acrobot_status_t acrobot_batch_observe(const struct acrobot_batch_t *batch,
-                                            struct acrobot_observation_t *observations,
-                                            size_t count);
+// Writes the observations of the states.
+acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
+                                       acrobot_observation_t *observations,
+                                       size_t count);
 
 // The number of acrobots.
-enum acrobot_status_t acrobot_batch_count(const struct acrobot_batch_t *batch, size_t *count);
+acrobot_status_t acrobot_batch_count(const acrobot_batch_t *batch, size_t *count);
 
 // Draws the next initial state of each acrobot and begins their episodes.
-enum acrobot_status_t acrobot_batch_reset(struct acrobot_batch_t *batch);
+acrobot_status_t acrobot_batch_reset(acrobot_batch_t *batch);
 
 // As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
-enum acrobot_status_t acrobot_batch_reset_with_seed(struct acrobot_batch_t *batch, uint64_t seed);
+acrobot_status_t acrobot_batch_reset_with_seed(acrobot_batch_t *batch, uint64_t seed);
 
-// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count` elements, one for each
-// acrobot. If a byte is neither true nor false, the function returns ACROBOT_ERROR_OUT_OF_RANGE.
-enum acrobot_status_t acrobot_batch_reset_masked(struct acrobot_batch_t *batch,
-                                                 const bool *mask,
-                                                 size_t count);
+// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. For a byte that is
+// neither true nor false it returns ACROBOT_ERROR_OUT_OF_RANGE.
+acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *mask, size_t count);
 
-// Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP, ACROBOT_AUTORESET_SAME_STEP or
-// ACROBOT_AUTORESET_DISABLED. `error` may be null.
-enum acrobot_status_t acrobot_batch_set_autoreset(struct acrobot_batch_t *batch,
-                                                  int autoreset,
-                                                  struct acrobot_error_t *error);
+// Sets when acrobots are reset whose episode has ended: one of the ACROBOT_AUTORESET numbers.
+acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
+                                             int autoreset,
+                                             acrobot_error_t *error);
 
 // The state of acrobot `index`, counted from 0.
-enum acrobot_status_t acrobot_batch_state(const struct acrobot_batch_t *batch,
-                                          size_t index,
-                                          struct acrobot_state_t *state);
+acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,
+                                     size_t index,
+                                     acrobot_state_t *state);
 
-// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change. `error` may be null.
-enum acrobot_status_t acrobot_batch_set_state(struct acrobot_batch_t *batch,
-                                              size_t index,
-                                              const struct acrobot_state_t *state,
-                                              struct acrobot_error_t *error);
+// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change.
+acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
+                                         size_t index,
+                                         const acrobot_state_t *state,
+                                         acrobot_error_t *error);
 
 // The parameters of all acrobots.
-enum acrobot_status_t acrobot_batch_params(const struct acrobot_batch_t *batch,
-                                           struct acrobot_params_t *params);
+acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, acrobot_params_t *params);
 
-// Sets the parameters of all acrobots for the next steps. `error` may be null.
-enum acrobot_status_t acrobot_batch_set_params(struct acrobot_batch_t *batch,
-                                               const struct acrobot_params_t *params,
-                                               struct acrobot_error_t *error);
+// Sets the parameters of all acrobots for the next steps.
+acrobot_status_t acrobot_batch_set_params(acrobot_batch_t *batch,
+                                          const acrobot_params_t *params,
+                                          acrobot_error_t *error);
 
 #ifdef __cplusplus
 }  // extern "C"

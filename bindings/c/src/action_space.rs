@@ -11,7 +11,7 @@ use crate::status::{acrobot_status_t, status};
 /// The bytes of an acrobot_action_space_t.
 pub const ACROBOT_ACTION_SPACE_SIZE: usize = 64;
 
-/// Draws random actions: Gymnasium's `action_space`. It contains no pointer, so you may copy and move it.
+/// Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_action_space_t {
     bytes: [u8; ACROBOT_ACTION_SPACE_SIZE],

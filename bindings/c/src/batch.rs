@@ -17,29 +17,29 @@ pub const ACROBOT_BATCH_ALIGN: usize = 64;
 // cbindgen.toml has these numbers, too: ACROBOT_BATCH_SIZE.
 const HEADER: usize = 256;
 const GENERATOR: usize = 48;
-/// Acrobots that are stepped side by side. A microcontroller has no SIMD for floats, so it steps one after the other.
+/// Acrobots that are stepped side by side. Microcontrollers have no SIMD for floats.
 const LANES: usize = if usize::BITS == 64 { 16 } else { 1 };
 const BLOCK: usize = if usize::BITS == 64 { 640 } else { 64 };
 
-/// Acrobots whose episode has ended are reset in the next step, which ignores its action and returns the initial
-/// observation and a reward of 0. The default, as in Gymnasium.
+/// Acrobots whose episode has ended are reset in the next step, which ignores its action and
+/// returns the initial observation and a reward of 0. The default, as in Gymnasium.
 pub const ACROBOT_AUTORESET_NEXT_STEP: c_int = 0;
 
-/// They are reset in the step that ends the episode. It returns the initial observation of the next episode, and the
-/// last one of the ended episode in `final_observations`.
+/// They are reset in the step that ends the episode. It returns the initial observation of the next
+/// episode, and the last one of the ended episode in `final_observations`.
 pub const ACROBOT_AUTORESET_SAME_STEP: c_int = 1;
 
 /// They step on until acrobot_batch_reset_masked or another reset.
 pub const ACROBOT_AUTORESET_DISABLED: c_int = 2;
 
-/// A batch of acrobots in the memory that you gave to acrobot_batch_init. It contains pointers into this memory, so do
-/// not move or copy it.
+/// A batch of acrobots in the memory of acrobot_batch_init. It contains pointers into this memory,
+/// so do not move or copy it.
 #[repr(align(64))]
 pub struct acrobot_batch_t {
     _header: [u8; HEADER],
 }
 
-/// Where acrobot_batch_step writes. Each array has one element for each acrobot.
+/// Where acrobot_batch_step writes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_batch_results_t {
@@ -51,8 +51,8 @@ pub struct acrobot_batch_results_t {
     pub truncated: *mut bool,
     /// The observations of the new states; null if you do not need them.
     pub observations: *mut acrobot_observation_t,
-    /// With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step ended. Elements of other
-    /// acrobots are not written. Null if you do not need them.
+    /// With ACROBOT_AUTORESET_SAME_STEP, the last observations of the episodes that this step
+    /// ended; other elements are not written. Null if you do not need them.
     pub final_observations: *mut acrobot_observation_t,
 }
 
@@ -96,7 +96,7 @@ fn memory_of(batch: *const acrobot_batch_t, count: usize) -> Span {
     Span::new(batch.cast::<u8>(), acrobot_batch_size(count))
 }
 
-/// The number of bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), or SIZE_MAX if that is larger.
+/// The bytes that acrobot_batch_init needs: ACROBOT_BATCH_SIZE(count), but at most SIZE_MAX.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
     let blocks = count.div_ceil(LANES);
@@ -106,9 +106,10 @@ pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
         .saturating_add(HEADER)
 }
 
-/// Makes a batch of `count` acrobots in `memory`, which has `size` bytes. Each has the default parameters and is in its
-/// initial state. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's `SeedSequence(seed).spawn(count)[i]`.
-/// `batch` receives the address of the batch, and must not point into the batch's own bytes.
+/// Makes a batch of `count` acrobots in `memory`, which has `size` bytes, with the default
+/// parameters and in initial states. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's
+/// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address, and must not point
+/// into its bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_init(
     memory: *mut c_void,
@@ -146,8 +147,8 @@ pub unsafe extern "C" fn acrobot_batch_init(
     })
 }
 
-/// Applies an action to each acrobot for one dt. `actions` and the arrays of `results` have `count` elements, one for
-/// each acrobot. If one action is rejected, no acrobot steps, but `terminated` and `truncated` become false.
+/// Applies an action to each acrobot for one dt. If one is rejected, no acrobot steps, but
+/// `terminated` and `truncated` become false.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_step(
     batch: *mut acrobot_batch_t,
@@ -187,7 +188,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
     })
 }
 
-/// Writes the observations of the states. The array has `count` elements, one for each acrobot.
+/// Writes the observations of the states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_observe(
     batch: *const acrobot_batch_t,
@@ -233,8 +234,8 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     })
 }
 
-/// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. It has `count` elements, one for each
-/// acrobot. If a byte is neither true nor false, the function returns ACROBOT_ERROR_OUT_OF_RANGE.
+/// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. For a byte that is
+/// neither true nor false it returns ACROBOT_ERROR_OUT_OF_RANGE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_masked(
     batch: *mut acrobot_batch_t,
@@ -254,8 +255,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_masked(
     })
 }
 
-/// Sets when acrobots are reset whose episode has ended: ACROBOT_AUTORESET_NEXT_STEP, ACROBOT_AUTORESET_SAME_STEP or
-/// ACROBOT_AUTORESET_DISABLED. `error` may be null.
+/// Sets when acrobots are reset whose episode has ended: one of the ACROBOT_AUTORESET numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     batch: *mut acrobot_batch_t,
@@ -286,7 +286,7 @@ pub unsafe extern "C" fn acrobot_batch_state(
     })
 }
 
-/// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change. `error` may be null.
+/// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_state(
     batch: *mut acrobot_batch_t,
@@ -308,7 +308,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     get(batch, params, |placed| Ok(placed.batch.params_of(0).unwrap_or(Params::DEFAULT).into()))
 }
 
-/// Sets the parameters of all acrobots for the next steps. `error` may be null.
+/// Sets the parameters of all acrobots for the next steps.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_params(
     batch: *mut acrobot_batch_t,

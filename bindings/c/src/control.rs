@@ -8,7 +8,7 @@ use crate::memory::{change, check, get, read};
 use crate::single::acrobot_t;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t};
 
-/// The deviation of the state from a finite `target`. Angles are wrapped to ±π, so it is continuous upright.
+/// The deviation of the state from a finite `target`, with angles wrapped to ±π.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_deviation(
     acrobot: *const acrobot_t,
@@ -22,14 +22,15 @@ pub unsafe extern "C" fn acrobot_deviation(
     })
 }
 
-/// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at `target`, once for all. The
-/// torque in each dt is −(gain.theta1 · x.theta1 + gain.theta2 · x.theta2 + gain.dtheta1 · x.dtheta1 + gain.dtheta2 ·
-/// x.dtheta2) for a deviation x; clamp it to that of your motor.
+/// The gain of the linear-quadratic regulator that holds an acrobot with these parameters at
+/// `target`. The torque in each dt is −gain · x for a deviation x, a sum of four products; clamp it
+/// to that of your motor.
 ///
-/// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and accelerations of at most 0.01
-/// rad/s². `q` has the weights of the four squared deviations, 0 or more, in 1/rad² and s²/rad², and `r` is that of the
-/// squared torque, above 0, in 1/(N m)². Without a regulator for these and the parameters, for example without gravity,
-/// the status is ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change. `error` may be null.
+/// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
+/// accelerations of at most 0.01 rad/s². `q` has the weights of the four squared deviations, 0 or
+/// more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)².
+/// Without a regulator for these and the parameters, for example without gravity, the status is
+/// ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_lqr(
     acrobot: *mut acrobot_t,

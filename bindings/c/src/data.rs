@@ -19,11 +19,11 @@ pub const ACROBOT_ACTION_POSITIVE: c_int = 2;
 /// The equations of Sutton & Barto's book: the physical double pendulum. Gymnasium's default.
 pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 
-/// The equations of Sutton's paper of 1996 (NIPS 8), which lack a centrifugal term, so energy is not conserved.
+/// The equations of Sutton's paper of 1996 (NIPS 8), which do not conserve energy.
 pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
-/// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine of each angle of the
-/// acrobot_state_t, and its angular velocities, rad/s.
+/// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine
+/// of each angle of the acrobot_state_t, and its angular velocities, rad/s.
 #[repr(C)]
 pub struct acrobot_observation_t {
     pub cos_theta1: f32,
@@ -36,14 +36,9 @@ pub struct acrobot_observation_t {
 
 impl From<Observation> for acrobot_observation_t {
     fn from(observation: Observation) -> Self {
-        Self {
-            cos_theta1: observation.cos_theta1(),
-            sin_theta1: observation.sin_theta1(),
-            cos_theta2: observation.cos_theta2(),
-            sin_theta2: observation.sin_theta2(),
-            dtheta1: observation.dtheta1(),
-            dtheta2: observation.dtheta2(),
-        }
+        let [cos_theta1, sin_theta1, cos_theta2, sin_theta2, dtheta1, dtheta2] =
+            observation.to_array();
+        Self { cos_theta1, sin_theta1, cos_theta2, sin_theta2, dtheta1, dtheta2 }
     }
 }
 
@@ -71,7 +66,7 @@ impl From<Step> for acrobot_step_t {
     }
 }
 
-/// A state. After a step the angles are within ±π and the velocities within their bounds. Each number must be finite.
+/// A state of finite numbers. A step wraps the angles to ±π and bounds the velocities.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct acrobot_state_t {
@@ -87,12 +82,8 @@ pub struct acrobot_state_t {
 
 impl From<State<f32>> for acrobot_state_t {
     fn from(state: State<f32>) -> Self {
-        Self {
-            theta1: state.theta1,
-            theta2: state.theta2,
-            dtheta1: state.dtheta1,
-            dtheta2: state.dtheta2,
-        }
+        let [theta1, theta2, dtheta1, dtheta2] = state.into();
+        Self { theta1, theta2, dtheta1, dtheta2 }
     }
 }
 
@@ -112,16 +103,16 @@ pub struct acrobot_params_t {
     pub length2: f32,
     /// Mass of link 1, kg; above 0. Default 1.
     pub mass1: f32,
-    /// Mass of link 2, kg; above 0. Default 1.
+    /// Mass of link 2, kg; as `mass1`.
     pub mass2: f32,
     /// Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
     pub center_of_mass1: f32,
-    /// Distance of link 2's centre of mass from its joint, m; 0 or more. Default 0.5.
+    /// Distance of link 2's centre of mass from its joint, m; as `center_of_mass1`.
     pub center_of_mass2: f32,
-    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the centre of mass is on
-    /// the joint. Default 1.
+    /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
+    /// centre of mass is on the joint. Default 1.
     pub inertia1: f32,
-    /// Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`.
+    /// As `inertia1`, of link 2.
     pub inertia2: f32,
     /// Acceleration of gravity, m/s², downwards; finite. Default 9.8.
     pub gravity: f32,
@@ -131,10 +122,10 @@ pub struct acrobot_params_t {
     pub max_velocity1: f32,
     /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
     pub max_velocity2: f32,
-    /// Torques of the three actions, N m, in the order of their numbers; finite. Default −1, 0 and 1.
+    /// Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
     pub torques: [f32; 3],
-    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the torque; 0, the default,
-    /// draws nothing.
+    /// Torque noise, N m; 0 or more. Each step adds a uniform draw from [−noise, noise) to the
+    /// torque; 0, the default, draws nothing.
     pub torque_noise: f32,
     /// The equations of motion: ACROBOT_DYNAMICS_BOOK, the default, or ACROBOT_DYNAMICS_NIPS.
     pub dynamics: c_int,
@@ -142,22 +133,22 @@ pub struct acrobot_params_t {
 
 /// A struct of another type with the same parameters. Only `dynamics` has another type, too.
 macro_rules! same_params {
-    ($type:ident, $params:expr, $dynamics:expr $(, $friction:ident)?) => {
+    ($type:ident, $from:ident, $dynamics:expr $(, $friction:ident)?) => {
         $type {
-            length1: $params.length1,
-            length2: $params.length2,
-            mass1: $params.mass1,
-            mass2: $params.mass2,
-            center_of_mass1: $params.center_of_mass1,
-            center_of_mass2: $params.center_of_mass2,
-            inertia1: $params.inertia1,
-            inertia2: $params.inertia2,
-            gravity: $params.gravity,
-            dt: $params.dt,
-            max_velocity1: $params.max_velocity1,
-            max_velocity2: $params.max_velocity2,
-            torques: $params.torques,
-            torque_noise: $params.torque_noise,
+            length1: $from.length1,
+            length2: $from.length2,
+            mass1: $from.mass1,
+            mass2: $from.mass2,
+            center_of_mass1: $from.center_of_mass1,
+            center_of_mass2: $from.center_of_mass2,
+            inertia1: $from.inertia1,
+            inertia2: $from.inertia2,
+            gravity: $from.gravity,
+            dt: $from.dt,
+            max_velocity1: $from.max_velocity1,
+            max_velocity2: $from.max_velocity2,
+            torques: $from.torques,
+            torque_noise: $from.torque_noise,
             dynamics: $dynamics,
             $($friction: acrobot::physics::Viscous::default(),)?
         }

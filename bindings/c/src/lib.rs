@@ -1,6 +1,6 @@
-//! Gymnasium's Acrobot for C and C++: the functions of `include/acrobot.h`, which cbindgen writes from these files.
+//! The functions of `include/acrobot.h`, which cbindgen writes from these files.
 //!
-//! Names are those of the header. All `unsafe` is here: the library that this one wraps sees only valid references.
+//! Names are those of the header. All `unsafe` is here: the crate sees only valid references.
 
 #![no_std]
 #![expect(non_camel_case_types, reason = "the names of the header")]

@@ -1,4 +1,4 @@
-//! The caller's memory: what is checked before a reference into it is made. The header demands that pointers are valid.
+//! The caller's memory: what is checked before a reference into it is made.
 
 use core::ptr;
 
@@ -78,7 +78,7 @@ pub struct Tagged<T: Holder> {
     value: T::Value,
 }
 
-/// Changes a holder's value. Writes the call's result, and why a number was rejected, unless these pointers are null.
+/// Changes a holder's value. Writes the result, or why a number was rejected, where not null.
 pub unsafe fn change<H: Holder, T>(
     holder: *mut H,
     result: *mut T,

@@ -16,8 +16,8 @@ pub const ACROBOT_SIZE: usize = 240;
 /// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
 pub const ACROBOT_ALIGN: usize = 16;
 
-/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or into a struct, and
-/// call acrobot_init before any other function. It contains no pointer, so you may copy and move it.
+/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or
+/// into a struct, and call acrobot_init first. It contains no pointer: you may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
@@ -31,8 +31,8 @@ impl Holder for acrobot_t {
 
 const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
-/// Makes an acrobot with the default parameters, in the initial state of Gymnasium's `reset(seed=seed)`. A second call
-/// starts from scratch.
+/// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`. A
+/// second call starts from scratch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
     status(|| Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))))
@@ -47,7 +47,8 @@ pub unsafe extern "C" fn acrobot_reset(
     change(acrobot, observation, ptr::null_mut(), |acrobot| Ok(acrobot.reset().into()))
 }
 
-/// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode. `observation` may be null.
+/// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode.
+/// `observation` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_with_seed(
     acrobot: *mut acrobot_t,
@@ -59,8 +60,9 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
     })
 }
 
-/// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and rad/s. The default
-/// is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`. `observation` and `error` may be null.
+/// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
+/// rad/s. The default is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`.
+/// `observation` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_within(
     acrobot: *mut acrobot_t,
@@ -75,8 +77,8 @@ pub unsafe extern "C" fn acrobot_reset_within(
     })
 }
 
-/// Applies the torque of an action for one dt: ACROBOT_ACTION_NEGATIVE, ACROBOT_ACTION_ZERO or ACROBOT_ACTION_POSITIVE.
-/// When the episode has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
+/// Applies the torque of an action, one of the ACROBOT_ACTION numbers, for one dt. When the episode
+/// has ended, call acrobot_reset; otherwise the acrobot steps on, as in Gymnasium.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step(
     acrobot: *mut acrobot_t,
@@ -90,7 +92,7 @@ pub unsafe extern "C" fn acrobot_step(
     })
 }
 
-/// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it. `error` may be null.
+/// Applies any finite torque, N m, for one dt. The `torques` of the parameters do not limit it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_step_torque(
     acrobot: *mut acrobot_t,
@@ -131,7 +133,7 @@ pub unsafe extern "C" fn acrobot_state(
     get(acrobot, state, |acrobot| Ok(acrobot.state().into()))
 }
 
-/// Sets the state. The number of steps does not change. `error` may be null.
+/// Sets the state. The number of steps does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_state(
     acrobot: *mut acrobot_t,
@@ -150,7 +152,7 @@ pub unsafe extern "C" fn acrobot_params(
     get(acrobot, params, |acrobot| Ok((*acrobot.params()).into()))
 }
 
-/// Sets the parameters for the next steps. The state does not change. `error` may be null.
+/// Sets the parameters for the next steps. The state does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_params(
     acrobot: *mut acrobot_t,

@@ -10,21 +10,21 @@ use acrobot::physics::control::ControlError;
 pub enum acrobot_status_t {
     /// The function has done its work.
     ACROBOT_OK = 0,
-    /// A pointer is null that must not be null.
+    /// A pointer is null that must not be.
     ACROBOT_ERROR_NULL = 1,
-    /// A pointer is not aligned as its type demands; memory for a batch by ACROBOT_BATCH_ALIGN.
+    /// A pointer is not aligned as its type demands; a batch needs ACROBOT_BATCH_ALIGN.
     ACROBOT_ERROR_MISALIGNED = 2,
-    /// The memory has fewer bytes than the batch needs.
+    /// The memory is too small for the batch.
     ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
-    /// The memory was not initialized by the `_init` function of its type, or has been overwritten.
+    /// No `_init` function has initialized the memory, or it has been overwritten.
     ACROBOT_ERROR_NOT_INITIALIZED = 4,
-    /// The memory of a batch was copied to another address.
+    /// The batch was copied to another address.
     ACROBOT_ERROR_MOVED = 5,
     /// The action is not 0, 1 or 2.
     ACROBOT_ERROR_UNKNOWN_ACTION = 6,
-    /// A number is outside its range, infinite or NaN. The argument `error` of the function, if it has one, names it.
+    /// A number is outside its range, infinite or NaN. An argument `error` says which.
     ACROBOT_ERROR_OUT_OF_RANGE = 7,
-    /// The count is not that of the batch's acrobots, or a new batch would have none.
+    /// The count is 0, or not that of the batch.
     ACROBOT_ERROR_WRONG_COUNT = 8,
     /// The index is not below the count.
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,
@@ -34,8 +34,9 @@ pub enum acrobot_status_t {
 
 use acrobot_status_t::*;
 
-/// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end
-/// with a zero byte. Print it by `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
+/// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The
+/// texts are UTF-8 and end with a zero byte. Print it by `printf("%s must be %s, got %g",
+/// error.name, error.rule, error.value)`.
 #[repr(C)]
 pub struct acrobot_error_t {
     /// The value that was rejected, in `unit`.
@@ -48,7 +49,7 @@ pub struct acrobot_error_t {
     pub rule: [c_char; 64],
 }
 
-/// Why a call was rejected. The other fields belong to ACROBOT_ERROR_OUT_OF_RANGE: `name must be rule unit, got value`.
+/// Why a call was rejected; for ACROBOT_ERROR_OUT_OF_RANGE `name must be rule unit, got value`.
 pub struct Rejected {
     status: acrobot_status_t,
     name: &'static str,
@@ -62,8 +63,8 @@ impl Rejected {
         Self { status: ACROBOT_ERROR_OUT_OF_RANGE, name, value, unit, rule }
     }
 
-    /// Fills the caller's error if a number is out of range. Inlined, because a function without an error should not
-    /// contain it.
+    /// Fills the caller's error if a number is out of range. Inlined, because a function without an
+    /// error should not contain it.
     #[inline(always)]
     pub unsafe fn explain(&self, error: *mut acrobot_error_t) {
         if !error.is_null() && matches!(self.status, ACROBOT_ERROR_OUT_OF_RANGE) {
@@ -136,7 +137,7 @@ fn text<const N: usize>(texts: [&str; 3]) -> [c_char; N] {
     to
 }
 
-/// The text of a status, in English. It is constant: do not free it. An unknown status has a text, too.
+/// The text of a status, in English, also of an unknown one. It is constant: do not free it.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_status_text(status: c_int) -> *const c_char {
     let text = match status {

@@ -18,6 +18,9 @@ static int failures = 0;
         } \
     } while (0)
 
+#define ACCEPTED(call) CHECK((call) == ACROBOT_OK)
+#define REJECTED(error, call) CHECK((call) == ACROBOT_ERROR_##error)
+
 static inline int report(const char *name)
 {
     print(name);
@@ -25,7 +28,7 @@ static inline int report(const char *name)
     return failures == 0 ? 0 : 1;
 }
 
-// Also compares the bytes between fields, which nothing writes; valgrind.supp excuses that in this function alone.
+// Also compares the bytes between fields, which nothing writes: valgrind.supp excuses that here.
 __attribute__((noinline, unused)) static bool same(const void *left, const void *right, size_t size)
 {
     const uint8_t *a = (const uint8_t *)left, *b = (const uint8_t *)right;

@@ -1,7 +1,9 @@
 // One acrobot.
 
 import { draw } from "./draw.js";
-import { ACTION, Kept, SHOWN, addressOf, isAction, keep, readState, sample, writeState } from "./kept.js";
+import {
+  ACTION, Kept, SHOWN, addressOf, isAction, keep, orFree, readState, sample, writeState,
+} from "./kept.js";
 import { header, seal, unseal } from "./snapshot.js";
 import { accept, bytes, checked, invalid, numbers, positive, wasm, writeSeed } from "./wasm.js";
 
@@ -23,15 +25,13 @@ export class Acrobot extends Kept {
 
   constructor(options = {}) {
     super();
-    const { seed, params = {}, maxSteps = 500 } = checked("options", options, ["seed", "params", "maxSteps"]);
+    const given = checked("options", options, ["seed", "params", "maxSteps"]);
+    const { seed, params = {}, maxSteps = 500 } = given;
     keep(this, "acrobot", wasm().acrobot_new(positive("maxSteps", maxSteps)), 1);
-    try {
+    orFree(this, () => {
       this.setParams(params);
       wasm().acrobot_reset(this.#address, writeSeed(seed));
-    } catch (error) {
-      this.free();
-      throw error;
-    }
+    });
   }
 
   get #address() {
@@ -40,12 +40,7 @@ export class Acrobot extends Kept {
 
   static restore(snapshot) {
     const acrobot = new this();
-    try {
-      acrobot.restore(snapshot);
-    } catch (error) {
-      acrobot.free();
-      throw error;
-    }
+    orFree(acrobot, () => acrobot.restore(snapshot));
     return acrobot;
   }
 
@@ -59,8 +54,8 @@ export class Acrobot extends Kept {
     if (!isAction(action)) throw invalid(`action ${ACTION}`, action);
     const flags = wasm().acrobot_step(this.#address, action);
     this.#action = action;
-    const terminated = (flags & 1) !== 0;
-    return { observation: observation(), reward: terminated ? 0 : -1, terminated, truncated: (flags & 2) !== 0 };
+    const [terminated, truncated] = [(flags & 1) !== 0, (flags & 2) !== 0];
+    return { observation: observation(), reward: terminated ? 0 : -1, terminated, truncated };
   }
 
   sample() {
@@ -109,15 +104,18 @@ export class Acrobot extends Kept {
     const content = unseal(snapshot);
     wasm().acrobot_save(this.#address);
     const rule = `the snapshot must be a valid one of ${header(bytes())}`;
-    if (content.length > 256) throw new RangeError(`${rule}, got ${content.length} bytes`);
+    const reject = (got) => {
+      throw new RangeError(`${rule}, got ${got}`);
+    };
+    if (content.length > 256) reject(`${content.length} bytes`);
     bytes().set(content);
-    if (!wasm().acrobot_load(this.#address, content.length)) throw new RangeError(`${rule}, got ${header(content)}`);
+    if (!wasm().acrobot_load(this.#address, content.length)) reject(header(content));
     this.#action = 1;
   }
 
   draw(context, options) {
-    const { params } = this;
-    draw("draw(context, options)", context, this.state, params, params.torques[this.#action], options);
+    const { params, state } = this;
+    draw("draw(context, options)", context, state, params, params.torques[this.#action], options);
   }
 
   get [SHOWN]() {

@@ -2,13 +2,16 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, PARAMS_LENGTH, SHOWN, addressOf, elements, isAction, keep, readChanges, readParams,
-  readState, sample, writeParams, writeState,
+  ACTION, Kept, PARAMS_LENGTH, SHOWN, addressOf, elements, isAction, keep, orFree, readChanges,
+  readParams, readState, sample, writeParams, writeState,
 } from "./kept.js";
 import { seal, unseal } from "./snapshot.js";
 import { accept, bytes, checked, invalid, isBytes, positive, wasm, writeSeed } from "./wasm.js";
 
-/** The results, and what JavaScript writes, in the order of the module's addresses: type, and number of elements of an acrobot. */
+/**
+ * The results, and what JavaScript writes, in the order of the module's addresses: type, and number
+ * of elements of an acrobot.
+ */
 const ARRAYS = {
   observations: [Float32Array, 6],
   rewards: [Float32Array, 1],
@@ -21,14 +24,18 @@ const ARRAYS = {
 };
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
-/** What a batch's snapshot begins with after its length, in the format of postcard: the header, and the bounds −0.1 and 0.1 as doubles. */
+/**
+ * What a batch's snapshot begins with after its length, in the format of postcard: the header, and
+ * the bounds −0.1 and 0.1 as doubles.
+ */
 const BATCH = [
   ...Array.from("\x05batch\x01\x04fast", (letter) => letter.charCodeAt(0)),
   ...new Uint8Array(Float64Array.of(-0.1, 0.1).buffer),
 ];
 
-/** An integer in seven bits a byte, the lowest first. The highest bit of each byte says whether more follow. */
-const varint = (value) => (value < 128 ? [value] : [(value % 128) | 128, ...varint(Math.floor(value / 128))]);
+/** An integer in seven bits a byte, the lowest first. The highest bit says whether more follow. */
+const varint = (value) =>
+  value < 128 ? [value] : [(value % 128) | 128, ...varint(Math.floor(value / 128))];
 
 export class Batch extends Kept {
   static get name() {
@@ -43,7 +50,7 @@ export class Batch extends Kept {
   #names;
   /** Views of the arrays. */
   #views;
-  /** Copies of the results in JavaScript's memory, because views of the module's memory end when that memory grows. */
+  /** Copies of the results: views of the module's memory end when that memory grows. */
   #results = {};
   /** Whether states have changed since the observations were written. */
   #stale = false;
@@ -51,23 +58,26 @@ export class Batch extends Kept {
   constructor(options) {
     super();
     const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams"];
-    const { count, seed, params = {}, maxSteps = 500, autoreset = "NextStep", ownParams = false } = checked("options", options, names);
+    const given = checked("options", options, names);
+    const { count, seed, params = {}, maxSteps = 500 } = given;
+    const { autoreset = "NextStep", ownParams = false } = given;
     positive("count", count);
     positive("maxSteps", maxSteps);
-    if (!AUTORESETS.includes(autoreset)) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset, []);
-    if (typeof ownParams !== "boolean") throw invalid("ownParams must be true or false", ownParams, []);
-    keep(this, "batch", wasm().batch_new(count, writeSeed(seed), maxSteps, AUTORESETS.indexOf(autoreset), ownParams), count);
+    const mode = AUTORESETS.indexOf(autoreset);
+    if (mode < 0) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset, []);
+    if (![true, false].includes(ownParams)) {
+      throw invalid("ownParams must be true or false", ownParams, []);
+    }
+    const words = writeSeed(seed);
+    keep(this, "batch", wasm().batch_new(count, words, maxSteps, mode, ownParams), count);
     this.#addresses = new Uint32Array(bytes().slice(0, 32).buffer);
     this.#count = count;
     this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams });
     this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
-    try {
+    orFree(this, () => {
       super.setParams(params);
       this.#copy(...this.#names);
-    } catch (error) {
-      this.free();
-      throw error;
-    }
+    });
     this.#observe();
   }
 
@@ -79,8 +89,10 @@ export class Batch extends Kept {
   #copy(...names) {
     if (!this.#views?.rewards.length) {
       const { buffer } = wasm().memory;
-      const view = ([name, [Type, width]], i) => [name, new Type(buffer, this.#addresses[i], width * this.#count)];
-      this.#views = Object.fromEntries(Object.entries(ARRAYS).map(view));
+      const views = Object.entries(ARRAYS).map(([name, [Type, width]], i) => {
+        return [name, new Type(buffer, this.#addresses[i], width * this.#count)];
+      });
+      this.#views = Object.fromEntries(views);
     }
     for (const name of names) {
       // An array that the caller has transferred to another thread has no elements.
@@ -124,7 +136,8 @@ export class Batch extends Kept {
 
   resetMasked(mask, seed) {
     const isFlag = (element) => [true, false, 1, 0].includes(element);
-    return this.#reset(elements("mask", mask, this.#count, isFlag, "must be true, false, 1 or 0"), seed);
+    const rule = "must be true, false, 1 or 0";
+    return this.#reset(elements("mask", mask, this.#count, isFlag, rule), seed);
   }
 
   #reset(mask, seed) {
@@ -145,7 +158,7 @@ export class Batch extends Kept {
     let given = actions;
     // The module can check bytes.
     if (!isBytes(actions) || actions.byteLength !== this.#count) {
-      // Reading others can run code that frees the batch or makes the module's memory grow, so they are read first.
+      // Reading others can run code that frees the batch or makes memory grow, so it comes first.
       given = elements("actions", actions, this.#count, isAction, ACTION);
     }
     const address = this.#address;
@@ -204,7 +217,9 @@ export class Batch extends Kept {
 
   setParamsOf(index, changes) {
     this.#addressFor(index);
-    if (!this.#settings.ownParams) throw new Error("a batch must be made with ownParams for parameters of each acrobot");
+    if (!this.#settings.ownParams) {
+      throw new Error("a batch must be made with ownParams for parameters of each acrobot");
+    }
     const given = readChanges(changes);
     writeParams("batch", this.#address, index, given, "batch_set_params_of");
   }
@@ -212,13 +227,14 @@ export class Batch extends Kept {
   #header() {
     const { count, maxSteps, autoreset, ownParams } = this.#settings;
     // No range of parameters.
-    return [...varint(count + 1), ...BATCH, ...varint(maxSteps), AUTORESETS.indexOf(autoreset), Number(ownParams), 0];
+    const flags = [AUTORESETS.indexOf(autoreset), Number(ownParams), 0];
+    return [...varint(count + 1), ...BATCH, ...varint(maxSteps), ...flags];
   }
 
   snapshot() {
     const address = this.#address;
-    const members = Array.from({ length: this.#count }, (_, i) => bytes().slice(0, wasm().batch_save(address, i)));
-    const rust = seal([this.#header(), ...members]);
+    const member = (_, i) => bytes().slice(0, wasm().batch_save(address, i));
+    const rust = seal([this.#header(), ...Array.from({ length: this.#count }, member)]);
     if (this.#settings.autoreset !== "Disabled") return rust;
     this.#copy();
     return seal([rust, this.#views.ended]);
@@ -226,7 +242,8 @@ export class Batch extends Kept {
 
   static restore(snapshot) {
     const content = unseal(snapshot);
-    const wrong = new RangeError(`the snapshot must be a valid one of a batch, version 1, arithmetic "fast", got ${content.length} other bytes`);
+    const rule = 'the snapshot must be a valid one of a batch, version 1, arithmetic "fast"';
+    const wrong = new RangeError(`${rule}, got ${content.length} other bytes`);
     let at = 0;
     const read = () => {
       let value = 0;
@@ -241,7 +258,8 @@ export class Batch extends Kept {
     at += BATCH.length;
     const [maxSteps, mode, own] = [read(), read(), read()];
     // An acrobot has at least 94 bytes.
-    if (!(count >= 1 && count < content.length / 94 && maxSteps >= 1 && maxSteps < 2 ** 32 && mode in AUTORESETS)) throw wrong;
+    const isCount = count >= 1 && count < content.length / 94;
+    if (!(isCount && maxSteps >= 1 && maxSteps < 2 ** 32 && mode in AUTORESETS)) throw wrong;
     const batch = new this({ count, maxSteps, autoreset: AUTORESETS[mode], ownParams: own === 1 });
     if (batch.#load(content)) return batch;
     batch.free();

@@ -3,23 +3,36 @@
 import { checked, invalid } from "./wasm.js";
 
 /** Gymnasium's colours. Its pictures have no torque. */
-const COLORS = { background: "white", target: "black", link: "rgb(0, 204, 204)", joint: "rgb(204, 204, 0)", torque: "rgb(204, 0, 0)" };
+const COLORS = {
+  background: "white", target: "black", link: "#0cc", joint: "#cc0", torque: "#c00",
+};
 
-/** Draws into the square from (0, 0) to (size, size) of the context's coordinates. Errors begin with the signature of the method. */
-export function draw(signature, context, { theta1, theta2 }, { length1, length2 }, torque, options = {}) {
-  const fail = (rule, value, types) => {
-    throw invalid(`${signature}: ${rule}`, value, types);
+/**
+ * Draws into the square from (0, 0) to (size, size) of the context's coordinates. Errors begin with
+ * the signature of the method.
+ */
+export function draw(signature, context, state, params, torque, options = {}) {
+  const check = (isValid, rule, value, types) => {
+    if (!isValid) throw invalid(`${signature}: ${rule}`, value, types);
   };
-  if (typeof context?.arc !== "function") fail("context must be a canvas's 2D context", context, []);
+  check(typeof context?.arc === "function", "context must be a canvas's 2D context", context, []);
+  const given = checked(`${signature}: options`, options, ["size", "colors"]);
   const { canvas } = context;
-  const { size = Math.min(canvas?.width, canvas?.height), colors: given = {} } = checked(`${signature}: options`, options, ["size", "colors"]);
-  if (!Number.isFinite(size) || size < 0) fail("options.size must be finite and at least 0 pixels", size);
-  const colors = { ...COLORS, ...checked(`${signature}: options.colors`, given, Object.keys(COLORS)) };
-  for (const [name, color] of Object.entries(colors)) if (typeof color !== "string") fail(`options.colors.${name} must be a string`, color, []);
+  const { size = Math.min(canvas?.width, canvas?.height), colors: own = {} } = given;
+  const isSize = Number.isFinite(size) && size >= 0;
+  check(isSize, "options.size must be finite and at least 0 pixels", size);
+  const names = Object.keys(COLORS);
+  const colors = { ...COLORS, ...checked(`${signature}: options.colors`, own, names) };
+  for (const name of names) {
+    const color = colors[name];
+    check(typeof color === "string", `options.colors.${name} must be a string`, color, []);
+  }
+  const [{ theta1, theta2 }, { length1, length2 }] = [state, params];
   const reach = length1 + length2 + 0.2;
   const metre = size / 2 / reach;
   const elbow = [length1 * Math.sin(theta1), -length1 * Math.cos(theta1)];
-  const tip = [elbow[0] + length2 * Math.sin(theta1 + theta2), elbow[1] - length2 * Math.cos(theta1 + theta2)];
+  const [sin, cos] = [Math.sin(theta1 + theta2), Math.cos(theta1 + theta2)];
+  const tip = [elbow[0] + length2 * sin, elbow[1] - length2 * cos];
 
   const stroke = (color, width, points) => {
     context.strokeStyle = color;

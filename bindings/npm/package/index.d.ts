@@ -13,7 +13,7 @@ declare global {
 // Without this line, everything here would be exported.
 export {};
 
-/** Torques of −1, 0 and 1 N m between the links, unless `Params.torques` says otherwise. Positive is counter-clockwise. */
+/** Torques of −1, 0 and 1 N m between the links, or `Params.torques`. */
 export type Action = 0 | 1 | 2;
 
 /** A number from 0 to 2^53 − 1, or a BigInt from 0 to 2^2048 − 1. */
@@ -33,49 +33,49 @@ export interface State {
 
 /** The parameters, rounded to single precision. */
 export interface Params {
-  /** Length of link 1, m; above 0. The default is 1. */
+  /** Length of link 1, m; above 0. Default: 1. */
   length1: number;
-  /** Length of link 2, m; above 0. The default is 1. It changes only the tip's height and pictures. */
+  /** As `length1`, of link 2. It changes only the tip's height and pictures. */
   length2: number;
-  /** Mass of link 1, kg; above 0. The default is 1. */
+  /** Mass of link 1, kg; above 0. Default: 1. */
   mass1: number;
-  /** Mass of link 2, kg; above 0. The default is 1. */
+  /** As `mass1`, of link 2. */
   mass2: number;
-  /** Distance of link 1's centre of mass from its joint, m; 0 or more. The default is 0.5. */
+  /** Distance of link 1's centre of mass from its joint, m; 0 or more. Default: 0.5. */
   centerOfMass1: number;
-  /** Distance of link 2's centre of mass from its joint, m; 0 or more. The default is 0.5. */
+  /** As `centerOfMass1`, of link 2. */
   centerOfMass2: number;
-  /** Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, above 0 if that is on the joint. The default is 1. */
+  /** Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more. Default: 1. */
   inertia1: number;
-  /** Moment of inertia of link 2 about its centre of mass, kg m²; as `inertia1`. */
+  /** As `inertia1`, of link 2. 0 is rejected if the link's centre of mass is on its joint. */
   inertia2: number;
-  /** Acceleration of gravity, m/s², downwards; finite. The default is 9.8. */
+  /** Acceleration of gravity, m/s², downwards; finite. Default: 9.8. */
   gravity: number;
-  /** Duration of a step, s; above 0. The default is 0.2. */
+  /** Duration of a step, s; above 0. Default: 0.2. */
   dt: number;
-  /** Bound of |dtheta1| after a step, rad/s; from 1.2e-38 to 3.4e38. The default is 4π. */
+  /** Bound of |dtheta1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default: 4π. */
   maxVelocity1: number;
-  /** Bound of |dtheta2| after a step, rad/s; from 1.2e-38 to 3.4e38. The default is 9π. */
+  /** As `maxVelocity1`, of dtheta2. Default: 9π. */
   maxVelocity2: number;
-  /** Torques of the three actions, N m; finite. The default is [-1, 0, 1]. */
+  /** Torques of the three actions, N m, counter-clockwise; finite. Default: [-1, 0, 1]. */
   torques: readonly [number, number, number];
-  /** Each step adds a uniform draw from [−torqueNoise, torqueNoise) to the torque, N m; 0 or more. The default is 0. */
+  /** Each step adds a uniform draw from ±torqueNoise N m; 0 or more. Default: 0. */
   torqueNoise: number;
   /** The equations of the book (the default) or of the NIPS paper: Gymnasium's `book_or_nips`. */
   dynamics: "book" | "nips";
 }
 
 export interface Options {
-  /** The seed of the first initial state and of all later random numbers. The default is random. */
+  /** The seed of the first initial state and all later random numbers. Default: random. */
   seed?: Seed;
   /** Parameters that differ from the default. */
   params?: Readonly<Partial<Params>>;
-  /** The number of steps after which episodes are truncated, from 1 to 2^32 − 1. The default is 500, as in Acrobot-v1. */
+  /** The number of steps that truncates an episode, from 1 to 2^32 − 1. Default: 500. */
   maxSteps?: number;
 }
 
 export interface Step {
-  /** [cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2], velocities in rad/s. A new array, as those of `reset` and `observation`. */
+  /** A new array: [cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2], velocities in rad/s. */
   observation: Float32Array;
   /** −1, or 0 if `terminated`. */
   reward: number;
@@ -85,7 +85,7 @@ export interface Step {
   truncated: boolean;
 }
 
-/** A canvas's context: `CanvasRenderingContext2D`, `OffscreenCanvasRenderingContext2D`, or that of a package for Node.js. */
+/** A 2D context of a canvas or an `OffscreenCanvas`, or that of a package for Node.js. */
 export interface Context {
   readonly canvas: { readonly width: number; readonly height: number };
   fillStyle: unknown;
@@ -105,37 +105,37 @@ export interface Context {
 }
 
 export interface DrawOptions {
-  /** The side of the square from (0, 0) to draw into, pixels; 0 or more. The default is the canvas's shorter side. */
+  /** The side of the square from (0, 0), pixels; 0 or more. Default: the canvas's shorter side. */
   size?: number;
-  /** CSS colours. The defaults are Gymnasium's, with red for the torque. */
-  colors?: { background?: string; target?: string; link?: string; joint?: string; torque?: string };
+  /** CSS colours. Default: Gymnasium's, with red for the torque. */
+  colors?: Partial<Record<"background" | "target" | "link" | "joint" | "torque", string>>;
 }
 
 /** What acrobots and batches share. Each method throws after `free()`. */
 declare abstract class Kept {
   /** The parameters: a frozen copy. */
   get params(): Readonly<Params>;
-  /** Changes some parameters for the next steps. Throws if one is outside its range, and changes nothing then. */
+  /** Changes some parameters for the next steps, or throws if one is outside its range. */
   setParams(changes: Readonly<Partial<Params>>): void;
-  /** Frees the memory in WebAssembly. Without a call, the garbage collector frees it at some time. */
+  /** Frees the memory in WebAssembly now, and not when the garbage collector does. */
   free(): void;
   /** Calls `free()`: for `using`. */
   [Symbol.dispose](): void;
 }
 
-/** One Acrobot-v1, in its initial state. Invalid arguments throw a `RangeError` or `TypeError`, and change nothing. */
+/** One Acrobot-v1. Invalid arguments throw a `RangeError` or `TypeError`, and change nothing. */
 export class Acrobot extends Kept {
   constructor(options?: Options);
   /** A new acrobot that continues from a snapshot with the same bits. */
   static restore(snapshot: Uint8Array): Acrobot;
-  /** Begins an episode. Without a seed its initial state is the next draw of the acrobot's random numbers. Returns the observation. */
+  /** Begins an episode, without a seed from the next random numbers. Returns the observation. */
   reset(seed?: Seed): Float32Array;
   /** Applies an action for one dt. Steps after the end of an episode continue it. */
   step(action: Action): Step;
-  /** A random action for `step`, from `Math.random`. As in Gymnasium, the acrobot's seed does not determine it. */
+  /** A random action, from `Math.random` and not from the seed, as in Gymnasium. */
   sample(): Action;
   get observation(): Float32Array;
-  /** The state: a frozen copy. Setting it continues the episode. All four numbers must be finite. */
+  /** The state: a frozen copy. Setting it, to finite numbers, continues the episode. */
   get state(): Readonly<State>;
   set state(state: Readonly<State>);
   /** The total energy, J. The potential energy is 0 at the height of the fixed joint. */
@@ -145,9 +145,9 @@ export class Acrobot extends Kept {
   /** The number of steps since the last reset. */
   get elapsed(): number;
   get maxSteps(): number;
-  /** Parameters, state, random numbers and steps, in about 150 bytes: Rust's `TimeLimit<Acrobot<Fast>>` in postcard with CRC-32. */
+  /** About 150 bytes: Rust's `TimeLimit<Acrobot<Fast>>` in postcard with CRC-32. */
   snapshot(): Uint8Array;
-  /** Continues from a snapshot. Throws if it is damaged or of another version, and changes nothing then. */
+  /** Continues from a snapshot, or throws if it is damaged or of another version. */
   restore(snapshot: Uint8Array): void;
   /** Draws the acrobot, with an arrow for the torque of the last step. */
   draw(context: Context, options?: DrawOptions): void;
@@ -156,75 +156,75 @@ export class Acrobot extends Kept {
 export interface BatchOptions extends Options {
   /** The number of acrobots, from 1 to as many as fit into 4 GiB. */
   count: number;
-  /** When an acrobot is reset whose episode has ended: Gymnasium's `AutoresetMode`. The default is "NextStep". */
+  /** When an ended acrobot is reset: Gymnasium's `AutoresetMode`. Default: "NextStep". */
   autoreset?: "NextStep" | "SameStep" | "Disabled";
-  /** Whether each acrobot has parameters of its own, which `setParamsOf` sets. The default is false. */
+  /** Whether each acrobot has its own parameters, for `setParamsOf`. Default: false. */
   ownParams?: boolean;
 }
 
 /**
- * What a batch's step returns: arrays with an element, or a row of six numbers, for each acrobot. The next step overwrites them,
- * or makes new ones if you have transferred them to another thread.
+ * Arrays with an element, or a row of six numbers, for each acrobot. The next step overwrites them,
+ * or makes new ones if these were transferred to another thread.
  */
 export interface BatchStep {
   observations: Float32Array;
   /** −1, or 0 if the acrobot terminated or was only reset. */
   rewards: Float32Array;
-  /** 1 if the goal is reached, otherwise 0. */
+  /** 1 at the goal, otherwise 0. */
   terminated: Uint8Array;
-  /** 1 if the episode has reached `maxSteps`, otherwise 0. */
+  /** 1 after `maxSteps` steps, otherwise 0. */
   truncated: Uint8Array;
-  /** 1 if one of these two is, and with "Disabled" until the step after the acrobot's reset: a mask for `resetMasked`. */
+  /** 1 if either is; with "Disabled", until the step after the reset. For `resetMasked`. */
   ended: Uint8Array;
-  /** Only with "SameStep": the last observations of the episodes that this step ended. Other rows are older, or 0. */
+  /** With "SameStep": the last observation of each episode that this step ended. */
   finalObservations?: Float32Array;
 }
 
 /**
- * Many acrobots, stepped with SIMD. Acrobot `i` has the random numbers of the seed's `i`-th child: above 0 it is bit-identical to
- * `new Acrobot({ seed: seed + (BigInt(i) << 128n) })`, for a BigInt `seed` below 2^128.
+ * Many acrobots, stepped with SIMD. Acrobot `i` has the random numbers of the seed's `i`-th child:
+ * above 0 it is bit-identical to `new Acrobot({ seed: seed + (BigInt(i) << 128n) })`, for a BigInt
+ * `seed` below 2^128.
  */
 export class Batch extends Kept {
   constructor(options: BatchOptions);
-  /** A new batch that continues from a snapshot with the same bits. */
+  /** As `Acrobot.restore`. */
   static restore(snapshot: Uint8Array): Batch;
   get count(): number;
-  get settings(): Readonly<Required<Pick<BatchOptions, "count" | "maxSteps" | "autoreset" | "ownParams">>>;
-  /** The array of observations, which steps and resets overwrite. After `setState`, reading this property does. */
+  get settings(): Readonly<Required<Omit<BatchOptions, "seed" | "params">>>;
+  /** The array that steps and resets overwrite, as does reading it after `setState`. */
   get observations(): Float32Array;
   /** Begins an episode of each acrobot. Returns `observations`. */
   reset(seed?: Seed): Float32Array;
-  /** As `reset`, for the acrobots whose element of the mask is true or 1. The others do not change. */
+  /** As `reset`, for the acrobots whose element is true or 1. The others do not change. */
   resetMasked(mask: ArrayLike<number | boolean>, seed?: Seed): Float32Array;
-  /** Applies an action to each acrobot. A `Uint8Array` is the fastest. With "Disabled" an ended episode continues: −1 a step, 0 at the goal. */
+  /**
+   * Applies an action to each acrobot, fastest from a `Uint8Array`. With "Disabled" an ended
+   * episode continues: −1 a step, 0 at the goal.
+   */
   step(actions: ArrayLike<number>): BatchStep;
-  /** A random action for each acrobot, from `Math.random`: a new array. */
+  /** As `Acrobot.sample`, for each acrobot: a new array. */
   sample(): Uint8Array;
   /** The state of an acrobot: a frozen copy. */
   state(index: number): Readonly<State>;
-  /**
-   * Sets the state of an acrobot, whose episode continues. All four numbers must be finite. With "NextStep", the next step resets an ended
-   * acrobot all the same.
-   */
+  /** As `Acrobot.state`. With "NextStep", the next step still resets an ended acrobot. */
   setState(index: number, state: Readonly<State>): void;
-  /** The number of steps of an acrobot since its last reset. */
+  /** The number of steps since an acrobot's last reset. */
   elapsed(index: number): number;
   /** The parameters of an acrobot. `params` has those of the first. */
   paramsOf(index: number): Readonly<Params>;
-  /** Changes parameters of one acrobot, if the batch has `ownParams`. `setParams` changes those of all. */
+  /** Changes parameters of one acrobot, if the batch has `ownParams`. `setParams` changes all. */
   setParamsOf(index: number, changes: Readonly<Partial<Params>>): void;
   /**
-   * Settings, parameters, states, steps and random numbers, in about 140 bytes for each acrobot:
-   * Rust's `VecBatch<Fast>` in postcard with CRC-32. With "Disabled", `ended` and a CRC-32 follow.
-   * A snapshot made in Rust cannot be restored if its batch has "Disabled", a range of parameters or
-   * other reset bounds.
+   * About 140 bytes for each acrobot: Rust's `VecBatch<Fast>` in postcard with CRC-32, and with
+   * "Disabled" `ended` and another CRC-32. A batch from Rust with "Disabled", a range of parameters
+   * or other reset bounds cannot be restored.
    */
   snapshot(): Uint8Array;
   /** Draws an acrobot, without an arrow. */
   draw(context: Context, index: number, options?: DrawOptions): void;
 }
 
-/** The WebAssembly module inside this file, for a program that compiles it elsewhere. */
+/** The WebAssembly module inside this file, to compile it elsewhere. */
 export function moduleBytes(): Uint8Array;
 
 /** Takes the compiled `WebAssembly.Module` before the first acrobot, where code may not compile. */

@@ -5,8 +5,8 @@ import { accept, bytes, checked, invalid, numbers, wasm } from "./wasm.js";
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
 /** The parameters that are numbers, and the three torques, in the order of Rust's `Params`. */
 const NUMBERS = [
-  "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2", "gravity", "dt",
-  "maxVelocity1", "maxVelocity2", "torques", "torqueNoise",
+  "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2",
+  "gravity", "dt", "maxVelocity1", "maxVelocity2", "torques", "torqueNoise",
 ];
 /** The names of the sixteen numbers. */
 const TORQUES = ["torques[0]", "torques[1]", "torques[2]"];
@@ -21,20 +21,31 @@ export const isAction = (action) => action === 0 || action === 1 || action === 2
 
 export const sample = () => Math.floor(3 * Math.random());
 
-export const readState = () => Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
+export const readState = () =>
+  Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
+
+function checkNumber(name, value) {
+  if (typeof value !== "number") throw invalid(`${name} must be a number`, value);
+}
 
 /** Writes a state into the module's memory. Returns the function that `accept` needs. */
 export function writeState(state) {
   const given = checked("state", state, STATE);
-  for (const name of STATE) if (typeof given[name] !== "number") throw invalid(`${name} must be a number`, given[name]);
+  for (const name of STATE) checkNumber(name, given[name]);
   numbers().set(STATE.map((name) => given[name]));
   return (name) => given[name];
 }
 
-/** The elements of an array, each read once, because that can run code of the caller. They are not converted: 258 and "2" are not 2. */
+/**
+ * The elements of an array, each read once, because that can run code of the caller. They are not
+ * converted: 258 and "2" are not 2.
+ */
 export function elements(what, array, count, isValid, rule) {
   const length = array?.length;
-  if (length !== count) throw invalid(`${what} must have ${count} elements`, length ?? array, length === undefined ? [] : ["number"]);
+  if (length !== count) {
+    const types = length === undefined ? [] : ["number"];
+    throw invalid(`${what} must have ${count} elements`, length ?? array, types);
+  }
   const copy = [];
   for (let i = 0; i < count; i++) {
     const element = array[i];
@@ -44,7 +55,10 @@ export function elements(what, array, count, isValid, rule) {
   return copy;
 }
 
-/** The parameters of acrobot `index` in postcard's format: sixteen numbers, a byte for the dynamics, and the friction. A single one ignores the index. */
+/**
+ * The parameters of acrobot `index` in postcard's format: sixteen numbers, a byte for the dynamics,
+ * and the friction. A single one ignores the index.
+ */
 export function readParams(kind, address, index) {
   wasm()[`${kind}_params`](address, index);
   const values = [...numbers()];
@@ -53,24 +67,27 @@ export function readParams(kind, address, index) {
   return Object.freeze({ ...params, dynamics: DYNAMICS[bytes()[DYNAMICS_AT]] });
 }
 
-/** Changed parameters by their names, as `SLOTS` has them. Reading them can run code of the caller. */
+/** Changed parameters by their names in `SLOTS`. Reading them can run code of the caller. */
 export function readChanges(changes) {
   const given = checked("params", changes, [...NUMBERS, "dynamics"]);
   if ("torques" in given) {
     const { torques } = given;
     delete given.torques;
-    if (!Array.isArray(torques) || torques.length !== 3) throw invalid("torques must be an array of 3 numbers", torques, []);
+    if (!Array.isArray(torques) || torques.length !== 3) {
+      throw invalid("torques must be an array of 3 numbers", torques, []);
+    }
     TORQUES.forEach((name, i) => (given[name] = torques[i]));
   }
   for (const [name, value] of Object.entries(given)) {
-    if (name === "dynamics") {
-      if (!DYNAMICS.includes(value)) throw invalid('dynamics must be "book" or "nips"', value, []);
-    } else if (typeof value !== "number") throw invalid(`${name} must be a number`, value);
+    if (name !== "dynamics") checkNumber(name, value);
+    else if (!DYNAMICS.includes(value)) {
+      throw invalid('dynamics must be "book" or "nips"', value, []);
+    }
   }
   return given;
 }
 
-/** Changes what `readChanges` returns in the parameters of acrobot `index`, by a function of the module. */
+/** Changes what `readChanges` returns in the parameters of acrobot `index`. */
 export function writeParams(kind, address, index, given, set = `${kind}_set_params`) {
   wasm()[`${kind}_params`](address, index);
   for (const [name, value] of Object.entries(given)) {
@@ -89,8 +106,9 @@ const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(fre
 export const SHOWN = Symbol("shown");
 
 /**
- * `keep` gives an acrobot or a batch the memory at an address, and `addressOf` returns the address. No caller of the package reaches
- * them, so the module gets only addresses of its own, and none that it has freed.
+ * `keep` gives an acrobot or a batch the memory at an address, and `addressOf` returns the address.
+ * No caller of the package reaches them, so the module gets only addresses of its own, and none
+ * that it has freed.
  */
 export let keep, addressOf;
 
@@ -101,7 +119,8 @@ export class Kept {
 
   static {
     keep = (kept, kind, address, count) => {
-      if (address === 0) throw new RangeError(`acrobots must fit into WebAssembly's memory of at most 4 GiB, got ${count} more`);
+      const rule = "acrobots must fit into WebAssembly's memory of at most 4 GiB";
+      if (address === 0) throw new RangeError(`${rule}, got ${count} more`);
       kept.#kind = kind;
       kept.#address = address;
       registry?.register(kept, { kind, address }, kept);
@@ -133,7 +152,7 @@ export class Kept {
     this.#address = 0;
   }
 
-  // Older engines have no `using`, and no such symbol.
+  // Older engines have neither `using` nor this symbol.
   [Symbol.dispose ?? Symbol("dispose")]() {
     this.free();
   }
@@ -142,5 +161,15 @@ export class Kept {
   [Symbol.for("nodejs.util.inspect.custom")](depth, options, inspect) {
     const shown = this.#address === 0 ? "freed" : inspect(this[SHOWN], options);
     return `${this.constructor.name} ${shown}`;
+  }
+}
+
+/** Calls a function, and frees what is being made if that throws. */
+export function orFree(kept, call) {
+  try {
+    call();
+  } catch (error) {
+    kept.free();
+    throw error;
   }
 }

@@ -22,14 +22,15 @@ export function bangBang(acrobot) {
 
 export function uprightEnergy(params) {
   const names = ["gravity", "mass1", "mass2", "length1", "centerOfMass1", "centerOfMass2"];
-  const [gravity, mass1, mass2, length1, center1, center2] = finite("uprightEnergy(params): params", params, ...names);
-  return gravity * (mass1 * center1 + mass2 * (length1 + center2));
+  const [g, m1, m2, l1, lc1, lc2] = finite("uprightEnergy(params): params", params, ...names);
+  return g * (m1 * lc1 + m2 * (l1 + lc2));
 }
 
 export function energyLaw(acrobot) {
   const [energy] = finite("energyLaw(acrobot): acrobot", acrobot, "energy");
   const [dtheta1] = finite("energyLaw(acrobot): acrobot.state", acrobot.state, "dtheta1");
-  return 1 + Math.max(-1, Math.min(1, Math.round((energy - uprightEnergy(acrobot.params)) * dtheta1)));
+  const torque = (energy - uprightEnergy(acrobot.params)) * dtheta1;
+  return 1 + Math.max(-1, Math.min(1, Math.round(torque)));
 }
 
 /** The size of the module's buffer in bytes. */
@@ -48,7 +49,8 @@ class Instance {
   load(what, file, call) {
     const copy = copied(what, file);
     const { length } = copy;
-    if (length > BUFFER) throw new RangeError(`${what} must have at most ${BUFFER} bytes, got ${length}`);
+    const rule = `${what} must have at most ${BUFFER} bytes`;
+    if (length > BUFFER) throw new RangeError(`${rule}, got ${length}`);
     this.bytes(length).set(copy);
     const reason = call(length);
     if (reason !== 0) throw new RangeError(decoded(this.bytes(reason)));
@@ -81,7 +83,9 @@ export class Learner {
   }
 
   act(acrobot) {
-    return this.#module.exports.act(...finite("act(acrobot): acrobot.state", acrobot?.state, "theta1", "theta2", "dtheta1", "dtheta2"));
+    const names = ["theta1", "theta2", "dtheta1", "dtheta2"];
+    const state = finite("act(acrobot): acrobot.state", acrobot?.state, ...names);
+    return this.#module.exports.act(...state);
   }
 
   save() {
@@ -109,7 +113,8 @@ export class Perceptron {
   }
 
   act(acrobot) {
-    const observation = finite("act(acrobot): acrobot.observation", acrobot?.observation, 0, 1, 2, 3, 4, 5);
+    const given = acrobot?.observation;
+    const observation = finite("act(acrobot): acrobot.observation", given, 0, 1, 2, 3, 4, 5);
     this.#module.bytes(24).set(new Uint8Array(Float32Array.from(observation).buffer));
     return this.#module.exports.act_perceptron();
   }

@@ -29,8 +29,9 @@ export function seal(parts) {
 export function unseal(snapshot) {
   const copy = copied("the snapshot", snapshot);
   const content = copy.subarray(0, -4);
-  if (copy.length < 4 || new DataView(copy.buffer).getUint32(content.length, true) !== checksum(content)) {
-    throw new RangeError(`the snapshot must have the bytes of snapshot(), got ${copy.length} bytes with another checksum`);
+  if (seal([content]).some((byte, i) => byte !== copy[i])) {
+    const rule = "the snapshot must have the bytes of snapshot()";
+    throw new RangeError(`${rule}, got ${copy.length} bytes with another checksum`);
   }
   return content;
 }

@@ -1,16 +1,14 @@
 // The module and its memory, and the checks of arguments: what the classes share.
 
-import { inflate } from "./inflate.js";
+import inflate from "tiny-inflate";
 
-/*
- * global LENGTH, MODULE, EXPORTS: wasm.mjs defines the module's length in bytes, the module in DEFLATE
- * and base64, and the names of its exports.
- */
+// wasm.mjs defines the MODULE, in DEFLATE and base64, its LENGTH in bytes and its EXPORTS.
 
 let compiled;
 
 export function moduleBytes() {
-  return inflate(Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0)), LENGTH);
+  const deflated = Uint8Array.from(atob(MODULE), (letter) => letter.charCodeAt(0));
+  return inflate(deflated, new Uint8Array(LENGTH));
 }
 
 export function setModule(module) {
@@ -23,7 +21,7 @@ export function setModule(module) {
   compiled = module;
 }
 
-/** The functions of a new instance. A content security policy rejects the module, or in WebKit its instance. */
+/** The functions of a new instance, which a content security policy may reject. */
 export function instantiate() {
   try {
     compiled ??= new WebAssembly.Module(moduleBytes());
@@ -46,10 +44,7 @@ export function wasm() {
 let numbersView = new Float32Array();
 let bytesView = new Uint8Array();
 
-/**
- * The memory for sixteen numbers. Like every view of the module's memory, it has length 0 once that
- * memory has grown.
- */
+/** The memory for sixteen numbers. Every view of memory has length 0 once the memory has grown. */
 export function numbers() {
   if (numbersView.length === 0) {
     const { memory, bytes } = wasm();
@@ -119,26 +114,36 @@ export function invalidSingle(rule, value) {
 }
 
 /**
- * A copy of `given`, which must be an object without other properties than `names`. Each is read once, because that can run code of the
- * caller, which may use the package and change the module's memory.
+ * A copy of an object with no properties but `names`. Each is read once, because that can run code
+ * of the caller, which may change the module's memory.
  */
 export function checked(what, given, names) {
-  if (typeof given !== "object" || given === null || Array.isArray(given)) throw invalid(`${what} must be an object`, given, []);
+  if (typeof given !== "object" || given === null || Array.isArray(given)) {
+    throw invalid(`${what} must be an object`, given, []);
+  }
   const unknown = Object.keys(given).find((name) => !names.includes(name));
-  if (unknown !== undefined) throw new TypeError(`${what} must be among ${names.join(", ")}, got ${unknown}`);
-  return Object.fromEntries(names.filter((name) => name in given).map((name) => [name, given[name]]));
+  if (unknown !== undefined) {
+    throw new TypeError(`${what} must be among ${names.join(", ")}, got ${unknown}`);
+  }
+  const found = names.filter((name) => name in given);
+  return Object.fromEntries(found.map((name) => [name, given[name]]));
 }
 
 /** An integer from 1 to 2³² − 1. */
 export function positive(name, value) {
-  if (!Number.isInteger(value) || value < 1 || value >= 2 ** 32) throw invalid(`${name} must be an integer from 1 to 2^32 - 1`, value);
+  if (!Number.isInteger(value) || value < 1 || value >= 2 ** 32) {
+    throw invalid(`${name} must be an integer from 1 to 2^32 - 1`, value);
+  }
   return value;
 }
 
 /** The 32-bit words of a seed, the lowest first. Without a seed takes a random one. */
 export function seedWords(seed = Math.floor(Math.random() * 2 ** 53)) {
-  const valid = typeof seed === "bigint" ? seed >= 0n && seed < 1n << 2048n : Number.isSafeInteger(seed) && seed >= 0;
-  if (!valid) throw invalid("seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1", seed, ["number", "bigint"]);
+  const isSeed = Number.isSafeInteger(seed) || (typeof seed === "bigint" && seed < 1n << 2048n);
+  if (!isSeed || seed < 0) {
+    const rule = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
+    throw invalid(rule, seed, ["number", "bigint"]);
+  }
   const words = [];
   let rest = BigInt(seed);
   do {
@@ -155,7 +160,10 @@ export function writeSeed(seed) {
   return words.length;
 }
 
-/** Throws if the module has rejected numbers: then `length` is that of the reason. `valueOf` returns the number with a name. */
+/**
+ * Throws if the module has rejected numbers: then `length` is that of the reason. `valueOf` returns
+ * the number with a name.
+ */
 export function accept(length, valueOf) {
   if (length === 0) return;
   const [name, rule, unit] = decoded(bytes().slice(0, length)).split("\n");

@@ -1,7 +1,8 @@
-//! The WebAssembly module of the npm package `acrobot-rs`: exported functions that its JavaScript calls.
+//! The WebAssembly module of the npm package `acrobot-rs`: functions that its JavaScript calls.
 //!
-//! JavaScript keeps the address of each acrobot and of each batch in a private field, until it frees it. Longer data passes through
-//! the memory in `memory`. The JavaScript checks numbers, lengths and actions, and the crate checks parameters, states and snapshots.
+//! JavaScript keeps the address of each acrobot and of each batch in a private field, until it
+//! frees it. Longer data passes through the memory in `memory`. The JavaScript checks numbers,
+//! lengths and actions, and the crate checks parameters, states and snapshots.
 
 mod many;
 mod memory;

@@ -11,7 +11,7 @@ use crate::memory::{self, set_bytes, set_numbers};
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
 
-/// Vectors for parameters of each acrobot, too, or for none. The step is compiled for both, which takes 13 KB.
+/// Vectors for parameters of each acrobot, too, or for none. Compiling both takes 13 KB.
 type Memory = (Vec<Block<Fast, LANES>>, Vec<Pcg64>, Vec<LaneParams<Fast, LANES>>);
 
 /// A batch with its memory, and what JavaScript reads and writes.
@@ -27,7 +27,7 @@ pub struct Many {
     terminated: Vec<bool>,
     truncated: Vec<bool>,
     final_observations: Vec<[f32; 6]>,
-    /// Whose episodes have ended: in this step, or with `Autoreset::Disabled` since their last reset.
+    /// Whose episodes have ended: in this step, or with `Disabled` since the last reset.
     ended: Vec<bool>,
 }
 
@@ -63,8 +63,9 @@ impl Many {
     }
 }
 
-/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of what JavaScript reads and
-/// writes. Returns the batch's address, or 0 if there is no memory for it.
+/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of
+/// what JavaScript reads and writes. Returns the batch's address, or 0 if there is no memory for
+/// it.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_new(
     count: usize,
@@ -99,7 +100,7 @@ pub extern "C" fn batch_free(many: Box<Many>) {
     drop(many);
 }
 
-/// Resets the acrobots in the mask, with a seed of this many 32-bit words, or with the next draws if there are none.
+/// Resets the acrobots in the mask, with a seed of this many 32-bit words. 0: the next draws.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
@@ -142,7 +143,7 @@ pub extern "C" fn batch_state(many: &Many, index: usize) {
     }
 }
 
-/// Sets the state of acrobot `index`. Returns 0, or the length of the reason for which it is rejected.
+/// Sets the state of acrobot `index`. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> usize {
     memory::reason(many.batch.set_state(index, memory::get_state()))
@@ -160,13 +161,13 @@ pub extern "C" fn batch_params(many: &Many, index: usize) {
     }
 }
 
-/// Sets the parameters. Returns 0, or the length of the reason for which they are rejected.
+/// Sets the parameters. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_params(many: &mut Many) -> usize {
     memory::reason(many.batch.set_params(memory::get_params()))
 }
 
-/// Sets the parameters of acrobot `index` in a batch with own parameters. Returns as [`batch_set_params`].
+/// As [`batch_set_params`], for acrobot `index` in a batch with own parameters.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_params_of(many: &mut Many, index: usize) -> usize {
     memory::reason(many.batch.set_params_of(index, memory::get_params()))
@@ -179,7 +180,7 @@ pub extern "C" fn batch_save(many: &Many, index: usize) -> usize {
     member.map_or(0, |member| memory::save(&member))
 }
 
-/// Loads acrobot `index` from the first of `len` bytes. Returns how many these are, or 0 if they are invalid.
+/// Loads acrobot `index` from the first of `len` bytes. Returns their number, or 0 if invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_load(many: &mut Many, index: usize, len: usize) -> usize {
     let Some((member, used)) = memory::load::<Member<Fast>>(len) else {

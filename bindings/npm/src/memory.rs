@@ -1,4 +1,4 @@
-//! What the exported functions share: memory for acrobots and batches, and to exchange values with JavaScript.
+//! What the exported functions share: memory for acrobots, and to exchange values.
 
 use std::alloc::{Layout, alloc};
 use std::cell::Cell;
@@ -71,7 +71,8 @@ pub fn seed(words: usize) -> SeedSequence {
     SeedSequence::from_words(WORDS.get().get(..words).unwrap_or_default())
 }
 
-/// Loads what [`save`] writes from the first of `len` bytes. Returns it with the number of its bytes, or `None` if they are invalid.
+/// Loads what [`save`] writes from the first of `len` bytes. Returns it with the number of its
+/// bytes, or `None` if they are invalid.
 pub fn load<T: serde::de::DeserializeOwned>(len: usize) -> Option<(T, usize)> {
     let bytes = WORDS.get().map(u32::to_le_bytes);
     let (value, rest) = postcard::take_from_bytes(bytes.as_flattened().get(..len)?).ok()?;
@@ -83,8 +84,9 @@ pub fn get_params() -> Params<f32> {
     load(4 * LEN).map_or(Params::DEFAULT, |(params, _)| params)
 }
 
-/// 0, or the length of the reason for which numbers are rejected: name, rule and unit, a line each. JavaScript has the
-/// value, and composes the message, because Rust's formatting of floats would add 16 KB to the module.
+/// 0, or the length of the reason for which numbers are rejected: name, rule and unit, a line each.
+/// JavaScript has the value, and composes the message, because Rust's formatting of floats would
+/// add 16 KB to the module.
 pub fn reason(result: Result<(), Error>) -> usize {
     let (name, rule, unit) = match result {
         Ok(()) => return 0,

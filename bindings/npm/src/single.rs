@@ -8,7 +8,7 @@ use crate::memory::{self, set_numbers};
 
 type Env = TimeLimit<Acrobot<Fast>>;
 
-/// Makes an acrobot that JavaScript resets, and returns its address, or 0 if there is no memory for it.
+/// Makes an acrobot that JavaScript resets. Returns its address, or 0 without memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_new(max_steps: u32) -> Option<Box<Env>> {
     let limit = NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN);
@@ -20,7 +20,7 @@ pub extern "C" fn acrobot_free(env: Box<Env>) {
     drop(env);
 }
 
-/// Resets, with a seed of this many 32-bit words, or with the next draws if there are none.
+/// Resets, with a seed of this many 32-bit words. 0: the next draws.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_reset(env: &mut Env, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
@@ -28,8 +28,8 @@ pub extern "C" fn acrobot_reset(env: &mut Env, words: usize) {
     set_numbers(env.reset_with(options).to_array());
 }
 
-/// Steps with an action from 0 to 2. In the result, bit 0 says that the step reached the goal, and bit 1 that the episode
-/// was truncated.
+/// Steps with an action from 0 to 2. In the result, bit 0 says that the step reached the goal, and
+/// bit 1 that the episode was truncated.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_step(env: &mut Env, action: u8) -> u32 {
     let step = env.step(Action::try_from(action).unwrap_or(Action::Zero));
@@ -50,7 +50,7 @@ pub extern "C" fn acrobot_read(env: &Env) {
     set_numbers([a, b, c, d, pendulum.energy(), pendulum.tip_height()]);
 }
 
-/// Sets the state. Returns 0, or the length of the reason for which it is rejected.
+/// Sets the state. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_set_state(env: &mut Env) -> usize {
     memory::reason(env.set_state(memory::get_state()))
@@ -61,7 +61,7 @@ pub extern "C" fn acrobot_params(env: &Env) {
     memory::save(env.params());
 }
 
-/// Sets the parameters. Returns 0, or the length of the reason for which they are rejected.
+/// Sets the parameters. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_set_params(env: &mut Env) -> usize {
     memory::reason(env.set_params(memory::get_params()))

@@ -1,4 +1,4 @@
-// Reading an argument can run code of the caller: getters, proxies. It can also be memory that other threads write.
+// Reading an argument can run code of the caller, or be of memory that other threads write.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -15,11 +15,16 @@ function grow() {
 
 /** The object, whose getters call `act` first. */
 function acting(object, act) {
-  const getters = Object.entries(object).map(([name, value]) => [name, { get: () => (act(name), value), enumerable: true }]);
-  return Object.defineProperties(Array.isArray(object) ? [] : {}, Object.fromEntries(getters));
+  const made = Array.isArray(object) ? [] : {};
+  for (const [name, value] of Object.entries(object)) {
+    Object.defineProperty(made, name, { get: () => (act(name), value), enumerable: true });
+  }
+  return made;
 }
 
-/** A proxy that calls `act` before each property is read. Methods get the object and not the proxy. */
+/**
+ * A proxy that calls `act` before each property is read. Methods get the object and not the proxy.
+ */
 function proxy(object, act) {
   const get = (target, name) => {
     act(name);
@@ -33,23 +38,30 @@ const PARAMS = { dt: 0.05, torques: [-2, 0, 2], torqueNoise: 0.1 };
 const STATE = { theta1: 1, theta2: 2, dtheta1: 3, dtheta2: 4 };
 const SNAPSHOT = new Acrobot({ seed: 3, params: PARAMS }).snapshot();
 
-/** A use of an object as an argument: what the object is, the use, and what it changes. */
+/** Uses of an object as an argument: what it changes, what the object is, and the use. */
 const USES = [
-  { given: [2, 2, 2], kind: "batch", use: (batch, actions) => batch.step(actions) },
-  { given: Uint8Array.of(2, 2, 2), kind: "batch", use: (batch, actions) => batch.step(actions) },
-  { given: PARAMS, kind: "batch", use: (batch, params) => batch.setParams(params) },
-  { given: PARAMS, kind: "acrobot", use: (acrobot, params) => acrobot.setParams(params) },
-  { given: [true, 0, 1], kind: "batch", use: (batch, mask) => batch.resetMasked(mask) },
-  { given: STATE, kind: "batch", use: (batch, state) => batch.setState(1, state) },
-  { given: PARAMS.torques, kind: "acrobot", use: (acrobot, torques) => acrobot.setParams({ torques }) },
-  { given: STATE, kind: "acrobot", use: (acrobot, state) => (acrobot.state = state) },
-  { given: SNAPSHOT, kind: "acrobot", use: (acrobot, snapshot) => acrobot.restore(snapshot) },
-];
+  ["batch", [2, 2, 2], (batch, actions) => batch.step(actions)],
+  ["batch", Uint8Array.of(2, 2, 2), (batch, actions) => batch.step(actions)],
+  ["batch", PARAMS, (batch, params) => batch.setParams(params)],
+  ["acrobot", PARAMS, (acrobot, params) => acrobot.setParams(params)],
+  ["batch", [true, 0, 1], (batch, mask) => batch.resetMasked(mask)],
+  ["batch", STATE, (batch, state) => batch.setState(1, state)],
+  ["acrobot", PARAMS.torques, (acrobot, torques) => acrobot.setParams({ torques })],
+  ["acrobot", STATE, (acrobot, state) => (acrobot.state = state)],
+  ["acrobot", SNAPSHOT, (acrobot, snapshot) => acrobot.restore(snapshot)],
+].map(([kind, given, use]) => ({ kind, given, use }));
 
-/** The uses, each with the ways to `wrap` the object so that reading it acts. The elements of a typed array have no getters. */
-const CASES = USES.flatMap((use) => (ArrayBuffer.isView(use.given) ? [proxy] : [acting, proxy]).map((wrap) => ({ ...use, wrap })));
+/**
+ * The uses, each with the ways to `wrap` the object so that reading it acts. The elements of a
+ * typed array have no getters.
+ */
+const CASES = USES.flatMap((use) => {
+  const wraps = ArrayBuffer.isView(use.given) ? [proxy] : [acting, proxy];
+  return wraps.map((wrap) => ({ ...use, wrap }));
+});
 
-const make = (kind) => (kind === "batch" ? new Batch({ seed: 1, count: 3 }) : new Acrobot({ seed: 1 }));
+const make = (kind) =>
+  kind === "batch" ? new Batch({ seed: 1, count: 3 }) : new Acrobot({ seed: 1 });
 /** All that can be seen of an acrobot or a batch, which this steps. */
 function seen(of) {
   if (!of.count) return of.snapshot();
@@ -58,13 +70,15 @@ function seen(of) {
 }
 
 test("an argument that frees what gets it is rejected, and changes no other acrobot", () => {
-  const others = () => [new Acrobot({ seed: 1 }), ...Array.from({ length: 40 }, (_, i) => 40 - i).map((count) => new Batch({ seed: 1, count }))];
+  const batches = () => Array.from({ length: 40 }, (_, i) => new Batch({ seed: 1, count: 40 - i }));
+  const others = () => [make("acrobot"), ...batches()];
   for (const { given, kind, use, wrap } of CASES) {
     const one = make(kind);
     let found;
     // Others get the memory.
     const argument = wrap(given, () => (one.free(), (found ??= others())));
-    assert.throws(() => use(one, argument), { name: "Error", message: `the ${kind} has been freed` });
+    const message = `the ${kind} has been freed`;
+    assert.throws(() => use(one, argument), { name: "Error", message });
     assert.deepEqual(found.map(seen), others().map(seen));
   }
 });
@@ -93,7 +107,8 @@ test("each property is read once, so that what is checked is what is used", () =
   // The message has the value that was rejected.
   const values = [NaN, 1];
   const state = { ...STATE, get theta1() { return values.shift(); } };
-  assert.throws(() => (new Acrobot().state = state), { message: "theta1 must be a finite number of rad, got NaN" });
+  const message = "theta1 must be a finite number of rad, got NaN";
+  assert.throws(() => (new Acrobot().state = state), { message });
 });
 
 test("options whose getters use the package make the same acrobots", () => {
@@ -104,7 +119,7 @@ test("options whose getters use the package make the same acrobots", () => {
   const batches = { ...options, count: 3, autoreset: "SameStep" };
   assert.deepEqual(seen(new Batch(acting(batches, act))), seen(new Batch(batches)));
   // The class that `new` names, too.
-  const target = new Proxy(Batch, { get: (of, name, receiver) => (act(), Reflect.get(of, name, receiver)) });
+  const target = new Proxy(Batch, { get: (...given) => (act(), Reflect.get(...given)) });
   assert.deepEqual(seen(Reflect.construct(Batch, [batches], target)), seen(new Batch(batches)));
 });
 
@@ -130,23 +145,24 @@ test("arrays in shared, resized and detached memory have the elements that they 
   other.step([0, 1, 2]);
   assert.deepEqual(seen(one), seen(other));
   assert.deepEqual(Acrobot.restore(shared(SNAPSHOT)).snapshot(), SNAPSHOT);
-  assert.throws(() => one.step(shared([0, 1, 9])), { message: /^actions\[2\] must be 0 .*, got 9$/ });
-  assert.throws(() => Acrobot.restore(shared(SNAPSHOT.map((byte) => byte ^ 1))), /^RangeError: the snapshot must have the bytes of snapshot\(\), got/);
+  assert.throws(() => one.step(shared([0, 1, 9])), /RangeError: actions\[2\] must be 0 .*, got 9$/);
+  const damaged = shared(SNAPSHOT.map((byte) => byte ^ 1));
+  assert.throws(() => Acrobot.restore(damaged), /^RangeError: the snapshot must have the bytes of/);
 
   const detached = (bytes) => {
     const array = Uint8Array.from(bytes);
     structuredClone(array, { transfer: [array.buffer] });
     return array;
   };
-  assert.throws(() => one.step(detached([0, 1, 2])), { name: "RangeError", message: "actions must have 3 elements, got 0" });
-  assert.throws(() => Acrobot.restore(detached(SNAPSHOT)), /^RangeError: the snapshot must have the bytes of snapshot\(\), got 0 bytes/);
+  assert.throws(() => one.step(detached([0, 1, 2])), /^RangeError: actions must have 3 .*, got 0$/);
+  assert.throws(() => Acrobot.restore(detached(SNAPSHOT)), /^RangeError: the .* got 0 bytes/);
 
   const buffer = new ArrayBuffer(3, { maxByteLength: 8 });
   const resizable = new Uint8Array(buffer);
   one.step(resizable);
   if (buffer.resizable) {
     buffer.resize(5);
-    assert.throws(() => one.step(resizable), { name: "RangeError", message: "actions must have 3 elements, got 5" });
+    assert.throws(() => one.step(resizable), /^RangeError: actions must have 3 elements, got 5$/);
   }
 });
 
@@ -154,8 +170,9 @@ test("a Uint8Array that pretends another length takes no action of the last step
   const [one, other] = [make("batch"), make("batch")];
   one.step([2, 2, 2]);
   other.step([2, 2, 2]);
-  const [short, long] = [2, 4].map((length) => Object.defineProperty(new Uint8Array(length), "length", { value: 3 }));
-  assert.throws(() => one.step(short), { name: "TypeError", message: /^actions\[2\] must be 0 .*, got undefined$/ });
+  const pretend = (bytes) => Object.defineProperty(bytes, "length", { value: 3 });
+  const [short, long] = [2, 4].map((length) => pretend(new Uint8Array(length)));
+  assert.throws(() => one.step(short), /^TypeError: actions\[2\] must be 0 .*, got undefined$/);
   assert.deepEqual(seen(one), seen(other));
   one.step(long);
   other.step([0, 0, 0]);
@@ -163,7 +180,8 @@ test("a Uint8Array that pretends another length takes no action of the last step
 });
 
 test("results that the caller changes or transfers do not change later ones", () => {
-  const [one, other] = ["SameStep", "SameStep"].map((autoreset) => new Batch({ seed: 1, count: 3, autoreset }));
+  const options = { seed: 1, count: 3, autoreset: "SameStep" };
+  const [one, other] = [new Batch(options), new Batch(options)];
   const results = one.step([0, 1, 2]);
   other.step([0, 1, 2]);
   const { observations } = results;

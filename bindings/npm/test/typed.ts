@@ -1,10 +1,11 @@
 // Compiles with `tsc --strict`: valid uses have types, and others are errors.
 
-import { moduleBytes, setModule } from "acrobot-rs";
-import { Acrobot, Batch, type Action, type BatchStep, type Context, type Options, type Params, type State, type Step } from "acrobot-rs";
+import { Acrobot, Batch, moduleBytes, setModule } from "acrobot-rs";
+import type { Action, BatchStep, Context, Options, Params, State, Step } from "acrobot-rs";
 import { Learner, bangBang, energyLaw, uprightEnergy } from "acrobot-rs/policies";
 
-const options: Options = { seed: 42n, maxSteps: 200, params: { dt: 0.05, torques: [-2, 0, 2], dynamics: "nips" } };
+const changes: Options["params"] = { dt: 0.05, torques: [-2, 0, 2], dynamics: "nips" };
+const options: Options = { seed: 42n, maxSteps: 200, params: changes };
 using acrobot = new Acrobot(options);
 const action: Action = acrobot.reset(7)[4]! > 0 ? 0 : 2;
 const step: Step = acrobot.step(action);
@@ -17,7 +18,8 @@ acrobot.setParams(params);
 const bytes: Uint8Array = acrobot.snapshot();
 const resumed: Acrobot = Acrobot.restore(bytes);
 resumed.restore(bytes);
-const numbers: number[] = [acrobot.energy, acrobot.tipHeight, acrobot.elapsed, acrobot.maxSteps, step.reward];
+const numbers: number[] = [acrobot.energy, acrobot.tipHeight, acrobot.elapsed, step.reward];
+numbers.push(acrobot.maxSteps);
 
 const batch = new Batch({ ...options, count: 3, autoreset: "SameStep" });
 const results: BatchStep = batch.step(Uint8Array.of(0, 1, 2));
@@ -27,7 +29,8 @@ const second: State = batch.state(1);
 
 const learner = new Learner({ episodes: 100, seed: 42n });
 learner.load(learner.save());
-const actions: Action[] = [acrobot.sample(), bangBang(acrobot), energyLaw(acrobot), learner.act(acrobot)];
+const actions: Action[] = [acrobot.sample(), bangBang(acrobot), energyLaw(acrobot)];
+actions.push(learner.act(acrobot));
 numbers.push(learner.train(), uprightEnergy(acrobot.params), batch.elapsed(1));
 batch.resetMasked(results.ended);
 batch.resetMasked([true, false, true], 7);
@@ -38,10 +41,10 @@ const mode: "NextStep" | "SameStep" | "Disabled" = copied.settings.autoreset;
 
 setModule(new WebAssembly.Module(Uint8Array.from(moduleBytes())));
 
-export function draw(onPage: CanvasRenderingContext2D, offscreen: OffscreenCanvasRenderingContext2D, other: Context) {
-  acrobot.draw(onPage);
-  acrobot.draw(offscreen, { size: 100, colors: { link: "#08c" } });
-  batch.draw(other, 2, { size: 50 });
+export const draws: ((context: Context) => void)[] = [(context) => batch.draw(context, 2)];
+export function draw(page: CanvasRenderingContext2D, other: OffscreenCanvasRenderingContext2D) {
+  acrobot.draw(page);
+  acrobot.draw(other, { size: 100, colors: { link: "#08c" } });
 }
 
 // @ts-expect-error

@@ -17,7 +17,7 @@ export class Game {
     this.begin(seed, params);
   }
 
-  /** Begins an episode. Throws if the package rejects the parameters. Then the current episode continues. */
+  /** Begins an episode, or throws if the package rejects the parameters. */
   begin(seed, params = this.params) {
     this.acrobot.setParams(params);
     this.acrobot.reset(seed);
@@ -53,7 +53,10 @@ export class Game {
     return this.#rows.at(-1);
   }
 
-  /** Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames than the physics takes steps. */
+  /**
+   * Draws the acrobot at a part of its last step, from 0 to 1, because a display shows more frames
+   * than the physics takes steps.
+   */
   draw(context, part, colors) {
     const { state } = this.acrobot;
     const { theta1, theta2 } = this.between(part);
@@ -65,13 +68,16 @@ export class Game {
   /** The angles at a part of a step, by default of the last one. */
   between(part, step = this.steps) {
     const [before, after] = [this.#rows[Math.max(step - 1, 0)], this.#rows[step]];
-    const [theta1, theta2] = [0, 1].map((i) => angleBetween(before[i], after[i], before[i + 2], after[i + 2], this.params.dt, part));
-    return { theta1, theta2 };
+    const { dt } = this.params;
+    const angle = (i) =>
+      angleBetween(before[i], after[i], before[i + 2] * dt, after[i + 2] * dt, part);
+    return { theta1: angle(0), theta2: angle(1) };
   }
 
   /**
-   * Where the tip was in the last `seconds` before a part of the last step, at equal intervals of time, so that a trail does not
-   * depend on the frames: up to `count` points [x, y] in m, the newest first.
+   * Where the tip was in the last `seconds` before a part of the last step, at equal intervals of
+   * time, so that a trail does not depend on the frames: up to `count` points [x, y] in m, the
+   * newest first.
    */
   trail(part, seconds, count) {
     const { dt, length1, length2 } = this.params;
@@ -82,7 +88,9 @@ export class Game {
       const step = Math.min(Math.floor(time), this.steps - 1);
       const { theta1, theta2 } = this.between(time - step, step + 1);
       const angle = theta1 + theta2;
-      points.push([length1 * Math.sin(theta1) + length2 * Math.sin(angle), -length1 * Math.cos(theta1) - length2 * Math.cos(angle)]);
+      const x = length1 * Math.sin(theta1) + length2 * Math.sin(angle);
+      const y = -length1 * Math.cos(theta1) - length2 * Math.cos(angle);
+      points.push([x, y]);
     }
     return points;
   }
@@ -97,12 +105,11 @@ export class Game {
     const state = ["theta1 (rad)", "theta2 (rad)", "dtheta1 (rad/s)", "dtheta2 (rad/s)"];
     const next = state.map((name) => `next ${name}`);
     const names = ["step", ...state, "torque (N m)", "reward", ...next, "terminated", "truncated"];
+    const stateAt = (i) => Array.from(this.#rows[i].subarray(0, 4), shortest);
     const lines = this.actions.map((action, i) => {
-      const last = i + 1 === this.steps;
-      const terminated = last && this.end === "goal";
-      const states = [this.#rows[i], this.#rows[i + 1]].map((row) => Array.from(row.subarray(0, 4), shortest));
-      const truncated = i + 1 === LIMIT;
-      return [i + 1, ...states[0], action - 1, terminated ? 0 : -1, ...states[1], Number(terminated), Number(truncated)];
+      const terminated = Number(i + 1 === this.steps && this.end === "goal");
+      const rest = [...stateAt(i + 1), terminated, Number(i + 1 === LIMIT)];
+      return [i + 1, ...stateAt(i), action - 1, terminated - 1, ...rest];
     });
     return [names, ...lines].map((cells) => `${cells.join(",")}\n`).join("");
   }
@@ -117,16 +124,16 @@ export function shortest(number) {
 }
 
 /**
- * Interpolates an angle by the cubic Hermite polynomial, which has the angles `a` and `b` and the velocities before and after a step
- * of `dt`.
+ * Interpolates between the angles `a` and `b` by a cubic Hermite polynomial, with the velocities at
+ * the start and at the end of a step in radians a step.
  */
-function angleBetween(a, b, before, after, dt, part) {
-  const [start, end] = [before * dt, after * dt];
+function angleBetween(a, b, start, end, part) {
   const mean = (start + end) / 2;
-  // Angles are modulo 2π. Of the possible rotations take the one closest to that at the mean velocity.
+  // Angles are modulo 2π: take the turns closest to those at the mean velocity.
   const turned = b - a + 2 * Math.PI * Math.round((mean - (b - a)) / (2 * Math.PI));
   const [part2, part3] = [part ** 2, part ** 3];
-  const angle = a + turned * (3 * part2 - 2 * part3) + start * (part3 - 2 * part2 + part) + end * (part3 - part2);
+  const bend = start * (part3 - 2 * part2 + part) + end * (part3 - part2);
+  const angle = a + turned * (3 * part2 - 2 * part3) + bend;
   // With a huge dt there are too many turns to show.
   return Math.abs(angle) < 1e6 ? angle : b;
 }

@@ -16,15 +16,21 @@ function encodeActions(actions) {
 }
 
 export function decodeActions(text) {
+  const check = (isValid, rule, got) => {
+    if (!isValid) throw new Error(`${rule}, got ${got}`);
+  };
   const wrong = text.search(/[^A-Za-z0-9_-]/);
-  if (wrong >= 0) throw new Error(`actions must be letters, digits, - and _, got '${text[wrong]}' as character ${wrong + 1}`);
-  if (text.length % 4 === 1) throw new Error(`actions must not have 1 character more than a multiple of 4, got ${text.length} characters`);
+  const character = `'${text[wrong]}' as character ${wrong + 1}`;
+  check(wrong < 0, "actions must be letters, digits, - and _", character);
+  const rule = "actions must not have 1 character more than a multiple of 4";
+  check(text.length % 4 !== 1, rule, `${text.length} characters`);
   const binary = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
-  const actions = Array.from(binary, (byte) => [6, 4, 2, 0].map((shift) => (byte.charCodeAt(0) >> shift) & 3)).flat();
+  const four = (byte) => [6, 4, 2, 0].map((shift) => (byte.charCodeAt(0) >> shift) & 3);
+  const actions = Array.from(binary, four).flat();
   while (actions.at(-1) === PADDING) actions.pop();
   const unknown = actions.indexOf(PADDING);
-  if (unknown >= 0) throw new Error(`action ${unknown + 1} must be 0, 1 or 2, got 3`);
-  if (actions.length > LIMIT) throw new Error(`actions must be at most ${LIMIT}, got ${actions.length}`);
+  check(unknown < 0, `action ${unknown + 1} must be 0, 1 or 2`, 3);
+  check(actions.length <= LIMIT, `actions must be at most ${LIMIT}`, actions.length);
   return actions;
 }
 
@@ -37,12 +43,14 @@ export function encodeRun({ seed, params, actions }) {
   return `#${fields}`;
 }
 
-/** The run in an address. Throws an `Error` with the reason if there is none. The package checks the parameters later. */
+/** The run in an address, with unchecked parameters. Throws an `Error` with the reason. */
 export function decodeRun(hash) {
   const fields = new URLSearchParams(hash.slice(1));
   const known = ["seed", "dynamics", "actions", ...PARAMETERS.map(({ name }) => name)];
   const unknown = [...fields.keys()].find((name) => !known.includes(name));
-  if (unknown !== undefined) throw new Error(`names in the link must be ${known.join(", ")}, got "${unknown}"`);
+  if (unknown !== undefined) {
+    throw new Error(`names in the link must be ${known.join(", ")}, got "${unknown}"`);
+  }
   const params = { ...DEFAULTS };
   for (const { name, unit } of PARAMETERS) {
     const text = fields.get(name);
@@ -52,5 +60,6 @@ export function decodeRun(hash) {
     if (!Number.isFinite(params[name])) throw new Error(`${rule}, got ${text || "an empty text"}`);
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
-  return { seed: parseSeed(fields.get("seed") ?? "42"), params, actions: decodeActions(fields.get("actions") ?? "") };
+  const actions = decodeActions(fields.get("actions") ?? "");
+  return { seed: parseSeed(fields.get("seed") ?? "42"), params, actions };
 }

@@ -5,7 +5,7 @@ import { Game } from "./game.js";
 import { decodeRun, encodeRun } from "./link.js";
 import { attempt, parametersPanel } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
-import { DEFAULTS, LIMIT, parseSeed } from "./settings.js";
+import { DEFAULTS, parseSeed } from "./settings.js";
 import { drawStage } from "./stage.js";
 import { download, trainingPanel } from "./training.js";
 
@@ -18,9 +18,15 @@ const NO_ACTIONS = "The link has no actions.";
 function start() {
   const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
   let learnt = learner;
-  const POLICIES = { bang_bang: bangBang, energy_law: energyLaw, learnt: (acrobot) => learnt.act(acrobot), random: (acrobot) => acrobot.sample() };
+  const POLICIES = {
+    bang_bang: bangBang,
+    energy_law: energyLaw,
+    learnt: (acrobot) => learnt.act(acrobot),
+    random: (acrobot) => acrobot.sample(),
+  };
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
-  const takeOver = matchMedia("(hover: none)").matches ? "touch a half of the picture" : "press ← or →";
+  const isTouch = matchMedia("(hover: none)").matches;
+  const takeOver = `To take over, ${isTouch ? "touch a half of the picture" : "press ← or →"}.`;
   $("app").hidden = false;
   $("notice").hidden = true;
 
@@ -33,7 +39,7 @@ function start() {
   let recorded = [];
   /** The policies that have played this episode. */
   const players = new Set();
-  /** The fewest steps to the goal, for each policy that played a whole episode, and for each set of parameters. */
+  /** The fewest steps to the goal, for each policy and set of parameters. */
   const best = new Map();
   const record = () => JSON.stringify([$("policy").value, game.params]);
   const held = { left: false, right: false };
@@ -49,13 +55,16 @@ function start() {
 
   const step = () => {
     const next = action();
-    if (next === undefined) return pause(recorded.length > 0 ? "The replay has ended." : NO_ACTIONS);
+    if (next === undefined) return pause(recorded.length ? "The replay has ended." : NO_ACTIONS);
     game.step(next);
     players.add($("policy").value);
     shown = 0;
     if (game.end === null) return;
-    if (game.end === "goal" && players.size === 1) best.set(record(), Math.min(game.steps, best.get(record()) ?? Infinity));
-    const result = game.end === "goal" ? `Goal after ${game.steps} steps.` : `Out of time after ${LIMIT} steps.`;
+    const isGoal = game.end === "goal";
+    if (isGoal && players.size === 1) {
+      best.set(record(), Math.min(game.steps, best.get(record()) ?? Infinity));
+    }
+    const result = `${isGoal ? "Goal" : "Out of time"} after ${game.steps} steps.`;
     const continues = playing && !["keys", "link"].includes($("policy").value);
     if (continues) nextAt = performance.now() + INTERVAL;
     say(continues ? `${result} The next seed follows.` : result);
@@ -112,7 +121,7 @@ function start() {
   /** Who applies the torque, as a sentence. */
   const player = () => {
     const { value, selectedOptions: [{ textContent: policy }] } = $("policy");
-    return { keys: "You play.", link: "The replay runs." }[value] ?? `${policy} plays. To take over, ${takeOver}.`;
+    return { keys: "You play.", link: "The replay runs." }[value] ?? `${policy} plays. ${takeOver}`;
   };
 
   const choose = (policy) => {
@@ -127,23 +136,30 @@ function start() {
   const number = (value, digits = 2) => minus(value.toFixed(digits));
   /** Draws a plot of columns, and a caption with their last values and further parts. */
   const show = (id, title, names, unit, columns, options, ...more) => {
-    const series = columns.map((values, i) => ({ values, color: color(["--accent", "--second"][i]) }));
+    const kinds = ["first", "second"];
+    const colors = [color("--accent"), color("--second")];
+    const series = columns.map((values, i) => ({ values, color: colors[i] }));
     plot($(id), { series, end: Math.max(game.steps, 50), unit: "steps", ...options });
-    const values = columns.map((column, i) => [`${names[i]} ${number(column.at(-1))} ${unit}`, ["first", "second"][i]]);
-    const parts = [[title, ""], ...values, ...more];
-    $(`${id}-caption`).innerHTML = parts.map(([text, kind]) => `<span class="${kind}">${text}</span>`).join("");
+    const last = (column, i) => [`${names[i]} ${number(column.at(-1))} ${unit}`, kinds[i]];
+    const parts = [[title, ""], ...columns.map(last), ...more];
+    const spans = parts.map(([text, kind]) => `<span class="${kind}">${text}</span>`);
+    $(`${id}-caption`).innerHTML = spans.join("");
   };
 
   const plots = () => {
-    const [theta1, theta2, dtheta1, dtheta2, energy, heights] = [0, 1, 2, 3, 4, 5].map((index) => game.column(index));
+    const columns = [0, 1, 2, 3, 4, 5].map((index) => game.column(index));
+    const [energy, heights] = columns.slice(4);
+    const [angles, velocities] = [columns.slice(0, 2), columns.slice(2, 4)];
     const standing = uprightEnergy(game.acrobot.params);
     const upright = [`upright: ${number(standing)} J`, "hint"];
     const height = [`tip height ${number(heights.at(-1))} m`, ""];
     const range = rangeOf([...energy, standing, -standing]);
     show("energy", "Energy", [""], "J", [energy], { range, marks: [standing] }, upright, height);
-    show("angles", "Angles", ["θ1", "θ2"], "rad", [theta1, theta2], { range: [-Math.PI, Math.PI], period: 2 * Math.PI });
-    const fastest = 1.06 * Math.max(2, ...dtheta1.concat(dtheta2).map(Math.abs));
-    show("velocities", "Velocities", ["θ1′", "θ2′"], "rad/s", [dtheta1, dtheta2], { range: [-fastest, fastest] });
+    const turn = { range: [-Math.PI, Math.PI], period: 2 * Math.PI };
+    show("angles", "Angles", ["θ1", "θ2"], "rad", angles, turn);
+    const fastest = 1.06 * Math.max(2, ...velocities.flat().map(Math.abs));
+    const bounds = { range: [-fastest, fastest] };
+    show("velocities", "Velocities", ["θ1′", "θ2′"], "rad/s", velocities, bounds);
   };
 
   let dirty = true;
@@ -155,16 +171,21 @@ function start() {
     $("step").textContent = game.steps;
     $("return").textContent = minus(String(game.return));
     $("best").textContent = best.get(record()) ?? "–";
-    $("best-label").textContent = $("policy").value === "keys" ? "Your fewest steps" : `Fewest steps of ${$("policy").selectedOptions[0].label}`;
+    const { value: policy, selectedOptions: [{ label }] } = $("policy");
+    const isOwn = policy === "keys";
+    $("best-label").textContent = isOwn ? "Your fewest steps" : `Fewest steps of ${label}`;
     $("pause").textContent = playing ? "Pause" : "Play";
-    $("verdict").textContent = { goal: `${game.steps} steps`, limit: "Out of time" }[game.end] ?? "";
-    $("between").textContent = calm.matches
-      ? "The red arrow is the torque. Reduced motion: the picture moves step by step, without a trail."
-      : `The red arrow is the torque. The physics steps every ${game.params.dt} s. Between steps the picture is interpolated, at most one step behind the numbers.`;
+    const verdicts = { goal: `${game.steps} steps`, limit: "Out of time" };
+    $("verdict").textContent = verdicts[game.end] ?? "";
+    const between = calm.matches
+      ? "Reduced motion: the picture moves step by step, without a trail."
+      : `The physics steps every ${game.params.dt} s. Between steps the picture is interpolated.`;
+    $("between").textContent = `The red arrow is the torque. ${between}`;
     const bits = new Uint32Array(game.numbers.buffer);
-    const rows = [["θ1", "rad"], ["θ2", "rad"], ["θ1′", "rad/s"], ["θ2′", "rad/s"]].map(([name, unit], i) => {
-      const code = bits[i].toString(16).padStart(8, "0");
-      return `<tr><th scope="row">${name}</th><td>${number(game.numbers[i], 4)} ${unit}</td><td><code>${code}</code></td></tr>`;
+    const rows = ["θ1", "θ2", "θ1′", "θ2′"].map((name, i) => {
+      const value = `${number(game.numbers[i], 4)} ${i < 2 ? "rad" : "rad/s"}`;
+      const code = `<code>${bits[i].toString(16).padStart(8, "0")}</code>`;
+      return `<tr><th scope="row">${name}</th><td>${value}</td><td>${code}</td></tr>`;
     });
     $("state").innerHTML = rows.join("");
     plots();
@@ -204,11 +225,12 @@ function start() {
   const keys = { " ": toggle, s: single, r: reset, n: next };
   const sides = { ArrowLeft: "left", ArrowRight: "right" };
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select")) return;
+    const { key, target } = event;
+    if (event.ctrlKey || event.metaKey || event.altKey || target.closest("input, select")) return;
     // The space bar presses the focused button.
-    if (event.key === " " && event.target.closest("button, summary, a")) return;
-    if (event.key in sides) hold(sides[event.key], true);
-    else if (!event.repeat && event.key.toLowerCase() in keys) keys[event.key.toLowerCase()]();
+    if (key === " " && target.closest("button, summary, a")) return;
+    if (key in sides) hold(sides[key], true);
+    else if (!event.repeat && key.toLowerCase() in keys) keys[key.toLowerCase()]();
     else return;
     event.preventDefault();
   });
@@ -233,14 +255,19 @@ function start() {
     element.addEventListener("contextmenu", (event) => event.preventDefault());
   };
   // A mouse's click only focuses the picture.
-  holdBy($("stage"), ({ pointerType, offsetX }) => (pointerType === "mouse" ? null : offsetX < $("stage").clientWidth / 2 ? "left" : "right"));
+  holdBy($("stage"), ({ pointerType, offsetX }) => {
+    if (pointerType === "mouse") return null;
+    return offsetX < $("stage").clientWidth / 2 ? "left" : "right";
+  });
   for (const side of ["left", "right"]) {
     const button = $(side);
     holdBy(button, () => side);
-    button.addEventListener("keydown", ({ key }) => [" ", "Enter"].includes(key) && hold(side, true));
-    button.addEventListener("keyup", ({ key }) => [" ", "Enter"].includes(key) && hold(side, false));
+    for (const [type, on] of [["keydown", true], ["keyup", false]]) {
+      button.addEventListener(type, ({ key }) => [" ", "Enter"].includes(key) && hold(side, on));
+    }
   }
-  Object.entries({ pause: toggle, single, reset, next }).forEach(([id, act]) => ($(id).onclick = act));
+  const buttons = { pause: toggle, single, reset, next };
+  for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
   $("policy").onchange = ({ target }) => choose(target.value);
 
   // ---- settings
@@ -268,7 +295,8 @@ function start() {
       recorded = run.actions;
       document.querySelector("[value=link]").disabled = false;
       choose("link");
-      say(recorded.length > 0 ? `Replay of a link: ${recorded.length} steps of seed ${name(run.seed)}.` : NO_ACTIONS);
+      const { length } = recorded;
+      say(length > 0 ? `Replay of a link: ${length} steps of seed ${name(run.seed)}.` : NO_ACTIONS);
     });
   };
   addEventListener("hashchange", open);
@@ -311,7 +339,7 @@ function start() {
 
   showParams();
   choose("bang_bang");
-  if (!playing) say(`Press Play to watch Bang-bang. To take over, ${takeOver}.`);
+  if (!playing) say(`Press Play to watch Bang-bang. ${takeOver}`);
   open();
   requestAnimationFrame(frame);
 }

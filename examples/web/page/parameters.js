@@ -1,5 +1,5 @@
-// The panel "Physics": a choice of equations, and a slider and a field for each parameter. The field shows why a value is
-// rejected.
+// The panel "Physics": a choice of equations, and a slider and a field for each parameter. The
+// field shows why a value is rejected.
 
 import { minus } from "./plot.js";
 import { DEFAULTS, PARAMETERS, parseNumber, textOf } from "./settings.js";
@@ -18,15 +18,17 @@ export function attempt(field, reason, set) {
   }
 }
 
-/** `get` returns the parameters, and `set` takes them or throws. Returns a function that shows the current parameters. */
+/** `get` returns the parameters, `set` takes them or throws. Returns a function that shows them. */
 export function parametersPanel(get, set) {
   const fields = PARAMETERS.map(({ name, label, unit, end, step, hint }) => {
     const field = document.createElement("div");
     field.className = "field parameter";
+    const described = `aria-describedby="${name}-hint ${name}-reason"`;
+    const range = `type="range" min="0" max="${end}" step="${step}"`;
     field.innerHTML = `
       <label for="${name}">${label}</label>
-      <input type="range" min="0" max="${end}" step="${step}" aria-label="${label}, ${unit}" aria-describedby="${name}-hint ${name}-reason">
-      <input id="${name}" inputmode="decimal" autocomplete="off" aria-describedby="${name}-hint ${name}-reason">
+      <input ${range} aria-label="${label}, ${unit}" ${described}>
+      <input id="${name}" inputmode="decimal" autocomplete="off" ${described}>
       <span class="hint">${unit}</span>
       <p id="${name}-reason" class="reason" role="alert"></p>
       <p id="${name}-hint" class="hint">${hint}</p>`;

@@ -1,9 +1,9 @@
-// Draws line plots at the display's resolution: over the steps of an episode, or over the episodes of a training.
+// Draws line plots at the display's resolution, over steps or episodes.
 
 const MARGIN = { left: 40, right: 8, top: 8, bottom: 22 };
 
 /** The labelled angles, rad. */
-const RIGHT_ANGLES = [[-Math.PI, "−π"], [-Math.PI / 2, "−π/2"], [0, "0"], [Math.PI / 2, "π/2"], [Math.PI, "π"]];
+const RIGHT_ANGLES = ["−π", "−π/2", "0", "π/2", "π"].map((t, i) => [(i / 2 - 1) * Math.PI, t]);
 
 /** A text whose negative numbers have the minus sign. */
 export const minus = (text) => text.replace(/-(?=[\dI])/g, "−");
@@ -14,11 +14,12 @@ export function color(name) {
 }
 
 /**
- * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of `marks` is a value, drawn as a
- * dashed horizontal line, and `unit` is that of x. If there is a `period`, as of an angle, a line leaves the plot at one edge
- * and returns at the other.
+ * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of
+ * `marks` is a value, drawn as a dashed horizontal line, and `unit` is that of x. If there is a
+ * `period`, as of an angle, a line leaves the plot at one edge and returns at the other.
  */
-export function plot(canvas, { series, range, start = 0, end, unit, marks = [], period = Infinity }) {
+export function plot(canvas, options) {
+  const { series, range, start = 0, end, unit, marks = [], period = Infinity } = options;
   const { clientWidth: width, clientHeight: height } = canvas;
   const scale = devicePixelRatio;
   canvas.width = Math.round(width * scale);
@@ -27,8 +28,11 @@ export function plot(canvas, { series, range, start = 0, end, unit, marks = [], 
   context.scale(scale, scale);
 
   const [low, high] = range;
-  const x = (value) => MARGIN.left + ((value - start) / Math.max(end - start, 1)) * (width - MARGIN.left - MARGIN.right);
-  const y = (value) => MARGIN.top + ((high - value) / (high - low)) * (height - MARGIN.top - MARGIN.bottom);
+  const { left, top } = MARGIN;
+  const right = width - MARGIN.right;
+  const inner = height - top - MARGIN.bottom;
+  const x = (value) => left + ((value - start) / Math.max(end - start, 1)) * (right - left);
+  const y = (value) => top + ((high - value) / (high - low)) * inner;
   const line = (points, style, dashes = []) => {
     context.strokeStyle = style;
     context.setLineDash(dashes);
@@ -36,26 +40,29 @@ export function plot(canvas, { series, range, start = 0, end, unit, marks = [], 
     points.forEach(([x, y, apart]) => (apart ? context.moveTo(x, y) : context.lineTo(x, y)));
     context.stroke();
   };
+  const across = (value, ...style) => line([[left, y(value)], [right, y(value)]], ...style);
 
   context.font = `11px ${getComputedStyle(canvas).fontFamily}`;
   context.fillStyle = color("--muted");
   context.textBaseline = "middle";
   context.textAlign = "right";
-  for (const [tick, text] of period === Infinity ? ticks(low, high, 4).map((tick) => [tick, label(tick)]) : RIGHT_ANGLES) {
-    context.fillText(text, MARGIN.left - 6, y(tick));
-    line([[MARGIN.left, y(tick)], [width - MARGIN.right, y(tick)]], color("--grid"));
+  const labelled = ticks(low, high, 4).map((tick) => [tick, label(tick)]);
+  for (const [tick, text] of period === Infinity ? labelled : RIGHT_ANGLES) {
+    context.fillText(text, left - 6, y(tick));
+    across(tick, color("--grid"));
   }
   context.textBaseline = "alphabetic";
   context.textAlign = "center";
   // The last label has the unit. Fewer labels fit on a narrow screen.
   ticks(start, end, Math.min(Math.floor(width / 110), 5)).forEach((tick, i, { length }) => {
     const text = i + 1 < length ? label(tick) : `${label(tick)} ${unit}`;
-    context.fillText(text, Math.min(x(tick), width - context.measureText(text).width / 2), height - 4);
+    const last = width - context.measureText(text).width / 2;
+    context.fillText(text, Math.min(x(tick), last), height - 4);
   });
-  for (const mark of marks) line([[MARGIN.left, y(mark)], [width - MARGIN.right, y(mark)]], color("--muted"), [4, 4]);
+  for (const mark of marks) across(mark, color("--muted"), [4, 4]);
 
   context.beginPath();
-  context.rect(MARGIN.left, MARGIN.top - 1, width - MARGIN.left, height - MARGIN.top - MARGIN.bottom + 2);
+  context.rect(left, top - 1, width - left, inner + 2);
   context.clip();
   context.lineWidth = 1.5;
   context.lineJoin = "round";
@@ -84,7 +91,7 @@ const label = (value) => minus(String(Number(value.toPrecision(3))));
 
 /** The range of some values, made a little wider, so that it is never empty. */
 export function rangeOf(values) {
-  // Not `Math.min(...values)`: a call takes about 100,000 arguments, and a training can have a million episodes.
+  // Not `Math.min(...values)`: a call takes 100,000 arguments, a training a million episodes.
   let [low, high] = [Infinity, -Infinity];
   for (const value of values) [low, high] = [Math.min(low, value), Math.max(high, value)];
   const room = (high - low || 1) * 0.06;

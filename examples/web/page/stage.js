@@ -14,7 +14,8 @@ export function drawStage(game, part, withTrail) {
     if (canvas.width !== side) canvas.width = canvas.height = side;
   }
   const [target, link, joint, torque] = ["--text", "--link", "--joint", "--torque"].map(color);
-  game.draw(picture.getContext("2d"), part, { background: "transparent", target, link, joint, torque });
+  const colors = { background: "transparent", target, link, joint, torque };
+  game.draw(picture.getContext("2d"), part, colors);
 
   // The scale of the package's picture.
   const metre = side / 2 / (game.params.length1 + game.params.length2 + 0.2);
@@ -27,7 +28,9 @@ export function drawStage(game, part, withTrail) {
   for (let i = 1; i < points.length; i++) {
     context.globalAlpha = 0.7 * (1 - i / POINTS);
     context.beginPath();
-    for (const [x, y] of points.slice(i - 1, i + 1)) context.lineTo(side / 2 + metre * x, side / 2 - metre * y);
+    for (const [x, y] of points.slice(i - 1, i + 1)) {
+      context.lineTo(side / 2 + metre * x, side / 2 - metre * y);
+    }
     context.stroke();
   }
 }

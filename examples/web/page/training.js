@@ -1,4 +1,4 @@
-// The panel "Train a policy": trains in a worker, draws the learning curve, loads and saves weights.
+// The panel "Train a policy": a worker, the learning curve, and files of weights.
 
 import { Perceptron } from "./acrobot-rs/policies.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
@@ -20,10 +20,11 @@ export function trainingPanel(learner, { ready, drive }) {
   const draw = () => {
     const range = rangeOf([...means, 2 * SOLVED, 0]);
     const series = [{ values: means, color: color("--link") }];
-    plot($("curve"), { series, range, start: 1, end: Math.max(means.length, WINDOW), unit: "episodes", marks: [SOLVED] });
+    const end = Math.max(means.length, WINDOW);
+    plot($("curve"), { series, range, start: 1, end, unit: "episodes", marks: [SOLVED] });
   };
 
-  /** Loads weights or a perceptron for the learnt policy. Throws an `Error` with the reason if they are rejected. */
+  /** Loads weights or a perceptron for the learnt policy, or throws the reason. */
   const take = (bytes) => {
     const isPerceptron = String.fromCharCode(...bytes.subarray(0, 4)) === "MLP1";
     const policy = isPerceptron ? new Perceptron(bytes) : learner;
@@ -47,7 +48,8 @@ export function trainingPanel(learner, { ready, drive }) {
     let seed;
     try {
       if (!Number.isInteger(episodes) || episodes < 1 || episodes > EPISODES) {
-        throw new Error(`episodes must be an integer from 1 to 1,000,000, got ${$("episodes").value || "an empty text"}`);
+        const got = $("episodes").value || "an empty text";
+        throw new Error(`episodes must be an integer from 1 to 1,000,000, got ${got}`);
       }
       seed = parseSeed($("training-seed").value);
     } catch (error) {

@@ -1,11 +1,11 @@
-// The page on a phone, on its side too, and on a desktop: what is touched, and the layout. Leaves screenshots.
+// What is touched, and the layout, on a phone and on a desktop. Leaves screenshots.
 
 import assert from "node:assert/strict";
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 
-import { dist, linkedActions, onPage, open, paused, text } from "./player.mjs";
+import { dist, linkedActions, onPage, open, paused, says, stepped, text } from "./player.mjs";
 
 const touched = { hasTouch: true, isMobile: true };
 const SCREENS = {
@@ -14,13 +14,17 @@ const SCREENS = {
   desktop: { viewport: { width: 1280, height: 900 } },
 };
 
-/** Returns a function that touches an element: the type of the event, and for each finger the part of the element's width, from the left. */
+/**
+ * Returns a function that touches an element: the type of the event, and for each finger the part
+ * of the element's width, from the left.
+ */
 async function fingers(page, selector) {
   await page.locator(selector).scrollIntoViewIfNeeded();
   const { x, y, width, height } = await page.locator(selector).boundingBox();
   const session = await page.context().newCDPSession(page);
   const at = (part) => ({ x: x + part * width, y: y + height / 2, id: part * 10 });
-  return (type, ...parts) => session.send("Input.dispatchTouchEvent", { type, touchPoints: parts.map(at) });
+  return (type, ...parts) =>
+    session.send("Input.dispatchTouchEvent", { type, touchPoints: parts.map(at) });
 }
 
 onPage("a touched button applies torque until it is released", SCREENS.phone, async (page) => {
@@ -34,16 +38,22 @@ onPage("a touched button applies torque until it is released", SCREENS.phone, as
   assert.deepEqual(await linkedActions(page), [2, 1]);
 });
 
-onPage("a half of the picture applies torque while it is touched", SCREENS.landscape, async (page) => {
+onPage("a touched half of the picture applies torque", SCREENS.landscape, async (page) => {
   await paused(page, 42);
   const touch = await fingers(page, "#stage");
   const step = () => page.evaluate(() => document.querySelector("#single").click());
-  for (const [type, ...parts] of [["touchStart", 0.2], ["touchEnd"], ["touchStart", 0.9], ["touchStart", 0.9, 0.2], ["touchEnd", 0.2], ["touchEnd"]]) {
-    await touch(type, ...parts);
+  for (const event of [
+    ["touchStart", 0.2],
+    ["touchEnd"],
+    ["touchStart", 0.9],
+    ["touchStart", 0.9, 0.2],
+    ["touchEnd", 0.2], // the finger that leaves
+    ["touchEnd"],
+  ]) {
+    await touch(...event);
     await text(page, "#step");
     await step();
   }
-  // The first end names the finger that leaves.
   assert.deepEqual(await linkedActions(page), [0, 1, 2, 1, 2, 1]);
 });
 
@@ -58,44 +68,64 @@ function recordLabels() {
       queueMicrotask(() => (canvas.drawing = false));
     }
     const box = this.measureText(text);
-    const [left, right] = [x - box.actualBoundingBoxLeft, x + box.actualBoundingBoxRight];
-    canvas.labels.push({ name: text, left, right, top: y - box.actualBoundingBoxAscent, bottom: y + box.actualBoundingBoxDescent });
+    canvas.labels.push({
+      name: text,
+      left: x - box.actualBoundingBoxLeft,
+      right: x + box.actualBoundingBoxRight,
+      top: y - box.actualBoundingBoxAscent,
+      bottom: y + box.actualBoundingBoxDescent,
+    });
     fillText.call(this, text, x, y);
   };
 }
 
-/** What overlaps on the page: pairs of controls and texts, and of a plot's labels. What is outside of a plot, too. */
+/** Pairs of controls and texts, or of a plot's labels, that overlap; labels outside of a plot. */
 const overlaps = (page) =>
   page.evaluate(() => {
     const pairs = (boxes, room) => {
-      const apart = (a, b) => a.right + room <= b.left || b.right + room <= a.left || a.bottom + room <= b.top || b.bottom + room <= a.top;
-      return boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => !apart(a, b)).map((b) => `${a.name} and ${b.name}`));
+      const before = (a, b) => a.right + room <= b.left || a.bottom + room <= b.top;
+      return boxes.flatMap((a, i) => {
+        const others = boxes.slice(i + 1).filter((b) => !before(a, b) && !before(b, a));
+        return others.map((b) => `${a.name} and ${b.name}`);
+      });
     };
-    const shown = [...document.querySelectorAll("button, input, select, label, p, figcaption, figure canvas, #stage, h1, h2, summary")].filter(
-      (element) => element.checkVisibility() && element.getBoundingClientRect().height > 0 && element.parentElement.id !== "stage",
+    const found = document.querySelectorAll(
+      "button, input, select, label, p, figcaption, figure canvas, #stage, h1, h2, summary",
     );
+    const shown = [...found].filter((element) => {
+      const isSeen = element.checkVisibility() && element.getBoundingClientRect().height > 0;
+      return isSeen && element.parentElement.id !== "stage";
+    });
     const boxes = shown.map((element) => {
       const { left, right, top, bottom } = element.getBoundingClientRect();
-      return { name: element.id || element.textContent.slice(0, 30), left, right, top: top + 0.5, bottom: bottom - 0.5 };
+      const name = element.id || element.textContent.slice(0, 30);
+      return { name, left, right, top: top + 0.5, bottom: bottom - 0.5 };
     });
     const plots = [...document.querySelectorAll("figure canvas")].flatMap((canvas) => {
-      const outside = canvas.labels.filter(({ left, right }) => left < 0 || right > canvas.clientWidth + 1).map(({ name }) => `${name} outside`);
-      return [...pairs(canvas.labels, 4), ...outside].map((pair) => `${canvas.id}: ${pair}`);
+      const { clientWidth, labels } = canvas;
+      const outside = labels.filter(({ left, right }) => left < 0 || right > clientWidth + 1);
+      const names = outside.map(({ name }) => `${name} outside`);
+      return [...pairs(labels, 4), ...names].map((pair) => `${canvas.id}: ${pair}`);
     });
     return [...pairs(boxes, 0), ...plots];
   });
 
-test("each screen shows what its player needs, and nothing overlaps or is wider than it", async () => {
+test("each screen shows what its player needs, and nothing overlaps or is wider", async () => {
   mkdirSync(join(dist, "screenshots"), { recursive: true });
   for (const [name, options] of Object.entries(SCREENS)) {
     const { width, height } = options.viewport;
     await open({ ...options, prepare: recordLabels }, async (page) => {
       const hint = options.hasTouch ? "#touch" : "#keys";
-      assert.deepEqual(await page.evaluate(() => ["#keys", "#touch"].filter((id) => document.querySelector(id).checkVisibility())), [hint]);
+      const hints = await page.evaluate(() => {
+        const isShown = (id) => document.querySelector(id).checkVisibility();
+        return ["#keys", "#touch"].filter(isShown);
+      });
+      assert.deepEqual(hints, [hint]);
       assert.equal(/←|→/.test(await text(page, "#status")), !options.hasTouch);
       for (const id of ["stage", "left", "right", "pause", "reset", "step", "best"]) {
         const box = await page.locator(`#${id}`).boundingBox();
-        assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width && box.y + box.height <= height, `${name}: ${id}`);
+        const isInside = box.x >= 0 && box.x + box.width <= width;
+        assert.ok(isInside && box.y >= 0 && box.y + box.height <= height, `${name}: ${id}`);
       }
       const stage = await page.locator("#stage").boundingBox();
       assert.ok(stage.width > 0.8 * Math.min(width, height, 500), `${stage.width}`);
@@ -105,24 +135,27 @@ test("each screen shows what its player needs, and nothing overlaps or is wider 
       await page.fill("#episodes", "30");
       await page.click("#train");
       await page.selectOption("#pace", "4");
-      await page.waitForFunction(() => Number.parseInt(document.querySelector("#step").textContent) >= 40);
+      await stepped(page, 40);
       await page.click("#pause");
-      await page.waitForFunction(() => document.querySelector("#train").textContent === "Train");
+      await says(page, "#train", /^Train$/);
       await page.evaluate(() => scrollTo(0, 0));
       for (const colorScheme of ["light", "dark"]) {
         await page.emulateMedia({ colorScheme });
         await text(page, "#step");
+        const path = join(dist, "screenshots", `${name}-${colorScheme}.png`);
         // A picture of a full page would end the emulation of touch.
-        await page.screenshot({ path: join(dist, "screenshots", `${name}-${colorScheme}.png`), fullPage: !options.hasTouch });
+        await page.screenshot({ path, fullPage: !options.hasTouch });
       }
       const filled = await page.evaluate(() =>
         [...document.querySelectorAll("section")].map((section) => {
           const { top, height } = section.getBoundingClientRect();
-          return (Math.max(...Array.from(section.children, (child) => child.getBoundingClientRect().bottom)) - top) / height;
+          const bottom = (child) => child.getBoundingClientRect().bottom;
+          return (Math.max(...Array.from(section.children, bottom)) - top) / height;
         }),
       );
       assert.ok(Math.min(...filled) > 0.6, `${name}: parts of the panels with content: ${filled}`);
-      for (const other of name === "desktop" ? [width, 832, 1000, 1920] : [width, 320, 568, 667, 932]) {
+      const others = name === "desktop" ? [832, 1000, 1920] : [320, 568, 667, 932];
+      for (const other of [width, ...others]) {
         await page.setViewportSize({ width: other, height });
         await text(page, "#step");
         assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), other);

@@ -24,8 +24,10 @@ after(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Opens the page and calls `play` once it has loaded. In Chromium, asserts that its console has no errors or warnings, and that it
- * requests only its own files. */
+/**
+ * Opens the page and calls `play` once it has loaded. In Chromium, asserts that its console has no
+ * errors or warnings, and that it requests only its own files.
+ */
 export async function open({ hash = "", prepare, starts = true, ...options }, play) {
   if (inChromium.skip) {
     const page = browser.newPage();
@@ -33,14 +35,17 @@ export async function open({ hash = "", prepare, starts = true, ...options }, pl
     await page.waitForSelector("#app:not([hidden])");
     return play(page);
   }
-  const window = await browser.newContext({ permissions: ["clipboard-read", "clipboard-write"], ...options });
+  const permissions = ["clipboard-read", "clipboard-write"];
+  const window = await browser.newContext({ permissions, ...options });
   const page = await window.newPage();
   const wrong = [];
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) wrong.push(message.text());
+  });
   page.on("pageerror", (error) => wrong.push(error.message));
   window.on("request", (request) => {
     const url = request.url();
-    if (!url.startsWith(origin) && !url.startsWith(`blob:${origin}`)) wrong.push(`a request for ${url}`);
+    if (!url.replace(/^blob:/, "").startsWith(origin)) wrong.push(`a request for ${url}`);
   });
   if (prepare) await page.addInitScript(prepare);
   await page.goto(origin + hash);
@@ -61,17 +66,41 @@ export function onPage(name, ...more) {
 
 /** Resolves when the page has drawn its current state. */
 const shown = (page) =>
-  page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  page.evaluate(() => {
+    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  });
 
 export const text = async (page, selector) => {
   await shown(page);
   return page.textContent(selector);
 };
 
+/** Resolves when an element's text matches a pattern. */
+export const says = (page, selector, { source }) =>
+  page.waitForFunction(
+    ([selector, source]) => new RegExp(source).test(document.querySelector(selector).textContent),
+    [selector, source],
+  );
+
+/** Resolves when the page has taken so many steps. */
+export const stepped = (page, count) =>
+  page.waitForFunction((count) => document.querySelector("#step").textContent >= count, count);
+
 export const shownBits = async (page) => {
   await shown(page);
-  return page.evaluate(() => Array.from(document.querySelectorAll("#state code"), (code) => code.textContent));
+  return page.evaluate(() => {
+    return Array.from(document.querySelectorAll("#state code"), (code) => code.textContent);
+  });
 };
+
+/** Asserts what an element's text is. */
+export async function shows(page, selector, expected) {
+  assert.equal(await text(page, selector), expected);
+}
+
+export async function showsBits(page, expected) {
+  assert.deepEqual(await shownBits(page), expected);
+}
 
 /** Pauses the page in the initial state of a seed, and lets the keys play. */
 export async function paused(page, seed) {
@@ -95,7 +124,8 @@ export async function press(page, actions) {
 export async function steps(page, count) {
   await page.focus("#stage");
   await page.evaluate((count) => {
-    for (let i = 0; i < count; i++) document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "s", bubbles: true }));
+    const key = new KeyboardEvent("keydown", { key: "s", bubbles: true });
+    for (let i = 0; i < count; i++) document.activeElement.dispatchEvent(key);
   }, count);
 }
 

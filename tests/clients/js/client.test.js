@@ -1,4 +1,5 @@
-// Jest, as CommonJS, and Vitest run this in jsdom: some globals are missing, and Node.js's bytes are those of another realm.
+// Jest, as CommonJS, and Vitest run this in jsdom: some globals are missing, and Node.js's bytes
+// are those of another realm.
 
 import { Acrobot } from "acrobot-rs";
 import { Learner, bangBang } from "acrobot-rs/policies";

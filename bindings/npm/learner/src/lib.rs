@@ -1,7 +1,9 @@
-//! The WebAssembly module of `acrobot-rs/policies`: the learner of `swing_up` in 64 KiB, and perceptrons that were trained in Python. Each
-//! `Learner` or `Perceptron` of JavaScript has its own instance.
+//! The WebAssembly module of `acrobot-rs/policies`: the learner of `swing_up` in 64 KiB, and
+//! perceptrons that were trained in Python. Each `Learner` or `Perceptron` of JavaScript has its
+//! own instance.
 //!
-//! Longer data than numbers passes through a buffer: JavaScript writes seeds and policies, Rust writes error texts, both write weights.
+//! Longer data than numbers passes through a buffer: JavaScript writes seeds and policies, Rust
+//! writes error texts, both write weights.
 
 use std::cell::{Cell, RefCell};
 
@@ -35,8 +37,9 @@ fn write(bytes: impl IntoIterator<Item = u8>) -> usize {
     })
 }
 
-/// Begins a training like that of `swing_up`. The seed is in the first `words` 32-bit words of the buffer, at most 64, the
-/// lowest word first. An instance calls this once, because a learner keeps its memory.
+/// Begins a training like that of `swing_up`. The seed is in the first `words` 32-bit words of the
+/// buffer, at most 64, the lowest word first. An instance calls this once, because a learner keeps
+/// its memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn begin(episodes: u32, words: usize) {
     let mut seed = [0; 64];
@@ -60,7 +63,7 @@ pub extern "C" fn train() -> f32 {
     })
 }
 
-/// Writes the weights into the buffer, in the format of `swing_up --save`. Returns the number of bytes.
+/// Writes the weights into the buffer, as `swing_up --save` does, and returns their length.
 #[unsafe(no_mangle)]
 pub extern "C" fn save() -> usize {
     TRAINING.with_borrow(|training| {
@@ -69,8 +72,8 @@ pub extern "C" fn save() -> usize {
     })
 }
 
-/// Loads weights from the first `len` bytes of the buffer. Returns 0, or, if they are rejected, the length of the reason in
-/// the buffer. Then the weights do not change.
+/// Loads weights from the first `len` bytes of the buffer. Returns 0, or, if they are rejected, the
+/// length of the reason in the buffer. Then the weights do not change.
 #[unsafe(no_mangle)]
 pub extern "C" fn load(len: usize) -> usize {
     let loaded = TRAINING.with_borrow_mut(|training| {
@@ -90,7 +93,8 @@ pub extern "C" fn act(theta1: f32, theta2: f32, dtheta1: f32, dtheta2: f32) -> u
     })
 }
 
-/// Takes the policy in the first `len` bytes of the buffer. Returns as `load`. An instance calls this once, because it keeps the memory.
+/// Takes the policy in the first `len` bytes of the buffer. Returns as `load`. An instance calls
+/// this once, because it keeps the memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn load_perceptron(len: usize) -> usize {
     let file = BUFFER.with_borrow(|buffer| buffer.get(..len).map(<[u8]>::to_vec));
