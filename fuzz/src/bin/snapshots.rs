@@ -160,7 +160,10 @@ impl<A: Arithmetic> Snapshot for Member<A> {
     fn check(self) -> bool {
         use Autoreset::{Disabled, NextStep, SameStep};
 
-        let valid = self.state.validate().is_ok() && self.params.validate().is_ok();
+        let has_friction = self.params.friction != Params::DEFAULT.friction;
+        let valid = self.state.validate().is_ok()
+            && self.params.validate().is_ok()
+            && (A::HAS_FRICTION || !has_friction);
         for autoreset in [NextStep, SameStep, Disabled] {
             let seed = SeedSequence::new(0);
             let mut batch = VecBatch::<A>::with_own_params(seed, 1).expect("memory for one");
