@@ -11,7 +11,7 @@ import re
 import subprocess
 
 STEPS = 200
-COSTS = {"vdiv": 14, "vsqr": 14, "vmla": 3, "vmls": 3, "vnml": 3, "udiv": 7, "sdiv": 7}
+COSTS = {"vdiv": 14, "vmla": 3, "vmls": 3, "udiv": 7, "sdiv": 7}
 REGISTERS = re.compile(r"[rsd](\d+)(?:-[rsd](\d+))?|lr|pc|ip|fp|sl|sb")
 
 
