@@ -31,7 +31,7 @@ use core::marker::PhantomData;
 
 #[cfg(feature = "std")]
 use crate::math::sines::platform;
-use crate::math::sines::{self, correctly_rounded, polynomial, table};
+use crate::math::sines::{self, correctly_rounded, fdlibm, polynomial, table};
 use crate::physics::Task;
 
 pub use crate::math::{Numbers, Real};
@@ -68,8 +68,13 @@ impl Arithmetic for Reference {
         correctly_rounded::sin_cos(x)
     }
 
-    #[inline]
-    fn cos(x: f64) -> f64 {
+    #[inline(always)]
+    fn sin_cos_near<V: Numbers<f64>>(x: V) -> (V, V) {
+        correctly_rounded::sin_cos(x)
+    }
+
+    #[inline(always)]
+    fn cos_near<V: Numbers<f64>>(x: V) -> V {
         correctly_rounded::cos(x)
     }
 }
@@ -92,9 +97,9 @@ impl Arithmetic for Host {
         platform::sin_cos(x)
     }
 
-    #[inline]
-    fn cos(x: f64) -> f64 {
-        platform::cos(x)
+    #[inline(always)]
+    fn cos_near<V: Numbers<f64>>(x: V) -> V {
+        x.map(platform::cos)
     }
 
     const SQUARES_IN_CONST: bool = false;
@@ -119,12 +124,12 @@ impl Arithmetic for Portable {
 
     #[inline]
     fn sin_cos(x: f64) -> (f64, f64) {
-        libm::sincos(x)
+        fdlibm::sin_cos(x)
     }
 
-    #[inline]
-    fn cos(x: f64) -> f64 {
-        libm::cos(x)
+    #[inline(always)]
+    fn sin_cos_near<V: Numbers<f64>>(x: V) -> (V, V) {
+        fdlibm::sin_cos(x)
     }
 }
 
@@ -251,9 +256,9 @@ impl<A: Arithmetic, const TASK: u8> Arithmetic for Damped<A, TASK> {
         A::sin_cos_near(x)
     }
 
-    #[inline]
-    fn cos(x: A::Scalar) -> A::Scalar {
-        A::cos(x)
+    #[inline(always)]
+    fn cos_near<V: Numbers<A::Scalar>>(x: V) -> V {
+        A::cos_near(x)
     }
 
     #[inline(always)]

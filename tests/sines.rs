@@ -104,7 +104,7 @@ fn hard_cases_are_correctly_rounded() {
             "cos {x:e}: {found_cos:e}"
         );
         assert_eq!(
-            Reference::cos(x).to_bits(),
+            Reference::cos_near(x).to_bits(),
             cos.to_bits(),
             "cos {x:e} alone"
         );
@@ -117,6 +117,6 @@ fn hard_cases_are_correctly_rounded() {
 fn the_sine_of_infinity_and_nan_is_nan() {
     for x in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
         let (sin, cos) = Reference::sin_cos(x);
-        assert!(sin.is_nan() && cos.is_nan() && Reference::cos(x).is_nan());
+        assert!(sin.is_nan() && cos.is_nan() && Reference::cos_near(x).is_nan());
     }
 }

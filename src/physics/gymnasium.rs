@@ -51,8 +51,8 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     let square = |x: V| x.map(A::square);
 
     // Computed first, because no float stays in a register across a call on x86-64.
-    let phi2 = gravity2 * (theta1 + theta2 - quarter).map(A::cos);
-    let cos1 = (theta1 - quarter).map(A::cos);
+    let phi2 = gravity2 * A::cos_near(theta1 + theta2 - quarter);
+    let cos1 = A::cos_near(theta1 - quarter);
     let arm = arms_product * cos2;
     let d1 = link1 + m2 * (arms_squared + two * arm) + inertia1 + inertia2;
     let d2 = m2 * (lc2_squared + arm) + inertia2;
@@ -95,14 +95,19 @@ pub(super) fn reaches_goal<A: Arithmetic, V: Numbers<A::Scalar>>(
     [theta1, theta2]: [V; 2],
     [(_, cos1), _]: [SinCos<V>; 2],
 ) -> V::Mask {
-    let height = cos1.zip(theta2 + theta1, |cos1, sum| {
-        // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
-        if cos1 >= A::Scalar::ZERO {
-            A::Scalar::ZERO
+    // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
+    let zero = V::splat(A::Scalar::ZERO);
+    let lowest = cos1.map(|cos1| {
+        if cos1 < A::Scalar::ZERO {
+            cos1
         } else {
-            -cos1 - A::cos(sum)
+            A::Scalar::ZERO
         }
     });
+    if lowest.all_within(zero) {
+        return zero.above(A::Scalar::ONE);
+    }
+    let height = -cos1 - A::cos_near(theta2 + theta1);
     height.above(A::Scalar::ONE)
 }
 

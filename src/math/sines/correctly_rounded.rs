@@ -21,16 +21,67 @@ mod float;
 mod integer;
 mod wide;
 
-/// Whether the machine has instructions for `f64`. Results do not depend on it.
-const HAS_F64: bool = cfg!(any(
-    target_pointer_width = "64",
-    target_arch = "wasm32",
-    target_arch = "x86"
-));
+use super::HAS_F64;
+use crate::math::lanes::Numbers;
 
 /// Sine and cosine, correctly rounded. NaN for infinity and NaN.
 #[inline(always)]
-pub fn sin_cos(x: f64) -> (f64, f64) {
+pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
+    if V::IS_ONE {
+        return x.zip3(x, x, |x, _, _| single(x));
+    }
+    let (sin, cos) = x.zip3(x, x, |x, _, _| {
+        let angle = float::Angle::new(x);
+        let sin = or_nan(x, angle.sin());
+        let sin = if x.abs() < 1.0 / 134_217_728.0 {
+            x
+        } else {
+            sin
+        };
+        (sin, or_nan(x, angle.cos()))
+    });
+    let one = V::splat(1.0);
+    if sin.all_within(one) & cos.all_within(one) {
+        (sin, cos)
+    } else {
+        complete(x, sin, cos)
+    }
+}
+
+/// Cosine, correctly rounded; otherwise as [`sin_cos`].
+#[inline(always)]
+pub fn cos<V: Numbers<f64>>(x: V) -> V {
+    if V::IS_ONE {
+        return x.map(single_cos);
+    }
+    let cos = x.map(|x| or_nan(x, float::Angle::new(x).cos()));
+    if cos.all_within(V::splat(1.0)) {
+        cos
+    } else {
+        complete(x, V::splat(0.0), cos).1
+    }
+}
+
+#[inline(always)]
+fn or_nan(x: f64, y: Option<f64>) -> f64 {
+    let y = y.unwrap_or(f64::NAN);
+    if x.abs() < 64.0 { y } else { f64::NAN }
+}
+
+#[cold]
+#[inline(never)]
+fn complete<V: Numbers<f64>>(x: V, sin: V, cos: V) -> (V, V) {
+    x.zip3(sin, cos, |x, sin, cos| {
+        if sin.is_nan() | cos.is_nan() {
+            single(x)
+        } else {
+            (sin, cos)
+        }
+    })
+}
+
+#[inline(always)]
+fn single(x: f64) -> (f64, f64) {
     if !has_fast_path(x) {
         return apart(x);
     }
@@ -47,9 +98,8 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     )
 }
 
-/// Cosine, correctly rounded; otherwise as [`sin_cos`].
 #[inline(always)]
-pub fn cos(x: f64) -> f64 {
+fn single_cos(x: f64) -> f64 {
     if !has_fast_path(x) {
         return apart(x).1;
     }
