@@ -76,6 +76,9 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
 /// takes the remainder.
 #[inline(always)]
 pub(super) fn wrap<S: Real, V: Numbers<S>>(x: V) -> V {
+    if !V::IS_ONE && x.all_within(V::splat(S::PI)) {
+        return x;
+    }
     x.map(|mut x| {
         for _ in 0..MAX_TURNS {
             if x > S::PI {
