@@ -110,10 +110,12 @@ impl Arithmetic for Host {
     }
 }
 
-/// `f64`, sines from the crate `libm`, and the lean form: the fastest `f64` with the same bits on every target.
+/// `f64`, the sines of the crate `libm`, and the lean form: the fastest `f64` with the same bits on
+/// every target.
 ///
-/// A release of `libm` could round its sines differently and so change the bits. [Fix its
-/// version](crate::guide::determinism#limits), or use [`Reference`], which depends on no library.
+/// [It calls `libm`](crate::guide::determinism#limits) for some angles, which a release could round
+/// differently.
+/// [`Reference`] depends on no library.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Portable;

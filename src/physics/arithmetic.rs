@@ -36,7 +36,7 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
         x.zip3(x, x, |x, _, _| Self::sin_cos(x))
     }
 
-    /// The cosines of [`sin_cos_near`](Self::sin_cos_near) alone: only [`Form::Gymnasium`] calls it.
+    /// The cosines of [`sin_cos_near`](Self::sin_cos_near). Only [`Form::Gymnasium`] calls it.
     #[inline(always)]
     fn cos_near<V: Numbers<Self::Scalar>>(x: V) -> V {
         Self::sin_cos_near(x).1

@@ -1,8 +1,8 @@
-//! `f64` by the polynomials of Sun's `fdlibm`, without a branch, for SIMD: bit-identical to FreeBSD's `sin` and `cos` and
-//! to the crate `libm` 0.2.16, a translation of them.
+//! `f64` by the polynomials of Sun's `fdlibm`, without a branch, for SIMD: bit-identical to the crate
+//! `libm` 0.2.16, which is FreeBSD's in Rust.
 //!
-//! Let n be the integer nearest to x · 2/π and y + tail = x − n π/2, so that |y| ≤ π/4. The polynomials approximate sine
-//! and cosine of y, and each has a term for the tail. `cargo test --test sines` compares with `libm`.
+//! Let n be the integer nearest to x · 2/π and y + tail = x − n π/2, so that |y| ≤ π/4. The
+//! polynomials approximate sine and cosine of y, and each has a term for the tail.
 
 use super::HAS_F64;
 use crate::math::lanes::Numbers;
@@ -12,7 +12,7 @@ const MAGIC: f64 = 1.5 / f64::EPSILON;
 
 /// `libm` computes where it reduces x in another way:
 ///
-/// - |y| > 0.78539, where it finds n from the upper 32 bits of x;
+/// - |y| > π/4 − 1e-5, where it finds n from the upper 32 bits of x;
 /// - |y| < 2⁻¹⁵ |x|, where it subtracts more digits of π/2, and so all |x| above 25,736.
 ///
 /// A branch per call, and not one for each lane, costs no time where it is not taken.
@@ -23,7 +23,7 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     const PI_2_LOW: f64 = f64::from_bits(0x3dd0_b461_1a62_6331);
 
     let c = V::splat;
-    let largest = c(0.78539);
+    let largest = c(core::f64::consts::FRAC_PI_4 - 1e-5);
     if V::IS_ONE && !HAS_F64 {
         // It has branches instead, so it needs fewer instructions.
         return x.zip3(x, x, |x, _, _| libm::sincos(x));
@@ -55,7 +55,8 @@ fn by_libm<V: Numbers<f64>>(x: V) -> (V, V) {
 /// Sine and cosine of y + `tail` + n π/2. The lowest bits of `shifted` are those of n.
 #[inline(always)]
 fn reduced(shifted: f64, y: f64, tail: f64) -> (f64, f64) {
-    /// sin y = y + y³ (S0 + S1 y² + …), and cos y = 1 − y²/2 + y⁴ (C0 + C1 y² + …): `k_sin.c` and `k_cos.c` of FreeBSD.
+    /// sin y = y + y³ (S0 + S1 y² + …), and cos y = 1 − y²/2 + y⁴ (C0 + C1 y² + …): `k_sin.c` and
+    /// `k_cos.c` of FreeBSD.
     const S: [f64; 6] = [
         f64::from_bits(0xbfc5_5555_5555_5549),
         f64::from_bits(0x3f81_1111_1110_f8a6),
@@ -78,7 +79,8 @@ fn reduced(shifted: f64, y: f64, tail: f64) -> (f64, f64) {
     let w = z * z;
     let r = S[1] + z * (S[2] + z * S[3]) + z * w * (S[4] + z * S[5]);
     let cube = z * y;
-    // `libm` has another order where it does not reduce x. The sum with the tail, which is 0 there, keeps the sign of −0.
+    // `libm` has another order where it does not reduce x. The sum with the tail, which is 0 there,
+    // keeps the sign of −0.
     let rest = if shifted == MAGIC {
         tail - cube * (S[0] + z * r)
     } else {
