@@ -31,7 +31,7 @@ use core::marker::PhantomData;
 
 #[cfg(feature = "std")]
 use crate::math::sines::platform;
-use crate::math::sines::{self, correctly_rounded, polynomial, table};
+use crate::math::sines::{self, correctly_rounded, fdlibm, polynomial, table};
 use crate::physics::Task;
 
 pub use crate::math::{Numbers, Real};
@@ -68,8 +68,13 @@ impl Arithmetic for Reference {
         correctly_rounded::sin_cos(x)
     }
 
-    #[inline]
-    fn cos(x: f64) -> f64 {
+    #[inline(always)]
+    fn sin_cos_near<V: Numbers<f64>>(x: V) -> (V, V) {
+        correctly_rounded::sin_cos(x)
+    }
+
+    #[inline(always)]
+    fn cos_near<V: Numbers<f64>>(x: V) -> V {
         correctly_rounded::cos(x)
     }
 }
@@ -92,9 +97,9 @@ impl Arithmetic for Host {
         platform::sin_cos(x)
     }
 
-    #[inline]
-    fn cos(x: f64) -> f64 {
-        platform::cos(x)
+    #[inline(always)]
+    fn cos_near<V: Numbers<f64>>(x: V) -> V {
+        x.map(platform::cos)
     }
 
     const SQUARES_IN_CONST: bool = false;
@@ -105,10 +110,12 @@ impl Arithmetic for Host {
     }
 }
 
-/// `f64`, sines from the crate `libm`, and the lean form: the fastest `f64` with the same bits on every target.
+/// `f64`, the sines of the crate `libm`, and the lean form: the fastest `f64` with the same bits on
+/// every target.
 ///
-/// A release of `libm` could round its sines differently and so change the bits. [Fix its
-/// version](crate::guide::determinism#limits), or use [`Reference`], which depends on no library.
+/// [It calls `libm`](crate::guide::determinism#limits) for some angles, which a release could round
+/// differently.
+/// [`Reference`] depends on no library.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Portable;
@@ -119,12 +126,12 @@ impl Arithmetic for Portable {
 
     #[inline]
     fn sin_cos(x: f64) -> (f64, f64) {
-        libm::sincos(x)
+        fdlibm::sin_cos(x)
     }
 
-    #[inline]
-    fn cos(x: f64) -> f64 {
-        libm::cos(x)
+    #[inline(always)]
+    fn sin_cos_near<V: Numbers<f64>>(x: V) -> (V, V) {
+        fdlibm::sin_cos(x)
     }
 }
 
@@ -249,9 +256,9 @@ impl<A: Arithmetic, const TASK: u8> Arithmetic for Damped<A, TASK> {
         A::sin_cos_near(x)
     }
 
-    #[inline]
-    fn cos(x: A::Scalar) -> A::Scalar {
-        A::cos(x)
+    #[inline(always)]
+    fn cos_near<V: Numbers<A::Scalar>>(x: V) -> V {
+        A::cos_near(x)
     }
 
     #[inline(always)]

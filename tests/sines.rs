@@ -83,7 +83,7 @@ fn hard_cases_are_correctly_rounded() {
         let (found_sin, found_cos) = Reference::sin_cos(x);
         assert_eq!(found_sin.to_bits(), sin.to_bits(), "sin {x:e}: {found_sin:e}");
         assert_eq!(found_cos.to_bits(), cos.to_bits(), "cos {x:e}: {found_cos:e}");
-        assert_eq!(Reference::cos(x).to_bits(), cos.to_bits(), "cos {x:e} alone");
+        assert_eq!(Reference::cos_near(x).to_bits(), cos.to_bits(), "cos {x:e} alone");
         count += 1;
     }
     assert!(count > 2000, "{count}");
@@ -93,6 +93,6 @@ fn hard_cases_are_correctly_rounded() {
 fn the_sine_of_infinity_and_nan_is_nan() {
     for x in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
         let (sin, cos) = Reference::sin_cos(x);
-        assert!(sin.is_nan() && cos.is_nan() && Reference::cos(x).is_nan());
+        assert!(sin.is_nan() && cos.is_nan() && Reference::cos_near(x).is_nan());
     }
 }

@@ -90,7 +90,7 @@ fn portable_is_within_one_ulp_of_host() {
         let x = f64::from(i - 500_000) * 1e-4;
         let (sin, cos) = Portable::sin_cos(x);
         let (host_sin, host_cos) = Host::sin_cos(x);
-        assert_eq!(Portable::cos(x).to_bits(), cos.to_bits());
+        assert_eq!(Portable::cos_near(x).to_bits(), cos.to_bits());
         assert!((sin - host_sin).abs() <= f64::EPSILON / 2.0, "sin of {x}");
         assert!((cos - host_cos).abs() <= f64::EPSILON / 2.0, "cos of {x}");
     }

@@ -1,6 +1,7 @@
 //! Sines and cosines as plain functions.
 
 pub mod correctly_rounded;
+pub mod fdlibm;
 #[cfg(feature = "std")]
 pub mod platform;
 pub mod polynomial;
@@ -11,3 +12,10 @@ pub mod table;
 pub fn clamp(x: f32) -> f32 {
     x.clamp(-524_288.0, 524_288.0)
 }
+
+/// Whether the machine has instructions for `f64`. Results do not depend on it.
+const HAS_F64: bool = cfg!(any(
+    target_pointer_width = "64",
+    target_arch = "wasm32",
+    target_arch = "x86"
+));

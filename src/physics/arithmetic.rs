@@ -41,10 +41,10 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
         x.zip3(x, x, |x, _, _| Self::sin_cos(x))
     }
 
-    /// Cosine of `x` rad, bit-identical to the cosine of [`sin_cos`](Self::sin_cos).
-    #[inline]
-    fn cos(x: Self::Scalar) -> Self::Scalar {
-        Self::sin_cos(x).1
+    /// The cosines of [`sin_cos_near`](Self::sin_cos_near). Only [`Form::Gymnasium`] calls it.
+    #[inline(always)]
+    fn cos_near<V: Numbers<Self::Scalar>>(x: V) -> V {
+        Self::sin_cos_near(x).1
     }
 
     /// The task: Gymnasium's, unless it is replaced as in [`Swingup`](crate::arithmetic::Swingup).

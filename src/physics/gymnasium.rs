@@ -32,8 +32,8 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     let square = |x: V| x.map(A::square);
 
     // Computed first, because no float stays in a register across a call on x86-64.
-    let phi2 = gravity2 * (theta1 + theta2 - quarter).map(A::cos);
-    let cos1 = (theta1 - quarter).map(A::cos);
+    let phi2 = gravity2 * A::cos_near(theta1 + theta2 - quarter);
+    let cos1 = A::cos_near(theta1 - quarter);
     let arm = arms_product * cos2;
     let d1 = link1 + m2 * (arms_squared + two * arm) + inertia1 + inertia2;
     let d2 = m2 * (lc2_squared + arm) + inertia2;
@@ -55,6 +55,9 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
 /// takes the remainder.
 #[inline(always)]
 pub(super) fn wrap<S: Real, V: Numbers<S>>(x: V) -> V {
+    if !V::IS_ONE && x.all_within(V::splat(S::PI)) {
+        return x;
+    }
     x.map(|mut x| {
         for _ in 0..MAX_TURNS {
             if x > S::PI {
@@ -74,10 +77,25 @@ pub(super) fn reaches_goal<A: Arithmetic, V: Numbers<A::Scalar>>(
     [theta1, theta2]: [V; 2],
     [(_, cos1), _]: [SinCos<V>; 2],
 ) -> V::Mask {
+<<<<<<< HEAD
     let height = cos1.zip(theta2 + theta1, |cos1, sum| {
         // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
         if cos1 >= A::Scalar::ZERO { A::Scalar::ZERO } else { -cos1 - A::cos(sum) }
+=======
+    // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
+    let zero = V::splat(A::Scalar::ZERO);
+    let lowest = cos1.map(|cos1| {
+        if cos1 < A::Scalar::ZERO {
+            cos1
+        } else {
+            A::Scalar::ZERO
+        }
+>>>>>>> simd
     });
+    if lowest.all_within(zero) {
+        return zero.above(A::Scalar::ONE);
+    }
+    let height = -cos1 - A::cos_near(theta2 + theta1);
     height.above(A::Scalar::ONE)
 }
 

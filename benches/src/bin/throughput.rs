@@ -41,6 +41,9 @@ fn main() {
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
     batch::<Portable>("portable", 1024, SimdLevel::widest());
+    batch::<Portable>("portable_avx2", 1024, SimdLevel::Avx2);
+    batch::<Portable>("portable_baseline", 1024, SimdLevel::Baseline);
+    batch::<Reference>("reference", 1024, SimdLevel::widest());
     threads(1 << 20);
 }
 

@@ -21,13 +21,72 @@ mod float;
 mod integer;
 mod wide;
 
+<<<<<<< HEAD
 /// Whether the machine has instructions for `f64`. Results do not depend on it.
 const HAS_F64: bool =
     cfg!(any(target_pointer_width = "64", target_arch = "wasm32", target_arch = "x86"));
+=======
+use super::HAS_F64;
+use crate::math::lanes::Numbers;
+
+/// 2⁻²⁷.
+const TINY: f64 = 1.0 / 134_217_728.0;
+>>>>>>> simd
 
 /// Sine and cosine, correctly rounded. NaN for infinity and NaN.
 #[inline(always)]
-pub fn sin_cos(x: f64) -> (f64, f64) {
+pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
+    if V::IS_ONE {
+        return x.zip3(x, x, |x, _, _| of_one(x));
+    }
+    let (sin, cos) = x.zip3(x, x, |x, _, _| {
+        let angle = float::Angle::new(x);
+        let sin = or_nan(x, angle.sin());
+        let sin = if x.abs() < TINY { x } else { sin };
+        (sin, or_nan(x, angle.cos()))
+    });
+    complete(x, sin, cos)
+}
+
+/// Cosine, correctly rounded; otherwise as [`sin_cos`].
+#[inline(always)]
+pub fn cos<V: Numbers<f64>>(x: V) -> V {
+    if V::IS_ONE {
+        return x.map(cos_of_one);
+    }
+    let cos = x.map(|x| or_nan(x, float::Angle::new(x).cos()));
+    complete(x, V::splat(0.0), cos).1
+}
+
+/// NaN for what the table leaves open: SIMD has no branch for a lane.
+#[inline(always)]
+fn or_nan(x: f64, y: Option<f64>) -> f64 {
+    let y = y.unwrap_or(f64::NAN);
+    if x.abs() < 64.0 { y } else { f64::NAN }
+}
+
+/// Replaces the lanes that are NaN.
+#[inline(always)]
+fn complete<V: Numbers<f64>>(x: V, sin: V, cos: V) -> (V, V) {
+    #[cold]
+    #[inline(never)]
+    fn each<V: Numbers<f64>>(x: V, sin: V, cos: V) -> (V, V) {
+        let one = |x: f64, y: f64, quarters| match (y.is_nan(), x.is_finite()) {
+            (true, true) => wide::sine(x, quarters),
+            _ => y,
+        };
+        x.zip3(sin, cos, |x, sin, cos| (one(x, sin, 0), one(x, cos, 1)))
+    }
+    let one = V::splat(1.0);
+    if sin.all_within(one) & cos.all_within(one) {
+        (sin, cos)
+    } else {
+        each(x, sin, cos)
+    }
+}
+
+#[inline(always)]
+fn of_one(x: f64) -> (f64, f64) {
     if !has_fast_path(x) {
         return apart(x);
     }
@@ -41,9 +100,8 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     (sin.unwrap_or_else(|| wide::sine(x, 0)), cos.unwrap_or_else(|| wide::sine(x, 1)))
 }
 
-/// Cosine, correctly rounded; otherwise as [`sin_cos`].
 #[inline(always)]
-pub fn cos(x: f64) -> f64 {
+fn cos_of_one(x: f64) -> f64 {
     if !has_fast_path(x) {
         return apart(x).1;
     }
@@ -74,6 +132,7 @@ fn apart(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Lanes;
     use crate::numpy::{Pcg64, uniform};
 
     /// A machine uses only one of the two fast paths. This test runs both.
@@ -116,6 +175,28 @@ mod tests {
                 cfg!(miri) || shares.iter().all(|share| expected.contains(share)),
                 "{shares:?}"
             );
+        }
+    }
+
+    /// Lanes take the table on any machine.
+    #[test]
+    fn lanes_equal_single_numbers() {
+        let mut rng = Pcg64::new(1);
+        let ends = [0.0, TINY, 64.0, f64::INFINITY, f64::NAN];
+        for i in 0..if cfg!(miri) { 50 } else { 200_000_u32 } {
+            let scale = f64::from(1 << (i % 29)) / f64::from(1 << (i % 23));
+            let end = ends.get(i as usize % 8).unwrap_or(&1.0);
+            let near_end = f64::from_bits(end.to_bits().wrapping_sub(u64::from(i / 8 % 2)));
+            let random = uniform(&mut rng, -scale, scale);
+            let x = [random, -near_end, 3.0 * random, near_end];
+            let (cos_alone, (sin, cos)) = (cos(Lanes(x)), sin_cos(Lanes(x)));
+            for (lane, x) in x.into_iter().enumerate() {
+                let expected = of_one(x);
+                let bits = |y: f64| if y.is_nan() { 1 } else { y.to_bits() };
+                let found = [sin.0[lane], cos.0[lane], cos_alone.0[lane]].map(bits);
+                let expected = [expected.0, expected.1, expected.1].map(bits);
+                assert_eq!(found, expected, "{x:e}");
+            }
         }
     }
 }

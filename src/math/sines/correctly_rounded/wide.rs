@@ -121,7 +121,7 @@ pub(super) const fn octant_sine(fraction: &Fraction, is_cosine: bool) -> Fractio
     let mut terms = INVERSE_FACTORIALS;
     while let [smaller @ .., [even, odd]] = terms {
         let term = if is_cosine { even } else { odd };
-        sum = product(&square, &difference(term, &sum));
+        sum = product(&difference(term, &sum), &square); // the first factor has leading zeros
         terms = smaller;
     }
     if is_cosine { difference(&[u64::MAX; 3], &sum) } else { difference(&r, &product(&r, &sum)) }
@@ -138,10 +138,13 @@ fn round([first, second, third]: Fraction) -> f64 {
 }
 
 /// The product, at most 2⁻¹⁹² too low.
-#[inline(never)] // saves flash
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))] // saves flash
 const fn product(&[a2, a1, a0]: &Fraction, b: &Fraction) -> Fraction {
     /// (sum + a b) / 2⁶⁴.
     const fn row([sum2, sum1, sum0]: Fraction, a: u64, &[b2, b1, b0]: &Fraction) -> Fraction {
+        if a == 0 {
+            return [0, sum2, sum1];
+        }
         let (carry, _) = multiply_add(a, b0, sum0, 0);
         let (carry, word0) = multiply_add(a, b1, sum1, carry);
         let (word2, word1) = multiply_add(a, b2, sum2, carry);
