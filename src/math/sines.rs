@@ -14,8 +14,5 @@ pub fn clamp(x: f32) -> f32 {
 }
 
 /// Whether the machine has instructions for `f64`. Results do not depend on it.
-const HAS_F64: bool = cfg!(any(
-    target_pointer_width = "64",
-    target_arch = "wasm32",
-    target_arch = "x86"
-));
+const HAS_F64: bool =
+    cfg!(any(target_pointer_width = "64", target_arch = "wasm32", target_arch = "x86"));

@@ -77,21 +77,9 @@ pub(super) fn reaches_goal<A: Arithmetic, V: Numbers<A::Scalar>>(
     [theta1, theta2]: [V; 2],
     [(_, cos1), _]: [SinCos<V>; 2],
 ) -> V::Mask {
-<<<<<<< HEAD
-    let height = cos1.zip(theta2 + theta1, |cos1, sum| {
-        // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
-        if cos1 >= A::Scalar::ZERO { A::Scalar::ZERO } else { -cos1 - A::cos(sum) }
-=======
     // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
     let zero = V::splat(A::Scalar::ZERO);
-    let lowest = cos1.map(|cos1| {
-        if cos1 < A::Scalar::ZERO {
-            cos1
-        } else {
-            A::Scalar::ZERO
-        }
->>>>>>> simd
-    });
+    let lowest = cos1.map(|cos1| if cos1 < A::Scalar::ZERO { cos1 } else { A::Scalar::ZERO });
     if lowest.all_within(zero) {
         return zero.above(A::Scalar::ONE);
     }

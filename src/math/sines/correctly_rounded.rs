@@ -21,17 +21,11 @@ mod float;
 mod integer;
 mod wide;
 
-<<<<<<< HEAD
-/// Whether the machine has instructions for `f64`. Results do not depend on it.
-const HAS_F64: bool =
-    cfg!(any(target_pointer_width = "64", target_arch = "wasm32", target_arch = "x86"));
-=======
 use super::HAS_F64;
 use crate::math::lanes::Numbers;
 
 /// 2⁻²⁷.
 const TINY: f64 = 1.0 / 134_217_728.0;
->>>>>>> simd
 
 /// Sine and cosine, correctly rounded. NaN for infinity and NaN.
 #[inline(always)]
@@ -78,11 +72,7 @@ fn complete<V: Numbers<f64>>(x: V, sin: V, cos: V) -> (V, V) {
         x.zip3(sin, cos, |x, sin, cos| (one(x, sin, 0), one(x, cos, 1)))
     }
     let one = V::splat(1.0);
-    if sin.all_within(one) & cos.all_within(one) {
-        (sin, cos)
-    } else {
-        each(x, sin, cos)
-    }
+    if sin.all_within(one) & cos.all_within(one) { (sin, cos) } else { each(x, sin, cos) }
 }
 
 #[inline(always)]
@@ -132,7 +122,7 @@ fn apart(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Lanes;
+    use crate::math::lanes::Lanes;
     use crate::numpy::{Pcg64, uniform};
 
     /// A machine uses only one of the two fast paths. This test runs both.
