@@ -22,10 +22,9 @@ pub(super) struct Work<'a, A: Arithmetic, const N: usize> {
 }
 
 impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
-    /// Whether acrobots share their parameters is decided once, so that the compiler sees that all
-    /// lanes have the same constants: deciding for each block would be 3 to 6 % slower. `HIDE`
-    /// hides the model: with AVX-512 the compiler would hold it in registers and spill the state,
-    /// 16 % slower.
+    /// Whether acrobots share their parameters is decided once, and not for each block, which would be 3 to 6 % slower:
+    /// the compiler then sees that all lanes have the same constants. `HIDE` hides the model: with AVX-512 the compiler
+    /// would hold it in registers and spill the state, 16 % slower.
     #[inline(always)]
     pub(super) fn step<const HIDE: bool>(self) {
         let Self {
