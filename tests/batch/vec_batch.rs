@@ -2,6 +2,7 @@
 
 use acrobot::batch::{Autoreset, Batch, Block, StepBuffers, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::physics::Dynamics;
 use acrobot::{Error, Fast, Params, ResetOptions};
 
 #[test]
@@ -78,6 +79,23 @@ fn a_batch_that_does_not_fit_into_memory_is_rejected() {
         format!("a batch must fit into memory, got {} acrobots", usize::MAX / 2)
     );
     assert_eq!(new(0), "a batch must have at least 1 acrobot, got 0 generators");
+}
+
+/// A member whose reset is pending draws its own parameters, in any block.
+#[test]
+fn a_replaced_member_is_reset_with_its_own_parameters() {
+    let mut batch = VecBatch::<Fast>::with_own_params(SeedSequence::new(3), 40).unwrap();
+    let range = common::params_range::<Fast>(Dynamics::Book);
+    batch.set_params_range(Some(range)).unwrap();
+    batch.set_limit(1.try_into().unwrap());
+    batch.step(&[1_u8; 40]).unwrap();
+    let pending = (0..40).map(|i| batch.member(i).unwrap()).collect::<Vec<_>>();
+    batch.set_autoreset(Autoreset::SameStep);
+    let expected = batch.clone();
+    for (i, member) in pending.into_iter().enumerate() {
+        batch.set_member(i, member).unwrap();
+        assert_eq!(batch.member(i), expected.member(i));
+    }
 }
 
 /// Where all share their parameters, a member's must have the same bits.
