@@ -1,8 +1,9 @@
 //! Arithmetics: the types that determine every bit of a result.
 //!
-//! An [`Arithmetic`] names a scalar, a sine and cosine, and a [`Form`] of the equations of motion. It is a type
-//! parameter and not a feature flag, because Cargo unifies features: a flag that changes results would change them for
-//! every crate in the build. The guide says [which to choose](crate::guide::numbers#arithmetics).
+//! An [`Arithmetic`] names a scalar, a sine and cosine, and a [`Form`] of the equations of motion.
+//! It is a type parameter and not a feature flag, because Cargo unifies features: a flag that
+//! changes results would change them for every crate in the build. The guide says
+//! [which to choose](crate::guide::numbers#arithmetics).
 //!
 //! For a hardware sine unit, implement [`Arithmetic`]:
 //!
@@ -38,12 +39,13 @@ pub use crate::math::{Numbers, Real};
 pub use crate::physics::arithmetic::Arithmetic;
 pub use crate::physics::model::{Form, Modeled};
 
-/// `f64`, correctly rounded sines and cosines, and Gymnasium's expressions: the same bits on every target, defined by
-/// mathematics and not by a library.
+/// `f64`, correctly rounded sines and cosines, and Gymnasium's expressions: the same bits on every
+/// target, defined by mathematics and not by a library.
 ///
-/// For each x one `f64` is nearest to sin x. This arithmetic returns it, as any other correctly rounded sine does.
-/// 99.75 % of its steps are [bit-identical to Gymnasium's](crate::guide::parity#bit-identical-steps), about as many as
-/// between Gymnasium on two CPUs. `src/math/sines/correctly_rounded.rs` explains the method.
+/// For each x one `f64` is nearest to sin x. This arithmetic returns it, as any other correctly
+/// rounded sine does. 99.75 % of its steps are [bit-identical to
+/// Gymnasium's](crate::guide::parity#bit-identical-steps), about as many as between Gymnasium on
+/// two CPUs. `src/math/sines/correctly_rounded.rs` explains the method.
 ///
 /// ```
 /// use acrobot::arithmetic::{Arithmetic, Reference};
@@ -79,8 +81,9 @@ impl Arithmetic for Reference {
     }
 }
 
-/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: bit-identical to Gymnasium if NumPy calls the
-/// same library, as on Linux with glibc and a CPU with FMA. Without FMA glibc rounds a few sines differently.
+/// `f64`, the C library's `sin`, `cos` and `pow`, and Gymnasium's order: bit-identical to Gymnasium
+/// if NumPy calls the same library, as on Linux with glibc and a CPU with FMA. Without FMA glibc
+/// rounds a few sines differently.
 #[cfg(feature = "std")]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -135,8 +138,8 @@ impl Arithmetic for Portable {
     }
 }
 
-/// `f32`, polynomial sines, and the lean form: the same bits on every target, with or without an FPU. For
-/// single-precision FPUs, WASM and batches with SIMD.
+/// `f32`, polynomial sines, and the lean form: the same bits on every target, with or without an
+/// FPU. For single-precision FPUs, WASM and batches with SIMD.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Fast;
@@ -145,9 +148,10 @@ impl Arithmetic for Fast {
     const NAME: &'static str = "fast";
     type Scalar = f32;
 
-    /// Sine and cosine with an error of at most 1.2e-7 (two units in the last place of 1) for |x| ≤ 64 rad. The largest
-    /// error over all these `f32` is 1.17e-7 (`cargo test --release --test trigonometry`). For larger angles the error
-    /// is that of an angle in `f32`, 1.2e-7 |x|. Angles beyond ±2¹⁹ rad are clamped to ±2¹⁹ rad.
+    /// Sine and cosine with an error of at most 1.2e-7 (two units in the last place of 1) for |x| ≤
+    /// 64 rad. The largest error over all these `f32` is 1.17e-7
+    /// (`cargo test --release --test trigonometry`). For larger angles the error is that of an
+    /// angle in `f32`, 1.2e-7 |x|. Angles beyond ±2¹⁹ rad are clamped to ±2¹⁹ rad.
     #[inline]
     fn sin_cos(x: f32) -> (f32, f32) {
         polynomial::sin_cos(sines::clamp(x))
@@ -159,8 +163,8 @@ impl Arithmetic for Fast {
     }
 }
 
-/// `f32`, a table of sixteen sines for half a turn, and the lean form: a sixth fewer instructions than [`Fast`] on a
-/// Cortex-M4, and about seven times its error for |x| ≤ π.
+/// `f32`, a table of sixteen sines for half a turn, and the lean form: a sixth fewer instructions
+/// than [`Fast`] on a Cortex-M4, and about seven times its error for |x| ≤ π.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Micro;
@@ -183,16 +187,17 @@ impl Arithmetic for Micro {
     }
 }
 
-/// An arithmetic with [viscous friction](crate::physics::Viscous) of the joints, which is 0 by default.
+/// An arithmetic with [viscous friction](crate::physics::Viscous) of the joints, which is 0 by
+/// default.
 ///
-/// A step needs instructions for friction, which the arithmetic itself does not. `TASK` is 0, or that of
-/// [`Swingup`] and [`SwingupSparse`].
+/// A step needs instructions for friction, which the arithmetic itself does not. `TASK` is 0, or
+/// that of [`Swingup`] and [`SwingupSparse`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Damped<A, const TASK: u8 = 0>(PhantomData<A>);
 
-/// dm_control's `acrobot-swingup` in an arithmetic: see [`Task::Swingup`], and [`Params::SWINGUP`](crate::Params::SWINGUP) for its
-/// parameters.
+/// dm_control's `acrobot-swingup` in an arithmetic: see [`Task::Swingup`], and
+/// [`Params::SWINGUP`](crate::Params::SWINGUP) for its parameters.
 ///
 /// ```
 /// use acrobot::arithmetic::{Arithmetic, Swingup};

@@ -70,8 +70,8 @@
 
 #[cfg(all(target_arch = "x86", not(target_feature = "sse2")))]
 compile_error!(
-    "acrobot needs SSE2 on 32-bit x86: without it the FPU computes in 80 bits, and results are wrong. \
-    Compile for i686 instead of i586."
+    "acrobot needs SSE2 on 32-bit x86: without it the FPU computes in 80 bits, and results are \
+    wrong. Compile for i686 instead of i586."
 );
 
 #[cfg(feature = "alloc")]

@@ -172,7 +172,8 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
 }
 
 /// The names of the columns of the CSV, with units.
-pub const HEADER: &str = "step,theta1 (rad),theta2 (rad),dtheta1 (rad/s),dtheta2 (rad/s),torque (N m),reward,\
+pub const HEADER: &str = "step,theta1 (rad),theta2 (rad),dtheta1 (rad/s),dtheta2 (rad/s),\
+    torque (N m),reward,\
     next theta1 (rad),next theta2 (rad),next dtheta1 (rad/s),next dtheta2 (rad/s),\
     terminated,truncated";
 

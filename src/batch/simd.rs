@@ -50,10 +50,7 @@ impl SimdLevel {
     }
 
     /// Steps all blocks, with the baseline if the machine does not have this level.
-    #[allow(
-        unsafe_code,
-        reason = "the one place that uses instructions which the machine has and the build does not assume"
-    )]
+    #[allow(unsafe_code, reason = "the one place with instructions that the build does not assume")]
     // Inlined where there is one level, so that kernels which a program does not use are omitted.
     #[cfg_attr(not(all(feature = "std", target_arch = "x86_64")), inline(always))]
     pub(super) fn step<A: Arithmetic, const N: usize>(self, work: Work<'_, A, N>) {

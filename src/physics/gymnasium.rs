@@ -10,8 +10,8 @@ use crate::math::{Numbers, Real, SinCos};
 const MAX_TURNS: u32 = 64;
 
 /// `AcrobotEnv._dsdt`, except for the place of the factors 2, which are exact.
-// Inlined with `std`, because `Host` takes a tenth longer otherwise. On a microcontroller inlining would cost flash
-// and gain nothing.
+// Inlined with `std`, because `Host` takes a tenth longer otherwise. On a microcontroller inlining
+// would cost flash and gain nothing.
 #[cfg_attr(feature = "std", inline(always))]
 pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,
@@ -51,8 +51,8 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     [dtheta1, dtheta2, ddtheta1, ddtheta2]
 }
 
-/// Subtracts turn by turn, as Gymnasium does. Beyond `MAX_TURNS`, where Gymnasium takes long or never returns, it
-/// takes the remainder.
+/// Subtracts turn by turn, as Gymnasium does. Beyond `MAX_TURNS`, where Gymnasium takes long or
+/// never returns, it takes the remainder.
 #[inline(always)]
 pub(super) fn wrap<S: Real, V: Numbers<S>>(x: V) -> V {
     if !V::IS_ONE && x.all_within(V::splat(S::PI)) {

@@ -6,8 +6,8 @@ use super::model::{Constants, Model};
 use crate::math::sealed::Sealed;
 use crate::math::{Numbers, Real, SinCos};
 
-/// The determinant is a positive constant plus a square, so nothing cancels. Gymnasium's cos(θ1 − π/2) is sin θ1
-/// here, and its cos(θ1 + θ2 − π/2) is sin(θ1 + θ2), by the addition theorem.
+/// The determinant is a positive constant plus a square, so nothing cancels. Gymnasium's cos(θ1 −
+/// π/2) is sin θ1 here, and its cos(θ1 + θ2 − π/2) is sin(θ1 + θ2), by the addition theorem.
 #[inline(always)]
 pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,

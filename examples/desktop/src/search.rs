@@ -1,12 +1,13 @@
 //! A beam search on the exact model, small enough for a microcontroller.
 //!
-//! Every step ahead tries both actions in each of the beam's eight states, and keeps the eight new states that the
-//! learner values most. The search ends at the first path to the goal, because no later one is shorter. The
-//! acrobot follows the path until the search finds a shorter one.
+//! Every step ahead tries both actions in each of the beam's eight states, and keeps the eight new
+//! states that the learner values most. The search ends at the first path to the goal, because no
+//! later one is shorter. The acrobot follows the path until the search finds a shorter one.
 //!
-//! Looking a few steps ahead is worse than not planning. Values are learnt along the policy's own paths, and a
-//! search finds states off these paths whose values are too high. From about ten steps on, true rewards outweigh that.
-//! Thirty steps give nearly all of the gain. Sixty give 0.2 steps more, and most searches end earlier.
+//! Looking a few steps ahead is worse than not planning. Values are learnt along the policy's own
+//! paths, and a search finds states off these paths whose values are too high. From about ten steps
+//! on, true rewards outweigh that. Thirty steps give nearly all of the gain. Sixty give 0.2 steps
+//! more, and most searches end earlier.
 
 use acrobot::physics::Pendulum;
 use acrobot::{Action, Fast, State};
@@ -64,8 +65,8 @@ impl Default for Search {
 }
 
 impl Search {
-    /// The first action of the best path found now or before, of up to `depth` actions. `value` estimates the negative
-    /// number of steps from a state to the goal.
+    /// The first action of the best path found now or before, of up to `depth` actions. `value`
+    /// estimates the negative number of steps from a state to the goal.
     pub fn choose(
         &mut self,
         state: State<f32>,

@@ -1,4 +1,4 @@
-"""Runs other people's programs end to end with our environments, and with Gymnasium's in their place.
+"""Runs other people's programs with our environments, and with Gymnasium's in their place.
 
 The results of both must have the same types and shapes. `bash .ci/run clients` installs the
 programs, which `requirements.txt` beside this file pins.
