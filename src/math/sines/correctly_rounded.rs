@@ -133,7 +133,7 @@ fn apart(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Lanes;
+    use crate::math::lanes::Lanes;
     use crate::numpy::{Pcg64, uniform};
 
     /// A machine uses only one of the two fast paths. This test runs both.

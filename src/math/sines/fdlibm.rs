@@ -105,7 +105,7 @@ fn reduced(shifted: f64, y: f64, tail: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Lanes;
+    use crate::math::lanes::Lanes;
     use crate::numpy::{Pcg64, uniform};
     use rand_core::Rng;
 
