@@ -58,7 +58,10 @@ impl SimdLevel {
         {
             #[target_feature(enable = "avx2")]
             fn with_avx2<A: Arithmetic, const N: usize>(work: Work<'_, A, N>) {
-                work.step::<true>();
+                match size_of::<A::Scalar>() {
+                    4 => work.step::<false>(),
+                    _ => work.step::<true>(),
+                }
             }
             #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
             fn with_avx512<A: Arithmetic, const N: usize>(work: Work<'_, A, N>) {
