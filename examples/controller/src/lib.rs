@@ -106,12 +106,13 @@ impl Controller {
 
 /// The regulator of the upright position.
 fn regulator<A: Arithmetic>(machine: &Pendulum<A>) -> Result<Lqr<A::Scalar>, ControlError> {
-    let weight = |i| [0, 1, 2, 3].map(|j| A::Scalar::from_f64(f64::from(u8::from(i == j))));
-    machine.regulator(
-        A::Scalar::ZERO,
-        &[0, 1, 2, 3].map(weight),
-        A::Scalar::from_f64(1.0),
-    )
+    machine.regulator(A::Scalar::ZERO, &identity(), A::Scalar::from_f64(1.0))
+}
+
+/// The weights of the deviations.
+fn identity<S: Real>() -> [[S; 4]; 4] {
+    let row = |i| [0, 1, 2, 3].map(|j| S::from_f64(f64::from(u8::from(i == j))));
+    [0, 1, 2, 3].map(row)
 }
 
 /// Whether the regulator succeeds from the model's state.

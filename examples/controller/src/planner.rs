@@ -17,7 +17,7 @@ use acrobot::physics::{Pendulum, State, bound};
 use acrobot::rand_core::Rng;
 use acrobot::{Error, Params};
 
-use crate::{catches, dot, regulator};
+use crate::{catches, dot, identity, regulator};
 
 /// What a torque of 1 N m costs in a step, what a step far from upright costs, and what the
 /// logarithm of the regulator's cost at the end, beyond `NEAR`, costs.
@@ -50,7 +50,8 @@ pub struct Step<S> {
     pub state: State<S>,
     /// The torque, N m.
     pub torque: S,
-    /// What to add to the torque for each deviation from the state, N m per rad and per rad/s.
+    /// What to add to the torque for each deviation from the state, N m per rad and per rad/s: that
+    /// of a linear-quadratic regulator along the plan.
     pub gain: [S; 4],
     /// What the last iteration adds to the torque, N m.
     change: S,
@@ -69,6 +70,13 @@ impl<S: Real> Step<S> {
             gain: [S::ZERO; 4],
             change: S::ZERO,
         }
+    }
+
+    /// The torque that follows the plan from a measured state, N m. `bound` limits it to that of a
+    /// motor, which needs more torque than the plan to correct deviations.
+    #[must_use]
+    pub fn follow(&self, state: State<S>) -> S {
+        self.torque + dot(self.gain, difference(state, self.state))
     }
 }
 
@@ -140,8 +148,8 @@ impl<A: Arithmetic> Planner<A> {
     }
 
     /// Plans from a state into memory of the caller, until a plan ends in a state from which the
-    /// regulator holds. Returns this plan, which is the first part of the memory: at least half
-    /// of it.
+    /// regulator holds. Returns this plan, which is the first part of the memory: the tries take
+    /// one to ten tenths of it in turn.
     ///
     /// # Errors
     ///
@@ -155,15 +163,17 @@ impl<A: Arithmetic> Planner<A> {
         memory: &'m mut [Step<A::Scalar>],
     ) -> Result<&'m mut [Step<A::Scalar>], NoPlan> {
         start.validate()?;
-        for parts in (6..=10).cycle().take(tries as usize) {
+        for parts in (1..=10).cycle().take(tries as usize) {
             let len = memory.len() / 10 * parts;
             let Some(plan) = memory.get_mut(..len) else {
                 break;
             };
             // Extreme parameters can make a guess overflow.
             let guessed = self.guess(start, rng, plan);
-            let improved = guessed.and_then(|()| self.improve(start, ITERATIONS, plan));
-            if improved.is_ok() && self.catches(self.model.state()) {
+            if guessed.is_ok()
+                && self.improve(start, ITERATIONS, plan).is_ok()
+                && self.catches(self.model.state())
+            {
                 return memory.get_mut(..len).ok_or(NoPlan::NotFound { tries });
             }
         }
@@ -217,7 +227,7 @@ impl<A: Arithmetic> Planner<A> {
         start: State<A::Scalar>,
         iterations: u32,
         plan: &mut [Step<A::Scalar>],
-    ) -> Result<A::Scalar, Error> {
+    ) -> Result<A::Scalar, ControlError> {
         let mut cost = self.roll_out(start, plan, A::Scalar::ZERO, true)?;
         let (mut damping, mut stalled) = (DAMPING, 0);
         for _ in 0..iterations {
@@ -233,18 +243,39 @@ impl<A: Arithmetic> Planner<A> {
                 None => (cost, damping * 8.0),
             };
         }
-        self.roll_out(start, plan, A::Scalar::ZERO, false)
+        self.track(plan)?;
+        Ok(self.roll_out(start, plan, A::Scalar::ZERO, false)?)
     }
 
-    /// The torque that follows a step of a plan from a measured state, N m; after the last step that
-    /// of the regulator, which holds the machine upright.
+    /// Replaces the gains by those of a regulator along the plan, with the weights of the one
+    /// upright. Torques at their bound get some, too.
+    fn track(&mut self, plan: &mut [Step<A::Scalar>]) -> Result<(), ControlError> {
+        let one = A::Scalar::from_f64(1.0);
+        let mut cost = self.regulator.cost_to_go;
+        for step in plan.iter_mut().rev() {
+            self.model.set_state(step.state)?;
+            let DiscreteModel { a, b } = discretize(&self.model, step.torque)?;
+            let cost_b = cost.map(|row| dot(row, b));
+            let divisor = dot(b, cost_b) + one;
+            let mut columns = transpose(a);
+            step.gain = columns.map(|column| -(dot(column, cost_b) / divisor));
+            // Those of A + B K.
+            for (column, k) in columns.iter_mut().zip(step.gain) {
+                *column = plus(*column, k, b);
+            }
+            let curved = columns.map(|column| cost.map(|row| dot(row, column)));
+            cost = columns.map(|column| curved.map(|curved| dot(column, curved)));
+            for ((row, weights), k) in cost.iter_mut().zip(identity()).zip(step.gain) {
+                *row = plus(plus(*row, one, weights), k, step.gain);
+            }
+        }
+        Ok(())
+    }
+
+    /// The regulator that holds the machine upright after the plan.
     #[must_use]
-    pub fn torque(&self, step: Option<&Step<A::Scalar>>, state: State<A::Scalar>) -> A::Scalar {
-        let torque = match step {
-            Some(step) => step.torque + dot(step.gain, difference(state, step.state)),
-            None => self.regulator.torque(difference(state, State::UPRIGHT)),
-        };
-        bound(torque, self.limit)
+    pub fn regulator(&self) -> &Lqr<A::Scalar> {
+        &self.regulator
     }
 
     /// Whether the regulator succeeds from a state.

@@ -65,15 +65,24 @@ struct Episode {
 }
 
 impl Episode {
+    /// Follows a plan, and then the regulator.
     fn play<A: Arithmetic<Scalar = f32>>(
         mut acrobot: Acrobot<A>,
+        planner: &Planner<A>,
+        plan: &[Step<f32>],
+        limit: f32,
         steps: usize,
-        mut torque: impl FnMut(usize, State<f32>) -> f32,
     ) -> anyhow::Result<Self> {
         let (mut total, mut upright) = (0.0, 0);
         for i in 0..steps {
-            let step = acrobot.step_torque(torque(i, acrobot.state()))?;
-            total += f64::from(step.reward);
+            let state = acrobot.state();
+            let torque = match plan.get(i) {
+                Some(step) => step.follow(state),
+                None => planner
+                    .regulator()
+                    .torque(difference(state, State::UPRIGHT)),
+            };
+            total += f64::from(acrobot.step_torque(bound(torque, limit))?.reward);
             let [theta1, theta2, ..] = difference(acrobot.state(), State::UPRIGHT);
             if theta1.abs().max(theta2.abs()) > 0.1 {
                 upright = i + 1;
@@ -93,9 +102,7 @@ struct Search {
 impl Search {
     fn episode(&self, plan: &[Step<f32>]) -> anyhow::Result<Episode> {
         let steps = Task::TASK.limit().get() as usize;
-        Episode::play(self.acrobot.clone(), steps, |i, state| {
-            self.planner.torque(plan.get(i), state)
-        })
+        Episode::play(self.acrobot.clone(), &self.planner, plan, SWINGUP, steps)
     }
 
     /// A whole number from `low` up to but not including `high`.
@@ -179,9 +186,7 @@ fn gymnasium(seed: u64) -> anyhow::Result<Episode> {
         Err(NoPlan::NotFound { .. }) => &[],
         Err(error) => return Err(error.into()),
     };
-    Episode::play(acrobot, 50 * RATE, |i, state| {
-        planner.torque(plan.get(i), state)
-    })
+    Episode::play(acrobot, &planner, plan, GYMNASIUM, 50 * RATE)
 }
 
 fn main() -> anyhow::Result<()> {
