@@ -77,6 +77,7 @@ fn excerpts_are_in_their_files() {
             .join("\n")
     };
     for (page, fence, count) in [
+        ("docs/control.md", "```rust,ignore (", 1),
         ("docs/embedded.md", "```rust,ignore (", 2),
         ("docs/c.md", "```c (", 4),
     ] {

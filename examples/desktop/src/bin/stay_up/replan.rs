@@ -1,0 +1,169 @@
+//! Both tasks in real time: the acrobot differs from the model, measurements are noisy, and the planner plans again every
+//! 0.1 s from what it measures, on one core.
+
+use std::time::{Duration, Instant};
+
+use acrobot::arithmetic::Arithmetic;
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::physics::bound;
+use acrobot::physics::control::difference;
+use acrobot::{Acrobot, Fast, Params, State};
+use controller::{NoPlan, Planner, Step};
+use rayon::prelude::*;
+
+use crate::search::Search;
+use crate::{GYMNASIUM, RATE, STEPS, SWINGUP, TRIES, Task};
+
+/// The planner plans again after this time, s, with so many iterations, until so few steps are left.
+const AGAIN: f32 = 0.1;
+const ITERATIONS: u32 = 12;
+const LEAST: usize = 30;
+/// The part of the motor's torque that plans use. The rest corrects deviations.
+const PLANNED: f32 = 0.9;
+/// A plan takes this part of the search of `stay_up`.
+const PART: usize = 4;
+
+/// The largest errors of masses and lengths, and noise of angles, rad, and of velocities, rad/s.
+const CASES: [(f64, [f64; 2]); 6] = [
+    (0.0, [0.0, 0.0]),
+    (0.01, [0.0, 0.0]),
+    (0.02, [0.0, 0.0]),
+    (0.05, [0.0, 0.0]),
+    (0.0, [1e-3, 1e-2]),
+    (0.02, [1e-4, 1e-3]),
+];
+
+/// The return, whether the acrobot is upright in the last tenth of the time, and the time that planning took.
+struct Episode {
+    total: f64,
+    held: bool,
+    took: Duration,
+}
+
+/// Plays one episode. `plan` makes a plan from a state.
+fn play<A: Arithmetic<Scalar = f32>>(
+    mut acrobot: Acrobot<A>,
+    limit: f32,
+    steps: usize,
+    (error, noise): (f64, [f64; 2]),
+    rng: &mut Pcg64,
+    mut plan: impl FnMut(State<f32>) -> anyhow::Result<Vec<Step<f32>>>,
+) -> anyhow::Result<Episode> {
+    let params = *acrobot.params();
+    let mut planner = Planner::<A>::new(params, PLANNED * limit)?;
+    let mut wrong = |x: f32| x * (1.0 + uniform(rng, -error, error)) as f32;
+    acrobot.set_params(Params {
+        mass1: wrong(params.mass1),
+        mass2: wrong(params.mass2),
+        length1: wrong(params.length1),
+        center_of_mass2: wrong(params.center_of_mass2),
+        ..params
+    })?;
+    let every = (AGAIN / params.dt).round() as usize;
+    let (mut total, mut upright, mut took) = (0.0, 0, Duration::ZERO);
+    let (mut planned, mut next) = (Vec::new(), 0);
+    for i in 0..steps {
+        let before = Instant::now();
+        let [angle, velocity] =
+            noise.map(|most| [(); 2].map(|()| uniform(rng, -most, most) as f32));
+        let mut state = acrobot.state();
+        state.theta1 += angle[0];
+        state.theta2 += angle[1];
+        state.dtheta1 += velocity[0];
+        state.dtheta2 += velocity[1];
+        let torque = if planner.catches(state) {
+            planned.clear();
+            planner
+                .regulator()
+                .torque(difference(state, State::UPRIGHT))
+        } else {
+            if next >= planned.len() {
+                (planned, next) = (plan(state)?, 0);
+            } else if i % every == 0 && planned.len() - next > LEAST {
+                planner.improve(state, ITERATIONS, &mut planned[next..])?;
+            }
+            next += 1;
+            planned.get(next - 1).map_or(0.0, |step| step.follow(state))
+        };
+        took += before.elapsed();
+        total += f64::from(acrobot.step_torque(bound(torque, limit))?.reward);
+        let [theta1, theta2, ..] = difference(acrobot.state(), State::UPRIGHT);
+        if theta1.abs().max(theta2.abs()) > 0.1 {
+            upright = i + 1;
+        }
+    }
+    let held = upright <= steps / 10 * 9;
+    Ok(Episode { total, held, took })
+}
+
+fn swing_up(seed: u64, case: (f64, [f64; 2])) -> anyhow::Result<Episode> {
+    let acrobot = Acrobot::<Task>::new(seed);
+    let mut search = Search::new(acrobot.clone(), PLANNED * SWINGUP, seed)?;
+    let steps = Task::TASK.limit().get() as usize;
+    play(
+        acrobot,
+        SWINGUP,
+        steps,
+        case,
+        &mut Pcg64::new(seed),
+        |state| search.run_from(state, PART),
+    )
+}
+
+/// Gymnasium's acrobot for 45 s: the last tenth of the time begins after 40 s.
+fn gymnasium(seed: u64, case: (f64, [f64; 2])) -> anyhow::Result<Episode> {
+    let params = Params {
+        dt: 1.0 / RATE as f32,
+        ..Params::DEFAULT
+    };
+    let mut acrobot = Acrobot::<Fast>::new(seed);
+    acrobot.set_params(params)?;
+    let mut planner = Planner::<Fast>::new(params, PLANNED * GYMNASIUM)?;
+    let (mut tries, mut memory) = (Pcg64::new(seed), [Step::EMPTY; STEPS]);
+    play(
+        acrobot,
+        GYMNASIUM,
+        45 * RATE,
+        case,
+        &mut Pcg64::new(seed),
+        |state| match planner.plan(state, TRIES, &mut tries, &mut memory) {
+            Err(NoPlan::NotFound { .. }) => Ok(Vec::new()),
+            found => Ok(found?.to_vec()),
+        },
+    )
+}
+
+/// Prints a table of each task.
+pub fn tables(episodes: u32) -> anyhow::Result<()> {
+    let tasks: [(&str, fn(u64, (f64, [f64; 2])) -> anyhow::Result<Episode>); 2] = [
+        ("2 N m with friction, 10 s", swing_up),
+        ("1 N m without friction, 45 s", gymnasium),
+    ];
+    for (name, play) in tasks {
+        println!(
+            "| {name} | held of {episodes} | mean return | planning, most s |\n|---|---|---|---|"
+        );
+        for case in CASES {
+            let seeds = (0..u64::from(episodes)).into_par_iter();
+            let played = seeds.map(|seed| play(seed, case));
+            let played: Vec<Episode> = played.collect::<anyhow::Result<_>>()?;
+            let held = played.iter().filter(|episode| episode.held).count();
+            let mean =
+                played.iter().map(|episode| episode.total).sum::<f64>() / f64::from(episodes);
+            let most = played
+                .iter()
+                .map(|episode| episode.took)
+                .max()
+                .unwrap_or_default();
+            let (error, [angle, velocity]) = case;
+            println!(
+                "| errors of {:.0} %, noise of {:.1} mrad and {:.0} mrad/s | {held} | {mean:.0} | {:.1} |",
+                error * 100.0,
+                angle * 1e3,
+                velocity * 1e3,
+                most.as_secs_f64()
+            );
+        }
+    }
+    Ok(())
+}
