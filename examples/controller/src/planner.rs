@@ -205,12 +205,12 @@ impl<A: Arithmetic> Planner<A> {
             let missing = self.upright - self.model.energy();
             let state = self.model.state();
             let torque = bound(push + gain * missing * state.dtheta2, self.limit);
+            self.model.step(torque)?;
             *step = Step {
                 state,
                 torque,
                 ..Step::EMPTY
             };
-            self.model.step(torque)?;
         }
         Ok(())
     }
@@ -319,10 +319,10 @@ impl<A: Arithmetic> Planner<A> {
             let feedback = dot(step.gain, difference(state, step.state));
             let torque = bound(step.torque + part * step.change + feedback, self.limit);
             cost = cost + self.away().0 + torque * torque * number(EFFORT);
+            self.model.step(torque)?;
             if keep {
                 (step.state, step.torque) = (state, torque);
             }
-            self.model.step(torque)?;
         }
         let x = self.model.deviation(State::UPRIGHT);
         let to_go = dot(self.regulator.cost_to_go.map(|row| dot(row, x)), x).to_f64();

@@ -123,7 +123,9 @@ fn bad_input_gives_an_error_and_no_torque_that_is_not_finite() {
     };
     let error = planner.plan(nowhere, 3, rng, &mut memory).unwrap_err();
     assert!(
-        error.to_string().starts_with("dtheta1 must be finite"),
+        error
+            .to_string()
+            .starts_with("dtheta1 must be a finite number"),
         "{error}"
     );
     for memory in [&mut memory[..], &mut []] {

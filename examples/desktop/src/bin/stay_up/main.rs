@@ -34,7 +34,7 @@ const GYMNASIUM: f32 = 1.0;
 /// Gymnasium's acrobot: decisions a second, the most steps of a plan, and tries.
 const RATE: usize = 50;
 const STEPS: usize = 1250;
-const TRIES: u32 = 32;
+const TRIES: u32 = 64;
 
 /// The whole search begins again, so many times, while the best return is below this.
 const AGAIN: u32 = 2;
@@ -104,14 +104,13 @@ fn swing_up(seed: u64) -> anyhow::Result<Episode> {
     Ok(best)
 }
 
-/// Gymnasium's acrobot, planned as the firmware `plan` does.
+/// Gymnasium's acrobot, from each initial state.
 fn gymnasium(seed: u64) -> anyhow::Result<Episode> {
     let params = Params {
         dt: 1.0 / RATE as f32,
         ..Params::DEFAULT
     };
-    let mut acrobot = Acrobot::<Fast>::new(seed);
-    acrobot.set_params(params)?;
+    let acrobot = Acrobot::<Fast>::with_params(seed, params)?;
     let mut planner = Planner::<Fast>::new(params, GYMNASIUM)?;
     let mut memory = [Step::EMPTY; STEPS];
     let found = planner.plan(acrobot.state(), TRIES, &mut Pcg64::new(seed), &mut memory);

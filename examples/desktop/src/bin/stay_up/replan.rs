@@ -8,7 +8,7 @@ use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::bound;
 use acrobot::physics::control::difference;
 use acrobot::{Acrobot, Fast, Params, State};
-use controller::{NoPlan, Planner, Step};
+use controller::{Planner, Step};
 use rayon::prelude::*;
 
 use crate::search::Search;
@@ -20,11 +20,12 @@ const ITERATIONS: u32 = 12;
 const LEAST: usize = 30;
 /// The part of the motor's torque that plans use. The rest corrects deviations.
 const PLANNED: f32 = 0.9;
-/// A plan takes this part of the search of `stay_up`.
+/// The first plan takes this part of the search of `stay_up`.
 const PART: usize = 4;
 
-/// The largest errors of masses and lengths, and noise of angles, rad, and of velocities, rad/s.
-const CASES: [(f64, [f64; 2]); 6] = [
+/// The largest error of masses and lengths, and noise of angles, rad, and of velocities, rad/s.
+type Case = (f64, [f64; 2]);
+const CASES: [Case; 6] = [
     (0.0, [0.0, 0.0]),
     (0.01, [0.0, 0.0]),
     (0.02, [0.0, 0.0]),
@@ -40,17 +41,16 @@ struct Episode {
     took: Duration,
 }
 
-/// Plays one episode. `plan` makes a plan from a state.
+/// Plays one episode, which begins with a plan. `planner` makes another one where a plan ends and the regulator fails.
 fn play<A: Arithmetic<Scalar = f32>>(
     mut acrobot: Acrobot<A>,
-    limit: f32,
-    steps: usize,
-    (error, noise): (f64, [f64; 2]),
+    planner: &mut Planner<A>,
+    mut plan: Vec<Step<f32>>,
+    (limit, steps): (f32, usize),
+    (error, noise): Case,
     rng: &mut Pcg64,
-    mut plan: impl FnMut(State<f32>) -> anyhow::Result<Vec<Step<f32>>>,
 ) -> anyhow::Result<Episode> {
     let params = *acrobot.params();
-    let mut planner = Planner::<A>::new(params, PLANNED * limit)?;
     let mut wrong = |x: f32| x * (1.0 + uniform(rng, -error, error)) as f32;
     acrobot.set_params(Params {
         mass1: wrong(params.mass1),
@@ -61,9 +61,8 @@ fn play<A: Arithmetic<Scalar = f32>>(
     })?;
     let every = (AGAIN / params.dt).round() as usize;
     let (mut total, mut upright, mut took) = (0.0, 0, Duration::ZERO);
-    let (mut planned, mut next) = (Vec::new(), 0);
+    let (mut memory, mut next) = ([Step::EMPTY; STEPS], 0);
     for i in 0..steps {
-        let before = Instant::now();
         let [angle, velocity] =
             noise.map(|most| [(); 2].map(|()| uniform(rng, -most, most) as f32));
         let mut state = acrobot.state();
@@ -71,19 +70,21 @@ fn play<A: Arithmetic<Scalar = f32>>(
         state.theta2 += angle[1];
         state.dtheta1 += velocity[0];
         state.dtheta2 += velocity[1];
+        let before = Instant::now();
         let torque = if planner.catches(state) {
-            planned.clear();
+            plan.clear();
             planner
                 .regulator()
                 .torque(difference(state, State::UPRIGHT))
         } else {
-            if next >= planned.len() {
-                (planned, next) = (plan(state)?, 0);
-            } else if i % every == 0 && planned.len() - next > LEAST {
-                planner.improve(state, ITERATIONS, &mut planned[next..])?;
+            if next >= plan.len() {
+                let found = planner.plan(state, TRIES, rng, &mut memory);
+                (plan, next) = (found.map(|plan| plan.to_vec()).unwrap_or_default(), 0);
+            } else if i % every == 0 && plan.len() - next > LEAST {
+                planner.improve(state, ITERATIONS, &mut plan[next..])?;
             }
             next += 1;
-            planned.get(next - 1).map_or(0.0, |step| step.follow(state))
+            plan.get(next - 1).map_or(0.0, |step| step.follow(state))
         };
         took += before.elapsed();
         total += f64::from(acrobot.step_torque(bound(torque, limit))?.reward);
@@ -96,46 +97,41 @@ fn play<A: Arithmetic<Scalar = f32>>(
     Ok(Episode { total, held, took })
 }
 
-fn swing_up(seed: u64, case: (f64, [f64; 2])) -> anyhow::Result<Episode> {
+fn swing_up(seed: u64, case: Case) -> anyhow::Result<Episode> {
     let acrobot = Acrobot::<Task>::new(seed);
-    let mut search = Search::new(acrobot.clone(), PLANNED * SWINGUP, seed)?;
-    let steps = Task::TASK.limit().get() as usize;
-    play(
-        acrobot,
-        SWINGUP,
-        steps,
-        case,
-        &mut Pcg64::new(seed),
-        |state| search.run_from(state, PART),
-    )
+    let before = Instant::now();
+    let plan = Search::new(acrobot.clone(), PLANNED * SWINGUP, seed)?.run(PART)?;
+    let searched = before.elapsed();
+    let mut planner = Planner::new(Params::SWINGUP, PLANNED * SWINGUP)?;
+    let task = (SWINGUP, Task::TASK.limit().get() as usize);
+    let rng = &mut Pcg64::new(seed);
+    let episode = play(acrobot, &mut planner, plan, task, case, rng)?;
+    let took = searched + episode.took;
+    Ok(Episode { took, ..episode })
 }
 
 /// Gymnasium's acrobot for 45 s: the last tenth of the time begins after 40 s.
-fn gymnasium(seed: u64, case: (f64, [f64; 2])) -> anyhow::Result<Episode> {
+fn gymnasium(seed: u64, case: Case) -> anyhow::Result<Episode> {
     let params = Params {
         dt: 1.0 / RATE as f32,
         ..Params::DEFAULT
     };
-    let mut acrobot = Acrobot::<Fast>::new(seed);
-    acrobot.set_params(params)?;
-    let mut planner = Planner::<Fast>::new(params, PLANNED * GYMNASIUM)?;
-    let (mut tries, mut memory) = (Pcg64::new(seed), [Step::EMPTY; STEPS]);
+    let acrobot = Acrobot::<Fast>::with_params(seed, params)?;
+    let mut planner = Planner::new(params, PLANNED * GYMNASIUM)?;
+    let task = (GYMNASIUM, 45 * RATE);
     play(
         acrobot,
-        GYMNASIUM,
-        45 * RATE,
+        &mut planner,
+        Vec::new(),
+        task,
         case,
         &mut Pcg64::new(seed),
-        |state| match planner.plan(state, TRIES, &mut tries, &mut memory) {
-            Err(NoPlan::NotFound { .. }) => Ok(Vec::new()),
-            found => Ok(found?.to_vec()),
-        },
     )
 }
 
 /// Prints a table of each task.
 pub fn tables(episodes: u32) -> anyhow::Result<()> {
-    let tasks: [(&str, fn(u64, (f64, [f64; 2])) -> anyhow::Result<Episode>); 2] = [
+    let tasks: [(&str, fn(u64, Case) -> anyhow::Result<Episode>); 2] = [
         ("2 N m with friction, 10 s", swing_up),
         ("1 N m without friction, 45 s", gymnasium),
     ];

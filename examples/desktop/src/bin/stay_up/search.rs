@@ -6,7 +6,7 @@
 use acrobot::arithmetic::Arithmetic;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::bound;
-use acrobot::{Acrobot, Params, State};
+use acrobot::{Acrobot, Params};
 use controller::{Planner, Step};
 
 use crate::{Episode, SWINGUP, Task};
@@ -72,12 +72,6 @@ impl Search {
             }
         }
         torques.into_iter().map(Step::open).collect()
-    }
-
-    /// As `run`, from another state.
-    pub fn run_from(&mut self, state: State<f32>, part: usize) -> anyhow::Result<Vec<Step<f32>>> {
-        self.acrobot.set_state(state)?;
-        self.run(part)
     }
 
     /// The best plan of a part of the search.
