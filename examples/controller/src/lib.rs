@@ -1,7 +1,8 @@
-//! A controller that swings the acrobot up and holds it upright.
+//! Swings the acrobot up and holds it upright, by a [plan](Planner) or by a [controller](Controller)
+//! without one, which computes less and succeeds later.
 //!
-//! A linear-quadratic regulator holds it. Near the upright position the controller simulates the regulator, and lets it
-//! take over in a state from which it succeeds.
+//! Then a linear-quadratic regulator holds it. Near the upright position the controller simulates the
+//! regulator, and lets it take over in a state from which it succeeds.
 //!
 //! With a torque of 7 N m or more, the swing-up is that of X. Xin and M. Kaneda, *Analysis of the Energy-Based Swing-Up
 //! Control of the Acrobot* (2007). Their torque reduces (E − E↑)² + D θ̇2² + P θ2². So the energy E tends to E↑, that of
@@ -13,6 +14,7 @@
 
 #![no_std]
 
+mod plan;
 mod planner;
 
 use acrobot::arithmetic::{Arithmetic, Real};
@@ -20,7 +22,8 @@ use acrobot::physics::control::{ControlError, Lqr, difference};
 use acrobot::physics::{Pendulum, State, bound};
 use acrobot::{Error, Fast, Params};
 
-pub use planner::{NoPlan, Planner, Step};
+pub use plan::{NoPlan, Step};
+pub use planner::Planner;
 
 /// D, J² s²/rad², and P, J²/rad², of the sum above, and V, J² s/rad²: the sum falls at the rate 2 V θ̇2². A random search
 /// found them for a largest torque of 10 N m.

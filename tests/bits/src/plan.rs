@@ -13,7 +13,10 @@ pub const LIMIT: f32 = 0.8;
 pub const RATE: u32 = 50;
 /// 50 kB.
 pub type Memory = [Step<f32>; 1250];
-pub const EMPTY: Memory = [Step::EMPTY; 1250];
+
+pub const fn empty() -> Memory {
+    [Step::EMPTY; 1250]
+}
 
 /// Gymnasium's parameters, with so many decisions per second.
 pub fn params(rate: u32) -> Params<f32> {
@@ -53,7 +56,7 @@ pub fn digest(plan: &[Step<f32>]) -> u64 {
 
 /// Plans and returns the digest; 0 if there is no plan.
 pub fn planned() -> u64 {
-    let mut memory = EMPTY;
+    let mut memory = empty();
     plan(LIMIT, RATE, &mut memory).map_or(0, |plan| digest(plan))
 }
 

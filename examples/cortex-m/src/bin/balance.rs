@@ -48,41 +48,28 @@ struct Motor {
     rate: u32,
 }
 
-const STRONG: Motor = Motor {
-    name: "10_Nm",
-    limit: 10.0,
-    planned: 7.0,
-    rate: RATE,
-};
+impl Motor {
+    const fn new(name: &'static str, limit: f32, planned: f32) -> Self {
+        let rate = if limit > 1.0 { RATE } else { plan::RATE };
+        Self {
+            name,
+            limit,
+            planned,
+            rate,
+        }
+    }
+}
+
+const STRONG: Motor = Motor::new("10_Nm", 10.0, 7.0);
 const WEAKER: [Motor; 4] = [
-    Motor {
-        name: "7_Nm",
-        limit: 7.0,
-        planned: 5.5,
-        rate: RATE,
-    },
-    Motor {
-        name: "5_Nm",
-        limit: 5.0,
-        planned: 4.0,
-        rate: RATE,
-    },
-    Motor {
-        name: "2_Nm",
-        limit: 2.0,
-        planned: 1.5,
-        rate: RATE,
-    },
-    Motor {
-        name: "1_Nm",
-        limit: 1.0,
-        planned: plan::LIMIT,
-        rate: plan::RATE,
-    },
+    Motor::new("7_Nm", 7.0, 5.5),
+    Motor::new("5_Nm", 5.0, 4.0),
+    Motor::new("2_Nm", 2.0, 1.5),
+    Motor::new("1_Nm", 1.0, plan::LIMIT),
 ];
 
 /// The memory of the plan, and its steps.
-static PLAN: Mutex<RefCell<(plan::Memory, usize)>> = Mutex::new(RefCell::new((plan::EMPTY, 0)));
+static PLAN: Mutex<RefCell<(plan::Memory, usize)>> = Mutex::new(RefCell::new((plan::empty(), 0)));
 static EPISODE: Mutex<RefCell<Option<Episode>>> = Mutex::new(RefCell::new(None));
 
 struct Episode {

@@ -131,35 +131,35 @@ fn gymnasium(seed: u64, case: Case) -> anyhow::Result<Episode> {
 
 /// Prints a table of each task.
 pub fn tables(episodes: u32) -> anyhow::Result<()> {
-    let tasks: [(&str, fn(u64, Case) -> anyhow::Result<Episode>); 2] = [
-        ("2 N m with friction, 10 s", swing_up),
-        ("1 N m without friction, 45 s", gymnasium),
-    ];
-    for (name, play) in tasks {
+    table("2 N m with friction, 10 s", episodes, swing_up)?;
+    table("1 N m without friction, 45 s", episodes, gymnasium)
+}
+
+fn table(
+    name: &str,
+    episodes: u32,
+    play: fn(u64, Case) -> anyhow::Result<Episode>,
+) -> anyhow::Result<()> {
+    println!("| {name} | held of {episodes} | mean return | planning, most s |\n|---|---|---|---|");
+    for case in CASES {
+        let seeds = (0..u64::from(episodes)).into_par_iter();
+        let played = seeds.map(|seed| play(seed, case));
+        let played: Vec<Episode> = played.collect::<anyhow::Result<_>>()?;
+        let held = played.iter().filter(|episode| episode.held).count();
+        let mean = played.iter().map(|episode| episode.total).sum::<f64>() / f64::from(episodes);
+        let most = played
+            .iter()
+            .map(|episode| episode.took)
+            .max()
+            .unwrap_or_default();
+        let (error, [angle, velocity]) = case;
         println!(
-            "| {name} | held of {episodes} | mean return | planning, most s |\n|---|---|---|---|"
+            "| errors of {:.0} %, noise of {:.1} mrad and {:.0} mrad/s | {held} | {mean:.0} | {:.1} |",
+            error * 100.0,
+            angle * 1e3,
+            velocity * 1e3,
+            most.as_secs_f64()
         );
-        for case in CASES {
-            let seeds = (0..u64::from(episodes)).into_par_iter();
-            let played = seeds.map(|seed| play(seed, case));
-            let played: Vec<Episode> = played.collect::<anyhow::Result<_>>()?;
-            let held = played.iter().filter(|episode| episode.held).count();
-            let mean =
-                played.iter().map(|episode| episode.total).sum::<f64>() / f64::from(episodes);
-            let most = played
-                .iter()
-                .map(|episode| episode.took)
-                .max()
-                .unwrap_or_default();
-            let (error, [angle, velocity]) = case;
-            println!(
-                "| errors of {:.0} %, noise of {:.1} mrad and {:.0} mrad/s | {held} | {mean:.0} | {:.1} |",
-                error * 100.0,
-                angle * 1e3,
-                velocity * 1e3,
-                most.as_secs_f64()
-            );
-        }
     }
     Ok(())
 }
