@@ -49,7 +49,7 @@ struct Options {
     /// Plays Gymnasium's acrobot with its torque of 1 N m, 50 times a second, for 50 s.
     #[arg(long)]
     gymnasium: bool,
-    /// Plays both tasks with wrong models and noise, and plans again every 0.1 s.
+    /// Plays both tasks with wrong models and noise, and plans again while the acrobot moves.
     #[arg(long, conflicts_with = "gymnasium")]
     replan: bool,
 }
