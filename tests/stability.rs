@@ -5,7 +5,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Viscous;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
-use bits::{Digest, episodes, training};
+use bits::{Digest, episodes, plan, training};
 
 /// Every bit of the states, rewards and ends of random episodes with 64 seeds: about 100,000 steps.
 fn digest<A: Arithmetic>(friction: Viscous<A::Scalar>) -> u64 {
@@ -135,4 +135,11 @@ fn batches_are_stable() {
 fn the_shared_training_is_stable() {
     let found = training::weights();
     assert!(found == training::WEIGHTS, "{found:#018x}");
+}
+
+/// A plan and its gains, and the states of an acrobot that follows it.
+#[test]
+fn the_shared_plan_is_stable() {
+    let found = plan::planned();
+    assert!(found == plan::PLAN, "{found:#018x}");
 }

@@ -21,6 +21,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo:rustc-link-arg-bin=logger=-Tdefmt.x");
     // The learner alone needs 16 KiB.
     println!("cargo:rustc-link-arg-bin=learn=--defsym=RAM_SIZE=32K");
+    // A plan needs 50 kB.
+    println!("cargo:rustc-link-arg-bin=balance=--defsym=RAM_SIZE=64K");
     // It has batches in all arithmetics and is never flashed.
     println!("cargo:rustc-link-arg-bin=no_panic=--defsym=FLASH_SIZE=1M");
     if env::var_os("CARGO_FEATURE_LIBGCC").is_some() {

@@ -83,7 +83,9 @@ LIMITS = {
     "1_Nm": "1 N m, 100",
 }
 BALANCE = {
-    "uncaught": "not caught within 200 s",
+    "plan_s": "time of the plan, s",
+    "plan_millions": "planning, millions of instructions",
+    "uncaught": "not caught within 100 s",
     "catch_mean_s": "mean time to catch, s",
     "catch_longest_s": "longest time to catch, s",
     "error_mrad": "largest error of an angle while held, mrad",

@@ -1,7 +1,8 @@
-//! A controller that swings the acrobot up and holds it upright.
+//! Swings the acrobot up and holds it upright, by a [plan](Planner) or by a [controller](Controller)
+//! without one, which computes less and succeeds later.
 //!
-//! A linear-quadratic regulator holds it. Near the upright position the controller simulates the regulator, and lets it
-//! take over in a state from which it succeeds.
+//! Then a linear-quadratic regulator holds it. Near the upright position the controller simulates the
+//! regulator, and lets it take over in a state from which it succeeds.
 //!
 //! With a torque of 7 N m or more, the swing-up is that of X. Xin and M. Kaneda, *Analysis of the Energy-Based Swing-Up
 //! Control of the Acrobot* (2007). Their torque reduces (E − E↑)² + D θ̇2² + P θ2². So the energy E tends to E↑, that of
@@ -13,9 +14,16 @@
 
 #![no_std]
 
+mod plan;
+mod planner;
+
+use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::control::{ControlError, Lqr, difference};
 use acrobot::physics::{Pendulum, State, bound};
 use acrobot::{Error, Fast, Params};
+
+pub use plan::{NoPlan, Step};
+pub use planner::Planner;
 
 /// D, J² s²/rad², and P, J²/rad², of the sum above, and V, J² s/rad²: the sum falls at the rate 2 V θ̇2². A random search
 /// found them for a largest torque of 10 N m.
@@ -28,11 +36,11 @@ const STRONG: f32 = 7.0;
 const ENERGY_GAIN: f32 = 0.2;
 
 /// The regulator works while θ1 and θ2 deviate by less than this from upright, rad.
-const NEAR: [f32; 2] = [0.7, 1.4];
+const NEAR: [f64; 2] = [0.7, 1.4];
 /// The simulation takes at most this many steps, each as long as two decisions. The regulator succeeds if the remaining cost
 /// falls below this times the square of the largest torque.
 const STEPS_AHEAD: u32 = 100;
-const LITTLE: f32 = 25.0;
+const LITTLE: f64 = 25.0;
 
 /// Decides on the torque of the motor.
 #[derive(Debug)]
@@ -56,15 +64,9 @@ impl Controller {
     /// A parameter is out of range, or the gains overflow.
     pub fn new(params: Params<f32>, limit: f32) -> Result<Self, ControlError> {
         let machine = Pendulum::<Fast>::new(params, State::UPRIGHT)?;
-        let weights = [
-            [1.0, 0.0, 0.0, 0.0],
-            [0.0, 1.0, 0.0, 0.0],
-            [0.0, 0.0, 1.0, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ];
         let ahead = Params { dt: 2.0 * params.dt, ..params };
         Ok(Self {
-            regulator: machine.regulator(0.0, &weights, 1.0)?,
+            regulator: regulator(&machine)?,
             upright: machine.energy(),
             model: Pendulum::new(ahead, State::UPRIGHT)?,
             limit,
@@ -80,32 +82,12 @@ impl Controller {
     pub fn decide(&mut self, state: State<f32>) -> Result<f32, Error> {
         let x = difference(state, State::UPRIGHT);
         self.model.set_state(state)?;
-        self.holding = is_near(x) && (self.holding || self.catches()?);
+        self.holding = is_near(x)
+            && (self.holding || catches(self.model.clone(), &self.regulator, self.limit)?);
         if self.holding {
-            return Ok(self.regulate(x));
+            return Ok(bound(self.regulator.torque(x), self.limit));
         }
         Ok(bound(self.swing_up(x), self.limit))
-    }
-
-    fn regulate(&self, x: [f32; 4]) -> f32 {
-        bound(self.regulator.torque(x), self.limit)
-    }
-
-    /// Whether the regulator succeeds from the model's state.
-    fn catches(&self) -> Result<bool, Error> {
-        let mut model = self.model.clone();
-        for _ in 0..STEPS_AHEAD {
-            let x = difference(model.state(), State::UPRIGHT);
-            if !is_near(x) {
-                return Ok(false);
-            }
-            let cost = dot(self.regulator.cost_to_go.map(|row| dot(row, x)), x);
-            if cost < LITTLE * self.limit * self.limit {
-                return Ok(true);
-            }
-            model.step(self.regulate(x))?;
-        }
-        Ok(false)
     }
 
     fn swing_up(&self, [_, theta2, dtheta1, dtheta2]: [f32; 4]) -> f32 {
@@ -122,10 +104,42 @@ impl Controller {
     }
 }
 
-fn is_near([theta1, theta2, ..]: [f32; 4]) -> bool {
-    theta1.abs() < NEAR[0] && theta2.abs() < NEAR[1]
+/// The regulator of the upright position.
+fn regulator<A: Arithmetic>(machine: &Pendulum<A>) -> Result<Lqr<A::Scalar>, ControlError> {
+    machine.regulator(A::Scalar::ZERO, &identity(), A::Scalar::from_f64(1.0))
 }
 
-fn dot(x: [f32; 4], y: [f32; 4]) -> f32 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
+/// The weights of the deviations.
+fn identity<S: Real>() -> [[S; 4]; 4] {
+    let row = |i| [0, 1, 2, 3].map(|j| S::from_f64(f64::from(u8::from(i == j))));
+    [0, 1, 2, 3].map(row)
+}
+
+/// Whether the regulator succeeds from the model's state.
+fn catches<A: Arithmetic>(
+    mut model: Pendulum<A>,
+    regulator: &Lqr<A::Scalar>,
+    limit: A::Scalar,
+) -> Result<bool, Error> {
+    for _ in 0..STEPS_AHEAD {
+        let x = model.deviation(State::UPRIGHT);
+        if !is_near(x) {
+            return Ok(false);
+        }
+        let cost = dot(regulator.cost_to_go.map(|row| dot(row, x)), x);
+        if cost < limit * limit * A::Scalar::from_f64(LITTLE) {
+            return Ok(true);
+        }
+        model.step(bound(regulator.torque(x), limit))?;
+    }
+    Ok(false)
+}
+
+fn is_near<S: Real>(x: [S; 4]) -> bool {
+    let [theta1, theta2, ..] = x.map(|x| x.to_f64().abs());
+    theta1 < NEAR[0] && theta2 < NEAR[1]
+}
+
+fn dot<S: Real>([x1, x2, x3, x4]: [S; 4], [y1, y2, y3, y4]: [S; 4]) -> S {
+    x1 * y1 + x2 * y2 + x3 * y3 + x4 * y4
 }

@@ -1,14 +1,13 @@
-//! The bits that every target must compute: episodes, a batch, a training and drawings, with
-//! digests of all their bits.
+//! The bits that every target must compute: episodes, a batch, a training, a plan and drawings, with digests of all their bits.
 //!
-//! The library's tests compare these digests on the build machine, and the program of this crate
-//! compares them on any target. The firmware of `examples/cortex-m` compares them while it draws
-//! and learns.
+//! The library's tests compare these digests on the build machine, and the program of this crate compares them on any
+//! target. The firmware of `examples/cortex-m` compares them while it draws, learns and plans.
 
 #![no_std]
 
 pub mod episodes;
 pub mod oled;
+pub mod plan;
 pub mod training;
 
 use acrobot::Action;

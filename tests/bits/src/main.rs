@@ -14,7 +14,7 @@ use std::process;
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::{Fast, Portable};
 use bits::episodes::*;
-use bits::training;
+use bits::{plan, training};
 #[cfg(target_os = "none")]
 use semihosting::{println, process};
 // Linked because it is named.
@@ -36,12 +36,13 @@ fn main() -> ! {
         report("batches of 4 lanes", &batches::<4, 5, 2>(), &BATCHES),
         // More of them do not fit into 256 KiB of flash.
         report("batch of 16 lanes", &[shared_params::<16, 2>()], &BATCHES[..1]),
-        // The learner and the stack do not fit into 16 KiB of RAM. The firmware `learn` compares
-        // them.
+        // The learner and the plan do not fit into 16 KiB of RAM. The
+        // firmware `learn` and `balance` compare them.
         cfg!(target_os = "none")
             || report("training", &[training::weights()], &[training::WEIGHTS]),
+        cfg!(target_os = "none") || report("plan", &[plan::planned()], &[plan::PLAN]),
     ];
-    process::exit(if equal == [true; 11] { 0 } else { 1 })
+    process::exit(if equal == [true; 12] { 0 } else { 1 })
 }
 
 fn check<A: Arithmetic>(expected: &[u64; 16]) -> bool {

@@ -24,7 +24,7 @@ use acrobot::render::{Figure, Theme};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::training;
-use controller::Controller;
+use controller::{Controller, Planner, Step};
 use cortex_m_rt::entry;
 use embedded_graphics::framebuffer::{Framebuffer, buffer_size};
 use embedded_graphics::pixelcolor::BinaryColor;
@@ -224,6 +224,18 @@ fn learners() {
 fn controller() {
     if let Ok(mut controller) = Controller::new(params(), number()) {
         let _ = black_box(controller.decide(state()));
+    }
+    planner::<Fast>();
+    planner::<Swingup<Portable>>();
+}
+
+fn planner<A: Arithmetic>() {
+    let mut memory = black_box([Step::EMPTY; 20]);
+    let mut rng = Pcg64::new(black_box(42));
+    if let Ok(mut planner) = Planner::<A>::new(params(), number()) {
+        let _ = black_box(planner.improve(state(), black_box(10), &mut memory));
+        let plan = planner.plan(state(), black_box(10), &mut rng, &mut memory);
+        black_box(plan.map(|plan| plan.iter().map(|step| step.follow(state())).next_back())).ok();
     }
 }
 

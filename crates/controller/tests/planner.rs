@@ -1,0 +1,106 @@
+//! A plan obeys the model and its largest torque, and ends where the regulator holds. Bad input gives an error.
+
+use std::error::Error;
+
+use acrobot::arithmetic::{Arithmetic, Micro, Real, Swingup};
+use acrobot::numpy::Pcg64;
+use acrobot::physics::control::difference;
+use acrobot::physics::{Pendulum, bound};
+use acrobot::{Acrobot, Fast, Params, Portable, State};
+use controller::{NoPlan, Planner, Step};
+
+/// Plans from hanging with three quarters of a torque, N m, and follows the plan from a nearby state.
+fn swings_up_and_holds<A: Arithmetic>(params: Params<A::Scalar>, limit: f64) {
+    let [limit, planned] = [limit, 0.75 * limit].map(A::Scalar::from_f64);
+    let params = Params { dt: A::Scalar::from_f64(0.02), ..params };
+    let mut planner = Planner::<A>::new(params, planned).unwrap();
+    let mut memory = [Step::EMPTY; 400];
+    let plan = planner.plan(State::HANGING, 64, &mut Pcg64::new(1), &mut memory).unwrap();
+
+    let mut exact = Pendulum::<A>::new(params, State::HANGING).unwrap();
+    let nearby = State::from([0.05, -0.05, 0.1, 0.1].map(A::Scalar::from_f64));
+    let mut disturbed = Pendulum::<A>::new(params, nearby).unwrap();
+    for step in plan {
+        assert_eq!((step.state, bound(step.torque, planned)), (exact.state(), step.torque));
+        exact.step(step.torque).unwrap();
+        disturbed.step(bound(step.follow(disturbed.state()), limit)).unwrap();
+    }
+    for mut machine in [exact, disturbed] {
+        for _ in 0..500 {
+            let torque = planner.regulator().torque(machine.deviation(State::UPRIGHT));
+            machine.step(bound(torque, limit)).unwrap();
+        }
+        let x = machine.deviation(State::UPRIGHT).map(Real::to_f64);
+        assert!(x.iter().all(|x| x.abs() < 0.01), "{} {x:?}", A::NAME);
+    }
+}
+
+/// The example of docs/control.md.
+#[test]
+fn a_plan_from_hanging_serves_nearby_states() -> Result<(), Box<dyn Error>> {
+    let params = Params { dt: 0.02, ..Params::DEFAULT };
+    let mut planner = Planner::<Fast>::new(params, 0.8)?; // N m
+    let mut memory = [Step::EMPTY; 1250];
+    let plan = planner.plan(State::HANGING, 64, &mut Pcg64::new(1), &mut memory)?;
+
+    let mut machine = Acrobot::<Fast>::with_params(42, params)?;
+    for tick in 0..2000 {
+        let state = machine.state();
+        let torque = match plan.get(tick) {
+            Some(step) => step.follow(state),
+            None => planner.regulator().torque(difference(state, State::UPRIGHT)),
+        };
+        machine.step_torque(bound(torque, 1.0))?; // a fifth is for corrections
+    }
+    let x = difference(machine.state(), State::UPRIGHT);
+    assert!(x.iter().all(|x| x.abs() < 1e-2), "{x:?}");
+    Ok(())
+}
+
+#[test]
+fn plans_swing_up_and_hold_in_any_arithmetic_and_with_friction() {
+    swings_up_and_holds::<Fast>(Params::DEFAULT, 8.0);
+    swings_up_and_holds::<Micro>(Params::DEFAULT, 8.0);
+    swings_up_and_holds::<Swingup<Portable>>(Params::SWINGUP, 6.0);
+}
+
+/// More iterations lower the cost. The rest of a plan, planned again from another state, begins there.
+#[test]
+fn improving_lowers_the_cost() {
+    let mut planner =
+        Planner::<Portable>::new(Params { dt: 0.02, ..Params::DEFAULT }, 5.0).unwrap();
+    let mut plan = [Step::open(1.0); 200];
+    let mut costs = [0, 1, 5, 50].map(|n| planner.improve(State::HANGING, n, &mut plan).unwrap());
+    assert!(costs.is_sorted_by(|a, b| a > b), "{costs:?}");
+    let start = State { theta1: plan[50].state.theta1 + 0.01, ..plan[50].state };
+    costs = [0, 1, 5, 50].map(|n| planner.improve(start, n, &mut plan[50..]).unwrap());
+    assert!(plan[50].state == start && costs.is_sorted_by(|a, b| a > b), "{costs:?}");
+}
+
+#[test]
+fn bad_input_gives_an_error_and_no_torque_that_is_not_finite() {
+    let error = Planner::<Fast>::new(Params::DEFAULT, f32::NAN).unwrap_err();
+    assert_eq!(error.to_string(), "the largest torque must be finite and above 0 N m, got NaN");
+
+    let mut memory = [Step::EMPTY; 50];
+    let rng = &mut Pcg64::new(1);
+    let mut planner = Planner::<Fast>::new(Params::DEFAULT, 1e-3).unwrap();
+    let nowhere = State { dtheta1: f32::INFINITY, ..State::HANGING };
+    let error = planner.plan(nowhere, 3, rng, &mut memory).unwrap_err();
+    assert!(error.to_string().starts_with("dtheta1 must be a finite number"), "{error}");
+    for memory in [&mut memory[..], &mut []] {
+        let error = planner.plan(State::HANGING, 3, rng, memory).unwrap_err();
+        assert_eq!(error, NoPlan::NotFound { tries: 3 });
+        assert_eq!(error.to_string(), "found no plan that ends upright in 3 tries");
+    }
+
+    let fast = State { dtheta1: 1e30, dtheta2: -1e30, ..State::HANGING };
+    let mut planner = Planner::<Fast>::new(Params::DEFAULT, 1e38).unwrap();
+    for start in [fast, State::HANGING, State::UPRIGHT] {
+        let _ = planner.plan(start, 10, rng, &mut memory);
+        let x = difference(memory[0].state, start);
+        assert!(
+            x.iter().all(|x| x.is_finite()) && memory.iter().all(|step| step.torque.is_finite())
+        );
+    }
+}

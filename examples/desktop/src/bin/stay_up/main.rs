@@ -1,0 +1,146 @@
+//! Swings up and stays up, planned with the exact model.
+//!
+//! ```text
+//! cargo run --release -p desktop --bin stay_up                 # dm_control's swing-up
+//! cargo run --release -p desktop --bin stay_up -- --gymnasium  # Gymnasium's acrobot with 1 N m
+//! cargo run --release -p desktop --bin stay_up -- --replan     # both in real time
+//! ```
+//!
+//! The planner is `Planner` of `crates/controller`. It knows the exact model and plans before the acrobot moves, but with
+//! `--replan` from a wrong model, again and again, while the acrobot moves.
+//!
+//! Prints the mean return of episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or how
+//! many of Gymnasium's initial states end upright.
+
+mod replan;
+mod search;
+
+use acrobot::arithmetic::{Arithmetic, Swingup};
+use acrobot::numpy::Pcg64;
+use acrobot::physics::bound;
+use acrobot::physics::control::difference;
+use acrobot::{Acrobot, Fast, Params, State};
+use clap::Parser;
+use controller::{NoPlan, Planner, Step};
+use rayon::prelude::*;
+use search::Search;
+
+type Task = Swingup<Fast>;
+
+/// dm_control's largest torque, and Gymnasium's, N m.
+const SWINGUP: f32 = 2.0;
+const GYMNASIUM: f32 = 1.0;
+
+/// Gymnasium's acrobot: decisions a second, the most steps of a plan, and tries.
+const RATE: usize = 50;
+const STEPS: usize = 1250;
+const TRIES: u32 = 64;
+
+/// The whole search begins again, so many times, while the best return is below this.
+const AGAIN: u32 = 2;
+const POOR: f64 = 500.0;
+
+/// Plays the swing-up by planning.
+#[derive(Parser)]
+struct Options {
+    /// Episodes to play.
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    episodes: u32,
+    /// Plays Gymnasium's acrobot with its torque of 1 N m, 50 times a second, for 50 s.
+    #[arg(long)]
+    gymnasium: bool,
+    /// Plays both tasks with wrong models and noise, and plans again while the acrobot moves.
+    #[arg(long, conflicts_with = "gymnasium")]
+    replan: bool,
+}
+
+/// An episode: the sum of its rewards, and the first step after which it was always upright.
+struct Episode {
+    total: f64,
+    upright: usize,
+}
+
+impl Episode {
+    /// Follows a plan, and then the regulator.
+    fn play<A: Arithmetic<Scalar = f32>>(
+        mut acrobot: Acrobot<A>,
+        planner: &Planner<A>,
+        plan: &[Step<f32>],
+        limit: f32,
+        steps: usize,
+    ) -> anyhow::Result<Self> {
+        let (mut total, mut upright) = (0.0, 0);
+        for i in 0..steps {
+            let state = acrobot.state();
+            let torque = match plan.get(i) {
+                Some(step) => step.follow(state),
+                None => planner.regulator().torque(difference(state, State::UPRIGHT)),
+            };
+            total += f64::from(acrobot.step_torque(bound(torque, limit))?.reward);
+            let [theta1, theta2, ..] = difference(acrobot.state(), State::UPRIGHT);
+            if theta1.abs().max(theta2.abs()) > 0.1 {
+                upright = i + 1;
+            }
+        }
+        Ok(Self { total, upright })
+    }
+}
+
+fn swing_up(seed: u64) -> anyhow::Result<Episode> {
+    let mut search = Search::new(Acrobot::new(seed), SWINGUP, seed)?;
+    let plan = search.run(1)?;
+    let mut best = search.episode(&plan)?;
+    for _ in 0..AGAIN {
+        if best.total < POOR {
+            let other = search.run(1)?;
+            let other = search.episode(&other)?;
+            if other.total > best.total {
+                best = other;
+            }
+        }
+    }
+    Ok(best)
+}
+
+/// Gymnasium's acrobot, from each initial state.
+fn gymnasium(seed: u64) -> anyhow::Result<Episode> {
+    let params = Params { dt: 1.0 / RATE as f32, ..Params::DEFAULT };
+    let acrobot = Acrobot::<Fast>::with_params(seed, params)?;
+    let mut planner = Planner::<Fast>::new(params, GYMNASIUM)?;
+    let mut memory = [Step::EMPTY; STEPS];
+    let found = planner.plan(acrobot.state(), TRIES, &mut Pcg64::new(seed), &mut memory);
+    let plan: &[Step<f32>] = match found {
+        Ok(plan) => plan,
+        Err(NoPlan::NotFound { .. }) => &[],
+        Err(error) => return Err(error.into()),
+    };
+    Episode::play(acrobot, &planner, plan, GYMNASIUM, 50 * RATE)
+}
+
+fn main() -> anyhow::Result<()> {
+    let options = Options::parse();
+    if options.replan {
+        return replan::tables(options.episodes);
+    }
+    let seeds = (0..u64::from(options.episodes)).into_par_iter();
+    let count = options.episodes;
+    let play = if options.gymnasium { gymnasium } else { swing_up };
+    let episodes: Vec<Episode> = seeds.map(play).collect::<anyhow::Result<_>>()?;
+    if options.gymnasium {
+        let held = episodes.iter().filter(|episode| episode.upright <= 40 * RATE);
+        let longest = held.clone().map(|episode| episode.upright).max();
+        let longest = longest.unwrap_or(0) as f64 / RATE as f64;
+        println!("held {} of {count}, upright after at most {longest:.1} s", held.count());
+        return Ok(());
+    }
+    let totals = episodes.iter().map(|episode| episode.total);
+    let mean = totals.clone().sum::<f64>() / f64::from(count);
+    let variance = totals.clone().map(|x| (x - mean) * (x - mean)).sum::<f64>() / f64::from(count);
+    let worst = totals.fold(f64::INFINITY, f64::min);
+    let held = episodes.iter().filter(|episode| episode.upright <= 900).count();
+    println!(
+        "mean return of {count} episodes: {mean:.0} ± {:.0}, the worst {worst:.0}, held {held}",
+        variance.sqrt()
+    );
+    Ok(())
+}

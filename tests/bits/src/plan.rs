@@ -1,0 +1,55 @@
+//! A plan for Gymnasium's acrobot with its largest torque, 1 N m, and a digest of the plan and of following it.
+
+use acrobot::numpy::Pcg64;
+use acrobot::physics::bound;
+use acrobot::{Acrobot, Fast, Params, State};
+use controller::{NoPlan, Planner, Step};
+
+use crate::Digest;
+
+/// The largest torque of the plan, N m. The rest of the motor's torque corrects deviations.
+pub const LIMIT: f32 = 0.8;
+/// Decisions per second.
+pub const RATE: u32 = 50;
+/// 50 kB.
+pub type Memory = [Step<f32>; 1250];
+
+pub const fn empty() -> Memory {
+    [Step::EMPTY; 1250]
+}
+
+/// Gymnasium's parameters, with so many decisions per second.
+pub fn params(rate: u32) -> Params<f32> {
+    Params { dt: 1.0 / rate as f32, ..Params::DEFAULT }
+}
+
+/// Plans from hanging at rest, with a largest torque, N m, and decisions per second.
+pub fn plan(limit: f32, rate: u32, memory: &mut Memory) -> Result<&mut [Step<f32>], NoPlan> {
+    let mut planner = Planner::<Fast>::new(params(rate), limit)?;
+    planner.plan(State::HANGING, 64, &mut Pcg64::new(1), memory)
+}
+
+/// A digest of every bit of the plan, and of the states of an acrobot that follows it.
+pub fn digest(plan: &[Step<f32>]) -> u64 {
+    let mut digest = Digest::default();
+    let mut acrobot = Acrobot::<Fast>::new(0);
+    let set = acrobot.set_params(params(RATE));
+    digest.add(u64::from(set.is_ok()));
+    for step in plan {
+        let stepped = acrobot.step_torque(bound(step.follow(acrobot.state()), 1.0));
+        digest.add(u64::from(stepped.is_ok()));
+        let numbers = [step.state.into(), acrobot.state().into(), step.gain, [step.torque; 4]];
+        for number in numbers.as_flattened() {
+            digest.add(f32::to_bits(*number).into());
+        }
+    }
+    digest.0
+}
+
+/// Plans and returns the digest; 0 if there is no plan.
+pub fn planned() -> u64 {
+    let mut memory = empty();
+    plan(LIMIT, RATE, &mut memory).map_or(0, |plan| digest(plan))
+}
+
+pub const PLAN: u64 = 0x3374_ac13_012d_0655;
