@@ -5,8 +5,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::real::Real;
 
-/// One number, or many side by side. The code of a step is generic over this, so it is written once. The crate
-/// implements it for `f32`, for `f64` and for their lanes in a batch.
+/// One number, or many side by side. The code of a step is generic over this, so it is written
+/// once. The crate implements it for `f32`, for `f64` and for their lanes in a batch.
 pub trait Numbers<S: Real>:
     Copy
     + fmt::Debug
@@ -91,7 +91,8 @@ impl<S: Real> Numbers<S> for S {
     }
 }
 
-/// `N` numbers: a plain array and loops over it, which LLVM compiles to the SIMD instructions of the target.
+/// `N` numbers: a plain array and loops over it, which LLVM compiles to the SIMD instructions of
+/// the target.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanes<S, const N: usize>(pub(crate) [S; N]);
 
@@ -119,7 +120,8 @@ impl<S: Real, const N: usize> Neg for Lanes<S, N> {
     }
 }
 
-// Loops and not `array::map`, which LLVM keeps out of line, where it may not use the SIMD instructions of its caller.
+// Loops and not `array::map`, which LLVM keeps out of line, where it may not use the SIMD
+// instructions of its caller.
 impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     type Mask = [bool; N];
     const IS_ONE: bool = false;

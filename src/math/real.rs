@@ -5,8 +5,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A scalar that the physics can be computed in: `f32` or `f64`.
 ///
-/// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are the same on every
-/// machine.
+/// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are
+/// the same on every machine.
 pub trait Real:
     Copy
     + fmt::Debug
@@ -39,7 +39,8 @@ pub trait Real:
     /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
-    /// The nearest integer, ties to even. Exact for |self| up to 2²² in `f32` and 2⁵¹ in `f64`, finite beyond.
+    /// The nearest integer, ties to even. Exact for |self| up to 2²² in `f32` and 2⁵¹ in `f64`,
+    /// finite beyond.
     ///
     /// It consists of two additions, because a Cortex-M4F has no rounding instruction.
     fn round_small(self) -> Self;
@@ -78,7 +79,8 @@ macro_rules! impl_real {
 
             #[inline(always)]
             fn power_of_two(self) -> Self {
-                // As in `round_small`: the last bits of the sum are the integer, and the exponent has a bias.
+                // As in `round_small`: the last bits of the sum are the integer, and the exponent
+                // has a bias.
                 const MAGIC: $scalar = 1.5 / $scalar::EPSILON;
                 const DIGITS: u32 = $scalar::MANTISSA_DIGITS - 1;
                 let biased = self + (MAGIC + ($scalar::MAX_EXP - 1) as $scalar);
@@ -158,7 +160,8 @@ pub(crate) mod sealed {
         /// The distance from 1 to the next number.
         const EPSILON: Self;
 
-        /// The element with an index of 0 to 2, without a branch or an address that depends on the index.
+        /// The element with an index of 0 to 2, without a branch or an address that depends on the
+        /// index.
         fn select(three: [Self; 3], index: u8) -> Self;
 
         fn abs(self) -> Self;

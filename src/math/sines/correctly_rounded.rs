@@ -1,9 +1,9 @@
 //! `f64`, correctly rounded: for each x one `f64` is nearest to sin x.
 //!
-//! A fast path computes about ten bits more than an `f64` has, with a proven error bound. If the result is farther from
-//! half way between two `f64` than that bound, the nearest `f64` is certain. Otherwise, for one result in 300 to 400, a
-//! slow path computes 192 bits. Source: A. Ziv, *Fast Evaluation of Elementary Mathematical Functions with Correctly
-//! Rounded Last Bit* (1991).
+//! A fast path computes about ten bits more than an `f64` has, with a proven error bound. If the
+//! result is farther from half way between two `f64` than that bound, the nearest `f64` is certain.
+//! Otherwise, for one result in 300 to 400, a slow path computes 192 bits. Source: A. Ziv, *Fast
+//! Evaluation of Elementary Mathematical Functions with Correctly Rounded Last Bit* (1991).
 //!
 //! | x | method |
 //! |---|---|
@@ -14,8 +14,8 @@
 //! | infinity, NaN | NaN |
 //!
 //! The two fast paths return the same bits, because only one result is correct. The files list
-//! their errors term by term. `tests/data/sines.py` derives the constants and adds up the errors. It also records 21
-//! million results of MPFR, with which `cargo test --test sines` compares.
+//! their errors term by term. `tests/data/sines.py` derives the constants and adds up the errors.
+//! It also records 21 million results of MPFR, with which `cargo test --test sines` compares.
 
 mod float;
 mod integer;

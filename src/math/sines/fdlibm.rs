@@ -1,5 +1,5 @@
-//! `f64` by the polynomials of Sun's `fdlibm`, without a branch, for SIMD: bit-identical to the crate
-//! `libm` 0.2.16, which is FreeBSD's in Rust.
+//! `f64` by the polynomials of Sun's `fdlibm`, without a branch, for SIMD: bit-identical to the
+//! crate `libm` 0.2.16, which is FreeBSD's in Rust.
 //!
 //! Let n be the integer nearest to x · 2/π and y + tail = x − n π/2, so that |y| ≤ π/4. The
 //! polynomials approximate sine and cosine of y, and each has a term for the tail.

@@ -15,9 +15,9 @@ pub fn cos(x: f64) -> f64 {
     x.cos()
 }
 
-/// NumPy computes `x**2` of a scalar by C's `pow`. For one argument in a thousand, whose exact square is about half
-/// way between two doubles, glibc's `pow` rounds differently from `x * x`. All others avoid `pow`, which would cost
-/// much of a step.
+/// NumPy computes `x**2` of a scalar by C's `pow`. For one argument in a thousand, whose exact
+/// square is about half way between two doubles, glibc's `pow` rounds differently from `x * x`. All
+/// others avoid `pow`, which would cost much of a step.
 #[inline(always)]
 pub fn square(x: f64) -> f64 {
     if is_far_from_a_tie(x) { x * x } else { power(x) }
@@ -29,13 +29,13 @@ fn power(x: f64) -> f64 {
     x.powf(black_box(2.0))
 }
 
-/// Whether `pow(x, 2.0)` certainly equals `x * x`: x is moderate, and its exact square is far from half way between two
-/// doubles.
+/// Whether `pow(x, 2.0)` certainly equals `x * x`: x is moderate, and its exact square is far from
+/// half way between two doubles.
 ///
-/// glibc's source (`e_pow.c`) bounds the error of `pow` by 0.511 units in the last place and by
-/// 2⁵³ × 1.5 × 2⁻⁶⁸ |2 ln x|, below 0.004 for |x| of 2⁻⁶⁰ to 2⁶⁰. So `pow` rounds correctly if half way is more than
-/// 0.015 units from the square; this requires 0.02. An integer product gives the bits of the square beyond its last
-/// place, which is faster than floats without a fused multiply-add.
+/// glibc's source (`e_pow.c`) bounds the error of `pow` by 0.511 units in the last place and by 2⁵³
+/// × 1.5 × 2⁻⁶⁸ |2 ln x|, below 0.004 for |x| of 2⁻⁶⁰ to 2⁶⁰. So `pow` rounds correctly if half way
+/// is more than 0.015 units from the square; this requires 0.02. An integer product gives the bits
+/// of the square beyond its last place, which is faster than floats without a fused multiply-add.
 #[inline(always)]
 fn is_far_from_a_tie(x: f64) -> bool {
     /// 0.02 units, where 2⁶⁴ is one unit.

@@ -2,7 +2,8 @@
 
 use crate::math::lanes::Numbers;
 
-/// Cody-Waite reduction to the nearest multiple of π/2, then two polynomials. Two constants suffice: for
+/// Cody-Waite reduction to the nearest multiple of π/2, then two polynomials. Two constants
+/// suffice: for
 /// |x| ≤ 64 the multiple has at most 6 bits and `PI_2_HIGH` has 18, so their product is exact.
 #[inline(always)]
 pub fn sin_cos<V: Numbers<f32>>(x: V) -> (V, V) {
@@ -11,8 +12,8 @@ pub fn sin_cos<V: Numbers<f32>>(x: V) -> (V, V) {
     const PI_2_LOW: f32 = (core::f64::consts::FRAC_PI_2 - PI_2_HIGH as f64) as f32;
     /// 1.5 × 2²³: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
     const MAGIC: f32 = 12_582_912.0;
-    /// sin r = r + r³(S0 + S1 r² + S2 r⁴), error 1.8e-9. Minimax over |r| ≤ π/4, each coefficient rounded to `f32`
-    /// before the next was fitted (`tests/data/polynomials.py`).
+    /// sin r = r + r³(S0 + S1 r² + S2 r⁴), error 1.8e-9. Minimax over |r| ≤ π/4, each coefficient
+    /// rounded to `f32` before the next was fitted (`tests/data/polynomials.py`).
     const S: [f32; 3] =
         [f32::from_bits(0xbe2a_aaa0), f32::from_bits(0x3c08_82df), f32::from_bits(0xb94c_6e8b)];
     /// cos r = 1 + C0 r² + C1 r⁴ + C2 r⁶, error 3.3e-8. Fitted as `S`.
@@ -28,7 +29,8 @@ pub fn sin_cos<V: Numbers<f32>>(x: V) -> (V, V) {
     let sin = r + (r * z) * (c(S[0]) + z * (c(S[1]) + z * c(S[2])));
     let cos = c(1.0) + z * (c(C[0]) + z * (c(C[1]) + z * c(C[2])));
 
-    // By 0 to 3 quarter turns, the two lowest bits of `shifted`. One changes (sin, cos) to (cos, −sin).
+    // By 0 to 3 quarter turns, the two lowest bits of `shifted`. One changes (sin, cos) to (cos,
+    // −sin).
     shifted.zip3(sin, cos, |shifted, sin, cos| {
         let turns = shifted.to_bits();
         if !V::IS_ONE {
@@ -44,12 +46,13 @@ pub fn sin_cos<V: Numbers<f32>>(x: V) -> (V, V) {
 /// Whether the target may have instructions for `f32`. Results do not depend on it.
 const HAS_F32: bool = !cfg!(any(
     all(target_arch = "arm", target_abi = "eabi"),
-    // Stable Rust does not tell whether RISC-V has the extension F. All its targets with F also have A.
+    // Stable Rust does not tell whether RISC-V has the extension F. All its targets with F also
+    // have A.
     all(target_arch = "riscv32", not(target_feature = "a")),
 ));
 
-/// Uses the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and cheaper on an FPU
-/// than selecting and negating. No −0 is lost: `sin` is never −0, `cos` never 0.
+/// Uses the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and
+/// cheaper on an FPU than selecting and negating. No −0 is lost: `sin` is never −0, `cos` never 0.
 #[inline(always)]
 #[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
 fn rotate_by_products(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
@@ -59,7 +62,8 @@ fn rotate_by_products(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
     (sin * turned_cos + cos * turned_sin, cos * turned_cos - sin * turned_sin)
 }
 
-/// Selects and negates: without an FPU that saves four products and two sums. No −0 results, as from the products.
+/// Selects and negates: without an FPU that saves four products and two sums. No −0 results, as
+/// from the products.
 #[inline(always)]
 fn rotate_by_selection(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
     let minus_sin = if sin.to_bits() == 0 { sin } else { -sin };
@@ -71,8 +75,9 @@ fn rotate_by_selection(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
     }
 }
 
-/// Selects and flips signs, without a branch or a table: for SIMD. Adding 0 changes −0 to 0, which is the result for a
-/// single `f32`. Where a single `f32` gives NaN, this can give infinity; a step with either is not finite.
+/// Selects and flips signs, without a branch or a table: for SIMD. Adding 0 changes −0 to 0, which
+/// is the result for a single `f32`. Where a single `f32` gives NaN, this can give infinity; a step
+/// with either is not finite.
 #[inline(always)]
 fn rotate_by_bits(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
     const SIGN: u32 = 1 << 31;

@@ -2,8 +2,8 @@
 
 use core::f32::consts::{FRAC_1_PI, PI};
 
-/// A table gives sine and cosine of the nearest multiple of π/16, and polynomials those of the remainder `r`. The
-/// addition theorem combines them.
+/// A table gives sine and cosine of the nearest multiple of π/16, and polynomials those of the
+/// remainder `r`. The addition theorem combines them.
 #[inline(always)]
 pub fn sin_cos(x: f32) -> (f32, f32) {
     const STEP: f32 = PI / 16.0;
@@ -37,7 +37,8 @@ fn sixteenths(number: u32) -> (f32, f32) {
 
 #[expect(clippy::indexing_slicing, reason = "evaluated by the compiler")]
 const fn sines() -> [f32; 40] {
-    /// Sines from 0 to a quarter turn, each rounded to the nearest `f32` (`tests/data/polynomials.py`).
+    /// Sines from 0 to a quarter turn, each rounded to the nearest `f32`
+    /// (`tests/data/polynomials.py`).
     const QUARTER: [u32; 9] = [
         0x0000_0000,
         0x3e47_c5c2,

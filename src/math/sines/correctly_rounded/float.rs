@@ -4,22 +4,24 @@
 //!
 //! sin x = sin a + cos a · b + sin a (cos b − 1) + cos a (sin b − b).
 //!
-//! The cosine has cos a in place of sin a, and −sin a in place of cos a. The first two terms need more than 53 bits.
-//! The others are below 2⁻¹³. The errors, term by term:
+//! The cosine has cos a in place of sin a, and −sin a in place of cos a. The first two terms need
+//! more than 53 bits. The others are below 2⁻¹³. The errors, term by term:
 //!
-//! - b: three `f64` hold 41, 39 and 53 bits of π/128. The products of n < 2¹² with the first two are exact. So are the
-//!   differences from x, except that the last may round; `tail` holds this rounding error and the third product. The
-//!   error of b + tail is below 2⁻¹²⁷. It matters most where the result is about b. An x below 64 is at least 2⁻⁶¹ from
-//!   each multiple of π/2 except 0, so the error is below 2⁻⁶⁶ of the result.
-//! - sin a and cos a: an `f64` of 26 bits plus an `f64` with the rest, error below 2⁻⁷⁹. The product of the 26 bits and
-//!   the upper 26 bits of b is exact. The rounding error of adding it to sin a is computed exactly, because |sin a| is
-//!   0 or above |b|.
-//! - sin a (cos b − 1): Taylor's series to b⁶, and 5 roundings of numbers below 2⁻¹³ sin a. This is most of the error.
+//! - b: three `f64` hold 41, 39 and 53 bits of π/128. The products of n < 2¹² with the first two
+//!   are exact. So are the differences from x, except that the last may round; `tail` holds this
+//!   rounding error and the third product. The error of b + tail is below 2⁻¹²⁷. It matters most
+//!   where the result is about b. An x below 64 is at least 2⁻⁶¹ from each multiple of π/2 except
+//!   0, so the error is below 2⁻⁶⁶ of the result.
+//! - sin a and cos a: an `f64` of 26 bits plus an `f64` with the rest, error below 2⁻⁷⁹. The
+//!   product of the 26 bits and the upper 26 bits of b is exact. The rounding error of adding it to
+//!   sin a is computed exactly, because |sin a| is 0 or above |b|.
+//! - sin a (cos b − 1): Taylor's series to b⁶, and 5 roundings of numbers below 2⁻¹³ sin a. This is
+//!   most of the error.
 //! - cos a (sin b − b): Taylor's series to b⁷, and 6 roundings of numbers below 2⁻²¹.
 //! - The sum of the small terms: 3 roundings of numbers below 2⁻¹³.
 //!
-//! `tests/data/sines.py` adds up the errors for each a. The sum is below 2⁻⁶² of the result, which is the margin of the
-//! rounding test. One result in 320 is within the margin.
+//! `tests/data/sines.py` adds up the errors for each a. The sum is below 2⁻⁶² of the result, which
+//! is the margin of the rounding test. One result in 320 is within the margin.
 
 use super::wide::{Fraction, octant_sine};
 

@@ -1,26 +1,28 @@
 //! The fast path for machines that emulate `f64`: 64-bit integers.
 //!
-//! All numbers are fractions with 64 or 128 bits after the point. A unit is 2⁻⁶⁴. An interval says by how many units a
-//! number may be too high or, if negative, too low. `tests/data/sines.py` derives the coefficients and these bounds.
+//! All numbers are fractions with 64 or 128 bits after the point. A unit is 2⁻⁶⁴. An interval says
+//! by how many units a number may be too high or, if negative, too low. `tests/data/sines.py`
+//! derives the coefficients and these bounds.
 //!
-//! - Reduction: the product of x's mantissa and 2/π gives the octant and its fraction φ, where |x| = (octant + φ) π/4,
-//!   or (octant + 1 − φ) π/4 if the octant is odd. The upper 128 bits of the product are at most 4 · 2⁻¹²⁸ too low.
-//!   Shifting to the point and to the first digit of φ enlarges this to at most a quarter of a unit, because |x| is
-//!   below 2⁶ and a φ below 2⁻⁵⁴ is left to the slow path.
+//! - Reduction: the product of x's mantissa and 2/π gives the octant and its fraction φ, where |x|
+//!   = (octant + φ) π/4, or (octant + 1 − φ) π/4 if the octant is odd. The upper 128 bits of the
+//!   product are at most 4 · 2⁻¹²⁸ too low. Shifting to the point and to the first digit of φ
+//!   enlarges this to at most a quarter of a unit, because |x| is below 2⁶ and a φ below 2⁻⁵⁴ is
+//!   left to the slow path.
 //! - w = φ² from the upper 64 bits of φ: \[−5, 0\].
-//! - sin x = φ S(w) and cos x = 1 − w T(w), with polynomials S and T of degree 7. They differ from the functions by
-//!   \[−0.8, −0.5\] and \[−1.2, −1.1\], and Horner's scheme adds \[−0.2, 1.5\]. Their first coefficients are a unit
-//!   lower than the best ones, which centres the sum.
-//! - The last product keeps 128 bits, so a small φ costs no precision. The 64 bits from its first digit on are the
-//!   mantissa.
+//! - sin x = φ S(w) and cos x = 1 − w T(w), with polynomials S and T of degree 7. They differ from
+//!   the functions by \[−0.8, −0.5\] and \[−1.2, −1.1\], and Horner's scheme adds \[−0.2, 1.5\].
+//!   Their first coefficients are a unit lower than the best ones, which centres the sum.
+//! - The last product keeps 128 bits, so a small φ costs no precision. The 64 bits from its first
+//!   digit on are the mantissa.
 //!
-//! In total, a mantissa is less than 3 units off. For one in 410 the last 11 bits are so near half way that the slow
-//! path decides.
+//! In total, a mantissa is less than 3 units off. For one in 410 the last 11 bits are so near half
+//! way that the slow path decides.
 
 use super::wide::TWO_OVER_PI;
 
-/// The coefficients of S, whose signs alternate. They have 64, 67, 71, 76, 76, 76, 68 and 68 bits after the point: the
-/// last ones are small and need fewer bits.
+/// The coefficients of S, whose signs alternate. They have 64, 67, 71, 76, 76, 76, 68 and 68 bits
+/// after the point: the last ones are small and need fewer bits.
 static SIN: [u64; 8] = [
     0xc90f_daa2_2168_c234,
     0xa55d_e731_2df2_95c2,
@@ -152,7 +154,8 @@ fn full(a: u64, b: u64) -> u128 {
     u128::from(a) * u128::from(b)
 }
 
-/// The upper half of the product, less than 3 too low. The exact one takes a fourth multiplication, and carries.
+/// The upper half of the product, less than 3 too low. The exact one takes a fourth multiplication,
+/// and carries.
 #[inline(always)]
 fn high(a: u64, b: u64) -> u64 {
     let [a1, a0, b1, b0] = [a >> 32, a << 32 >> 32, b >> 32, b << 32 >> 32];

@@ -1,15 +1,17 @@
 //! Sine and cosine in 192 bits: the slow path.
 //!
-//! - Reduction: |x| = m 2ᵖ with an integer m below 2⁵³. The product of m and 384 bits of 2/π gives the octant and 192
-//!   bits of its fraction, with an error below 2⁻²⁰⁰. Earlier bits of 2/π contribute whole turns only.
+//! - Reduction: |x| = m 2ᵖ with an integer m below 2⁵³. The product of m and 384 bits of 2/π gives
+//!   the octant and 192 bits of its fraction, with an error below 2⁻²⁰⁰. Earlier bits of 2/π
+//!   contribute whole turns only.
 //! - Series: Taylor's, to the term of r⁴⁷, with r ≤ π/4. The next term is below 2⁻²¹⁸.
 //! - Rounding: each operation drops less than 2⁻¹⁹². The sum of all errors is below 2⁻¹⁸⁸.
 //!
-//! Why 192 bits suffice: the sine and the cosine of an `f64` other than 0 are transcendental (Lindemann), so they are
-//! never half way between two `f64`. An error of 2⁻¹⁸⁸ can matter only if a result is that near half way. No theorem
-//! excludes such a result, but it is improbable. There are 2⁶³ pairs of a function and an |x| from 2⁻²⁷ on. One pair in
-//! 2ᶻ has a result of about 2⁻ᶻ, where two neighbouring `f64` are 2⁻⁵³⁻ᶻ apart, so it is misrounded with a probability
-//! of 2 · 2⁻¹⁸⁸ / 2⁻⁵³⁻ᶻ. The sum over all pairs, with z up to 62, is below 2⁻⁶⁴.
+//! Why 192 bits suffice: the sine and the cosine of an `f64` other than 0 are transcendental
+//! (Lindemann), so they are never half way between two `f64`. An error of 2⁻¹⁸⁸ can matter only if
+//! a result is that near half way. No theorem excludes such a result, but it is improbable. There
+//! are 2⁶³ pairs of a function and an |x| from 2⁻²⁷ on. One pair in 2ᶻ has a result of about 2⁻ᶻ,
+//! where two neighbouring `f64` are 2⁻⁵³⁻ᶻ apart, so it is misrounded with a probability of 2 ·
+//! 2⁻¹⁸⁸ / 2⁻⁵³⁻ᶻ. The sum over all pairs, with z up to 62, is below 2⁻⁶⁴.
 
 /// A number in [0, 1): the 192 bits after the point, the highest word first.
 pub(super) type Fraction = [u64; 3];
@@ -64,7 +66,8 @@ const fn inverse_factorials() -> [[Fraction; 2]; 23] {
     table
 }
 
-/// sin(x + `quarters` π/2), correctly rounded, for `quarters` of 0 or 1 and any finite |x| from 2⁻²⁷ on.
+/// sin(x + `quarters` π/2), correctly rounded, for `quarters` of 0 or 1 and any finite |x| from
+/// 2⁻²⁷ on.
 #[cold]
 #[inline(never)]
 pub(super) fn sine(x: f64, quarters: u64) -> f64 {
@@ -78,7 +81,8 @@ pub(super) fn sine(x: f64, quarters: u64) -> f64 {
     if is_negative { -magnitude } else { magnitude }
 }
 
-/// Up to whole turns, |x| = (octant + fraction) π/4, or (octant + 1 − fraction) π/4 if the octant is odd.
+/// Up to whole turns, |x| = (octant + fraction) π/4, or (octant + 1 − fraction) π/4 if the octant
+/// is odd.
 fn reduce(x: f64) -> (u64, Fraction) {
     // |x| 4/π = mantissa 2/π · 2^(shift − 1152)
     let shift = (x.to_bits() >> 52) as usize % 2048 + 78;
