@@ -22,6 +22,7 @@ VECTOR = (
     (AcrobotVectorEnv, "Disabled", Uniform(0.0, 0.3)),
     (AcrobotContinuousVectorEnv, "NextStep", Uniform(0.0, 0.3)),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gymnasium_episodes": True, "copy": False}),
+    (AcrobotVectorEnv, "NextStep", 0.0, {"float64": True}),
     (AcrobotVectorEnv, "SameStep", LogUniform(0.1, 0.3), {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}),
     (AcrobotSwingupVectorEnv, "SameStep", 0.1, DRAWN),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]}),

@@ -47,6 +47,16 @@ def test_steps_are_dm_controls(name):
         assert not terminated and not truncated
 
 
+def test_steps_in_float64_are_dm_controls():
+    envs = AcrobotSwingupVectorEnv(num_envs=len(RECORDED), float64=True)
+    envs.reset(seed=0)
+    envs.state = ours(RECORDED[:, :4])
+    envs.step(RECORDED[:, 4:5])
+    difference = envs.state - ours(RECORDED[:, 5:9])
+    difference[:, :2] = (difference[:, :2] + np.pi) % (2 * np.pi) - np.pi
+    assert np.abs(difference).max() < 1e-12
+
+
 @pytest.mark.parametrize("number", [float, np.float64, lambda x: np.float64(x).astype(">f8")])
 def test_an_action_is_not_rounded(number):
     """dm_control 1.0.50 with MuJoCo 3.17.0 stepped so by 0.1, -0.7 and 1/3, which are no ``float32``."""

@@ -26,8 +26,9 @@ if TYPE_CHECKING:
 class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
-    They are computed in ``float32``, bit-identically on every machine. Each step is as close to Gymnasium's as ``float32``
-    is, but whole episodes drift apart, because an Acrobot is chaotic.
+    They are computed in ``float32``, or with ``float64=True`` in ``float64``, bit-identically on
+    every machine. Each step differs from Gymnasium's by rounding only, but whole episodes drift
+    apart, because an Acrobot is chaotic.
 
     Environment ``i`` draws from the ``i``-th child of the seed, ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
     So more environments do not change the first ones, and two seeds share no stream. ``SyncVectorEnv`` seeds environment
@@ -62,6 +63,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         gymnasium_episodes: bool = False,
         threads: int | None = 1,
         info_parameters: Sequence[str] = (),
+        float64: bool = False,
         **parameters: Unpack[Arguments[Each, EachTorques, EachEquations]],
     ) -> None:
         """Make environments. Reset them before their first step.
@@ -80,13 +82,16 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
                 ``float64``, environment ``i`` seeded with ``seed + i``, and rewards as ``float64``. All results are
                 bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are. Steps take longer.
             threads: The threads that compute a step; ``None``: as many as the process has cores. They change no bit. More
-                than one is faster only for more than 16,384 environments, or 1,024 with ``gymnasium_episodes``.
+                than one is faster only for more than 16,384 environments, or 1,024 in ``float64``.
             info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
+            float64: Whether to compute in ``float64``, with correctly rounded sines. Steps take
+                longer.
             **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
 
         Raises:
             TypeError: If a parameter is unknown or of a wrong type.
-            ValueError: If a number is out of its range, or if a mode or a name in ``info_parameters`` is unknown.
+            ValueError: If a number is out of its range, if a mode or a name in ``info_parameters``
+                is unknown, or if both ``gymnasium_episodes`` and ``float64`` are set.
             MemoryError: If the environments do not fit into memory.
         """
         require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
@@ -94,15 +99,20 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             hint = _hint(str(name), self._NAMES)
             raise ValueError(f"info_parameters must be names of parameters, got {name!r}; {hint}")
         self.info_parameters = tuple(info_parameters)
-        require(bool, "True or False", gymnasium_episodes=gymnasium_episodes)
+        require(bool, "True or False", gymnasium_episodes=gymnasium_episodes, float64=float64)
+        engine = f"{self._TASK}_float64" if float64 else self._TASK
         if gymnasium_episodes:
+            if float64:
+                rule = "must be False with gymnasium_episodes, which computes in float64"
+                raise ValueError(f"float64 {rule}, got True")
             arrays.warn_of_other_sines()
-        engine = "gymnasium" if gymnasium_episodes else self._TASK
+            engine = "gymnasium"
         native = self._make(
             num_envs, max_episode_steps, autoreset_mode, copy, engine, self._CONTINUOUS, threads
         )
         super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
+        self._float64 = gymnasium_episodes or float64
         self._made = True
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
