@@ -1,8 +1,8 @@
-//! A batch of one of four arithmetics.
+//! A batch of one of seven arithmetics.
 
 use std::ops::DerefMut;
 
-use acrobot::arithmetic::{Arithmetic, Host, Real, Swingup, SwingupSparse};
+use acrobot::arithmetic::{Arithmetic, Host, Real, Reference, Swingup, SwingupSparse};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::{ParamsRange, Task};
@@ -49,6 +49,9 @@ pub enum Engine {
     Host(Many<Host>),
     Swingup(Many<Swingup<Fast>>),
     SwingupSparse(Many<SwingupSparse<Fast>>),
+    Reference(Many<Reference>),
+    ReferenceSwingup(Many<Swingup<Reference>>),
+    ReferenceSwingupSparse(Many<SwingupSparse<Reference>>),
 }
 
 impl Engine {
@@ -58,6 +61,9 @@ impl Engine {
             "gymnasium" => Self::Host(Many::new(len, seed)?),
             "swingup" => Self::Swingup(Many::new(len, seed)?),
             "swingup_sparse" => Self::SwingupSparse(Many::new(len, seed)?),
+            "acrobot_float64" => Self::Reference(Many::new(len, seed)?),
+            "swingup_float64" => Self::ReferenceSwingup(Many::new(len, seed)?),
+            "swingup_sparse_float64" => Self::ReferenceSwingupSparse(Many::new(len, seed)?),
             other => return Err(unknown("engine", "the name of an engine", other)),
         })
     }
@@ -71,6 +77,9 @@ macro_rules! with_batch {
             $crate::engine::Engine::Host($many) => $result,
             $crate::engine::Engine::Swingup($many) => $result,
             $crate::engine::Engine::SwingupSparse($many) => $result,
+            $crate::engine::Engine::Reference($many) => $result,
+            $crate::engine::Engine::ReferenceSwingup($many) => $result,
+            $crate::engine::Engine::ReferenceSwingupSparse($many) => $result,
         }
     };
 }

@@ -32,6 +32,7 @@ VECTOR = (
     (AcrobotVectorEnv, "Disabled", Uniform(0.0, 0.3)),
     (AcrobotContinuousVectorEnv, "NextStep", Uniform(0.0, 0.3)),
     (AcrobotVectorEnv, "NextStep", 0.0, {"gymnasium_episodes": True, "copy": False}),
+    (AcrobotVectorEnv, "NextStep", 0.0, {"float64": True}),
     (AcrobotVectorEnv, "SameStep", LogUniform(0.1, 0.3), OWN),
     (AcrobotSwingupVectorEnv, "SameStep", 0.1, DRAWN),
     (AcrobotVectorEnv, "NextStep", 0.0, INFOS),

@@ -64,6 +64,15 @@ def test_a_vector_environment_is_as_near(name, column):
     assert not terminated.any() and not truncated.any()
 
 
+def test_steps_in_float64_are_dm_controls():
+    envs = AcrobotSwingupVectorEnv(num_envs=len(RECORDED), float64=True)
+    envs.reset(seed=0)
+    envs.state = ours(RECORDED[:, :4])
+    envs.step(RECORDED[:, 4:5])
+    for state, row in zip(envs.state, RECORDED, strict=True):
+        assert_near(state.copy(), ours(row[5:9]))
+
+
 def test_the_observation_space_contains_all_observations():
     envs = AcrobotSwingupVectorEnv(num_envs=1024, MAX_VEL_1=1e-3)
     envs.action_space.seed(1)

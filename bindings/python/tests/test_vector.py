@@ -389,3 +389,28 @@ def test_a_step_or_reset_beside_a_step_changes_nothing(copies, arguments):
         for one, other in zip(step.result()[:4], expected[:4], strict=True):
             np.testing.assert_array_equal(one, other)
     assert native.__getstate__() == twin._native.__getstate__()
+
+
+def test_steps_in_float64_are_gymnasiums_but_for_rounding():
+    original = gymnasium.make("Acrobot-v1").unwrapped
+    original.reset(seed=0)
+    states = np.random.default_rng(0).uniform([-3, -3, -10, -20], [3, 3, 10, 20], (500, 4))
+    actions = np.arange(500) % 3
+    envs = make_vec(500, float64=True)
+    envs.reset(seed=0)
+    envs.state = states
+    rows, rewards, ends, _, _ = envs.step(actions)
+    equal = 0
+    for i, state in enumerate(states):
+        original.state = state
+        row, reward, end, _, _ = original.step(actions[i])
+        assert np.abs(envs.state[i] - original.state).max() < 1e-12
+        assert np.abs(rows[i] - row).max() < 1e-6 and (rewards[i], ends[i]) == (reward, end)
+        equal += (envs.state[i] == original.state).all()
+    assert equal > 480  # NumPy's sines are not all correctly rounded
+
+
+def test_float64_is_not_for_gymnasiums_episodes():
+    rule = "float64 must be False with gymnasium_episodes, which computes in float64, got True"
+    with pytest.raises(ValueError, match=rule):
+        make_vec(2, float64=True, gymnasium_episodes=True)

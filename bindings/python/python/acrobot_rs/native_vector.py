@@ -64,8 +64,10 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
     _BOUND: float
 
     _native: Batch
-    #: Whether states and rewards are ``float64``.
+    #: Whether rewards are ``float64``, and seeds those of ``SyncVectorEnv``.
     _gymnasium_episodes = False
+    #: Whether states are ``float64``.
+    _float64 = False
     #: Whether it was reset and not closed.
     _ready = False
     #: Without autoreset: the environments that must be reset before the next step.
@@ -176,11 +178,11 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         states = np.empty((self.num_envs, 4), np.float64)
         self._native.states(states)
-        return read_only(states if self._gymnasium_episodes else states.astype(np.float32))
+        return read_only(states if self._float64 else states.astype(np.float32))
 
     @state.setter
     def state(self, states: ArrayLike) -> None:
-        dtype = np.float64 if self._gymnasium_episodes else np.float32
+        dtype = np.float64 if self._float64 else np.float32
         finite = arrays.finite_states(states, self.num_envs, dtype)
         with self._alone:
             self._native.set_states(finite)

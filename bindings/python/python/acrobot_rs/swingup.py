@@ -115,7 +115,9 @@ class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
 class AcrobotSwingupVectorEnv(
     Swingup, AcrobotContinuousVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
 ):
-    """Many :class:`AcrobotSwingupEnv`, computed in ``float32``, bit-identically on every machine.
+    """Many :class:`AcrobotSwingupEnv`, bit-identical on every machine.
+
+    They are computed in ``float32``, or with ``float64=True`` in ``float64``.
 
     Actions have the shape ``(num_envs, 1)``. All else is as in
     :class:`acrobot_rs.AcrobotVectorEnv`, without ``gymnasium_episodes``.
@@ -138,13 +140,14 @@ class AcrobotSwingupVectorEnv(
         copy: bool = True,
         threads: int | None = 1,
         info_parameters: Sequence[str] = (),
+        float64: bool = False,
         **parameters: Unpack[SwingupArguments[Each, EachTorques, EachEquations]],
     ) -> None:
         """Make environments. The arguments are those of :class:`acrobot_rs.AcrobotVectorEnv`."""
         self._check_arguments(parameters)  # gymnasium_episodes is none
         super().__init__(
             *(num_envs, max_episode_steps, render_mode, autoreset_mode, copy),
-            *(False, threads, info_parameters),
+            *(False, threads, info_parameters, float64),
             **parameters,
         )
 

@@ -29,8 +29,9 @@ if TYPE_CHECKING:
 class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """Many ``Acrobot-v1`` environments, thousands of times as fast as ``SyncVectorEnv``.
 
-    They are computed in ``float32``, bit-identically on every machine. Each step is as close to
-    Gymnasium's as ``float32`` is, but whole episodes drift apart, because an acrobot is chaotic.
+    They are computed in ``float32``, or with ``float64=True`` in ``float64``, bit-identically on
+    every machine. Each step differs from Gymnasium's by rounding only, but whole episodes drift
+    apart, because an acrobot is chaotic.
 
     Environment ``i`` draws from the ``i``-th child of the seed,
     ``numpy.random.SeedSequence(seed).spawn(num_envs)[i]``.
@@ -65,6 +66,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         gymnasium_episodes: bool = False,
         threads: int | None = 1,
         info_parameters: Sequence[str] = (),
+        float64: bool = False,
         **parameters: Unpack[Arguments[Each, EachTorques, EachEquations]],
     ) -> None:
         """Make environments. Reset them before their first step.
@@ -81,9 +83,11 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             gymnasium_episodes: Whether to play the episodes of Gymnasium's ``Acrobot-v1`` in
                 ``SyncVectorEnv``, bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are.
             threads: The threads that compute a step; ``None``: as many as the process has cores.
-                They change no bit, and help above 16,384 environments, or 1,024 with
-                ``gymnasium_episodes``.
+                They change no bit, and help above 16,384 environments, or 1,024 in
+                ``float64``.
             info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
+            float64: Whether to compute in ``float64``, with correctly rounded sines. Steps take
+                longer.
             **parameters: Parameters, for example ``LINK_MASS_1=2.0``.
 
         Raises:
@@ -97,7 +101,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         modes = [mode.value for mode in AutoresetMode]
         if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
             raise must_be("autoreset_mode", f"one of {modes}", repr(autoreset_mode))
-        require(bool, "True or False", copy=copy, gymnasium_episodes=gymnasium_episodes)
+        flags = {"copy": copy, "gymnasium_episodes": gymnasium_episodes, "float64": float64}
+        require(bool, "True or False", **flags)
         if threads is None:
             has_affinity = hasattr(os, "sched_getaffinity")
             threads = len(os.sched_getaffinity(0)) if has_affinity else os.cpu_count() or 1
@@ -109,9 +114,13 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
                 no_limit = ", or None for no limit" if name == "max_episode_steps" else ""
                 raise must_be(name, f"an integer from 1 to {2**32 - 1}{no_limit}", count)
         if gymnasium_episodes:
+            if float64:
+                rule = "False with gymnasium_episodes, which computes in float64"
+                raise must_be("float64", rule, True)
             arrays.warn_of_other_sines()
         mode = AutoresetMode(autoreset_mode)
-        engine = "gymnasium" if gymnasium_episodes else self._TASK
+        own = f"{self._TASK}_float64" if float64 else self._TASK
+        engine = "gymnasium" if gymnasium_episodes else own
         native = Batch(
             *(num_envs, str(self.np_random_seed), limit, mode.value, engine),
             *(self._CONTINUOUS, threads),
@@ -128,6 +137,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
         super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
+        self._float64 = gymnasium_episodes or float64
         self._made = True
 
     def _spaces(self) -> dict[str, spaces.Space[Any]]:
