@@ -1,16 +1,18 @@
-//! Swings the acrobot up and holds it upright, by a [plan](Planner) or by a [controller](Controller)
-//! without one, which computes less and succeeds later.
+//! Swings the acrobot up and holds it upright, by a [plan](Planner) or by a
+//! [controller](Controller) without one, which computes less and succeeds later.
 //!
-//! Then a linear-quadratic regulator holds it. Near the upright position the controller simulates the
-//! regulator, and lets it take over in a state from which it succeeds.
+//! Then a linear-quadratic regulator holds it. Near the upright position the controller simulates
+//! the regulator, and lets it take over in a state from which it succeeds.
 //!
-//! With a torque of 7 N m or more, the swing-up is that of X. Xin and M. Kaneda, *Analysis of the Energy-Based Swing-Up
-//! Control of the Acrobot* (2007). Their torque reduces (E − E↑)² + D θ̇2² + P θ2². So the energy E tends to E↑, that of
-//! standing upright, while link 2 comes into line with link 1, and the acrobot passes the upright position slowly.
+//! With a torque of 7 N m or more, the swing-up is that of X. Xin and M. Kaneda, *Analysis of the
+//! Energy-Based Swing-Up Control of the Acrobot* (2007). Their torque reduces (E − E↑)² + D θ̇2² +
+//! P θ2². So the energy E tends to E↑, that of standing upright, while link 2 comes into line with
+//! link 1, and the acrobot passes the upright position slowly.
 //!
-//! A weaker motor cannot bring link 2 into line. Then the torque only brings the energy to E↑. It adds energy while it has
-//! the sign of θ̇2, and in the faster mode of swinging this is opposite to that of θ̇1. The acrobot swings chaotically
-//! until it is in a state from which the regulator succeeds.
+//! A weaker motor cannot bring link 2 into line. Then the torque only brings the energy to E↑. It
+//! adds energy while it has the sign of θ̇2, and in the faster mode of swinging this is opposite to
+//! that of θ̇1. The acrobot swings chaotically until it is in a state from which the regulator
+//! succeeds.
 
 #![no_std]
 
@@ -25,8 +27,8 @@ use acrobot::{Error, Fast, Params};
 pub use plan::{NoPlan, Step};
 pub use planner::Planner;
 
-/// D, J² s²/rad², and P, J²/rad², of the sum above, and V, J² s/rad²: the sum falls at the rate 2 V θ̇2². A random search
-/// found them for a largest torque of 10 N m.
+/// D, J² s²/rad², and P, J²/rad², of the sum above, and V, J² s/rad²: the sum falls at the rate 2 V
+/// θ̇2². A random search found them for a largest torque of 10 N m.
 const D: f32 = 10.5;
 const P: f32 = 3.0;
 const V: f32 = 17.0;
@@ -37,8 +39,8 @@ const ENERGY_GAIN: f32 = 0.2;
 
 /// The regulator works while θ1 and θ2 deviate by less than this from upright, rad.
 const NEAR: [f64; 2] = [0.7, 1.4];
-/// The simulation takes at most this many steps, each as long as two decisions. The regulator succeeds if the remaining cost
-/// falls below this times the square of the largest torque.
+/// The simulation takes at most this many steps, each as long as two decisions. The regulator
+/// succeeds if the remaining cost falls below this times the square of the largest torque.
 const STEPS_AHEAD: u32 = 100;
 const LITTLE: f64 = 25.0;
 
@@ -56,8 +58,8 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// Computes the gains for a machine with these parameters, whose `dt` is the time between two decisions, and for
-    /// a largest torque, N m.
+    /// Computes the gains for a machine with these parameters, whose `dt` is the time between two
+    /// decisions, and for a largest torque, N m.
     ///
     /// # Errors
     ///

@@ -1,7 +1,9 @@
-//! The bits that every target must compute: episodes, a batch, a training, a plan and drawings, with digests of all their bits.
+//! The bits that every target must compute: episodes, a batch, a training, a plan and drawings,
+//! with digests of all their bits.
 //!
-//! The library's tests compare these digests on the build machine, and the program of this crate compares them on any
-//! target. The firmware of `examples/cortex-m` compares them while it draws, learns and plans.
+//! The library's tests compare these digests on the build machine, and the program of this crate
+//! compares them on any target. The firmware of `examples/cortex-m` compares them while it draws,
+//! learns and plans.
 
 #![no_std]
 
