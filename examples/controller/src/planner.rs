@@ -1,4 +1,5 @@
-//! Plans a swing-up and how to follow it: iterative linear-quadratic regulation with a bounded torque.
+//! Plans a swing-up and how to follow it: iterative linear-quadratic regulation with a bounded
+//! torque.
 //!
 //! Y. Tassa, N. Mansard and E. Todorov, *Control-Limited Differential Dynamic Programming* (2014).
 //! A plan costs the square of its torques, the tip's distance from upright, and what the regulator
@@ -317,8 +318,8 @@ impl<A: Arithmetic> Planner<A> {
     }
 
     /// What a step from the model's state costs because the tip is not upright, and the slope of
-    /// this: nearly 1 − 0.1^(d²) at d m from the edge of a circle of 0.2 m about the upright tip, if
-    /// the links have 1 m each. That is dm_control's reward, with (1 + x / 16)¹⁶ for e^x.
+    /// this: nearly 1 − 0.1^(d²) at d m from the edge of a circle of 0.2 m about the upright tip,
+    /// if the links have 1 m each. That is dm_control's reward, with (1 + x / 16)¹⁶ for e^x.
     fn away(&self) -> (A::Scalar, [A::Scalar; 4]) {
         let one = A::Scalar::from_f64(1.0);
         let [[elbow_x, elbow_y], [x, y]] = self.model.positions();

@@ -1,4 +1,5 @@
-//! A plan obeys the model and its largest torque, and ends where the regulator holds. Bad input gives an error.
+//! A plan obeys the model and its largest torque, and ends where the regulator holds. Bad input
+//! gives an error.
 
 use std::error::Error;
 
@@ -9,7 +10,8 @@ use acrobot::physics::{Pendulum, bound};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
 use controller::{NoPlan, Planner, Step};
 
-/// Plans from hanging with three quarters of a torque, N m, and follows the plan from a nearby state.
+/// Plans from hanging with three quarters of a torque, N m, and follows the plan from a nearby
+/// state.
 fn swings_up_and_holds<A: Arithmetic>(params: Params<A::Scalar>, limit: f64) {
     let [limit, planned] = [limit, 0.75 * limit].map(A::Scalar::from_f64);
     let params = Params {
@@ -81,7 +83,8 @@ fn plans_swing_up_and_hold_in_any_arithmetic_and_with_friction() {
     swings_up_and_holds::<Swingup<Portable>>(Params::SWINGUP, 6.0);
 }
 
-/// More iterations lower the cost. The rest of a plan, planned again from another state, begins there.
+/// More iterations lower the cost. The rest of a plan, planned again from another state, begins
+/// there.
 #[test]
 fn improving_lowers_the_cost() {
     let mut planner = Planner::<Portable>::new(

@@ -1,4 +1,5 @@
-//! A plan for Gymnasium's acrobot with its largest torque, 1 N m, and a digest of the plan and of following it.
+//! A plan for Gymnasium's acrobot with its largest torque, 1 N m, and a digest of the plan and of
+//! following it.
 
 use acrobot::numpy::Pcg64;
 use acrobot::physics::bound;

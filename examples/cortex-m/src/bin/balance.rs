@@ -1,10 +1,12 @@
-//! Swings the acrobot up and holds it upright, at 100 Hz: SysTick's interrupt decides on the torque, and steps the acrobot,
-//! which stands for the machine. A random torque disturbs each tick. It begins with 5 initial states; 1,000 follow without
-//! waiting for the clock, and 100 with each weaker motor, that of 1 N m at 50 Hz.
+//! Swings the acrobot up and holds it upright, at 100 Hz: SysTick's interrupt decides on the
+//! torque, and steps the acrobot, which stands for the machine. A random torque disturbs each tick.
+//! It begins with 5 initial states; 1,000 follow without waiting for the clock, and 100 with each
+//! weaker motor, that of 1 N m at 50 Hz.
 //!
-//! For each motor it plans once, from hanging at rest, with less torque than the motor has. Each acrobot follows the plan, and
-//! then a regulator holds it. One that falls swings up without a plan. The plan for 1 N m must be bit-identical to that of a
-//! desktop. Prints one figure a line: the largest torque, the figure's name and unit, and its value.
+//! For each motor it plans once, from hanging at rest, with less torque than the motor has. Each
+//! acrobot follows the plan, and then a regulator holds it. One that falls swings up without a
+//! plan. The plan for 1 N m must be bit-identical to that of a desktop. Prints one figure a line:
+//! the largest torque, the figure's name and unit, and its value.
 
 #![no_std]
 #![no_main]
@@ -77,8 +79,8 @@ struct Episode {
     controller: Controller,
     motor: Motor,
     ticks: u32,
-    /// The ticks for which each angle has been within 0.1 rad of upright, and the largest of these deviations in the
-    /// second half of them.
+    /// The ticks for which each angle has been within 0.1 rad of upright, and the largest of these
+    /// deviations in the second half of them.
     held: u32,
     error: f32,
     /// Counts that the decisions took: in all, and at most in a tick.
@@ -167,7 +169,8 @@ fn main() -> ! {
     process::exit(if passed { 0 } else { 1 })
 }
 
-/// Plans for a motor. Prints the time that the plan takes, rounded up, and the instructions that planning took.
+/// Plans for a motor. Prints the time that the plan takes, rounded up, and the instructions that
+/// planning took.
 fn make_plan(motor: Motor) {
     /// The first timer of QEMU's mps2-an386: control and value. It counts the core's clock down.
     const TIMER: *mut u32 = 0x4000_0000 as *mut u32;
@@ -188,8 +191,8 @@ fn make_plan(motor: Motor) {
     println!("{} plan_millions {}", motor.name, instructions / 1_000_000);
 }
 
-/// Plays episodes with a motor. Prints the figures, times and errors rounded up, and returns how many acrobots were not
-/// caught.
+/// Plays episodes with a motor. Prints the figures, times and errors rounded up, and returns how
+/// many acrobots were not caught.
 fn run(next_tick: fn(), motor: Motor, name: &str, episodes: u32) -> Result<u32, ControlError> {
     let rate = motor.rate;
     let params = Params {

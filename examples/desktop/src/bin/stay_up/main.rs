@@ -6,11 +6,11 @@
 //! cargo run --release -p desktop --bin stay_up -- --replan     # both in real time
 //! ```
 //!
-//! The planner is `Planner` of `examples/controller`. It knows the exact model and plans before the acrobot moves, but with
-//! `--replan` from a wrong model, again and again, while the acrobot moves.
+//! The planner is `Planner` of `examples/controller`. It knows the exact model and plans before the
+//! acrobot moves, but with `--replan` from a wrong model, again and again, while the acrobot moves.
 //!
-//! Prints the mean return of episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or how
-//! many of Gymnasium's initial states end upright.
+//! Prints the mean return of episodes of 1,000 steps, from the initial states of
+//! `Acrobot::new(seed)` for seeds from 0, or how many of Gymnasium's initial states end upright.
 
 mod replan;
 mod search;

@@ -1,5 +1,5 @@
-//! Both tasks in real time: the acrobot differs from the model, measurements are noisy, and the planner plans again every
-//! 0.1 s from what it measures, with 1 N m every second, on one core.
+//! Both tasks in real time: the acrobot differs from the model, measurements are noisy, and the
+//! planner plans again every 0.1 s from what it measures, with 1 N m every second, on one core.
 
 use std::time::{Duration, Instant};
 
@@ -33,14 +33,16 @@ const CASES: [Case; 6] = [
     (0.02, [1e-4, 1e-3]),
 ];
 
-/// The return, whether the acrobot is upright in the last tenth of the time, and the time that planning took.
+/// The return, whether the acrobot is upright in the last tenth of the time, and the time that
+/// planning took.
 struct Episode {
     total: f64,
     held: bool,
     took: Duration,
 }
 
-/// Plays one episode, which begins with a plan. `planner` makes another one where a plan ends and the regulator fails.
+/// Plays one episode, which begins with a plan. `planner` makes another one where a plan ends and
+/// the regulator fails.
 fn play<A: Arithmetic<Scalar = f32>>(
     mut acrobot: Acrobot<A>,
     planner: &mut Planner<A>,

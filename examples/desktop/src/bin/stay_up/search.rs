@@ -1,7 +1,8 @@
 //! The search for the best plan of dm_control's swing-up.
 //!
-//! The planner finds only the best plan near a first guess. So the search goes on from the best plans: it changes a few
-//! torques of a plan, removes some of its steps or repeats them, and plans again from there.
+//! The planner finds only the best plan near a first guess. So the search goes on from the best
+//! plans: it changes a few torques of a plan, removes some of its steps or repeats them, and plans
+//! again from there.
 
 use acrobot::arithmetic::Arithmetic;
 use acrobot::numpy::{Pcg64, uniform};
