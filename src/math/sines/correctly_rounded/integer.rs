@@ -67,7 +67,8 @@ impl Angle {
         let exponent = (x.to_bits() >> 52) as u32 % 2048;
         let mantissa = x.to_bits() << 11 | 1 << 63;
         let [upper, lower, ..] = TWO_OVER_PI;
-        // |x| 4/π = product 2^(exponent − 1021). The remainders tell the compiler that a shift is below 32.
+        // |x| 4/π = product 2^(exponent − 1021). The remainders tell the compiler that a shift is
+        // below 32.
         let product = full(mantissa, upper) + u128::from(high(mantissa, lower));
         let (octant, fraction) = if exponent > 1021 {
             let shift = (exponent - 1021) % 32; // 1 to 7
