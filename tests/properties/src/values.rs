@@ -100,7 +100,10 @@ fn sines_and_cosines_are_on_the_unit_circle() {
             // polynomials.
             assert!((radius - 1.0).abs() <= 1e-4, "{radius}");
             assert_eq!(A::sin_cos(-x), (-sin, cos));
-            assert_eq!(bits([A::cos_near(x)]), bits([cos]));
+            // Farther, any result is valid.
+            if x.to_f64().abs() <= 524_288.0 {
+                assert_eq!(bits([A::cos_near(x)]), bits([cos]));
+            }
         });
     }
     in_every_arithmetic!(check);
