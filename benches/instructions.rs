@@ -72,12 +72,12 @@ fn host(alone: Alone<Host>) -> Alone<Host> {
     play_alone(alone)
 }
 
-#[library_benchmark(config = limit(1930.0, 1), setup = alone::<Reference>)]
+#[library_benchmark(config = limit(1888.0, 1), setup = alone::<Reference>)]
 fn reference(alone: Alone<Reference>) -> Alone<Reference> {
     play_alone(alone)
 }
 
-#[library_benchmark(config = limit(974.0, 1), setup = alone::<Portable>)]
+#[library_benchmark(config = limit(936.0, 1), setup = alone::<Portable>)]
 fn portable(alone: Alone<Portable>) -> Alone<Portable> {
     play_alone(alone)
 }
@@ -107,8 +107,15 @@ fn batch_fast_with_observations(play: Play<Fast>) -> Play<Fast> {
 }
 
 #[library_benchmark(setup = batch::<Portable>)]
-#[bench::baseline(args = (SimdLevel::Baseline), config = limit(945.0, ACROBOTS))]
+#[bench::baseline(args = (SimdLevel::Baseline), config = limit(824.0, ACROBOTS))]
+#[bench::avx2(args = (SimdLevel::Avx2), config = limit(350.0, ACROBOTS))]
 fn batch_portable(play: Play<Portable>) -> Play<Portable> {
+    play_batch(play, false)
+}
+
+#[library_benchmark(setup = batch::<Reference>)]
+#[bench::avx2(args = (SimdLevel::Avx2), config = limit(712.0, ACROBOTS))]
+fn batch_reference(play: Play<Reference>) -> Play<Reference> {
     play_batch(play, false)
 }
 
@@ -122,7 +129,8 @@ library_benchmark_group!(
         micro,
         batch_fast,
         batch_fast_with_observations,
-        batch_portable
+        batch_portable,
+        batch_reference
     ]
 );
 main!(library_benchmark_groups = steps);
