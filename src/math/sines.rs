@@ -17,3 +17,11 @@ pub fn clamp(x: f32) -> f32 {
 /// Whether the machine has instructions for `f64`. Results do not depend on it.
 const HAS_F64: bool =
     cfg!(any(target_pointer_width = "64", target_arch = "wasm32", target_arch = "x86"));
+
+/// Whether the machine has SIMD for `f64`. Without it lanes are faster one by one, with the same
+/// results.
+const HAS_SIMD: bool = cfg!(any(
+    target_feature = "sse2",
+    target_feature = "simd128",
+    all(target_arch = "aarch64", target_feature = "neon"),
+));

@@ -21,7 +21,7 @@ mod float;
 mod integer;
 mod wide;
 
-use super::HAS_F64;
+use super::{HAS_F64, HAS_SIMD};
 use crate::math::lanes::Numbers;
 
 /// 2⁻²⁷.
@@ -30,7 +30,7 @@ const TINY: f64 = 1.0 / 134_217_728.0;
 /// Sine and cosine, correctly rounded. NaN for infinity and NaN.
 #[inline(always)]
 pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
-    if V::IS_ONE {
+    if V::IS_ONE || !HAS_SIMD {
         return x.zip3(x, x, |x, _, _| of_one(x));
     }
     let (sin, cos) = x.zip3(x, x, |x, _, _| {
@@ -45,7 +45,7 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
 /// Cosine, correctly rounded; otherwise as [`sin_cos`].
 #[inline(always)]
 pub fn cos<V: Numbers<f64>>(x: V) -> V {
-    if V::IS_ONE {
+    if V::IS_ONE || !HAS_SIMD {
         return x.map(cos_of_one);
     }
     let cos = x.map(|x| or_nan(x, float::Angle::new(x).cos()));
@@ -168,7 +168,7 @@ mod tests {
         }
     }
 
-    /// Lanes take the table on any machine.
+    /// With SIMD lanes take the table.
     #[test]
     fn lanes_equal_single_numbers() {
         let mut rng = Pcg64::new(1);

@@ -4,7 +4,7 @@
 //! Let n be the integer nearest to x · 2/π and y + tail = x − n π/2, so that |y| ≤ π/4. The
 //! polynomials approximate sine and cosine of y, and each has a term for the tail.
 
-use super::HAS_F64;
+use super::{HAS_F64, HAS_SIMD};
 use crate::math::lanes::Numbers;
 
 /// 1.5 × 2⁵²: a sum with it rounds to an integer, whose low bits are the sum's lowest bits.
@@ -24,8 +24,9 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
 
     let c = V::splat;
     let largest = c(core::f64::consts::FRAC_PI_4 - 1e-5);
-    if V::IS_ONE && !HAS_F64 {
-        // It has branches instead, so it needs fewer instructions.
+    let is_fast = if V::IS_ONE { HAS_F64 } else { HAS_SIMD };
+    if !is_fast {
+        // `libm` has branches instead, so it needs fewer instructions.
         return x.zip3(x, x, |x, _, _| libm::sincos(x));
     }
     if V::IS_ONE && x.all_within(largest) {
