@@ -23,10 +23,9 @@ pub(super) struct Work<'a, A: Arithmetic, const N: usize> {
 
 impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
     /// Whether acrobots share their parameters is decided once, and not for each block, which would
-    /// be 3 to 6 % slower: the compiler then sees that all lanes have the same constants. `HIDE`
-    /// hides the model, which is then in memory: with AVX-512 the compiler would hold it in
-    /// registers and spill the state, 16 % slower. In `f64` with AVX2 it
-    /// also aligns the stack, so that spilled registers do not cross cache lines.
+    /// be 3 to 6 % slower. `HIDE` keeps the model in memory: with AVX-512 the compiler would hold
+    /// it in registers and spill the state, 16 % slower. In `f64` with AVX2 it also aligns the
+    /// stack, so that spilled registers do not cross cache lines.
     #[inline(always)]
     pub(super) fn step<const HIDE: bool>(self) {
         let Self { settings, blocks, mut generators, lane_params, mut inputs, mut buffers } = self;
