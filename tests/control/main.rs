@@ -136,14 +136,6 @@ fn derivatives_forces_and_velocities_equal_automatic_differentiation() {
 }
 
 #[test]
-fn a_deviation_is_the_state_less_the_target() {
-    let state = State::from([0.5, 0.25, 1.0, -2.0]);
-    let target = State::from([0.25, 0.5, 0.75, 1.5]);
-    let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, state).unwrap();
-    assert_eq!(pendulum.deviation(target), [0.25, -0.25, 0.25, -3.5]);
-}
-
-#[test]
 fn inputs_that_are_not_finite_are_rejected() {
     let pendulum = Pendulum::<Fast>::hanging();
     let torque = "torque must be a finite number of N m, got NaN";

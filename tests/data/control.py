@@ -1,12 +1,10 @@
 """Differentiates the equations of motion automatically and solves Riccati equations: writes
 control.txt to its folder.
 
-The equations are those that truth.py integrates, for any parameters, and autograd differentiates
-them and a Runge-Kutta step of them. The torques are Lagrange's equations from positions and
-energies alone, and the forces Newton's law from the second derivatives of positions in time.
-
-The gains solve the Riccati equation in 200 digits. SciPy's solve_discrete_are finds the same, with
-an error of up to 3e-6.
+Autograd differentiates the equations of truth.py and a Runge-Kutta step of them. The torques are
+Lagrange's equations from positions and energies alone, and the forces Newton's law from the second
+derivatives of positions in time. The gains solve the Riccati equation in 200 digits; SciPy's
+solve_discrete_are finds the same, with an error of up to 3e-6.
 """
 
 import os
