@@ -6,8 +6,7 @@
 //! ```
 //!
 //! It fails if a count exceeds its limit: the measured count plus 5 % for new compilers. It needs
-//! x86-64 with AVX2; valgrind does not support AVX-512. `Host` has no limit, because it calls the
-//! platform's library.
+//! x86-64 with AVX2; valgrind does not support AVX-512.
 
 use std::hint::black_box;
 

@@ -47,8 +47,7 @@ impl<O, I> Step<O, I> {
 ///
 /// `A` is the [arithmetic](crate::arithmetic), which determines every bit. `R` is the generator for
 /// initial states and torque noise. The state [is always
-/// finite](Pendulum#results-that-are-not-finite). After the goal an acrobot can step on, as in
-/// Gymnasium. [`TimeLimit`](crate::TimeLimit) adds truncation.
+/// finite](Pendulum#results-that-are-not-finite). [`TimeLimit`](crate::TimeLimit) adds truncation.
 ///
 /// ```
 /// use acrobot::{Acrobot, Action, Fast};
@@ -65,8 +64,7 @@ impl<O, I> Step<O, I> {
 ///
 /// With the `serde` feature an acrobot can be saved and loaded; the loaded one continues
 /// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
-/// serde format can hold it. The tests use JSON, postcard, CBOR, MessagePack, TOML, RON and YAML,
-/// also in flattened structs and in tagged enums.
+/// serde format can hold it, also in flattened structs and in tagged enums.
 ///
 /// The first field holds the type, the version (1) and the [name of the
 /// arithmetic](Arithmetic::NAME). Loading rejects another one, and what the setters reject;
@@ -77,14 +75,12 @@ impl<O, I> Step<O, I> {
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::arithmetic::Micro; use acrobot::{Acrobot, Fast};
+/// use acrobot::{Acrobot, Fast};
 ///
-/// let acrobot = Acrobot::<Fast>::new(42); let text = serde_json::to_string(&acrobot)?;
+/// let acrobot = Acrobot::<Fast>::new(42);
+/// let text = serde_json::to_string(&acrobot)?;
 /// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":1,"arithmetic":"fast"}"#));
 /// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
-///
-/// let error = serde_json::from_str::<Acrobot<Micro>>(&text).unwrap_err().to_string();
-/// assert!(error.contains(r#"must be "acrobot", version 1, arithmetic "micro", got"#));
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -215,11 +211,7 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         self.pendulum.state()
     }
 
-    /// Sets the state. Angles and velocities may be outside their bounds until the next step.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] for a number that is not finite.
+    /// Sets the state as [`Pendulum::set_state`] does, with its errors.
     pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
         self.pendulum.set_state(state)
     }
@@ -231,17 +223,13 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         self.pendulum.params()
     }
 
-    /// Sets the parameters for the next steps. The state and the generator do not change.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Pendulum::set_params`].
+    /// Sets the parameters for the next steps, with the errors of [`Pendulum::set_params`]. The
+    /// state and the generator do not change.
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         self.pendulum.set_params(params)
     }
 
-    /// The pendulum, with its energy, positions, mass matrix and derivative. Its clone is a model
-    /// of this acrobot without noise.
+    /// The pendulum. Its clone is a model of this acrobot without noise.
     #[must_use]
     #[inline]
     pub const fn pendulum(&self) -> &Pendulum<A> {
@@ -262,8 +250,8 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
         &mut self.rng
     }
 
-    /// An acrobot with the default parameters that hangs at rest: a `const` or a `static`, as in [a
-    /// first program](crate::guide::embedded#a-first-program).
+    /// An acrobot with the default parameters that hangs at rest, also in a
+    /// [`static`](crate::guide::embedded#a-first-program).
     #[must_use]
     pub const fn hanging(rng: R) -> Self {
         Self::from_pendulum(Pendulum::hanging(), rng)

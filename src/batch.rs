@@ -58,8 +58,8 @@ use work::Work;
 /// Many acrobots, each with its own stream of random numbers.
 ///
 /// Acrobot `i` is bit-identical to an [`Acrobot`](crate::Acrobot) seeded with the seed's `i`-th
-/// child, under a [`TimeLimit`](crate::TimeLimit). A batch steps `N` acrobots side by side, with
-/// the [widest SIMD instructions](SimdLevel) of the machine. Neither changes a bit.
+/// child, under a [`TimeLimit`](crate::TimeLimit), whatever `N` and the [SIMD
+/// instructions](SimdLevel).
 ///
 /// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32:
 ///
@@ -70,17 +70,21 @@ use work::Work;
 ///
 /// # Snapshots
 ///
-/// With the `serde` feature a batch can be saved as a whole: a sequence of the settings and the
-/// members. The first field is that of an [acrobot's](crate::Acrobot#snapshots) snapshot. A loaded
-/// batch continues bit-identically, with any `N` and on any machine.
+/// With the `serde` feature a batch can be saved as a whole, with the header of an
+/// [acrobot's](crate::Acrobot#snapshots) snapshot. A loaded batch continues bit-identically, with
+/// any `N` and on any machine.
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
-/// use acrobot::Fast; use acrobot::batch::{Batch, Block}; use acrobot::numpy::Pcg64;
+/// use acrobot::Fast;
+/// use acrobot::batch::{Batch, Block};
+/// use acrobot::numpy::Pcg64;
 ///
-/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]); let batch = Batch::<Fast,
-/// _>::new(42, memory()).unwrap(); let bytes = postcard::to_stdvec(&batch)?; let loaded =
-/// Batch::<Fast, _>::from_snapshot( memory(), &mut postcard::Deserializer::from_bytes(&bytes), )?;
+/// let memory = || ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]);
+/// let batch = Batch::<Fast, _>::new(42, memory()).unwrap();
+/// let bytes = postcard::to_stdvec(&batch)?;
+/// let mut reader = postcard::Deserializer::from_bytes(&bytes);
+/// let loaded = Batch::<Fast, _>::from_snapshot(memory(), &mut reader)?;
 /// assert_eq!(loaded.member(19), batch.member(19));
 /// # Ok::<(), postcard::Error>(())
 /// ```
@@ -92,9 +96,8 @@ pub struct Batch<A: Arithmetic, S, const N: usize = 16> {
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
-    /// A batch with one acrobot for each generator, in its initial state. Acrobot `i` is seeded
-    /// with the `i`-th child that `seed` has not yet spawned. The batch has the default parameters,
-    /// the limit of the [task](crate::physics::Task::limit) and [`Autoreset::NextStep`].
+    /// A batch with one acrobot for each generator, with the default parameters, in its initial
+    /// state. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet spawned.
     ///
     /// # Errors
     ///
@@ -249,11 +252,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         }
     }
 
-    /// Sets the parameters of all acrobots for the next steps.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`Params::validate`].
+    /// Sets the parameters of all acrobots for the next steps, with the errors of
+    /// [`Pendulum::set_params`](crate::physics::Pendulum::set_params).
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         check_params::<A>(&params)?;
         let model = model::<A>(params);
@@ -269,8 +269,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`], [`Error::NoSuchIndex`], and [`Error::SharedParams`] without
-    /// memory for [`LaneParams`].
+    /// Those of [`set_params`](Self::set_params), [`Error::NoSuchIndex`], and
+    /// [`Error::SharedParams`] without memory for [`LaneParams`].
     pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
         check_params::<A>(&params)?;
         self.block_of(index)?;
@@ -290,7 +290,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     }
 
     /// Sets the range from which each reset, also one in a step, draws the acrobot's parameters
-    /// before its initial state. With `None`, the default, a reset does not change parameters.
+    /// before its initial state.
     ///
     /// # Errors
     ///

@@ -2,8 +2,7 @@
 
 use core::fmt;
 
-/// Why an input was rejected. `Display` names the value, its unit and the rule. A rejected call
-/// changes nothing.
+/// Why an input was rejected. `Display` names the value, its unit and the rule.
 ///
 /// ```
 /// use acrobot::{Acrobot, Fast, Params};
@@ -28,7 +27,7 @@ pub enum Error {
         rule: &'static str,
     },
     /// A link has neither a moment of inertia nor a distance between its centre of mass and its
-    /// joint, so its acceleration is undetermined.
+    /// joint.
     NoInertia {
         /// `"inertia1"` or `"inertia2"`.
         name: &'static str,

@@ -1,6 +1,5 @@
 //! Gymnasium's `Acrobot-v1`, the two-link swing-up task, as a `no_std` crate that needs no heap and
-//! never panics. It is hundreds of times as fast as Gymnasium, and an episode has the same bits on
-//! a microcontroller, in a browser and on a server.
+//! never panics. An episode has the same bits on a microcontroller, in a browser and on a server.
 //!
 #![doc = include_str!("../docs/episode.svg")]
 //!
@@ -38,9 +37,8 @@
 //! - [`ResetOptions`] has what a reset may choose: the seed, and the bounds of the initial state.
 //! - [`Error`] names a rejected value, its unit and the rule.
 //!
-//! [`physics`] has the model alone, and [`control`](physics::control), from the linearization to a
-//! regulator. [`batch`] has many acrobots at once, with SIMD and on all cores. The [`guide`] has a
-//! page for each reader and each subject.
+//! [`physics`] has the model alone, and [`control`](physics::control). [`batch`] has many acrobots
+//! at once. The [`guide`] has a page for each reader and each subject.
 //!
 //! # Features
 //!

@@ -1,9 +1,7 @@
 //! NumPy's random numbers: the same streams as `np.random`, from the same seeds.
 //!
 //! Gymnasium seeds each environment and each space with NumPy's `default_rng(seed)`. [`Pcg64`] is
-//! that generator, which rand's `Pcg64` seeds differently. [`SeedSequence`] turns a seed into its
-//! state and into independent child seeds. [`uniform`] and [`integers`] are the draws that
-//! Gymnasium makes.
+//! that generator, which rand's `Pcg64` seeds differently.
 //!
 //! ```
 //! use acrobot::numpy::{Pcg64, SeedSequence, uniform};
@@ -26,13 +24,13 @@ use rand_core::Rng;
 pub use pcg64::Pcg64;
 pub use seed_sequence::SeedSequence;
 
-/// NumPy's `Generator.uniform(low, high)`: draws from \[`low`, `high`) with 53 random bits. As in
-/// NumPy, rounding can give `high` itself. The difference of the bounds must be finite.
+/// NumPy's `Generator.uniform(low, high)`: draws from \[`low`, `high`) with 53 random bits. The
+/// difference of the bounds must be finite. As in NumPy, rounding can give `high` itself:
 ///
 /// ```
 /// use acrobot::numpy::{Pcg64, uniform};
 ///
-/// // No f64 is between these bounds.
+/// // np.random.default_rng(42).uniform(1e16, 1e16 + 2): no f64 is between these bounds.
 /// assert_eq!(uniform(&mut Pcg64::new(42), 1e16, 1e16 + 2.0), 1e16 + 2.0);
 /// ```
 #[inline(never)] // saves flash: a reset draws four

@@ -12,9 +12,8 @@ use crate::physics::{State, Task, directions};
 /// `Observation`, short for `Observation<6>`, is the observation of `Acrobot-v1`: \[cos θ1, sin θ1,
 /// cos θ2, sin θ2, θ̇1, θ̇2\], velocities in rad/s. Hanging at rest it is \[1, 0, 1, 0, 0, 0\].
 ///
-/// In dm_control's [`Swingup`](crate::arithmetic::Swingup) the six numbers are the sines of both
-/// links' angles from upright, their cosines, and the velocities. The accessors have the names of
-/// `Acrobot-v1`.
+/// In a [`Swingup`](crate::arithmetic::Swingup) the six numbers are the sines of both links' angles
+/// from upright, their cosines, and the velocities; the accessors have the names of `Acrobot-v1`.
 ///
 /// `Observation<4>` is the observation of `Acrobot-v0`: the state \[θ1, θ2, θ̇1, θ̇2\] in rad and
 /// rad/s.

@@ -1,8 +1,7 @@
 //! The pendulum alone: equations of motion, integrator and bounds, without a generator or an
 //! environment.
 //!
-//! [`Pendulum`] caches the constants that depend on the parameters, and the sines and cosines of
-//! its angles. It has no random numbers, so it takes a third of the flash of an
+//! [`Pendulum`] has no random numbers, so it takes a third of the flash of an
 //! [`Acrobot`](crate::Acrobot).
 //!
 //! For your own integrator, use [`Pendulum::derivative`]. The module [`control`] linearizes and

@@ -92,9 +92,8 @@ impl<C> Theme<C> {
 
 /// A drawing of an acrobot: [an example](self).
 ///
-/// It is scaled as in Gymnasium's window: the fixed joint is in the centre, and the shorter side of
-/// the target shows both links and 0.2 m more in each direction. Targets of any size work, except
-/// that one whose width, height, right end or bottom end is above `i32::MAX` stays as it is.
+/// It is scaled as in Gymnasium's window: the shorter side of the target shows both links and 0.2 m
+/// more in each direction. A target that reaches beyond `i32::MAX` stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Figure {

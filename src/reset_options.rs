@@ -23,9 +23,9 @@ use crate::physics::ResetBounds;
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ResetOptions {
-    /// Seeds the generator. With `None` the generator continues its stream.
+    /// Seeds the generator. With `None` it continues its stream.
     pub seed: Option<SeedSequence>,
-    /// The bounds of the initial state. `None` means those of the
+    /// The bounds of the initial state. `None`: those of the
     /// [task](crate::physics::Task::reset_bounds) or of the
     /// [batch](crate::batch::Batch::reset_bounds).
     pub bounds: Option<ResetBounds>,

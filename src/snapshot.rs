@@ -34,7 +34,7 @@ const VERSION: u32 = 1;
 const LIMIT: usize = 16;
 
 /// The first field of a snapshot of an acrobot or a batch. Zero-sized: its contents are constants,
-/// checked when loaded. In binary formats only it tells the type of a snapshot.
+/// checked when loaded.
 pub(crate) struct Header<A, const BATCH: bool>(PhantomData<A>);
 
 #[derive(serde::Serialize, serde::Deserialize)]

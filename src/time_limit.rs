@@ -12,9 +12,8 @@ use crate::observation::Observation;
 use crate::physics::{Params, State, Task};
 use crate::reset_options::ResetOptions;
 
-/// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` once they
-/// reach the limit. It does not change `terminated`. Steps after the end continue, with `truncated`
-/// true.
+/// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the
+/// limit on.
 ///
 /// ```
 /// use acrobot::{Acrobot, Action, Fast, TimeLimit};

@@ -1,33 +1,14 @@
-//! `check_env` accepts environments that keep the contract of `Env`, and finds every violation.
+//! `check_env` finds every violation of the contract of `Env`. `cargo test -p properties` finds
+//! none in our environments.
 
 use std::cell::Cell;
-use std::fmt::Debug;
 use std::rc::Rc;
 
-use acrobot::arithmetic::{Host, Micro};
 use acrobot::env::{
-    AcrobotEnv, BoxSpace, DiscreteSpace, Env, Error, Info, Options, RenderMode, Rendering, Space,
-    Violation, acrobot_v1, check_env,
+    AcrobotEnv, BoxSpace, DiscreteSpace, Env, Error, Info, Rendering, Space, Violation, check_env,
 };
 use acrobot::{Acrobot, Action, Fast, Observation, ResetOptions, Step, TimeLimit};
 use rand_core::Rng;
-
-/// Without a time limit, and with frames. `cargo test -p properties` tries any parameters.
-#[test]
-fn our_environments_keep_the_contract() {
-    fn check<E>(env: E)
-    where
-        E: Env<Observation: Clone + Debug + PartialEq, Action: Clone> + Clone,
-    {
-        for seed in 0..3 {
-            check_env(&env, seed).unwrap();
-        }
-    }
-    let options = Options { render_mode: RenderMode::RgbArray, ..Options::default() };
-    check(AcrobotEnv::<Host, Observation>::default());
-    check(AcrobotEnv::<Micro, Observation<4>>::default());
-    check(acrobot_v1::<Host>(options).unwrap());
-}
 
 /// How an environment can break the contract.
 #[derive(Clone)]

@@ -1,10 +1,10 @@
-//! The equations of motion are right: both forms agree with each other and with Lagrange's
-//! equations.
+//! The equations of motion are right, in both forms, and so are mass matrix and energy.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
 use acrobot::env::{AcrobotEnv, RenderMode};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
+use acrobot::physics::control::inverse_dynamics;
 use acrobot::physics::{Dynamics, ParamsRange, Pendulum, Viscous};
 use acrobot::{Acrobot, Fast, Observation, Params, Portable, State, TimeLimit};
 
@@ -53,186 +53,63 @@ fn relative(x: [f64; 2], y: [f64; 2]) -> f64 {
     (x[0] - y[0]).abs().max((x[1] - y[1]).abs()) / scale
 }
 
-fn accelerations<A: Arithmetic<Scalar = f64>>(
-    params: &Params,
-    state: &State,
-    torque: f64,
-) -> [f64; 2] {
-    let pendulum = Pendulum::<A>::new(*params, *state).unwrap();
-    let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(torque);
-    [ddtheta1, ddtheta2]
-}
-
 /// Hundreds of roundings of terms that are up to a thousand times the result.
 const ROUNDING: f64 = 1e-11;
 
-/// A number with its derivatives in two directions and the mixed second derivative: automatic
-/// differentiation for the Lagrangian below, which uses none of the crate's equations.
-#[derive(Clone, Copy)]
-struct HyperDual([f64; 4]);
-
-impl HyperDual {
-    fn constant(x: f64) -> Self {
-        Self([x, 0.0, 0.0, 0.0])
-    }
-
-    /// f of this number, from the value and the first two derivatives of f.
-    fn map(self, f: f64, first: f64, second: f64) -> Self {
-        let [_, a, b, ab] = self.0;
-        Self([f, first * a, first * b, first * ab + second * a * b])
-    }
-
-    fn sin(self) -> Self {
-        let (sin, cos) = Portable::sin_cos(self.0[0]);
-        self.map(sin, cos, -sin)
-    }
-
-    fn cos(self) -> Self {
-        let (sin, cos) = Portable::sin_cos(self.0[0]);
-        self.map(cos, -sin, -cos)
-    }
-}
-
-impl std::ops::Add for HyperDual {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] + other.0[i]))
-    }
-}
-
-impl std::ops::Mul for HyperDual {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        let ([x, xa, xb, xab], [y, ya, yb, yab]) = (self.0, other.0);
-        Self([x * y, xa * y + x * ya, xb * y + x * yb, xab * y + xa * yb + xb * ya + x * yab])
-    }
-}
-
-/// Kinetic minus potential energy, from the positions and velocities of the two centres of mass.
-fn lagrangian(p: &Params, [theta1, theta2, dtheta1, dtheta2]: [HyperDual; 4]) -> HyperDual {
-    let number = HyperDual::constant;
-    let (absolute, turning) = (theta1 + theta2, dtheta1 + dtheta2);
-    // Velocities of the centres of mass, horizontal and vertical.
-    let speed1 = number(p.center_of_mass1) * dtheta1;
-    let across = number(p.length1) * theta1.cos() * dtheta1
-        + number(p.center_of_mass2) * absolute.cos() * turning;
-    let up = number(p.length1) * theta1.sin() * dtheta1
-        + number(p.center_of_mass2) * absolute.sin() * turning;
-    let twice_kinetic = number(p.mass1) * speed1 * speed1
-        + number(p.mass2) * (across * across + up * up)
-        + number(p.inertia1) * dtheta1 * dtheta1
-        + number(p.inertia2) * turning * turning;
-    let height1 = number(-p.center_of_mass1) * theta1.cos();
-    let height2 = number(-p.length1) * theta1.cos() + number(-p.center_of_mass2) * absolute.cos();
-    let potential = number(p.gravity) * (number(p.mass1) * height1 + number(p.mass2) * height2);
-    number(0.5) * twice_kinetic + number(-1.0) * potential
-}
-
-/// The Lagrangian's value, its derivatives along the i-th and the j-th of (θ1, θ2, θ̇1, θ̇2), and
-/// the second derivative along both.
-fn differentiate(p: &Params, y: [f64; 4], i: usize, j: usize) -> [f64; 4] {
-    let along = |k, axis| f64::from(u8::from(k == axis));
-    lagrangian(p, std::array::from_fn(|k| HyperDual([y[k], along(k, i), along(k, j), 0.0]))).0
-}
-
-/// Lagrange's equations: d/dt ∂L/∂θ̇ − ∂L/∂θ = (0, torque), that is
-/// (∂²L/∂θ̇∂θ̇) θ̈ = (0, torque) + ∂L/∂θ − (∂²L/∂θ̇∂θ) θ̇.
+/// Newton and Euler's recursion shares no formula with the equations. `cargo test --test control`
+/// compares its torques with Lagrange's equations.
 #[test]
-fn the_books_equations_equal_lagranges() {
-    for (params, state, torque) in random_cases() {
-        let y = <[f64; 4]>::from(state);
-        let mixed = |i, j| differentiate(&params, y, i, j)[3];
-        let force = |i: usize| {
-            [0.0, torque][i] + differentiate(&params, y, i, i)[1]
-                - mixed(i + 2, 0) * y[2]
-                - mixed(i + 2, 1) * y[3]
-        };
-        let mass = [[mixed(2, 2), mixed(2, 3)], [mixed(3, 2), mixed(3, 3)]];
-        let determinant = mass[0][0] * mass[1][1] - mass[0][1] * mass[1][0];
-        let expected = [
-            (mass[1][1] * force(0) - mass[0][1] * force(1)) / determinant,
-            (mass[0][0] * force(1) - mass[1][0] * force(0)) / determinant,
-        ];
-        for (name, found) in [
-            ("Gymnasium's", accelerations::<GymnasiumF64>(&params, &state, torque)),
-            ("lean", accelerations::<Portable>(&params, &state, torque)),
-        ] {
-            let error = relative(found, expected);
-            assert!(error <= ROUNDING, "{name}: {error:e}: {params:?} {state:?}");
-        }
-
-        let pendulum = Pendulum::<Portable>::new(params, state).unwrap();
-        let ours = pendulum.mass_matrix();
-        assert!(relative(ours[0], mass[0]).max(relative(ours[1], mass[1])) <= ROUNDING);
-        // The energy is θ̇ ∂L/∂θ̇ − L.
-        let [value, momentum1, momentum2, _] = differentiate(&params, y, 2, 3);
-        let expected = momentum1 * y[2] + momentum2 * y[3] - value;
-        assert!(relative([pendulum.energy(), 0.0], [expected, 0.0]) <= ROUNDING);
-    }
-}
-
-/// M (θ̈ of the paper − θ̈ of the book) = (0, m2 l1 lc2 θ̇1² sin θ2).
-#[test]
-fn the_papers_equations_lack_one_term() {
+fn the_equations_are_the_inverse_of_newton_and_eulers() {
     fn check<A: Arithmetic<Scalar = f64>>(params: Params, state: State, torque: f64) {
-        let of = |dynamics| accelerations::<A>(&Params { dynamics, ..params }, &state, torque);
-        let (book, nips) = (of(Dynamics::Book), of(Dynamics::Nips));
-        let term = params.mass2
-            * params.length1
-            * params.center_of_mass2
-            * state.dtheta1
-            * state.dtheta1
-            * A::sin_cos(state.theta2).0;
         let pendulum = Pendulum::<A>::new(params, state).unwrap();
-        let [book, nips] = [book, nips].map(|accelerations| torques(&pendulum, accelerations));
-        let error = relative(nips, [book[0], book[1] + term]);
-        assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
-    }
-    for (params, state, torque) in random_cases() {
-        check::<Portable>(params, state, torque);
-        check::<GymnasiumF64>(params, state, torque);
-    }
-}
-
-/// M θ̈.
-fn torques<A: Arithmetic<Scalar = f64>>(pendulum: &Pendulum<A>, [a, b]: [f64; 2]) -> [f64; 2] {
-    pendulum.mass_matrix().map(|[m1, m2]| m1 * a + m2 * b)
-}
-
-/// M (θ̈ with friction − θ̈ without) = −(b1 θ̇1, b2 θ̇2), in both forms of the equations.
-#[test]
-fn friction_resists_the_velocity_of_each_joint() {
-    fn check<A: Arithmetic<Scalar = f64>>((params, state, torque): (Params, State, f64)) {
-        let without = accelerations::<A>(&params, &state, torque);
-        let friction = Viscous { joint1: 0.3, joint2: 0.7 };
-        let params = Params { friction, ..params };
-        let with = accelerations::<Damped<A>>(&params, &state, torque);
-        let pendulum = Pendulum::<Damped<A>>::new(params, state).unwrap();
-        let [with, without] = [with, without].map(|x| torques(&pendulum, x));
-        let resistance = [0.3 * state.dtheta1, 0.7 * state.dtheta2];
-        let expected = [without[0] - resistance[0], without[1] - resistance[1]];
-        let error = relative(with, expected);
-        assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
+        let torques = |accelerations| inverse_dynamics(&pendulum, accelerations).unwrap().torques;
+        let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(torque);
+        let [joint, motor] = torques([ddtheta1, ddtheta2]);
+        let scale = torques([0.0; 2]).into_iter().fold(1.0, |scale: f64, x| scale.max(x.abs()));
+        let error = joint.abs().max((motor - torque).abs()) / scale;
+        assert!(error <= ROUNDING, "{}: {error:e}: {params:?} {state:?}", A::NAME);
     }
     for (params, state, torque) in random_cases() {
         for dynamics in [Dynamics::Book, Dynamics::Nips] {
-            let case = (Params { dynamics, ..params }, state, torque);
-            check::<Portable>(case);
-            check::<Reference>(case);
-            check::<GymnasiumF64>(case);
+            let params = Params { dynamics, ..params };
+            check::<Portable>(params, state, torque);
+            check::<GymnasiumF64>(params, state, torque);
+            let friction = Viscous { joint1: 0.3, joint2: 0.7 };
+            let params = Params { friction, ..params };
+            check::<Damped<Portable>>(params, state, torque);
+            check::<Damped<Reference>>(params, state, torque);
+            check::<Damped<GymnasiumF64>>(params, state, torque);
         }
     }
 }
 
+/// The mass matrix has the torques that accelerations add. The energy is that of both centres of
+/// mass, and half of the velocities times it.
 #[test]
-fn invalid_friction_is_rejected() {
-    let friction = Viscous { joint1: 0.0, joint2: -0.1 };
-    let params = Params { friction, ..Params::DEFAULT };
-    let error = Pendulum::<Damped<Portable>>::new(params, State::HANGING).unwrap_err();
-    let rule = "friction.joint2 must be finite and at least 0 N m s/rad, got -0.1";
-    assert_eq!(error.to_string(), rule);
+fn energies_follow_from_torques_and_positions() {
+    for (params, state, _) in random_cases() {
+        let moving = Pendulum::<Portable>::new(params, state).unwrap();
+        let at_rest = State { dtheta1: 0.0, dtheta2: 0.0, ..state };
+        let resting = Pendulum::<Portable>::new(params, at_rest).unwrap();
+        let torques = |accelerations| inverse_dynamics(&resting, accelerations).unwrap().torques;
+        let [weight1, weight2] = torques([0.0; 2]);
+        let rows = moving.mass_matrix();
+        for (i, accelerations) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
+            let [torque1, torque2] = torques(accelerations);
+            let added = [torque1 - weight1, torque2 - weight2];
+            assert!(relative(rows.map(|row| row[i]), added) <= ROUNDING, "{params:?} {state:?}");
+        }
+
+        let [elbow, tip] = resting.positions().map(|[_, up]| up);
+        let center1 = elbow * params.center_of_mass1 / params.length1;
+        let center2 = elbow + (tip - elbow) * params.center_of_mass2 / params.length2;
+        let potential = params.gravity * (params.mass1 * center1 + params.mass2 * center2);
+        let [momentum1, momentum2] = rows.map(|[x, y]| x * state.dtheta1 + y * state.dtheta2);
+        let kinetic = (momentum1 * state.dtheta1 + momentum2 * state.dtheta2) / 2.0;
+        let found = [resting.energy(), moving.energy()];
+        let error = relative(found, [potential, potential + kinetic]);
+        assert!(error <= ROUNDING, "{error:e}: {params:?} {state:?}");
+    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
 use acrobot::render::Figure;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
-use common::{distance, lines, numbers, text_of};
+use common::{distance, numbers, text_of};
 
 struct Recorded {
     before: State,
@@ -120,19 +120,6 @@ fn orientations_are_within_1() {
     orientations_within_1::<Swingup<Fast>>();
     orientations_within_1::<Swingup<Micro>>();
     orientations_within_1::<SwingupSparse<Fast>>();
-}
-
-#[test]
-fn the_model_is_mujocos() {
-    let text = text_of("tests/data/swingup.txt");
-    let inertias = lines(&text, "# inertias").next();
-    let params = Params::<f64>::SWINGUP;
-    params.validate().unwrap();
-    let mujocos = numbers(inertias.unwrap());
-    let ours = [params.inertia1, params.inertia2];
-    assert!((ours[0] - mujocos[0]).abs().max((ours[1] - mujocos[1]).abs()) < 1e-16);
-    let single = Params::<f32>::SWINGUP;
-    assert_eq!(single, params.cast());
 }
 
 /// With lengths so large that the distance from the target overflows, too.

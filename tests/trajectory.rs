@@ -2,7 +2,6 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::numpy::Pcg64;
 use acrobot::trajectory::{HEADER, Trajectory, Transition};
 use acrobot::{Acrobot, Action, Error, Fast, Step, TimeLimit};
 
@@ -30,45 +29,23 @@ fn record<const N: usize>(steps: usize) -> (Trajectory<f32, N>, Vec<Transition<f
 }
 
 #[test]
-fn acrobots_step_the_same_with_a_trajectory() {
-    let limit = NonZeroU32::new(3).unwrap();
+fn torques_are_recorded_too() {
+    let limit = NonZeroU32::new(2).unwrap();
     let mut acrobot = TimeLimit::new(Acrobot::<Fast>::new(4), limit);
     let mut twin = acrobot.clone();
     let mut trajectory = Trajectory::<f32, 10>::new();
-    for (action, torque) in Action::ALL.into_iter().zip([-2.5, 0.5, 3.0]) {
-        let step = trajectory.step(&mut acrobot, action);
-        assert_eq!(step, twin.step(action));
+    for torque in [-2.5, 0.5, 3.0] {
         let step = trajectory.step_torque(&mut acrobot, torque);
         assert_eq!(step, twin.step_torque(torque));
     }
-    assert_eq!(acrobot, twin);
-    let torques = [-1.0, -2.5, 0.0, 0.5, 1.0, 3.0];
-    assert!(trajectory.iter().map(|row| row.torque).eq(torques));
-    let truncated = [false, false, true, true, true, true];
-    assert!(trajectory.iter().map(|row| row.truncated).eq(truncated));
+    let recorded = trajectory.iter().map(|row| (row.torque, row.truncated));
+    assert!(recorded.eq([(-2.5, false), (0.5, true), (3.0, true)]));
 
     // A torque that is rejected adds no transition and takes no step.
     let error = trajectory.step_torque(&mut acrobot, f32::NAN).unwrap_err();
     assert!(matches!(error, Error::OutOfRange { name: "torque", .. }));
     assert_eq!(acrobot, twin);
-    assert_eq!(trajectory.len(), 6);
-}
-
-#[test]
-fn rows_are_as_long_as_documented() {
-    let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(4));
-    let mut actions = Pcg64::new(4);
-    let (mut rows, mut longest) = (0, 0);
-    for _ in 0..20 {
-        let mut trajectory = Trajectory::<f32, 500>::new();
-        while !trajectory.step(&mut acrobot, Action::sample(&mut actions)).done() {}
-        for row in trajectory.rows() {
-            (rows, longest) = (rows + 1, longest.max(row.to_string().len()));
-        }
-        acrobot.reset();
-    }
-    println!("longest of {rows} rows: {longest} bytes");
-    assert!(rows > 5000 && longest <= 150);
+    assert_eq!(trajectory.len(), 3);
 }
 
 #[test]

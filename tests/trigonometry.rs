@@ -3,8 +3,7 @@
 
 use std::f32::consts::PI;
 
-use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Real};
-use common::{bits, in_every_arithmetic};
+use acrobot::arithmetic::{Arithmetic, Fast, Host, Micro, Portable};
 
 const EVERY: usize = if cfg!(debug_assertions) { 257 } else { 1 };
 
@@ -69,18 +68,6 @@ fn far_angles_have_the_error_of_their_rounding() {
     }
     check::<Fast>(1.2e-7);
     check::<Micro>(2.0e-7);
-}
-
-/// `sin_cos_near`, which a step calls, is bit-identical to `sin_cos` near the origin.
-#[test]
-fn sin_cos_near_equals_sin_cos_near_the_origin() {
-    fn check<A: Arithmetic>() {
-        for x in (-1000..1000).map(|i| A::Scalar::from_f64(f64::from(i).powi(3) / 1908.0)) {
-            let [(sin, cos), (near_sin, near_cos)] = [A::sin_cos(x), A::sin_cos_near(x)];
-            assert_eq!(bits([sin, cos]), bits([near_sin, near_cos]));
-        }
-    }
-    in_every_arithmetic!(check);
 }
 
 /// `Portable`'s error against Gymnasium follows from this property of `libm`.

@@ -6,8 +6,7 @@
     python3 compare.py NAME SECONDS    plays one Python package, which is installed
 
 Each implementation plays a random policy once a round, in its own process: this file in the virtual
-environment of a Python package, or `src/main.rs`. It prints its name, versions, steps and processor
-time. The table has medians.
+environment of a Python package, or `src/main.rs`. The table has medians.
 """
 
 import argparse
@@ -124,9 +123,8 @@ def together(envs, count):
     return run
 
 
-# For each implementation: its name in the table and, for one in Python, a function that makes it
-# and returns a function that plays some steps, and its packages. The first of these is the key of
-# `REQUIREMENTS`.
+# For each implementation: its name in the table and, for one in Python, a function that returns one
+# that plays some steps, and its packages. The first of these is the key of `REQUIREMENTS`.
 GYMNAX = "gymnax and jax on the CPU, 4,096 in `jit`, `vmap` and `scan`"
 MAKE_VEC = "acrobot_rs for Python, `make_vec` of 1,024"
 IMPLEMENTATIONS = {

@@ -7,9 +7,9 @@ use std::hint::black_box;
 use acrobot::Action;
 use acrobot::arithmetic::Real;
 
-/// Gymnasium's order in f64, with `x * x` for its squares. It plays whole episodes of the same
-/// policy as the crate, because the C library's sines branch on the quadrant: with a periodic
-/// torque the CPU predicts the branches, and the loop takes a third less time.
+/// Gymnasium's order in f64, with `x * x` for its squares. It plays whole episodes, because the C
+/// library's sines branch on the quadrant: with a periodic torque the CPU would predict the
+/// branches.
 #[expect(clippy::disallowed_methods, reason = "the yardstick uses the platform's sines")]
 pub fn bare_f64(actions: &[Action]) {
     use std::f64::consts::{FRAC_PI_2, PI, TAU};

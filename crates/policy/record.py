@@ -5,8 +5,7 @@ reads.
     python record.py
 
 Each byte has four actions, the first in its lowest bits. 3 stands for a tie, two scores that differ
-by less than 1e-4. The observations are those of the acrobot with child 0 of seed 1 under random
-actions with seed 1, so that firmware computes them again.
+by less than 1e-4. The observations are those of child 0 of seed 1 under random actions with seed 1.
 """
 
 import struct

@@ -4,9 +4,9 @@ evaluates this project's learner.
     pip install stable-baselines3 sb3-contrib ../../bindings/python
     python race.py qrdqn 0 1 2    # an agent of AGENTS, and seeds
 
-Prints for each seed the mean return of 1,000 greedy episodes from fresh initial states, those that
-missed the goal, the seconds of one core, and the seconds until a greedy evaluation during the
-training passed -100, -80 and -70. Evaluations do not count as time.
+Prints for each seed the mean return of 1,000 greedy episodes, those that missed the goal, the
+seconds of one core, and the seconds until a greedy evaluation passed -100, -80 and -70. Evaluations
+do not count as time.
 """
 
 import sys

@@ -4,10 +4,9 @@
     python certificate.py           # ten minutes
     python certificate.py attack    # tries to refute certificate.rs with ten million states
 
-The program finds the coefficients with the most progress between the initial states and the target,
-so that no step from sampled states makes more than 1. Where hill climbing finds states with longer
-steps, they join the sample, until none is longer than 1.01. bound.rs proves a little less for all
-states.
+A linear program finds the coefficients with the most progress between the initial states and the
+target, so that no step from sampled states makes more than 1. Where hill climbing finds states with
+longer steps, they join the sample, until none is longer than 1.01.
 """
 
 import itertools

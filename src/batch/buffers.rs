@@ -14,8 +14,8 @@ pub struct StepBuffers<'a> {
     pub truncated: &'a mut [bool],
     /// The [observations](crate::Observation) of the new states. With `None` they are not computed.
     pub observations: Option<&'a mut [[f32; 6]]>,
-    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the
-    /// episodes that this step ended. Elements of other acrobots are not written.
+    /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of episodes
+    /// that this step ended. Others are not written.
     pub final_observations: Option<&'a mut [[f32; 6]]>,
 }
 
@@ -71,8 +71,8 @@ impl<'a> StepBuffers<'a> {
     }
 }
 
-/// Splits off the first `n` elements of a slice, or all if there are fewer. Not `chunks`, which
-/// divides by `n`: some compilers keep the panic of a division by zero.
+/// Splits off the first `n` elements of a slice, or all if there are fewer. Not `chunks`: some
+/// compilers keep the panic of its division by `n`.
 #[inline(always)]
 pub(super) fn take<'a, T>(rest: &mut &'a [T], n: usize) -> &'a [T] {
     let first = rest.split_off(..n);

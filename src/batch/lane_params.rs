@@ -5,8 +5,7 @@ use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real};
 use crate::physics::{Dynamics, Model, Params, default_model, model};
 
-/// The memory for the parameters of `N` acrobots, where each has its own. The default is
-/// [`Params::DEFAULT`] for all.
+/// The memory for the parameters of `N` acrobots, where each has its own.
 ///
 /// ```
 /// use acrobot::Fast;

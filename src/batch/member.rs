@@ -9,8 +9,8 @@ use crate::error::Error;
 use crate::numpy::Pcg64;
 use crate::physics::{Params, State, check_params};
 
-/// One acrobot of a batch, as plain data. With the `serde` feature it can be stored, without a
-/// version; a [whole batch](Batch#snapshots) has one.
+/// One acrobot of a batch, as plain data. Unlike a [whole batch](Batch#snapshots), it is stored
+/// without a version.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -58,14 +58,14 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         })
     }
 
-    /// Replaces acrobot `index` by `member`, which continues bit-identically if the settings are
-    /// the same. A pending reset is settled as in [`set_autoreset`](Self::set_autoreset).
+    /// Replaces acrobot `index` by `member`. A pending reset is settled as in
+    /// [`set_autoreset`](Self::set_autoreset).
     ///
     /// # Errors
     ///
-    /// [`Error::NoSuchIndex`], [`Error::OutOfRange`] for a state with a number that is not finite,
-    /// those of [`Params::validate`], and [`Error::SharedParams`] for parameters other than those
-    /// that all acrobots of this batch share.
+    /// Those of [`set_state`](Self::set_state) and [`set_params`](Self::set_params), and
+    /// [`Error::SharedParams`] for parameters other than those that all acrobots of this batch
+    /// share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
         check_params::<A>(&member.params)?;
         member.state.validate()?;

@@ -15,16 +15,14 @@ pub enum Autoreset {
     /// of 0.
     #[default]
     NextStep,
-    /// In the step that ends the episode. It returns the initial observation of the next episode,
-    /// and the last one of the ended episode in
-    /// [`final_observations`](super::StepBuffers::final_observations).
+    /// In the step that ends the episode. It returns the initial observation of the next one, and
+    /// the last of the ended one in [`final_observations`](super::StepBuffers::final_observations).
     SameStep,
-    /// Never. Acrobots continue after the end of an episode until a reset, for example by
-    /// [`Batch::reset_masked`](super::Batch::reset_masked).
+    /// Never: until [`Batch::reset_masked`](super::Batch::reset_masked) or another reset acrobots
+    /// step on.
     Disabled,
 }
 
-/// Which parameters the acrobots have.
 #[derive(Clone, Debug)]
 pub(super) enum Parameters<A: Arithmetic> {
     /// All have those of this model.
@@ -33,7 +31,6 @@ pub(super) enum Parameters<A: Arithmetic> {
     Own(Option<ParamsRange<A::Scalar>>),
 }
 
-/// What all acrobots of a batch share.
 #[derive(Clone, Debug)]
 pub(super) struct Settings<A: Arithmetic> {
     pub(super) parameters: Parameters<A>,

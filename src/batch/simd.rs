@@ -6,8 +6,7 @@ use crate::arithmetic::Arithmetic;
 /// The SIMD instructions that a step of a [`Batch`](super::Batch) uses. They change no bit.
 ///
 /// With the `std` feature on x86-64 a batch takes the widest that the machine has. Elsewhere there
-/// is only the baseline, such as WASM's simd128 or NEON. To compare their speed, call
-/// [`Batch::set_simd_level`](super::Batch::set_simd_level).
+/// is only the baseline, such as WASM's simd128 or NEON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]

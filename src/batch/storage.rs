@@ -20,8 +20,7 @@ use crate::numpy::Pcg64;
 /// assert_eq!(Batch::<Fast, _>::new(42, shared)?.len(), 50);
 ///
 /// let own = ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50], [LaneParams::default(); 4]);
-/// let mut batch = Batch::<Fast, _>::new(42, own)?;
-/// batch.set_params_of(49, Params { mass1: 1.2, ..Params::DEFAULT })?;
+/// Batch::<Fast, _>::new(42, own)?.set_params_of(49, Params::DEFAULT)?;
 /// # Ok::<(), acrobot::Error>(())
 /// ```
 pub trait Storage<A: Arithmetic, const N: usize>: SealedStorage<A, N> {}

@@ -18,11 +18,10 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 /// A [`Batch`] in `Vec`s, with the memory for the results of its steps.
 ///
 /// It has all methods of [`Batch`], except that its steps return their results, and its resets the
-/// observations. On a core without SIMD, an `N` of 1 takes less memory than 16.
+/// observations.
 ///
-/// A [`Batch`] of another length may replace the one inside, for example by [`core::mem::swap`].
-/// The next results need new memory: without it a step returns [`Error::OutOfMemory`], and the
-/// observations are empty.
+/// A [`Batch`] of another length may replace the one inside. The next results need new memory:
+/// without it a step returns [`Error::OutOfMemory`], and the observations are empty.
 ///
 /// ```
 /// use acrobot::Fast;
@@ -152,8 +151,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         self.step_by(|batch, buffers| batch.step(inputs, buffers))
     }
 
-    /// As [`step`](Self::step), with its errors, on all cores with rayon. The number of threads
-    /// changes no bit.
+    /// As [`step`](Self::step), with its errors, on all cores: see [`Batch::par_step`].
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
         self.step_by(|batch, buffers| batch.par_step(inputs, buffers))

@@ -23,9 +23,8 @@ pub(super) struct Work<'a, A: Arithmetic, const N: usize> {
 
 impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
     /// Whether acrobots share their parameters is decided once, and not for each block, which would
-    /// be 3 to 6 % slower: the compiler then sees that all lanes have the same constants. `HIDE`
-    /// hides the model, which is then in memory: with AVX-512 the compiler would hold it in
-    /// registers and spill the state, 16 % slower.
+    /// be 3 to 6 % slower. `HIDE` keeps the model in memory: with AVX-512 the compiler would hold
+    /// it in registers and spill the state, 16 % slower.
     #[inline(always)]
     pub(super) fn step<const HIDE: bool>(self) {
         let Self { settings, blocks, mut generators, lane_params, mut inputs, mut buffers } = self;

@@ -24,8 +24,8 @@ pub trait ObservationKind:
     /// The observation of an acrobot's state.
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self;
 
-    /// The space of these observations. Its velocity bounds are those of `params`, but at least
-    /// 0.1 rad/s, so that it contains Gymnasium's initial states.
+    /// The space of these observations. Its velocity bounds are those of `params`, but at least 0.1
+    /// rad/s, for the initial states.
     fn space(params: &Params<f32>) -> BoxSpace<Self>;
 }
 
@@ -137,32 +137,26 @@ impl<A: Arithmetic, O: ObservationKind> Env for AcrobotEnv<A, O> {
 /// An acrobot in any arithmetic, to change it through a [`DynEnv`](super::DynEnv).
 ///
 /// ```
-/// use acrobot::env::{DynAcrobot, Env, Error, make};
-/// use acrobot::{Params, State};
-///
-/// fn hang_still(acrobot: &mut dyn DynAcrobot) -> Result<(), Error> {
-///     acrobot.set_params(Params { torque_noise: 0.0, ..acrobot.params() })?;
-///     Ok(acrobot.set_state(State::default())?)
-/// }
+/// use acrobot::Params;
+/// use acrobot::env::{Env, Error, make};
 ///
 /// let mut env = make("Acrobot-v1")?;
-/// hang_still(env.unwrapped_mut())?;
-/// assert_eq!(env.unwrapped().state(), State::default());
+/// let acrobot = env.unwrapped_mut();
+/// acrobot.set_params(Params { torque_noise: 0.1, ..acrobot.params() })?;
 /// # Ok::<(), Error>(())
 /// ```
 pub trait DynAcrobot {
     /// The state, converted to `f64` exactly.
     fn state(&self) -> State;
 
-    /// [`Acrobot::set_state`] with the state rounded to the arithmetic's scalar, and its errors,
-    /// for the state as given and as rounded.
+    /// [`Acrobot::set_state`] with the state rounded to the scalar, and its errors, for the state
+    /// as given and as rounded.
     fn set_state(&mut self, state: State) -> Result<(), Rejected>;
 
     /// The parameters, converted to `f64` exactly.
     fn params(&self) -> Params;
 
-    /// [`Acrobot::set_params`] with the parameters rounded to the arithmetic's scalar, and its
-    /// errors, for the parameters as given and as rounded.
+    /// As [`set_state`](Self::set_state), by [`Acrobot::set_params`].
     fn set_params(&mut self, params: Params) -> Result<(), Rejected>;
 
     /// The figure to draw.

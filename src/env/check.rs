@@ -89,7 +89,7 @@ where
     let again = play(&mut otherwise_seeded, Some(seed), &actions)?;
     same(SEED, &first, &again)?;
 
-    // Both ended the same episode and continue the same stream.
+    // Both continue the same stream.
     let next = play(&mut played, None, &actions)?;
     same(SEED, &next, &play(&mut otherwise_seeded, None, &actions)?)?;
     let truncated = |episode: &Episode<_>| episode.steps.last().is_some_and(|step| step.truncated);

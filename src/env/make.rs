@@ -35,7 +35,7 @@ pub enum ArithmeticKind {
     Micro,
 }
 
-/// The options of an environment. The default is Gymnasium's `make(id)`.
+/// The options of an environment.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// What `render` returns.
@@ -47,18 +47,6 @@ pub struct Options {
 }
 
 /// The environment that [`make`] returns, of either version and in any arithmetic.
-///
-/// ```
-/// use acrobot::env::{DynEnv, DynObservation, Env, make};
-///
-/// fn first(env: &mut DynEnv) -> DynObservation {
-///     env.reset_with_seed(42).0
-/// }
-///
-/// assert!(matches!(first(&mut *make("Acrobot-v0")?), DynObservation::V0(_)));
-/// assert_eq!(first(&mut *make("Acrobot-v1")?).as_slice().len(), 6);
-/// # Ok::<(), acrobot::env::Error>(())
-/// ```
 pub type DynEnv = dyn Env<
         Observation = DynObservation,
         Action = Action,
@@ -79,11 +67,8 @@ pub fn acrobot_v1<A: Arithmetic>(
     Ok(TimeLimit::v1(env))
 }
 
-/// `Acrobot-v0`: observations with the angles, and 200 steps.
-///
-/// # Errors
-///
-/// [`Error::Invalid`] for invalid parameters.
+/// `Acrobot-v0`: observations with the angles, and 200 steps. Its errors are those of
+/// [`acrobot_v1`].
 pub fn acrobot_v0<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, Observation<4>>>, Error> {
@@ -97,7 +82,7 @@ impl fmt::Debug for DynEnv {
     }
 }
 
-/// Gymnasium's `make(id)`: `"Acrobot-v1"` or `"Acrobot-v0"`. It has seed 0 until it is seeded.
+/// Gymnasium's `make(id)`: `"Acrobot-v1"` or `"Acrobot-v0"`, with seed 0.
 ///
 /// # Errors
 ///

@@ -41,9 +41,9 @@ impl Display {
     /// A display that passes each frame to `show`. Clones share `show`: while one shows a frame,
     /// other threads wait.
     ///
-    /// If `show` uses its display itself, resets and steps are not shown, and
-    /// [`render`](super::Env::render) returns [`Error::DisplayBusy`]. `show` must not wait for
-    /// another thread that uses this display: both would wait forever.
+    /// If `show` uses its display itself, [`render`](super::Env::render) returns
+    /// [`Error::DisplayBusy`]. `show` must not wait for another thread that uses this display: both
+    /// would wait forever.
     pub fn new(show: impl FnMut(&Frame) + Send + 'static) -> Self {
         Self(Arc::new(Shared { thread: Mutex::new(None), show: Mutex::new(show) }))
     }
@@ -88,7 +88,7 @@ pub enum RenderMode {
 }
 
 impl RenderMode {
-    /// Shows the acrobot if the mode is `Human`, as Gymnasium does in each reset and each step.
+    /// Shows the acrobot if the mode is `Human`.
     pub(super) fn show<A: Arithmetic>(&self, acrobot: &Acrobot<A>) {
         if let Self::Human(display) = self {
             // A reset or a step by the display's own function is not shown.

@@ -9,8 +9,7 @@ use crate::numpy::{integers, uniform};
 
 /// A set that can test for an element and draw random ones.
 ///
-/// A space has no generator. Gymnasium's `action_space.seed(s)` is
-/// [`Pcg64::new(s)`](crate::numpy::Pcg64::new) here.
+/// A space has no generator: Gymnasium's `action_space.seed(s)` is a new `Pcg64`.
 pub trait Space {
     /// The type of its elements.
     type Element;
@@ -18,8 +17,8 @@ pub trait Space {
     /// Whether `element` is in it.
     fn contains(&self, element: &Self::Element) -> bool;
 
-    /// Draws a random element: Gymnasium's `sample()`, if `rng` is a `Pcg64` with the seed of its
-    /// space.
+    /// Draws a random element: Gymnasium's `sample()`, if `rng` is a
+    /// [`Pcg64`](crate::numpy::Pcg64).
     fn sample<R: Rng + ?Sized>(&self, rng: &mut R) -> Self::Element;
 }
 

@@ -11,7 +11,7 @@ use crate::acrobot::Step;
 use crate::reset_options::ResetOptions;
 
 /// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode reports its statistics in
-/// [`Info`]. Those of the last 100 episodes are kept.
+/// [`Info`].
 ///
 /// ```
 /// use acrobot::env::{Env, EpisodeStatistics, RecordEpisodeStatistics, acrobot_v1};
@@ -57,8 +57,7 @@ impl<E> RecordEpisodeStatistics<E> {
         self.episodes.iter()
     }
 
-    /// The mean return of these episodes, to compare with
-    /// [`REWARD_THRESHOLD`](crate::REWARD_THRESHOLD). `None` before the first has ended.
+    /// The mean return of these episodes. `None` before the first has ended.
     #[must_use]
     pub fn mean_return(&self) -> Option<f32> {
         let sum: f32 = self.episodes().map(|episode| episode.episode_return).sum();

@@ -5,8 +5,8 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::real::Real;
 
-/// One number, or many side by side. The code of a step is generic over this, so it is written
-/// once. The crate implements it for `f32`, for `f64` and for their lanes in a batch.
+/// One number, or many side by side: the crate implements it for `f32`, for `f64` and for their
+/// lanes in a batch.
 pub trait Numbers<S: Real>:
     Copy
     + fmt::Debug

@@ -3,7 +3,7 @@
 use core::fmt;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A scalar that the physics can be computed in: `f32` or `f64`.
+/// A scalar: `f32` or `f64`.
 ///
 /// It has only operations that IEEE 754 rounds correctly, and no fused multiply-add, so results are
 /// the same on every machine.

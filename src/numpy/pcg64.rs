@@ -9,17 +9,14 @@ use super::seed_sequence::SeedSequence;
 
 /// NumPy's `PCG64`, the generator of every Gymnasium environment and space: PCG XSL-RR 128/64 (M.
 /// E. O'Neill, *PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for
-/// Random Number Generation*, 2014), seeded through a [`SeedSequence`]. Like NumPy, it takes two
-/// 32-bit draws from one 64-bit draw.
+/// Random Number Generation*, 2014). Like NumPy, it takes two 32-bit draws from one 64-bit draw.
 ///
-/// It is not `Copy`, so that no stream is drawn from twice by accident. Two generators are equal if
-/// all their draws are equal. With the `serde` feature it can be stored: as the hash of the seed
-/// and the position, so any values make a valid generator.
+/// It is not `Copy`, so that no stream is drawn from twice by accident. With the `serde` feature it
+/// is stored as the hash of the seed and the position, so any values make a valid generator.
 #[derive(Clone)]
 pub struct Pcg64(Stream);
 
-/// `rand_pcg` cannot seed a generator in a `const`, so the first draw does. The enum takes no extra
-/// memory: its tag fits into that of `half`.
+/// `rand_pcg` cannot seed a generator in a `const`, so the first draw does.
 #[derive(Clone)]
 enum Stream {
     /// The hash of the seed.
@@ -47,7 +44,7 @@ impl Pcg64 {
         Self::from_hash(SeedSequence::new(seed).generate_state())
     }
 
-    /// The generator of a seed with this hash. Any hash makes a valid generator.
+    /// The generator of a seed with this hash.
     const fn from_hash(hash: [u64; 4]) -> Self {
         Self(Stream::Seeded(hash))
     }

@@ -9,8 +9,8 @@ use crate::error::Error;
 
 /// A hashed seed: NumPy's `SeedSequence` of any non-negative integer, and its children.
 ///
-/// It keeps the hashed seed: at most 48 bytes, however large the seed. It is not `Copy`, so that
-/// two copies do not spawn the same children by accident.
+/// It has 48 bytes, however large the seed. It is not `Copy`, so that two copies do not spawn the
+/// same children by accident.
 ///
 /// ```
 /// use acrobot::numpy::SeedSequence;
@@ -28,8 +28,7 @@ pub struct SeedSequence {
     pool: [u32; 4],
     /// The multiplier of the next `hash`, which changes it.
     hash_multiplier: u32,
-    /// The number of children spawned. It cannot overflow in practice: one call spawns fewer than
-    /// 2⁶⁴.
+    /// The number of children spawned.
     spawned: u128,
 }
 
@@ -43,8 +42,7 @@ impl SeedSequence {
         Self::from_words(&[seed as u32, (seed >> 32) as u32])
     }
 
-    /// The sequence of the integer with these 32-bit digits, the lowest first. An empty slice is
-    /// the integer 0.
+    /// The sequence of the integer with these 32-bit digits, the lowest first.
     #[must_use]
     #[expect(clippy::indexing_slicing, reason = "the pool has 4 words")]
     #[inline(never)] // saves flash, as does `hash`, which it calls sixteen times

@@ -12,12 +12,11 @@ use crate::math::{Numbers, Real};
 /// The numbers that an acrobot computes with: a scalar, its sines and the form of the equations.
 /// They determine every bit of a result.
 ///
-/// [`Fast`](crate::Fast), [`Portable`](crate::Portable) and [others](crate::arithmetic#structs)
-/// implement it. Implement it [for a hardware sine unit](crate::arithmetic).
+/// [These types](crate::arithmetic#structs) implement it. Implement it [for a hardware sine
+/// unit](crate::arithmetic).
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
-    /// A short name in lower case. Snapshots hold it, so no other arithmetic can load them. With
-    /// more than 16 bytes, code that saves or loads a snapshot does not compile. The crate's names
-    /// are "reference", "portable", "fast", "micro" and "host".
+    /// A short name in lower case, such as "fast". Snapshots hold it, so no other arithmetic can
+    /// load them. With more than 16 bytes, code that saves or loads a snapshot does not compile.
     const NAME: &'static str;
 
     /// The type of angles, velocities, torques and parameters.
@@ -34,8 +33,7 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     fn sin_cos(x: Self::Scalar) -> (Self::Scalar, Self::Scalar);
 
     /// Sines and cosines of one angle or of many, bit-identical to [`sin_cos`](Self::sin_cos) for
-    /// |x| ≤ 2¹⁹ rad. Beyond, any result is valid, even NaN. Steps call it for speed: it can leave out
-    /// range checks, and compute many angles with SIMD.
+    /// |x| ≤ 2¹⁹ rad. Beyond, any result is valid, even NaN. Steps call it for speed.
     #[inline(always)]
     fn sin_cos_near<V: Numbers<Self::Scalar>>(x: V) -> (V, V) {
         x.zip3(x, x, |x, _, _| Self::sin_cos(x))

@@ -1,9 +1,8 @@
 //! What a controller needs of the model: linearization, inverse dynamics, velocities and a
 //! linear-quadratic regulator.
 //!
-//! A result is finite, or a [`ControlError`] that names what overflows with extreme parameters. All
-//! functions work in `f32` and `f64`, and with both [`Dynamics`](super::Dynamics). The guide holds
-//! the acrobot upright with [a regulator](crate::guide::control).
+//! A result is finite, or a [`ControlError`] that names what overflows with extreme parameters. The
+//! guide holds the acrobot upright with [a regulator](crate::guide::control).
 
 mod deviation;
 mod discretize;

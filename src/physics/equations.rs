@@ -31,7 +31,7 @@ pub(super) fn wrap<A: Arithmetic, V: Numbers<A::Scalar>>(x: V) -> V {
     }
 }
 
-/// Whether −cos θ1 − cos(θ1 + θ2) > 1: Gymnasium's goal, whatever the lengths of the links.
+/// Whether −cos θ1 − cos(θ1 + θ2) > 1, whatever the lengths of the links.
 #[inline(always)]
 pub(super) fn reaches_goal<A: Arithmetic, V: Numbers<A::Scalar>>(
     angles: [V; 2],

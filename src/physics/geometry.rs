@@ -18,7 +18,7 @@ where
     [elbow, tip]
 }
 
-/// Sines and cosines of θ1 and θ1 + θ2, the angles of both links from hanging down.
+/// Sines and cosines of θ1 and θ1 + θ2.
 #[inline(always)]
 pub(crate) fn directions<V>([(sin1, cos1), (sin2, cos2)]: [SinCos<V>; 2]) -> [SinCos<V>; 2]
 where

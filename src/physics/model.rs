@@ -7,11 +7,9 @@ use crate::math::Real;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Form {
-    /// Solved by Cramer's rule, with one division: for arithmetics that need not have Gymnasium's
-    /// bits.
+    /// Solved by Cramer's rule, with one division.
     Lean,
-    /// As Gymnasium's source has them: four divisions and four trigonometric calls for each
-    /// evaluation.
+    /// As Gymnasium's source has them, with four divisions.
     Gymnasium,
 }
 
@@ -89,8 +87,7 @@ impl<S: Modeled> Params<S> {
     /// The parameters of Gymnasium's `Acrobot-v1`, each rounded to the scalar.
     pub const DEFAULT: Self = S::LEAN[0].params;
 
-    /// The parameters of dm_control's acrobot: capsules of 1 kg, damping of 0.05 N m s/rad, a step
-    /// of 0.01 s and torques of ±2 N m. Its velocities have no bounds.
+    /// The parameters of dm_control's acrobot, whose velocities have no bounds.
     pub const SWINGUP: Self = S::LEAN[1].params;
 }
 

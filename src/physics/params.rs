@@ -15,8 +15,8 @@ pub enum Dynamics {
     /// pendulum.
     #[default]
     Book,
-    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996). The
-    /// centrifugal term in θ̇1² of the second joint is missing, so energy is not conserved.
+    /// Those printed in Sutton, *Generalization in Reinforcement Learning* (NIPS 8, 1996), without
+    /// the centrifugal term in θ̇1² of the second joint. Energy is not conserved.
     Nips,
 }
 

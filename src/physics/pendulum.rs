@@ -14,8 +14,7 @@ use crate::math::{Real, SinCos};
 /// A double pendulum with a motor between its links.
 ///
 /// `A` is the [arithmetic](crate::arithmetic), which determines every bit.
-/// [`hanging`](Self::hanging) and [`Params::pendulum`](Params#method.pendulum) make a pendulum in a
-/// `const` or a `static`.
+/// [`Params::pendulum`](Params#method.pendulum) makes one in a `const`.
 ///
 /// ```
 /// use acrobot::Portable;
@@ -118,7 +117,7 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a number that is not finite.
+    /// Those of [`State::validate`].
     pub fn set_state(&mut self, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
         self.set_state_unchecked(state);
@@ -152,8 +151,7 @@ impl<A: Arithmetic> Pendulum<A> {
     ///
     /// # Errors
     ///
-    /// Those of [`Params::validate`], and [`Error::OutOfRange`] for friction in an arithmetic
-    /// [without it](Arithmetic::HAS_FRICTION).
+    /// Those of [`new`](Self::new).
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
         check_params::<A>(&params)?;
         self.model = model::<A>(params);
@@ -200,8 +198,7 @@ impl<A: Arithmetic> Pendulum<A> {
         equations::derivative::<A, A::Scalar>(&self.model, self.y, Some(self.sin_cos()), torque)
     }
 
-    /// The mechanical energy, J. The potential energy is 0 at the height of the fixed joint, so the
-    /// least energy is that of hanging at rest.
+    /// The mechanical energy, J. The potential energy is 0 at the height of the fixed joint.
     ///
     /// Without torque and friction, `Dynamics::Book` conserves it and `Dynamics::Nips` does not.
     /// Extreme velocities or parameters can make it infinite or NaN.

@@ -44,7 +44,7 @@ fn classical<A: Arithmetic, V: Numbers<A::Scalar>>(
 }
 
 /// Adds each stage to the result at once, so few numbers are alive. The loop inlines the derivative
-/// only once, which saves flash.
+/// once.
 #[inline(always)]
 fn compact<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,

@@ -9,7 +9,7 @@ use crate::numpy::uniform;
 /// The state of an acrobot: two angles and their velocities.
 ///
 /// After a step the angles are within \[−π, π\] and the velocities within their bounds. Before, a
-/// state may be outside, as in Gymnasium. The default is hanging at rest.
+/// state may be outside.
 ///
 /// ```
 /// use acrobot::State;
@@ -99,8 +99,7 @@ for_f32_and_f64! {
     }
 }
 
-/// The bounds between which a reset draws each number of an initial state, rad and rad/s. Both are
-/// finite in `f32`, because initial states are `f32`.
+/// The bounds between which a reset draws each number of an initial state, rad and rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ResetBounds {
@@ -116,8 +115,7 @@ impl ResetBounds {
     pub(crate) const ANYWHERE: Self =
         Self { low: -core::f64::consts::PI, high: core::f64::consts::PI };
 
-    /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state. Beyond ±π
-    /// and the velocity bounds, the first step wraps the angles and bounds the velocities.
+    /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state.
     ///
     /// # Errors
     ///

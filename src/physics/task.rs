@@ -14,8 +14,7 @@ pub enum Task {
     /// Gymnasium's `Acrobot-v1`: swing the tip above a height.
     Acrobot,
     /// dm_control's `acrobot-swingup`: swing up from anywhere and stay up. The reward is 1 up to
-    /// 0.2 m from the target, 2 m above the fixed joint, and falls to 0.1 at 1.2 m. No state ends
-    /// an episode.
+    /// 0.2 m from the target, 2 m above the fixed joint, and falls to 0.1 at 1.2 m.
     Swingup,
     /// dm_control's `acrobot-swingup_sparse`: as `Swingup`, with a reward of 0 beyond 0.2 m.
     SwingupSparse,

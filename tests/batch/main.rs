@@ -1,6 +1,6 @@
 //! Promise 2 for batches: acrobot `i` is bit-identical to an `Acrobot` seeded with the seed's
-//! `i`-th child, with shared parameters and with its own. `cargo test -p properties` tries more
-//! widths, and calls in any order.
+//! `i`-th child, with shared parameters and with its own. `cargo test -p properties` tries calls in
+//! any order.
 
 mod slices;
 mod snapshots;

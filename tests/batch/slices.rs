@@ -6,6 +6,7 @@ use acrobot::batch::{Autoreset, Batch, Block, Member, SimdLevel, StepBuffers};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::{Dynamics, ResetBounds};
 use acrobot::{Fast, Params, ResetOptions, State};
+use common::twins::{LEVELS, MODES};
 
 type Small = Batch<Fast, ([Block; 1], [Pcg64; 3])>;
 
@@ -27,7 +28,7 @@ fn settings_are_returned_as_set() {
     let params = Params { dt: 0.1, ..Params::DEFAULT };
     batch.set_params(params).unwrap();
     assert_eq!(batch.params_of(0), Some(params));
-    for level in [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512] {
+    for level in LEVELS {
         batch.set_simd_level(level);
         assert_eq!(batch.simd_level(), level);
     }
@@ -36,7 +37,7 @@ fn settings_are_returned_as_set() {
     assert_eq!(batch.reset_bounds(), bounds);
     batch.set_limit(NonZeroU32::MIN);
     assert_eq!(batch.limit(), NonZeroU32::MIN);
-    for autoreset in [Autoreset::SameStep, Autoreset::Disabled, Autoreset::NextStep] {
+    for autoreset in MODES {
         batch.set_autoreset(autoreset);
         assert_eq!(batch.autoreset(), autoreset);
     }
@@ -162,24 +163,13 @@ fn rejected_changes_change_nothing() {
 }
 
 #[test]
-fn simd_levels_are_available_if_the_machine_has_them() {
+fn the_widest_simd_level_is_the_last_that_the_machine_has() {
     #[cfg(target_arch = "x86_64")]
-    let (avx2, avx512) = (
-        is_x86_feature_detected!("avx2"),
-        is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512bw")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl"),
-    );
-    #[cfg(not(target_arch = "x86_64"))]
-    let (avx2, avx512) = (false, false);
-    assert!(SimdLevel::Baseline.is_available());
-    assert_eq!(SimdLevel::Avx2.is_available(), avx2);
-    assert_eq!(SimdLevel::Avx512.is_available(), avx512);
-    let widest = match (avx512, avx2) {
-        (true, _) => SimdLevel::Avx512,
-        (_, true) => SimdLevel::Avx2,
-        _ => SimdLevel::Baseline,
-    };
-    assert_eq!(SimdLevel::widest(), widest);
+    {
+        assert_eq!(SimdLevel::Avx2.is_available(), is_x86_feature_detected!("avx2"));
+        // A machine that has this part of AVX-512 has the others.
+        assert_eq!(SimdLevel::Avx512.is_available(), is_x86_feature_detected!("avx512f"));
+    }
+    let widest = LEVELS.into_iter().rfind(|level| level.is_available());
+    assert_eq!(widest, Some(SimdLevel::widest()));
 }

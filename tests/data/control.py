@@ -1,12 +1,10 @@
-"""Differentiates the equations of motion automatically and solves Riccati equations: writes
+"""Differentiates the equations of motion and solves Riccati equations, in 200 digits: writes
 control.txt to its folder.
 
-The equations are those that truth.py integrates, for any parameters, and autograd differentiates
-them and a Runge-Kutta step of them. The torques are Lagrange's equations from positions and
-energies alone, and the forces Newton's law from the second derivatives of positions in time.
-
-The gains solve the Riccati equation in 200 digits. SciPy's solve_discrete_are finds the same, with
-an error of up to 3e-6.
+The equations are those of truth.py, also in a Runge-Kutta step. The torques are Lagrange's
+equations from positions and energies alone, and the forces Newton's law from the second derivatives
+of positions in time. SciPy's solve_discrete_are finds the same solutions of the Riccati equation,
+with an error of up to 3e-6.
 """
 
 import os
@@ -19,9 +17,8 @@ os.environ["OPENBLAS_CORETYPE"] = "Haswell"
 if "avx512f" in Path("/proc/cpuinfo").read_text():
     os.environ["NPY_DISABLE_CPU_FEATURES"] = "X86_V4 AVX512_ICL AVX512_SPR"
 
-import autograd.numpy as np
 import mpmath
-from autograd import grad, jacobian
+import numpy as np
 from scipy.linalg import solve_discrete_are
 
 NAMES = "length1 length2 mass1 mass2 center_of_mass1 center_of_mass2 inertia1 inertia2"
@@ -29,75 +26,64 @@ NAMES += " gravity dt friction1 friction2"
 LOW = [0.3, 0.3, 0.3, 0.3, 0.0, 0.0, 0.1, 0.1, -15.0, 0.002]
 HIGH = [2.0, 2.0, 3.0, 3.0, 1.0, 1.0, 2.0, 2.0, 15.0, 0.2]
 NONE = [0.0, 0.0]
-PACKAGES = "autograd", "mpmath", "numpy", "scipy"
+PACKAGES = "mpmath", "numpy", "scipy"
 DEFAULT = [1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 1.0, 1.0, 9.8, 0.2, *NONE]
 STATES = np.array([3.2, 3.2, 6.0, 8.0])
 
 
-class Digits:
-    """What the equations need of mathematics, in 200 digits."""
-
-    sin, cos = mpmath.sin, mpmath.cos
-
-    @staticmethod
-    def solve(matrix, vector):
-        ((a, b), (c, d)), (x, y) = matrix, vector
-        return np.array([d * x - b * y, a * y - c * x]) / (a * d - b * c)
-
-
-class Floats:
-    sin, cos, solve = np.sin, np.cos, np.linalg.solve
-
-
-def terms(p, y, dynamics, math):
-    """The mass matrix, and the torques that accelerations of 0 need."""
+def derivative(p, y, torque, dynamics):
     theta1, theta2, dtheta1, dtheta2 = y
-    l1, _, m1, m2, lc1, lc2, i1, i2, g, *_ = p
-    sin2, arm = math.sin(theta2), m2 * l1 * lc2
-    d1 = m1 * lc1**2 + m2 * (l1**2 + lc2**2) + 2 * arm * math.cos(theta2) + i1 + i2
-    d2 = m2 * lc2**2 + arm * math.cos(theta2) + i2
-    phi2 = m2 * lc2 * g * math.sin(theta1 + theta2)
+    l1, _, m1, m2, lc1, lc2, i1, i2, g, _, friction1, friction2 = p
+    sin2, arm = mpmath.sin(theta2), m2 * l1 * lc2
+    d1 = m1 * lc1**2 + m2 * (l1**2 + lc2**2) + 2 * arm * mpmath.cos(theta2) + i1 + i2
+    d2 = m2 * lc2**2 + arm * mpmath.cos(theta2) + i2
+    phi2 = m2 * lc2 * g * mpmath.sin(theta1 + theta2)
     phi1 = -arm * dtheta2**2 * sin2 - 2 * arm * dtheta2 * dtheta1 * sin2
-    phi1 = phi1 + (m1 * lc1 + m2 * l1) * g * math.sin(theta1) + phi2
-    centrifugal = arm * dtheta1**2 * sin2 if dynamics == "book" else 0.0
-    return np.array([[d1, d2], [d2, m2 * lc2**2 + i2]]), phi1, centrifugal, phi2
+    phi1 += (m1 * lc1 + m2 * l1) * g * mpmath.sin(theta1) + phi2
+    centrifugal = arm * dtheta1**2 * sin2 if dynamics == "book" else 0
+    mass = mpmath.matrix([[d1, d2], [d2, m2 * lc2**2 + i2]])
+    forces = [-phi1 - friction1 * dtheta1, torque - centrifugal - phi2 - friction2 * dtheta2]
+    return np.array([dtheta1, dtheta2, *mpmath.lu_solve(mass, forces)])
 
 
-def derivative(p, y, torque, dynamics, math=Floats):
-    theta1, theta2, dtheta1, dtheta2 = y
-    mass, phi1, centrifugal, phi2 = terms(p, (theta1, theta2, dtheta1, dtheta2), dynamics, math)
-    forces = [-phi1 - p[10] * dtheta1, torque - centrifugal - phi2 - p[11] * dtheta2]
-    rates = math.solve(mass, np.array(forces))
-    return np.array([dtheta1, dtheta2, rates[0], rates[1]])
-
-
-def step(p, y, torque, dynamics, math=Floats):
+def step(p, y, torque, dynamics):
     dt = p[9]
-    k1 = derivative(p, y, torque, dynamics, math)
-    k2 = derivative(p, y + dt / 2 * k1, torque, dynamics, math)
-    k3 = derivative(p, y + dt / 2 * k2, torque, dynamics, math)
-    k4 = derivative(p, y + dt * k3, torque, dynamics, math)
+    k1 = derivative(p, y, torque, dynamics)
+    k2 = derivative(p, y + dt / 2 * k1, torque, dynamics)
+    k3 = derivative(p, y + dt / 2 * k2, torque, dynamics)
+    k4 = derivative(p, y + dt * k3, torque, dynamics)
     return y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+
+
+def slope(f):
+    """The derivative of f at 0. Three of them, nested, lose 120 of the 200 digits."""
+    h = mpmath.mpf(10) ** -40
+    return (f(h) - f(-h)) / (2 * h)
+
+
+def gradient(f, size):
+    """The derivatives of f at 0 by each element of its argument, the last axis."""
+    return np.array([slope(lambda h: f(axis * h)) for axis in np.eye(size, dtype=int)]).T
 
 
 def linear(f, p, y, torque, dynamics):
     """The derivatives of f by the state and by the torque."""
-    by = [jacobian(f, argument)(p, y, torque, dynamics) for argument in (1, 2)]
-    return by[0], by[1].reshape(4)
+    by_all = gradient(lambda change: f(p, y + change[:4], torque + change[4], dynamics), 5)
+    return by_all[:, :4], by_all[:, 4]
 
 
-def point(theta, distance1, distance2, math=Floats):
+def point(theta, distance1, distance2):
     """The point at these distances along link 1 and along link 2."""
-    along = lambda angle, length: np.array([length * math.sin(angle), -length * math.cos(angle)])
+    along = lambda angle, length: length * np.array([mpmath.sin(angle), -mpmath.cos(angle)])
     return along(theta[0], distance1) + along(theta[0] + theta[1], distance2)
 
 
 def lagrangian(p, theta, dtheta):
     l1, _, m1, m2, lc1, lc2, i1, i2, g, *_ = p
     energy = i1 * dtheta[0] ** 2 / 2 + i2 * (dtheta[0] + dtheta[1]) ** 2 / 2
-    for mass, distances in ((m1, (lc1, 0.0)), (m2, (l1, lc2))):
-        velocity = jacobian(point)(theta, *distances) @ dtheta
-        energy = energy + mass * (velocity @ velocity) / 2 - mass * g * point(theta, *distances)[1]
+    for mass, distances in ((m1, (lc1, 0)), (m2, (l1, lc2))):
+        velocity = slope(lambda t: point(theta + dtheta * t, *distances))
+        energy += mass * (velocity @ velocity) / 2 - mass * g * point(theta, *distances)[1]
     return energy
 
 
@@ -106,50 +92,25 @@ def motion(p, y, accelerations, dynamics):
     l1, l2, m1, m2, lc1, lc2, _, _, g, *_ = p
     theta, dtheta = y[:2], y[2:]
     path = lambda t: theta + dtheta * t + accelerations * t**2 / 2
-    velocity = lambda *distances: jacobian(lambda t: point(path(t), *distances))
-    acceleration = lambda *distances: jacobian(velocity(*distances))(0.0)
-    weight = np.array([0.0, g])
-    elbow = m2 * (acceleration(l1, lc2) + weight)
-    reaction = elbow + m1 * (acceleration(lc1, 0.0) + weight)
-
-    momentum = lambda t: grad(lagrangian, 2)(p, path(t), dtheta + accelerations * t)
-    torques = jacobian(momentum)(0.0) - grad(lagrangian, 1)(p, theta, dtheta) + p[10:] * dtheta
-    if dynamics == "nips":
-        torques[1] -= m2 * l1 * lc2 * dtheta[0] ** 2 * np.sin(theta[1])
-    return torques, reaction, elbow, velocity(l1, 0.0)(0.0), velocity(l1, l2)(0.0)
-
-
-def exactly(f, p, y, torque, dynamics):
-    """As linear, by differences in 200 digits."""
-    h = mpmath.mpf(10) ** -60
-    columns = []
-    for unit in np.eye(5, dtype=int) * h:
-        near = lambda unit: f(p, y + unit[:4], torque + unit[4], dynamics, Digits)
-        above, below = near(unit), near(-unit)
-        columns.append((above - below) / (2 * h))
-    return np.array(columns[:4]).T, columns[4]
-
-
-def exact_motion(p, y, accelerations, dynamics):
-    """As motion, by differences in 200 digits, and the torques by the equations in `terms`."""
-    l1, l2, m1, m2, lc1, lc2, _, _, g, *_ = p
-    theta, dtheta = y[:2], y[2:]
-    h = mpmath.mpf(10) ** -60
-    times = -h, mpmath.mpf(0), h
-    path = lambda t: theta + dtheta * t + accelerations * t**2 / 2
-    places = lambda *distances: [point(path(t), *distances, Digits) for t in times]
-    velocity = lambda before, _, after: (after - before) / (2 * h)
-    acceleration = lambda before, now, after: (after - 2 * now + before) / h**2
+    velocity = lambda t, *distances: slope(lambda h: point(path(t + h), *distances))
+    acceleration = lambda *distances: slope(lambda t: velocity(t, *distances))
     weight = np.array([0, g])
-    elbow = m2 * (acceleration(*places(l1, lc2)) + weight)
-    reaction = elbow + m1 * (acceleration(*places(lc1, 0)) + weight)
-    mass, phi1, centrifugal, phi2 = terms(p, y, dynamics, Digits)
-    torques = mass @ accelerations + np.array([phi1, centrifugal + phi2]) + p[10:] * dtheta
-    return torques, reaction, elbow, velocity(*places(l1, 0)), velocity(*places(l1, l2))
+    elbow = m2 * (acceleration(l1, lc2) + weight)
+    reaction = elbow + m1 * (acceleration(lc1, 0) + weight)
+
+    def momentum(t):
+        then = dtheta + accelerations * t
+        return gradient(lambda change: lagrangian(p, path(t), then + change), 2)
+
+    force = gradient(lambda change: lagrangian(p, theta + change, dtheta), 2)
+    torques = slope(momentum) - force + p[10:] * dtheta
+    if dynamics == "nips":
+        torques[1] -= m2 * l1 * lc2 * dtheta[0] ** 2 * mpmath.sin(theta[1])
+    return torques, reaction, elbow, velocity(0, l1, 0), velocity(0, l1, l2)
 
 
 def regulator(a, b, q, r):
-    """The solution of the Riccati equation: structured doubling in 200 digits, checked."""
+    """The solution of the Riccati equation: structured doubling, checked."""
     a, b, q = (mpmath.matrix(m.tolist()) for m in (a, b[:, None], q))
     r = mpmath.mpf(float(r))
     power, reach, cost = a, b * b.T / r, q
@@ -185,7 +146,9 @@ def decades(rng, low, high, size=None):
 
 def resting(dt, angle):
     p = np.array([*DEFAULT[:9], dt, *NONE])
-    return linear(step, p, np.array([angle, 0.0, 0.0, 0.0]), 0.0, "book")
+    y = np.array([angle, 0.0, 0.0, 0.0])
+    a, b = linear(step, p * mpmath.mpf(1), y, 0, "book")
+    return a.astype(float), b.astype(float)
 
 
 def models(rng):
@@ -221,11 +184,15 @@ def wide_models(rng):
         yield "wide", a, b, np.diag(decades(rng, -spread, spread, 4)), decades(rng, -spread, spread)
 
 
-def case(rng, number, p):
+def usual(rng):
+    """A state, a torque and accelerations."""
+    return rng.uniform(-STATES, STATES), rng.uniform(-5, 5), rng.uniform(-20, 20, 2)
+
+
+def case(number, *given):
     dynamics = ["book", "nips"][number % 2]
-    y, torque = rng.uniform(-STATES, STATES), rng.uniform(-5, 5)
-    accelerations = rng.uniform(-20, 20, 2)
-    yield f"case {dynamics} {texts(p, y, torque, accelerations)}"
+    yield f"case {dynamics} {texts(*given)}"
+    p, y, torque, accelerations = (x * mpmath.mpf(1) for x in given)
     yield f"continuous {texts(*linear(derivative, p, y, torque, dynamics))}"
     yield f"discrete {texts(*linear(step, p, y, torque, dynamics))}"
     yield f"motion {texts(*motion(p, y, accelerations, dynamics))}"
@@ -237,7 +204,7 @@ def main():
     lines = []
     for number in range(40):
         p = np.array(DEFAULT) if number < 8 else np.array([*rng.uniform(LOW, HIGH), *NONE])
-        lines += case(rng, number, p)
+        lines += case(number, p, *usual(rng))
     for dt in 0.001, 0.01, 0.05, 0.2:
         for angle in 0.0, np.pi:
             a, b = resting(dt, angle)
@@ -247,25 +214,20 @@ def main():
                 assert np.abs(approximate - cost).max() <= 3e-6 * np.abs(cost).max()
                 lines.append(f"lqr {texts(angle, dt, a, b, q, r, gain, cost)}")
     for number in range(40):
-        dynamics = ["book", "nips"][number % 2]
         p = [*decades(rng, -3, 3, 8), rng.normal() * decades(rng, -3, 3), decades(rng, -5, -2)]
         p = np.array([*p, *NONE])
         y = rng.uniform(-STATES, STATES)
         torque = rng.normal() * decades(rng, -3, 3)
         given = p, y, torque, rng.normal(size=2) * decades(rng, -3, 3, 2)
-        given = [np.float32(x).astype(float) for x in given]
-        lines.append(f"case {dynamics} {texts(*given)}")
-        p, y, torque, accelerations = (x * mpmath.mpf(1) for x in given)
-        for name, f in ("continuous", derivative), ("discrete", step):
-            lines.append(f"{name} {texts(*exactly(f, p, y, torque, dynamics))}")
-        lines.append(f"motion {texts(*exact_motion(p, y, accelerations, dynamics))}")
+        lines += case(number, *(np.float32(x).astype(float) for x in given))
     for kind, *model in [*models(rng), *wide_models(np.random.default_rng(6))]:
         given = [np.float32(x) for x in model]
         gain, _ = regulator(*(x.astype(float) for x in given))
         numbers = " ".join(str(x) for array in given for x in np.ravel(array))
         lines.append(f"model {kind} {numbers} {texts(gain)}")
     for number in range(40):
-        lines += case(rng, number, np.array([*rng.uniform(LOW, HIGH), *decades(rng, -3, 0, 2)]))
+        p = np.array([*rng.uniform(LOW, HIGH), *decades(rng, -3, 0, 2)])
+        lines += case(number, p, *usual(rng))
     head = [
         "# " + ", ".join(f"{name} {version(name)}" for name in PACKAGES),
         f"# case DYNAMICS {NAMES}, the state, the torque, two accelerations",

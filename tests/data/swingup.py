@@ -2,9 +2,8 @@
 
 Each line is a step: the angles from upright and their velocities, the action, the same after the
 step, the observation, and the rewards of swingup and of swingup_sparse. Ten episodes of 100 steps
-with random actions. Every other one begins near upright, where rewards are high. On a CPU with
-AVX-512 NumPy and OpenBLAS use an exponential and a dot product of their own, so this script chooses
-others.
+with random actions. Every other one begins near upright, where rewards are high. NumPy and OpenBLAS
+must not use their own functions for AVX-512.
 """
 
 import os

@@ -1,14 +1,11 @@
 """Integrates the published equations of motion by SciPy's DOP853: writes truth.txt to its folder.
 
-The equations are those that R. S. Sutton and A. G. Barto print (Reinforcement Learning: An
-Introduction, 1998, figure 11.4), and R. S. Sutton before them (Generalization in Reinforcement
-Learning, NIPS 8, 1996) without one term: here as two linear equations for the two accelerations,
-which LAPACK solves, and with sines instead of the cosines of angles minus pi/2. The work of the
-torques is integrated too.
+The equations are those of docs/equations.md: here as two linear equations for the two
+accelerations, which LAPACK solves, and with sines instead of the cosines of angles minus pi/2. The
+work of the torques is integrated too.
 
-The script makes two checks. A run at a quarter of the tolerance gives the uncertainty of each row,
-which the row contains. The change of the energy, from the positions and velocities of the links,
-must equal the work of the torques.
+A run at a quarter of the tolerance gives the uncertainty of each row, which the row contains. The
+change of the energy, from the positions and velocities of the links, must equal the work.
 """
 
 import math

@@ -1,12 +1,11 @@
 //! Steps per second on one core, and their ratio to a bare loop, one line each: `name
 //! steps_per_second ratio`.
 //!
-//! A batch plays a random policy, and draws actions and resets episodes in the loop. Its yardstick
-//! is a loop over eight lanes of AVX2 that does neither, with FMA (`batch_…`) and without
-//! (`batch_…_nofma`). The yardstick of `scalar_fast` and `scalar_micro` has the same equations for
-//! one acrobot in f32. That of the other `scalar_…` has Gymnasium's order of operations in f64 and
-//! the platform's sines. Both play the same actions as the crate. Each figure is the best of
-//! several runs, interleaved with runs of the yardstick.
+//! A batch plays a random policy. Its yardstick is a loop over eight lanes of AVX2 that neither
+//! draws actions nor resets, with FMA (`batch_…`) and without (`batch_…_nofma`). The yardstick of
+//! `scalar_fast` and `scalar_micro` has the same equations for one acrobot in f32, that of the
+//! other `scalar_…` Gymnasium's order of operations in f64 and the platform's sines. Each figure is
+//! the best of several runs, interleaved with runs of the yardstick.
 //!
 //! ```text
 //! cargo run --release -p benches
@@ -120,8 +119,7 @@ fn versus<A: Arithmetic, B: Arithmetic>(name: &str, mut ours: Play<A>, mut other
     report(&format!("batch_{name}"), rates);
 }
 
-/// Steps on all cores; the ratio is to the same steps on one core. The actions stay the same,
-/// because only the step runs on all cores.
+/// Steps on all cores; the ratio is to the same steps on one core.
 fn threads(len: usize) {
     let (mut many, mut one) = (Play::<Fast>::new(len), Play::<Fast>::new(len));
     let rates = compare(|| many.step(false, true), || one.step(false, false));

@@ -3,11 +3,12 @@
 // - You provide the memory, and may reuse it at any time. No function allocates.
 // - No function aborts or has global state. One that can fail returns an acrobot_status_t. Unless
 //   it is ACROBOT_OK, acrobots and results are unchanged, if its comment says nothing else.
-// - A pointer must be null or point to what its type says; `error` may always be null. The
-//   functions report null, misaligned pointers and zeroed memory, but not freed memory.
+// - A pointer must be null or point to what its type says. `error`, and the `observation` of a
+//   reset, may be null. The functions report null, misaligned pointers and zeroed memory, but not
+//   freed memory.
 // - Arguments, and arrays of a struct, must not overlap. The functions report arrays that overlap,
 //   and a result or error that would overwrite the acrobot or the batch.
-// - Arrays have `count` elements, one for each acrobot.
+// - Arrays have `count` elements, one for each acrobot, and `index` counts from 0.
 // - Threads and interrupts may use different acrobots at the same time. Sharing one takes a lock.
 
 
@@ -65,7 +66,7 @@
 #define ACROBOT_BATCH_ALIGN 64
 
 // Acrobots whose episode has ended are reset in the next step, which ignores its action and
-// returns the initial observation and a reward of 0. The default, as in Gymnasium.
+// returns the initial observation and a reward of 0. The default.
 #define ACROBOT_AUTORESET_NEXT_STEP 0
 
 // They are reset in the step that ends the episode. It returns the initial observation of the next
@@ -77,25 +78,21 @@
 
 // What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 typedef enum {
-  // The function has done its work.
   ACROBOT_OK = 0,
   // A pointer is null that must not be.
   ACROBOT_ERROR_NULL = 1,
   // A pointer is not aligned as its type demands; a batch needs ACROBOT_BATCH_ALIGN.
   ACROBOT_ERROR_MISALIGNED = 2,
-  // The memory is too small for the batch.
   ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
   // No `_init` function has initialized the memory, or it has been overwritten.
   ACROBOT_ERROR_NOT_INITIALIZED = 4,
   // The batch was copied to another address.
   ACROBOT_ERROR_MOVED = 5,
-  // The action is not 0, 1 or 2.
   ACROBOT_ERROR_UNKNOWN_ACTION = 6,
   // A number is outside its range, infinite or NaN. An argument `error` says which.
   ACROBOT_ERROR_OUT_OF_RANGE = 7,
   // The count is 0, or not that of the batch.
   ACROBOT_ERROR_WRONG_COUNT = 8,
-  // The index is not below the count.
   ACROBOT_ERROR_NO_SUCH_INDEX = 9,
   // Two arguments overlap: arrays, or a result and the acrobot or batch.
   ACROBOT_ERROR_OVERLAP = 10,
@@ -105,14 +102,14 @@ typedef enum {
 // so do not move or copy it.
 typedef struct acrobot_batch_t acrobot_batch_t;
 
-// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or
-// into a struct, and call acrobot_init first. It contains no pointer: you may copy and move it.
+// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Call acrobot_init first. It contains
+// no pointer: you may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_SIZE];
 } acrobot_t;
 
-// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine
-// of each angle of the acrobot_state_t, and its angular velocities, rad/s.
+// An observation, six floats without padding: the cosine and sine of each angle of the
+// acrobot_state_t, and its angular velocities, rad/s.
 typedef struct {
   float cos_theta1;
   float sin_theta1;
@@ -122,9 +119,8 @@ typedef struct {
   float dtheta2;
 } acrobot_observation_t;
 
-// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The
-// texts are UTF-8 and end with a zero byte. Print it by `printf("%s must be %s, got %g",
-// error.name, error.rule, error.value)`.
+// Why a number was rejected, for ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end with a
+// zero byte: `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 typedef struct {
   // The value that was rejected, in `unit`.
   double value;
@@ -168,11 +164,11 @@ typedef struct {
   float length2;
   // Mass of link 1, kg; above 0. Default 1.
   float mass1;
-  // Mass of link 2, kg; as `mass1`.
+  // As `mass1`, of link 2.
   float mass2;
   // Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
   float center_of_mass1;
-  // Distance of link 2's centre of mass from its joint, m; as `center_of_mass1`.
+  // As `center_of_mass1`, of link 2.
   float center_of_mass2;
   // Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
   // centre of mass is on the joint. Default 1.
@@ -185,7 +181,7 @@ typedef struct {
   float dt;
   // Bound of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default 4 π.
   float max_velocity1;
-  // Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
+  // As `max_velocity1`, of |θ̇2|. Default 9 π.
   float max_velocity2;
   // Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
   float torques[3];
@@ -223,22 +219,19 @@ extern "C" {
 // The text of a status, in English, also of an unknown one. It is constant: do not free it.
 const char *acrobot_status_text(int status);
 
-// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`. A
-// second call starts from scratch.
+// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`.
 acrobot_status_t acrobot_init(acrobot_t *acrobot, uint64_t seed);
 
-// Draws the next initial state and begins an episode. `observation` may be null.
+// Draws the next initial state and begins an episode.
 acrobot_status_t acrobot_reset(acrobot_t *acrobot, acrobot_observation_t *observation);
 
 // Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode.
-// `observation` may be null.
 acrobot_status_t acrobot_reset_with_seed(acrobot_t *acrobot,
                                          uint64_t seed,
                                          acrobot_observation_t *observation);
 
 // As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
-// rad/s. The default is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`.
-// `observation` may be null.
+// rad/s; −0.1 and 0.1 by default. Both must be finite as float, and `low` at most `high`.
 acrobot_status_t acrobot_reset_within(acrobot_t *acrobot,
                                       double low,
                                       double high,
@@ -294,9 +287,8 @@ acrobot_status_t acrobot_deviation(const acrobot_t *acrobot,
 //
 // `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
 // accelerations of at most 0.01 rad/s². `q` has the weights of the four squared deviations, 0 or
-// more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)².
-// Without a regulator for these and the parameters, for example without gravity, the status is
-// ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change.
+// more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². If no
+// regulator exists, for example without gravity, the status is ACROBOT_ERROR_OUT_OF_RANGE.
 acrobot_status_t acrobot_lqr(acrobot_t *acrobot,
                              const acrobot_state_t *target,
                              const acrobot_state_t *q,
@@ -314,7 +306,7 @@ acrobot_status_t acrobot_action_space_sample(acrobot_action_space_t *action_spac
 size_t acrobot_batch_size(size_t count);
 
 // Makes a batch of `count` acrobots in `memory`, which has `size` bytes, with the default
-// parameters and in initial states. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's
+// parameters and in initial states. Acrobot `i` is seeded with NumPy's
 // `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address, and must not point
 // into its bytes.
 acrobot_status_t acrobot_batch_init(void *memory,
@@ -353,12 +345,12 @@ acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
                                              int autoreset,
                                              acrobot_error_t *error);
 
-// The state of acrobot `index`, counted from 0.
+// The state of acrobot `index`.
 acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,
                                      size_t index,
                                      acrobot_state_t *state);
 
-// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change.
+// Sets the state of acrobot `index`. Its number of steps does not change.
 acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
                                          size_t index,
                                          const acrobot_state_t *state,

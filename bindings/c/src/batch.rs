@@ -22,7 +22,7 @@ const LANES: usize = if usize::BITS == 64 { 16 } else { 1 };
 const BLOCK: usize = if usize::BITS == 64 { 640 } else { 64 };
 
 /// Acrobots whose episode has ended are reset in the next step, which ignores its action and
-/// returns the initial observation and a reward of 0. The default, as in Gymnasium.
+/// returns the initial observation and a reward of 0. The default.
 pub const ACROBOT_AUTORESET_NEXT_STEP: c_int = 0;
 
 /// They are reset in the step that ends the episode. It returns the initial observation of the next
@@ -107,7 +107,7 @@ pub extern "C" fn acrobot_batch_size(count: usize) -> usize {
 }
 
 /// Makes a batch of `count` acrobots in `memory`, which has `size` bytes, with the default
-/// parameters and in initial states. Acrobot `i` is seeded with the `i`-th child of `seed`, NumPy's
+/// parameters and in initial states. Acrobot `i` is seeded with NumPy's
 /// `SeedSequence(seed).spawn(count)[i]`. `batch` receives the batch's address, and must not point
 /// into its bytes.
 #[unsafe(no_mangle)]
@@ -273,7 +273,7 @@ pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     })
 }
 
-/// The state of acrobot `index`, counted from 0.
+/// The state of acrobot `index`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_state(
     batch: *const acrobot_batch_t,
@@ -286,7 +286,7 @@ pub unsafe extern "C" fn acrobot_batch_state(
     })
 }
 
-/// Sets the state of acrobot `index`, counted from 0. Its number of steps does not change.
+/// Sets the state of acrobot `index`. Its number of steps does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_state(
     batch: *mut acrobot_batch_t,

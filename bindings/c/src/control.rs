@@ -28,9 +28,8 @@ pub unsafe extern "C" fn acrobot_deviation(
 ///
 /// `target` must be in equilibrium without a torque, such as upright: velocities of 0, and
 /// accelerations of at most 0.01 rad/s². `q` has the weights of the four squared deviations, 0 or
-/// more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)².
-/// Without a regulator for these and the parameters, for example without gravity, the status is
-/// ACROBOT_ERROR_OUT_OF_RANGE. The acrobot does not change.
+/// more, in 1/rad² and s²/rad², and `r` is that of the squared torque, above 0, in 1/(N m)². If no
+/// regulator exists, for example without gravity, the status is ACROBOT_ERROR_OUT_OF_RANGE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_lqr(
     acrobot: *mut acrobot_t,

@@ -22,8 +22,8 @@ pub const ACROBOT_DYNAMICS_BOOK: c_int = 0;
 /// The equations of Sutton's paper of 1996 (NIPS 8), which do not conserve energy.
 pub const ACROBOT_DYNAMICS_NIPS: c_int = 1;
 
-/// An observation: six floats without padding, in Gymnasium's order. They are the cosine and sine
-/// of each angle of the acrobot_state_t, and its angular velocities, rad/s.
+/// An observation, six floats without padding: the cosine and sine of each angle of the
+/// acrobot_state_t, and its angular velocities, rad/s.
 #[repr(C)]
 pub struct acrobot_observation_t {
     pub cos_theta1: f32,
@@ -103,11 +103,11 @@ pub struct acrobot_params_t {
     pub length2: f32,
     /// Mass of link 1, kg; above 0. Default 1.
     pub mass1: f32,
-    /// Mass of link 2, kg; as `mass1`.
+    /// As `mass1`, of link 2.
     pub mass2: f32,
     /// Distance of link 1's centre of mass from its joint, m; 0 or more. Default 0.5.
     pub center_of_mass1: f32,
-    /// Distance of link 2's centre of mass from its joint, m; as `center_of_mass1`.
+    /// As `center_of_mass1`, of link 2.
     pub center_of_mass2: f32,
     /// Moment of inertia of link 1 about its centre of mass, kg m²; 0 or more, and above 0 if the
     /// centre of mass is on the joint. Default 1.
@@ -120,7 +120,7 @@ pub struct acrobot_params_t {
     pub dt: f32,
     /// Bound of |θ̇1| after a step, rad/s; from 1.2e-38 to 3.4e38. Default 4 π.
     pub max_velocity1: f32,
-    /// Bound of |θ̇2| after a step, rad/s; as `max_velocity1`. Default 9 π.
+    /// As `max_velocity1`, of |θ̇2|. Default 9 π.
     pub max_velocity2: f32,
     /// Torques of the three actions, N m, in their order; finite. Default −1, 0 and 1.
     pub torques: [f32; 3],

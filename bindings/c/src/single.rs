@@ -16,8 +16,8 @@ pub const ACROBOT_SIZE: usize = 240;
 /// The alignment of an acrobot_t, bytes. malloc may align less, on microcontrollers to 8 bytes.
 pub const ACROBOT_ALIGN: usize = 16;
 
-/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Put it into a static, on the stack or
-/// into a struct, and call acrobot_init first. It contains no pointer: you may copy and move it.
+/// One acrobot in single precision: Gymnasium's `Acrobot-v1`. Call acrobot_init first. It contains
+/// no pointer: you may copy and move it.
 #[repr(C, align(16))]
 pub struct acrobot_t {
     bytes: [u8; ACROBOT_SIZE],
@@ -31,14 +31,13 @@ impl Holder for acrobot_t {
 
 const _: () = assert!(align_of::<acrobot_t>() == ACROBOT_ALIGN);
 
-/// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`. A
-/// second call starts from scratch.
+/// Makes an acrobot with the default parameters, in the state of Gymnasium's `reset(seed=seed)`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_init(acrobot: *mut acrobot_t, seed: u64) -> acrobot_status_t {
     status(|| Holder::init(acrobot, TimeLimit::v1(Acrobot::new(seed))))
 }
 
-/// Draws the next initial state and begins an episode. `observation` may be null.
+/// Draws the next initial state and begins an episode.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset(
     acrobot: *mut acrobot_t,
@@ -48,7 +47,6 @@ pub unsafe extern "C" fn acrobot_reset(
 }
 
 /// Gymnasium's `reset(seed=seed)`: seeds, draws an initial state and begins an episode.
-/// `observation` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_with_seed(
     acrobot: *mut acrobot_t,
@@ -61,8 +59,7 @@ pub unsafe extern "C" fn acrobot_reset_with_seed(
 }
 
 /// As acrobot_reset, with each number of the initial state drawn between `low` and `high`, rad and
-/// rad/s. The default is from −0.1 to 0.1. Both must be finite as float, and `low` at most `high`.
-/// `observation` may be null.
+/// rad/s; −0.1 and 0.1 by default. Both must be finite as float, and `low` at most `high`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_reset_within(
     acrobot: *mut acrobot_t,

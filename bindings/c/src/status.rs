@@ -8,25 +8,21 @@ use acrobot::physics::control::ControlError;
 /// What a function returns. Unless it is ACROBOT_OK, no acrobot has changed.
 #[repr(C)]
 pub enum acrobot_status_t {
-    /// The function has done its work.
     ACROBOT_OK = 0,
     /// A pointer is null that must not be.
     ACROBOT_ERROR_NULL = 1,
     /// A pointer is not aligned as its type demands; a batch needs ACROBOT_BATCH_ALIGN.
     ACROBOT_ERROR_MISALIGNED = 2,
-    /// The memory is too small for the batch.
     ACROBOT_ERROR_BUFFER_TOO_SMALL = 3,
     /// No `_init` function has initialized the memory, or it has been overwritten.
     ACROBOT_ERROR_NOT_INITIALIZED = 4,
     /// The batch was copied to another address.
     ACROBOT_ERROR_MOVED = 5,
-    /// The action is not 0, 1 or 2.
     ACROBOT_ERROR_UNKNOWN_ACTION = 6,
     /// A number is outside its range, infinite or NaN. An argument `error` says which.
     ACROBOT_ERROR_OUT_OF_RANGE = 7,
     /// The count is 0, or not that of the batch.
     ACROBOT_ERROR_WRONG_COUNT = 8,
-    /// The index is not below the count.
     ACROBOT_ERROR_NO_SUCH_INDEX = 9,
     /// Two arguments overlap: arrays, or a result and the acrobot or batch.
     ACROBOT_ERROR_OVERLAP = 10,
@@ -34,9 +30,8 @@ pub enum acrobot_status_t {
 
 use acrobot_status_t::*;
 
-/// Why a number was rejected. Functions fill it if they return ACROBOT_ERROR_OUT_OF_RANGE. The
-/// texts are UTF-8 and end with a zero byte. Print it by `printf("%s must be %s, got %g",
-/// error.name, error.rule, error.value)`.
+/// Why a number was rejected, for ACROBOT_ERROR_OUT_OF_RANGE. The texts are UTF-8 and end with a
+/// zero byte: `printf("%s must be %s, got %g", error.name, error.rule, error.value)`.
 #[repr(C)]
 pub struct acrobot_error_t {
     /// The value that was rejected, in `unit`.

@@ -6,12 +6,9 @@
 #define INF __builtin_inff()
 
 static const acrobot_state_t REST = {0, 0, 0, 0}, FAR = {INF, 0, 0, 0};
-static const acrobot_params_t PARAMS = {
-    1, 1, 1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK,
-};
-static const acrobot_params_t NO_MASS = {
-    1, 1, 0, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK,
-};
+#define WITH_MASS1(mass1) \
+    {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK}
+static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 static const acrobot_state_t ONES = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
 static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, NO_EQUILIBRIA[] = {
     {3.1f, 0, 0, 0}, {1.5f, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, .001f, 0}, {3.1415927f, 0, 0, -1},

@@ -1,10 +1,8 @@
 //! Q(λ) with replay and tile coding learns to swing up: no heap, `f32`, bit-identical on every
 //! machine.
 //!
-//! It uses only sums, differences, products, quotients and comparisons, each rounded once, so a
-//! laptop, a Cortex-M4F and a browser learn the same weights from the same seed. Section numbers
-//! refer to R. S. Sutton and A. G. Barto, *Reinforcement Learning: An Introduction*, 2nd edition
-//! (2018).
+//! Section numbers refer to R. S. Sutton and A. G. Barto, *Reinforcement Learning: An
+//! Introduction*, 2nd edition (2018).
 //!
 //! ```
 //! use acrobot::numpy::SeedSequence;

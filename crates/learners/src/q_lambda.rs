@@ -30,9 +30,9 @@ pub enum Budget {
 /// so that a return is known before the step that led to it. The memory may hold several episodes,
 /// or a part of one.
 ///
-/// The learner has no action without torque, which would gain nothing. Weights start at 0, which is
-/// optimistic, because rewards are negative: untried actions look best. So it always takes the
-/// action with the highest value. A state and its mirror image share their values.
+/// The learner has no action without torque. Weights start at 0, which is optimistic, because
+/// rewards are negative. So it always takes the action with the highest value. A state and its
+/// mirror image share their values.
 #[derive(Debug)]
 pub struct QLambda<'w, const S: usize, const T: usize> {
     pub(crate) tiles: TileCoder<S, T>,

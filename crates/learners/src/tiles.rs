@@ -46,9 +46,8 @@ impl Dimension {
 /// The dimensions of a group of tilings, a bit for each: all four, pairs and triples.
 const GROUPS: [u8; 9] = [0b1111, 0b0011, 0b1100, 0b0101, 0b1010, 0b0111, 0b1011, 0b1101, 0b1110];
 
-/// The stride from tile to tile of a tiling. Its multiples modulo 2¹⁶ lie far apart, as those of
-/// the golden ratio do (Knuth 6.4): it is the only factor whose continued fraction over 2¹⁶ has no
-/// quotient above 2.
+/// The stride from tile to tile of a tiling. Its multiples modulo 2¹⁶ lie far apart (Knuth 6.4): it
+/// is the only factor whose continued fraction over 2¹⁶ has no quotient above 2.
 const FACTOR: u16 = 0xb3f9;
 
 /// The stride from tiling to tiling: 2¹⁶ over the golden ratio.
@@ -57,9 +56,8 @@ const GOLDEN: u16 = 0x9e37;
 /// `T` tilings over two angles, in rad from −π to π, and two velocities, in rad/s. All tiles share
 /// `S` slots.
 ///
-/// A tile's slot is linear in its coordinates: one product and one comparison for each dimension,
-/// in 16 bits, so that eight tilings fit in the smallest vector register. Hashing scales the sum at
-/// the end.
+/// A tile's slot is linear in its coordinates, in 16 bits, so that eight tilings fit in the
+/// smallest vector register.
 #[derive(Clone, Debug)]
 pub struct TileCoder<const S: usize, const T: usize> {
     dimensions: [Dimension; 4],

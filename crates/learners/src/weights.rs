@@ -28,8 +28,7 @@ impl<const S: usize, const T: usize> QLambda<'_, S, T> {
     ///
     /// # Errors
     ///
-    /// [`LoadError`] for bytes of another kind, version, size or learner, for damaged bytes, and
-    /// for a weight that is not finite. The weights are unchanged then.
+    /// [`LoadError`]. The weights are unchanged then.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), LoadError> {
         let (words, _) = bytes.as_chunks();
         let word = |at: usize| words.get(at).copied().map_or(0, u32::from_le_bytes);

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! Each sum begins with the bias and adds the products in the order of the inputs, in `f32` without
-//! a fused multiply-add; tanh is `libm`'s. So the outputs have the same bits on every machine.
-//! torch adds in another order, so they differ from its outputs in the last digits.
+//! a fused multiply-add; tanh is `libm`'s. So the outputs have the same bits on every machine, and
+//! differ from torch's, which adds in another order, in the last digits.
 //!
 //! # The file
 //!
@@ -36,8 +36,8 @@ use acrobot::{Action, Observation};
 /// The number of inputs: those of an observation.
 const INPUTS: usize = 6;
 
-/// A policy whose layers have at most `WIDTH` outputs, 6 at least. It refers to the file, in flash.
-/// A decision needs 8 `WIDTH` bytes of stack.
+/// A policy whose layers have at most `WIDTH` outputs, 6 at least. It refers to the file. A
+/// decision needs 8 `WIDTH` bytes of stack.
 #[derive(Clone, Copy, Debug)]
 pub struct Policy<'a, const WIDTH: usize> {
     layers: &'a [u8],

@@ -5,8 +5,7 @@
 //! Rust's. The bits are those of IEEE 754, rounded to nearest, ties to even, also for subnormal
 //! numbers; only the bits of a NaN differ.
 //!
-//! Rust's routines handle every float format on every processor. These have a short path for two
-//! normal numbers with a normal result. All else is out of line.
+//! They have a short path for two normal numbers with a normal result. All else is out of line.
 
 #![no_std]
 

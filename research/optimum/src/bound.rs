@@ -1,16 +1,9 @@
 //! A lower bound: no policy reaches the goal in fewer steps than a function of the initial state
 //! says.
 //!
-//! The function P estimates the progress towards the goal, in steps. The target is the goal, and
-//! all states whose energy is above `MOST`. Taylor models prove a statement about all states, in
-//! boxes that are halved until it is certain:
-//!
-//! From a state outside of the target where P is below `at_target` − `unit`, each step ends outside
-//! of the target, and increases P by at most `unit`.
-//!
-//! So from a state s outside of the target the goal is at least (`at_target` − P(s)) / `unit` steps
-//! away. This holds for Gymnasium's parameters, the book's dynamics, `f64`, and angles from −π to
-//! π. docs/optimum.md has the argument.
+//! Taylor models prove the statement of docs/optimum.md about the function P and the target for all
+//! states, in boxes that are halved until it is certain: for Gymnasium's parameters, the book's
+//! dynamics, `f64`, and angles from −π to π.
 
 use std::array::from_fn;
 use std::ops::Add;
@@ -66,9 +59,8 @@ fn step(y: Space, torque: f64) -> Space {
     along(0.2 / 6.0, k)
 }
 
-/// The energy above hanging at rest, J, the height of the free end above the axis, m, and P. P is a
-/// function of the energy, corrected by the phase of the swing, because the motor gains most energy
-/// where link 2 is fast. With r = √(energy + 0.3):
+/// The energy above hanging at rest, J, the height of the free end above the axis, m, and P. With
+/// r = √(energy + 0.3):
 ///
 /// P = Σ RADIAL rⁿ + Σ r⁻ⁿ (quadratic polynomials of x, times cosines) + Σ r⁻ⁿ⁻¹ (polynomials of x
 /// of degree 4), x = (sin θ1, sin(θ1 + θ2), and the velocities of both angles).
@@ -175,7 +167,7 @@ impl Bound {
     }
 }
 
-/// Proves the statement for all states, on all cores.
+/// Proves the statement for all states.
 pub fn prove() -> anyhow::Result<()> {
     /// Parts in each dimension.
     const PARTS: u32 = 16;

@@ -7,10 +7,7 @@
 //! cargo run --release -p optimum -- bound
 //! ```
 //!
-//! `search` computes the steps to the goal on a grid of states, and follows the best states of each
-//! step from every initial state. Where it finds a shorter sequence than the file has, it replaces
-//! that. `table` plays other policies from the same states. `bound` proves that no policy takes
-//! fewer steps than a function of the initial state says. docs/optimum.md explains all three.
+//! docs/optimum.md explains all three.
 
 use std::path::{Path, PathBuf};
 

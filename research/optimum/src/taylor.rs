@@ -292,15 +292,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn a_parabola_is_highest_at_its_vertex_or_at_an_edge() {
-        for (linear, quadratic, highest) in
-            [(1.0, -1.0, 0.25), (-1.0, -1.0, 0.25), (1.0, 0.5, 1.5), (4.0, -1.0, 3.0)]
-        {
-            let [mut x, ..] = TaylorModel::coordinates([0.0; 4], [linear, 0.0, 0.0, 0.0]);
-            x.quadratic[0] = quadratic;
-            assert!((x.high() - highest).abs() < 1e-12, "{x:?}");
-        }
-    }
 }

@@ -14,8 +14,8 @@
 //! | infinity, NaN | NaN |
 //!
 //! The two fast paths return the same bits, because only one result is correct. The files list
-//! their errors term by term. `tests/data/sines.py` derives the constants and adds up the errors.
-//! It also records 21 million results of MPFR, with which `cargo test --test sines` compares.
+//! their errors term by term. `tests/data/sines.py` derives the constants, adds up the errors, and
+//! records 21 million results of MPFR for `cargo test --test sines`.
 
 mod float;
 mod integer;

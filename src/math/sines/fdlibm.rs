@@ -15,7 +15,6 @@ const MAGIC: f64 = 1.5 / f64::EPSILON;
 /// - |y| > π/4 − 1e-5, where it finds n from the upper 32 bits of x;
 /// - |y| < 2⁻¹⁵ |x|, where it subtracts more digits of π/2, and so all |x| above 25,736.
 ///
-/// A branch per call, and not one for each lane, costs no time where it is not taken.
 #[inline(always)]
 pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     /// π/2: its leading 33 bits, and the rest.

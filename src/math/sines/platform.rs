@@ -16,8 +16,7 @@ pub fn cos(x: f64) -> f64 {
 }
 
 /// NumPy computes `x**2` of a scalar by C's `pow`. For one argument in a thousand, whose exact
-/// square is about half way between two doubles, glibc's `pow` rounds differently from `x * x`. All
-/// others avoid `pow`, which would cost much of a step.
+/// square is about half way between two doubles, glibc's `pow` rounds differently from `x * x`.
 #[inline(always)]
 pub fn square(x: f64) -> f64 {
     if is_far_from_a_tie(x) { x * x } else { power(x) }

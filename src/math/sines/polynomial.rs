@@ -51,8 +51,8 @@ const HAS_F32: bool = !cfg!(any(
     all(target_arch = "riscv32", not(target_feature = "a")),
 ));
 
-/// Uses the addition theorem: exact because sine and cosine of quarter turns are 0 and ±1, and
-/// cheaper on an FPU than selecting and negating. No −0 is lost: `sin` is never −0, `cos` never 0.
+/// Uses the addition theorem, which is cheaper on an FPU than selecting and negating. No −0 is
+/// lost: `sin` is never −0, `cos` never 0.
 #[inline(always)]
 #[expect(clippy::indexing_slicing, reason = "the index is 0 to 3")]
 fn rotate_by_products(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
@@ -76,8 +76,7 @@ fn rotate_by_selection(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
 }
 
 /// Selects and flips signs, without a branch or a table: for SIMD. Adding 0 changes −0 to 0, which
-/// is the result for a single `f32`. Where a single `f32` gives NaN, this can give infinity; a step
-/// with either is not finite.
+/// is the result for a single `f32`.
 #[inline(always)]
 fn rotate_by_bits(turns: u32, sin: f32, cos: f32) -> (f32, f32) {
     const SIGN: u32 = 1 << 31;

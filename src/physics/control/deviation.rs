@@ -7,8 +7,7 @@ use crate::physics::pendulum::Pendulum;
 use crate::physics::state::State;
 
 /// The deviation of `state` from `target`, rad and rad/s. Differences of angles are wrapped to
-/// \[−π, π\], so it is continuous upright, where θ1 jumps from π to −π. Velocities near the limit
-/// of the scalar can overflow.
+/// \[−π, π\], so it is continuous upright, where θ1 jumps from π to −π.
 ///
 /// ```
 /// use acrobot::physics::control::difference;

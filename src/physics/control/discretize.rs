@@ -23,9 +23,9 @@ pub struct DiscreteModel<S = f64> {
 /// Linearizes one step of `dt` about the pendulum's state and a torque, N m, which is constant
 /// during the step.
 ///
-/// The result is the derivative of the Runge-Kutta step that [`Pendulum::step`] takes, exact up to
-/// rounding, and not a matrix exponential. The state need not be an equilibrium: x′ is the
-/// deviation from the state after the step. Bounds of the velocities do not count.
+/// The result is the derivative of the Runge-Kutta step, exact up to rounding, and not a matrix
+/// exponential. The state need not be an equilibrium: x′ is the deviation from the state after the
+/// step.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
@@ -43,8 +43,7 @@ pub struct DiscreteModel<S = f64> {
 ///
 /// # Errors
 ///
-/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if
-/// extreme parameters or velocities make an element overflow.
+/// Those of [`linearize`](super::linearize).
 pub fn discretize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,

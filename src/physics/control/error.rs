@@ -28,7 +28,8 @@ pub enum ControlError {
         /// Its mirror image below the diagonal.
         lower: f64,
     },
-    /// A matrix of weights is not positive semidefinite.
+    /// A matrix of weights is not positive semidefinite. Up to 16 machine epsilons of its largest
+    /// element count as 0.
     NotSemidefinite {
         /// The argument.
         name: &'static str,
@@ -42,9 +43,10 @@ pub enum ControlError {
     },
     /// The torque does not reach a motion that grows or persists, so no regulator makes it vanish.
     NotStabilizable,
-    /// The weights do not see a motion that persists, so the best regulator lets it persist.
+    /// The weights do not see a motion that persists: one that needs more than 2⁴⁰ steps to vanish.
     NotDetectable,
-    /// The gain of a regulator cannot be computed precisely enough.
+    /// The error of a gain can be above 1e-9 of its largest element, or deviations do not vanish
+    /// with the gain that the scalar rounds.
     IllConditioned {
         /// The estimated error of the gain, relative to its largest element.
         error: f64,

@@ -15,7 +15,7 @@ use crate::physics::pendulum::Pendulum;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Forces<S = f64> {
     /// The torques on θ1 and θ2 that the motion needs, N m. The second is that of the motor. The
-    /// first joint has none, so the acrobot can move in this way only if the first torque is 0.
+    /// first joint has none, so an acrobot's first torque is 0.
     pub torques: [S; 2],
     /// The force of the fixed joint on link 1, \[x, y\] in N, x to the right and y up.
     pub reaction: [S; 2],
@@ -28,8 +28,8 @@ pub struct Forces<S = f64> {
 ///
 /// This is the inverse of [`Pendulum::derivative`], by the recursive Newton-Euler method (J. Y. S.
 /// Luh, M. W. Walker and R. P. C. Paul, *On-Line Computational Scheme for Mechanical Manipulators*,
-/// 1980). Accelerations of 0 at rest give the torques that hold the state. For [`Dynamics::Nips`]
-/// the torques are those of its equations; the forces follow from the motion by Newton's law.
+/// 1980). For [`Dynamics::Nips`] the torques are those of its equations; the forces follow from the
+/// motion by Newton's law.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
@@ -49,8 +49,7 @@ pub struct Forces<S = f64> {
 /// # Errors
 ///
 /// [`ControlError::Invalid`] for an acceleration that is not finite, and
-/// [`ControlError::NotFinite`] if extreme parameters or velocities make a torque or a force
-/// overflow.
+/// [`ControlError::NotFinite`] if a torque or a force overflows.
 pub fn inverse_dynamics<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     [ddtheta1, ddtheta2]: [A::Scalar; 2],
@@ -120,7 +119,7 @@ pub fn inverse_dynamics<A: Arithmetic>(
 ///
 /// # Errors
 ///
-/// [`ControlError::NotFinite`] if extreme lengths or velocities make a velocity overflow.
+/// [`ControlError::NotFinite`] if a velocity overflows.
 pub fn velocities<A: Arithmetic>(
     pendulum: &Pendulum<A>,
 ) -> Result<[[A::Scalar; 2]; 2], ControlError> {

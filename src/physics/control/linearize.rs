@@ -21,11 +21,9 @@ pub struct ContinuousModel<S = f64> {
 }
 
 /// Linearizes the equations of motion about the pendulum's state and a torque, N m. The derivatives
-/// are exact up to rounding. In `f32`, parameters that differ by more than four decades can cost
-/// digits.
+/// are exact up to rounding.
 ///
-/// The state need not be an equilibrium: the model describes the difference from the rates at the
-/// state, [`Pendulum::derivative`]. Bounds of the velocities do not count.
+/// The state need not be an equilibrium. Bounds of the velocities do not count.
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
@@ -41,8 +39,8 @@ pub struct ContinuousModel<S = f64> {
 ///
 /// # Errors
 ///
-/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if
-/// extreme parameters or velocities make an element overflow.
+/// [`ControlError::Invalid`] for a torque that is not finite, and [`ControlError::NotFinite`] if an
+/// element overflows.
 pub fn linearize<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,

@@ -36,8 +36,7 @@ impl<S: Real> Lqr<S> {
 /// `q` weights the deviation: symmetric and positive semidefinite, by rows, 1/rad², s/rad² and
 /// s²/rad². `r` weights the torque, 1/(N m)²; above 0. The gain depends only on their ratio.
 ///
-/// Both scalars are computed in `f64`. The acrobot has a gain, upright and hanging, for each `dt`
-/// from 0.002 to 0.05 s and each ratio of `q` to `r` from 1e-8 to 1e8.
+/// Both scalars are computed in `f64`.
 ///
 /// The structured doubling algorithm (E. K.-W. Chu, H.-Y. Fan, W.-W. Lin and C.-S. Wang,
 /// *Structure-Preserving Algorithms for Periodic Discrete-Time Algebraic Riccati Equations*, 2004)
@@ -61,16 +60,8 @@ impl<S: Real> Lqr<S> {
 ///
 /// # Errors
 ///
-/// - [`ControlError::Invalid`] for an `r` that is not above 0.
-/// - [`ControlError::NotFinite`] for an element of the model, of `q` or of the result.
-/// - [`ControlError::NotSymmetric`] and [`ControlError::NotSemidefinite`] for such a `q`, where up
-///   to 16 machine epsilons of the largest element count as 0.
-/// - [`ControlError::NotStabilizable`] if the torque does not reach a motion that grows or
-///   persists.
-/// - [`ControlError::NotDetectable`] if `q` does not weight a motion that persists: one that needs
-///   more than 2⁴⁰ steps to vanish.
-/// - [`ControlError::IllConditioned`] if the error of the gain can be above 1e-9 of its largest
-///   element, or if deviations do not vanish with the gain that the scalar rounds.
+/// [`ControlError::Invalid`] for an `r` that is not above 0, and each other [`ControlError`] except
+/// `NotInEquilibrium`.
 pub fn lqr<S: Real>(
     model: &DiscreteModel<S>,
     q: &[[S; 4]; 4],

@@ -1,9 +1,8 @@
 //! The bits that every target must compute: episodes, a batch, a training, a plan and drawings,
 //! with digests of all their bits.
 //!
-//! The library's tests compare these digests on the build machine, and the program of this crate
-//! compares them on any target. The firmware of `examples/cortex-m` compares them while it draws,
-//! learns and plans.
+//! The library's tests, the program of this crate and the firmware of `examples/cortex-m` compare
+//! these digests.
 
 #![no_std]
 

@@ -84,26 +84,6 @@ fn words_decimals_bytes_and_integers_are_the_same_seed() {
 }
 
 #[test]
-fn children_are_numbered_across_all_spawns() {
-    let counts = prop::collection::vec(0..5_u64, 0..5);
-    let words = prop::collection::vec(any::<u32>(), 0..9);
-    holds(500, (words, counts, any::<u64>()), |(words, counts, far)| {
-        let parent = SeedSequence::from_words(&words);
-        let mut sequence = parent.clone();
-        let all: Vec<_> = counts.into_iter().flat_map(|count| sequence.spawn(count)).collect();
-        for (index, child) in (0..).zip(all) {
-            assert_eq!(child, parent.child(index));
-            assert_ne!(child, parent.child(index + 1));
-        }
-        let [first, _, _] = parent.child(far).generate_state();
-        assert_eq!(parent.child(far).generate_state(), [first]);
-        // Children never run out.
-        assert!(sequence.spawn(u64::MAX).next().is_some());
-        assert_eq!(sequence.spawn(1).count(), 1);
-    });
-}
-
-#[test]
 fn spaces_contain_their_samples() {
     let bound = || prop_oneof![4 => number::<f32>(Range::Any), 1 => prop::num::f32::ANY];
     let bounds = prop::collection::vec((bound(), bound()), 0..4);

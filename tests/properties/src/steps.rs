@@ -2,17 +2,16 @@
 
 use std::array;
 use std::cell::Cell;
-use std::f64::consts::PI;
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real};
+use acrobot::arithmetic::{Arithmetic, Micro, Real};
 use acrobot::numpy::{Pcg64, integers};
 use acrobot::physics::Pendulum;
 use acrobot::{Acrobot, Action, Error, Fast, Observation, Params, Portable, State, Step};
 use proptest::prelude::*;
 
 use crate::given::{Range, Tested, acrobot, action, holds, number, params, reset_bounds, state};
-use common::{assert_says, distance, in_every_arithmetic};
+use common::{assert_says, in_every_arithmetic};
 
 fn assert_seen<A: Arithmetic>(acrobot: &Acrobot<A>, observation: Observation) {
     assert_eq!(observation, acrobot.observation());
@@ -151,33 +150,4 @@ fn mirrored_steps_are_mirror_images() {
     check::<Micro>(5e5);
     let limits = "if no angle within the step is beyond 5e5 rad, in `Portable` 1e16 rad";
     assert_says("docs/numbers.md", limits);
-
-    // The limit is necessary: these angles are beyond that of `Micro`'s table, 8.2e5 rad.
-    let differs = |theta1| {
-        let state = State::from([theta1, 0.5, 1.0, -2.0]);
-        let mut left = acrobot::<Micro>(Params::DEFAULT, state, 0);
-        let mut right = acrobot::<Micro>(Params::DEFAULT, mirror(state), 0);
-        left.step(Action::Positive);
-        right.step(Action::Negative);
-        left.state() != mirror(right.state())
-    };
-    assert!((1..1000).any(|i| differs(1e6 + 1e3 * i as f32)));
-}
-
-/// `Host` computes cos(x − π/2) as Gymnasium does, so its mirror images differ by rounding.
-#[test]
-fn mirrored_steps_are_nearly_mirror_images_in_host() {
-    /// A few roundings of numbers up to 3. Faster links would amplify them.
-    const ROUNDING: f64 = 4e-15;
-
-    let given = ([-PI..PI, -PI..PI, -3.0..3.0, -3.0..3.0], action());
-    holds(2000, given, |(numbers, action)| {
-        let opposite = Action::ALL[2 - action as usize];
-        let mut left = acrobot::<Host>(Params::DEFAULT, numbers.into(), 0);
-        let mut right = acrobot::<Host>(Params::DEFAULT, mirror(numbers.into()), 0);
-        left.step(action);
-        right.step(opposite);
-        let error = distance(left.state(), mirror(right.state()));
-        assert!(error <= ROUNDING, "{error:e}");
-    });
 }

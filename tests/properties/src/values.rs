@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use acrobot::arithmetic::{Damped, Real, Reference};
-use acrobot::physics::{Pendulum, bound, wrap};
-use acrobot::{Fast, Observation, Params, Portable, State};
+use acrobot::arithmetic::{Real, Reference};
+use acrobot::physics::{Pendulum, wrap};
+use acrobot::{Fast, Params, Portable, State};
 use common::{bits, in_every_arithmetic};
 use proptest::prelude::*;
 
-use crate::given::{Range, Tested, acrobot, holds, number, params, state};
+use crate::given::{Range, Tested, holds, number};
 
 /// The angle x after a step in which nothing moves.
 fn stepped<A: Tested>(x: A::Scalar) -> A::Scalar {
@@ -76,19 +76,6 @@ fn angles_wrap_by_whole_turns() {
 }
 
 #[test]
-fn bound_is_clamp() {
-    fn check<A: Tested>() {
-        let given = (number::<A::Scalar>(Range::Any), number(Range::Any));
-        holds(1000, given, |(x, limit): (A::Scalar, A::Scalar)| {
-            let limit = if limit < A::Scalar::ZERO { -limit } else { limit };
-            let clamped = x.to_f64().clamp(-limit.to_f64(), limit.to_f64());
-            assert_eq!(bound(x, limit).to_f64(), clamped);
-        });
-    }
-    in_every_arithmetic!(check);
-}
-
-#[test]
 fn sines_and_cosines_are_on_the_unit_circle() {
     fn check<A: Tested>() {
         holds(5000, number::<A::Scalar>(Range::Any), |x| {
@@ -107,66 +94,4 @@ fn sines_and_cosines_are_on_the_unit_circle() {
         });
     }
     in_every_arithmetic!(check);
-}
-
-/// An acrobot returns the parameters and the state that it was given, and the tip is within reach.
-#[test]
-fn the_tip_is_within_reach() {
-    fn check<A: Tested>() {
-        let given = (params::<A>(Range::Any), state(Range::Any));
-        holds(1000, given, |(params, state)| {
-            let acrobot = acrobot::<A>(params, state, 0);
-            assert_eq!(acrobot.params(), &params);
-            assert_eq!(acrobot.state(), state);
-            let height = acrobot.pendulum().tip_height();
-            // As above, `Micro`'s sines of large angles are not quite on the unit circle.
-            let reach = A::Scalar::from_f64(1.0001) * (params.length1 + params.length2);
-            assert!(-reach <= height && height <= reach, "{height}");
-
-            let angles = Observation::<4>::from(state);
-            assert_eq!(angles.to_array(), <[A::Scalar; 4]>::from(state).map(|x| x.to_f64() as f32));
-        });
-    }
-    in_every_arithmetic!(check);
-}
-
-/// For moderate parameters and states. Extreme ones can exceed the range of the scalar.
-#[test]
-fn the_equations_are_those_of_a_pendulum() {
-    fn check<A: Tested>() {
-        let given = (params::<A>(Range::Moderate), state(Range::Moderate), number(Range::Moderate));
-        holds(2000, given, |(params, state, torque)| {
-            let mut pendulum = Pendulum::<A>::new(params, state).unwrap();
-            let rates = pendulum.derivative(torque).map(Real::to_f64);
-            assert!(rates.into_iter().all(f64::is_finite), "{rates:?}");
-            let State { dtheta1, dtheta2, .. } = state.cast::<f64>();
-            assert_eq!(rates[..2], [dtheta1, dtheta2]);
-
-            let [[m11, m12], [m21, m22]] = pendulum.mass_matrix().map(|row| row.map(Real::to_f64));
-            assert_eq!(m12, m21);
-            assert!(m11 > 0.0 && m22 > 0.0, "{m11} {m22}");
-
-            // The kinetic energy is never negative, except for rounding where parts cancel.
-            let total = pendulum.energy().to_f64();
-            let at_rest = State { dtheta1: A::Scalar::ZERO, dtheta2: A::Scalar::ZERO, ..state };
-            pendulum.set_state(at_rest).unwrap();
-            let potential = pendulum.energy().to_f64();
-            let parts = m11 * dtheta1 * dtheta1 + m22 * dtheta2 * dtheta2 + potential.abs();
-            assert!(total >= potential - 1e-5 * parts, "{total} {potential}");
-        });
-    }
-    in_every_arithmetic!(check);
-}
-
-#[test]
-fn casts_to_a_wider_scalar_are_exact() {
-    holds(
-        1000,
-        (params::<Damped<Fast>>(Range::Any), state::<f32>(Range::Any)),
-        |(params, state)| {
-            assert_eq!(params.cast::<f64>().cast::<f32>(), params);
-            assert_eq!(bits(state.cast::<f64>().cast::<f32>()), bits(state));
-            assert_eq!(params.cast::<f64>().validate(), Ok(()));
-        },
-    );
 }
