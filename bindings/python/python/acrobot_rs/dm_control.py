@@ -27,22 +27,10 @@ def load(
     environment_kwargs: Mapping[str, Any] | None = None,
     visualize_reward: bool = False,
 ) -> Environment:
-    """Make an environment, with the arguments of ``dm_control.suite.load``.
+    """Make an environment as ``dm_control.suite.load("acrobot", "swingup")`` does.
 
-    >>> from acrobot_rs import dm_control
-    >>> env = dm_control.load("acrobot", "swingup", task_kwargs={"random": 42})
-    >>> sorted(env.reset().observation)
-    ['orientations', 'velocity']
-
-    Args:
-        domain_name: ``"acrobot"``.
-        task_name: ``"swingup"`` or ``"swingup_sparse"``.
-        task_kwargs: ``random`` and ``time_limit``, as in :class:`Environment`.
-        environment_kwargs: ``flat_observation`` and parameters, as in :class:`Environment`.
-        visualize_reward: Without effect: it changes colours, and this environment draws nothing.
-
-    Raises:
-        TypeError, ValueError: If an argument is invalid.
+    Both kinds of arguments are those of :class:`Environment`. ``visualize_reward`` changes only
+    colours, and this environment draws nothing.
     """
     if domain_name != "acrobot":
         raise must_be("domain_name", '"acrobot"', repr(domain_name))
@@ -68,11 +56,13 @@ class Environment(dm_env.Environment):
 
         Args:
             task_name: ``"swingup"`` or ``"swingup_sparse"``.
-            random: The seed of the initial states, or their generator. By default each environment
-                has other ones.
+            random: The seed of the initial states, or their generator.
             time_limit: The length of an episode, s; ``math.inf`` for no limit.
             flat_observation: Whether the observation is one array, ``"observations"``.
-            **parameters: Those of :class:`acrobot_rs.AcrobotSwingupEnv`, such as ``FRICTION_1``.
+            **parameters: Those of :class:`acrobot_rs.AcrobotSwingupEnv`.
+
+        Raises:
+            TypeError, ValueError: If an argument is invalid.
         """
         if task_name not in _TASKS:
             raise must_be("task_name", f"one of {list(_TASKS)}", repr(task_name))
