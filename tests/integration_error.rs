@@ -59,8 +59,8 @@ static RUNS: LazyLock<Vec<Run>> = LazyLock::new(|| {
 });
 
 impl Run {
-    /// The error at each row of a pendulum whose step lasts 0.2 s / `parts`.
-    fn errors<A: Arithmetic>(&self, parts: u32) -> Vec<f64> {
+    /// The pendulum at the beginning. Its step lasts 0.2 s / `parts`.
+    fn pendulum<A: Arithmetic>(&self, parts: u32) -> Pendulum<A> {
         let params = Params {
             dt: 0.2 / f64::from(parts),
             // No bounds: only the integration is measured.
@@ -69,7 +69,23 @@ impl Run {
             dynamics: self.dynamics,
             ..Params::DEFAULT
         };
-        let mut pendulum = Pendulum::<A>::new(params.cast(), self.state.cast()).unwrap();
+        Pendulum::new(params.cast(), self.state.cast()).unwrap()
+    }
+
+    /// The largest change of the energy in 100 s without a torque, J.
+    fn drift<A: Arithmetic>(&self, parts: u32) -> f64 {
+        let mut pendulum = self.pendulum::<A>(parts);
+        let energy = |pendulum: &Pendulum<A>| pendulum.energy().to_f64();
+        let first = energy(&pendulum);
+        (0..500 * parts).fold(0.0, |drift: f64, _| {
+            pendulum.step(Real::from_f64(0.0)).unwrap();
+            drift.max((energy(&pendulum) - first).abs())
+        })
+    }
+
+    /// The error at each row.
+    fn errors<A: Arithmetic>(&self, parts: u32) -> Vec<f64> {
+        let mut pendulum = self.pendulum::<A>(parts);
         let mut errors = Vec::new();
         let mut rows = self.after.iter().peekable();
         for (held, &torque) in (1..).zip(self.torques) {
@@ -111,6 +127,27 @@ fn errors_are_as_the_docs_say() {
             rows.push(row);
         }
     }
+    let table = rows.join("\n");
+    println!("{table}");
+    assert_says("docs/accuracy.md", &table);
+}
+
+/// The book's equations keep the energy.
+#[test]
+fn energies_drift_as_the_docs_say() {
+    let rows = PARTS.map(|parts| {
+        let mut row = format!("| {} |", 0.2 / f64::from(parts));
+        for start in ["rest", "fast"] {
+            let run = RUNS.iter().find(|run| run.start == start).unwrap();
+            assert_eq!(run.dynamics, Dynamics::Book);
+            row += &format!(
+                " {:.1e} | {:.1e} |",
+                run.drift::<Portable>(parts),
+                run.drift::<Fast>(parts)
+            );
+        }
+        row
+    });
     let table = rows.join("\n");
     println!("{table}");
     assert_says("docs/accuracy.md", &table);

@@ -1,19 +1,23 @@
-"""Steps of dm_control's swing-up per second and core: dm_control, MuJoCo's own batch, and this
-package.
+"""Steps of dm_control's swing-up per second of processor time: dm_control, MuJoCo's own batch,
+EnvPool, MuJoCo Playground and this package.
 
-    pip install dm_control==1.0.50 mujoco==3.17.0 && pip install bindings/python
+    pip install dm_control==1.0.50 mujoco==3.17.0 envpool==1.2.5 playground==0.2.0
+    pip install bindings/python
     MUJOCO_GL=disable python benches/compare/swingup.py
 
-Interleaved, the best of five. `mujoco.rollout` computes states alone; the others also observations,
-rewards and resets.
+Interleaved, the best of five. `mujoco.rollout` computes states alone; the others also observations
+and rewards, and all but Playground reset.
 """
 
 import time
 
 import acrobot_rs
+import envpool
+import jax
 import numpy as np
 from dm_control import suite
 from mujoco import MjData, rollout
+from mujoco_playground import registry
 
 ENVS, STEPS = 1024, 200
 rng = np.random.default_rng(0)
@@ -27,8 +31,24 @@ controls = np.ascontiguousarray(actions.transpose(1, 0, 2))
 data = [MjData(model)]
 envs = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=ENVS)
 envs.reset(seed=0)
+in_float64 = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=ENVS, float64=True)
+in_float64.reset(seed=0)
 env = acrobot_rs.AcrobotSwingupEnv()
 env.reset(seed=0)
+pool = envpool.make_gymnasium("AcrobotSwingup-v1", num_envs=256, num_threads=1)
+pool.reset()
+playground = registry.load("AcrobotSwingup", config_overrides={"impl": "jax"})
+keys = jax.random.split(jax.random.key(0), ENVS)
+begin = jax.jit(jax.vmap(playground.reset))(keys)
+
+
+@jax.jit
+def play(state, actions):
+    step = lambda state, each: (jax.vmap(playground.step)(state, each), None)
+    return jax.lax.scan(step, state, actions)[0]
+
+
+play(begin, actions[:20]).reward.block_until_ready()  # compiles
 
 
 def dm_control():
@@ -45,6 +65,17 @@ def mujoco_rollout():
     return STEPS * ENVS
 
 
+def envpool_256():
+    for each in actions[:20, :256]:
+        pool.step(each)
+    return 20 * 256
+
+
+def mujoco_playground():
+    play(begin, actions[:20]).reward.block_until_ready()
+    return 20 * ENVS
+
+
 def single():
     for each in actions[:, :10].reshape(-1, 1):
         env.step(each)
@@ -57,13 +88,19 @@ def vector():
     return STEPS * ENVS
 
 
+def vector_float64():
+    for each in actions:
+        in_float64.step(each)
+    return STEPS * ENVS
+
+
 def rate(run):
-    began = time.perf_counter()
-    return run() / (time.perf_counter() - began)
+    began = time.process_time()
+    return run() / (time.process_time() - began)
 
 
-runs = dm_control, mujoco_rollout, single, vector
+runs = dm_control, mujoco_rollout, envpool_256, mujoco_playground, single, vector, vector_float64
 best = np.max([[rate(run) for run in runs] for _ in range(5)], axis=0)
 for run, each in zip(runs, best, strict=True):
-    print(f"{run.__name__:15} {each:14,.0f} steps per second", end=", ")
+    print(f"{run.__name__:17} {each:14,.0f} steps per second", end=", ")
     print(f"{each / best[0]:,.1f} times dm_control, {each / best[1]:,.1f} times mujoco.rollout")

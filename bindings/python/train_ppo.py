@@ -1,7 +1,7 @@
 """Trains PPO with JAX on the vector environment until the mean return of 100 episodes passes -100.
 One file, as in CleanRL.
 
-    pip install -r requirements.txt && pip install .
+    pip install -r requirements-train.txt .
     python train_ppo.py                        seeds 1, 2 and 3
     python train_ppo.py 3 --save policy.bin    also saves the last policy, for a microcontroller
 
@@ -13,7 +13,7 @@ import argparse
 import sys
 import time
 
-import acrobot_rs  # noqa: F401 registers
+import acrobot_rs
 import gymnasium
 import jax
 import jax.numpy as jnp
@@ -22,6 +22,7 @@ import optax
 from acrobot_rs import policy
 from tqdm import tqdm
 
+gymnasium.register_envs(acrobot_rs)
 NAME = "acrobot_rs/Acrobot-v1"
 THRESHOLD = gymnasium.spec(NAME).reward_threshold
 ENVS, STEPS = 64, 64  # per update

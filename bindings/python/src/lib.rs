@@ -21,7 +21,8 @@ use serde::de::DeserializeOwned;
 
 pyo3::import_exception!(gymnasium.error, InvalidAction);
 
-#[pymodule]
+// Two threads cannot borrow an object at once, with or without Python's lock.
+#[pymodule(gil_used = false)]
 mod _native {
     #[pymodule_export]
     use super::batch::Batch;

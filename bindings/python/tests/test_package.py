@@ -1,10 +1,13 @@
 """The installed package has what a registry shows, and plays recorded episodes."""
 
+import sys
+import sysconfig
 from importlib.metadata import distribution
 
 import acrobot_rs
 import gymnasium
 import numpy as np
+import pytest
 
 
 def test_metadata():
@@ -29,6 +32,16 @@ def test_files():
     for name in words:
         assert files[name].parent.name == "licenses"
         assert words[name] in files[name].read_text()
+
+
+def test_names_are_public():
+    assert dir(acrobot_rs) == sorted([*acrobot_rs.__all__, "__version__"])
+    assert all(hasattr(acrobot_rs, name) for name in dir(acrobot_rs))
+
+
+@pytest.mark.skipif(not sysconfig.get_config_var("Py_GIL_DISABLED"), reason="needs free threads")
+def test_the_import_brings_back_no_lock():
+    assert not sys._is_gil_enabled()
 
 
 def test_recorded_velocities():

@@ -158,6 +158,36 @@ def test_an_action_of_a_swing_up_becomes_a_torque(torques, given, limit, tmp_pat
     np.testing.assert_allclose(numbers[-5:], limit * last, rtol=1e-6)
 
 
+def test_a_file_acts_as_its_model(tmp_path):
+    model = Model("ppo", [Linear(6, 8), Tanh(), Linear(8, 8), ReLU(), Linear(8, 3)])
+    policy.save(model, tmp_path / "p")
+    seen = RNG.normal(size=(50, 6)).astype(np.float32)
+    loaded = policy.load(tmp_path / "p")
+    assert len({*loaded.act(seen)}) == 3
+    assert (loaded.act(seen) == model.predict(seen, deterministic=True)[0]).all()
+    env = acrobot_rs.AcrobotEnv()
+    env.step(loaded.act(env.reset(seed=1)[0]))
+    model = SwingupModel([-2, 0, 2])
+    policy.save(model, tmp_path / "p")
+    torques, loaded = model.predict(seen, deterministic=True)[0], policy.load(tmp_path / "p")
+    np.testing.assert_allclose(loaded.act(seen), 2 * torques, rtol=1e-5, atol=1e-5)
+    assert (abs(loaded.act(10 * seen)) == 2).any() and loaded.act(seen[0]).shape == (1,)
+    for wrong in seen[:, :5], np.full(6, np.nan), 1.0:
+        with pytest.raises(ValueError, match="^observation must be finite numbers of shape"):
+            loaded.act(wrong)
+
+
+def test_other_files_are_rejected(tmp_path):
+    policy.write(tmp_path / "p", [(np.ones((3, 6)), np.ones(3), "relu")])
+    file = (tmp_path / "p").read_bytes()
+    assert policy.load(tmp_path / "p").act(np.zeros(6)) == 0  # the first of equal scores
+    damaged = [file[:i] + bytes([byte ^ 1]) + file[i + 1 :] for i, byte in enumerate(file)]
+    for other in (*damaged, *(file[:size] for size in range(len(file))), file + b"x"):
+        (tmp_path / "p").write_bytes(other)
+        with pytest.raises(ValueError, match="p must be what acrobot_rs.policy.save or write"):
+            policy.load(tmp_path / "p")
+
+
 def test_clipped_observations_are_warned_of(tmp_path):
     normalize = Normalize()
     normalize.clip_obs = 10.0

@@ -115,6 +115,19 @@ def test_specs_make_the_same_environment_again(name):
             assert all(getattr(twin, each) == getattr(envs, each) for each in names)
 
 
+@pytest.mark.parametrize("name", SINGLES)
+def test_parameters_make_the_same_environment_again(name):
+    env = gymnasium.make(name, LINK_MASS_1=2.0).unwrapped
+    assert env.parameters.keys() == set(env._NAMES) and env.parameters["LINK_MASS_1"] == 2.0
+    twin = type(env)(**env.parameters)
+    assert twin._native.__getstate__() == env._native.__getstate__()
+    if name in VECTORS:
+        envs = make(name, LINK_MASS_1=[1, 2, 3], gravity=Uniform(9, 10))
+        twin = type(envs)(3, **envs.parameters)
+        np.testing.assert_equal(twin.parameters, envs.parameters)
+        assert twin.parameters["gravity"] == Uniform(9, 10)
+
+
 def test_specs_have_draws_also_as_json():
     draws = {
         "LINK_MASS_1": Uniform(0.8, 1.2),

@@ -5,6 +5,7 @@ dm_control's ``AcrobotSwingup-v0`` and ``AcrobotSwingupSparse-v0``, all after ``
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
+    >>> gym.register_envs(acrobot_rs)  # does nothing, but keeps linters from deleting the import
     >>> env = gym.make("acrobot_rs/Acrobot-v1", render_mode="rgb_array")
     >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024)
 
@@ -15,6 +16,7 @@ from importlib.metadata import version
 
 from gymnasium.envs.registration import register
 
+from acrobot_rs import policy
 from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env
 from acrobot_rs.parameters import LogUniform, Normal, Uniform
 from acrobot_rs.swingup import (
@@ -38,8 +40,14 @@ __all__ = [
     "LogUniform",
     "Normal",
     "Uniform",
+    "policy",
 ]
 __version__ = version("acrobot-rs")
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
+
 
 for _kind, _id, _steps, _threshold in (
     ("Acrobot", "Acrobot-v1", 500, -100.0),

@@ -73,6 +73,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
+    >>> gym.register_envs(acrobot_rs)
     >>> env = gym.make("acrobot_rs/Acrobot-v1", LINK_MASS_1=2.0)
     >>> env.unwrapped.book_or_nips = "nips"
     >>> env.reset(seed=123, options={"low": -0.2, "high": 0.2})[0].shape
@@ -256,6 +257,7 @@ class AcrobotContinuousEnv(AcrobotEnv):
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
+    >>> gym.register_envs(acrobot_rs)
     >>> env = gym.make("acrobot_rs/AcrobotContinuous-v0")
     >>> env.action_space
     Box(-1.0, 1.0, (1,), float32)

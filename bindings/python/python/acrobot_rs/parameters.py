@@ -266,6 +266,11 @@ class Parameters(arrays.Hints):
         for name, space in self._spaces().items():
             setattr(self, name, space)
 
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """All parameters by their names: arguments that make the same environment again."""
+        return {name: getattr(self, name) for name in self._NAMES}
+
     def _check_arguments(self, parameters: Mapping[str, Any]) -> None:
         """Reject arguments that are no parameters."""
         for name in parameters.keys() - set(self._NAMES):

@@ -1,7 +1,7 @@
 """Saves a trained perceptron for the crate ``crates/policy``: on a microcontroller, in a browser.
 
 :func:`save` takes a model and compares the file's actions with the model's. :func:`write` takes
-arrays. Neither needs torch beside the model.
+arrays. :func:`load` plays a file. None needs torch beside the model.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs.arrays import LARGEST, must_be, require
 
@@ -28,6 +28,72 @@ _ACTIVATIONS = ["none", "tanh", "relu"]
 _KINDS = {"Linear": None, "Tanh": "tanh", "ReLU": "relu"} | dict.fromkeys(
     ("Identity", "Flatten", "Dropout"), "none"
 )
+
+
+class Policy:
+    """The policy in a file, without torch. Outputs differ from the crate's in the last digits."""
+
+    def __init__(self, layers: list[Layer], torque_limit: float | None) -> None:
+        """Keep the layers, and the largest torque, N m, or ``None`` if the outputs are scores."""
+        self.layers = layers
+        self.torque_limit = torque_limit
+
+    def act(self, observation: ArrayLike) -> NDArray[Any]:
+        """The action for an observation of shape ``(6,)``, or the actions for ``(n, 6)``.
+
+        With scores an action, ``0`` to ``2``, for each observation; otherwise a torque, N m, in an
+        array whose last axis has the length 1. The actions of a swing-up are torques divided by the
+        largest.
+        """
+        seen = np.asarray(observation, np.float32)
+        if seen.shape[-1:] != (6,) or seen.ndim > 2 or not np.isfinite(seen).all():
+            rule = "finite numbers of shape (6,) or (n, 6)"
+            raise must_be("observation", rule, reprlib.repr(observation))
+        outputs = _outputs(self.layers, seen)
+        if self.torque_limit is None:
+            return outputs.argmax(-1)
+        return np.clip(outputs, -self.torque_limit, self.torque_limit)
+
+
+def load(path: str | Path) -> Policy:
+    """Read a file of :func:`save` or :func:`write`.
+
+    Raises:
+        ValueError: If the file is another one, or damaged.
+    """
+    file = Path(path).read_bytes()
+    try:
+        policy = _read(file)
+        is_valid = _content(policy.layers, policy.torque_limit) == file
+    except (IndexError, ValueError, struct.error):
+        is_valid = False
+    if not is_valid:
+        rule = "what acrobot_rs.policy.save or write wrote"
+        raise must_be(str(path), rule, f"{len(file)} other bytes")
+    return policy
+
+
+def _read(file: bytes) -> Policy:
+    """The layers of a file that need not be valid."""
+    count, kind, inputs, limit = struct.unpack_from("<4xBBHf", file)
+    layers: list[Layer] = []
+    at = 12 + 4 * count
+    for i in range(count):
+        outputs, activation = struct.unpack_from("<HB", file, 12 + 4 * i)
+        numbers = np.frombuffer(file, "<f4", outputs * (1 + inputs), at).reshape(outputs, -1)
+        layers.append((numbers[:, 1:], numbers[:, 0], _ACTIVATIONS[activation]))
+        at += numbers.nbytes
+        inputs = outputs
+    return Policy(layers, limit if kind else None)
+
+
+def _outputs(layers: Sequence[Layer], x: NDArray[Any]) -> NDArray[Any]:
+    """What the last layer answers, in ``float32``."""
+    for weights, biases, activation in layers:
+        with np.errstate(all="ignore"):
+            x = x @ np.asarray(weights, np.float32).T + np.asarray(biases, np.float32)
+        x = np.tanh(x) if activation == "tanh" else np.maximum(x, 0) if activation == "relu" else x
+    return x
 
 
 def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None = None) -> None:
@@ -233,11 +299,7 @@ def _compare(
     torque_limit: float | None,
     note: str,
 ) -> None:
-    x: NDArray[Any] = seen
-    for weights, biases, activation in layers:
-        with np.errstate(all="ignore"):
-            x = x @ np.asarray(weights, np.float32).T + np.asarray(biases, np.float32)
-        x = np.tanh(x) if activation == "tanh" else np.maximum(x, 0) if activation == "relu" else x
+    x = _outputs(layers, seen)
     if wrong := (~np.isfinite(x)).any(1).sum():
         where = f"they are not on {wrong} of {len(seen)} observations"
         raise ValueError(f"the outputs of the file must be finite; {where}")

@@ -32,6 +32,7 @@ class AcrobotVecEnv(VecEnv):
     >>> import gymnasium as gym
     >>> import acrobot_rs
     >>> from acrobot_rs.sb3 import AcrobotVecEnv
+    >>> gym.register_envs(acrobot_rs)
     >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=64, autoreset_mode="SameStep")
     >>> AcrobotVecEnv(envs).reset().shape
     (64, 6)

@@ -74,6 +74,7 @@ class AcrobotSwingupEnv(Swingup, AcrobotContinuousEnv):
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
+    >>> gym.register_envs(acrobot_rs)
     >>> env = gym.make("acrobot_rs/AcrobotSwingup-v0", FRICTION_1=0.1)
     >>> observation, info = env.reset(seed=42)
     >>> observation, reward, terminated, truncated, info = env.step([0.5])
@@ -124,6 +125,7 @@ class AcrobotSwingupVectorEnv(
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
+    >>> gym.register_envs(acrobot_rs)
     >>> envs = gym.make_vec("acrobot_rs/AcrobotSwingup-v0", num_envs=1024, FRICTION_1=0.1)
     >>> envs.reset(seed=42)[0].shape
     (1024, 6)

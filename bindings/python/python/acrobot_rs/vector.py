@@ -43,6 +43,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
 
     >>> import gymnasium as gym
     >>> import acrobot_rs
+    >>> gym.register_envs(acrobot_rs)
     >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024, autoreset_mode="SameStep")
     >>> envs.reset(seed=42)[0].shape
     (1024, 6)
@@ -184,8 +185,8 @@ class AcrobotContinuousVectorEnv(AcrobotVectorEnv, VectorEnv[Floats, NDArray[Any
     The bounds of the action space are the smallest and the largest of ``AVAIL_TORQUE``. A torque
     beyond acts as the nearest bound.
 
-    >>> import acrobot_rs.vector
-    >>> envs = acrobot_rs.vector.AcrobotContinuousVectorEnv(num_envs=1024)
+    >>> import acrobot_rs
+    >>> envs = acrobot_rs.AcrobotContinuousVectorEnv(num_envs=1024)
     >>> envs.action_space.shape
     (1024, 1)
     """

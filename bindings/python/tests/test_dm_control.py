@@ -1,0 +1,69 @@
+"""`acrobot_rs.dm_control` plays dm_control's episodes: `tests/data/swingup.txt`, with its seed."""
+
+import numpy as np
+import pytest
+
+dm_env = pytest.importorskip("dm_env")
+from absl.testing import absltest
+from acrobot_rs import dm_control
+from dm_env import test_utils
+from test_swingup import RECORDED, TASKS, ours
+
+
+@TASKS
+def test_episodes_are_dm_controls(name, column):
+    """From the same seed. Every other one of the recording begins in a state that was set."""
+    task = "swingup_sparse" if "Sparse" in name else "swingup"
+    env, flat = (
+        dm_control.load("acrobot", task, {"random": 1}, {"flat_observation": is_flat})
+        for is_flat in (False, True)
+    )
+    for episode in range(10):
+        assert env.reset().first() and flat.reset().first()
+        rows = RECORDED[100 * episode :][:100]
+        if episode % 2:
+            env.gymnasium.state = flat.gymnasium.state = ours(rows[0, :4])
+        assert np.abs(env.gymnasium.state - ours(rows[0, :4])).max() < 1e-15
+        for row in rows:
+            step, seen = env.step(row[4:5]), flat.step(row[4]).observation["observations"]
+            assert step.mid() and step.discount == 1.0
+            assert np.abs(seen - row[9:15]).max() < 1e-11
+            assert (np.concatenate([*step.observation.values()]) == seen).all()
+            assert abs(step.reward - row[column]) < 1e-6
+
+
+def test_a_step_after_the_time_limit_resets():
+    env, twin = (dm_control.load("acrobot", "swingup", {"random": 2}) for _ in range(2))
+    assert env.step(0.0).first() and twin.reset().first()
+    steps = [env.step([0.3]) for _ in range(1000)]
+    assert not any(step.last() for step in steps[:-1])
+    assert steps[-1].last() and steps[-1].discount == 1.0
+    assert env.step([0.3]).first()
+    assert (env.gymnasium.state != twin.gymnasium.state)[:2].all()
+    twin.reset()
+    assert (env.gymnasium.state == twin.gymnasium.state).all()
+    short = dm_control.load("acrobot", "swingup", {"time_limit": 0.05}, {"dt": 0.025})
+    assert [short.step(0.0).step_type for _ in range(4)] == [0, 1, 2, 0]
+    assert short.control_timestep() == 0.025 and env.control_timestep() == 0.01
+
+
+@pytest.mark.parametrize(
+    ("error", "message", "arguments"),
+    [
+        (ValueError, "domain_name must be .*, got 'reacher'", ["reacher", "swingup"]),
+        (ValueError, "task_name must be one of .*, got 'balance'", ["acrobot", "balance"]),
+        (ValueError, "time_limit must be above 0 s", ["acrobot", "swingup", {"time_limit": 0}]),
+        (TypeError, "time_limit must be a number", ["acrobot", "swingup", {"time_limit": "1"}]),
+        (TypeError, "'n_sub_steps'", ["acrobot", "swingup", None, {"n_sub_steps": 2}]),
+    ],
+)
+def test_invalid_arguments_are_rejected(error, message, arguments):
+    with pytest.raises(error, match=message):
+        dm_control.load(*arguments)
+
+
+class TestInterface(test_utils.EnvironmentTestMixin, absltest.TestCase):
+    """dm_env's own checks."""
+
+    def make_object_under_test(self):
+        return dm_control.load("acrobot", "swingup", {"time_limit": 1}, {"FRICTION_1": 0.1})
