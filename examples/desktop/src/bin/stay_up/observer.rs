@@ -72,15 +72,14 @@ impl Observer {
     pub fn step(&mut self, torque: f32) -> Result<(), Error> {
         /// The difference for derivatives.
         const H: f64 = 1e-4;
-        let [.., f1, f2, f3, f4] = self.estimate;
         let next = self.stepped(self.estimate, torque)?;
         let mut columns = [[0.0; 8]; 8];
         for (i, column) in columns.iter_mut().enumerate() {
             let mut other = self.estimate;
             other[i] += H;
-            let [d1, d2, d3, d4] = difference(self.stepped(other, torque)?, next).map(|d| d / H);
-            *column = [d1, d2, d3, d4, 0.0, 0.0, 0.0, 0.0];
-            column[i] += f64::from(u8::from(i > 3));
+            let slopes = difference(self.stepped(other, torque)?, next).map(|d| d / H);
+            *column = from_fn(|j| f64::from(u8::from(i == j))); // the factors stay
+            column[..4].copy_from_slice(&slopes);
         }
         let half: [Estimate; 8] =
             from_fn(|i| from_fn(|j| (0..8).map(|k| columns[k][i] * self.covariance[k][j]).sum()));
@@ -91,8 +90,7 @@ impl Observer {
                 if i == j { sum + DRIFT } else { sum }
             })
         });
-        let State { theta1, theta2, dtheta1, dtheta2 } = next;
-        self.estimate = [theta1, theta2, dtheta1, dtheta2, f1, f2, f3, f4];
+        self.estimate[..4].copy_from_slice(&<[f64; 4]>::from(next));
         Ok(())
     }
 

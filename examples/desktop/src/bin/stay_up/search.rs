@@ -1,4 +1,4 @@
-//! The search for the best plan of dm_control's swing-up.
+//! The search for the best plan of a swing-up.
 //!
 //! The planner finds only the best plan near a first guess. So the search goes on from the best
 //! plans: it changes a few torques of a plan, removes some of its steps or repeats them, and plans
@@ -32,15 +32,16 @@ const TRIES: usize = 4;
 pub type Plan = Vec<Step<f32>>;
 
 /// The search for the best plan from a state.
+#[derive(Clone)]
 pub struct Search {
-    acrobot: Acrobot<Task>,
+    pub acrobot: Acrobot<Task>,
     pub planner: Planner<Task>,
     /// The largest torque of plans, N m.
     limit: f32,
     /// The steps of first guesses, and those of an episode.
     lengths: Range<usize>,
-    steps: usize,
-    rng: Pcg64,
+    pub steps: usize,
+    pub rng: Pcg64,
 }
 
 impl Search {
