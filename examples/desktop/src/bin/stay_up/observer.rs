@@ -102,3 +102,33 @@ impl Observer {
         Ok(self.model.state())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_seconds_of_motion_tell_the_errors() -> Result<(), Error> {
+        let nominal = Params::SWINGUP;
+        let factors = [1.03, 0.98, 1.02, 0.97];
+        let mut observer = Observer::new(nominal)?;
+        observer.estimate[4..].copy_from_slice(&factors);
+        let (_, params) = observer.parts(observer.estimate);
+        let mut machine = Pendulum::<Swingup<Portable>>::new(params, State::HANGING)?;
+        observer = Observer::new(nominal)?;
+        for i in 0..200 {
+            let noise = if i % 3 == 0 { 1e-4 } else { -5e-5 };
+            let [x1, x2, x3, x4] = machine.state().into();
+            let measured = [x1 + noise, x2 - noise, x3 + 10.0 * noise, x4 - 10.0 * noise];
+            observer.measure(State::from(measured), [1e-4, 1e-4, 1e-3, 1e-3]);
+            let torque = if i % 70 < 35 { 2.0 } else { -2.0 };
+            machine.step(torque.into())?;
+            observer.step(torque)?;
+        }
+        let errors: [f64; 4] = from_fn(|i| observer.estimate[4 + i] - factors[i]);
+        assert!(errors.iter().all(|error| error.abs() < 1e-3), "{errors:?}");
+        let x = difference(observer.state().cast(), machine.state());
+        assert!(x.iter().all(|x| x.abs() < 1e-3), "{x:?}");
+        Ok(())
+    }
+}
