@@ -211,12 +211,6 @@ impl<A: Arithmetic> Planner<A> {
         }
     }
 
-    /// The regulator that holds the machine upright after the plan.
-    #[must_use]
-    pub fn regulator(&self) -> &Lqr<A::Scalar> {
-        &self.regulator
-    }
-
     /// Whether the regulator succeeds from a state.
     #[must_use]
     pub fn catches(&self, state: State<A::Scalar>) -> bool {
