@@ -17,6 +17,11 @@ pub mod rust {}
 )]
 pub mod embedded {}
 
+#[doc = include_str!("../docs/rustdoc-links.txt")]
+#[doc = include_str!("../docs/balance.txt")]
+#[doc = include_str!("../docs/control.md")]
+pub mod control {}
+
 macro_rules! pages {
     ($($module:ident $file:literal),* $(,)?) => {$(
         #[doc = include_str!("../docs/rustdoc-links.txt")]
@@ -33,7 +38,6 @@ pages! {
     python_many "python-many.md",
     python_parameters "python-parameters.md",
     numbers "numbers.md",
-    control "control.md",
     parity "parity.md",
     accuracy "accuracy.md",
     determinism "determinism.md",

@@ -196,10 +196,19 @@ impl<A: Arithmetic> Planner<A> {
         Ok(())
     }
 
-    /// The regulator that holds the machine upright after the plan.
+    /// The torque at a decision, N m: that of the plan's step, and after the plan that of the
+    /// regulator. `bound` limits it, as in [`Step::follow`].
     #[must_use]
-    pub fn regulator(&self) -> &Lqr<A::Scalar> {
-        &self.regulator
+    pub fn follow(
+        &self,
+        plan: &[Step<A::Scalar>],
+        step: usize,
+        state: State<A::Scalar>,
+    ) -> A::Scalar {
+        match plan.get(step) {
+            Some(step) => step.follow(state),
+            None => self.regulator.torque(difference(state, State::UPRIGHT)),
+        }
     }
 
     /// Whether the regulator succeeds from a state.

@@ -1,5 +1,5 @@
-//! A plan obeys the model and its largest torque, and ends where the regulator holds. Bad input
-//! gives an error.
+//! A plan obeys the model and its largest torque, and ends where the regulator holds. The controller
+//! needs no plan. Bad input gives an error.
 
 use std::error::Error;
 
@@ -8,7 +8,7 @@ use acrobot::numpy::Pcg64;
 use acrobot::physics::control::difference;
 use acrobot::physics::{Pendulum, bound};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
-use controller::{NoPlan, Planner, Step};
+use controller::{Controller, NoPlan, Planner, Step};
 
 /// Plans from hanging with three quarters of a torque, N m, and follows the plan from a nearby
 /// state.
@@ -29,8 +29,7 @@ fn swings_up_and_holds<A: Arithmetic>(params: Params<A::Scalar>, limit: f64) {
     }
     for mut machine in [exact, disturbed] {
         for _ in 0..500 {
-            let torque = planner.regulator().torque(machine.deviation(State::UPRIGHT));
-            machine.step(bound(torque, limit)).unwrap();
+            machine.step(bound(planner.follow(&[], 0, machine.state()), limit)).unwrap();
         }
         let x = machine.deviation(State::UPRIGHT).map(Real::to_f64);
         assert!(x.iter().all(|x| x.abs() < 0.01), "{} {x:?}", A::NAME);
@@ -47,11 +46,7 @@ fn a_plan_from_hanging_serves_nearby_states() -> Result<(), Box<dyn Error>> {
 
     let mut machine = Acrobot::<Fast>::with_params(42, params)?;
     for tick in 0..2000 {
-        let state = machine.state();
-        let torque = match plan.get(tick) {
-            Some(step) => step.follow(state),
-            None => planner.regulator().torque(difference(state, State::UPRIGHT)),
-        };
+        let torque = planner.follow(plan, tick, machine.state()); // after the plan: holds
         machine.step_torque(bound(torque, 1.0))?; // a fifth is for corrections
     }
     let x = difference(machine.state(), State::UPRIGHT);
@@ -64,6 +59,23 @@ fn plans_swing_up_and_hold_in_any_arithmetic_and_with_friction() {
     swings_up_and_holds::<Fast>(Params::DEFAULT, 8.0);
     swings_up_and_holds::<Micro>(Params::DEFAULT, 8.0);
     swings_up_and_holds::<Swingup<Portable>>(Params::SWINGUP, 6.0);
+}
+
+/// From states of the whole circle, with a motor that is disturbed.
+#[test]
+fn the_controller_swings_up_and_holds_without_a_plan() -> Result<(), Box<dyn Error>> {
+    let params = Params { dt: 0.01, torque_noise: 0.5, ..Params::DEFAULT };
+    let mut controller = Controller::new(params, 10.0)?;
+    for angle in [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0] {
+        let mut machine = Acrobot::<Fast>::with_params(42, params)?;
+        machine.set_state(State { theta2: angle, ..State::HANGING })?;
+        for _ in 0..3000 {
+            machine.step_torque(controller.decide(machine.state())?)?;
+        }
+        let x = difference(machine.state(), State::UPRIGHT);
+        assert!(x[0].abs().max(x[1].abs()) < 0.1, "{angle} {x:?}");
+    }
+    Ok(())
 }
 
 /// More iterations lower the cost. The rest of a plan, planned again from another state, begins

@@ -1,5 +1,4 @@
-//! An episode as an animated SVG: the bang-bang policy, torque against θ̇1, or the firmware's
-//! controller.
+//! An episode as an animated SVG: the bang-bang policy, torque against θ̇1, or a plan.
 //!
 //! ```text
 //! cargo run --release -p desktop --bin episode -- --seed 42 --out episode.svg
@@ -9,10 +8,10 @@
 use std::path::PathBuf;
 
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::control::ControlError;
+use acrobot::physics::bound;
 use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 use clap::Parser;
-use controller::Controller;
+use controller::{Planner, Step};
 use desktop::{animation, bang_bang, write};
 
 /// Draws an episode as an animated SVG, about three times as fast as real time.
@@ -21,8 +20,8 @@ struct Options {
     /// Seed of the initial state, and of the disturbance: a decimal integer of any size.
     #[arg(long, default_value = "42")]
     seed: SeedSequence,
-    /// Draws in real time how the controller of the firmware `balance` swings up and holds the
-    /// acrobot upright.
+    /// Draws in real time how the firmware `balance` swings up and holds the acrobot upright, with
+    /// a motor of 2 N m.
     #[arg(long)]
     balance: bool,
     /// File to write.
@@ -71,24 +70,26 @@ fn bang_bang_episode(rng: Pcg64) -> Vec<State> {
 }
 
 /// Steps of the balanced acrobot, each 0.01 s.
-const STEPS: usize = 1000;
+const STEPS: usize = 1500;
 /// Each of its frames shows this many steps: 25 frames a second.
 const STEPS_PER_FRAME: usize = 4;
 
 /// The state of each frame.
-fn balance(rng: Pcg64) -> Result<Vec<State>, ControlError> {
-    // As in the firmware with a largest torque of 10 N m.
+fn balance(rng: Pcg64) -> anyhow::Result<Vec<State>> {
+    // As in the firmware with a largest torque of 2 N m.
     let params = Params { dt: 0.01, torque_noise: 0.5, ..Params::DEFAULT };
+    let mut planner = Planner::<Fast>::new(params, 1.5)?;
+    let mut memory = [Step::EMPTY; 1250];
+    let plan = planner.plan(State::HANGING, 64, &mut Pcg64::new(1), &mut memory)?;
     let mut machine = Acrobot::<Fast>::with_rng(rng);
     machine.set_params(params)?;
-    let mut controller = Controller::new(params, 10.0)?;
     let mut states = Vec::new();
     for step in 0..STEPS {
         let state = machine.state();
         if step % STEPS_PER_FRAME == 0 {
             states.push(state.cast());
         }
-        machine.step_torque(controller.decide(state)?)?;
+        machine.step_torque(bound(planner.follow(plan, step, state), 2.0))?;
     }
     Ok(states)
 }

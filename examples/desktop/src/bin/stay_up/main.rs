@@ -7,13 +7,16 @@
 //! ```
 //!
 //! The planner is `Planner` of `crates/controller`. It knows the exact model and plans before the
-//! acrobot moves, but with `--replan` from a wrong model, again and again, while the acrobot moves.
+//! acrobot moves. With `--replan` the model is wrong, and it plans again while the acrobot moves.
 //!
 //! Prints the mean return of episodes of 1,000 steps, from the initial states of
 //! `Acrobot::new(seed)` for seeds from 0, or how many of Gymnasium's initial states end upright.
 
+mod observer;
 mod replan;
 mod search;
+
+use std::ops::Range;
 
 use acrobot::arithmetic::{Arithmetic, Swingup};
 use acrobot::numpy::Pcg64;
@@ -36,6 +39,9 @@ const RATE: usize = 50;
 const STEPS: usize = 1250;
 const TRIES: u32 = 64;
 
+/// The steps of first guesses for the swing-up.
+const LENGTHS: Range<usize> = 150..600;
+
 /// The whole search begins again, so many times, while the best return is below this.
 const AGAIN: u32 = 2;
 const POOR: f64 = 500.0;
@@ -55,6 +61,7 @@ struct Options {
 }
 
 /// An episode: the sum of its rewards, and the first step after which it was always upright.
+#[derive(Default)]
 struct Episode {
     total: f64,
     upright: usize,
@@ -69,31 +76,41 @@ impl Episode {
         limit: f32,
         steps: usize,
     ) -> anyhow::Result<Self> {
-        let (mut total, mut upright) = (0.0, 0);
+        let mut episode = Self::default();
         for i in 0..steps {
-            let state = acrobot.state();
-            let torque = match plan.get(i) {
-                Some(step) => step.follow(state),
-                None => planner.regulator().torque(difference(state, State::UPRIGHT)),
-            };
-            total += f64::from(acrobot.step_torque(bound(torque, limit))?.reward);
-            let [theta1, theta2, ..] = difference(acrobot.state(), State::UPRIGHT);
-            if theta1.abs().max(theta2.abs()) > 0.1 {
-                upright = i + 1;
-            }
+            let torque = planner.follow(plan, i, acrobot.state());
+            episode.step(&mut acrobot, bound(torque, limit), i)?;
         }
-        Ok(Self { total, upright })
+        Ok(episode)
+    }
+
+    /// Takes step `i`.
+    fn step<A: Arithmetic<Scalar = f32>>(
+        &mut self,
+        acrobot: &mut Acrobot<A>,
+        torque: f32,
+        i: usize,
+    ) -> anyhow::Result<()> {
+        self.total += f64::from(acrobot.step_torque(torque)?.reward);
+        let [theta1, theta2, ..] = difference(acrobot.state(), State::UPRIGHT);
+        if theta1.abs().max(theta2.abs()) > 0.1 {
+            self.upright = i + 1;
+        }
+        Ok(())
+    }
+
+    /// Whether an episode of so many steps is upright in its last hundred.
+    fn holds(&self, steps: usize) -> bool {
+        self.upright + 100 <= steps
     }
 }
 
 fn swing_up(seed: u64) -> anyhow::Result<Episode> {
-    let mut search = Search::new(Acrobot::new(seed), SWINGUP, seed)?;
-    let plan = search.run(1)?;
-    let mut best = search.episode(&plan)?;
+    let mut search = Search::new(Acrobot::new(seed), SWINGUP, LENGTHS, 1000, seed)?;
+    let (mut best, _) = search.run(1)?;
     for _ in 0..AGAIN {
         if best.total < POOR {
-            let other = search.run(1)?;
-            let other = search.episode(&other)?;
+            let (other, _) = search.run(1)?;
             if other.total > best.total {
                 best = other;
             }
@@ -137,7 +154,7 @@ fn main() -> anyhow::Result<()> {
     let mean = totals.clone().sum::<f64>() / f64::from(count);
     let variance = totals.clone().map(|x| (x - mean) * (x - mean)).sum::<f64>() / f64::from(count);
     let worst = totals.fold(f64::INFINITY, f64::min);
-    let held = episodes.iter().filter(|episode| episode.upright <= 900).count();
+    let held = episodes.iter().filter(|episode| episode.holds(1000)).count();
     println!(
         "mean return of {count} episodes: {mean:.0} ± {:.0}, the worst {worst:.0}, held {held}",
         variance.sqrt()

@@ -1,21 +1,20 @@
-//! The search for the best plan of dm_control's swing-up.
+//! The search for the best plan of a swing-up.
 //!
 //! The planner finds only the best plan near a first guess. So the search goes on from the best
 //! plans: it changes a few torques of a plan, removes some of its steps or repeats them, and plans
 //! again from there.
 
-use acrobot::arithmetic::Arithmetic;
+use std::ops::Range;
+
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::bound;
-use acrobot::{Acrobot, Params};
+use acrobot::{Acrobot, Params, State};
 use controller::{Planner, Step};
 
-use crate::{Episode, SWINGUP, Task};
+use crate::{Episode, Task};
 
-/// First guesses, and the steps of their plans.
+/// First guesses.
 const GUESSES: usize = 120;
-const SHORTEST: usize = 150;
-const LONGEST: usize = 600;
 /// After a few iterations the best of them are planned until no iteration helps.
 const FEW: u32 = 25;
 const ALL: u32 = 150;
@@ -26,23 +25,49 @@ const CHANGES: usize = 240;
 const ITERATIONS: u32 = 50;
 /// The most steps that a change is about.
 const WINDOW: usize = 30;
-/// The search for the best plan from one initial state.
+/// Planning again takes so many iterations, and so many tries until a plan holds.
+const AGAIN: u32 = 12;
+const TRIES: usize = 4;
+
+pub type Plan = Vec<Step<f32>>;
+
+/// The search for the best plan from a state.
+#[derive(Clone)]
 pub struct Search {
-    acrobot: Acrobot<Task>,
-    planner: Planner<Task>,
-    rng: Pcg64,
+    pub acrobot: Acrobot<Task>,
+    pub planner: Planner<Task>,
+    /// The largest torque of plans, N m.
+    limit: f32,
+    /// The steps of first guesses, and those of an episode.
+    lengths: Range<usize>,
+    pub steps: usize,
+    pub rng: Pcg64,
 }
 
 impl Search {
-    /// Searches from the acrobot's state, with plans of a largest torque, N m.
-    pub fn new(acrobot: Acrobot<Task>, limit: f32, seed: u64) -> anyhow::Result<Self> {
-        Ok(Self { acrobot, planner: Planner::new(Params::SWINGUP, limit)?, rng: Pcg64::new(seed) })
+    /// Searches from the acrobot's state.
+    pub fn new(
+        acrobot: Acrobot<Task>,
+        limit: f32,
+        lengths: Range<usize>,
+        steps: usize,
+        seed: u64,
+    ) -> anyhow::Result<Self> {
+        let planner = Planner::new(*acrobot.params(), limit)?;
+        Ok(Self { acrobot, planner, limit, lengths, steps, rng: Pcg64::new(seed) })
     }
 
-    /// An episode that follows the plan.
-    pub fn episode(&self, plan: &[Step<f32>]) -> anyhow::Result<Episode> {
-        let steps = Task::TASK.limit().get() as usize;
-        Episode::play(self.acrobot.clone(), &self.planner, plan, SWINGUP, steps)
+    /// Improves a plan, and simulates an episode that follows it.
+    fn improve(&mut self, iterations: u32, mut plan: Plan) -> anyhow::Result<(Episode, Plan)> {
+        self.planner.improve(self.acrobot.state(), iterations, &mut plan)?;
+        let acrobot = self.acrobot.clone();
+        Ok((Episode::play(acrobot, &self.planner, &plan, self.limit, self.steps)?, plan))
+    }
+
+    fn guess(&mut self) -> anyhow::Result<Plan> {
+        let mut plan = vec![Step::EMPTY; self.draw(self.lengths.start, self.lengths.end)];
+        self.planner.guess(self.acrobot.state(), &mut self.rng, &mut plan)?;
+        Ok(plan)
     }
 
     /// A whole number from `low` up to but not including `high`.
@@ -51,15 +76,15 @@ impl Search {
     }
 
     /// A changed copy of a plan.
-    fn change(&mut self, plan: &[Step<f32>]) -> Vec<Step<f32>> {
+    fn change(&mut self, plan: &[Step<f32>]) -> Plan {
         let mut torques: Vec<f32> = plan.iter().map(|step| step.torque).collect();
         let end = self.draw(1, torques.len() + 1);
         let window = end - self.draw(1, WINDOW + 1).min(end)..end;
         match self.draw(0, 3) {
             0 => {
-                let push = uniform(&mut self.rng, -2.0, 2.0) as f32;
+                let push = (f64::from(self.limit) * uniform(&mut self.rng, -1.0, 1.0)) as f32;
                 for torque in &mut torques[window] {
-                    *torque = bound(*torque + push, SWINGUP);
+                    *torque = bound(*torque + push, self.limit);
                 }
             }
             1 if torques.len() > 2 * WINDOW => drop(torques.drain(window)),
@@ -72,32 +97,56 @@ impl Search {
     }
 
     /// The best plan of a part of the search.
-    pub fn run(&mut self, part: usize) -> anyhow::Result<Vec<Step<f32>>> {
+    pub fn run(&mut self, part: usize) -> anyhow::Result<(Episode, Plan)> {
         let start = self.acrobot.state();
         let mut guesses = Vec::new();
         for _ in 0..GUESSES / part {
-            let mut plan = vec![Step::EMPTY; self.draw(SHORTEST, LONGEST)];
-            self.planner.guess(start, &mut self.rng, &mut plan)?;
+            let mut plan = self.guess()?;
             guesses.push((self.planner.improve(start, FEW, &mut plan)?, plan));
         }
         guesses.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         let mut best = Vec::new();
-        for (_, mut plan) in guesses.into_iter().take(KEPT / part) {
-            self.planner.improve(start, ALL, &mut plan)?;
-            best.push((self.episode(&plan)?.total, plan));
+        for (_, plan) in guesses.into_iter().take(KEPT / part) {
+            best.push(self.improve(ALL, plan)?);
         }
         for i in 0..CHANGES / part {
-            best.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+            best.sort_by(|(a, _), (b, _)| b.total.total_cmp(&a.total));
             best.truncate(if i < CHANGES / part / 2 { CHANGED } else { 1 });
             let len = best.len();
-            let (total, plan) = &mut best[i % len];
-            let mut changed = self.change(plan);
-            self.planner.improve(start, ITERATIONS, &mut changed)?;
-            let episode = self.episode(&changed)?;
-            if episode.total > *total {
-                (*total, *plan) = (episode.total, changed);
+            let old = &mut best[i % len];
+            let changed = self.change(&old.1);
+            let changed = self.improve(ITERATIONS, changed)?;
+            if changed.0.total > old.0.total {
+                *old = changed;
             }
         }
-        Ok(best.swap_remove(0).1)
+        Ok(best.swap_remove(0))
+    }
+
+    /// Plans again from a state, with other parameters and so many steps left: improves the rest of
+    /// a plan, and if that does not hold, tries others.
+    pub fn again(
+        &mut self,
+        state: State<f32>,
+        params: Params<f32>,
+        steps: usize,
+        rest: Plan,
+    ) -> anyhow::Result<Plan> {
+        self.acrobot.set_params(params)?;
+        self.acrobot.set_state(state)?;
+        self.planner = Planner::new(params, self.limit)?;
+        self.steps = steps;
+        let mut best = self.improve(AGAIN, rest)?;
+        for i in 0..TRIES {
+            if best.0.holds(steps) {
+                break;
+            }
+            let other = if i % 2 == 0 { self.guess()? } else { self.change(&best.1) };
+            let other = self.improve(ITERATIONS, other)?;
+            if other.0.total > best.0.total {
+                best = other;
+            }
+        }
+        Ok(best.1)
     }
 }
