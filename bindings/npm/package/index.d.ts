@@ -75,9 +75,9 @@ export type ParamsRange = {
 };
 
 /**
- * Gymnasium's task, or dm_control's `acrobot-swingup`: from rest anywhere to upright, without an end.
- * This has other parameters, 1000 steps, a reward from 0 to 1, and other observations: the sines of
- * both links' angles from upright, their cosines, and the velocities.
+ * Gymnasium's task, or dm_control's `acrobot-swingup`: from rest anywhere to upright, and no state
+ * ends it. This has other parameters, 1000 steps, a reward from 0 to 1, and other observations: the
+ * sines of both links' angles from upright, their cosines, and the velocities.
  */
 export type Task = "acrobot" | "swingup";
 

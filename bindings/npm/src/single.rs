@@ -137,8 +137,8 @@ pub extern "C" fn acrobot_save(one: &One) -> usize {
     memory::save(&(params, state, rng, one.max_steps, one.elapsed))
 }
 
-/// Loads what `acrobot_save` writes from the first `len` bytes. Returns false and changes nothing if
-/// it is invalid.
+/// Loads what `acrobot_save` writes from the first `len` bytes. Returns false and changes nothing
+/// if it is invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_load(one: &mut One, len: usize) -> bool {
     let Some(((params, state, rng, max_steps, elapsed), used)) = memory::load(len) else {

@@ -90,7 +90,7 @@ test("the module imports nothing and cannot panic", () => {
 });
 
 test("the programs of the documentation run in Node.js and print what they say", () => {
-  assert.equal(PROGRAMS.length, 7);
+  assert.equal(PROGRAMS.length, 8);
   PROGRAMS.forEach((program, i) => {
     write(`program${i}.mjs`, program);
     assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));

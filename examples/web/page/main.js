@@ -157,7 +157,8 @@ function start() {
     const upright = [`upright: ${number(standing)} J`, "hint"];
     const height = [`tip height ${number(heights.at(-1))} m`, ""];
     const range = rangeOf([...energy, standing, -standing]);
-    show("energy", "Energy", [""], "J", [energy], { range, marks: [[standing, color("--muted")]] }, upright, height);
+    const marks = [[standing, color("--muted")]];
+    show("energy", "Energy", [""], "J", [energy], { range, marks }, upright, height);
     const turn = { range: [-Math.PI, Math.PI], period: 2 * Math.PI };
     show("angles", "Angles", ["θ1", "θ2"], "rad", angles, turn);
     const fastest = 1.06 * Math.max(2, ...velocities.flat().map(Math.abs));

@@ -37,7 +37,8 @@ export function parametersPanel(get, set) {
     const reason = field.querySelector(".reason");
     const change = () => {
       const value = parseNumber(text.value);
-      attempt(text, reason, () => Object.is(value, get()[name]) || set({ ...get(), [name]: value }));
+      const isNew = !Object.is(value, get()[name]);
+      attempt(text, reason, () => isNew && set({ ...get(), [name]: value }));
       const given = text.value.trim() || "an empty text";
       reason.textContent = reason.textContent.replace(/(NaN|−?Infinity)$/, () => given);
     };

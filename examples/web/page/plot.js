@@ -79,8 +79,8 @@ export function plot(canvas, options) {
 }
 
 /**
- * At most about `count` round numbers from `low` to `high`, at equal distances. Without 2.5, a range
- * from −4.9 to 4.9 would have only 0.
+ * At most about `count` round numbers from `low` to `high`, at equal distances. Without 2.5, a
+ * range from −4.9 to 4.9 would have only 0.
  */
 export function ticks(low, high, count) {
   const raw = (high - low) / count;

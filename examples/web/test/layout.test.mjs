@@ -149,7 +149,7 @@ test("each screen shows what its player needs, and nothing overlaps or is wider"
       const labels = await page.evaluate(() => document.querySelector("#curve").labels);
       assert.deepEqual(labels.slice(0, 3).map(({ name }) => name), ["−200", "−100", "0"]);
       for (const id of ["drive", "gravity"]) {
-        await page.focus(`#${id}`);
+        await page.evaluate((id) => document.querySelector(`#${id}`).scrollIntoView(), id);
         await text(page, "#step");
         await inView("stage", id);
         assert.deepEqual((await overlaps(page)).filter((pair) => pair.includes(id)), []);
