@@ -151,7 +151,7 @@ test("each screen shows what its player needs, and nothing overlaps or is wider"
       for (const id of ["drive", "gravity"]) {
         await page.evaluate((id) => document.querySelector(`#${id}`).scrollIntoView(), id);
         await text(page, "#step");
-        await inView("stage", id);
+        await inView("stage");
         assert.deepEqual((await overlaps(page)).filter((pair) => pair.includes(id)), []);
       }
       await page.evaluate(() => scrollTo(0, 0));
