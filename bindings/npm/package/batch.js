@@ -76,8 +76,10 @@ export class Batch extends Kept {
     this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
     orFree(this, () => {
       super.setParams(params);
-      if (paramsRange !== undefined) this.setParamsRange(paramsRange);
-      for (let i = 0; i < count; i++) drawParams(this, i);
+      if (paramsRange !== undefined) {
+        this.setParamsRange(paramsRange);
+        for (let i = 0; i < count; i++) drawParams(this, i);
+      }
       this.#copy(...this.#names);
     });
     this.#observe();

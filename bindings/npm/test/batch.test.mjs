@@ -10,7 +10,8 @@ import { Acrobot, Batch } from "../dist/index.js";
 import { assertRejected, instance, randoms, sealed } from "./module.mjs";
 
 const COUNT = 21; // the last block is partly filled
-const OPTIONS = { seed: 42n, count: COUNT, maxSteps: 25, params: { torqueNoise: 0.5, mass1: 1.5 } };
+const PARAMS = { torqueNoise: 0.5, mass1: 1.5, torques: [-1, 0, 1.5] };
+const OPTIONS = { seed: 42n, count: COUNT, maxSteps: 25, params: PARAMS };
 
 /** The seed's `i`-th child, which NumPy's `SeedSequence` spawns. Acrobot 0 has no such seed. */
 const child = (seed, i) => seed + (BigInt(i) << 128n);
@@ -186,7 +187,8 @@ test("acrobots with own parameters have the bits of acrobots alone, also after a
   const params = () => others.map((_, i) => batch.paramsOf(i));
   const expected = () => others.map(({ params }) => params);
   others.forEach((other, i) => {
-    const changes = { mass2: 1 + i / 8, dynamics: i % 2 ? "nips" : "book" };
+    const torques = [-1 - i / 8, 0, 1];
+    const changes = { mass2: 1 + i / 8, dynamics: i % 2 ? "nips" : "book", torques };
     batch.setParamsOf(i, changes);
     other.setParams(changes);
   });
