@@ -162,16 +162,27 @@ pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
 }
 
 impl Many {
-    /// Makes torques of the actions: steps of actions, too, would take 9 KB. Returns `None` if an
+    /// Makes torques of the actions: steps of actions, too, would take 9 KB. Returns false if an
     /// action is above 2.
-    fn act(&mut self) -> Option<()> {
-        let mut own = self.torques_of.iter();
-        let mut of = own.next()?;
-        for (torque, action) in self.torques.iter_mut().zip(&self.actions) {
-            *torque = *of.get(usize::from(*action))?;
-            of = own.next().unwrap_or(of);
+    fn act(&mut self) -> bool {
+        if self.actions.iter().any(|action| *action > 2) {
+            return false;
         }
-        Some(())
+        let torques = self.torques.iter_mut().zip(&self.actions);
+        match *self.torques_of {
+            // No branch, so that the compiler vectorizes the loop.
+            [[negative, zero, positive]] => torques.for_each(|(torque, action)| {
+                *torque = match action {
+                    0 => negative,
+                    1 => zero,
+                    _ => positive,
+                };
+            }),
+            ref each => torques.zip(each).for_each(|((torque, action), of)| {
+                *torque = of.get(usize::from(*action)).copied().unwrap_or_default();
+            }),
+        }
+        true
     }
 
     /// Repeats what a change of parameters does for the torques of acrobot `index`.
@@ -186,7 +197,7 @@ impl Many {
 /// not finite. Then nothing changes.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
-    if !given_torques && many.act().is_none() {
+    if !given_torques && !many.act() {
         return false;
     }
     let buffers = StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
