@@ -2,10 +2,13 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, SHOWN, addressOf, isAction, keep, orFree, readState, sample, writeState,
+  ACTION, Kept, SHOWN, addressOf, drawParams, isAction, isFinite32, keep, orFree, readState,
+  seedSample, writeState,
 } from "./kept.js";
-import { header, seal, unseal } from "./snapshot.js";
-import { accept, bytes, checked, invalid, numbers, positive, wasm, writeSeed } from "./wasm.js";
+import { TASKS, begins, head, header, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
+import {
+  accept, bytes, checked, invalid, invalidSingle, numbers, positive, wasm, writeSeed,
+} from "./wasm.js";
 
 /** A loop, because `slice` takes half as long again. */
 function observation() {
@@ -14,23 +17,37 @@ function observation() {
   return to;
 }
 
+/** What a step returns. */
+function results(flags) {
+  const [terminated, truncated] = [(flags & 1) !== 0, (flags & 2) !== 0];
+  return { observation: observation(), reward: numbers()[6], terminated, truncated };
+}
+
 export class Acrobot extends Kept {
   /** Bundlers rename classes. */
   static get name() {
     return "Acrobot";
   }
 
-  /** The action of the last step, for its picture. */
+  /** The action or the torque of the last step, for its picture. */
   #action = 1;
+  #torque;
+  #task;
 
   constructor(options = {}) {
     super();
-    const given = checked("options", options, ["seed", "params", "maxSteps"]);
-    const { seed, params = {}, maxSteps = 500 } = given;
-    keep(this, "acrobot", wasm().acrobot_new(positive("maxSteps", maxSteps)), 1);
+    const names = ["seed", "params", "maxSteps", "task", "paramsRange"];
+    const given = checked("options", options, names);
+    const { seed, params = {}, task = "acrobot", paramsRange = {} } = given;
+    const index = taskIndex(task);
+    const { maxSteps = TASKS[task][1] } = given;
+    this.#task = task;
+    keep(this, "acrobot", wasm().acrobot_new(positive("maxSteps", maxSteps), index), 1);
     orFree(this, () => {
       this.setParams(params);
+      this.setParamsRange(paramsRange);
       wasm().acrobot_reset(this.#address, writeSeed(seed));
+      drawParams(this, 0);
     });
   }
 
@@ -39,27 +56,40 @@ export class Acrobot extends Kept {
   }
 
   static restore(snapshot) {
-    const acrobot = new this();
+    const acrobot = new this({ task: taskOf("acrobot", unseal(snapshot)) });
     orFree(acrobot, () => acrobot.restore(snapshot));
     return acrobot;
   }
 
   reset(seed) {
     wasm().acrobot_reset(this.#address, seed === undefined ? 0 : writeSeed(seed));
-    this.#action = 1;
-    return observation();
+    [this.#action, this.#torque] = [1];
+    const first = observation();
+    drawParams(this, 0);
+    return first;
   }
 
   step(action) {
     if (!isAction(action)) throw invalid(`action ${ACTION}`, action);
     const flags = wasm().acrobot_step(this.#address, action);
     this.#action = action;
-    const [terminated, truncated] = [(flags & 1) !== 0, (flags & 2) !== 0];
-    return { observation: observation(), reward: terminated ? 0 : -1, terminated, truncated };
+    this.#torque = undefined;
+    return results(flags);
   }
 
-  sample() {
-    return sample();
+  stepTorque(torque) {
+    if (!isFinite32(torque)) throw invalidSingle("torque must be a finite number of N m", torque);
+    const flags = wasm().acrobot_step_torque(this.#address, torque);
+    this.#torque = torque;
+    return results(flags);
+  }
+
+  sample(seed) {
+    return wasm().acrobot_sample(this.#address, seedSample(this, seed));
+  }
+
+  get task() {
+    return this.#task;
   }
 
   get observation() {
@@ -97,25 +127,28 @@ export class Acrobot extends Kept {
 
   snapshot() {
     const length = wasm().acrobot_save(this.#address);
-    return seal([bytes().subarray(0, length)]);
+    return seal([head("acrobot", this.#task), bytes().subarray(0, length)]);
   }
 
   restore(snapshot) {
     const content = unseal(snapshot);
-    wasm().acrobot_save(this.#address);
-    const rule = `the snapshot must be a valid one of ${header(bytes())}`;
+    const [address, own] = [this.#address, head("acrobot", this.#task)];
+    const rule = `the snapshot must be a valid one of ${header(Uint8Array.from(own))}`;
     const reject = (got) => {
       throw new RangeError(`${rule}, got ${got}`);
     };
     if (content.length > 256) reject(`${content.length} bytes`);
-    bytes().set(content);
-    if (!wasm().acrobot_load(this.#address, content.length)) reject(header(content));
-    this.#action = 1;
+    const rest = content.subarray(own.length);
+    bytes().set(rest);
+    const valid = begins(content, own) && wasm().acrobot_load(address, rest.length);
+    if (!valid) reject(header(content));
+    [this.#action, this.#torque] = [1];
   }
 
   draw(context, options) {
     const { params, state } = this;
-    draw("draw(context, options)", context, state, params, params.torques[this.#action], options);
+    const torque = this.#torque ?? params.torques[this.#action];
+    draw("draw(context, options)", context, state, params, torque, options);
   }
 
   get [SHOWN]() {

@@ -2,11 +2,13 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, PARAMS_LENGTH, SHOWN, addressOf, elements, isAction, keep, orFree, readChanges,
-  readParams, readState, sample, writeParams, writeState,
+  ACTION, Kept, PARAMS_LENGTH, SHOWN, addressOf, drawParams, elements, isAction, isFinite32,
+  keep, orFree, readChanges, readParams, readState, seedSample, writeParams, writeState,
 } from "./kept.js";
-import { seal, unseal } from "./snapshot.js";
-import { accept, bytes, checked, invalid, isBytes, positive, wasm, writeSeed } from "./wasm.js";
+import { TASKS, begins, head, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
+import {
+  accept, bytes, checked, invalid, isBytes, isFloats, numbers, positive, wasm, writeSeed,
+} from "./wasm.js";
 
 /**
  * The results, and what JavaScript writes, in the order of the module's addresses: type, and number
@@ -21,17 +23,11 @@ const ARRAYS = {
   finalObservations: [Float32Array, 6],
   actions: [Uint8Array, 1],
   mask: [Uint8Array, 1],
+  torques: [Float32Array, 1],
 };
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
-/**
- * What a batch's snapshot begins with after its length, in the format of postcard: the header, and
- * the bounds −0.1 and 0.1 as doubles.
- */
-const BATCH = [
-  ...Array.from("\x05batch\x01\x04fast", (letter) => letter.charCodeAt(0)),
-  ...new Uint8Array(Float64Array.of(-0.1, 0.1).buffer),
-];
+const SHARED = "a batch must be made with ownParams for parameters of each acrobot";
 
 /** An integer in seven bits a byte, the lowest first. The highest bit says whether more follow. */
 const varint = (value) =>
@@ -52,15 +48,19 @@ export class Batch extends Kept {
   #views;
   /** Copies of the results: views of the module's memory end when that memory grows. */
   #results = {};
+  /** Whether resets draw parameters. */
+  #draws = false;
   /** Whether states have changed since the observations were written. */
   #stale = false;
 
   constructor(options) {
     super();
-    const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams"];
-    const given = checked("options", options, names);
-    const { count, seed, params = {}, maxSteps = 500 } = given;
-    const { autoreset = "NextStep", ownParams = false } = given;
+    const names = ["count", "seed", "params", "maxSteps", "autoreset", "ownParams", "task"];
+    const given = checked("options", options, [...names, "paramsRange"]);
+    const { count, seed, params = {}, autoreset = "NextStep", task = "acrobot" } = given;
+    const { paramsRange, ownParams = paramsRange !== undefined } = given;
+    const index = taskIndex(task);
+    const { maxSteps = TASKS[task][1] } = given;
     positive("count", count);
     positive("maxSteps", maxSteps);
     const mode = AUTORESETS.indexOf(autoreset);
@@ -69,13 +69,17 @@ export class Batch extends Kept {
       throw invalid("ownParams must be true or false", ownParams, []);
     }
     const words = writeSeed(seed);
-    keep(this, "batch", wasm().batch_new(count, words, maxSteps, mode, ownParams), count);
-    this.#addresses = new Uint32Array(bytes().slice(0, 32).buffer);
+    keep(this, "batch", wasm().batch_new(count, words, maxSteps, mode, ownParams, index), count);
+    this.#addresses = new Uint32Array(bytes().slice(0, 36).buffer);
     this.#count = count;
-    this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams });
+    this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams, task });
     this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
     orFree(this, () => {
       super.setParams(params);
+      if (paramsRange !== undefined) {
+        this.setParamsRange(paramsRange);
+        for (let i = 0; i < count; i++) drawParams(this, i);
+      }
       this.#copy(...this.#names);
     });
     this.#observe();
@@ -146,30 +150,47 @@ export class Batch extends Kept {
     this.#copy();
     this.#views.mask.set(mask);
     wasm().batch_reset(address, words);
+    mask.forEach((resets, i) => resets && drawParams(this, i));
     this.#observe();
     return this.#results.observations;
   }
 
-  sample() {
-    return Uint8Array.from({ length: this.#count }, sample);
+  sample(seed) {
+    wasm().batch_sample(this.#address, seedSample(this, seed));
+    this.#copy();
+    return this.#views.actions.slice();
   }
 
   step(actions) {
-    let given = actions;
-    // The module can check bytes.
-    if (!isBytes(actions) || actions.byteLength !== this.#count) {
-      // Reading others can run code that frees the batch or makes memory grow, so it comes first.
-      given = elements("actions", actions, this.#count, isAction, ACTION);
-    }
+    return this.#step("actions", actions, isBytes, isAction, ACTION);
+  }
+
+  stepTorque(torques) {
+    const rule = "must be a finite number of N m";
+    return this.#step("torques", torques, isFloats, isFinite32, rule);
+  }
+
+  #step(what, given, isArray, isValid, rule) {
+    // The module can check elements of this type.
+    const bytesOfAll = this.#count * ARRAYS[what][0].BYTES_PER_ELEMENT;
+    const isRead = isArray(given) && given.byteLength === bytesOfAll;
+    // Reading others can run code that frees the batch or makes memory grow, so it comes first.
+    const inputs = isRead ? given : elements(what, given, this.#count, isValid, rule);
     const address = this.#address;
     this.#copy();
-    this.#views.actions.set(given);
-    if (!wasm().batch_step(address)) {
-      const index = this.#views.actions.findIndex((action) => action > 2);
-      throw invalid(`actions[${index}] ${ACTION}`, this.#views.actions[index]);
+    const written = this.#views[what];
+    written.set(inputs);
+    if (!wasm().batch_step(address, what === "torques")) {
+      const index = written.findIndex((each) => !isValid(each));
+      throw invalid(`${what}[${index}] ${rule}`, written[index]);
     }
     this.#copy(...this.#names);
     this.#stale = false;
+    if (this.#draws) {
+      for (let i = 0; i < this.#count; i++) {
+        if (wasm().batch_elapsed(address, i) === 0) drawParams(this, i);
+      }
+    }
     return { ...this.#results };
   }
 
@@ -182,6 +203,26 @@ export class Batch extends Kept {
     this.#addressFor(index);
     const valueOf = writeState(state);
     accept(wasm().batch_set_state(this.#address, index), valueOf);
+    this.#stale = true;
+  }
+
+  get states() {
+    const [address, states] = [this.#address, new Float32Array(4 * this.#count)];
+    for (let i = 0; i < this.#count; i++) {
+      wasm().batch_state(address, i);
+      states.set(numbers().subarray(0, 4), 4 * i);
+    }
+    return states;
+  }
+
+  setStates(states) {
+    const rule = (i) => `must be a finite number of ${i % 4 < 2 ? "rad" : "rad/s"}`;
+    const given = elements("states", states, 4 * this.#count, isFinite32, rule);
+    const address = this.#address;
+    for (let i = 0; i < this.#count; i++) {
+      numbers().set(given.slice(4 * i, 4 * i + 4));
+      wasm().batch_set_state(address, i);
+    }
     this.#stale = true;
   }
 
@@ -211,24 +252,31 @@ export class Batch extends Kept {
     }
   }
 
+  setParamsRange(range) {
+    if (!this.#settings.ownParams) throw new Error(SHARED);
+    super.setParamsRange(range);
+    this.#draws = true;
+  }
+
   paramsOf(index) {
     return readParams("batch", this.#addressFor(index), index);
   }
 
   setParamsOf(index, changes) {
     this.#addressFor(index);
-    if (!this.#settings.ownParams) {
-      throw new Error("a batch must be made with ownParams for parameters of each acrobot");
-    }
+    if (!this.#settings.ownParams) throw new Error(SHARED);
     const given = readChanges(changes);
     writeParams("batch", this.#address, index, given, "batch_set_params_of");
   }
 
   #header() {
-    const { count, maxSteps, autoreset, ownParams } = this.#settings;
+    const { count, maxSteps, autoreset, ownParams, task } = this.#settings;
+    const bound = TASKS[task][2];
+    const bounds = new Uint8Array(Float64Array.of(-bound, bound).buffer);
     // No range of parameters.
     const flags = [AUTORESETS.indexOf(autoreset), Number(ownParams), 0];
-    return [...varint(count + 1), ...BATCH, ...varint(maxSteps), ...flags];
+    const begin = [...varint(count + 1), ...head("batch", task), ...bounds];
+    return [...begin, ...varint(maxSteps), ...flags];
   }
 
   snapshot() {
@@ -255,12 +303,15 @@ export class Batch extends Kept {
       return value;
     };
     const count = read() - 1;
-    at += BATCH.length;
+    const task = taskOf("batch", content.subarray(at));
+    if (task === undefined) throw wrong;
+    at += head("batch", task).length + 16;
     const [maxSteps, mode, own] = [read(), read(), read()];
     // An acrobot has at least 94 bytes.
     const isCount = count >= 1 && count < content.length / 94;
     if (!(isCount && maxSteps >= 1 && maxSteps < 2 ** 32 && mode in AUTORESETS)) throw wrong;
-    const batch = new this({ count, maxSteps, autoreset: AUTORESETS[mode], ownParams: own === 1 });
+    const autoreset = AUTORESETS[mode];
+    const batch = new this({ count, maxSteps, autoreset, ownParams: own === 1, task });
     if (batch.#load(content)) return batch;
     batch.free();
     throw wrong;
@@ -268,7 +319,7 @@ export class Batch extends Kept {
 
   #load(content) {
     const [address, header] = [this.#address, this.#header()];
-    if (header.some((byte, i) => byte !== content[i])) return false;
+    if (!begins(content, header)) return false;
     let at = header.length;
     for (let index = 0; index < this.#count; index++) {
       const member = content.subarray(at, at + 256);

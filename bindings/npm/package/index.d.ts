@@ -63,7 +63,23 @@ export interface Params {
   torqueNoise: number;
   /** The equations of the book (the default) or of the NIPS paper: Gymnasium's `book_or_nips`. */
   dynamics: "book" | "nips";
+  /** Viscous friction of the fixed joint, N m s/rad; 0 or more in a swing-up, otherwise 0. */
+  friction1: number;
+  /** As `friction1`, of the joint between the links. */
+  friction2: number;
 }
+
+/** The lowest and the highest value of each parameter that a reset draws. */
+export type ParamsRange = {
+  readonly [Name in Exclude<keyof Params, "torques" | "dynamics">]?: readonly [number, number];
+};
+
+/**
+ * Gymnasium's task, or dm_control's `acrobot-swingup`: from rest anywhere to upright, and no state
+ * ends it. This has other parameters, 1000 steps, a reward from 0 to 1, and other observations: the
+ * sines of both links' angles from upright, their cosines, and the velocities.
+ */
+export type Task = "acrobot" | "swingup";
 
 export interface Options {
   /** The seed of the first initial state and all later random numbers. Default: random. */
@@ -72,12 +88,16 @@ export interface Options {
   params?: Readonly<Partial<Params>>;
   /** The number of steps that truncates an episode, from 1 to 2^32 − 1. Default: 500. */
   maxSteps?: number;
+  /** Default: "acrobot". */
+  task?: Task;
+  /** As `setParamsRange`. Default: none. */
+  paramsRange?: ParamsRange;
 }
 
 export interface Step {
   /** A new array: [cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2], velocities in rad/s. */
   observation: Float32Array;
-  /** −1, or 0 if `terminated`. */
+  /** −1, or 0 if `terminated`. In a swing-up from 0 to 1. */
   reward: number;
   /** Whether the goal is reached: −cos θ1 − cos(θ1 + θ2) > 1. */
   terminated: boolean;
@@ -117,6 +137,11 @@ declare abstract class Kept {
   get params(): Readonly<Params>;
   /** Changes some parameters for the next steps, or throws if one is outside its range. */
   setParams(changes: Readonly<Partial<Params>>): void;
+  /**
+   * From now on each reset draws these parameters uniformly, after the initial state: a batch draws
+   * for each acrobot, and needs `ownParams`. `{}` ends it. Snapshots do not have the range.
+   */
+  setParamsRange(range: ParamsRange): void;
   /** Frees the memory in WebAssembly now, and not when the garbage collector does. */
   free(): void;
   /** Calls `free()`: for `using`. */
@@ -132,8 +157,14 @@ export class Acrobot extends Kept {
   reset(seed?: Seed): Float32Array;
   /** Applies an action for one dt. Steps after the end of an episode continue it. */
   step(action: Action): Step;
-  /** A random action, from `Math.random` and not from the seed, as in Gymnasium. */
-  sample(): Action;
+  /** As `step`, with any finite torque, N m. */
+  stepTorque(torque: number): Step;
+  /**
+   * A random action. Its random numbers are not those of `reset`: a seed begins them, as
+   * Gymnasium's `action_space.seed`. Without any seed they are random.
+   */
+  sample(seed?: Seed): Action;
+  get task(): Task;
   get observation(): Float32Array;
   /** The state: a frozen copy. Setting it, to finite numbers, continues the episode. */
   get state(): Readonly<State>;
@@ -158,7 +189,7 @@ export interface BatchOptions extends Options {
   count: number;
   /** When an ended acrobot is reset: Gymnasium's `AutoresetMode`. Default: "NextStep". */
   autoreset?: "NextStep" | "SameStep" | "Disabled";
-  /** Whether each acrobot has its own parameters, for `setParamsOf`. Default: false. */
+  /** Whether each acrobot has its own parameters, for `setParamsOf`. Default: for `paramsRange`. */
   ownParams?: boolean;
 }
 
@@ -190,7 +221,7 @@ export class Batch extends Kept {
   /** As `Acrobot.restore`. */
   static restore(snapshot: Uint8Array): Batch;
   get count(): number;
-  get settings(): Readonly<Required<Omit<BatchOptions, "seed" | "params">>>;
+  get settings(): Readonly<Required<Omit<BatchOptions, "seed" | "params" | "paramsRange">>>;
   /** The array that steps and resets overwrite, as does reading it after `setState`. */
   get observations(): Float32Array;
   /** Begins an episode of each acrobot. Returns `observations`. */
@@ -202,8 +233,14 @@ export class Batch extends Kept {
    * episode continues: −1 a step, 0 at the goal.
    */
   step(actions: ArrayLike<number>): BatchStep;
+  /** As `step`, with any finite torques, N m, fastest from a `Float32Array`. */
+  stepTorque(torques: ArrayLike<number>): BatchStep;
   /** As `Acrobot.sample`, for each acrobot: a new array. */
-  sample(): Uint8Array;
+  sample(seed?: Seed): Uint8Array;
+  /** The states, a row of four numbers for each acrobot: a new array. */
+  get states(): Float32Array;
+  /** As `setState`, for all: rows as in `states`. */
+  setStates(states: ArrayLike<number>): void;
   /** The state of an acrobot: a frozen copy. */
   state(index: number): Readonly<State>;
   /** As `Acrobot.state`. With "NextStep", the next step still resets an ended acrobot. */

@@ -1,25 +1,32 @@
 // What acrobots and batches share: the checks of their arguments, and what the module keeps.
 
-import { accept, bytes, checked, invalid, numbers, wasm } from "./wasm.js";
+import {
+  accept, bytes, checked, invalid, invalidSingle, numbers, wasm, writeSeed,
+} from "./wasm.js";
 
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
-/** The parameters that are numbers, and the three torques, in the order of Rust's `Params`. */
-const NUMBERS = [
-  "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2",
-  "gravity", "dt", "maxVelocity1", "maxVelocity2", "torques", "torqueNoise",
-];
-/** The names of the sixteen numbers. */
+/** The units of the parameters, in the order of Rust's `Params`. */
+const UNITS = {
+  length1: "m", length2: "m", mass1: "kg", mass2: "kg", centerOfMass1: "m", centerOfMass2: "m",
+  inertia1: "kg m²", inertia2: "kg m²", gravity: "m/s²", dt: "s", maxVelocity1: "rad/s",
+  maxVelocity2: "rad/s", torques: "N m", torqueNoise: "N m", dynamics: "",
+  friction1: "N m s/rad", friction2: "N m s/rad",
+};
+const NAMES = Object.keys(UNITS);
 const TORQUES = ["torques[0]", "torques[1]", "torques[2]"];
-const SLOTS = NUMBERS.flatMap((name) => (name === "torques" ? TORQUES : name));
+/** The names of the numbers: sixteen before the byte of the dynamics, and two after it. */
+const SLOTS = NAMES.filter((name) => name !== "dynamics").flatMap((name) =>
+  name === "torques" ? TORQUES : name,
+);
 const DYNAMICS = ["book", "nips"];
-/** The byte of the dynamics, behind the numbers. Two numbers for friction follow, which are 0. */
 const DYNAMICS_AT = 64;
 export const PARAMS_LENGTH = 73;
 export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 
 export const isAction = (action) => action === 0 || action === 1 || action === 2;
 
-export const sample = () => Math.floor(3 * Math.random());
+export const isFinite32 = (number) =>
+  typeof number === "number" && Number.isFinite(Math.fround(number));
 
 export const readState = () =>
   Object.freeze(Object.fromEntries(STATE.map((name, i) => [name, numbers()[i]])));
@@ -49,27 +56,34 @@ export function elements(what, array, count, isValid, rule) {
   const copy = [];
   for (let i = 0; i < count; i++) {
     const element = array[i];
-    if (!isValid(element)) throw invalid(`${what}[${i}] ${rule}`, element);
+    if (!isValid(element)) {
+      const must = typeof rule === "function" ? rule(i) : rule;
+      throw invalidSingle(`${what}[${i}] ${must}`, element);
+    }
     copy.push(element);
   }
   return copy;
 }
 
-/**
- * The parameters of acrobot `index` in postcard's format: sixteen numbers, a byte for the dynamics,
- * and the friction. A single one ignores the index.
- */
+/** The memory for parameters, whose last two numbers are not aligned, and where a number is. */
+const view = () => new DataView(bytes().buffer, bytes().byteOffset);
+const placeOf = (slot) => (4 * slot < DYNAMICS_AT ? 4 * slot : 4 * slot + 1);
+const put = (name, value) => view().setFloat32(placeOf(SLOTS.indexOf(name)), value, true);
+
+/** The parameters of acrobot `index`, in postcard's format. A single one ignores the index. */
 export function readParams(kind, address, index) {
   wasm()[`${kind}_params`](address, index);
-  const values = [...numbers()];
-  const next = (name) => (name === "torques" ? Object.freeze(values.splice(0, 3)) : values.shift());
-  const params = Object.fromEntries(NUMBERS.map((name) => [name, next(name)]));
-  return Object.freeze({ ...params, dynamics: DYNAMICS[bytes()[DYNAMICS_AT]] });
+  const values = SLOTS.map((_, slot) => view().getFloat32(placeOf(slot), true));
+  const next = (name) => {
+    if (name === "dynamics") return DYNAMICS[bytes()[DYNAMICS_AT]];
+    return name === "torques" ? Object.freeze(values.splice(0, 3)) : values.shift();
+  };
+  return Object.freeze(Object.fromEntries(NAMES.map((name) => [name, next(name)])));
 }
 
 /** Changed parameters by their names in `SLOTS`. Reading them can run code of the caller. */
 export function readChanges(changes) {
-  const given = checked("params", changes, [...NUMBERS, "dynamics"]);
+  const given = checked("params", changes, NAMES);
   if ("torques" in given) {
     const { torques } = given;
     delete given.torques;
@@ -92,10 +106,25 @@ export function writeParams(kind, address, index, given, set = `${kind}_set_para
   wasm()[`${kind}_params`](address, index);
   for (const [name, value] of Object.entries(given)) {
     if (name === "dynamics") bytes()[DYNAMICS_AT] = DYNAMICS.indexOf(value);
-    else numbers()[SLOTS.indexOf(name)] = value;
+    else put(name, value);
   }
   const length = wasm()[set](address, index);
   accept(length, (name) => given[name] ?? readParams(kind, address, index)[name]);
+}
+
+/** Ranges of parameters, as rows of name, low and high. */
+function readRanges(range) {
+  const names = NAMES.filter((name) => !["torques", "dynamics"].includes(name));
+  const given = checked("range", range, names);
+  return Object.entries(given).map(([name, ends]) => {
+    const number = (end) => typeof end === "number";
+    const [low, high] = elements(name, ends, 2, number, "must be a number");
+    if (low > high) {
+      const rule = `${name} must have a low of at most its high, in ${UNITS[name]}`;
+      throw invalid(rule, [low, high], ["object"]);
+    }
+    return [name, low, high];
+  });
 }
 
 /** Frees what the program has forgotten to free, if the engine says when. */
@@ -110,12 +139,16 @@ export const SHOWN = Symbol("shown");
  * No caller of the package reaches them, so the module gets only addresses of its own, and none
  * that it has freed.
  */
-export let keep, addressOf;
+export let keep, addressOf, drawParams, seedSample;
 
 /** What the module keeps at an address: an acrobot or a batch. */
 export class Kept {
   #kind;
   #address = 0;
+  /** The ranges from which each reset draws parameters. */
+  #ranges = [];
+  /** Whether random actions have a seed. */
+  #samples = false;
 
   static {
     keep = (kept, kind, address, count) => {
@@ -129,6 +162,28 @@ export class Kept {
       if (kept.#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
       return kept.#address;
     };
+    // As in Python: after the initial state, from the same generator.
+    drawParams = (kept, index) => {
+      if (kept.#ranges.length === 0) return;
+      const [kind, address] = [kept.#kind, addressOf(kept)];
+      wasm()[`${kind}_params`](address, index);
+      for (const [name, low, high] of kept.#ranges) {
+        const isFixed = low === high;
+        put(name, isFixed ? low : wasm()[`${kind}_uniform`](address, index, low, high));
+      }
+      wasm()[kept.#set](address, index);
+    };
+    // Returns the number of words of the seed, which is random the first time.
+    seedSample = (kept, seed) => {
+      if (seed === undefined && kept.#samples) return 0;
+      const words = writeSeed(seed);
+      kept.#samples = true;
+      return words;
+    };
+  }
+
+  get #set() {
+    return this.#kind === "batch" ? "batch_set_params_of" : "acrobot_set_params";
   }
 
   /** Vue makes no proxy of an object with this property. A proxy has no private fields. */
@@ -143,6 +198,23 @@ export class Kept {
   setParams(changes) {
     const given = readChanges(changes);
     writeParams(this.#kind, addressOf(this), 0, given);
+  }
+
+  setParamsRange(range) {
+    const ranges = readRanges(range);
+    const [kind, address] = [this.#kind, addressOf(this)];
+    wasm()[`${kind}_params`](address, 0);
+    const before = bytes().slice(0, PARAMS_LENGTH);
+    try {
+      for (const end of [1, 2]) {
+        const ends = Object.fromEntries(ranges.map((row) => [row[0], row[end]]));
+        writeParams(kind, address, 0, ends, this.#set);
+      }
+    } finally {
+      bytes().set(before);
+      wasm()[this.#set](address, 0);
+    }
+    this.#ranges = ranges.map(([name, ...ends]) => [name, ...ends.map(Math.fround)]);
   }
 
   free() {

@@ -1,6 +1,6 @@
 // The checksum and the header of a snapshot.
 
-import { copied } from "./wasm.js";
+import { copied, invalid } from "./wasm.js";
 
 /** CRC-32 as in zlib. postcard's `crc32` functions append it to a snapshot, too. */
 function checksum(bytes) {
@@ -36,11 +36,37 @@ export function unseal(snapshot) {
   return content;
 }
 
+/** By task: the arithmetic, the default limit of steps, and the bounds of initial states. */
+export const TASKS = {
+  acrobot: ["fast", 500, 0.1],
+  swingup: ["swing fast", 1000, Math.PI],
+};
+
+/** The module's number of a task. */
+export function taskIndex(task) {
+  const names = Object.keys(TASKS);
+  if (!names.includes(task)) throw invalid(`task must be ${names.join(" or ")}`, task, []);
+  return names.indexOf(task);
+}
+
+/** The bytes of a header. */
+export function head(kind, task) {
+  const text = (text) => [text.length, ...Array.from(text, (letter) => letter.charCodeAt(0))];
+  return [...text(kind), 1, ...text(TASKS[task][0])];
+}
+
+/** Whether bytes begin with others. */
+export const begins = (bytes, others) => others.every((byte, i) => byte === bytes[i]);
+
+/** The task of a snapshot whose header begins at its first byte, or undefined. */
+export const taskOf = (kind, bytes) =>
+  Object.keys(TASKS).find((task) => begins(bytes, head(kind, task)));
+
 /** The header of a snapshot: two texts after their lengths, with the version between them. */
 export function header(bytes) {
   const text = (at) => String.fromCharCode(...bytes.subarray(at + 1, at + 1 + bytes[at]));
   const version = 1 + bytes[0];
   const words = `"${text(0)}", version ${bytes[version]}, arithmetic "${text(version + 1)}"`;
-  const isHeader = /^"\w+", version \d+, arithmetic "\w+"$/.test(words);
+  const isHeader = /^"\w+", version \d+, arithmetic "[\w ]+"$/.test(words);
   return isHeader ? words : `${bytes.length} other bytes`;
 }

@@ -71,6 +71,8 @@ const { get: typeOf } = Object.getOwnPropertyDescriptor(TypedArray, Symbol.toStr
 
 /** Whether a value is a Uint8Array and no proxy of one. Its elements are bytes. */
 export const isBytes = (value) => typeOf.call(value) === "Uint8Array";
+/** Whether a value is a Float32Array and no proxy of one. */
+export const isFloats = (value) => typeOf.call(value) === "Float32Array";
 
 /** A copy of a Uint8Array: other threads may write shared memory, and a proxy can run code. */
 export function copied(what, given) {
@@ -167,6 +169,7 @@ export function writeSeed(seed) {
 export function accept(length, valueOf) {
   if (length === 0) return;
   const [name, rule, unit] = decoded(bytes().slice(0, length)).split("\n");
-  const camel = name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
+  const plain = name.replace(".joint", "");
+  const camel = plain.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
   throw invalidSingle(`${camel} must be ${rule} ${unit}`, valueOf(camel));
 }

@@ -18,3 +18,20 @@ compile_error!("the allocator needs a module with one thread");
 #[global_allocator]
 static ALLOCATOR: AssumeSingleThreaded<FreeListAllocator> =
     unsafe { AssumeSingleThreaded::new(FreeListAllocator::new()) };
+
+/// What has another type for each task.
+pub enum Tasks<A, B> {
+    Acrobot(A),
+    Swingup(B),
+}
+
+/// Does something with what an enum [`Tasks`] has, whatever the task.
+macro_rules! with_task {
+    ($tasks:expr, $of:ident => $result:expr) => {
+        match $tasks {
+            $crate::Tasks::Acrobot($of) => $result,
+            $crate::Tasks::Swingup($of) => $result,
+        }
+    };
+}
+pub(crate) use with_task;

@@ -1,25 +1,35 @@
 //! Many acrobots at once: the class `Batch` of the package.
 
+use std::alloc::{Layout, alloc_zeroed};
 use std::num::NonZeroU32;
 
+use acrobot::arithmetic::{Arithmetic, Swingup};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
-use acrobot::numpy::Pcg64;
+use acrobot::numpy::{Pcg64, uniform};
 use acrobot::{Fast, ResetOptions};
 
 use crate::memory::{self, set_bytes, set_numbers};
+use crate::{Tasks, with_task};
 
 /// As many as one vector of simd128 has. More take more code and more time.
 const LANES: usize = 4;
 
 /// Vectors for parameters of each acrobot, too, or for none. Compiling both takes 13 KB.
-type Memory = (Vec<Block<Fast, LANES>>, Vec<Pcg64>, Vec<LaneParams<Fast, LANES>>);
+type Memory<A> = (Vec<Block<A, LANES>>, Vec<Pcg64>, Vec<LaneParams<A, LANES>>);
+
+type Acrobots<A> = Batch<A, Memory<A>, LANES>;
 
 /// A batch with its memory, and what JavaScript reads and writes.
 pub struct Many {
-    batch: Batch<Fast, Memory, LANES>,
+    batch: Tasks<Acrobots<Fast>, Acrobots<Swingup<Fast>>>,
     own_params: bool,
+    /// Draws random actions.
+    action_space: Pcg64,
     /// JavaScript writes here before a step.
     actions: Vec<u8>,
+    torques: Vec<f32>,
+    /// The torques of the actions of each acrobot, or of all.
+    torques_of: Vec<[f32; 3]>,
     /// JavaScript writes here before a reset.
     mask: Vec<bool>,
     observations: Vec<[f32; 6]>,
@@ -31,34 +41,50 @@ pub struct Many {
     ended: Vec<bool>,
 }
 
-/// `count` copies of a value, or `None` if there is no memory for them.
-fn fill<T: Clone>(value: T, count: usize) -> Option<Vec<T>> {
-    let mut vec = Vec::new();
-    vec.try_reserve_exact(count).ok()?;
-    // Always true. With this check the compiler omits the growth in `resize`, and its panic.
-    if count <= vec.capacity() {
-        vec.resize(count, value);
+/// `count` zeros, or `None` if there is no memory for them.
+///
+/// # Safety
+///
+/// A `T` may consist of zero bytes.
+unsafe fn zeros<T>(count: usize) -> Option<Vec<T>> {
+    if count == 0 {
+        return Some(Vec::new());
     }
-    Some(vec)
+    let layout = Layout::array::<T>(count).ok()?;
+    // SAFETY: the size of what is kept here is not 0, and a vector frees memory of this layout.
+    unsafe {
+        let memory: *mut T = alloc_zeroed(layout).cast();
+        (!memory.is_null()).then(|| Vec::from_raw_parts(memory, count, count))
+    }
+}
+
+fn make<A: Arithmetic>(words: usize, count: usize, own_params: bool) -> Option<Acrobots<A>> {
+    let len = count.div_ceil(LANES);
+    // SAFETY: all are numbers and flags, which `Batch::new` writes.
+    let memory = unsafe { (zeros(len)?, zeros(count)?, zeros(if own_params { len } else { 0 })?) };
+    Batch::new(memory::seed(words), memory).ok()
 }
 
 impl Many {
-    fn new(words: usize, count: usize, own_params: bool) -> Option<Self> {
-        let len = count.div_ceil(LANES);
-        let blocks = fill(Block::EMPTY, len)?;
-        let generators = fill(Pcg64::UNSEEDED, count)?;
-        let params = fill(LaneParams::default(), if own_params { len } else { 0 })?;
+    fn new(words: usize, count: usize, own_params: bool, task: u32) -> Option<Self> {
         Some(Self {
-            batch: Batch::new(memory::seed(words), (blocks, generators, params)).ok()?,
+            batch: match task {
+                0 => Tasks::Acrobot(make(words, count, own_params)?),
+                _ => Tasks::Swingup(make(words, count, own_params)?),
+            },
             own_params,
-            actions: fill(0, count)?,
-            mask: fill(false, count)?,
-            observations: fill([0.0; 6], count)?,
-            rewards: fill(0.0, count)?,
-            terminated: fill(false, count)?,
-            truncated: fill(false, count)?,
-            final_observations: fill([0.0; 6], count)?,
-            ended: fill(false, count)?,
+            action_space: Pcg64::UNSEEDED,
+            // SAFETY: all are numbers and flags.
+            actions: unsafe { zeros(count)? },
+            torques: unsafe { zeros(count)? },
+            torques_of: unsafe { zeros(if own_params { count } else { 1 })? },
+            mask: unsafe { zeros(count)? },
+            observations: unsafe { zeros(count)? },
+            rewards: unsafe { zeros(count)? },
+            terminated: unsafe { zeros(count)? },
+            truncated: unsafe { zeros(count)? },
+            final_observations: unsafe { zeros(count)? },
+            ended: unsafe { zeros(count)? },
         })
     }
 }
@@ -73,13 +99,17 @@ pub extern "C" fn batch_new(
     max_steps: u32,
     autoreset: u32,
     own_params: bool,
+    task: u32,
 ) -> Option<Box<Many>> {
-    let mut many = memory::keep(Many::new(words, count, own_params)?)?;
-    many.batch.set_limit(NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN));
-    many.batch.set_autoreset(match autoreset {
+    let mut many = memory::keep(Many::new(words, count, own_params, task)?)?;
+    let autoreset = match autoreset {
         0 => Autoreset::NextStep,
         1 => Autoreset::SameStep,
         _ => Autoreset::Disabled,
+    };
+    with_task!(&mut many.batch, batch => {
+        batch.set_limit(NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN));
+        batch.set_autoreset(autoreset);
     });
     let addresses = [
         many.observations.as_ptr().addr(),
@@ -90,6 +120,7 @@ pub extern "C" fn batch_new(
         many.final_observations.as_ptr().addr(),
         many.actions.as_ptr().addr(),
         many.mask.as_ptr().addr(),
+        many.torques.as_ptr().addr(),
     ];
     set_bytes(addresses.into_iter().flat_map(usize::to_le_bytes));
     Some(many)
@@ -106,7 +137,7 @@ pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
     let options = ResetOptions { seed, bounds: None };
     // The lengths are equal, so this cannot fail.
-    let _ = many.batch.reset_masked(&many.mask, options);
+    let _ = with_task!(&mut many.batch, batch => batch.reset_masked(&many.mask, options));
     for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
         *ended &= !reset;
     }
@@ -115,18 +146,68 @@ pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_observe(many: &mut Many) {
     // The lengths are equal, so this cannot fail.
-    let _ = many.batch.observe(&mut many.observations);
+    let _ = with_task!(&many.batch, batch => batch.observe(&mut many.observations));
 }
 
-/// Steps. Returns false if an action is above 2. Then nothing changes.
+/// Draws actions, first with a seed of this many 32-bit words. 0: the next draws. They are those of
+/// Gymnasium's `MultiDiscrete`.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_step(many: &mut Many) -> bool {
+pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
+    if words > 0 {
+        many.action_space = memory::seed(words).into();
+    }
+    for action in &mut many.actions {
+        *action = (3.0 * uniform(&mut many.action_space, 0.0, 1.0)) as u8;
+    }
+}
+
+impl Many {
+    /// Makes torques of the actions: steps of actions, too, would take 9 KB. Returns false if an
+    /// action is above 2.
+    fn act(&mut self) -> bool {
+        if self.actions.iter().any(|action| *action > 2) {
+            return false;
+        }
+        let torques = self.torques.iter_mut().zip(&self.actions);
+        match *self.torques_of {
+            // No branch, so that the compiler vectorizes the loop.
+            [[negative, zero, positive]] => torques.for_each(|(torque, action)| {
+                *torque = match action {
+                    0 => negative,
+                    1 => zero,
+                    _ => positive,
+                };
+            }),
+            ref each => torques.zip(each).for_each(|((torque, action), of)| {
+                *torque = of.get(usize::from(*action)).copied().unwrap_or_default();
+            }),
+        }
+        true
+    }
+
+    /// Repeats what a change of parameters does for the torques of acrobot `index`.
+    fn keep_torques(&mut self, index: usize, torques: [f32; 3]) {
+        if let Some(of) = self.torques_of.get_mut(index) {
+            *of = torques;
+        }
+    }
+}
+
+/// Steps with the torques, or with the actions. Returns false if an action is above 2 or a torque
+/// not finite. Then nothing changes.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
+    if !given_torques && !many.act() {
+        return false;
+    }
     let buffers = StepBuffers::new(&mut many.rewards, &mut many.terminated, &mut many.truncated)
         .with_observations(&mut many.observations)
         .with_final_observations(&mut many.final_observations);
-    let stepped = many.batch.step(&many.actions, buffers).is_ok();
+    let (stepped, autoreset) = with_task!(&mut many.batch, batch => {
+        (batch.step(&many.torques, buffers).is_ok(), batch.autoreset())
+    });
     if stepped {
-        let lasting = many.batch.autoreset() == Autoreset::Disabled;
+        let lasting = autoreset == Autoreset::Disabled;
         let flags = many.terminated.iter().zip(&many.truncated);
         for (ended, (terminated, truncated)) in many.ended.iter_mut().zip(flags) {
             *ended = (*ended & lasting) | terminated | truncated;
@@ -138,7 +219,7 @@ pub extern "C" fn batch_step(many: &mut Many) -> bool {
 /// Writes the state of acrobot `index`.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_state(many: &Many, index: usize) {
-    if let Some(state) = many.batch.state(index) {
+    if let Some(state) = with_task!(&many.batch, batch => batch.state(index)) {
         set_numbers(state.into());
     }
 }
@@ -146,17 +227,18 @@ pub extern "C" fn batch_state(many: &Many, index: usize) {
 /// Sets the state of acrobot `index`. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> usize {
-    memory::reason(many.batch.set_state(index, memory::get_state()))
+    let state = memory::get_state();
+    memory::reason(with_task!(&mut many.batch, batch => batch.set_state(index, state)))
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_elapsed(many: &Many, index: usize) -> u32 {
-    many.batch.elapsed(index).unwrap_or_default()
+    with_task!(&many.batch, batch => batch.elapsed(index)).unwrap_or_default()
 }
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_params(many: &Many, index: usize) {
-    if let Some(params) = many.batch.params_of(index) {
+    if let Some(params) = with_task!(&many.batch, batch => batch.params_of(index)) {
         memory::save(&params);
     }
 }
@@ -164,29 +246,58 @@ pub extern "C" fn batch_params(many: &Many, index: usize) {
 /// Sets the parameters. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_params(many: &mut Many) -> usize {
-    memory::reason(many.batch.set_params(memory::get_params()))
+    let params = memory::get_params();
+    let set = with_task!(&mut many.batch, batch => batch.set_params(params));
+    if set.is_ok() {
+        many.torques_of.fill(params.torques);
+    }
+    memory::reason(set)
 }
 
 /// As [`batch_set_params`], for acrobot `index` in a batch with own parameters.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_params_of(many: &mut Many, index: usize) -> usize {
-    memory::reason(many.batch.set_params_of(index, memory::get_params()))
+    let params = memory::get_params();
+    let set = with_task!(&mut many.batch, batch => batch.set_params_of(index, params));
+    if set.is_ok() {
+        many.keep_torques(index, params.torques);
+    }
+    memory::reason(set)
+}
+
+/// Draws a number between the bounds from the generator of acrobot `index`.
+#[unsafe(no_mangle)]
+pub extern "C" fn batch_uniform(many: &mut Many, index: usize, low: f64, high: f64) -> f64 {
+    let rng = with_task!(&mut many.batch, batch => batch.generators_mut().get_mut(index));
+    rng.map_or(low, |rng| uniform(rng, low, high))
 }
 
 /// Writes acrobot `index` in the format of postcard, and returns its length.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_save(many: &Many, index: usize) -> usize {
-    let member = many.batch.member(index);
-    member.map_or(0, |member| memory::save(&member))
+    with_task!(&many.batch, batch => {
+        batch.member(index).map_or(0, |Member { params, state, elapsed, reset_pending, rng }| {
+            memory::save(&(params, state, elapsed, reset_pending, rng))
+        })
+    })
 }
 
 /// Loads acrobot `index` from the first of `len` bytes. Returns their number, or 0 if invalid.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_load(many: &mut Many, index: usize, len: usize) -> usize {
-    let Some((member, used)) = memory::load::<Member<Fast>>(len) else {
+    let Some(((params, state, elapsed, reset_pending, rng), used)) = memory::load(len) else {
         return 0;
     };
-    // The first brings the parameters, if all acrobots share them.
-    let shared = index > 0 || many.own_params || many.batch.set_params(member.params).is_ok();
-    if shared && many.batch.set_member(index, member).is_ok() { used } else { 0 }
+    let valid = with_task!(&mut many.batch, batch => {
+        // The first brings the parameters, if all acrobots share them.
+        let shared = index > 0 || many.own_params || batch.set_params(params).is_ok();
+        let member = Member { params, state, elapsed, reset_pending, rng };
+        shared && batch.set_member(index, member).is_ok()
+    });
+    if valid {
+        many.keep_torques(index, params.torques);
+        used
+    } else {
+        0
+    }
 }

@@ -14,6 +14,7 @@ const bits = ({ state }) => bitsOf(Object.values(state));
 const PARAMS = [
   "length1", "length2", "mass1", "mass2", "centerOfMass1", "centerOfMass2", "inertia1", "inertia2",
   "gravity", "dt", "maxVelocity1", "maxVelocity2", "torques", "torqueNoise", "dynamics",
+  "friction1", "friction2",
 ];
 
 /** An episode that is not in its initial state. */
@@ -61,7 +62,8 @@ test("parameters act as natively", () => {
   assert.deepEqual(states, trace("7", ACTIONS, "--dt", "0.05", "--nips", "--noise", "0.25"));
 
   const numbers = Object.fromEntries(PARAMS.map((name, i) => [name, i + 0.5]));
-  const params = { ...numbers, torques: [-3, 0.25, 4], dynamics: "nips" };
+  const friction = { friction1: 0, friction2: 0 };
+  const params = { ...numbers, torques: [-3, 0.25, 4], dynamics: "nips", ...friction };
   acrobot.setParams(params);
   assert.deepEqual(acrobot.params, params);
   for (const gravity of [0, -0]) {
@@ -86,6 +88,52 @@ test("reset, limit, state, energy and height are the crate's", () => {
   // Arrays are copies.
   observation.fill(9);
   assert.notDeepEqual(observation, acrobot.observation);
+});
+
+test("a swing-up's steps are those that dm_control recorded", () => {
+  const recorded = new URL("../../../tests/data/swingup.txt", import.meta.url);
+  const acrobot = new Acrobot({ task: "swingup" });
+  assert.deepEqual([acrobot.task, acrobot.maxSteps], ["swingup", 1000]);
+  assert.equal(acrobot.params.friction2, Math.fround(0.05));
+  const stateOf = ([theta1, theta2, dtheta1, dtheta2]) => {
+    return { theta1: theta1 + Math.PI, theta2, dtheta1, dtheta2 };
+  };
+  const lines = readFileSync(recorded, "utf8").match(/^[^#].+$/gm);
+  for (const line of lines) {
+    const numbers = line.split(" ").map(Number);
+    acrobot.state = stateOf(numbers);
+    const step = acrobot.stepTorque(2 * numbers[4]);
+    const found = [...Object.values(acrobot.state), ...step.observation, step.reward];
+    const expected = [...Object.values(stateOf(numbers.slice(5))), ...numbers.slice(9, 16)];
+    found.forEach((number, i) => {
+      const error = number - expected[i];
+      assert.ok(Math.abs(i < 2 ? 2 * Math.sin(error / 2) : error) < 5e-6, `${i}: ${error}`);
+    });
+    assert.equal(step.terminated, false);
+  }
+  assert.equal(lines.length, 1000);
+  const resumed = Acrobot.restore(acrobot.snapshot());
+  assert.deepEqual(resumed.stepTorque(0.3), acrobot.stepTorque(0.3));
+  const rule = /"acrobot", version 1, arithmetic "fast", got .* arithmetic "swing fast"$/;
+  assert.throws(() => new Acrobot().restore(acrobot.snapshot()), rule);
+});
+
+test("any torque is applied, with noise, as that of an action is", () => {
+  const [acrobot, other] = [busy(), busy()];
+  const same = (action) => assert.deepEqual(acrobot.stepTorque(action - 1), other.step(action));
+  ACTIONS.forEach(same);
+  assert.notDeepEqual(acrobot.stepTorque(0.5), other.step(2));
+});
+
+test("random actions with a seed are Gymnasium's", () => {
+  const acrobot = new Acrobot();
+  // space.seed(42) and space.sample() of Gymnasium 1.4.0: Discrete(3), MultiDiscrete([3] * 6).
+  const samples = Array.from({ length: 12 }, (_, i) => acrobot.sample(i ? undefined : 42));
+  assert.deepEqual(samples, [0, 2, 1, 1, 1, 2, 0, 2, 0, 0, 1, 2]);
+  const batch = new Batch({ count: 6 });
+  assert.deepEqual([...batch.sample(42n), ...batch.sample()], [2, 1, 2, 2, 0, 2, 2, 2, 0, 1, 1, 2]);
+  const first = () => Array.from({ length: 40 }, () => new Acrobot({ seed: 1 }).sample());
+  assert.notDeepEqual(first(), first());
 });
 
 /** A context that records the names of the methods called, and the square that is filled. */
@@ -179,6 +227,8 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
   const reset = (seed) => () => acrobot.reset(seed);
   const set = (params) => () => acrobot.setParams(params);
   const make = (options) => () => new Acrobot(options);
+  const push = (torque) => () => acrobot.stepTorque(torque);
+  const range = (range) => () => acrobot.setParamsRange(range);
   const move = (state) => () => (acrobot.state = state);
   const marked = [-0, NaN, undefined, [-Infinity], "NaN"];
   const rows = [
@@ -190,7 +240,19 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
       ["[object Uint8Array]", step(Uint8Array.of(1))],
       ["Symbol(1)", step(Symbol("1"))],
       ["a function", step(() => 1)]],
+    ["RangeError", "torque must be a finite number of N m",
+      ["NaN", push(NaN)], ["1e+39, which is Infinity in single precision", push(1e39)]],
+    ["TypeError", "torque must be a finite number of N m", ['"1"', push("1")]],
+    ["RangeError", "friction1 must be 0 in an arithmetic without friction, in N m s/rad",
+      ["0.1", set({ friction1: 0.1 })], ["0.2", range({ friction1: [0, 0.2] })]],
+    ["RangeError", "mass1 must have a low of at most its high, in kg",
+      ["[2,1]", range({ mass1: [2, 1] })]],
+    ["RangeError", "mass1 must be finite and above 0 kg", ["0", range({ mass1: [0, 1] })]],
+    ["TypeError", "mass1[1] must be a number", ['"2"', range({ mass1: [1, "2"] })]],
+    ["TypeError", "mass1 must have 2 elements", ["1", range({ mass1: 1 })]],
+    ["TypeError", "task must be acrobot or swingup", ['"swing-up"', make({ task: "swing-up" })]],
     ["RangeError", SEED,
+      ["-1", () => acrobot.sample(-1)],
       ["-1", reset(-1)], ["-1n", reset(-1n)], ["9007199254740992", reset(2 ** 53)],
       [`${1n << 2048n}n`, reset(1n << 2048n)]],
     ["TypeError", SEED, ['"42"', reset("42")], ["null", reset(null)]],
@@ -223,7 +285,8 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
     ["RangeError", MAX_STEPS,
       ["0", make({ maxSteps: 0 })], ["-0", make({ maxSteps: -0 })],
       ["4294967296", make({ maxSteps: 2 ** 32 })]],
-    ["TypeError", "options must be among seed, params, maxSteps", ["sed", make({ sed: 1 })]],
+    ["TypeError", "options must be among seed, params, maxSteps, task, paramsRange",
+      ["sed", make({ sed: 1 })]],
     ["TypeError", "options must be an object", ["42", make(42)], ["[]", make([])]],
   ];
   assertRejected(rows, (call) => assert.deepEqual(acrobot.snapshot(), before, String(call)));
@@ -306,11 +369,13 @@ test("after free, every use throws, and other acrobots continue", () => {
   const before = other.snapshot();
   acrobot.free();
   acrobot.free();
+  const methods = ["reset", "step", "stepTorque", "sample", "snapshot", "draw"];
   const reads = ["observation", "state", "params", "energy", "tipHeight", "elapsed", "maxSteps"];
   for (const use of [
-    ...["reset", "step", "snapshot", "draw"].map((name) => () => acrobot[name](1)),
+    ...methods.map((name) => () => acrobot[name](1)),
     ...reads.map((name) => () => acrobot[name]),
     () => acrobot.setParams({}),
+    () => acrobot.setParamsRange({}),
     () => (acrobot.state = other.state),
     () => acrobot.restore(before),
   ]) {

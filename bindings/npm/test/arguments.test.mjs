@@ -36,12 +36,18 @@ function proxy(object, act) {
 
 const PARAMS = { dt: 0.05, torques: [-2, 0, 2], torqueNoise: 0.1 };
 const STATE = { theta1: 1, theta2: 2, dtheta1: 3, dtheta2: 4 };
+const STATES = Float32Array.from({ length: 12 }, (_, i) => i / 8);
 const SNAPSHOT = new Acrobot({ seed: 3, params: PARAMS }).snapshot();
 
 /** Uses of an object as an argument: what it changes, what the object is, and the use. */
 const USES = [
   ["batch", [2, 2, 2], (batch, actions) => batch.step(actions)],
   ["batch", Uint8Array.of(2, 2, 2), (batch, actions) => batch.step(actions)],
+  ["batch", [2, -2, 0.5], (batch, torques) => batch.stepTorque(torques)],
+  ["batch", Float32Array.of(2, -2, 0.5), (batch, torques) => batch.stepTorque(torques)],
+  ["batch", STATES, (batch, states) => batch.setStates(states)],
+  ["acrobot", { mass1: [1, 2] }, (acrobot, range) => acrobot.setParamsRange(range)],
+  ["acrobot", [1, 2], (acrobot, mass1) => acrobot.setParamsRange({ mass1 })],
   ["batch", PARAMS, (batch, params) => batch.setParams(params)],
   ["acrobot", PARAMS, (acrobot, params) => acrobot.setParams(params)],
   ["batch", [true, 0, 1], (batch, mask) => batch.resetMasked(mask)],

@@ -10,12 +10,13 @@ import { Acrobot, Batch } from "../dist/index.js";
 import { assertRejected, instance, randoms, sealed } from "./module.mjs";
 
 const COUNT = 21; // the last block is partly filled
-const OPTIONS = { seed: 42n, count: COUNT, maxSteps: 25, params: { torqueNoise: 0.5, mass1: 1.5 } };
+const PARAMS = { torqueNoise: 0.5, mass1: 1.5, torques: [-1, 0, 1.5] };
+const OPTIONS = { seed: 42n, count: COUNT, maxSteps: 25, params: PARAMS };
 
 /** The seed's `i`-th child, which NumPy's `SeedSequence` spawns. Acrobot 0 has no such seed. */
 const child = (seed, i) => seed + (BigInt(i) << 128n);
-const alone = ({ seed, maxSteps, params }) =>
-  Array.from({ length: COUNT }, (_, i) => new Acrobot({ seed: child(seed, i), maxSteps, params }));
+const alone = ({ count, seed, ...options }) =>
+  Array.from({ length: count }, (_, i) => new Acrobot({ seed: child(seed, i), ...options }));
 
 const random = randoms();
 const randomActions = () => Uint8Array.from({ length: COUNT }, () => random(3));
@@ -70,6 +71,62 @@ for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
   });
 }
 
+test("a swing-up whose resets draw parameters has the bits of acrobots alone", () => {
+  const paramsRange = { friction1: [0, 0.1], mass2: [0.8, 1.2], gravity: [9.8, 9.8] };
+  const options = { ...OPTIONS, task: "swingup", params: { torqueNoise: 0.1 } };
+  for (const autoreset of ["NextStep", "SameStep"]) {
+    const batch = new Batch({ ...options, paramsRange, autoreset });
+    const others = alone({ ...options, paramsRange });
+    const pending = new Array(COUNT).fill(false);
+    const masses = new Set();
+    for (let steps = 0; steps < 60; steps++) {
+      const torques = Float32Array.from({ length: COUNT }, () => random(401) / 100 - 2);
+      const results = batch.stepTorque(steps % 2 ? torques : [...torques]);
+      for (let i = 1; i < COUNT; i++) {
+        masses.add(others[i].params.mass2);
+        if (pending[i]) others[i].reset();
+        else {
+          const step = others[i].stepTorque(torques[i]);
+          assert.equal(results.rewards[i], step.reward);
+          pending[i] = step.truncated;
+          if (autoreset === "SameStep" && step.truncated) others[i].reset();
+        }
+        if (autoreset === "SameStep" || others[i].elapsed === 0) pending[i] = false;
+        assert.deepEqual(row(results.observations, i), others[i].observation);
+        assert.deepEqual(batch.state(i), others[i].state);
+        assert.deepEqual(batch.paramsOf(i), others[i].params);
+      }
+    }
+    assert.ok(masses.size > 2 * (COUNT - 1), `${masses.size} masses`);
+    const resumed = Batch.restore(batch.snapshot());
+    assert.deepEqual(resumed.settings, batch.settings);
+    const [one, other] = [resumed, batch].map((each) => each.stepTorque(all(1)));
+    assert.deepEqual([one.observations, one.rewards], [other.observations, other.rewards]);
+    batch.setParamsRange({});
+    const { mass2 } = batch.paramsOf(3);
+    batch.reset();
+    assert.equal(batch.paramsOf(3).mass2, mass2);
+  }
+});
+
+test("a reset draws from a range as NumPy does, after the initial state", () => {
+  const ranges = { gravity: [9, 10], mass2: [0.8, 1.2] };
+  const batch = new Batch({ seed: 42, count: 2, paramsRange: ranges });
+  // default_rng(SeedSequence(42).spawn(2)[1]): four initial numbers, then uniform(low, high) of
+  // the bounds in single precision, in the order of the parameters.
+  const { mass2, gravity } = batch.paramsOf(1);
+  const drawn = [1.1899586407537712, 9.465821963738907].map(Math.fround);
+  assert.deepEqual([mass2, gravity], drawn);
+  batch.reset(42);
+  assert.equal(batch.paramsOf(1).mass2, drawn[0]);
+  batch.setParamsOf(1, { mass1: 3 });
+  batch.resetMasked([0, 1], 7);
+  assert.equal(batch.paramsOf(1).mass1, 3);
+  assert.equal(batch.paramsOf(0).mass1, 1);
+  const range = () => new Batch({ count: 1 }).setParamsRange(ranges);
+  assert.throws(range, /must be made with ownParams/);
+});
+
 test("a reset draws the next initial states, or those of a seed", () => {
   const [batch, others] = [new Batch(OPTIONS), alone(OPTIONS)];
   const observations = batch.reset();
@@ -93,6 +150,13 @@ test("acrobots of a batch can have other states", () => {
     assert.deepEqual(row(observations, i), others[i].step(2).observation);
   }
   assert.deepEqual([...new Set(batch.sample())].sort(), [0, 1, 2]);
+  const { states } = batch;
+  assert.deepEqual([...states.slice(20, 24)], Object.values(batch.state(5)));
+  states.set([0.5, -0.5, 1, -1], 4 * 7);
+  batch.setStates(states);
+  others[7].state = { theta1: 0.5, theta2: -0.5, dtheta1: 1, dtheta2: -1 };
+  assert.deepEqual(row(batch.observations, 7), others[7].observation);
+  assert.deepEqual(batch.states, states);
 });
 
 test("a batch's snapshot continues with the same bits", () => {
@@ -123,7 +187,8 @@ test("acrobots with own parameters have the bits of acrobots alone, also after a
   const params = () => others.map((_, i) => batch.paramsOf(i));
   const expected = () => others.map(({ params }) => params);
   others.forEach((other, i) => {
-    const changes = { mass2: 1 + i / 8, dynamics: i % 2 ? "nips" : "book" };
+    const torques = [-1 - i / 8, 0, 1];
+    const changes = { mass2: 1 + i / 8, dynamics: i % 2 ? "nips" : "book", torques };
     batch.setParamsOf(i, changes);
     other.setParams(changes);
   });
@@ -181,7 +246,8 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
   const content = Buffer.concat([...header, ...members]);
   const snapshot = sealed(content);
   const batch = Batch.restore(snapshot);
-  const settings = { count: 2, maxSteps: 30, autoreset: "NextStep", ownParams: false };
+  const task = "acrobot";
+  const settings = { count: 2, maxSteps: 30, autoreset: "NextStep", ownParams: false, task };
   assert.deepEqual(batch.settings, settings);
   assert.deepEqual(Buffer.from(batch.snapshot()), snapshot);
   assert.notDeepEqual(batch.state(0), batch.state(1));
@@ -231,6 +297,7 @@ test("invalid arguments are rejected, and nothing changes", () => {
   const batch = new Batch({ seed: 1, count: 3 });
   const before = batch.observations.slice();
   const step = (actions) => () => batch.step(actions);
+  const torque = (torques) => () => batch.stepTorque(torques);
   const reset = (...given) => () => batch.resetMasked(...given);
   const make = (options) => () => new Batch(options);
   const wrong = { theta1: 0, theta2: NaN, dtheta1: 0, dtheta2: 0 };
@@ -243,6 +310,14 @@ test("invalid arguments are rejected, and nothing changes", () => {
     ["TypeError", `actions[1] ${ELEMENT}`, ["undefined", step([0, , 1])]],
     ["RangeError", `actions[2] ${ELEMENT}`, ["258", step([0, 1, 258])]],
     ["TypeError", `actions[2] ${ELEMENT}`, ['"2"', step([0, 1, "2"])]],
+    ["RangeError", "torques[1] must be a finite number of N m",
+      ["NaN", torque(Float32Array.of(0, NaN, 1))],
+      ["1e+39, which is Infinity in single precision", torque([0, 1e39, 1])]],
+    ["TypeError", "torques[2] must be a finite number of N m", ['"2"', torque([0, 1, "2"])]],
+    ["RangeError", "torques must have 3 elements", ["2", torque(new Float32Array(2))]],
+    ["RangeError", "states must have 12 elements", ["3", () => batch.setStates([1, 2, 3])]],
+    ["RangeError", "states[6] must be a finite number of rad/s",
+      ["Infinity", () => batch.setStates([0, 0, 0, 0, 0, 0, Infinity, 0, 0, 0, 0, 0])]],
     ["RangeError", "mask must have 3 elements", ["2", reset([1, 1])]],
     ["TypeError", "mask must have 3 elements", ["undefined", reset()]],
     ["RangeError", "mask[1] must be true, false, 1 or 0", ["2", reset([1, 2, 1])]],
@@ -272,9 +347,11 @@ test("invalid arguments are rejected, and nothing changes", () => {
   batch.free();
   for (const use of [
     step([0, 0, 0]),
+    torque([0, 0, 0]),
+    () => batch.setStates(new Float32Array(12)),
     reset([1, 1, 1]),
     ...["reset", "state", "elapsed", "snapshot"].map((name) => () => batch[name](0)),
-    ...["observations", "params"].map((name) => () => batch[name]),
+    ...["observations", "params", "states"].map((name) => () => batch[name]),
   ]) {
     assert.throws(use, { name: "Error", message: "the batch has been freed" });
   }

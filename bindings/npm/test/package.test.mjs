@@ -68,7 +68,7 @@ async function open(html, play = () => {}) {
   return lines;
 }
 
-test("the package has at most 120 KB and these files", () => {
+test("the package has at most 140 KB and these files", () => {
   const report = run("npm", ["pack", "--json", "--dry-run", join(here, "dist")]);
   const [{ name, files, unpackedSize }] = JSON.parse(report);
   const paths = files.map(({ path }) => path).sort();
@@ -77,7 +77,7 @@ test("the package has at most 120 KB and these files", () => {
   );
   const licences = ["APACHE", "MIT", "tiny-inflate"].map((name) => `LICENSE-${name}`);
   assert.deepEqual(paths, [...licences, "README.md", "package.json", ...entries].sort());
-  assert.ok(unpackedSize <= 120_000, `${unpackedSize} bytes`);
+  assert.ok(unpackedSize <= 140_000, `${unpackedSize} bytes`);
   assert.equal(name, "acrobot-rs");
 });
 
@@ -90,7 +90,7 @@ test("the module imports nothing and cannot panic", () => {
 });
 
 test("the programs of the documentation run in Node.js and print what they say", () => {
-  assert.equal(PROGRAMS.length, 7);
+  assert.equal(PROGRAMS.length, 8);
   PROGRAMS.forEach((program, i) => {
     write(`program${i}.mjs`, program);
     assert.equal(run("node", [`program${i}.mjs`]).trim(), printed(program));

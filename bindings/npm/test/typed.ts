@@ -1,7 +1,7 @@
 // Compiles with `tsc --strict`: valid uses have types, and others are errors.
 
 import { Acrobot, Batch, moduleBytes, setModule } from "acrobot-rs";
-import type { Action, BatchStep, Context, Options, Params, State, Step } from "acrobot-rs";
+import type { Action, BatchStep, Context, Options, Params, State, Step, Task } from "acrobot-rs";
 import { Learner, bangBang, energyLaw, uprightEnergy } from "acrobot-rs/policies";
 
 const changes: Options["params"] = { dt: 0.05, torques: [-2, 0, 2], dynamics: "nips" };
@@ -21,6 +21,10 @@ resumed.restore(bytes);
 const numbers: number[] = [acrobot.energy, acrobot.tipHeight, acrobot.elapsed, step.reward];
 numbers.push(acrobot.maxSteps);
 
+using swingup = new Acrobot({ task: "swingup", paramsRange: { mass2: [0.8, 1.2] } });
+const task: Task = swingup.task;
+numbers.push(swingup.stepTorque(-0.5).reward, acrobot.sample(42n));
+
 const batch = new Batch({ ...options, count: 3, autoreset: "SameStep" });
 const results: BatchStep = batch.step(Uint8Array.of(0, 1, 2));
 batch.step([0, 1, 2]);
@@ -36,6 +40,9 @@ batch.resetMasked(results.ended);
 batch.resetMasked([true, false, true], 7);
 batch.step(batch.sample());
 batch.setState(0, acrobot.state);
+batch.setStates(batch.states);
+batch.setParamsRange({ friction1: [0, 0.1] });
+batch.stepTorque(new Float32Array(3));
 const copied: Batch = Batch.restore(batch.snapshot());
 const mode: "NextStep" | "SameStep" | "Disabled" = copied.settings.autoreset;
 
@@ -51,6 +58,10 @@ export function draw(page: CanvasRenderingContext2D, other: OffscreenCanvasRende
 acrobot.step(3);
 // @ts-expect-error
 acrobot.step("1");
+// @ts-expect-error
+acrobot.setParamsRange({ dynamics: ["book", "nips"] });
+// @ts-expect-error
+new Acrobot({ task: "swing-up" });
 // @ts-expect-error
 acrobot.state.theta1 = 1;
 // @ts-expect-error
@@ -74,4 +85,4 @@ new Batch({ count: 1, autoreset: "nextStep" });
 // @ts-expect-error
 batch.draw(document.createElement("canvas"), 0);
 
-export { actions, done, finals, mode, numbers, second };
+export { actions, done, finals, mode, numbers, second, task };

@@ -13,7 +13,6 @@ const $ = (id) => document.getElementById(id);
 
 /** How long a policy's ended episode stays on the screen before the next begins, ms. */
 const INTERVAL = 1500;
-const NO_ACTIONS = "The link has no actions.";
 
 function start() {
   const [game, learner] = [new Game(42n, { ...DEFAULTS }), new Learner()];
@@ -55,7 +54,7 @@ function start() {
 
   const step = () => {
     const next = action();
-    if (next === undefined) return pause(recorded.length ? "The replay has ended." : NO_ACTIONS);
+    if (next === undefined) return pause("The replay has ended.");
     game.step(next);
     players.add($("policy").value);
     shown = 0;
@@ -79,17 +78,20 @@ function start() {
     $("seed").removeAttribute("aria-invalid");
     $("seed-reason").textContent = "";
     $("link-field").hidden = true;
+    address();
+    say(`Seed ${name(seed)}.${playing ? ` ${player()}` : ""}`);
     changed();
   };
+  /** Puts the run into the address, so that loading the page again begins it. */
+  const address = (actions = $("policy").value === "link" ? recorded : []) =>
+    // Assigning to `location` would replay the run.
+    history.replaceState(null, "", encodeRun({ ...game, actions }));
 
   const reset = () => {
     begin(game.seed);
     say(`Restarted from the initial state of seed ${name(game.seed)}.`);
   };
-  const next = () => {
-    begin(game.seed + 1n);
-    say(`Seed ${name(game.seed)}.${playing ? ` ${player()}` : ""}`);
-  };
+  const next = () => begin(game.seed + 1n);
 
   const play = () => {
     playing = true;
@@ -127,6 +129,7 @@ function start() {
   const choose = (policy) => {
     $("policy").value = policy;
     if (policy !== "keys" && game.end !== null) begin(game.seed);
+    address();
     if (playing) say(player());
     changed();
   };
@@ -154,7 +157,8 @@ function start() {
     const upright = [`upright: ${number(standing)} J`, "hint"];
     const height = [`tip height ${number(heights.at(-1))} m`, ""];
     const range = rangeOf([...energy, standing, -standing]);
-    show("energy", "Energy", [""], "J", [energy], { range, marks: [standing] }, upright, height);
+    const marks = [[standing, color("--muted")]];
+    show("energy", "Energy", [""], "J", [energy], { range, marks }, upright, height);
     const turn = { range: [-Math.PI, Math.PI], period: 2 * Math.PI };
     show("angles", "Angles", ["θ1", "θ2"], "rad", angles, turn);
     const fastest = 1.06 * Math.max(2, ...velocities.flat().map(Math.abs));
@@ -175,7 +179,7 @@ function start() {
     const isOwn = policy === "keys";
     $("best-label").textContent = isOwn ? "Your fewest steps" : `Fewest steps of ${label}`;
     $("pause").textContent = playing ? "Pause" : "Play";
-    const verdicts = { goal: `${game.steps} steps`, limit: "Out of time" };
+    const verdicts = { goal: `Goal! ${game.steps} steps`, limit: "Out of time" };
     $("verdict").textContent = verdicts[game.end] ?? "";
     const between = calm.matches
       ? "Reduced motion: the picture moves step by step, without a trail."
@@ -269,6 +273,8 @@ function start() {
   const buttons = { pause: toggle, single, reset, next };
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
   $("policy").onchange = ({ target }) => choose(target.value);
+  // Otherwise ← and → would choose from the list that has the focus.
+  $("app").addEventListener("change", ({ target }) => target.matches("select") && target.blur());
 
   // ---- settings
 
@@ -281,37 +287,45 @@ function start() {
 
   const showParams = parametersPanel(
     () => game.params,
-    (params) => begin(game.seed, params),
+    (params) => {
+      begin(game.seed, params);
+      say("The episode restarts, because the physics has changed.");
+    },
   );
 
   // ---- links, files, and the panels
 
-  const open = () => {
-    if (location.hash.length <= 1) return;
-    attempt($("link"), $("link-reason"), () => {
-      const run = decodeRun(location.hash);
+  const open = (hash) => {
+    if (hash.length <= 1) return;
+    try {
+      const run = decodeRun(hash);
       begin(run.seed, run.params);
       showParams();
       recorded = run.actions;
-      document.querySelector("[value=link]").disabled = false;
-      choose("link");
       const { length } = recorded;
-      say(length > 0 ? `Replay of a link: ${length} steps of seed ${name(run.seed)}.` : NO_ACTIONS);
-    });
+      document.querySelector("[value=link]").disabled = length === 0;
+      choose(length > 0 ? "link" : "bang_bang");
+      if (length > 0) say(`Replay of a link: ${length} steps of seed ${name(run.seed)}.`);
+    } catch (error) {
+      address();
+      say(`The link is invalid: ${minus(error.message)}`);
+      $("status").scrollIntoView({ block: "nearest" });
+    }
   };
-  addEventListener("hashchange", open);
+  addEventListener("hashchange", () => open(location.hash));
   $("share").onclick = async () => {
-    const hash = encodeRun(game);
-    // Assigning to `location` would replay the run.
-    history.replaceState(null, "", hash);
-    $("link").value = location.href;
+    address(game.actions);
+    const { href } = location;
+    $("link").value = href;
     $("link-field").hidden = false;
     $("link").select();
+    const content = `seed, physics and ${game.steps} actions`;
+    const shown = (text) => ($("link-field").firstElementChild.textContent = text);
     try {
-      await navigator.clipboard.writeText(location.href);
-      say("Link copied.");
+      await navigator.clipboard.writeText(href);
+      shown(`Copied: a link with ${content}`);
     } catch {
-      say("The browser does not allow copying. Copy the link from the field.");
+      shown(`The browser does not allow copying. Copy this link with ${content}`);
     }
   };
   $("csv").onclick = () => download(`acrobot-${name(game.seed)}.csv`, game.csv());
@@ -325,6 +339,7 @@ function start() {
     },
     drive() {
       choose("learnt");
+      begin(game.seed);
       if (!playing) play();
     },
   });
@@ -336,11 +351,16 @@ function start() {
     });
   }
   new ResizeObserver(changed).observe($("energy"));
+  // Where the style sheet has a small picture, it shows that once most of the large one is away.
+  const away = ([{ intersectionRatio }]) =>
+    $("stage").classList.toggle("small", intersectionRatio < 0.5);
+  new IntersectionObserver(away, { threshold: 0.5 }).observe($("frame"));
 
+  const { hash } = location;
   showParams();
   choose("bang_bang");
   if (!playing) say(`Press Play to watch Bang-bang. ${takeOver}`);
-  open();
+  open(hash);
   requestAnimationFrame(frame);
 }
 

@@ -20,11 +20,11 @@ export function attempt(field, reason, set) {
 
 /** `get` returns the parameters, `set` takes them or throws. Returns a function that shows them. */
 export function parametersPanel(get, set) {
-  const fields = PARAMETERS.map(({ name, label, unit, end, step, hint }) => {
+  const fields = PARAMETERS.map(({ name, label, unit, start, end, step, hint }) => {
     const field = document.createElement("div");
     field.className = "field parameter";
     const described = `aria-describedby="${name}-hint ${name}-reason"`;
-    const range = `type="range" min="0" max="${end}" step="${step}"`;
+    const range = `type="range" min="${start}" max="${end}" step="${step}"`;
     field.innerHTML = `
       <label for="${name}">${label}</label>
       <input ${range} aria-label="${label}, ${unit}" ${described}>
@@ -36,12 +36,19 @@ export function parametersPanel(get, set) {
     const [slider, text] = field.querySelectorAll("input");
     const reason = field.querySelector(".reason");
     const change = () => {
-      attempt(text, reason, () => set({ ...get(), [name]: parseNumber(text.value) }));
+      const value = parseNumber(text.value);
+      const isNew = !Object.is(value, get()[name]);
+      attempt(text, reason, () => isNew && set({ ...get(), [name]: value }));
       const given = text.value.trim() || "an empty text";
       reason.textContent = reason.textContent.replace(/(NaN|−?Infinity)$/, () => given);
     };
-    slider.oninput = () => {
-      text.value = slider.value;
+    slider.oninput = () => (text.value = slider.value);
+    // A held key changes the slider again and again. The episode restarts when it is released.
+    let held = false;
+    slider.onkeydown = () => (held = true);
+    slider.onchange = () => held || change();
+    slider.onkeyup = slider.onblur = () => {
+      held = false;
       change();
     };
     text.oninput = () => {

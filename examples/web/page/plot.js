@@ -15,8 +15,8 @@ export function color(name) {
 
 /**
  * Draws `series`, each with `values` and a `color`. The first value is at x = `start`. Each of
- * `marks` is a value, drawn as a dashed horizontal line, and `unit` is that of x. If there is a
- * `period`, as of an angle, a line leaves the plot at one edge and returns at the other.
+ * `marks` is a value and the color of its dashed horizontal line, and `unit` is that of x. If there
+ * is a `period`, as of an angle, a line leaves the plot at one edge and returns at the other.
  */
 export function plot(canvas, options) {
   const { series, range, start = 0, end, unit, marks = [], period = Infinity } = options;
@@ -59,7 +59,7 @@ export function plot(canvas, options) {
     const last = width - context.measureText(text).width / 2;
     context.fillText(text, Math.min(x(tick), last), height - 4);
   });
-  for (const mark of marks) across(mark, color("--muted"), [4, 4]);
+  for (const [mark, color] of marks) across(mark, color, [4, 4]);
 
   context.beginPath();
   context.rect(left, top - 1, width - left, inner + 2);
@@ -78,11 +78,14 @@ export function plot(canvas, options) {
   }
 }
 
-/** At most about `count` round numbers from `low` to `high`, at equal distances. */
-function ticks(low, high, count) {
+/**
+ * At most about `count` round numbers from `low` to `high`, at equal distances. Without 2.5, a
+ * range from −4.9 to 4.9 would have only 0.
+ */
+export function ticks(low, high, count) {
   const raw = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].find((digit) => digit * power >= raw) * power;
+  const step = [1, 2, 2.5, 5, 10].find((digit) => digit * power >= raw) * power;
   const first = Math.ceil(low / step);
   return Array.from({ length: Math.floor(high / step) - first + 1 }, (_, i) => (first + i) * step);
 }

@@ -3,16 +3,16 @@
 /** The most steps of an episode. */
 export const LIMIT = 500;
 
-/** Name, label, unit, Gymnasium's value, the slider's end and step, and a hint. */
+/** Name, label, unit, Gymnasium's value, the slider's end and step, a hint, and its start. */
 export const PARAMETERS = [
   ["dt", "Time step dt", "s", 0.2, 0.5, 0.01],
   ["mass1", "Mass of link 1", "kg", 1, 4, 0.05],
   ["mass2", "Mass of link 2", "kg", 1, 4, 0.05],
   ["length1", "Length of link 1", "m", 1, 3, 0.05, "Moves the motor, not the centre of mass."],
   ["length2", "Length of link 2", "m", 1, 3, 0.05, "Changes only the picture and the tip height."],
-  ["gravity", "Gravity", "m/s²", 9.8, 25, 0.1],
-].map(([name, label, unit, value, end, step, hint = ""]) => {
-  return { name, label, unit, value, end, step, hint };
+  ["gravity", "Gravity", "m/s²", 9.8, 25, 0.1, "", 0],
+].map(([name, label, unit, value, end, step, hint = "", start = step]) => {
+  return { name, label, unit, value, end, step, hint, start };
 });
 
 export const DEFAULTS = {

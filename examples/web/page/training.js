@@ -7,6 +7,8 @@ import { parseSeed } from "./settings.js";
 /** Solved, as Gymnasium defines it: a mean return of −100 over 100 episodes. */
 const WINDOW = 100;
 const SOLVED = -100;
+/** The untrained policy's mean return. */
+export const BASELINE = -84;
 const EPISODES = 1_000_000;
 
 const $ = (id) => document.getElementById(id);
@@ -15,13 +17,15 @@ const $ = (id) => document.getElementById(id);
 export function trainingPanel(learner, { ready, drive }) {
   let worker = null;
   let weights = null;
+  /** From the first whole window on. Means of fewer episodes would be a spike. */
   let means = [];
 
   const draw = () => {
     const range = rangeOf([...means, 2 * SOLVED, 0]);
-    const series = [{ values: means, color: color("--link") }];
-    const end = Math.max(means.length, WINDOW);
-    plot($("curve"), { series, range, start: 1, end, unit: "episodes", marks: [SOLVED] });
+    const series = [{ values: means, color: color("--accent") }];
+    const end = WINDOW + Math.max(means.length - 1, WINDOW);
+    const marks = [[SOLVED, color("--muted")], [BASELINE, color("--second")]];
+    plot($("curve"), { series, range, start: WINDOW, end, unit: "episodes", marks });
   };
 
   /** Loads weights or a perceptron for the learnt policy, or throws the reason. */
@@ -38,7 +42,7 @@ export function trainingPanel(learner, { ready, drive }) {
     worker?.terminate();
     worker = null;
     $("train").textContent = "Train";
-    if (message) $("training-status").textContent = message;
+    if (message) $("training-status").append(` · ${message}`);
   };
 
   const train = () => {
@@ -61,21 +65,22 @@ export function trainingPanel(learner, { ready, drive }) {
     means = [];
     const began = performance.now();
     worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
-    worker.onerror = ({ message }) => stop(`The training failed: ${message}`);
+    worker.onerror = ({ message }) => stop(`the training failed: ${message}`);
     worker.onmessage = ({ data }) => {
       for (const value of data.returns) {
         returns.push(value);
         sum += value - (returns[returns.length - 1 - WINDOW] ?? 0);
-        means.push(sum / Math.min(returns.length, WINDOW));
+        if (returns.length >= WINDOW) means.push(sum / WINDOW);
       }
       take(data.weights);
       draw();
       const rate = Math.round((returns.length / (performance.now() - began)) * 60_000);
-      const solved = means.findIndex((mean, i) => i + 1 >= WINDOW && mean >= SOLVED);
+      const mean = sum / Math.min(returns.length, WINDOW);
+      const solved = means.findIndex((mean) => mean >= SOLVED);
       const text = [
         `${returns.length.toLocaleString("en")} of ${episodes.toLocaleString("en")} episodes`,
-        `mean return ${minus(means.at(-1).toFixed(1))}`,
-        solved < 0 ? "not solved yet" : `solved at episode ${solved + 1}`,
+        `mean return ${minus(mean.toFixed(1))}`,
+        solved < 0 ? "not solved yet" : `solved at episode ${solved + WINDOW}`,
         `${rate.toLocaleString("en")} episodes per minute`,
       ].join(" · ");
       $("training-status").textContent = text;
@@ -86,7 +91,7 @@ export function trainingPanel(learner, { ready, drive }) {
     $("training-status").textContent = "Training…";
   };
 
-  $("train").onclick = () => (worker ? stop("Stopped. The weights are kept.") : train());
+  $("train").onclick = () => (worker ? stop("stopped") : train());
   $("drive").onclick = drive;
   $("save").onclick = () => download("weights.bin", weights);
   $("choose").onclick = () => $("load").click();

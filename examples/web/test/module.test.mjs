@@ -1,13 +1,17 @@
 // The page's functions, in Node: links, numbers as text, the interpolated picture, the trail.
 
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 import { randoms } from "../../../bindings/npm/test/module.mjs";
+import { Acrobot } from "../dist/acrobot-rs/index.js";
+import { Learner } from "../dist/acrobot-rs/policies.js";
 import { Game, shortest } from "../dist/game.js";
 import { decodeRun, encodeRun } from "../dist/link.js";
-import { rangeOf } from "../dist/plot.js";
+import { rangeOf, ticks } from "../dist/plot.js";
 import { DEFAULTS } from "../dist/settings.js";
+import { BASELINE } from "../dist/training.js";
 import { ACTIONS } from "./native.mjs";
 
 /** A canvas's context that draws nothing. */
@@ -23,6 +27,26 @@ test("numbers are written with the fewest digits that keep single precision", ()
 test("a plot can show the longest training", () => {
   const [low, high] = rangeOf(Array.from({ length: 1_000_000 }, (_, i) => -(i % 501)));
   assert.deepEqual([low, high], [-530, 30]);
+});
+
+test("a plot has a scale, whatever its range", () => {
+  for (let high = 0.01; high < 1000; high *= 1.01) {
+    assert.ok(ticks(-high, high, 4).length >= 3, `±${high}`);
+    assert.ok(ticks(0, high, 4).length >= 2, `0 to ${high}`);
+  }
+});
+
+test("the curve's baseline is the mean return of the untrained policy", () => {
+  const [learner, acrobot, episodes] = [new Learner(), new Acrobot({ seed: 42 }), 4000];
+  let sum = 0;
+  for (let episode = 0; episode < episodes; episode++, acrobot.reset()) {
+    for (let step = {}; !step.terminated && !step.truncated; sum += step.reward) {
+      step = acrobot.step(learner.act(acrobot));
+    }
+  }
+  assert.ok(Math.abs(sum / episodes - BASELINE) < 1, `${sum / episodes}`);
+  const html = readFileSync(new URL("../dist/index.html", import.meta.url), "utf8");
+  assert.ok(html.includes(`untrained: −${-BASELINE}<`));
 });
 
 test("the picture between two steps has the angles and velocities of both", () => {

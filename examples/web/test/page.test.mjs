@@ -20,6 +20,8 @@ onPage("the page loads, plays a policy, and has a strict content security policy
   assert.match(policy, /default-src 'none'/);
   await stepped(page, 2);
   await shows(page, "#status", "Bang-bang plays. To take over, press ← or →.");
+  const links = "a[href*=REPOSITORY], a[href*=gymnasium]";
+  assert.equal(await page.evaluate((a) => document.querySelectorAll(a).length, links), 3);
   const drawn = await page.evaluate(() => {
     const context = document.querySelector("#picture").getContext("2d");
     const { data } = context.getImageData(0, 0, 900, 900);
@@ -138,7 +140,9 @@ onPage("after a policy's goal the next seed follows, and a key takes over", asyn
   await page.fill("#length2", "2");
   await says(page, "#status", /^Goal after \d+ steps\. The next seed follows\.$/);
   await says(page, "#status", /^Seed 43\. Bang-bang plays\./);
-  await page.focus("#stage");
+  // The list loses the focus.
+  await page.focus("#pace");
+  await page.selectOption("#pace", "1");
   await page.keyboard.press("ArrowLeft");
   await shows(page, "#status", "You play.");
   assert.equal(await page.inputValue("#policy"), "keys");
@@ -162,13 +166,17 @@ onPage("parameters act as in the crate, and invalid ones are rejected", async (p
   await showsBits(page, state);
 
   const slider = ".parameter:has(#mass1) [type=range]";
-  await page.fill(slider, "0");
+  await page.fill("#mass1", "0");
   await shows(page, "#mass1-reason", "mass1 must be finite and above 0 kg, got 0");
+  await page.focus(slider);
+  // Each repetition moves the slider. The episode restarts when the key is released.
+  for (const key of ["ArrowLeft", "ArrowRight", "ArrowRight"]) await page.keyboard.down(key);
+  assert.equal(await page.inputValue("#mass1"), "0.15");
   await showsBits(page, state);
-  await page.fill(slider, "2");
+  await page.keyboard.up("ArrowRight");
   await shows(page, "#mass1-reason", "");
-  assert.equal(await page.inputValue("#mass1"), "2");
   await shows(page, "#step", "0");
+  await shows(page, "#status", "The episode restarts, because the physics has changed.");
   await press(page, ACTIONS);
   assert.notDeepEqual(await shownBits(page), state);
 
@@ -185,7 +193,7 @@ onPage("a tiny time step does not freeze the page", async (page) => {
 });
 
 test("a link replays a run, and an invalid link is rejected", async () => {
-  let link, state;
+  let link, state, address;
   await open({}, async (page) => {
     await paused(page, 7);
     await page.fill("#length2", "1.5");
@@ -198,7 +206,11 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     const copied = () => navigator.clipboard.readText();
     if (!inChromium.skip) assert.equal(await page.evaluate(copied), link);
     assert.equal(await page.url(), link);
+    await shows(page, "#link-field label", "Copied: a link with seed, physics and 21 actions");
     state = await shownBits(page);
+    await page.click("#reset");
+    assert.equal(await page.evaluate(() => document.querySelector("#link-field").hidden), true);
+    address = await page.url();
   });
   const { hash } = new URL(link);
   await open({ hash }, async (page) => {
@@ -206,14 +218,20 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     await says(page, "#status", /^The replay has ended\.$/);
     await showsBits(page, state);
     assert.equal(await page.inputValue("#length2"), "1.5");
+    assert.equal(await page.url(), link);
   });
-  await open({ hash: "#seed=7" }, async (page) => {
-    await says(page, "#pause", /^Play$/);
-    await shows(page, "#status", "The link has no actions.");
+  // The address of a run begins it again: its seed and its physics.
+  await open({ hash: new URL(address).hash }, async (page) => {
+    await says(page, "#status", /^Bang-bang plays\./);
     assert.equal(await page.inputValue("#seed"), "7");
+    assert.equal(await page.inputValue("#mass2"), "0.75");
+    assert.equal(await page.inputValue("#dynamics"), "nips");
+    await stepped(page, 1);
   });
   await open({ hash: "#seed=4&mass1=0" }, async (page) => {
-    await shows(page, "#link-reason", "mass1 must be finite and above 0 kg, got 0");
+    const reason = "mass1 must be finite and above 0 kg, got 0";
+    await shows(page, "#status", `The link is invalid: ${reason}`);
+    assert.match(await page.url(), /#seed=42$/);
     assert.equal(await page.inputValue("#seed"), "42");
     assert.equal(await page.inputValue("#mass1"), "1");
   });
@@ -263,6 +281,11 @@ onPage("the worker trains the weights of the learner", async (page) => {
     assert.match(await text(page, "#training-status"), /^20 of 20 episodes/);
     assert.ok((await downloaded(page, "#save")).equals(learnt(20, BigInt(seed))), `seed ${seed}`);
   }
+  await page.fill("#episodes", "1000000");
+  await page.click("#train");
+  await says(page, "#training-status", /^[1-9].* of 1,000,000 episodes/);
+  await page.click("#train");
+  assert.match(await text(page, "#training-status"), / episodes per minute · stopped$/);
 });
 
 onPage("loaded weights reach the goal, and invalid ones are rejected", async (page) => {
@@ -273,10 +296,12 @@ onPage("loaded weights reach the goal, and invalid ones are rejected", async (pa
   await page.setInputFiles("#load", path);
   await says(page, "#training-status", /is loaded\.$/);
   assert.ok((await downloaded(page, "#save")).equals(good));
+  await press(page, ACTIONS);
   await page.click("#drive");
   await page.click("#pause");
   await steps(page, 200);
-  assert.match(await text(page, "#verdict"), /^\d+ steps$/);
+  // A new episode, which nobody else has played.
+  await shows(page, "#verdict", `Goal! ${await text(page, "#best")} steps`);
 
   const short = join(folder, "short.bin");
   writeFileSync(short, good.subarray(0, 1000));
@@ -290,7 +315,7 @@ onPage("loaded weights reach the goal, and invalid ones are rejected", async (pa
   await says(page, "#training-status", /^policy\.bin is loaded\.$/);
   await page.fill("#seed", "1");
   await steps(page, 200);
-  await shows(page, "#verdict", "101 steps");
+  await shows(page, "#verdict", "Goal! 101 steps");
   for (const [episodes, seed] of [["0", "1"], ["1.5", "1"], ["1e9", "1"], ["10", "x"]]) {
     await page.fill("#episodes", episodes);
     await page.fill("#training-seed", seed);
@@ -325,7 +350,7 @@ onPage("the fewest steps are those of who played, with these parameters", async 
   await page.selectOption("#policy", "bang_bang");
   await steps(page, 200);
   const best = await text(page, "#best");
-  await shows(page, "#verdict", `${best} steps`);
+  await shows(page, "#verdict", `Goal! ${best} steps`);
   await shows(page, "#status", "The episode has ended. Press Restart or Next seed.");
   await shows(page, "#best-label", "Fewest steps of Bang-bang");
   await page.selectOption("#policy", "keys");
