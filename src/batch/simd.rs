@@ -61,8 +61,10 @@ impl SimdLevel {
                 /// every second process, because a stack begins at a random multiple of 16, and a
                 /// step takes 25 % longer.
                 #[repr(align(32))]
-                struct Aligned(u8);
-                std::hint::black_box(Aligned(0));
+                struct Aligned {
+                    _byte: u8,
+                }
+                std::hint::black_box(Aligned { _byte: 0 });
                 work.step::<false>();
             }
             #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
