@@ -125,7 +125,7 @@ pub(super) const fn octant_sine(fraction: &Fraction, is_cosine: bool) -> Fractio
     let mut terms = INVERSE_FACTORIALS;
     while let [smaller @ .., [even, odd]] = terms {
         let term = if is_cosine { even } else { odd };
-        sum = product(&square, &difference(term, &sum)); // the second factor has leading zeros
+        sum = product(&difference(term, &sum), &square); // the first factor has leading zeros
         terms = smaller;
     }
     if is_cosine { difference(&[u64::MAX; 3], &sum) } else { difference(&r, &product(&r, &sum)) }
@@ -141,12 +141,11 @@ fn round([first, second, third]: Fraction) -> f64 {
     f64::from_bits(last_place + (mantissa >> 11) + (mantissa >> 10) % 2)
 }
 
-/// The product, at most 2⁻¹⁹² too low. On an RV32I, which multiplies bit by bit, the time depends on
-/// which factor is read first.
+/// The product, at most 2⁻¹⁹² too low.
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))] // saves flash
-const fn product(&[b2, b1, b0]: &Fraction, &[a2, a1, a0]: &Fraction) -> Fraction {
+const fn product(&[a2, a1, a0]: &Fraction, b: &Fraction) -> Fraction {
     /// (sum + a b) / 2⁶⁴.
-    const fn row([sum2, sum1, sum0]: Fraction, a: u64, [b2, b1, b0]: Fraction) -> Fraction {
+    const fn row([sum2, sum1, sum0]: Fraction, a: u64, &[b2, b1, b0]: &Fraction) -> Fraction {
         if a == 0 {
             return [0, sum2, sum1];
         }
@@ -155,7 +154,6 @@ const fn product(&[b2, b1, b0]: &Fraction, &[a2, a1, a0]: &Fraction) -> Fraction
         let (word2, word1) = multiply_add(a, b2, sum2, carry);
         [word2, word1, word0]
     }
-    let b = [b2, b1, b0];
     row(row(row([0; 3], a0, b), a1, b), a2, b)
 }
 
