@@ -234,8 +234,9 @@ fn planner<A: Arithmetic>() {
     let mut rng = Pcg64::new(black_box(42));
     if let Ok(mut planner) = Planner::<A>::new(params(), number()) {
         let _ = black_box(planner.improve(state(), black_box(10), &mut memory));
-        let plan = planner.plan(state(), black_box(10), &mut rng, &mut memory);
-        black_box(plan.map(|plan| plan.iter().map(|step| step.follow(state())).next_back())).ok();
+        if let Ok(plan) = planner.plan(state(), black_box(10), &mut rng, &mut memory) {
+            black_box(planner.follow(plan, black_box(3), state()));
+        }
     }
 }
 
