@@ -95,11 +95,14 @@ export interface Options {
 }
 
 export interface Step {
-  /** A new array: [cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2], velocities in rad/s. */
+  /**
+   * A new array: [cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2], velocities in rad/s. In a swing-up the
+   * first four are dm_control's `orientations`.
+   */
   observation: Float32Array;
   /** −1, or 0 if `terminated`. In a swing-up from 0 to 1. */
   reward: number;
-  /** Whether the goal is reached: −cos θ1 − cos(θ1 + θ2) > 1. */
+  /** Whether the goal is reached: −cos θ1 − cos(θ1 + θ2) > 1. Never in a swing-up. */
   terminated: boolean;
   /** Whether the episode has reached `maxSteps`. */
   truncated: boolean;
@@ -148,7 +151,7 @@ declare abstract class Kept {
   [Symbol.dispose](): void;
 }
 
-/** One Acrobot-v1. Invalid arguments throw a `RangeError` or `TypeError`, and change nothing. */
+/** One acrobot. Invalid arguments throw a `RangeError` or `TypeError`, and change nothing. */
 export class Acrobot extends Kept {
   constructor(options?: Options);
   /** A new acrobot that continues from a snapshot with the same bits. */
@@ -199,7 +202,7 @@ export interface BatchOptions extends Options {
  */
 export interface BatchStep {
   observations: Float32Array;
-  /** −1, or 0 if the acrobot terminated or was only reset. */
+  /** −1, or 0 if the acrobot terminated or was only reset. In a swing-up from 0 to 1. */
   rewards: Float32Array;
   /** 1 at the goal, otherwise 0. */
   terminated: Uint8Array;

@@ -51,7 +51,8 @@ export function elements(what, array, count, isValid, rule) {
   const length = array?.length;
   if (length !== count) {
     const types = length === undefined ? [] : ["number"];
-    throw invalid(`${what} must have ${count} elements`, length ?? array, types);
+    const must = length === undefined ? "be an array of" : "have";
+    throw invalid(`${what} must ${must} ${count} elements`, length ?? array, types);
   }
   const copy = [];
   for (let i = 0; i < count; i++) {

@@ -249,7 +249,7 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
       ["[2,1]", range({ mass1: [2, 1] })]],
     ["RangeError", "mass1 must be finite and above 0 kg", ["0", range({ mass1: [0, 1] })]],
     ["TypeError", "mass1[1] must be a number", ['"2"', range({ mass1: [1, "2"] })]],
-    ["TypeError", "mass1 must have 2 elements", ["1", range({ mass1: 1 })]],
+    ["TypeError", "mass1 must be an array of 2 elements", ["1", range({ mass1: 1 })]],
     ["TypeError", "task must be acrobot or swingup", ['"swing-up"', make({ task: "swing-up" })]],
     ["RangeError", SEED,
       ["-1", () => acrobot.sample(-1)],

@@ -303,7 +303,7 @@ test("invalid arguments are rejected, and nothing changes", () => {
   const wrong = { theta1: 0, theta2: NaN, dtheta1: 0, dtheta2: 0 };
   const rows = [
     ["RangeError", "actions must have 3 elements", ["2", step(new Uint8Array(2))]],
-    ["TypeError", "actions must have 3 elements", ["undefined", step()], ["3", step(3)]],
+    ["TypeError", "actions must be an array of 3 elements", ["undefined", step()], ["3", step(3)]],
     ["TypeError", `actions[0] ${ELEMENT}`, ['"0"', step("012")]],
     ["RangeError", `actions[1] ${ELEMENT}`,
       ["3", step(Uint8Array.of(0, 3, 1))], ["-1", step(Int32Array.of(0, -1, 1))]],
@@ -319,7 +319,7 @@ test("invalid arguments are rejected, and nothing changes", () => {
     ["RangeError", "states[6] must be a finite number of rad/s",
       ["Infinity", () => batch.setStates([0, 0, 0, 0, 0, 0, Infinity, 0, 0, 0, 0, 0])]],
     ["RangeError", "mask must have 3 elements", ["2", reset([1, 1])]],
-    ["TypeError", "mask must have 3 elements", ["undefined", reset()]],
+    ["TypeError", "mask must be an array of 3 elements", ["undefined", reset()]],
     ["RangeError", "mask[1] must be true, false, 1 or 0", ["2", reset([1, 2, 1])]],
     ["RangeError", SEED, ["-1", reset([1, 1, 1], -1)]],
     ["RangeError", "theta2 must be a finite number of rad",

@@ -9,13 +9,17 @@ from collections.abc import Mapping
 from numbers import Real
 from typing import Any
 
-import dm_env
 import numpy as np
-from dm_env import specs
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs.arrays import must_be, require
 from acrobot_rs.swingup import AcrobotSwingupEnv, AcrobotSwingupSparseEnv
+
+try:
+    import dm_env
+    from dm_env import specs
+except ImportError as error:
+    raise ImportError("dm_env is not installed, run `pip install dm-env`") from error
 
 _TASKS = {"swingup": AcrobotSwingupEnv, "swingup_sparse": AcrobotSwingupSparseEnv}
 

@@ -26,7 +26,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
     ## Description
 
     A seed gives the same initial states, torque noise and episode ends as in Gymnasium's
-    environment. On x86-64 Linux with glibc, states, rewards and observations are bit-identical.
+    environment. On Linux with glibc, states, rewards and observations are bit-identical.
 
     ## Action Space
 
