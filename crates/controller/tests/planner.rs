@@ -1,5 +1,5 @@
-//! A plan obeys the model and its largest torque, and ends where the regulator holds. The controller
-//! needs no plan. Bad input gives an error.
+//! A plan obeys the model and its largest torque, and ends where the regulator holds. The
+//! controller needs no plan. Bad input gives an error.
 
 use std::error::Error;
 
