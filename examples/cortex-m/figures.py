@@ -128,7 +128,8 @@ def run(*command, rustflags="", machine="", minimal=""):
 
 
 def cargo(command, binary, target=M4F, features="", level="3", **settings):
-    options = ["--target", target, "--features", features, "--bin", binary]
+    own = "" if binary in ("steps", "minimal") else binary
+    options = ["--target", target, "--features", f"{own} {features}", "--bin", binary]
     options += ["--config", f"profile.release.opt-level={level}"]
     return run("cargo", command, "--quiet", "--locked", "--release", *options, **settings)
 
