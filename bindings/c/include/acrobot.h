@@ -1,4 +1,4 @@
-// Gymnasium's Acrobot in C and C++: one or a batch, in single precision, at most 500 steps.
+// Gymnasium's Acrobot in C and C++: one or a batch, in single precision.
 //
 // - You provide the memory, and may reuse it at any time. No function allocates.
 // - No function aborts or has global state. One that can fail returns an acrobot_status_t. Unless
@@ -140,7 +140,7 @@ typedef struct {
   float reward;
   // Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
   bool terminated;
-  // Whether the limit of 500 steps is reached.
+  // Whether the time limit is reached: 500 steps by default.
   bool truncated;
 } acrobot_step_t;
 
@@ -203,7 +203,7 @@ typedef struct {
   float *rewards;
   // Whether the new state is a goal state.
   bool *terminated;
-  // Whether the limit of 500 steps is reached.
+  // Whether the time limit is reached.
   bool *truncated;
   // The observations of the new states; null if you do not need them.
   acrobot_observation_t *observations;
@@ -253,6 +253,9 @@ acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t
 
 // The number of steps since the last reset.
 acrobot_status_t acrobot_elapsed(const acrobot_t *acrobot, uint32_t *steps);
+
+// Sets the number of steps after which episodes are truncated, above 0; 500 by default.
+acrobot_status_t acrobot_set_limit(acrobot_t *acrobot, uint32_t limit, acrobot_error_t *error);
 
 // The state.
 acrobot_status_t acrobot_state(const acrobot_t *acrobot, acrobot_state_t *state);
@@ -336,6 +339,12 @@ acrobot_status_t acrobot_batch_reset(acrobot_batch_t *batch);
 // As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
 acrobot_status_t acrobot_batch_reset_with_seed(acrobot_batch_t *batch, uint64_t seed);
 
+// As acrobot_batch_reset, after seeding acrobot `i` with `seeds[i]`, as acrobot_reset_with_seed
+// does.
+acrobot_status_t acrobot_batch_reset_with_seeds(acrobot_batch_t *batch,
+                                                const uint64_t *seeds,
+                                                size_t count);
+
 // As acrobot_batch_reset, for the acrobots whose element of `mask` is true. For a byte that is
 // neither true nor false it returns ACROBOT_ERROR_OUT_OF_RANGE.
 acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *mask, size_t count);
@@ -344,6 +353,11 @@ acrobot_status_t acrobot_batch_reset_masked(acrobot_batch_t *batch, const bool *
 acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
                                              int autoreset,
                                              acrobot_error_t *error);
+
+// As acrobot_set_limit, for all acrobots.
+acrobot_status_t acrobot_batch_set_limit(acrobot_batch_t *batch,
+                                         uint32_t limit,
+                                         acrobot_error_t *error);
 
 // The state of acrobot `index`.
 acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,

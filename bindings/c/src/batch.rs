@@ -9,6 +9,7 @@ use acrobot::{Fast, Params, ResetOptions};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, array, change, check, check_apart, get, optional, read};
+use crate::single::check_limit;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The alignment of the memory for a batch, bytes.
@@ -47,7 +48,7 @@ pub struct acrobot_batch_results_t {
     pub rewards: *mut f32,
     /// Whether the new state is a goal state.
     pub terminated: *mut bool,
-    /// Whether the limit of 500 steps is reached.
+    /// Whether the time limit is reached.
     pub truncated: *mut bool,
     /// The observations of the new states; null if you do not need them.
     pub observations: *mut acrobot_observation_t,
@@ -234,6 +235,27 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     })
 }
 
+/// As acrobot_batch_reset, after seeding acrobot `i` with `seeds[i]`, as acrobot_reset_with_seed
+/// does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_reset_with_seeds(
+    batch: *mut acrobot_batch_t,
+    seeds: *const u64,
+    count: usize,
+) -> acrobot_status_t {
+    status(|| {
+        let placed = Holder::value_mut(batch)?;
+        check_count(placed, count)?;
+        let seeds = array(seeds.cast_mut(), count)?;
+        check_apart(&[memory_of(batch, count), Span::of(seeds)])?;
+        for (generator, seed) in placed.batch.generators_mut().iter_mut().zip(&*seeds) {
+            *generator = Pcg64::new(*seed);
+        }
+        placed.batch.reset();
+        Ok(())
+    })
+}
+
 /// As acrobot_batch_reset, for the acrobots whose element of `mask` is true. For a byte that is
 /// neither true nor false it returns ACROBOT_ERROR_OUT_OF_RANGE.
 #[unsafe(no_mangle)]
@@ -269,6 +291,19 @@ pub unsafe extern "C" fn acrobot_batch_set_autoreset(
             ACROBOT_AUTORESET_DISABLED => Autoreset::Disabled,
             other => return Err(Rejected::number("autoreset", other.into(), "", "0, 1 or 2")),
         });
+        Ok(())
+    })
+}
+
+/// As acrobot_set_limit, for all acrobots.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_batch_set_limit(
+    batch: *mut acrobot_batch_t,
+    limit: u32,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    change(batch, ptr::null_mut(), error, |placed| {
+        placed.batch.set_limit(check_limit(limit)?);
         Ok(())
     })
 }

@@ -51,7 +51,7 @@ pub struct acrobot_step_t {
     pub reward: f32,
     /// Whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
     pub terminated: bool,
-    /// Whether the limit of 500 steps is reached.
+    /// Whether the time limit is reached: 500 steps by default.
     pub truncated: bool,
 }
 

@@ -1,6 +1,7 @@
-//! One acrobot in arithmetic `Fast`, with Gymnasium's limit of 500 steps.
+//! One acrobot in arithmetic `Fast`.
 
 use core::ffi::c_int;
+use core::num::NonZeroU32;
 use core::ptr;
 
 use acrobot::physics::ResetBounds;
@@ -8,7 +9,7 @@ use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t};
 use crate::memory::{Holder, change, check, get, read};
-use crate::status::{acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
+use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The bytes of an acrobot_t: the most that any target needs.
 pub const ACROBOT_SIZE: usize = 240;
@@ -119,6 +120,23 @@ pub unsafe extern "C" fn acrobot_elapsed(
     steps: *mut u32,
 ) -> acrobot_status_t {
     get(acrobot, steps, |acrobot| Ok(acrobot.elapsed()))
+}
+
+/// Sets the number of steps after which episodes are truncated, above 0; 500 by default.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_set_limit(
+    acrobot: *mut acrobot_t,
+    limit: u32,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    change(acrobot, ptr::null_mut(), error, |acrobot| {
+        acrobot.set_limit(check_limit(limit)?);
+        Ok(())
+    })
+}
+
+pub fn check_limit(limit: u32) -> Result<NonZeroU32, Rejected> {
+    NonZeroU32::new(limit).ok_or(Rejected::number("limit", 0.0, "steps", "above 0"))
 }
 
 /// The state.

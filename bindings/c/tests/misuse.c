@@ -14,6 +14,7 @@ static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0}, NO_EQUILIBRIA[] = 
     {3.1f, 0, 0, 0}, {1.5f, 0, 0, 0}, {0, 3, 0, 0}, {0, 0, .001f, 0}, {3.1415927f, 0, 0, -1},
 };
 static const bool MASK[COUNT] = {true, false, true};
+static const uint64_t SEEDS[COUNT] = {7, 8, 9};
 
 typedef acrobot_observation_t row_t;
 typedef row_t rows_t[COUNT];
@@ -46,6 +47,7 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_step_torque(acrobot, INF, &step, out)) \
     CALL(ALONE, row_t, NEEDED, OK, acrobot_observe(acrobot, out)) \
     CALL(ALONE, uint32_t, NEEDED, OK, acrobot_elapsed(acrobot, out)) \
+    CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_set_limit(acrobot, 0, out)) \
     CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_state(acrobot, out)) \
     CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_set_state(acrobot, &FAR, out)) \
     CALL(ALONE, acrobot_params_t, NEEDED, OK, acrobot_params(acrobot, out)) \
@@ -59,10 +61,12 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset(batch)) \
     CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset_with_seed(batch, 42)) \
     CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset_masked(batch, MASK, COUNT)) \
+    CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT)) \
     CALL(BATCH, rewards_t, NEEDED, OK, step_batch(batch, out)) \
     CALL(BATCH, rows_t, NEEDED, OK, acrobot_batch_observe(batch, (row_t *)out, COUNT)) \
     CALL(BATCH, size_t, NEEDED, OK, acrobot_batch_count(batch, out)) \
     CALL(BATCH, acrobot_error_t, OPTIONAL, RANGE, acrobot_batch_set_autoreset(batch, 3, out)) \
+    CALL(BATCH, acrobot_error_t, OPTIONAL, RANGE, acrobot_batch_set_limit(batch, 0, out)) \
     CALL(BATCH, acrobot_state_t, NEEDED, OK, acrobot_batch_state(batch, 0, out)) \
     CALL(BATCH, acrobot_error_t, OPTIONAL, RANGE, acrobot_batch_set_state(batch, 0, &FAR, out)) \
     CALL(BATCH, acrobot_params_t, NEEDED, OK, acrobot_batch_params(batch, out)) \
@@ -206,6 +210,7 @@ static void arguments_of_an_acrobot(void)
     }
     OUT_OF_RANGE(acrobot_reset_within(acrobot, .2, -.1, NULL, &error),
                  "low", .2, "rad and rad/s", "at most high in rad and rad/s");
+    OUT_OF_RANGE(acrobot_set_limit(acrobot, 0, &error), "limit", 0, "steps", "above 0 steps");
     REJECTED(NULL, acrobot_set_state(acrobot, NULL, &error));
     OUT_OF_RANGE(acrobot_set_state(acrobot, &FAR, &error),
                  "theta1", INF, "rad", "a finite number of rad");
@@ -308,6 +313,9 @@ static void arguments_of_a_batch(void)
     REJECTED(NULL, acrobot_batch_reset_masked(batch, NULL, COUNT));
     REJECTED(WRONG_COUNT, acrobot_batch_reset_masked(batch, mask, COUNT - 1));
     REJECTED(OVERLAP, acrobot_batch_reset_masked(batch, (const bool *)held, COUNT));
+    REJECTED(NULL, acrobot_batch_reset_with_seeds(batch, NULL, COUNT));
+    REJECTED(WRONG_COUNT, acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT + 1));
+    REJECTED(OVERLAP, acrobot_batch_reset_with_seeds(batch, (const uint64_t *)(void *)held, COUNT));
     __builtin_memcpy(&mask[2], &odd, 1);
     REJECTED(OUT_OF_RANGE, acrobot_batch_reset_masked(batch, mask, COUNT));
     REJECTED(OUT_OF_RANGE, acrobot_batch_set_autoreset(batch, 256, NULL));

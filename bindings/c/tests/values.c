@@ -58,6 +58,11 @@ static void an_acrobot(void)
     CHECK(state.theta1 == .5f && state.dtheta2 == .5f);
     ACCEPTED(acrobot_elapsed(&acrobot, &steps));
     CHECK(steps == 0);
+    ACCEPTED(acrobot_set_limit(&acrobot, 2, NULL));
+    for (steps = 1; steps <= 2; steps++) {
+        ACCEPTED(acrobot_step(&acrobot, ACROBOT_ACTION_ZERO, &step));
+        CHECK(step.truncated == (steps == 2));
+    }
 }
 
 // With the same state and parameters as an acrobot alone.
@@ -66,6 +71,7 @@ static void a_batch(void)
     ACROBOT_ALIGNED(ACROBOT_BATCH_ALIGN) static uint8_t memory[ACROBOT_BATCH_SIZE(COUNT)];
     static const uint8_t actions[COUNT] = {ACROBOT_ACTION_POSITIVE, ACROBOT_ACTION_NEGATIVE};
     static const bool mask[COUNT] = {true, false};
+    static const uint64_t seeds[COUNT] = {7, UINT64_MAX};
     float rewards[COUNT];
     bool terminated[COUNT], truncated[COUNT];
     acrobot_observation_t rows[COUNT];
@@ -108,6 +114,18 @@ static void a_batch(void)
     ACCEPTED(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch));
     ACCEPTED(acrobot_batch_state(batch, 1, &state));
     CHECK(state.dtheta1 == rows[1].dtheta1);
+
+    ACCEPTED(acrobot_batch_reset_with_seeds(batch, seeds, COUNT));
+    ACCEPTED(acrobot_batch_observe(batch, rows, COUNT));
+    for (size_t i = 0; i < COUNT; i++) {
+        ACCEPTED(acrobot_reset_with_seed(&alone, seeds[i], &step.observation));
+        CHECK(same(&rows[i], &step.observation, sizeof rows[i]));
+    }
+    ACCEPTED(acrobot_batch_set_limit(batch, 2, NULL));
+    for (int steps = 1; steps <= 2; steps++) {
+        ACCEPTED(acrobot_batch_step(batch, actions, &results, COUNT));
+        CHECK(truncated[0] == (steps == 2) && truncated[1] == (steps == 2));
+    }
 }
 
 int main(void)

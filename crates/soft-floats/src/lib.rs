@@ -1,12 +1,4 @@
-//! Sums, differences and products of `f32` for 32-bit cores without an FPU, in fewer instructions
-//! than Rust's routines.
-//!
-//! A firmware that names this crate once, `use soft_floats as _;`, has these routines in place of
-//! Rust's. The bits are those of IEEE 754, rounded to nearest, ties to even, also for subnormal
-//! numbers; only the bits of a NaN differ.
-//!
-//! They have a short path for two normal numbers with a normal result. All else is out of line.
-
+#![doc = include_str!("../README.md")]
 #![no_std]
 
 #[cfg(all(
