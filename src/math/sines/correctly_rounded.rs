@@ -30,10 +30,13 @@ const TINY: f64 = 1.0 / 134_217_728.0;
 /// Sine and cosine, correctly rounded. NaN for infinity and NaN.
 #[inline(always)]
 pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
-    if V::IS_ONE || !HAS_SIMD {
+    if V::IS_ONE {
         return x.zip3(x, x, |x, _, _| of_one(x));
     }
     let (sin, cos) = x.zip3(x, x, |x, _, _| {
+        if !HAS_SIMD {
+            return of_one(x);
+        }
         let angle = float::Angle::new(x);
         let sin = or_nan(x, angle.sin());
         let sin = if x.abs() < TINY { x } else { sin };
@@ -45,10 +48,11 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
 /// Cosine, correctly rounded; otherwise as [`sin_cos`].
 #[inline(always)]
 pub fn cos<V: Numbers<f64>>(x: V) -> V {
-    if V::IS_ONE || !HAS_SIMD {
+    if V::IS_ONE {
         return x.map(cos_of_one);
     }
-    let cos = x.map(|x| or_nan(x, float::Angle::new(x).cos()));
+    let cos =
+        x.map(|x| if HAS_SIMD { or_nan(x, float::Angle::new(x).cos()) } else { cos_of_one(x) });
     complete(x, V::splat(0.0), cos).1
 }
 
