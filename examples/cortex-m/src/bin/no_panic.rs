@@ -1,6 +1,6 @@
 //! Links only if no panicking branch is left, because the panic handler calls a function that does
 //! not exist. `cargo build --release --bin no_panic --features no_panic` is the whole test; nothing
-//! is run. CI builds it with the oldest and the newest Rust, at opt-level 3, 2, "s" and "z", so that
+//! runs. CI builds it with the oldest and the newest Rust, at opt-level 3, 2, "s" and "z", so that
 //! the result does not depend on one optimizer.
 //!
 //! `Trajectory`'s `write_csv` and `rows` are not called: core's formatting of floats has branches
