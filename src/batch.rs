@@ -358,8 +358,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     }
 }
 
-/// A block with its generators, of which the last has fewer than `N`, and its own parameters, if
-/// any.
+/// A block with its generators, fewer than `N` in the last block, and its own parameters, if any.
 type Part<'a, A, const N: usize> =
     (&'a mut Block<A, N>, &'a mut [Pcg64], Option<&'a mut LaneParams<A, N>>);
 

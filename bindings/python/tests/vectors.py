@@ -51,7 +51,7 @@ def assert_equal(one, other):
 
 
 def assert_resets_equal(*envs, seed=None, options=None):
-    """Resets both, with options each of its own, from which SyncVectorEnv removes some."""
+    """Resets both, each with its own options, because SyncVectorEnv removes some."""
     assert_equal(*(each.reset(seed=seed, options=options and {**options}) for each in envs))
 
 
