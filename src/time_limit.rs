@@ -41,7 +41,8 @@ impl<E> TimeLimit<E> {
         Self { inner, limit, elapsed: 0 }
     }
 
-    /// Truncates episodes after 500 steps, as `Acrobot-v1` does.
+    /// Truncates episodes after 500 steps, as `Acrobot-v1` does. A swing-up has
+    /// [1,000](Task::limit).
     #[must_use]
     pub const fn v1(inner: E) -> Self {
         Self::new(inner, Task::Acrobot.limit())

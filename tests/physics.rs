@@ -114,7 +114,7 @@ fn energies_follow_from_torques_and_positions() {
 
 #[test]
 fn an_arithmetic_without_friction_rejects_it() {
-    let rule = "friction.joint2 must be 0 in an arithmetic without friction, in N m s/rad, got 0.5";
+    let rule = "friction.joint2 must be 0 unless the arithmetic is Damped, in N m s/rad, got 0.5";
     let friction = Viscous { joint1: -0.0, joint2: 0.5 };
     let (with, without) = (Params { friction, ..Params::DEFAULT }, Params::DEFAULT);
     let range = ParamsRange::new(without, with).unwrap();

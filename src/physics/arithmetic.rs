@@ -16,7 +16,8 @@ use crate::math::{Numbers, Real};
 /// unit](crate::arithmetic).
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
     /// A short name in lower case, such as "fast". Snapshots hold it, so no other arithmetic can
-    /// load them. With more than 16 bytes, code that saves or loads a snapshot does not compile.
+    /// load them. With more than 16 bytes, in [`Damped`](crate::arithmetic::Damped) 9, code that saves
+    /// or loads a snapshot does not compile.
     const NAME: &'static str;
 
     /// The type of angles, velocities, torques and parameters.
@@ -103,7 +104,7 @@ pub(super) const fn check_friction<A: Arithmetic>(friction: [f64; 2]) -> Result<
         name,
         value,
         unit: "N m s/rad",
-        rule: "0 in an arithmetic without friction, in",
+        rule: "0 unless the arithmetic is Damped, in",
     })
 }
 

@@ -34,7 +34,8 @@ pub(super) fn wrap_each<S: Real, V: Numbers<S>>(x: V) -> V {
     x.zip(turned.bound(V::splat(S::PI)), |x, turned| if x.abs() <= S::PI { x } else { turned })
 }
 
-/// `x` clamped to \[−`limit`, `limit`\], for a `limit` of at least 0. NaN stays NaN.
+/// `x` clamped to \[−`limit`, `limit`\], for a `limit` of at least 0. NaN stays NaN, and a
+/// `limit` of NaN does not limit.
 #[must_use]
 #[inline]
 pub fn bound<S: Real>(x: S, limit: S) -> S {

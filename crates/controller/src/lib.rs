@@ -63,8 +63,9 @@ impl Controller {
     ///
     /// # Errors
     ///
-    /// A parameter is out of range, or the gains overflow.
+    /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
     pub fn new(params: Params<f32>, limit: f32) -> Result<Self, ControlError> {
+        check_limit(limit)?;
         let machine = Pendulum::<Fast>::new(params, State::UPRIGHT)?;
         let ahead = Params { dt: 2.0 * params.dt, ..params };
         Ok(Self {
@@ -103,6 +104,19 @@ impl Controller {
         // Positive with D above 40, and then the sum falls for sure. A smaller D swings up faster.
         let divisor = (D * by_torque - missing).max(1.0);
         -(V * dtheta2 + P * theta2 + D * free) / divisor
+    }
+}
+
+/// Rejects a largest torque, N m, that is not finite and above 0.
+fn check_limit<S: Real>(limit: S) -> Result<(), Error> {
+    match limit > S::ZERO && limit.is_finite() {
+        true => Ok(()),
+        false => Err(Error::OutOfRange {
+            name: "the largest torque",
+            value: limit.to_f64(),
+            unit: "N m",
+            rule: "finite and above 0",
+        }),
     }
 }
 

@@ -18,7 +18,7 @@ use acrobot::rand_core::Rng;
 use acrobot::{Error, Params};
 
 use crate::plan::{NoPlan, Step};
-use crate::{catches, dot, identity, regulator};
+use crate::{catches, check_limit, dot, identity, regulator};
 
 /// What a torque of 1 N m costs in a step, what a step far from upright costs, and what the
 /// logarithm of the regulator's cost at the end, beyond `NEAR`, costs.
@@ -63,14 +63,7 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
     pub fn new(params: Params<A::Scalar>, limit: A::Scalar) -> Result<Self, ControlError> {
-        if !(limit > A::Scalar::ZERO && limit.is_finite()) {
-            return Err(ControlError::Invalid(Error::OutOfRange {
-                name: "the largest torque",
-                value: limit.to_f64(),
-                unit: "N m",
-                rule: "finite and above 0",
-            }));
-        }
+        check_limit(limit)?;
         let model = Pendulum::new(params, State::UPRIGHT)?;
         Ok(Self { regulator: regulator(&model)?, upright: model.energy(), model, limit })
     }
@@ -92,7 +85,7 @@ impl<A: Arithmetic> Planner<A> {
     ) -> Result<&'m mut [Step<A::Scalar>], NoPlan> {
         start.validate()?;
         for parts in (1..=10).cycle().take(tries as usize) {
-            let len = memory.len() / 10 * parts;
+            let len = memory.len() * parts / 10;
             let Some(plan) = memory.get_mut(..len) else {
                 break;
             };

@@ -94,8 +94,14 @@ fn improving_lowers_the_cost() {
 
 #[test]
 fn bad_input_gives_an_error_and_no_torque_that_is_not_finite() {
-    let error = Planner::<Fast>::new(Params::DEFAULT, f32::NAN).unwrap_err();
-    assert_eq!(error.to_string(), "the largest torque must be finite and above 0 N m, got NaN");
+    for limit in [f32::NAN, f32::INFINITY, 0.0, -1.0] {
+        let errors = [
+            Planner::<Fast>::new(Params::DEFAULT, limit).unwrap_err(),
+            Controller::new(Params::DEFAULT, limit).unwrap_err(),
+        ];
+        let rule = format!("the largest torque must be finite and above 0 N m, got {limit}");
+        assert_eq!(errors.map(|error| error.to_string()), [rule.clone(), rule]);
+    }
 
     let mut memory = [Step::EMPTY; 50];
     let rng = &mut Pcg64::new(1);

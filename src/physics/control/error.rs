@@ -33,7 +33,7 @@ pub enum ControlError {
     NotSemidefinite {
         /// The argument.
         name: &'static str,
-        /// The largest absolute value after the elimination of all positive pivots.
+        /// The first element that is not 0 after the elimination of all positive pivots.
         value: f64,
     },
     /// The state of a regulator is not an equilibrium under the torque.
