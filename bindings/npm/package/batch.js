@@ -75,7 +75,7 @@ export class Batch extends Kept {
     this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams, task });
     this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
     orFree(this, () => {
-      super.setParams(params);
+      this.setParams(params);
       if (paramsRange !== undefined) {
         this.setParamsRange(paramsRange);
         for (let i = 0; i < count; i++) drawParams(this, i);
@@ -234,20 +234,18 @@ export class Batch extends Kept {
     if (!this.#settings.ownParams) return super.setParams(changes);
     const given = readChanges(changes);
     const address = this.#address;
-    const before = new Uint8Array(this.#count * PARAMS_LENGTH);
-    const part = (index) => before.subarray(index * PARAMS_LENGTH, (index + 1) * PARAMS_LENGTH);
-    let index = 0;
+    const before = [];
     try {
-      for (; index < this.#count; index++) {
-        wasm().batch_params(address, index);
-        part(index).set(bytes().subarray(0, PARAMS_LENGTH));
-        writeParams("batch", address, index, given, "batch_set_params_of");
+      for (let i = 0; i < this.#count; i++) {
+        wasm().batch_params(address, i);
+        before.push(bytes().slice(0, PARAMS_LENGTH));
+        writeParams("batch", address, i, given);
       }
     } catch (error) {
-      while (index > 0) {
-        bytes().set(part(--index));
-        wasm().batch_set_params_of(address, index);
-      }
+      before.forEach((params, i) => {
+        bytes().set(params);
+        wasm().batch_set_params(address, i);
+      });
       throw error;
     }
   }
@@ -266,7 +264,7 @@ export class Batch extends Kept {
     this.#addressFor(index);
     if (!this.#settings.ownParams) throw new Error(SHARED);
     const given = readChanges(changes);
-    writeParams("batch", this.#address, index, given, "batch_set_params_of");
+    writeParams("batch", this.#address, index, given);
   }
 
   #header() {

@@ -171,5 +171,7 @@ export function accept(length, valueOf) {
   const [name, rule, unit] = decoded(bytes().slice(0, length)).split("\n");
   const plain = name.replace(".joint", "");
   const camel = plain.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
-  throw invalidSingle(`${camel} must be ${rule} ${unit}`, valueOf(camel));
+  // JavaScript chooses no arithmetic, but a task.
+  const own = rule.replace("an arithmetic without friction", 'the task "acrobot"');
+  throw invalidSingle(`${camel} must be ${own} ${unit}`, valueOf(camel));
 }

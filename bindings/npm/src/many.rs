@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Swingup};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::{Fast, ResetOptions};
+use acrobot::{Error, Fast, Params, ResetOptions};
 
 use crate::memory::{self, set_bytes, set_numbers};
 use crate::{Tasks, with_task};
@@ -185,11 +185,14 @@ impl Many {
         true
     }
 
-    /// Repeats what a change of parameters does for the torques of acrobot `index`.
-    fn keep_torques(&mut self, index: usize, torques: [f32; 3]) {
+    fn set_params(&mut self, index: usize, params: Params<f32>) -> Result<(), Error> {
+        with_task!(&mut self.batch, batch => {
+            if self.own_params { batch.set_params_of(index, params) } else { batch.set_params(params) }
+        })?;
         if let Some(of) = self.torques_of.get_mut(index) {
-            *of = torques;
+            *of = params.torques;
         }
+        Ok(())
     }
 }
 
@@ -243,26 +246,11 @@ pub extern "C" fn batch_params(many: &Many, index: usize) {
     }
 }
 
-/// Sets the parameters. Returns 0, or the length of the reason for a rejection.
+/// Sets the parameters of acrobot `index`, or, with 0, those that all acrobots share. Returns 0, or
+/// the length of the reason for a rejection.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params(many: &mut Many) -> usize {
-    let params = memory::get_params();
-    let set = with_task!(&mut many.batch, batch => batch.set_params(params));
-    if set.is_ok() {
-        many.torques_of.fill(params.torques);
-    }
-    memory::reason(set)
-}
-
-/// As [`batch_set_params`], for acrobot `index` in a batch with own parameters.
-#[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params_of(many: &mut Many, index: usize) -> usize {
-    let params = memory::get_params();
-    let set = with_task!(&mut many.batch, batch => batch.set_params_of(index, params));
-    if set.is_ok() {
-        many.keep_torques(index, params.torques);
-    }
-    memory::reason(set)
+pub extern "C" fn batch_set_params(many: &mut Many, index: usize) -> usize {
+    memory::reason(many.set_params(index, memory::get_params()))
 }
 
 /// Draws a number between the bounds from the generator of acrobot `index`.
@@ -288,16 +276,11 @@ pub extern "C" fn batch_load(many: &mut Many, index: usize, len: usize) -> usize
     let Some(((params, state, elapsed, reset_pending, rng), used)) = memory::load(len) else {
         return 0;
     };
-    let valid = with_task!(&mut many.batch, batch => {
-        // The first brings the parameters, if all acrobots share them.
-        let shared = index > 0 || many.own_params || batch.set_params(params).is_ok();
+    // The first brings the parameters, if all acrobots share them.
+    let set = index > 0 && !many.own_params || many.set_params(index, params).is_ok();
+    let loaded = with_task!(&mut many.batch, batch => {
         let member = Member { params, state, elapsed, reset_pending, rng };
-        shared && batch.set_member(index, member).is_ok()
+        batch.set_member(index, member).is_ok()
     });
-    if valid {
-        many.keep_torques(index, params.torques);
-        used
-    } else {
-        0
-    }
+    if set && loaded { used } else { 0 }
 }
