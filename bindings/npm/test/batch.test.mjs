@@ -25,79 +25,72 @@ const all = (action) => new Uint8Array(COUNT).fill(action);
 /** The row of an array with six numbers for each acrobot. */
 const row = (array, i) => array.slice(6 * i, 6 * i + 6);
 
+/** Returns a function that steps a batch and acrobots alone by one method, and compares them. */
+function together(batch, others) {
+  const { autoreset } = batch.settings;
+  const ended = new Array(COUNT).fill(false);
+  return (method, inputs) => {
+    const results = batch[method](inputs);
+    for (let i = 1; i < COUNT; i++) {
+      const [other, found] = [others[i], [results.rewards[i], results.ended[i]]];
+      if (autoreset === "NextStep" && ended[i]) {
+        other.reset();
+        ended[i] = false;
+        assert.deepEqual(found, [0, 0]);
+      } else {
+        const isOver = autoreset === "Disabled" && ended[i] && other.elapsed > 0;
+        const { observation, reward, terminated, truncated } = other[method](inputs[i]);
+        ended[i] = isOver || terminated || truncated;
+        assert.deepEqual(found, [reward, Number(ended[i])]);
+        const flags = [results.terminated[i], results.truncated[i]];
+        assert.deepEqual(flags, [Number(terminated), Number(truncated)]);
+        if (autoreset === "SameStep" && ended[i]) {
+          assert.deepEqual(row(results.finalObservations, i), observation);
+          other.reset();
+        }
+      }
+      assert.deepEqual(row(results.observations, i), other.observation);
+      const seen = [batch.state(i), batch.elapsed(i), batch.paramsOf(i)];
+      assert.deepEqual(seen, [other.state, other.elapsed, other.params]);
+    }
+    assert.equal("finalObservations" in results, autoreset === "SameStep");
+    return results;
+  };
+}
+
 for (const autoreset of ["NextStep", "SameStep", "Disabled"]) {
   test(`with ${autoreset}, acrobots of a batch have the bits of acrobots alone`, () => {
-    const batch = new Batch({ ...OPTIONS, autoreset });
-    const others = alone(OPTIONS);
-    const ended = new Array(COUNT).fill(false);
-    let resets = 0;
+    const [batch, others] = [new Batch({ ...OPTIONS, autoreset }), alone(OPTIONS)];
+    const step = together(batch, others);
     for (let steps = 0; steps < 80; steps++) {
       const actions = randomActions();
-      const results = batch.step(steps % 2 ? actions : [...actions]);
-      for (let i = 1; i < COUNT; i++) {
-        const found = [results.rewards[i], results.terminated[i], results.truncated[i]];
-        if (autoreset === "NextStep" && ended[i]) {
-          assert.deepEqual([row(results.observations, i), ...found], [others[i].reset(), 0, 0, 0]);
-          ended[i] = false;
-          continue;
-        }
-        const step = others[i].step(actions[i]);
-        ended[i] = (autoreset === "Disabled" && ended[i]) || step.terminated || step.truncated;
-        assert.equal(results.ended[i], Number(ended[i]));
-        assert.deepEqual(found, [step.reward, Number(step.terminated), Number(step.truncated)]);
-        if (autoreset === "SameStep" && ended[i]) {
-          resets++;
-          assert.deepEqual(row(results.finalObservations, i), step.observation);
-          assert.deepEqual(row(results.observations, i), others[i].reset());
-        } else {
-          assert.deepEqual(row(results.observations, i), step.observation);
-        }
-        assert.deepEqual(batch.state(i), others[i].state);
-      }
-      assert.equal("finalObservations" in results, autoreset === "SameStep");
-      if (autoreset !== "Disabled") continue;
-      ended[0] = results.ended[0] === 1; // acrobot 0 has no other
-      if (steps % 10 !== 9) continue;
+      const { ended } = step("step", steps % 2 ? actions : [...actions]);
+      if (autoreset !== "Disabled" || steps % 10 !== 9) continue;
+      const mask = Array.from(ended, Boolean);
       const seed = steps > 60 ? 7n : undefined;
-      const observations = batch.resetMasked(steps % 20 < 10 ? results.ended : ended, seed);
+      const observations = batch.resetMasked(steps % 20 < 10 ? ended : mask, seed);
       for (let i = 1; i < COUNT; i++) {
-        if (ended[i]) resets += others[i].reset(seed && child(seed, i)).length > 0;
+        if (mask[i]) others[i].reset(seed && child(seed, i));
         assert.deepEqual(row(observations, i), others[i].observation);
         assert.equal(batch.elapsed(i), others[i].elapsed);
       }
-      ended.fill(false);
     }
-    assert.equal(resets > 0, autoreset !== "NextStep");
   });
 }
 
 test("a swing-up whose resets draw parameters has the bits of acrobots alone", () => {
   const paramsRange = { friction1: [0, 0.1], mass2: [0.8, 1.2], gravity: [9.8, 9.8] };
-  const options = { ...OPTIONS, task: "swingup", params: { torqueNoise: 0.1 } };
+  const options = { ...OPTIONS, task: "swingup", params: { torqueNoise: 0.1 }, paramsRange };
   for (const autoreset of ["NextStep", "SameStep"]) {
-    const batch = new Batch({ ...options, paramsRange, autoreset });
-    const others = alone({ ...options, paramsRange });
-    const pending = new Array(COUNT).fill(false);
+    const [batch, others] = [new Batch({ ...options, autoreset }), alone(options)];
+    const step = together(batch, others);
     const masses = new Set();
     for (let steps = 0; steps < 60; steps++) {
-      const torques = Float32Array.from({ length: COUNT }, () => random(401) / 100 - 2);
-      const results = batch.stepTorque(steps % 2 ? torques : [...torques]);
-      for (let i = 1; i < COUNT; i++) {
-        masses.add(others[i].params.mass2);
-        if (pending[i]) others[i].reset();
-        else {
-          const step = others[i].stepTorque(torques[i]);
-          assert.equal(results.rewards[i], step.reward);
-          pending[i] = step.truncated;
-          if (autoreset === "SameStep" && step.truncated) others[i].reset();
-        }
-        if (autoreset === "SameStep" || others[i].elapsed === 0) pending[i] = false;
-        assert.deepEqual(row(results.observations, i), others[i].observation);
-        assert.deepEqual(batch.state(i), others[i].state);
-        assert.deepEqual(batch.paramsOf(i), others[i].params);
-      }
+      const torques = Float32Array.from(all(0), () => random(401) / 100 - 2);
+      step("stepTorque", steps % 2 ? torques : [...torques]);
+      for (const { params } of others) masses.add(params.mass2);
     }
-    assert.ok(masses.size > 2 * (COUNT - 1), `${masses.size} masses`);
+    assert.ok(masses.size > 2 * COUNT, `${masses.size} masses`);
     const resumed = Batch.restore(batch.snapshot());
     assert.deepEqual(resumed.settings, batch.settings);
     const [one, other] = [resumed, batch].map((each) => each.stepTorque(all(1)));
@@ -185,27 +178,22 @@ test("acrobots with own parameters have the bits of acrobots alone, also after a
   const batch = new Batch({ ...OPTIONS, ownParams: true });
   const others = alone(OPTIONS);
   const params = () => others.map((_, i) => batch.paramsOf(i));
-  const expected = () => others.map(({ params }) => params);
   others.forEach((other, i) => {
     const torques = [-1 - i / 8, 0, 1];
     const changes = { mass2: 1 + i / 8, dynamics: i % 2 ? "nips" : "book", torques };
     batch.setParamsOf(i, changes);
     other.setParams(changes);
   });
-  assert.deepEqual(params(), expected());
   const resumed = Batch.restore(batch.snapshot());
   assert.deepEqual(resumed.snapshot(), batch.snapshot());
+  const step = together(batch, others);
   for (let steps = 0; steps < 20; steps++) {
     const actions = randomActions();
-    for (const each of [batch, resumed]) each.step(actions);
-    for (let i = 1; i < COUNT; i++) {
-      others[i].step(actions[i]);
-      for (const each of [batch, resumed]) assert.deepEqual(each.state(i), others[i].state);
-    }
+    assert.deepEqual(step("step", actions), resumed.step(actions));
   }
   // Parameters that a change does not name stay those of each acrobot.
   for (const each of [batch, ...others]) each.setParams({ dt: 0.1, torques: [-2, 0, 2] });
-  assert.deepEqual(params(), expected());
+  assert.deepEqual(params(), others.map(({ params }) => params));
   batch.setParamsOf(COUNT - 1, { centerOfMass1: 0 });
   const before = params();
   for (const [call, message] of [
