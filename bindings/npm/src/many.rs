@@ -89,9 +89,7 @@ impl Many {
     }
 }
 
-/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of
-/// what JavaScript reads and writes. Returns the batch's address, or 0 if there is no memory for
-/// it.
+/// Writes the addresses of what JavaScript reads and writes. Returns 0 without memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_new(
     count: usize,
@@ -131,12 +129,12 @@ pub extern "C" fn batch_free(many: Box<Many>) {
     drop(many);
 }
 
-/// Resets the acrobots in the mask, with a seed of this many 32-bit words. 0: the next draws.
+/// Resets the acrobots in the mask.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
     let options = ResetOptions { seed, bounds: None };
-    // The lengths are equal, so this cannot fail.
+    // Here and below the lengths are equal, so that this cannot fail.
     let _ = with_task!(&mut many.batch, batch => batch.reset_masked(&many.mask, options));
     for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
         *ended &= !reset;
@@ -145,12 +143,10 @@ pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_observe(many: &mut Many) {
-    // The lengths are equal, so this cannot fail.
     let _ = with_task!(&many.batch, batch => batch.observe(&mut many.observations));
 }
 
-/// Draws actions, first with a seed of this many 32-bit words. 0: the next draws. They are those of
-/// Gymnasium's `MultiDiscrete`.
+/// Draws the actions of Gymnasium's `MultiDiscrete`.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
     if words > 0 {
@@ -219,7 +215,6 @@ pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
     stepped
 }
 
-/// Writes the state of acrobot `index`.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_state(many: &Many, index: usize) {
     if let Some(state) = with_task!(&many.batch, batch => batch.state(index)) {
@@ -227,7 +222,6 @@ pub extern "C" fn batch_state(many: &Many, index: usize) {
     }
 }
 
-/// Sets the state of acrobot `index`. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> usize {
     let state = memory::get_state();
@@ -246,8 +240,7 @@ pub extern "C" fn batch_params(many: &Many, index: usize) {
     }
 }
 
-/// Sets the parameters of acrobot `index`, or, with 0, those that all acrobots share. Returns 0, or
-/// the length of the reason for a rejection.
+/// Sets the parameters of acrobot `index`, or, with 0, those that all acrobots share.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_params(many: &mut Many, index: usize) -> usize {
     memory::reason(many.set_params(index, memory::get_params()))
