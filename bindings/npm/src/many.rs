@@ -182,8 +182,10 @@ impl Many {
     }
 
     fn set_params(&mut self, index: usize, params: Params<f32>) -> Result<(), Error> {
-        with_task!(&mut self.batch, batch => {
-            if self.own_params { batch.set_params_of(index, params) } else { batch.set_params(params) }
+        let own_params = self.own_params;
+        with_task!(&mut self.batch, batch => match own_params {
+            true => batch.set_params_of(index, params),
+            false => batch.set_params(params),
         })?;
         if let Some(of) = self.torques_of.get_mut(index) {
             *of = params.torques;
