@@ -10,6 +10,7 @@ static const acrobot_state_t REST = {0, 0, 0, 0}, FAR = {INF, 0, 0, 0};
     {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK}
 static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
 static const acrobot_state_t ONES = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
+static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0};
 // Neither actions nor dynamics. The lowest byte of the last three is one.
 static const int UNKNOWN[] = {-1, 3, 255, 256, 257, -256};
 static const bool MASK[COUNT] = {true, false, true};
@@ -228,6 +229,10 @@ static void arguments_of_an_acrobot(void)
     REJECTED(OUT_OF_RANGE, acrobot_lqr(acrobot, &ONES, &ONES, 1, &x, &error));
     CHECK(same_text(error.name, "target"));
     CHECK(same_text(error.rule, "in equilibrium without a torque"));
+    params = PARAMS;
+    params.mass1 = 1000;
+    ACCEPTED(acrobot_set_params(&changed, &params, NULL));
+    ACCEPTED(acrobot_lqr(&changed, &UPRIGHT, &ONES, 1, &x, NULL));
     OUT_OF_RANGE(acrobot_lqr(acrobot, &REST, &NEGATIVE, 1, &x, &error),
                  "q.theta2", -2, "", "finite and at least 0");
     // Without gravity and weights nothing brings the acrobot back.

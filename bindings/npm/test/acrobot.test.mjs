@@ -115,13 +115,6 @@ test("a swing-up's steps are those that dm_control recorded", () => {
   assert.throws(() => new Acrobot().restore(acrobot.snapshot()), rule);
 });
 
-test("any torque is applied, with noise, as that of an action is", () => {
-  const [acrobot, other] = [busy(), busy()];
-  const same = (action) => assert.deepEqual(acrobot.stepTorque(action - 1), other.step(action));
-  ACTIONS.forEach(same);
-  assert.notDeepEqual(acrobot.stepTorque(0.5), other.step(2));
-});
-
 test("random actions with a seed are Gymnasium's", () => {
   const acrobot = new Acrobot();
   // space.seed(42) and space.sample() of Gymnasium 1.4.0: Discrete(3), MultiDiscrete([3] * 6).
