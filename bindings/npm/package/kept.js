@@ -132,9 +132,6 @@ function readRanges(range) {
 const free = ({ kind, address }) => wasm()[`${kind}_free`](address);
 const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(free);
 
-/** A property that only this package can read. */
-export const SHOWN = Symbol("shown");
-
 /**
  * `keep` gives an acrobot or a batch the memory at an address, and `addressOf` returns the address.
  * No caller of the package reaches them, so the module gets only addresses of its own, and none
@@ -228,8 +225,10 @@ export class Kept {
 
   /** What Node.js's console shows. */
   [Symbol.for("nodejs.util.inspect.custom")](depth, options, inspect) {
-    const shown = this.#address === 0 ? "freed" : inspect(this[SHOWN], options);
-    return `${this.constructor.name} ${shown}`;
+    const { name } = this.constructor;
+    if (this.#address === 0) return `${name} freed`;
+    const { state, elapsed, maxSteps, params, settings } = this; // an acrobot has no settings
+    return `${name} ${inspect(settings ?? { state, elapsed, maxSteps, params }, options)}`;
   }
 }
 

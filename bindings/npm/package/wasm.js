@@ -65,18 +65,14 @@ export function decoded(utf8) {
   return decodeURIComponent(codes.join(""));
 }
 
-/** The type of a typed array of any realm, or undefined for other values. */
 const TypedArray = Object.getPrototypeOf(Uint8Array.prototype);
-const { get: typeOf } = Object.getOwnPropertyDescriptor(TypedArray, Symbol.toStringTag);
-
-/** Whether a value is a Uint8Array and no proxy of one. Its elements are bytes. */
-export const isBytes = (value) => typeOf.call(value) === "Uint8Array";
-/** Whether a value is a Float32Array and no proxy of one. */
-export const isFloats = (value) => typeOf.call(value) === "Float32Array";
+const { get } = Object.getOwnPropertyDescriptor(TypedArray, Symbol.toStringTag);
+/** The type's name of a typed array of any realm, or undefined for other values and proxies. */
+export const typeOf = (value) => get.call(value);
 
 /** A copy of a Uint8Array: other threads may write shared memory, and a proxy can run code. */
 export function copied(what, given) {
-  const valid = isBytes(given) || given instanceof Uint8Array;
+  const valid = typeOf(given) === "Uint8Array" || given instanceof Uint8Array;
   if (!valid) throw invalid(`${what} must be a Uint8Array`, given, []);
   const copy = new Uint8Array(given.length);
   for (let i = 0; i < copy.length; i++) copy[i] = given[i];
