@@ -36,41 +36,45 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
 
 // Every pointer through which a function writes a result or an error, whether it may be null, and
 // the status. NONE: the function has no such pointer.
-#define CALLS(CALL) \
-    CALL(ALONE, row_t, OPTIONAL, OK, acrobot_reset(acrobot, out)) \
-    CALL(ALONE, row_t, OPTIONAL, OK, acrobot_reset_with_seed(acrobot, 7, out)) \
-    CALL(ALONE, row_t, OPTIONAL, OK, acrobot_reset_within(acrobot, -1, 1, out, NULL)) \
+#define RESULT(holder, type, ...) CALL(holder, type, NEEDED, OK, __VA_ARGS__)
+#define ERROR(holder, ...) CALL(holder, acrobot_error_t, OPTIONAL, RANGE, __VA_ARGS__)
+#define RESET(...) CALL(ALONE, row_t, OPTIONAL, OK, __VA_ARGS__)
+#define BEGIN(...) CALL(BATCH, void *, NONE, OK, (void)out, __VA_ARGS__)
+#define CALLS \
+    RESET(acrobot_reset(acrobot, out)) \
+    RESET(acrobot_reset_with_seed(acrobot, 7, out)) \
+    RESET(acrobot_reset_within(acrobot, -1, 1, out, NULL)) \
     CALL(ALONE, acrobot_error_t, OPTIONAL, OK, acrobot_reset_within(acrobot, -1, 1, NULL, out)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_reset_within(acrobot, 1, -1, NULL, out)) \
-    CALL(ALONE, acrobot_step_t, NEEDED, OK, acrobot_step(acrobot, 2, out)) \
-    CALL(ALONE, acrobot_step_t, NEEDED, OK, acrobot_step_torque(acrobot, 1, out, NULL)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_step_torque(acrobot, INF, &step, out)) \
-    CALL(ALONE, row_t, NEEDED, OK, acrobot_observe(acrobot, out)) \
-    CALL(ALONE, uint32_t, NEEDED, OK, acrobot_elapsed(acrobot, out)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_set_limit(acrobot, 0, out)) \
-    CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_state(acrobot, out)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_set_state(acrobot, &FAR, out)) \
-    CALL(ALONE, acrobot_params_t, NEEDED, OK, acrobot_params(acrobot, out)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_set_params(acrobot, &NO_MASS, out)) \
-    CALL(ALONE, float, NEEDED, OK, acrobot_energy(acrobot, out)) \
-    CALL(ALONE, float, NEEDED, OK, acrobot_tip_height(acrobot, out)) \
-    CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_deviation(acrobot, &REST, out)) \
-    CALL(ALONE, acrobot_state_t, NEEDED, OK, acrobot_lqr(acrobot, &REST, &ONES, 1, out, NULL)) \
-    CALL(ALONE, acrobot_error_t, OPTIONAL, RANGE, acrobot_lqr(acrobot, &FAR, &ONES, 1, &x, out)) \
-    CALL(ACTIONS, uint8_t, NEEDED, OK, acrobot_action_space_sample(action_space, out)) \
-    CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset(batch)) \
-    CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset_with_seed(batch, 42)) \
-    CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset_masked(batch, MASK, COUNT)) \
-    CALL(BATCH, void *, NONE, OK, (void)out, acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT)) \
-    CALL(BATCH, rewards_t, NEEDED, OK, step_batch(batch, out)) \
-    CALL(BATCH, rows_t, NEEDED, OK, acrobot_batch_observe(batch, (row_t *)out, COUNT)) \
-    CALL(BATCH, size_t, NEEDED, OK, acrobot_batch_count(batch, out)) \
-    CALL(BATCH, acrobot_error_t, OPTIONAL, RANGE, acrobot_batch_set_autoreset(batch, 3, out)) \
-    CALL(BATCH, acrobot_error_t, OPTIONAL, RANGE, acrobot_batch_set_limit(batch, 0, out)) \
-    CALL(BATCH, acrobot_state_t, NEEDED, OK, acrobot_batch_state(batch, 0, out)) \
-    CALL(BATCH, acrobot_error_t, OPTIONAL, RANGE, acrobot_batch_set_state(batch, 0, &FAR, out)) \
-    CALL(BATCH, acrobot_params_t, NEEDED, OK, acrobot_batch_params(batch, out)) \
-    CALL(BATCH, acrobot_error_t, OPTIONAL, RANGE, acrobot_batch_set_params(batch, &NO_MASS, out))
+    ERROR(ALONE, acrobot_reset_within(acrobot, 1, -1, NULL, out)) \
+    RESULT(ALONE, acrobot_step_t, acrobot_step(acrobot, 2, out)) \
+    RESULT(ALONE, acrobot_step_t, acrobot_step_torque(acrobot, 1, out, NULL)) \
+    ERROR(ALONE, acrobot_step_torque(acrobot, INF, &step, out)) \
+    RESULT(ALONE, row_t, acrobot_observe(acrobot, out)) \
+    RESULT(ALONE, uint32_t, acrobot_elapsed(acrobot, out)) \
+    ERROR(ALONE, acrobot_set_limit(acrobot, 0, out)) \
+    RESULT(ALONE, acrobot_state_t, acrobot_state(acrobot, out)) \
+    ERROR(ALONE, acrobot_set_state(acrobot, &FAR, out)) \
+    RESULT(ALONE, acrobot_params_t, acrobot_params(acrobot, out)) \
+    ERROR(ALONE, acrobot_set_params(acrobot, &NO_MASS, out)) \
+    RESULT(ALONE, float, acrobot_energy(acrobot, out)) \
+    RESULT(ALONE, float, acrobot_tip_height(acrobot, out)) \
+    RESULT(ALONE, acrobot_state_t, acrobot_deviation(acrobot, &REST, out)) \
+    RESULT(ALONE, acrobot_state_t, acrobot_lqr(acrobot, &REST, &ONES, 1, out, NULL)) \
+    ERROR(ALONE, acrobot_lqr(acrobot, &FAR, &ONES, 1, &x, out)) \
+    RESULT(ACTIONS, uint8_t, acrobot_action_space_sample(action_space, out)) \
+    BEGIN(acrobot_batch_reset(batch)) \
+    BEGIN(acrobot_batch_reset_with_seed(batch, 42)) \
+    BEGIN(acrobot_batch_reset_masked(batch, MASK, COUNT)) \
+    BEGIN(acrobot_batch_reset_with_seeds(batch, SEEDS, COUNT)) \
+    RESULT(BATCH, rewards_t, step_batch(batch, out)) \
+    RESULT(BATCH, rows_t, acrobot_batch_observe(batch, (row_t *)out, COUNT)) \
+    RESULT(BATCH, size_t, acrobot_batch_count(batch, out)) \
+    ERROR(BATCH, acrobot_batch_set_autoreset(batch, 3, out)) \
+    ERROR(BATCH, acrobot_batch_set_limit(batch, 0, out)) \
+    RESULT(BATCH, acrobot_state_t, acrobot_batch_state(batch, 0, out)) \
+    ERROR(BATCH, acrobot_batch_set_state(batch, 0, &FAR, out)) \
+    RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, out)) \
+    ERROR(BATCH, acrobot_batch_set_params(batch, &NO_MASS, out))
 
 struct call {
     int holder, optional, status;
@@ -81,7 +85,7 @@ struct call {
 static const struct call TABLE[] = {
 #define CALL(holder, type, optional, status, ...) \
     {holder, optional, status, sizeof(type), #__VA_ARGS__},
-    CALLS(CALL)
+    CALLS
 #undef CALL
 };
 enum { ROWS = sizeof TABLE / sizeof TABLE[0] };
@@ -98,7 +102,7 @@ static acrobot_status_t call(int index, void *holder, void *pointer)
         type *out = (type *)pointer; \
         return __VA_ARGS__; \
     }
-    CALLS(CALL)
+    CALLS
 #undef CALL
     return ACROBOT_OK;
 }
