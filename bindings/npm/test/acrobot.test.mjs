@@ -7,7 +7,7 @@ import { inspect } from "node:util";
 
 import { ACTIONS, bits as bitsOf, trace } from "../../../examples/web/test/native.mjs";
 import { Acrobot, Batch } from "../dist/index.js";
-import { assertRejected, randoms, sealed } from "./module.mjs";
+import { ACTION, SEED, assertRejected, changed, randoms, sealed } from "./module.mjs";
 
 const bits = ({ state }) => bitsOf(Object.values(state));
 
@@ -188,8 +188,6 @@ test("the console shows what an acrobot and a batch are", () => {
   assert.equal(inspect([acrobot]), "[ Acrobot freed ]");
 });
 
-const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
-const ACTION = "action must be 0 (negative torque), 1 (none) or 2 (positive)";
 const MAX_STEPS = "maxSteps must be an integer from 1 to 2^32 - 1";
 const DT = "dt must be finite and above 0 s";
 const INERTIA = "inertia1 must be above 0 kg m² if the centre of mass is on the joint";
@@ -207,8 +205,8 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
   const move = (state) => () => (acrobot.state = state);
   const marked = [-0, NaN, undefined, [-Infinity], "NaN"]; // what JSON has not
   const rows = [
-    ["RangeError", ACTION, ["3", step(3)], ["1.5", step(1.5)]],
-    ["TypeError", ACTION,
+    ["RangeError", `action ${ACTION}`, ["3", step(3)], ["1.5", step(1.5)]],
+    ["TypeError", `action ${ACTION}`,
       ["1n", step(1n)], ['"1"', step("1")], ["undefined", step()],
       [`["${"x".repeat(78)}…`, step(["x".repeat(99)])],
       ["[object Object]", step({ action: 1n })],
@@ -309,20 +307,14 @@ test("damaged snapshots, and those of others, are rejected, and nothing changes"
   }
   assert.ok(restores(before));
 
-  /** The snapshot with other bytes from `start` on, and with the right checksum. */
-  const changed = (start, ...bytes) => {
-    const body = Buffer.from(before.subarray(0, -4));
-    body.set(bytes, start);
-    return sealed(body);
-  };
-  assert.ok(restores(changed(8, 1)));
+  assert.ok(restores(changed(before, 8, 1)));
   const [own, version2] = [1, 2].map((each) => `"acrobot", version ${each}, arithmetic "fast"`);
   for (const [bytes, message] of [
-    [changed(8, 2), `the snapshot must be a valid one of ${own}, got ${version2}`],
-    [changed(10, ...Buffer.from("host")), /got "acrobot", version 1, arithmetic "host"$/],
+    [changed(before, 8, 2), `the snapshot must be a valid one of ${own}, got ${version2}`],
+    [changed(before, 10, ...Buffer.from("host")), /got "acrobot", version 1, arithmetic "host"$/],
     // A length1 of NaN.
-    [changed(14, 0, 0, 0xc0, 0x7f), /got "acrobot", version 1, arithmetic "fast"$/],
-    [Buffer.concat([changed(0, 7).subarray(0, -4), Buffer.of(0)]), /checksum/],
+    [changed(before, 14, 0, 0, 0xc0, 0x7f), /got "acrobot", version 1, arithmetic "fast"$/],
+    [Buffer.concat([changed(before, 0, 7).subarray(0, -4), Buffer.of(0)]), /checksum/],
   ]) {
     assert.throws(() => Acrobot.restore(bytes), { name: "RangeError", message });
     assert.ok(!restores(bytes));
@@ -330,7 +322,7 @@ test("damaged snapshots, and those of others, are rejected, and nothing changes"
   // Any bytes with the right checksum.
   const random = randoms();
   for (let i = 0; i < 2000; i++) {
-    if (restores(changed(random(before.length - 4), random(256)))) acrobot.step(2);
+    if (restores(changed(before, random(before.length - 4), random(256)))) acrobot.step(2);
     acrobot.restore(before);
   }
 });

@@ -7,7 +7,7 @@ import { setFlagsFromString } from "node:v8";
 import { runInNewContext } from "node:vm";
 
 import { Acrobot, Batch } from "../dist/index.js";
-import { assertRejected, instance, randoms, sealed } from "./module.mjs";
+import { ACTION, SEED, assertRejected, changed, instance, randoms, sealed } from "./module.mjs";
 
 const COUNT = 21; // the last block is partly filled
 const PARAMS = { torqueNoise: 0.5, mass1: 1.5, torques: [-1, 0, 1.5] };
@@ -240,12 +240,6 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
       return false;
     }
   };
-  /** The content with other bytes from `start` on. */
-  const changed = (start, ...bytes) => {
-    const copy = Buffer.from(content);
-    copy.set(bytes, start);
-    return sealed(copy);
-  };
   for (let length = 0; length < content.length; length++) {
     assert.ok(!restores(sealed(content.subarray(0, length))));
   }
@@ -256,20 +250,18 @@ test("a batch's snapshot has the bytes of Rust's postcard, and any other is reje
   }
   for (let byte = 0; byte < content.length; byte++) {
     for (const value of [0, 127, 128, 255]) {
-      const restored = restores(changed(byte, value));
+      const restored = restores(changed(snapshot, byte, value));
       // The settings before the limit of steps have only one value.
       if (byte < 29) assert.equal(restored, value === content[byte]);
     }
   }
   // A NaN in the state of acrobot 0.
-  assert.ok(!restores(changed(106, 0, 0, 0xc0, 0x7f)));
+  assert.ok(!restores(changed(snapshot, 106, 0, 0, 0xc0, 0x7f)));
   const message = /^the snapshot must be a valid one of "acrobot", .*, got 300 bytes$/;
   assert.throws(() => acrobot.restore(sealed(Buffer.alloc(300))), { message });
 });
 
-const ELEMENT = "must be 0 (negative torque), 1 (none) or 2 (positive)";
 const COUNTS = "count must be an integer from 1 to 2^32 - 1";
-const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
 
 test("invalid arguments are rejected, and nothing changes", () => {
   const batch = new Batch({ seed: 1, count: 3 });
@@ -282,12 +274,12 @@ test("invalid arguments are rejected, and nothing changes", () => {
   const rows = [
     ["RangeError", "actions must have 3 elements", ["2", step(new Uint8Array(2))]],
     ["TypeError", "actions must be an array of 3 elements", ["undefined", step()], ["3", step(3)]],
-    ["TypeError", `actions[0] ${ELEMENT}`, ['"0"', step("012")]],
-    ["RangeError", `actions[1] ${ELEMENT}`,
+    ["TypeError", `actions[0] ${ACTION}`, ['"0"', step("012")]],
+    ["RangeError", `actions[1] ${ACTION}`,
       ["3", step(Uint8Array.of(0, 3, 1))], ["-1", step(Int32Array.of(0, -1, 1))]],
-    ["TypeError", `actions[1] ${ELEMENT}`, ["undefined", step([0, , 1])]],
-    ["RangeError", `actions[2] ${ELEMENT}`, ["258", step([0, 1, 258])]],
-    ["TypeError", `actions[2] ${ELEMENT}`, ['"2"', step([0, 1, "2"])]],
+    ["TypeError", `actions[1] ${ACTION}`, ["undefined", step([0, , 1])]],
+    ["RangeError", `actions[2] ${ACTION}`, ["258", step([0, 1, 258])]],
+    ["TypeError", `actions[2] ${ACTION}`, ['"2"', step([0, 1, "2"])]],
     ["RangeError", "torques[1] must be a finite number of N m",
       ["NaN", torque(Float32Array.of(0, NaN, 1))],
       ["1e+39, which is Infinity in single precision", torque([0, 1e39, 1])]],
