@@ -1,4 +1,4 @@
-// A batch in static memory: a rejected parameter, and how many episodes a policy ends.
+// A batch in static memory: how many episodes a policy ends, and a rejected parameter.
 
 #include <stdio.h>
 
@@ -12,52 +12,41 @@ static float rewards[COUNT];
 static bool terminated[COUNT], truncated[COUNT];
 static acrobot_observation_t observations[COUNT];
 
-static int failed(acrobot_status_t status)
-{
-    fprintf(stderr, "%s\n", acrobot_status_text(status));
-    return 1;
-}
-
 int main(void)
 {
-    const acrobot_batch_results_t results = {rewards, terminated, truncated, observations, NULL};
-    acrobot_batch_t *batch;
     acrobot_params_t params;
     acrobot_error_t error;
     long episodes = 0;
-
+    const acrobot_batch_results_t results = {rewards, terminated, truncated, observations, NULL};
+    acrobot_batch_t *batch;
     acrobot_status_t status = acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch);
-    if (status == ACROBOT_OK) {
-        status = acrobot_batch_set_autoreset(batch, ACROBOT_AUTORESET_SAME_STEP, NULL);
-    }
+
     if (status == ACROBOT_OK) {
         status = acrobot_batch_observe(batch, observations, COUNT);
+    }
+    for (int step = 0; step < 1000 && status == ACROBOT_OK; step++) {
+        for (int i = 0; i < COUNT; i++) {
+            float velocity = observations[i].dtheta1;
+            actions[i] = velocity > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
+        }
+        status = acrobot_batch_step(batch, actions, &results, COUNT);
+        for (int i = 0; i < COUNT; i++) {
+            episodes += terminated[i] || truncated[i];
+        }
     }
     if (status == ACROBOT_OK) {
         status = acrobot_batch_params(batch, &params);
     }
     if (status != ACROBOT_OK) {
-        return failed(status);
+        fprintf(stderr, "%s\n", acrobot_status_text(status));
+        return 1;
     }
+    printf("%ld episodes ended in 1000 steps of %d acrobots\n", episodes, COUNT);
     params.dt = 0;
     status = acrobot_batch_set_params(batch, &params, &error);
     if (status == ACROBOT_ERROR_OUT_OF_RANGE) {
         // dt must be finite and above 0 s, got 0
         printf("%s must be %s, got %g\n", error.name, error.rule, error.value);
     }
-    for (int step = 0; step < 1000; step++) {
-        for (int i = 0; i < COUNT; i++) {
-            float velocity = observations[i].dtheta1;
-            actions[i] = velocity > 0 ? ACROBOT_ACTION_NEGATIVE : ACROBOT_ACTION_POSITIVE;
-        }
-        status = acrobot_batch_step(batch, actions, &results, COUNT);
-        if (status != ACROBOT_OK) {
-            return failed(status);
-        }
-        for (int i = 0; i < COUNT; i++) {
-            episodes += terminated[i] || truncated[i];
-        }
-    }
-    printf("%ld episodes ended in 1000 steps of %d acrobots\n", episodes, COUNT);
     return 0;
 }

@@ -132,7 +132,6 @@ typedef struct {
   char rule[64];
 } acrobot_error_t;
 
-// The result of a step.
 typedef struct {
   // The observation of the new state.
   acrobot_observation_t observation;
@@ -248,7 +247,6 @@ acrobot_status_t acrobot_step_torque(acrobot_t *acrobot,
                                      acrobot_step_t *step,
                                      acrobot_error_t *error);
 
-// The observation of the state.
 acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t *observation);
 
 // The number of steps since the last reset.
@@ -257,15 +255,13 @@ acrobot_status_t acrobot_elapsed(const acrobot_t *acrobot, uint32_t *steps);
 // Sets the number of steps after which episodes are truncated, above 0; 500 by default.
 acrobot_status_t acrobot_set_limit(acrobot_t *acrobot, uint32_t limit, acrobot_error_t *error);
 
-// The state.
 acrobot_status_t acrobot_state(const acrobot_t *acrobot, acrobot_state_t *state);
 
-// Sets the state. The number of steps does not change.
+// The number of steps does not change.
 acrobot_status_t acrobot_set_state(acrobot_t *acrobot,
                                    const acrobot_state_t *state,
                                    acrobot_error_t *error);
 
-// The parameters.
 acrobot_status_t acrobot_params(const acrobot_t *acrobot, acrobot_params_t *params);
 
 // Sets the parameters for the next steps. The state does not change.
@@ -325,22 +321,19 @@ acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
                                     const acrobot_batch_results_t *results,
                                     size_t count);
 
-// Writes the observations of the states.
 acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
                                        acrobot_observation_t *observations,
                                        size_t count);
 
-// The number of acrobots.
 acrobot_status_t acrobot_batch_count(const acrobot_batch_t *batch, size_t *count);
 
-// Draws the next initial state of each acrobot and begins their episodes.
+// As acrobot_reset, for each acrobot.
 acrobot_status_t acrobot_batch_reset(acrobot_batch_t *batch);
 
 // As acrobot_batch_reset, after seeding each acrobot as acrobot_batch_init does.
 acrobot_status_t acrobot_batch_reset_with_seed(acrobot_batch_t *batch, uint64_t seed);
 
-// As acrobot_batch_reset, after seeding acrobot `i` with `seeds[i]`, as acrobot_reset_with_seed
-// does.
+// As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
 acrobot_status_t acrobot_batch_reset_with_seeds(acrobot_batch_t *batch,
                                                 const uint64_t *seeds,
                                                 size_t count);
@@ -359,21 +352,19 @@ acrobot_status_t acrobot_batch_set_limit(acrobot_batch_t *batch,
                                          uint32_t limit,
                                          acrobot_error_t *error);
 
-// The state of acrobot `index`.
 acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,
                                      size_t index,
                                      acrobot_state_t *state);
 
-// Sets the state of acrobot `index`. Its number of steps does not change.
+// The number of steps does not change.
 acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
                                          size_t index,
                                          const acrobot_state_t *state,
                                          acrobot_error_t *error);
 
-// The parameters of all acrobots.
 acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, acrobot_params_t *params);
 
-// Sets the parameters of all acrobots for the next steps.
+// As acrobot_set_params, for all acrobots.
 acrobot_status_t acrobot_batch_set_params(acrobot_batch_t *batch,
                                           const acrobot_params_t *params,
                                           acrobot_error_t *error);

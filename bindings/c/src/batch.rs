@@ -189,7 +189,6 @@ pub unsafe extern "C" fn acrobot_batch_step(
     })
 }
 
-/// Writes the observations of the states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_observe(
     batch: *const acrobot_batch_t,
@@ -205,7 +204,6 @@ pub unsafe extern "C" fn acrobot_batch_observe(
     })
 }
 
-/// The number of acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_count(
     batch: *const acrobot_batch_t,
@@ -214,7 +212,7 @@ pub unsafe extern "C" fn acrobot_batch_count(
     get(batch, count, |placed| Ok(placed.batch.len()))
 }
 
-/// Draws the next initial state of each acrobot and begins their episodes.
+/// As acrobot_reset, for each acrobot.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset(batch: *mut acrobot_batch_t) -> acrobot_status_t {
     status(|| {
@@ -235,8 +233,7 @@ pub unsafe extern "C" fn acrobot_batch_reset_with_seed(
     })
 }
 
-/// As acrobot_batch_reset, after seeding acrobot `i` with `seeds[i]`, as acrobot_reset_with_seed
-/// does.
+/// As acrobot_batch_reset, after seeding acrobot `i` as acrobot_reset_with_seed does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_reset_with_seeds(
     batch: *mut acrobot_batch_t,
@@ -308,7 +305,6 @@ pub unsafe extern "C" fn acrobot_batch_set_limit(
     })
 }
 
-/// The state of acrobot `index`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_state(
     batch: *const acrobot_batch_t,
@@ -321,7 +317,7 @@ pub unsafe extern "C" fn acrobot_batch_state(
     })
 }
 
-/// Sets the state of acrobot `index`. Its number of steps does not change.
+/// The number of steps does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_state(
     batch: *mut acrobot_batch_t,
@@ -334,7 +330,6 @@ pub unsafe extern "C" fn acrobot_batch_set_state(
     })
 }
 
-/// The parameters of all acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_params(
     batch: *const acrobot_batch_t,
@@ -343,7 +338,7 @@ pub unsafe extern "C" fn acrobot_batch_params(
     get(batch, params, |placed| Ok(placed.batch.params_of(0).unwrap_or(Params::DEFAULT).into()))
 }
 
-/// Sets the parameters of all acrobots for the next steps.
+/// As acrobot_set_params, for all acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_params(
     batch: *mut acrobot_batch_t,

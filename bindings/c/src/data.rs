@@ -42,7 +42,6 @@ impl From<Observation> for acrobot_observation_t {
     }
 }
 
-/// The result of a step.
 #[repr(C)]
 pub struct acrobot_step_t {
     /// The observation of the new state.

@@ -2,8 +2,8 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, SHOWN, addressOf, drawParams, isAction, isFinite32, keep, orFree, readState,
-  seedSample, writeState,
+  ACTION, Kept, addressOf, drawParams, isAction, isFinite32, keep, orFree, readState, seedSample,
+  writeState,
 } from "./kept.js";
 import { TASKS, begins, head, header, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
 import {
@@ -149,10 +149,5 @@ export class Acrobot extends Kept {
     const { params, state } = this;
     const torque = this.#torque ?? params.torques[this.#action];
     draw("draw(context, options)", context, state, params, torque, options);
-  }
-
-  get [SHOWN]() {
-    const { state, elapsed, maxSteps, params } = this;
-    return { state, elapsed, maxSteps, params };
   }
 }

@@ -2,12 +2,12 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, PARAMS_LENGTH, SHOWN, addressOf, drawParams, elements, isAction, isFinite32,
-  keep, orFree, readChanges, readParams, readState, seedSample, writeParams, writeState,
+  ACTION, Kept, PARAMS_LENGTH, addressOf, drawParams, elements, isAction, isFinite32, keep, orFree,
+  readChanges, readParams, readState, seedSample, writeParams, writeState,
 } from "./kept.js";
 import { TASKS, begins, head, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
 import {
-  accept, bytes, checked, invalid, isBytes, isFloats, numbers, positive, wasm, writeSeed,
+  accept, bytes, checked, invalid, numbers, positive, typeOf, wasm, writeSeed,
 } from "./wasm.js";
 
 /**
@@ -75,7 +75,7 @@ export class Batch extends Kept {
     this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams, task });
     this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
     orFree(this, () => {
-      super.setParams(params);
+      this.setParams(params);
       if (paramsRange !== undefined) {
         this.setParamsRange(paramsRange);
         for (let i = 0; i < count; i++) drawParams(this, i);
@@ -162,18 +162,18 @@ export class Batch extends Kept {
   }
 
   step(actions) {
-    return this.#step("actions", actions, isBytes, isAction, ACTION);
+    return this.#step("actions", actions, isAction, ACTION);
   }
 
   stepTorque(torques) {
-    const rule = "must be a finite number of N m";
-    return this.#step("torques", torques, isFloats, isFinite32, rule);
+    return this.#step("torques", torques, isFinite32, "must be a finite number of N m");
   }
 
-  #step(what, given, isArray, isValid, rule) {
+  #step(what, given, isValid, rule) {
+    const [{ name, BYTES_PER_ELEMENT }] = ARRAYS[what];
+    const size = this.#count * BYTES_PER_ELEMENT;
     // The module can check elements of this type.
-    const bytesOfAll = this.#count * ARRAYS[what][0].BYTES_PER_ELEMENT;
-    const isRead = isArray(given) && given.byteLength === bytesOfAll;
+    const isRead = typeOf(given) === name && given.byteLength === size;
     // Reading others can run code that frees the batch or makes memory grow, so it comes first.
     const inputs = isRead ? given : elements(what, given, this.#count, isValid, rule);
     const address = this.#address;
@@ -234,20 +234,18 @@ export class Batch extends Kept {
     if (!this.#settings.ownParams) return super.setParams(changes);
     const given = readChanges(changes);
     const address = this.#address;
-    const before = new Uint8Array(this.#count * PARAMS_LENGTH);
-    const part = (index) => before.subarray(index * PARAMS_LENGTH, (index + 1) * PARAMS_LENGTH);
-    let index = 0;
+    const before = [];
     try {
-      for (; index < this.#count; index++) {
-        wasm().batch_params(address, index);
-        part(index).set(bytes().subarray(0, PARAMS_LENGTH));
-        writeParams("batch", address, index, given, "batch_set_params_of");
+      for (let i = 0; i < this.#count; i++) {
+        wasm().batch_params(address, i);
+        before.push(bytes().slice(0, PARAMS_LENGTH));
+        writeParams("batch", address, i, given);
       }
     } catch (error) {
-      while (index > 0) {
-        bytes().set(part(--index));
-        wasm().batch_set_params_of(address, index);
-      }
+      before.forEach((params, i) => {
+        bytes().set(params);
+        wasm().batch_set_params(address, i);
+      });
       throw error;
     }
   }
@@ -266,7 +264,7 @@ export class Batch extends Kept {
     this.#addressFor(index);
     if (!this.#settings.ownParams) throw new Error(SHARED);
     const given = readChanges(changes);
-    writeParams("batch", this.#address, index, given, "batch_set_params_of");
+    writeParams("batch", this.#address, index, given);
   }
 
   #header() {
@@ -342,9 +340,5 @@ export class Batch extends Kept {
     const signature = "draw(context, index, options)";
     this.#addressFor(index, `${signature}: `);
     draw(signature, context, this.state(index), this.paramsOf(index), 0, options);
-  }
-
-  get [SHOWN]() {
-    return this.#settings;
   }
 }

@@ -102,14 +102,14 @@ export function readChanges(changes) {
   return given;
 }
 
-/** Changes what `readChanges` returns in the parameters of acrobot `index`. */
-export function writeParams(kind, address, index, given, set = `${kind}_set_params`) {
+/** Changes what `readChanges` returns in the parameters of acrobot `index`, or of all with 0. */
+export function writeParams(kind, address, index, given) {
   wasm()[`${kind}_params`](address, index);
   for (const [name, value] of Object.entries(given)) {
     if (name === "dynamics") bytes()[DYNAMICS_AT] = DYNAMICS.indexOf(value);
     else put(name, value);
   }
-  const length = wasm()[set](address, index);
+  const length = wasm()[`${kind}_set_params`](address, index);
   accept(length, (name) => given[name] ?? readParams(kind, address, index)[name]);
 }
 
@@ -131,9 +131,6 @@ function readRanges(range) {
 /** Frees what the program has forgotten to free, if the engine says when. */
 const free = ({ kind, address }) => wasm()[`${kind}_free`](address);
 const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(free);
-
-/** A property that only this package can read. */
-export const SHOWN = Symbol("shown");
 
 /**
  * `keep` gives an acrobot or a batch the memory at an address, and `addressOf` returns the address.
@@ -172,7 +169,7 @@ export class Kept {
         const isFixed = low === high;
         put(name, isFixed ? low : wasm()[`${kind}_uniform`](address, index, low, high));
       }
-      wasm()[kept.#set](address, index);
+      wasm()[`${kind}_set_params`](address, index);
     };
     // Returns the number of words of the seed, which is random the first time.
     seedSample = (kept, seed) => {
@@ -181,10 +178,6 @@ export class Kept {
       kept.#samples = true;
       return words;
     };
-  }
-
-  get #set() {
-    return this.#kind === "batch" ? "batch_set_params_of" : "acrobot_set_params";
   }
 
   /** Vue makes no proxy of an object with this property. A proxy has no private fields. */
@@ -209,11 +202,11 @@ export class Kept {
     try {
       for (const end of [1, 2]) {
         const ends = Object.fromEntries(ranges.map((row) => [row[0], row[end]]));
-        writeParams(kind, address, 0, ends, this.#set);
+        writeParams(kind, address, 0, ends);
       }
     } finally {
       bytes().set(before);
-      wasm()[this.#set](address, 0);
+      wasm()[`${kind}_set_params`](address, 0);
     }
     this.#ranges = ranges.map(([name, ...ends]) => [name, ...ends.map(Math.fround)]);
   }
@@ -232,8 +225,10 @@ export class Kept {
 
   /** What Node.js's console shows. */
   [Symbol.for("nodejs.util.inspect.custom")](depth, options, inspect) {
-    const shown = this.#address === 0 ? "freed" : inspect(this[SHOWN], options);
-    return `${this.constructor.name} ${shown}`;
+    const { name } = this.constructor;
+    if (this.#address === 0) return `${name} freed`;
+    const { state, elapsed, maxSteps, params, settings } = this; // an acrobot has no settings
+    return `${name} ${inspect(settings ?? { state, elapsed, maxSteps, params }, options)}`;
   }
 }
 

@@ -115,7 +115,6 @@ export class Perceptron {
   act(acrobot) {
     const given = acrobot?.observation;
     const observation = finite("act(acrobot): acrobot.observation", given, 0, 1, 2, 3, 4, 5);
-    this.#module.bytes(24).set(new Uint8Array(Float32Array.from(observation).buffer));
-    return this.#module.exports.act_perceptron();
+    return this.#module.exports.act_perceptron(...observation);
   }
 }

@@ -65,18 +65,14 @@ export function decoded(utf8) {
   return decodeURIComponent(codes.join(""));
 }
 
-/** The type of a typed array of any realm, or undefined for other values. */
 const TypedArray = Object.getPrototypeOf(Uint8Array.prototype);
-const { get: typeOf } = Object.getOwnPropertyDescriptor(TypedArray, Symbol.toStringTag);
-
-/** Whether a value is a Uint8Array and no proxy of one. Its elements are bytes. */
-export const isBytes = (value) => typeOf.call(value) === "Uint8Array";
-/** Whether a value is a Float32Array and no proxy of one. */
-export const isFloats = (value) => typeOf.call(value) === "Float32Array";
+const { get } = Object.getOwnPropertyDescriptor(TypedArray, Symbol.toStringTag);
+/** The type's name of a typed array of any realm, or undefined for other values and proxies. */
+export const typeOf = (value) => get.call(value);
 
 /** A copy of a Uint8Array: other threads may write shared memory, and a proxy can run code. */
 export function copied(what, given) {
-  const valid = isBytes(given) || given instanceof Uint8Array;
+  const valid = typeOf(given) === "Uint8Array" || given instanceof Uint8Array;
   if (!valid) throw invalid(`${what} must be a Uint8Array`, given, []);
   const copy = new Uint8Array(given.length);
   for (let i = 0; i < copy.length; i++) copy[i] = given[i];
@@ -171,5 +167,7 @@ export function accept(length, valueOf) {
   const [name, rule, unit] = decoded(bytes().slice(0, length)).split("\n");
   const plain = name.replace(".joint", "");
   const camel = plain.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
-  throw invalidSingle(`${camel} must be ${rule} ${unit}`, valueOf(camel));
+  // JavaScript chooses no arithmetic, but a task.
+  const own = rule.replace("an arithmetic without friction", 'the task "acrobot"');
+  throw invalidSingle(`${camel} must be ${own} ${unit}`, valueOf(camel));
 }

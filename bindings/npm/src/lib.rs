@@ -1,8 +1,10 @@
 //! The WebAssembly module of the npm package `acrobot-rs`: functions that its JavaScript calls.
 //!
 //! JavaScript keeps the address of each acrobot and of each batch in a private field, until it
-//! frees it. Longer data passes through the memory in `memory`. The JavaScript checks numbers,
-//! lengths and actions, and the crate checks parameters, states and snapshots.
+//! frees it. Longer data passes through the memory in `memory`. There a seed has `words` words of
+//! 32 bits; without any the generator continues. JavaScript checks numbers, lengths and actions,
+//! and the crate checks parameters, states and snapshots. A setter returns 0, or the length of the
+//! reason for a rejection.
 
 mod many;
 mod memory;

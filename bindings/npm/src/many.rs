@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Swingup};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::{Fast, ResetOptions};
+use acrobot::{Error, Fast, Params, ResetOptions};
 
 use crate::memory::{self, set_bytes, set_numbers};
 use crate::{Tasks, with_task};
@@ -89,9 +89,7 @@ impl Many {
     }
 }
 
-/// Makes a batch of `count` acrobots with a seed of this many 32-bit words. Writes the addresses of
-/// what JavaScript reads and writes. Returns the batch's address, or 0 if there is no memory for
-/// it.
+/// Writes the addresses of what JavaScript reads and writes. Returns 0 without memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_new(
     count: usize,
@@ -131,12 +129,12 @@ pub extern "C" fn batch_free(many: Box<Many>) {
     drop(many);
 }
 
-/// Resets the acrobots in the mask, with a seed of this many 32-bit words. 0: the next draws.
+/// Resets the acrobots in the mask.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words));
     let options = ResetOptions { seed, bounds: None };
-    // The lengths are equal, so this cannot fail.
+    // Here and below the lengths are equal, so that this cannot fail.
     let _ = with_task!(&mut many.batch, batch => batch.reset_masked(&many.mask, options));
     for (ended, reset) in many.ended.iter_mut().zip(&many.mask) {
         *ended &= !reset;
@@ -145,12 +143,10 @@ pub extern "C" fn batch_reset(many: &mut Many, words: usize) {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_observe(many: &mut Many) {
-    // The lengths are equal, so this cannot fail.
     let _ = with_task!(&many.batch, batch => batch.observe(&mut many.observations));
 }
 
-/// Draws actions, first with a seed of this many 32-bit words. 0: the next draws. They are those of
-/// Gymnasium's `MultiDiscrete`.
+/// Draws the actions of Gymnasium's `MultiDiscrete`.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_sample(many: &mut Many, words: usize) {
     if words > 0 {
@@ -185,11 +181,16 @@ impl Many {
         true
     }
 
-    /// Repeats what a change of parameters does for the torques of acrobot `index`.
-    fn keep_torques(&mut self, index: usize, torques: [f32; 3]) {
+    fn set_params(&mut self, index: usize, params: Params<f32>) -> Result<(), Error> {
+        let own_params = self.own_params;
+        with_task!(&mut self.batch, batch => match own_params {
+            true => batch.set_params_of(index, params),
+            false => batch.set_params(params),
+        })?;
         if let Some(of) = self.torques_of.get_mut(index) {
-            *of = torques;
+            *of = params.torques;
         }
+        Ok(())
     }
 }
 
@@ -216,7 +217,6 @@ pub extern "C" fn batch_step(many: &mut Many, given_torques: bool) -> bool {
     stepped
 }
 
-/// Writes the state of acrobot `index`.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_state(many: &Many, index: usize) {
     if let Some(state) = with_task!(&many.batch, batch => batch.state(index)) {
@@ -224,7 +224,6 @@ pub extern "C" fn batch_state(many: &Many, index: usize) {
     }
 }
 
-/// Sets the state of acrobot `index`. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_set_state(many: &mut Many, index: usize) -> usize {
     let state = memory::get_state();
@@ -243,26 +242,10 @@ pub extern "C" fn batch_params(many: &Many, index: usize) {
     }
 }
 
-/// Sets the parameters. Returns 0, or the length of the reason for a rejection.
+/// Sets the parameters of acrobot `index`, or, with 0, those that all acrobots share.
 #[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params(many: &mut Many) -> usize {
-    let params = memory::get_params();
-    let set = with_task!(&mut many.batch, batch => batch.set_params(params));
-    if set.is_ok() {
-        many.torques_of.fill(params.torques);
-    }
-    memory::reason(set)
-}
-
-/// As [`batch_set_params`], for acrobot `index` in a batch with own parameters.
-#[unsafe(no_mangle)]
-pub extern "C" fn batch_set_params_of(many: &mut Many, index: usize) -> usize {
-    let params = memory::get_params();
-    let set = with_task!(&mut many.batch, batch => batch.set_params_of(index, params));
-    if set.is_ok() {
-        many.keep_torques(index, params.torques);
-    }
-    memory::reason(set)
+pub extern "C" fn batch_set_params(many: &mut Many, index: usize) -> usize {
+    memory::reason(many.set_params(index, memory::get_params()))
 }
 
 /// Draws a number between the bounds from the generator of acrobot `index`.
@@ -288,16 +271,11 @@ pub extern "C" fn batch_load(many: &mut Many, index: usize, len: usize) -> usize
     let Some(((params, state, elapsed, reset_pending, rng), used)) = memory::load(len) else {
         return 0;
     };
-    let valid = with_task!(&mut many.batch, batch => {
-        // The first brings the parameters, if all acrobots share them.
-        let shared = index > 0 || many.own_params || batch.set_params(params).is_ok();
+    // The first brings the parameters, if all acrobots share them.
+    let set = index > 0 && !many.own_params || many.set_params(index, params).is_ok();
+    let loaded = with_task!(&mut many.batch, batch => {
         let member = Member { params, state, elapsed, reset_pending, rng };
-        shared && batch.set_member(index, member).is_ok()
+        batch.set_member(index, member).is_ok()
     });
-    if valid {
-        many.keep_torques(index, params.torques);
-        used
-    } else {
-        0
-    }
+    if set && loaded { used } else { 0 }
 }

@@ -17,7 +17,7 @@ pub struct One {
     action_space: Pcg64,
 }
 
-/// Makes an acrobot that JavaScript resets. Returns its address, or 0 without memory.
+/// Makes an acrobot that JavaScript resets. Returns 0 without memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_new(max_steps: u32, task: u32) -> Option<Box<One>> {
     let acrobot = match task {
@@ -32,7 +32,6 @@ pub extern "C" fn acrobot_free(one: Box<One>) {
     drop(one);
 }
 
-/// Resets, with a seed of this many 32-bit words. 0: the next draws.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_reset(one: &mut One, words: usize) {
     let seed = (words > 0).then(|| memory::seed(words).into());
@@ -54,7 +53,6 @@ fn results(one: &mut One, step: Step) -> u32 {
     u32::from(step.terminated) | u32::from(one.elapsed >= one.max_steps) << 1
 }
 
-/// Steps with an action from 0 to 2.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_step(one: &mut One, action: u8) -> u32 {
     let action = Action::try_from(action).unwrap_or(Action::Zero);
@@ -62,14 +60,13 @@ pub extern "C" fn acrobot_step(one: &mut One, action: u8) -> u32 {
     results(one, step)
 }
 
-/// Steps with a finite torque.
+/// The torque is finite.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_step_torque(one: &mut One, torque: f32) -> u32 {
     let step = with_task!(&mut one.acrobot, acrobot => acrobot.step_torque(torque));
     step.map_or(0, |step| results(one, step))
 }
 
-/// Draws an action, first with a seed of this many 32-bit words. 0: the next draw.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_sample(one: &mut One, words: usize) -> u8 {
     if words > 0 {
@@ -93,7 +90,6 @@ pub extern "C" fn acrobot_read(one: &One) {
     });
 }
 
-/// Sets the state. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_set_state(one: &mut One) -> usize {
     memory::reason(with_task!(&mut one.acrobot, acrobot => acrobot.set_state(memory::get_state())))
@@ -104,7 +100,6 @@ pub extern "C" fn acrobot_params(one: &One) {
     memory::save(with_task!(&one.acrobot, acrobot => acrobot.params()));
 }
 
-/// Sets the parameters. Returns 0, or the length of the reason for a rejection.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_set_params(one: &mut One) -> usize {
     memory::reason(

@@ -7,7 +7,7 @@ import { inspect } from "node:util";
 
 import { ACTIONS, bits as bitsOf, trace } from "../../../examples/web/test/native.mjs";
 import { Acrobot, Batch } from "../dist/index.js";
-import { assertRejected, randoms, sealed } from "./module.mjs";
+import { ACTION, SEED, assertRejected, changed, randoms, sealed } from "./module.mjs";
 
 const bits = ({ state }) => bitsOf(Object.values(state));
 
@@ -85,9 +85,11 @@ test("reset, limit, state, energy and height are the crate's", () => {
   assert.ok(Math.abs(acrobot.tipHeight) < 1e-6);
   // Both links are level, so the energy is link 2's: ½ (I2 + m2 lc2²) θ̇2².
   assert.ok(Math.abs(acrobot.energy - 0.5 * 1.25 * 9) < 1e-5);
-  // Arrays are copies.
+  // Arrays are copies, and objects are frozen ones.
   observation.fill(9);
   assert.notDeepEqual(observation, acrobot.observation);
+  const { state, params } = acrobot;
+  for (const copy of [state, params, params.torques]) assert.ok(Object.isFrozen(copy));
 });
 
 test("a swing-up's steps are those that dm_control recorded", () => {
@@ -95,34 +97,22 @@ test("a swing-up's steps are those that dm_control recorded", () => {
   const acrobot = new Acrobot({ task: "swingup" });
   assert.deepEqual([acrobot.task, acrobot.maxSteps], ["swingup", 1000]);
   assert.equal(acrobot.params.friction2, Math.fround(0.05));
-  const stateOf = ([theta1, theta2, dtheta1, dtheta2]) => {
-    return { theta1: theta1 + Math.PI, theta2, dtheta1, dtheta2 };
-  };
   const lines = readFileSync(recorded, "utf8").match(/^[^#].+$/gm);
   for (const line of lines) {
     const numbers = line.split(" ").map(Number);
-    acrobot.state = stateOf(numbers);
-    const step = acrobot.stepTorque(2 * numbers[4]);
-    const found = [...Object.values(acrobot.state), ...step.observation, step.reward];
-    const expected = [...Object.values(stateOf(numbers.slice(5))), ...numbers.slice(9, 16)];
-    found.forEach((number, i) => {
-      const error = number - expected[i];
-      assert.ok(Math.abs(i < 2 ? 2 * Math.sin(error / 2) : error) < 5e-6, `${i}: ${error}`);
+    const [theta1, theta2, dtheta1, dtheta2, action] = numbers;
+    acrobot.state = { theta1: theta1 + Math.PI, theta2, dtheta1, dtheta2 };
+    const { observation, reward, terminated } = acrobot.stepTorque(2 * action);
+    [...observation, reward].forEach((number, i) => {
+      assert.ok(Math.abs(number - numbers[9 + i]) < 5e-6, `${i} of ${line}`);
     });
-    assert.equal(step.terminated, false);
+    assert.equal(terminated, false);
   }
   assert.equal(lines.length, 1000);
   const resumed = Acrobot.restore(acrobot.snapshot());
   assert.deepEqual(resumed.stepTorque(0.3), acrobot.stepTorque(0.3));
   const rule = /"acrobot", version 1, arithmetic "fast", got .* arithmetic "swing fast"$/;
   assert.throws(() => new Acrobot().restore(acrobot.snapshot()), rule);
-});
-
-test("any torque is applied, with noise, as that of an action is", () => {
-  const [acrobot, other] = [busy(), busy()];
-  const same = (action) => assert.deepEqual(acrobot.stepTorque(action - 1), other.step(action));
-  ACTIONS.forEach(same);
-  assert.notDeepEqual(acrobot.stepTorque(0.5), other.step(2));
 });
 
 test("random actions with a seed are Gymnasium's", () => {
@@ -161,46 +151,31 @@ test("a picture fills the canvas or a square, and undefined options are the defa
 
 test("invalid arguments of draw are rejected, and nothing is drawn", () => {
   const [batch, acrobot, context] = [new Batch({ count: 1 }), new Acrobot(), canvas()];
-  const batched = "draw(context, index, options): ";
+  const draw = (...given) => () => acrobot.draw(...given);
+  const sized = (size) => draw(context, { size });
+  const colored = (colors) => draw(context, { colors });
+  const ofBatch = (...given) => () => batch.draw(context, ...given);
+  const [own, batched] = ["draw(context, options): ", "draw(context, index, options): "];
+  const SIZE = "options.size must be finite and at least 0 pixels";
   const NAMES = "background, target, link, joint, torque";
-  for (const [signature, draw] of [
-    ["draw(context, options): ", (...args) => acrobot.draw(...args)],
-    [batched, (first, ...more) => batch.draw(first, 0, ...more)],
-  ]) {
-    const withColors = (colors) => () => draw(context, { colors });
-    const rows = [
-      ["TypeError", "context must be a canvas's 2D context",
-        ["undefined", () => draw()],
-        ["null", () => draw(null)],
-        ['{"width":300,"height":200}', () => draw(context.canvas)]],
-      ["TypeError", "options must be an object", ["null", () => draw(context, null)]],
-      ["TypeError", "options must be among size, colors",
-        ["sise", () => draw(context, { sise: 1 })]],
-      ["RangeError", "options.size must be finite and at least 0 pixels",
-        ["-1", () => draw(context, { size: -1 })],
-        ["NaN", () => draw(context, { size: NaN })],
-        ["NaN", () => draw({ arc() {} })]],
-      ["TypeError", "options.size must be finite and at least 0 pixels",
-        ['"100"', () => draw(context, { size: "100" })]],
-      ["TypeError", "options.colors must be an object", ['"red"', withColors("red")]],
-      ["TypeError", `options.colors must be among ${NAMES}`, ["lnik", withColors({ lnik: "red" })]],
-      ["TypeError", "options.colors.link must be a string", ["5", withColors({ link: 5 })]],
-      ["TypeError", "options.colors.torque must be a string",
-        ["undefined", withColors({ torque: undefined })]],
-    ];
-    assertRejected(rows.map(([name, rule, ...cases]) => [name, signature + rule, ...cases]));
-  }
-  const index = `${batched}index must be an integer from 0 to 0`;
-  assertRejected([["TypeError", index, ["{}", () => batch.draw(context, {})]]]);
+  assertRejected([
+    ["TypeError", `${own}context must be a canvas's 2D context`,
+      ["undefined", draw()],
+      ["null", draw(null)],
+      ['{"width":300,"height":200}', draw(context.canvas)]],
+    ["TypeError", `${own}options must be an object`, ["null", draw(context, null)]],
+    ["TypeError", `${own}options must be among size, colors`, ["sise", draw(context, { sise: 1 })]],
+    ["RangeError", own + SIZE, ["-1", sized(-1)], ["NaN", sized(NaN)], ["NaN", draw({ arc() {} })]],
+    ["TypeError", own + SIZE, ['"100"', sized("100")]],
+    ["TypeError", `${own}options.colors must be an object`, ['"red"', colored("red")]],
+    ["TypeError", `${own}options.colors must be among ${NAMES}`, ["lnik", colored({ lnik: "" })]],
+    ["TypeError", `${own}options.colors.link must be a string`, ["5", colored({ link: 5 })]],
+    ["TypeError", `${own}options.colors.torque must be a string`,
+      ["undefined", colored({ torque: undefined })]],
+    ["RangeError", batched + SIZE, ["-1", ofBatch(0, { size: -1 })]],
+    ["TypeError", `${batched}index must be an integer from 0 to 0`, ["{}", ofBatch({})]],
+  ]);
   assert.deepEqual(context.calls, []);
-});
-
-test("states and parameters are frozen copies, and a random action is any", () => {
-  const acrobot = new Acrobot();
-  const { state, params } = acrobot;
-  for (const copy of [state, params, params.torques]) assert.ok(Object.isFrozen(copy));
-  const actions = Array.from({ length: 100 }, () => acrobot.sample());
-  assert.deepEqual([...new Set(actions)].sort(), [0, 1, 2]);
 });
 
 test("the console shows what an acrobot and a batch are", () => {
@@ -213,8 +188,6 @@ test("the console shows what an acrobot and a batch are", () => {
   assert.equal(inspect([acrobot]), "[ Acrobot freed ]");
 });
 
-const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
-const ACTION = "action must be 0 (negative torque), 1 (none) or 2 (positive)";
 const MAX_STEPS = "maxSteps must be an integer from 1 to 2^32 - 1";
 const DT = "dt must be finite and above 0 s";
 const INERTIA = "inertia1 must be above 0 kg m² if the centre of mass is on the joint";
@@ -230,11 +203,11 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
   const push = (torque) => () => acrobot.stepTorque(torque);
   const range = (range) => () => acrobot.setParamsRange(range);
   const move = (state) => () => (acrobot.state = state);
-  const marked = [-0, NaN, undefined, [-Infinity], "NaN"];
+  const marked = [-0, NaN, undefined, [-Infinity], "NaN"]; // what JSON has not
   const rows = [
-    ["RangeError", ACTION, ["3", step(3)], ["1.5", step(1.5)], ["NaN", step(NaN)]],
-    ["TypeError", ACTION,
-      ["1n", step(1n)], ['"1"', step("1")], ["undefined", step()], ["[1]", step([1])],
+    ["RangeError", `action ${ACTION}`, ["3", step(3)], ["1.5", step(1.5)]],
+    ["TypeError", `action ${ACTION}`,
+      ["1n", step(1n)], ['"1"', step("1")], ["undefined", step()],
       [`["${"x".repeat(78)}…`, step(["x".repeat(99)])],
       ["[object Object]", step({ action: 1n })],
       ["[object Uint8Array]", step(Uint8Array.of(1))],
@@ -243,7 +216,7 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
     ["RangeError", "torque must be a finite number of N m",
       ["NaN", push(NaN)], ["1e+39, which is Infinity in single precision", push(1e39)]],
     ["TypeError", "torque must be a finite number of N m", ['"1"', push("1")]],
-    ["RangeError", "friction1 must be 0 in an arithmetic without friction, in N m s/rad",
+    ["RangeError", 'friction1 must be 0 in the task "acrobot", in N m s/rad',
       ["0.1", set({ friction1: 0.1 })], ["0.2", range({ friction1: [0, 0.2] })]],
     ["RangeError", "mass1 must have a low of at most its high, in kg",
       ["[2,1]", range({ mass1: [2, 1] })]],
@@ -258,11 +231,8 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
     ["TypeError", SEED, ['"42"', reset("42")], ["null", reset(null)]],
     ["RangeError", DT,
       ["0", set({ dt: 0 })], ["-0", set({ dt: -0 })], ["-1", make({ params: { dt: -1 } })]],
-    ["RangeError", "mass1 must be finite and above 0 kg", ["NaN", set({ mass1: NaN })]],
     ["TypeError", "mass1 must be a number",
-      ['"1"', set({ mass1: "1" })],
-      ["undefined", set({ mass1: undefined })],
-      ['{"kg":NaN}', set({ mass1: { kg: NaN } })]],
+      ["undefined", set({ mass1: undefined })], ['{"kg":NaN}', set({ mass1: { kg: NaN } })]],
     ["RangeError", "centerOfMass2 must be finite and at least 0 m",
       ["-1", set({ centerOfMass2: -1 })]],
     ["RangeError", "gravity must be a finite number of m/s²",
@@ -272,7 +242,6 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
     ["RangeError", "torques[1] must be a finite number of N m",
       ["NaN", set({ torques: [0, NaN, 1] })]],
     ["TypeError", "torques must be an array of 3 numbers",
-      ["[0,1]", set({ torques: [0, 1] })],
       ['[-0,NaN,undefined,[-Infinity],"NaN"]', set({ torques: marked })],
       ["1", set({ torques: 1 })]],
     ["TypeError", 'dynamics must be "book" or "nips"', ['"Nips"', set({ dynamics: "Nips" })]],
@@ -338,20 +307,14 @@ test("damaged snapshots, and those of others, are rejected, and nothing changes"
   }
   assert.ok(restores(before));
 
-  /** The snapshot with other bytes from `start` on, and with the right checksum. */
-  const changed = (start, ...bytes) => {
-    const body = Buffer.from(before.subarray(0, -4));
-    body.set(bytes, start);
-    return sealed(body);
-  };
-  assert.ok(restores(changed(8, 1)));
+  assert.ok(restores(changed(before, 8, 1)));
   const [own, version2] = [1, 2].map((each) => `"acrobot", version ${each}, arithmetic "fast"`);
   for (const [bytes, message] of [
-    [changed(8, 2), `the snapshot must be a valid one of ${own}, got ${version2}`],
-    [changed(10, ...Buffer.from("host")), /got "acrobot", version 1, arithmetic "host"$/],
+    [changed(before, 8, 2), `the snapshot must be a valid one of ${own}, got ${version2}`],
+    [changed(before, 10, ...Buffer.from("host")), /got "acrobot", version 1, arithmetic "host"$/],
     // A length1 of NaN.
-    [changed(14, 0, 0, 0xc0, 0x7f), /got "acrobot", version 1, arithmetic "fast"$/],
-    [Buffer.concat([changed(0, 7).subarray(0, -4), Buffer.of(0)]), /checksum/],
+    [changed(before, 14, 0, 0, 0xc0, 0x7f), /got "acrobot", version 1, arithmetic "fast"$/],
+    [Buffer.concat([changed(before, 0, 7).subarray(0, -4), Buffer.of(0)]), /checksum/],
   ]) {
     assert.throws(() => Acrobot.restore(bytes), { name: "RangeError", message });
     assert.ok(!restores(bytes));
@@ -359,7 +322,7 @@ test("damaged snapshots, and those of others, are rejected, and nothing changes"
   // Any bytes with the right checksum.
   const random = randoms();
   for (let i = 0; i < 2000; i++) {
-    if (restores(changed(random(before.length - 4), random(256)))) acrobot.step(2);
+    if (restores(changed(before, random(before.length - 4), random(256)))) acrobot.step(2);
     acrobot.restore(before);
   }
 });

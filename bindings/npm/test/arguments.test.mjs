@@ -55,15 +55,15 @@ const USES = [
   ["acrobot", PARAMS.torques, (acrobot, torques) => acrobot.setParams({ torques })],
   ["acrobot", STATE, (acrobot, state) => (acrobot.state = state)],
   ["acrobot", SNAPSHOT, (acrobot, snapshot) => acrobot.restore(snapshot)],
-].map(([kind, given, use]) => ({ kind, given, use }));
+];
 
 /**
  * The uses, each with the ways to `wrap` the object so that reading it acts. The elements of a
  * typed array have no getters.
  */
-const CASES = USES.flatMap((use) => {
-  const wraps = ArrayBuffer.isView(use.given) ? [proxy] : [acting, proxy];
-  return wraps.map((wrap) => ({ ...use, wrap }));
+const CASES = USES.flatMap(([kind, given, use]) => {
+  const wraps = ArrayBuffer.isView(given) ? [proxy] : [acting, proxy];
+  return wraps.map((wrap) => [kind, given, use, wrap]);
 });
 
 const make = (kind) =>
@@ -78,7 +78,7 @@ function seen(of) {
 test("an argument that frees what gets it is rejected, and changes no other acrobot", () => {
   const batches = () => Array.from({ length: 40 }, (_, i) => new Batch({ seed: 1, count: 40 - i }));
   const others = () => [make("acrobot"), ...batches()];
-  for (const { given, kind, use, wrap } of CASES) {
+  for (const [kind, given, use, wrap] of CASES) {
     const one = make(kind);
     let found;
     // Others get the memory.
@@ -94,7 +94,7 @@ test("an argument that uses what gets it, and makes the memory grow, acts before
     of.setParams({ gravity: of.params.gravity / 2 });
     of.step(of.count ? [0, 0, 0] : 0);
   };
-  for (const { given, kind, use, wrap } of CASES) {
+  for (const [kind, given, use, wrap] of CASES) {
     const [one, other] = [make(kind), make(kind)];
     let acts = 0;
     use(one, wrap(given, () => (acts++, act(one), grow())));
@@ -105,7 +105,7 @@ test("an argument that uses what gets it, and makes the memory grow, acts before
 });
 
 test("each property is read once, so that what is checked is what is used", () => {
-  for (const { given, kind, use } of USES) {
+  for (const [kind, given, use] of USES) {
     const reads = new Map();
     use(make(kind), proxy(given, (name) => reads.set(name, (reads.get(name) ?? 0) + 1)));
     assert.deepEqual([...reads].filter(([name, count]) => count > 1), [], use);
@@ -133,7 +133,7 @@ test("errors of the caller's own code pass through, and nothing changes", () => 
   const act = () => {
     throw new SyntaxError("own");
   };
-  for (const { given, kind, use, wrap } of CASES) {
+  for (const [kind, given, use, wrap] of CASES) {
     const one = make(kind);
     assert.throws(() => use(one, wrap(given, act)), { name: "SyntaxError", message: "own" });
     assert.deepEqual(seen(one), seen(make(kind)));

@@ -15,6 +15,16 @@ export async function instance() {
 /** The bytes with zlib's CRC-32, after which four bytes of length end a gzip file. */
 export const sealed = (bytes) => Buffer.concat([bytes, gzipSync(bytes).subarray(-8, -4)]);
 
+/** A snapshot with other bytes from `start` on, and with the right checksum. */
+export function changed(snapshot, start, ...bytes) {
+  const content = Buffer.from(snapshot.subarray(0, -4));
+  content.set(bytes, start);
+  return sealed(content);
+}
+
+export const ACTION = "must be 0 (negative torque), 1 (none) or 2 (positive)";
+export const SEED = "seed must be an integer from 0 to 2^53 - 1, or a BigInt from 0 to 2^2048 - 1";
+
 /** The same numbers below `n` in each test run, from a linear congruential generator. */
 export function randoms() {
   let state = 1;

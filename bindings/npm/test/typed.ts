@@ -14,12 +14,10 @@ const state: State = acrobot.state;
 acrobot.state = { ...state, theta1: Math.PI };
 const params: Readonly<Params> = acrobot.params;
 acrobot.setParams({ gravity: params.gravity / 2 });
-acrobot.setParams(params);
 const bytes: Uint8Array = acrobot.snapshot();
 const resumed: Acrobot = Acrobot.restore(bytes);
 resumed.restore(bytes);
-const numbers: number[] = [acrobot.energy, acrobot.tipHeight, acrobot.elapsed, step.reward];
-numbers.push(acrobot.maxSteps);
+const numbers: number[] = [acrobot.energy, acrobot.tipHeight, acrobot.elapsed, acrobot.maxSteps];
 
 using swingup = new Acrobot({ task: "swingup", paramsRange: { mass2: [0.8, 1.2] } });
 const task: Task = swingup.task;
@@ -33,8 +31,7 @@ const second: State = batch.state(1);
 
 const learner = new Learner({ episodes: 100, seed: 42n });
 learner.load(learner.save());
-const actions: Action[] = [acrobot.sample(), bangBang(acrobot), energyLaw(acrobot)];
-actions.push(learner.act(acrobot));
+const actions: Action[] = [bangBang(acrobot), energyLaw(acrobot), learner.act(acrobot)];
 numbers.push(learner.train(), uprightEnergy(acrobot.params), batch.elapsed(1));
 batch.resetMasked(results.ended);
 batch.resetMasked([true, false, true], 7);

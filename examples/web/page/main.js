@@ -75,8 +75,7 @@ function start() {
     nextAt = Infinity;
     players.clear();
     $("seed").value = seed;
-    $("seed").removeAttribute("aria-invalid");
-    $("seed-reason").textContent = "";
+    attempt($("seed"), $("seed-reason"), () => {});
     $("link-field").hidden = true;
     address();
     say(`Seed ${name(seed)}.${playing ? ` ${player()}` : ""}`);
@@ -352,8 +351,9 @@ function start() {
   }
   new ResizeObserver(changed).observe($("energy"));
   // Where the style sheet has a small picture, it shows that once most of the large one is away.
-  const away = ([{ intersectionRatio }]) =>
-    $("stage").classList.toggle("small", intersectionRatio < 0.5);
+  // A slow page gets several changes at once.
+  const away = (changes) =>
+    $("stage").classList.toggle("small", changes.at(-1).intersectionRatio < 0.5);
   new IntersectionObserver(away, { threshold: 0.5 }).observe($("frame"));
 
   const { hash } = location;

@@ -8,7 +8,7 @@ import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import { inChromium, launch } from "../../../bindings/npm/browser.mjs";
-import { decodeActions } from "../page/link.js";
+import { decodeRun } from "../page/link.js";
 
 export const dist = fileURLToPath(new URL("../dist", import.meta.url));
 /** Tests write their files here. */
@@ -132,8 +132,7 @@ export async function steps(page, count) {
 /** The actions in the page's link to its run. */
 export async function linkedActions(page) {
   await page.click("#share");
-  const fields = new URLSearchParams(new URL(await page.inputValue("#link")).hash.slice(1));
-  return decodeActions(fields.get("actions") ?? "");
+  return decodeRun(new URL(await page.inputValue("#link")).hash).actions;
 }
 
 export async function downloaded(page, button) {

@@ -5,16 +5,11 @@ import { Acrobot } from "acrobot-rs";
 import { Learner, bangBang } from "acrobot-rs/policies";
 import { isProxy, reactive, ref } from "vue";
 
-test("an episode has as many steps as Gymnasium's", () => {
-  const acrobot = new Acrobot({ seed: 42 });
-  while (!acrobot.step(bangBang(acrobot)).terminated);
-  expect(acrobot.elapsed).toBe(94);
-});
-
-test("Node.js's bytes are a snapshot, and errors have texts", () => {
+test("an episode is Gymnasium's, Node.js's bytes are a snapshot, and errors have texts", () => {
   const acrobot = new Acrobot({ seed: 42 });
   const bytes = Buffer.from(acrobot.snapshot());
-  acrobot.step(2);
+  while (!acrobot.step(bangBang(acrobot)).terminated);
+  expect(acrobot.elapsed).toBe(94);
   acrobot.restore(bytes);
   expect(acrobot.elapsed).toBe(0);
   const message = "gravity must be a finite number of m/s², got NaN";

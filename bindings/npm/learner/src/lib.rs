@@ -38,19 +38,14 @@ fn write(bytes: impl IntoIterator<Item = u8>) -> usize {
 }
 
 /// Begins a training like that of `swing_up`. The seed is in the first `words` 32-bit words of the
-/// buffer, at most 64, the lowest word first. An instance calls this once, because a learner keeps
-/// its memory.
+/// buffer, the lowest word first. An instance calls this once, because a learner keeps its memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn begin(episodes: u32, words: usize) {
-    let mut seed = [0; 64];
-    BUFFER.with_borrow(|buffer| {
-        for (word, bytes) in seed.iter_mut().zip(buffer.as_chunks().0).take(words) {
-            *word = u32::from_le_bytes(*bytes);
-        }
+    let seed: Vec<_> = BUFFER.with_borrow(|buffer| {
+        buffer.as_chunks().0.iter().take(words).copied().map(u32::from_le_bytes).collect()
     });
     let memory = Box::leak(Box::new(Memory64::EMPTY));
     let learner = QLambda::new(Budget::Episodes(episodes), memory);
-    // Leading zeros of a seed do not count.
     TRAINING.set(Some((learner, training(SeedSequence::from_words(&seed)))));
 }
 
@@ -66,10 +61,8 @@ pub extern "C" fn train() -> f32 {
 /// Writes the weights into the buffer, as `swing_up --save` does, and returns their length.
 #[unsafe(no_mangle)]
 pub extern "C" fn save() -> usize {
-    TRAINING.with_borrow(|training| {
-        let learner = training.as_ref().map(|(learner, ..)| learner);
-        learner.map_or(0, |learner| write(learner.save()))
-    })
+    TRAINING
+        .with_borrow(|training| training.as_ref().map_or(0, |(learner, _)| write(learner.save())))
 }
 
 /// Loads weights from the first `len` bytes of the buffer. Returns 0, or, if they are rejected, the
@@ -88,8 +81,7 @@ pub extern "C" fn load(len: usize) -> usize {
 pub extern "C" fn act(theta1: f32, theta2: f32, dtheta1: f32, dtheta2: f32) -> u8 {
     let state = State::from([theta1, theta2, dtheta1, dtheta2]);
     TRAINING.with_borrow(|training| {
-        let learner = training.as_ref().map(|(learner, ..)| learner);
-        learner.map_or(1, |learner| learner.greedy(&state).into())
+        training.as_ref().map_or(1, |(learner, _)| learner.greedy(&state).into())
     })
 }
 
@@ -107,15 +99,8 @@ pub extern "C" fn load_perceptron(len: usize) -> usize {
     }
 }
 
-/// The policy's action for the observation in the buffer, six `f32`.
+/// The policy's action for the six numbers of an observation.
 #[unsafe(no_mangle)]
-pub extern "C" fn act_perceptron() -> u8 {
-    let mut observation = [0.0; 6];
-    BUFFER.with_borrow(|buffer| {
-        for (x, bytes) in observation.iter_mut().zip(buffer.as_chunks().0) {
-            *x = f32::from_le_bytes(*bytes);
-        }
-    });
-    let policy = PERCEPTRON.get();
-    policy.map_or(1, |policy| policy.action(&observation.into()).into())
+pub extern "C" fn act_perceptron(a: f32, b: f32, c: f32, d: f32, e: f32, f: f32) -> u8 {
+    PERCEPTRON.get().map_or(1, |policy| policy.action(&[a, b, c, d, e, f].into()).into())
 }
