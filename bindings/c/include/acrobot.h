@@ -247,6 +247,7 @@ acrobot_status_t acrobot_step_torque(acrobot_t *acrobot,
                                      acrobot_step_t *step,
                                      acrobot_error_t *error);
 
+// The observation of the state.
 acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t *observation);
 
 // The number of steps since the last reset.
@@ -255,13 +256,15 @@ acrobot_status_t acrobot_elapsed(const acrobot_t *acrobot, uint32_t *steps);
 // Sets the number of steps after which episodes are truncated, above 0; 500 by default.
 acrobot_status_t acrobot_set_limit(acrobot_t *acrobot, uint32_t limit, acrobot_error_t *error);
 
+// The state.
 acrobot_status_t acrobot_state(const acrobot_t *acrobot, acrobot_state_t *state);
 
-// The number of steps does not change.
+// Sets the state. The number of steps does not change.
 acrobot_status_t acrobot_set_state(acrobot_t *acrobot,
                                    const acrobot_state_t *state,
                                    acrobot_error_t *error);
 
+// The parameters.
 acrobot_status_t acrobot_params(const acrobot_t *acrobot, acrobot_params_t *params);
 
 // Sets the parameters for the next steps. The state does not change.
@@ -321,10 +324,12 @@ acrobot_status_t acrobot_batch_step(acrobot_batch_t *batch,
                                     const acrobot_batch_results_t *results,
                                     size_t count);
 
+// Writes the observations of the states.
 acrobot_status_t acrobot_batch_observe(const acrobot_batch_t *batch,
                                        acrobot_observation_t *observations,
                                        size_t count);
 
+// The number of acrobots.
 acrobot_status_t acrobot_batch_count(const acrobot_batch_t *batch, size_t *count);
 
 // As acrobot_reset, for each acrobot.
@@ -352,16 +357,18 @@ acrobot_status_t acrobot_batch_set_limit(acrobot_batch_t *batch,
                                          uint32_t limit,
                                          acrobot_error_t *error);
 
+// The state of acrobot `index`.
 acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,
                                      size_t index,
                                      acrobot_state_t *state);
 
-// The number of steps does not change.
+// Sets the state of acrobot `index`. Its number of steps does not change.
 acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
                                          size_t index,
                                          const acrobot_state_t *state,
                                          acrobot_error_t *error);
 
+// The parameters of all acrobots.
 acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, acrobot_params_t *params);
 
 // As acrobot_set_params, for all acrobots.

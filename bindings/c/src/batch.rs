@@ -189,6 +189,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
     })
 }
 
+/// Writes the observations of the states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_observe(
     batch: *const acrobot_batch_t,
@@ -204,6 +205,7 @@ pub unsafe extern "C" fn acrobot_batch_observe(
     })
 }
 
+/// The number of acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_count(
     batch: *const acrobot_batch_t,
@@ -305,6 +307,7 @@ pub unsafe extern "C" fn acrobot_batch_set_limit(
     })
 }
 
+/// The state of acrobot `index`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_state(
     batch: *const acrobot_batch_t,
@@ -317,7 +320,7 @@ pub unsafe extern "C" fn acrobot_batch_state(
     })
 }
 
-/// The number of steps does not change.
+/// Sets the state of acrobot `index`. Its number of steps does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_set_state(
     batch: *mut acrobot_batch_t,
@@ -330,6 +333,7 @@ pub unsafe extern "C" fn acrobot_batch_set_state(
     })
 }
 
+/// The parameters of all acrobots.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_batch_params(
     batch: *const acrobot_batch_t,

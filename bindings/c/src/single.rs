@@ -104,6 +104,7 @@ pub unsafe extern "C" fn acrobot_step_torque(
     })
 }
 
+/// The observation of the state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_observe(
     acrobot: *const acrobot_t,
@@ -138,6 +139,7 @@ pub fn check_limit(limit: u32) -> Result<NonZeroU32, Rejected> {
     NonZeroU32::new(limit).ok_or(Rejected::number("limit", 0.0, "steps", "above 0"))
 }
 
+/// The state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_state(
     acrobot: *const acrobot_t,
@@ -146,7 +148,7 @@ pub unsafe extern "C" fn acrobot_state(
     get(acrobot, state, |acrobot| Ok(acrobot.state().into()))
 }
 
-/// The number of steps does not change.
+/// Sets the state. The number of steps does not change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_set_state(
     acrobot: *mut acrobot_t,
@@ -156,6 +158,7 @@ pub unsafe extern "C" fn acrobot_set_state(
     change(acrobot, ptr::null_mut(), error, |acrobot| Ok(acrobot.set_state(read(state)?.into())?))
 }
 
+/// The parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn acrobot_params(
     acrobot: *const acrobot_t,

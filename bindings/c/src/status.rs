@@ -106,7 +106,8 @@ impl From<ControlError> for Rejected {
         match error {
             ControlError::Invalid(error) => error.into(),
             ControlError::NotInEquilibrium { rate } => {
-                Self::number("target", rate, "", "in equilibrium without a torque")
+                let rule = "in equilibrium: velocities 0, accelerations up to 0.01 rad/s²";
+                Self::number("target", rate, "", rule)
             }
             // Not another status: each firmware would contain its text.
             _ => {

@@ -33,7 +33,7 @@ pub enum ControlError {
     NotSemidefinite {
         /// The argument.
         name: &'static str,
-        /// The first element that is not 0 after the elimination of all positive pivots.
+        /// The largest absolute value after the elimination of all positive pivots.
         value: f64,
     },
     /// The state of a regulator is not an equilibrium under the torque.
@@ -66,7 +66,8 @@ impl fmt::Display for ControlError {
             ),
             Self::NotSemidefinite { name, value } => write!(
                 f,
-                "{name} must be positive semidefinite, got {value} after the elimination of its positive pivots"
+                "{name} must be positive semidefinite, got elements of up to {value} in size after \
+                the elimination of its positive pivots"
             ),
             Self::NotInEquilibrium { rate } => write!(
                 f,

@@ -327,8 +327,8 @@ fn check_semidefinite(q: &Matrix, relative_rounding: f64) -> Result<(), ControlE
             add_scaled(x, -(factor / pivot), &row);
         }
     }
-    match rest.as_flattened().iter().find(|x| x.abs() > rounding) {
-        Some(&value) => Err(ControlError::NotSemidefinite { name: "q", value }),
-        None => Ok(()),
+    match largest(rest.as_flattened()) {
+        value if value > rounding => Err(ControlError::NotSemidefinite { name: "q", value }),
+        _ => Ok(()),
     }
 }
