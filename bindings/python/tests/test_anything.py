@@ -10,7 +10,6 @@ import acrobot_rs
 import gymnasium
 import numpy as np
 from acrobot_rs import LogUniform, Normal, Uniform
-from acrobot_rs.parameters import _NAMES
 from acrobot_rs.swingup import Swingup
 from hypothesis import given
 from hypothesis import strategies as st
@@ -40,7 +39,7 @@ ANYTHING = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(BOUND, inner),
     max_leaves=4,
 )
-NAMES = st.sampled_from(tuple(dict.fromkeys((*_NAMES, *Swingup._NAMES))))
+NAMES = st.sampled_from(tuple(dict.fromkeys((*acrobot_rs.AcrobotEnv._NAMES, *Swingup._NAMES))))
 TORQUES = st.lists(NUMBERS, min_size=3, max_size=3)
 VALUES = st.one_of(NUMBERS, TORQUES, st.sampled_from(["book", "nips"]), ANYTHING)
 #: Also valid ones.

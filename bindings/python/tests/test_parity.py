@@ -7,7 +7,6 @@ tests/test_parity.py``.
 import acrobot_rs
 import gymnasium
 import numpy as np
-from acrobot_rs.parameters import _NAMES
 from hypothesis import settings
 
 STEPS = 500
@@ -37,7 +36,7 @@ def change(rng, envs):
         "MAX_VEL_1": lambda: rng.uniform(0.05, 50),
         "MAX_VEL_2": lambda: rng.uniform(0.05, 50),
     }
-    for name in [name for name in _NAMES if name.startswith("LINK")]:
+    for name in [name for name in acrobot_rs.AcrobotEnv._NAMES if name.startswith("LINK")]:
         changes[name] = lambda: 10 ** rng.uniform(-1, 1)
     for name, draw in changes.items():
         if rng.random() < 0.25:

@@ -68,19 +68,6 @@ def test_recorded_episodes_have_their_lengths_and_returns(name, mode):
     np.testing.assert_allclose(*np.transpose(returns), rtol=1e-6)
 
 
-@vectors
-def test_options_are_not_changed(name):
-    envs = make(name)
-    options = {
-        "reset_mask": np.array([True, False, True]),
-        "state": np.zeros(4),
-        "minari_autoseed": False,
-    }
-    before = copy.deepcopy(options)
-    envs.reset(seed=1, options=options)
-    np.testing.assert_equal(options, before)
-
-
 @pytest.mark.parametrize(
     ("maker", "name"),
     [*((gymnasium.make, name) for name in SINGLES), *((make, name) for name in VECTORS)],
@@ -102,30 +89,28 @@ def test_options_of_other_programs_pass_and_misspelt_ones_do_not(maker, name):
 
 
 @pytest.mark.parametrize("name", SINGLES)
-def test_specs_make_the_same_environment_again(name):
-    """Also from their JSON, which data sets store."""
-    for spec in (spec := gymnasium.make(name).spec, EnvSpec.from_json(spec.to_json())):
-        assert (spec.make().reset(seed=1)[0] == gymnasium.make(name).reset(seed=1)[0]).all()
+def test_specs_and_parameters_make_the_same_environment_again(name):
+    """Also a spec from its JSON, which data sets store."""
+    env = gymnasium.make(name, LINK_MASS_1=2.0, MAX_VEL_1=9.0)
+    assert env.observation_space.high[-2] == (np.inf if "Swingup" in name else 9.0)
+    parameters, native = env.unwrapped.parameters, env.unwrapped._native.__getstate__()
+    assert parameters.keys() == set(env.unwrapped._NAMES) and parameters["LINK_MASS_1"] == 2.0
+    specs = env.spec, EnvSpec.from_json(env.spec.to_json())
+    for twin in (*(spec.make() for spec in specs), type(env.unwrapped)(**parameters)):
+        assert twin.unwrapped._native.__getstate__() == native
     if name in VECTORS:
-        envs = make(name, max_episode_steps=7, autoreset_mode="Disabled", copy=False)
-        for spec in (spec := envs.spec, EnvSpec.from_json(spec.to_json())):
-            twin = gymnasium.make_vec(spec)
+        parameters = {"LINK_MASS_1": [1, 2, 3], "gravity": Uniform(9, 10)}
+        arguments = {"max_episode_steps": 7, "autoreset_mode": "Disabled", "copy": False}
+        envs = make(name, **arguments, **parameters)
+        specs = envs.spec, EnvSpec.from_json(envs.spec.to_json())
+        for twin in map(gymnasium.make_vec, specs):
             assert (twin.reset(seed=1)[0] == envs.reset(seed=1)[0]).all()
-            names = ("num_envs", "max_episode_steps", "autoreset_mode", "copy", "metadata")
+            names = ("num_envs", "metadata", *arguments)
             assert all(getattr(twin, each) == getattr(envs, each) for each in names)
-
-
-@pytest.mark.parametrize("name", SINGLES)
-def test_parameters_make_the_same_environment_again(name):
-    env = gymnasium.make(name, LINK_MASS_1=2.0).unwrapped
-    assert env.parameters.keys() == set(env._NAMES) and env.parameters["LINK_MASS_1"] == 2.0
-    twin = type(env)(**env.parameters)
-    assert twin._native.__getstate__() == env._native.__getstate__()
-    if name in VECTORS:
-        envs = make(name, LINK_MASS_1=[1, 2, 3], gravity=Uniform(9, 10))
+            np.testing.assert_equal(twin.parameters, envs.parameters)
         twin = type(envs)(3, **envs.parameters)
         np.testing.assert_equal(twin.parameters, envs.parameters)
-        assert twin.parameters["gravity"] == Uniform(9, 10)
+        assert twin.gravity == Uniform(9, 10)
 
 
 def test_specs_have_draws_also_as_json():
@@ -194,7 +179,10 @@ def test_episodes_begin_in_given_states(name):
     with pytest.raises(ResetNeeded):
         envs.step(actions)
     before = envs.state
-    envs.reset(options={"state": states[1], "reset_mask": np.array([True, False, True])})
+    options = {"state": states[1], "reset_mask": np.array([True, False, True])}
+    given = copy.deepcopy(options)
+    envs.reset(options=options)
+    np.testing.assert_equal(options, given)
     assert (envs.state == [states[1], before[1], states[1]]).all()
     assert envs.elapsed_steps.tolist() == [0, 2, 0]
     envs.reset(options={"state": states[2]})

@@ -7,10 +7,11 @@ import warnings
 import gymnasium
 import numpy as np
 import pytest
+from acrobot_rs import AcrobotEnv
 from acrobot_rs.arrays import warn_of_other_sines
-from acrobot_rs.parameters import _NAMES as NAMES
 from gymnasium.vector import AutoresetMode
 
+NAMES = AcrobotEnv._NAMES
 V1 = "acrobot_rs/Acrobot-v1"
 CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
 MODES = pytest.mark.parametrize("mode", AutoresetMode)
@@ -27,15 +28,14 @@ def make_vec(num_envs, **kwargs):
     )
 
 
-def pair(num_envs, mode="NextStep", theirs="Acrobot-v1", ours=V1, **kwargs):
-    """Gymnasium's SyncVectorEnv of an environment, by default Gymnasium's, and ours like it."""
-    if OTHER_SINES and theirs == "Acrobot-v1":
+def pair(num_envs, mode="NextStep", **kwargs):
+    """Gymnasium's SyncVectorEnv of its environments, and ours like it."""
+    if OTHER_SINES:
         pytest.skip(str(OTHER_SINES[0].message))
     sync = {"vectorization_mode": "sync", "vector_kwargs": {"autoreset_mode": mode}}
-    kwargs["num_envs"] = num_envs
     return (
-        gymnasium.make_vec(theirs, **sync, **kwargs),
-        gymnasium.make_vec(ours, autoreset_mode=mode, gymnasium_episodes=True, **kwargs),
+        gymnasium.make_vec("Acrobot-v1", num_envs, **sync, **kwargs),
+        make_vec(num_envs, autoreset_mode=mode, gymnasium_episodes=True, **kwargs),
     )
 
 
@@ -62,12 +62,6 @@ def rejects(env, error, message=None):
     with pytest.raises(error, match=message):
         yield
     assert pickle.dumps(env) == before
-
-
-def reset_ended(envs, ended):
-    """Resets environments whose episode has ended, if they have no autoreset."""
-    if ended.any() and envs.metadata["autoreset_mode"] is AutoresetMode.DISABLED:
-        envs.reset(options={"reset_mask": ended.copy()})
 
 
 def different(count, seed):

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
-from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector import VectorEnv
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
-from acrobot_rs._native import Batch
+from acrobot_rs._native import BUSY
 from acrobot_rs.arrays import Seed, read_only
 from acrobot_rs.parameters import Drawn, _hint
 
@@ -35,10 +35,7 @@ class Alone:
 
     def __enter__(self) -> None:
         if not self._acquire(False):
-            raise RuntimeError(
-                "another thread is stepping or resetting an environment; "
-                "change parameters and call methods between its steps"
-            )
+            raise RuntimeError(BUSY)
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
         self._release()
@@ -52,28 +49,8 @@ class Alone:
 class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """What the vector environments of both tasks share. A rejected call changes nothing."""
 
-    num_envs: int
-    max_episode_steps: int | None
-    autoreset_mode: AutoresetMode
-    #: Whether each call returns observations in a new array.
-    copy: bool
-    #: Parameters that infos have.
-    info_parameters: tuple[str, ...] = ()
-    #: The names of the parameters.
-    _NAMES: tuple[str, ...]
-    _BOUND: float
-
-    _native: Batch
-    #: Whether rewards are ``float64``, and seeds those of ``SyncVectorEnv``.
-    _gymnasium_episodes = False
-    #: Whether states are ``float64``.
-    _float64 = False
     #: Whether it was reset and not closed.
     _ready = False
-    #: Without autoreset: the environments that must be reset before the next step.
-    _ended: Bools | None
-    #: The array that all calls return, or ``None`` if each returns a new one.
-    _observations: Floats | None
 
     def reset(
         self, *, seed: Seed = None, options: dict[str, Any] | None = None

@@ -133,8 +133,10 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         self.max_episode_steps = max_episode_steps
         self.copy = copy
         self.info_parameters = tuple(info_parameters)
+        #: The array that all calls return, or ``None`` if each returns a new one.
         self._observations = None if copy else self._empty()
         self._same_step = mode is AutoresetMode.SAME_STEP
+        #: Without autoreset: the environments that must be reset before the next step.
         self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
         super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
