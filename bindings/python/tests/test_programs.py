@@ -44,26 +44,19 @@ def test_recorded_episodes_have_their_lengths_and_returns(name, mode):
         pytest.skip("its wrapper does not count the first step after a reset in a step")
     envs = RecordEpisodeStatistics(make(name, autoreset_mode=mode, max_episode_steps=10))
     envs.reset(seed=1)
-    begins, lengths, returns, total = np.zeros(3, int), [], [], np.zeros(3)
-    waiting = np.zeros(3, bool)
-    for step in range(1, 60):
+    lengths, returns, total = [], [], np.zeros(3)
+    for step in range(60):
+        elapsed = envs.unwrapped.elapsed_steps
         _, rewards, terminated, truncated, infos = envs.step(envs.action_space.sample())
-        total = np.where(waiting, 0.0, total + rewards)
-        begins[waiting] = step
+        total = np.where(elapsed == 0, 0.0, total) + rewards
         ended = terminated | truncated
         for index in np.flatnonzero(ended):
-            lengths.append((infos["episode"]["l"][index], step - begins[index]))
+            lengths.append((infos["episode"]["l"][index], elapsed[index] + 1))
             returns.append((infos["episode"]["r"][index], total[index]))
-        if mode == "SameStep":
-            begins[ended], total[ended] = step, 0.0
-        waiting = ended & (mode == "NextStep")
-        mask = (ended if mode == "Disabled" else np.zeros(3, bool)) | (
-            np.arange(3) == (step // 4 if step in (4, 8) else 3)
-        )
+        mask = (ended & (mode == "Disabled")) | (np.arange(3) == {4: 1, 8: 2}.get(step))
         if mask.any():
             envs.reset(options={"reset_mask": mask.copy()})
-            begins[mask], total[mask], waiting[mask] = step, 0.0, False
-    assert len(lengths) > 12 and len({begin for begin in begins.tolist()}) == 3
+    assert len(lengths) > 12 and len({*elapsed.tolist()}) == 3
     np.testing.assert_array_equal(*np.transpose(lengths))
     np.testing.assert_allclose(*np.transpose(returns), rtol=1e-6)
 

@@ -6,7 +6,6 @@ import multiprocessing
 import pickle
 import subprocess
 import sys
-import threading
 import unittest.mock
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -191,17 +190,11 @@ def test_states_can_be_set(gymnasium_episodes):
     for array in (envs.state, envs.elapsed_steps):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1
-    beyond = [] if gymnasium_episodes else [(7, 0, 1e39)]
-    for row, column, number in [(39, 3, np.nan), (0, 2, -np.inf), *beyond]:
-        bad = states.astype(np.float64) + 1.0
-        bad[row, column] = number
-        message = rf"state\[{row}, {column}\] must be a finite number, got "
-        with pytest.raises(ValueError, match=message):
+    beyond = states.astype(float)
+    beyond[39, 3] = np.inf if gymnasium_episodes else 1e39
+    for bad, message in ((beyond, r"state\[39, 3\] must be a fin"), (states[0], "state must be num")):
+        with rejects(envs, ValueError, message):
             envs.state = bad
-    for bad in (states[:39], states.T, states[0]):
-        with pytest.raises(ValueError, match=r"state must be numbers of shape \(40, 4\), got"):
-            envs.state = bad
-    assert (envs.state == states).all()
 
 
 def test_after_close_nothing_works():
@@ -368,38 +361,27 @@ RESETS = ({}, {"seed": 2}, {"seed": [2] * 3}, {"seed": [2] * 3, "options": MASK}
 
 
 @pytest.mark.parametrize("copies", [True, False])
-@pytest.mark.parametrize(
-    "arguments", [None, *RESETS, {"seed": 2, "options": {"state": np.zeros(4)}}]
-)
-def test_a_step_or_reset_beside_a_step_changes_nothing(copies, arguments):
+def test_a_step_or_reset_beside_a_step_changes_nothing(copies):
     """Neither seeds nor observations that all calls share."""
     envs = AcrobotVectorEnv(3, copy=copies, autoreset_mode="Disabled")
     envs.reset(seed=1)
     actions = np.ones(3, int)
-    twin = copy.deepcopy(envs)
-    expected = twin.step(actions)
-    native, stepping, release = envs._native, threading.Event(), threading.Event()
+    twin, native = copy.deepcopy(envs), envs._native
+    resets = (*RESETS, {"seed": 2, "options": {"state": np.zeros(4)}})
+    calls = [lambda: envs.step(actions), *(lambda each=each: envs.reset(**each) for each in resets)]
 
-    def slow(*arguments):
-        """Stops a step after its part in Rust."""
+    def step(*arguments):
+        """The part of a step in Rust, and then calls of another thread."""
         results = native.step(*arguments)
-        stepping.set()
-        release.wait(30)
+        before = native.__getstate__(), envs.np_random_seed
+        for call in calls:
+            with ThreadPoolExecutor(1) as executor, pytest.raises(RuntimeError, match=BUSY):
+                executor.submit(call).result()
+            assert before == (native.__getstate__(), envs.np_random_seed)
         return results
 
-    envs._native = unittest.mock.Mock(wraps=native, **{"step.side_effect": slow})
-    with ThreadPoolExecutor(1) as executor:
-        step = executor.submit(envs.step, actions)
-        assert stepping.wait(30)
-        before = native.__getstate__(), envs.np_random_seed
-        try:
-            with pytest.raises(RuntimeError, match=BUSY):
-                envs.step(actions) if arguments is None else envs.reset(**arguments)
-            assert before == (native.__getstate__(), envs.np_random_seed)
-        finally:
-            release.set()
-        for one, other in zip(step.result()[:4], expected[:4], strict=True):
-            np.testing.assert_array_equal(one, other)
+    envs._native = unittest.mock.Mock(wraps=native, **{"step.side_effect": step})
+    assert_equal(envs.step(actions), twin.step(actions))
     assert native.__getstate__() == twin._native.__getstate__()
 
 

@@ -62,12 +62,10 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 environments' streams; with ``gymnasium_episodes``, ``seed + i`` seeds environment
                 ``i``. Or a list with an integer or ``None`` for each environment. With ``None``
                 streams continue.
-            options: ``"reset_mask"``: an array of ``bool``; environments whose element is false are
-                neither seeded nor reset. ``"state"``: the initial states, of shape
-                ``(num_envs, 4)``, or ``(4,)`` for the same one in all, which replace the drawn
-                ones: theta1, theta2 (rad) and their velocities (rad/s). Or ``"low"`` and
-                ``"high"``: the bounds of the drawn ones, by default -0.1 and 0.1; in the swing-up
-                those of the angles, by default -pi and pi. Autoresets ignore all options.
+            options: As in a single environment, and ``"reset_mask"``: an array of ``bool``;
+                environments whose element is false are neither seeded nor reset. ``"state"`` has
+                the shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all. Autoresets ignore
+                all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
@@ -77,8 +75,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             TypeError, ValueError, gymnasium.error.Error: If options or a seed are invalid.
             RuntimeError: If another thread is stepping or resetting the environments.
         """
-        known = ("low", "high", "reset_mask", "state")
-        low, high = arrays.reset_bounds(options, self._BOUND, known)
+        low, high = arrays.reset_bounds(options, self._BOUND, arrays.OPTIONS)
         self._check_open()
         options = options or {}
         mask = arrays.reset_mask(options, self.num_envs)
@@ -201,7 +198,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         return tuple(value) if name in ("state", "elapsed_steps") else (value,) * self.num_envs
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """The value of an attribute for each environment. As :meth:`call`."""
+        """As :meth:`call`."""
         return self.call(name)
 
     def get_parameter(self, name: str) -> NDArray[Any]:
