@@ -228,7 +228,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         pygame.display.flip()
 
     def close(self) -> None:
-        """Close the window."""
         if self.screen is not None:
             import pygame
 

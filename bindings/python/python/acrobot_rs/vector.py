@@ -41,10 +41,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
     which each reset draws. Reading it gives what was set, and :meth:`get_parameter` what each
     environment has.
 
-    >>> import gymnasium as gym
     >>> import acrobot_rs
-    >>> gym.register_envs(acrobot_rs)
-    >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024, autoreset_mode="SameStep")
+    >>> envs = acrobot_rs.AcrobotVectorEnv(num_envs=1024, autoreset_mode="SameStep")
     >>> envs.reset(seed=42)[0].shape
     (1024, 6)
     """
@@ -84,8 +82,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             gymnasium_episodes: Whether to play the episodes of Gymnasium's ``Acrobot-v1`` in
                 ``SyncVectorEnv``, bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are.
             threads: The threads that compute a step; ``None``: as many as the process has cores.
-                They change no bit, and help above 16,384 environments, or 1,024 in
-                ``float64``.
+                They help above 16,384 environments, or 1,024 in ``float64``.
             info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
             float64: Whether to compute in ``float64``, with correctly rounded sines. Steps take
                 longer.
@@ -182,15 +179,9 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
 
 
 class AcrobotContinuousVectorEnv(AcrobotVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
-    """As :class:`AcrobotVectorEnv`, but the actions are torques, N m: ``(num_envs, 1)`` floats.
+    """:class:`AcrobotVectorEnv` with the actions of :class:`acrobot_rs.AcrobotContinuousEnv`.
 
-    The bounds of the action space are the smallest and the largest of ``AVAIL_TORQUE``. A torque
-    beyond acts as the nearest bound.
-
-    >>> import acrobot_rs
-    >>> envs = acrobot_rs.AcrobotContinuousVectorEnv(num_envs=1024)
-    >>> envs.action_space.shape
-    (1024, 1)
+    They have the shape ``(num_envs, 1)``.
     """
 
     _CONTINUOUS = True
