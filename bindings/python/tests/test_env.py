@@ -22,7 +22,7 @@ from acrobot_rs import (
 )
 from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
-from vectors import CONTINUOUS, V1, rejects
+from vectors import CONTINUOUS, SWINGUPS, V1, rejects
 
 V0 = "acrobot_rs/Acrobot-v0"
 
@@ -42,7 +42,8 @@ def make(name, **kwargs):
         return gymnasium.make(name, **kwargs)
 
 
-@pytest.mark.parametrize("name", [V1, V0, CONTINUOUS])
+@pytest.mark.parametrize("name", [V1, V0, CONTINUOUS, *SWINGUPS])
+@pytest.mark.filterwarnings("ignore:.*infinity")
 def test_gymnasium_checks_pass_without_a_warning(name, monkeypatch):
     # The check opens a window.
     monkeypatch.setitem(sys.modules, "pygame", unittest.mock.MagicMock())
@@ -60,11 +61,13 @@ def test_registration_and_spaces_are_those_of_gymnasium():
     assert ours.observation_space == theirs.observation_space
     assert ours.action_space == theirs.action_space
     assert ours.metadata["render_fps"] == theirs.metadata["render_fps"]
-    for name, limit in [(V1, 500), (V0, 200), (CONTINUOUS, 500)]:
+    assert ours.spec.reward_threshold == theirs.spec.reward_threshold
+    limits = {V1: 500, V0: 200, CONTINUOUS: 500} | dict.fromkeys(SWINGUPS, 1000)
+    for name, limit in limits.items():
         env = make(name)
-        assert env.spec.reward_threshold == theirs.spec.reward_threshold
+        assert env.spec.reward_threshold == (None if name in SWINGUPS else -100)
         env.reset(seed=1)
-        ends = [env.step([0.0] if name == CONTINUOUS else 1)[3] for _ in range(limit)]
+        ends = [env.step(1 if name in (V0, V1) else [0.0])[3] for _ in range(limit)]
         assert ends == [False] * (limit - 1) + [True]
     assert make(V0).observation_space.contains(np.float32([np.pi, np.pi, 4 * np.pi, 9 * np.pi]))
 

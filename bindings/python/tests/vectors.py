@@ -14,6 +14,7 @@ from gymnasium.vector import AutoresetMode
 NAMES = AcrobotEnv._NAMES
 V1 = "acrobot_rs/Acrobot-v1"
 CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
+SWINGUPS = ["acrobot_rs/AcrobotSwingup-v0", "acrobot_rs/AcrobotSwingupSparse-v0"]
 MODES = pytest.mark.parametrize("mode", AutoresetMode)
 
 
