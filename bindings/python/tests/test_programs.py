@@ -135,8 +135,11 @@ def test_attributes_of_each_environment(name):
         assert get("render_mode") == ("ansi",) * 3
         with pytest.raises(AttributeError, match="no attribute 'length'; they have .*state.*, dt"):
             get("length")
-    envs.set_attr("state", [0.1, 0.2, 0.3, 0.4])
-    assert (envs.state == np.float32([0.1, 0.2, 0.3, 0.4])).all()
+    state = [0.5, 0.25, 0.75, 1.0]
+    for count, states in enumerate((state, [state] * 3, (state,) * 3, np.array(state))):
+        envs.set_attr("state", states)
+        assert (envs.state == state).all() and get("elapsed_steps") == (1 + count,) * 3
+        envs.step(envs.action_space.sample())
     for unknown in ("length", "elapsed_steps"):
         with rejects(envs, AttributeError, f"cannot set '{unknown}'; it can set state"):
             envs.set_attr(unknown, 1.0)

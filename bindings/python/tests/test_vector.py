@@ -16,7 +16,7 @@ from acrobot_rs import AcrobotEnv, AcrobotSwingupVectorEnv, AcrobotVectorEnv, Un
 from acrobot_rs.vector import AcrobotContinuousVectorEnv
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.vector import AutoresetMode
-from vectors import NAMES, assert_equal, assert_resets_equal, different, make_vec, pair, rejects
+from vectors import assert_equal, assert_resets_equal, different, make_vec, pair, rejects
 
 
 def test_attributes_and_types_are_those_of_sync_vector_env():
@@ -154,25 +154,6 @@ def test_pictures_are_those_of_single_environments():
         single = AcrobotEnv("rgb_array")
         single.LINK_LENGTH_1, single.state = length, state
         assert (frame == single.render()).all()
-
-
-def test_attributes_of_each_environment():
-    """`test_programs.py` tries the others, and unknown names."""
-    theirs, ours = pair(3)
-    states = np.random.default_rng(0).uniform(-1, 1, (3, 4))
-    for envs in (theirs, ours):
-        envs.reset(seed=1)
-    for values in (list(states), tuple(states), states[0]):
-        for envs in (theirs, ours):
-            envs.set_attr("state", values)
-        assert_equal(theirs.step(np.array([0, 1, 2])), ours.step([0, 1, 2]))
-    theirs.set_attr("gravity", 9.8)  # for which Gymnasium has no name
-    for name in ("action_space", "observation_space", "render_mode", "state", *NAMES):
-        expected, found = theirs.get_attr(name), ours.get_attr(name)
-        assert isinstance(found, tuple)
-        if name == "AVAIL_TORQUE":  # a list in Gymnasium, where a change of it has an effect
-            found = [list(torques) for torques in found]
-        np.testing.assert_equal([*found], [*expected])
 
 
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
