@@ -97,11 +97,8 @@ fn rejected(error: impl std::error::Error) -> PyErr {
 }
 
 /// The same for parameters of a task: the message begins with Python's name of one.
-fn invalid(task: Task, error: impl std::error::Error) -> PyErr {
-    renamed(task, error.to_string())
-}
-
-fn renamed(task: Task, message: String) -> PyErr {
+fn invalid(task: Task, error: impl Display) -> PyErr {
+    let message = error.to_string();
     let renamed = NUMBERS.iter().find_map(|(pythons, name, _)| {
         let rest = message.strip_prefix(name)?;
         let known = *pythons != "LINK_MOI" || task == Task::Acrobot;
