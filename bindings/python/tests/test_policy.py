@@ -136,7 +136,7 @@ def test_models_of_stable_baselines3_are_saved_with_their_own_actions(kind, norm
     assert len(numbers) == 8 * 7 + 8 * 9 + 3 * 9
     # A model that answers otherwise is found.
     model.predict = lambda x, deterministic: ((Model.predict(model, x, True)[0] + 1) % 3, None)
-    with pytest.raises(ValueError, match="they differ on 2000 of 2000 observations"):
+    with pytest.raises(ValueError, match="they differ on .* of 2000 observations"):
         policy.save(model, tmp_path / "other")
     assert not (tmp_path / "other").exists()
 
