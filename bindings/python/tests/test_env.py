@@ -12,17 +12,10 @@ import unittest.mock
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import (
-    AcrobotContinuousEnv,
-    AcrobotEnv,
-    AcrobotSwingupEnv,
-    AcrobotSwingupVectorEnv,
-    AcrobotV0Env,
-    AcrobotVectorEnv,
-)
+from acrobot_rs import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env
 from gymnasium.error import InvalidAction
 from gymnasium.utils.env_checker import check_env
-from vectors import CONTINUOUS, SWINGUPS, V1, rejects
+from vectors import CONTINUOUS, KINDS, SWINGUPS, V1, rejects
 
 V0 = "acrobot_rs/Acrobot-v0"
 
@@ -268,13 +261,7 @@ def test_what_would_have_no_effect_is_rejected(env, name, value, error, message)
     env._LINK_MAS_1 = 2.0
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        *(AcrobotEnv, AcrobotContinuousEnv, AcrobotSwingupEnv),
-        *(AcrobotVectorEnv, AcrobotSwingupVectorEnv),
-    ],
-)
+@pytest.mark.parametrize("kind", KINDS)
 def test_an_unknown_name_is_rejected(kind):
     env, name = kind(), kind.__name__
     known = {"mass_1": "did you mean LINK_MASS_1?", "MAX_TORQUE": "did you mean AVAIL_TORQUE?"}

@@ -5,7 +5,6 @@
 
 import copy
 
-import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ from gymnasium.envs.registration import EnvSpec
 from gymnasium.error import ResetNeeded
 from gymnasium.vector import VectorEnv
 from gymnasium.wrappers.vector import RecordEpisodeStatistics
-from vectors import rejects
+from vectors import KINDS, rejects
 
 SINGLES = [name for name in gymnasium.registry if name.startswith("acrobot_rs/")]
 VECTORS = [name for name in SINGLES if gymnasium.spec(name).vector_entry_point]
@@ -147,9 +146,7 @@ def test_attributes_of_each_environment(name):
         assert make(name).render() is None
 
 
-@pytest.mark.parametrize(
-    "kind", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotVectorEnv, acrobot_rs.AcrobotSwingupVectorEnv]
-)
+@pytest.mark.parametrize("kind", KINDS)
 def test_what_tutorials_read_says_what_to_use(kind):
     env = kind()
     uses = {"_terminal": "terminated", "_get_ob": "observations", "_dsdt": "state"}

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotEnv, AcrobotSwingupVectorEnv, AcrobotVectorEnv, Uniform
-from acrobot_rs.vector import AcrobotContinuousVectorEnv
+from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotEnv, AcrobotSwingupVectorEnv
+from acrobot_rs import AcrobotVectorEnv, Uniform
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.vector import AutoresetMode
 from vectors import assert_equal, assert_resets_equal, different, make_vec, pair, rejects

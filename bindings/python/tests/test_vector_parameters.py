@@ -7,8 +7,7 @@ import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import LogUniform, Normal, Uniform
-from acrobot_rs.vector import AcrobotContinuousVectorEnv
+from acrobot_rs import AcrobotContinuousVectorEnv, LogUniform, Normal, Uniform
 from vectors import CONTINUOUS, make_vec, rejects
 
 

@@ -4,14 +4,15 @@ import contextlib
 import pickle
 import warnings
 
+import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotEnv
 from acrobot_rs.arrays import warn_of_other_sines
 from gymnasium.vector import AutoresetMode
 
-NAMES = AcrobotEnv._NAMES
+KINDS = [getattr(acrobot_rs, name) for name in acrobot_rs.__all__ if name.endswith("Env")]
+SINGLES = [kind for kind in KINDS if issubclass(kind, gymnasium.Env)]
 V1 = "acrobot_rs/Acrobot-v1"
 CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
 SWINGUPS = ["acrobot_rs/AcrobotSwingup-v0", "acrobot_rs/AcrobotSwingupSparse-v0"]
@@ -68,14 +69,18 @@ def rejects(env, error, message=None):
 def different(count, seed):
     """A value of each parameter for each of these environments."""
     rng = np.random.default_rng(seed)
-    values = {name: list(rng.uniform(0.8, 1.2, count)) for name in NAMES if name.startswith("LINK")}
+    values = {
+        name: list(rng.uniform(0.8, 1.2, count))
+        for name in acrobot_rs.AcrobotEnv._NAMES
+        if name.startswith("LINK")
+    }
     values["dt"] = tuple(rng.uniform(0.05, 0.25, count).tolist())
     values["MAX_VEL_1"] = rng.uniform(2, 12, count)
     values["MAX_VEL_2"] = rng.uniform(2, 28, count).astype(np.float32)
     values["AVAIL_TORQUE"] = rng.uniform(-2, 2, (count, 3))
     values["torque_noise_max"] = rng.choice([0.0, 0.5], count)
     values["book_or_nips"] = rng.choice(["book", "nips"], count).tolist()
-    assert values.keys() == set(NAMES) - {"gravity"}, (
+    assert values.keys() == set(acrobot_rs.AcrobotEnv._NAMES) - {"gravity"}, (
         "Gymnasium's environment has no name for gravity"
     )
     return values
