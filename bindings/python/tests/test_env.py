@@ -345,15 +345,11 @@ def test_values_cannot_change_in_place(env):
 @pytest.mark.parametrize("torques", [[-1.0, 0.0, 1.0], [0.5, -3.0, 2.0]])
 def test_continuous_torques_are_those_of_the_discrete_environment(torques):
     """Between and at the bounds. Torques outside are clipped."""
-    ours = type("Ours", (AcrobotContinuousEnv,), {"AVAIL_TORQUE": torques})()
-    low, high = min(torques), max(torques)
-    assert ours.action_space == gymnasium.spaces.Box(low, high, (1,), np.float32)
-    assert ours.observation_space == AcrobotEnv().observation_space
-    inside = {each: each for each in (low, float(np.float32(0.3)), high)}
-    actions = {-np.inf: low, low - 1: low, **inside, high + 1: high, np.inf: high}
-    discrete = AcrobotEnv(AVAIL_TORQUE=list(actions.values()))
-    for env in (ours, discrete):
-        env.torque_noise_max = 0.1
+    low, inside, high = min(torques), float(np.float32(0.3)), max(torques)
+    below, within = {-np.inf: low, low - 1: low}, {low: low, inside: inside, high: high}
+    actions = below | within | {high + 1: high, np.inf: high}
+    ours = AcrobotContinuousEnv(AVAIL_TORQUE=torques, torque_noise_max=0.1)
+    discrete = AcrobotEnv(AVAIL_TORQUE=list(actions.values()), torque_noise_max=0.1)
     assert (ours.reset(seed=2)[0] == discrete.reset(seed=2)[0]).all()
     kinds = [
         *(list, np.float32, np.float64, lambda action: np.repeat(np.float32(action), 2)[::2]),
@@ -362,8 +358,8 @@ def test_continuous_torques_are_those_of_the_discrete_environment(torques):
     ]
     for step in range(300):
         index = step % len(actions)
-        action = [list(actions)[index]]
-        found, expected = ours.step(kinds[step % len(kinds)](action)), discrete.step(index)
+        action = kinds[step % len(kinds)]([list(actions)[index]])
+        found, expected = ours.step(action), discrete.step(index)
         assert (found[0] == expected[0]).all() and found[1:] == expected[1:], step
     ours.AVAIL_TORQUE = [-0.1, 0.1]
     discrete.AVAIL_TORQUE = [0.1]
