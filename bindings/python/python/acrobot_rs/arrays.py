@@ -169,7 +169,7 @@ def _digits(seed: Any) -> str | None:
 
 
 class Missing:
-    """An attribute of Gymnasium's environments that ours do not have.
+    """An attribute of Gymnasium's environments that ours do not have: the error says what to use.
 
     It is no ``__getattr__``, which slows all attributes.
     """
@@ -181,12 +181,11 @@ class Missing:
         self._name = name
 
     def __get__(self, env: object, kind: type) -> NoReturn:
-        """Say what to use instead."""
         raise AttributeError(f"{kind.__name__} has no attribute {self._name!r}; {self._use}")
 
 
 class Hints:
-    """Says what to use instead of what programs read of Gymnasium's environments."""
+    """What programs read of Gymnasium's environments."""
 
     if not TYPE_CHECKING:  # a checker says that they do not exist
         _dsdt = Missing("the equations are in Rust: assign state and call step")

@@ -56,9 +56,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     ## Arguments
 
-    ``render_mode``: ``None``, ``"human"`` (a window, by pygame, which each reset and step updates),
-    ``"rgb_array"`` (an array of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines of
-    braille characters and a line of numbers). And parameters, for example ``LINK_MASS_1=2.0``.
+    ``render_mode``: ``None``, ``"human"`` (a window, by pygame), ``"rgb_array"`` or ``"ansi"``
+    (braille characters). And parameters, for example ``LINK_MASS_1=2.0``.
 
     A rejected call raises an error that says what is valid, and changes nothing.
 
@@ -241,7 +240,7 @@ class AcrobotContinuousEnv(AcrobotEnv):
 
     The action space is a ``Box`` of shape ``(1,)``, ``float32``: a torque in N m. Its bounds are
     the smallest and the largest number in ``AVAIL_TORQUE``, by default -1 and 1. A torque outside
-    is clipped. NaN and other shapes are rejected.
+    is clipped.
 
     >>> import acrobot_rs
     >>> acrobot_rs.AcrobotContinuousEnv(AVAIL_TORQUE=[-2.0, 2.0]).action_space

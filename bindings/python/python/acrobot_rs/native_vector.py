@@ -18,8 +18,7 @@ from acrobot_rs.parameters import Drawn, _hint
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
-#: What ``get_attr`` and ``call`` know, with the parameters. ``set_attr`` knows the parameters and
-#: ``state``.
+#: What ``get_attr`` and ``call`` know, with the parameters.
 _ATTRIBUTES = (
     *("action_space", "elapsed_steps", "max_episode_steps", "metadata", "observation_space"),
     *("render", "render_mode", "spec", "state"),
@@ -73,7 +72,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
         Raises:
             TypeError, ValueError, gymnasium.error.Error: If options or a seed are invalid.
-            RuntimeError: If another thread is stepping or resetting the environments.
+            RuntimeError: If another thread uses the environments.
         """
         low, high = arrays.reset_bounds(options, self._BOUND, arrays.OPTIONS)
         self._check_open()
@@ -110,9 +109,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
         Returns:
             Observations, of shape ``(num_envs, 6)``; rewards; where the goal was reached; where the
-            limit of steps was reached; and infos. In mode ``SameStep``, if an episode ended, they
-            have ``"final_obs"`` and ``"final_info"`` as in ``SyncVectorEnv``. They have the
-            ``info_parameters`` of the new states.
+            limit of steps was reached; and infos: the ``info_parameters`` of the new states, and in
+            mode ``SameStep``, if an episode ended, ``"final_obs"`` and ``"final_info"`` as in
+            ``SyncVectorEnv``.
 
         Raises:
             gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the
@@ -120,7 +119,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an
                 episode has ended and its environment was not reset.
             gymnasium.error.ClosedEnvironmentError: After ``close``.
-            RuntimeError: If another thread is stepping or resetting the environments.
+            RuntimeError: If another thread uses the environments.
         """
         with self._alone:
             self._check_ready()
@@ -202,10 +201,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         return self.call(name)
 
     def get_parameter(self, name: str) -> NDArray[Any]:
-        """A parameter of each environment, as a new array.
-
-        It has the shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``.
-        """
+        """A parameter of each environment, in a new array with a row of 3 of ``AVAIL_TORQUE``."""
         self._check_open()
         if name not in self._NAMES:
             hint = _hint(name, self._NAMES)
@@ -219,8 +215,6 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
     def _parameter_infos(self) -> dict[str, Any]:
         """The parameters that infos have, as SyncVectorEnv collects the infos of environments."""
-        if not self.info_parameters:
-            return {}
         infos = {name: self.get_parameter(name) for name in self.info_parameters}
         return infos | {f"_{name}": np.ones(self.num_envs, np.bool_) for name in infos}
 

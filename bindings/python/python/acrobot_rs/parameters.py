@@ -184,10 +184,8 @@ if TYPE_CHECKING:
 class Parameters(arrays.Hints):
     """The parameters of the physics, with Gymnasium's names.
 
-    Set them as arguments, on an environment or in a subclass. A value is checked immediately and
-    acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError`` that says
-    what is valid, and an unknown name an ``AttributeError``. A new environment copies its class's
-    parameters. The spaces follow them.
+    Set them as arguments, on an environment or in a subclass, whose parameters a new environment
+    copies. A value is checked immediately and acts from the next step. The spaces follow.
     """
 
     dt: Each = 0.2  #: duration of a step, s; above 0

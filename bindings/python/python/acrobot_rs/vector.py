@@ -75,9 +75,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             max_episode_steps: The steps after which an episode is truncated. ``None``: no limit.
             render_mode: ``None``, ``"rgb_array"`` or ``"ansi"``.
             autoreset_mode: ``NextStep``: the step after an episode's end resets, ignores its action
-                and returns a reward of 0. ``SameStep``: the step that ends an episode also resets,
-                and ``infos["final_obs"]`` has the episode's last observation. ``Disabled``: an
-                environment whose episode has ended must be reset before the next step.
+                and returns a reward of 0. ``SameStep``: the step that ends an episode also resets.
+                ``Disabled``: an ended environment must be reset before the next step.
             copy: Whether each call returns observations in a new array, not in the same one.
             gymnasium_episodes: Whether to play the episodes of Gymnasium's ``Acrobot-v1`` in
                 ``SyncVectorEnv``, bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are.
