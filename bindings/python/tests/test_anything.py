@@ -14,7 +14,7 @@ from acrobot_rs.swingup import Swingup
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from vectors import SINGLES
+from vectors import SINGLE_KINDS
 
 #: What a call may raise. A panic in Rust raises none of these.
 REJECTIONS = (
@@ -115,7 +115,7 @@ def set_element(env, index, value):
 
 
 @given(
-    st.sampled_from(SINGLES),
+    st.sampled_from(SINGLE_KINDS),
     st.sampled_from([None, "ansi", "ansi", "ansi", "rgb_array"]),
     calls(
         *(SEEDS, VALUES, STATES | ANYTHING),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotEnv, AcrobotSwingupVectorEnv
 from acrobot_rs import AcrobotVectorEnv, LogUniform, Normal, Uniform
-from vectors import SINGLES, rejects
+from vectors import SINGLE_KINDS, rejects
 
 DRAWN = {"FRICTION_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}
 OWN = {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}
@@ -62,7 +62,7 @@ AGAIN = [
 
 
 @pytest.mark.parametrize("again", AGAIN)
-@pytest.mark.parametrize("kind", [*((kind,) for kind in SINGLES), *VECTOR])
+@pytest.mark.parametrize("kind", [*((kind,) for kind in SINGLE_KINDS), *VECTOR])
 def test_copies_continue_bit_identically(kind, again):
     envs = made(*kind)
     twin = again(envs)

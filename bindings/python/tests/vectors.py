@@ -12,7 +12,7 @@ from acrobot_rs.arrays import warn_of_other_sines
 from gymnasium.vector import AutoresetMode
 
 KINDS = [getattr(acrobot_rs, name) for name in acrobot_rs.__all__ if name.endswith("Env")]
-SINGLES = [kind for kind in KINDS if issubclass(kind, gymnasium.Env)]
+SINGLE_KINDS = [kind for kind in KINDS if issubclass(kind, gymnasium.Env)]
 V1 = "acrobot_rs/Acrobot-v1"
 CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
 SWINGUPS = ["acrobot_rs/AcrobotSwingup-v0", "acrobot_rs/AcrobotSwingupSparse-v0"]
