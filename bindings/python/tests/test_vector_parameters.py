@@ -16,6 +16,7 @@ from vectors import CONTINUOUS, make_vec, rejects
     ("error", "name", "value", "message"),
     [
         (ValueError, "LINK_MASS_1", [1, 0, 2], r"\[1\] must be finite and above 0 kg, got 0"),
+        (TypeError, "LINK_MASS_1", vars(Uniform(1, 2)), " must be a number, got {"),
         (TypeError, "LINK_MASS_1", [1, 2, None], r"\[2\] must be a number, got None"),
         (ValueError, "LINK_MASS_1", [1, 2], " must be .* each of 3 environments, or a draw "),
         (ValueError, "book_or_nips", ["book"], " must be .* each of 3 environments, got 1 values"),
