@@ -183,8 +183,7 @@ def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error
     ("options", "message"),
     [({"low": 1, "high": 0}, "low"), ({"low": "x"}, "An option"), ({"high": None}, "An option"),
      ({"high": np.inf}, "high"), ({"low": np.nan}, "low"), ({"low": -1e300}, "low"),
-     *(({key: -0.2}, rf"the keys of options must be among \['low', 'high', 'state'\], got '{key}'")
-       for key in ("lo", "reset_mask"))],
+     ({"reset_mask": 0}, r"keys of options must be among \['low', 'high', 'state'\], got 'reset_m")],
 )  # fmt: skip
 def test_invalid_options_are_rejected(env, options, message):
     with rejects(env, ValueError, message):

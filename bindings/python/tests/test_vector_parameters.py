@@ -8,7 +8,7 @@ import gymnasium
 import numpy as np
 import pytest
 from acrobot_rs import AcrobotContinuousVectorEnv, LogUniform, Normal, Uniform
-from vectors import CONTINUOUS, make_vec, rejects
+from vectors import make_vec, rejects
 
 
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
@@ -234,15 +234,7 @@ def test_drawn_parameters_in_infos_and_arrays():
         envs.get_parameter("mass_1")
 
 
-def test_spaces_follow_the_parameters():
-    envs = gymnasium.make_vec(CONTINUOUS, num_envs=3, AVAIL_TORQUE=[-3.0, 0.0, 2.0])
-    assert envs.single_action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
-    envs.AVAIL_TORQUE = [[-1, 0, 1], [-5, 0, 1], [-1, 0, 4]]
-    assert envs.single_action_space == gymnasium.spaces.Box(-5.0, 4.0, (1,), np.float32)
-    assert envs.action_space == gymnasium.spaces.Box(-5.0, 4.0, (3, 1), np.float32)
-
-
-def test_subclasses_can_draw_parameters():
+def test_subclasses_can_draw_parameters_which_spaces_follow():
     class Random(AcrobotContinuousVectorEnv):
         MAX_VEL_1 = Uniform(20.0, 30.0)
         AVAIL_TORQUE = Uniform([-3.0, 0.0, 1.0], [-2.0, 0.0, 2.0])
@@ -252,6 +244,9 @@ def test_subclasses_can_draw_parameters():
     assert envs.single_action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
     envs.reset(seed=1)
     assert len(set(envs.get_attr("MAX_VEL_1"))) == 50
+    envs.AVAIL_TORQUE = [[-1, 0, 1], [-5, 0, 1], [-1, 0, 4]] + [[0, 0, 0]] * 47
+    assert envs.single_action_space == gymnasium.spaces.Box(-5.0, 4.0, (1,), np.float32)
+    assert envs.action_space == gymnasium.spaces.Box(-5.0, 4.0, (50, 1), np.float32)
     with pytest.raises(ValueError, match="MAX_VEL_1 must "):
         type("Wrong", (Random,), {"MAX_VEL_1": Uniform(-1.0, 2.0)})
     single = acrobot_rs.AcrobotEnv()
