@@ -183,7 +183,7 @@ def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error
     ("options", "message"),
     [({"low": 1, "high": 0}, "low"), ({"low": "x"}, "An option"), ({"high": None}, "An option"),
      ({"high": np.inf}, "high"), ({"low": np.nan}, "low"), ({"low": -1e300}, "low"),
-     ({"reset_mask": 0}, r"keys of options must be among \['low', 'high', 'state'\], got 'reset_m")],
+     ({"reset_mask": 0}, r"options must be among \['low', 'high', 'state'\], got 'reset_mask'")],
 )  # fmt: skip
 def test_invalid_options_are_rejected(env, options, message):
     with rejects(env, ValueError, message):
