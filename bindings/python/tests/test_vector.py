@@ -270,10 +270,9 @@ def test_threads_in_a_forked_process():
         child.join()
 
 
-#: A line, because Python 3.14 adds notes to the errors of pickle.
 BUSY = (
-    "(?m)^another thread is stepping or resetting an environment; change parameters and "
-    "call methods between its steps, or make an environment for each thread$"
+    "another thread is stepping or resetting an environment; change parameters and "
+    "call methods between its steps, or make an environment for each thread"
 )
 
 
@@ -296,8 +295,9 @@ def test_a_call_during_a_step_is_rejected_and_changes_nothing():
             with contextlib.suppress(RuntimeError):
                 while not step.done():
                     len(envs._native)  # fails as soon as the step is under way
-            with pytest.raises(RuntimeError, match=BUSY):
+            with pytest.raises(RuntimeError) as raised:
                 call()
+            assert str(raised.value) == BUSY
             assert not step.done(), "more environments are necessary"
         step.result()
         assert envs.dt == 0.2 and (envs.elapsed_steps == 1).all()
@@ -306,17 +306,16 @@ def test_a_call_during_a_step_is_rejected_and_changes_nothing():
 def test_a_call_during_a_conversion_is_rejected():
     """As any call is without Python's lock, in a single environment too."""
     env = AcrobotEnv()
-    calls = [lambda: env.step(0), lambda: env.state, lambda: pickle.dumps(env)]
+    calls, errors = (lambda: env.step(0), lambda: env.state, lambda: pickle.dumps(env)), []
 
     class Mass:
         def __float__(self):
             with ThreadPoolExecutor(1) as executor:
-                for call in calls:
-                    with pytest.raises(RuntimeError, match=BUSY):
-                        executor.submit(call).result()
+                errors.extend(executor.submit(call).exception() for call in calls)
             return 2.0
 
     env._native.set("LINK_MASS_1", Mass())
+    assert [(type(each), str(each)) for each in errors] == [(RuntimeError, BUSY)] * 3
 
 
 @pytest.mark.parametrize("kind", [AcrobotEnv, AcrobotVectorEnv])
