@@ -20,7 +20,6 @@ import jax.numpy as jnp
 import numpy as np
 import optax
 from acrobot_rs import policy
-from tqdm import tqdm
 
 gymnasium.register_envs(acrobot_rs)
 NAME = "acrobot_rs/Acrobot-v1"
@@ -188,20 +187,16 @@ def train(seed):
     init, key = jax.random.split(jax.random.key(of_jax))
     parameters = initial(init)
     state = optimizer.init(parameters)
-    with tqdm(
-        total=UPDATES * ENVS * STEPS, desc=f"seed {seed}", unit="step", unit_scale=True, leave=False
-    ) as bar:
-        for update in range(UPDATES + 1):
-            if update % EVALUATE_EVERY == 0:
-                key, draw = jax.random.split(key)
-                steps, mean = update * ENVS * STEPS, evaluate(others, parameters, draw)
-                bar.set_postfix_str(f"mean return {mean:.1f}")
-                if mean > THRESHOLD:
-                    break
-            rollout, observations, key = roll_out(envs, parameters, key, observations)
-            key, order = jax.random.split(key)
-            parameters, state = learn(parameters, state, order, rollout)
-            bar.update(ENVS * STEPS)
+    for update in range(UPDATES + 1):
+        if update % EVALUATE_EVERY == 0:
+            key, draw = jax.random.split(key)
+            steps, mean = update * ENVS * STEPS, evaluate(others, parameters, draw)
+            print(f"mean return {mean:.1f} after {steps:,} steps", file=sys.stderr)
+            if mean > THRESHOLD:
+                break
+        rollout, observations, key = roll_out(envs, parameters, key, observations)
+        key, order = jax.random.split(key)
+        parameters, state = learn(parameters, state, order, rollout)
     return parameters, steps, mean
 
 

@@ -11,14 +11,14 @@ use numpy::{
     PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2,
     PyUntypedArrayMethods,
 };
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::draws::Distribution;
 use crate::engine::{Engine, Inputs, memory, with_batch};
 use crate::pool::Pool;
-use crate::{fields, load, must_be, rejected, render, save};
+use crate::{alone, fields, load, must_be, rejected, render, save};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -299,16 +299,6 @@ impl Batch {
         this.pool = None;
         Ok(())
     }
-}
-
-/// The only access to a batch. Only its steps and resets let other threads run.
-fn alone<'py>(batch: &Bound<'py, Batch>) -> PyResult<PyRefMut<'py, Batch>> {
-    batch.try_borrow_mut().map_err(|_| {
-        PyRuntimeError::new_err(
-            "another thread is stepping or resetting an environment; \
-             change parameters and call methods between its steps",
-        )
-    })
 }
 
 /// The same error with an index after the parameter's name, with which its message begins.

@@ -15,9 +15,7 @@ use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::draws::{Distribution, Draws};
-use crate::{
-    InvalidAction, NUMBERS, Params, invalid, must_be, rejected, renamed, torque_of, unknown, with,
-};
+use crate::{InvalidAction, NUMBERS, Params, invalid, must_be, rejected, torque_of, unknown, with};
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
 #[derive(FromPyObject)]
@@ -167,7 +165,7 @@ impl<A: Arithmetic> Many<A> {
                     }
                 }
             }
-            renamed(A::TASK, message)
+            invalid(A::TASK, message)
         })
     }
 

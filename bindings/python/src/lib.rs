@@ -13,21 +13,35 @@ use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::{Dynamics, Task};
 use acrobot::{Observation, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
+use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::pyclass::boolean_struct::False;
 use pyo3::types::PyBytes;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 pyo3::import_exception!(gymnasium.error, InvalidAction);
 
-// Two threads cannot borrow an object at once, with or without Python's lock.
 #[pymodule(gil_used = false)]
 mod _native {
+    #[pymodule_export]
+    const BUSY: &str = super::BUSY;
     #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
     use super::single::Acrobot;
+}
+
+/// Says what to do when an environment is in use.
+const BUSY: &str = "another thread is stepping or resetting an environment; \
+    change parameters and call methods between its steps, or make an environment for each thread";
+
+/// The only access to an object. Without Python's lock any call can meet another thread's; with it,
+/// steps and resets of many let other threads run, and so does Python code that converts a number.
+fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<PyRefMut<'py, T>> {
+    let busy = |_| PyRuntimeError::new_err(BUSY);
+    object.try_borrow_mut().map_err(busy)
 }
 
 /// The torque of a continuous action, N m, which is within the smallest and the largest torque.
@@ -83,11 +97,8 @@ fn rejected(error: impl std::error::Error) -> PyErr {
 }
 
 /// The same for parameters of a task: the message begins with Python's name of one.
-fn invalid(task: Task, error: impl std::error::Error) -> PyErr {
-    renamed(task, error.to_string())
-}
-
-fn renamed(task: Task, message: String) -> PyErr {
+fn invalid(task: Task, error: impl Display) -> PyErr {
+    let message = error.to_string();
     let renamed = NUMBERS.iter().find_map(|(pythons, name, _)| {
         let rest = message.strip_prefix(name)?;
         let known = *pythons != "LINK_MOI" || task == Task::Acrobot;

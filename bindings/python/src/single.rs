@@ -10,7 +10,7 @@ use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    InvalidAction, Params, convert, invalid, load, must_be, rejected, render, save, shown,
+    InvalidAction, Params, alone, convert, invalid, load, must_be, rejected, render, save, shown,
     torque_of, unknown, with,
 };
 
@@ -134,8 +134,9 @@ impl Acrobot {
         })
     }
 
-    fn set(&mut self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
-        let mut inner = self.inner.clone();
+    fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        let mut this = alone(slf)?;
+        let mut inner = this.inner.clone();
         match name {
             "AVAIL_TORQUE" => inner.torques = convert(name, "a sequence of numbers", value)?,
             "torque_noise_max" => inner.noise = convert(name, "a number", value)?,
@@ -145,42 +146,46 @@ impl Acrobot {
             }
         }
         inner.validate()?;
-        self.inner = inner;
+        this.inner = inner;
         Ok(())
     }
 
     /// The state, as an array whose elements can be assigned until the next step.
     #[getter]
-    fn state<'py>(&mut self, py: Python<'py>) -> Option<Bound<'py, PyAny>> {
-        if !self.inner.started {
-            return None;
+    fn state<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let py = slf.py();
+        let Self { inner, lent } = &mut *alone(slf)?;
+        if !inner.started {
+            return Ok(None);
         }
-        let lent = self.lent.get_or_insert_with(|| {
-            let state: [f64; 4] = self.inner.acrobot.state().into();
-            let array = if self.inner.single {
+        let lent = lent.get_or_insert_with(|| {
+            let state: [f64; 4] = inner.acrobot.state().into();
+            let array = if inner.single {
                 PyArray1::from_slice(py, &state.map(|x| x as f32)).into_any()
             } else {
                 PyArray1::from_slice(py, &state).into_any()
             };
             array.unbind()
         });
-        Some(lent.bind(py).clone())
+        Ok(Some(lent.bind(py).clone()))
     }
 
     /// Sets the state from an array of `f32` or `f64`.
     #[setter]
-    fn set_state(&mut self, state: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_state(slf: &Bound<'_, Self>, state: &Bound<'_, PyAny>) -> PyResult<()> {
         let (state, single) = read(state)?;
-        self.inner.acrobot.set_state(state)?;
-        self.inner.started = true;
-        self.inner.single = single;
-        self.lent = None;
+        let mut this = alone(slf)?;
+        this.inner.acrobot.set_state(state)?;
+        this.inner.started = true;
+        this.inner.single = single;
+        this.lent = None;
         Ok(())
     }
 
-    fn observation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        let observation = with_one!(&self.inner.acrobot, acrobot => acrobot.observation());
-        PyArray1::from_slice(py, observation.as_ref())
+    fn observation<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let this = alone(slf)?;
+        let observation = with_one!(&this.inner.acrobot, acrobot => acrobot.observation());
+        Ok(PyArray1::from_slice(slf.py(), observation.as_ref()))
     }
 
     /// Steps by an action of the environment, whose generator draws the noise. Returns what
@@ -191,10 +196,10 @@ impl Acrobot {
         action: &Bound<'py, PyAny>,
     ) -> PyResult<impl IntoPyObject<'py>> {
         let py = slf.py();
-        let continuous = slf.try_borrow()?.inner.continuous;
+        let continuous = alone(slf)?.inner.continuous;
         // The conversion can be Python code.
         let number = continuous.then(|| number(env, action)).transpose()?;
-        let mut this = slf.try_borrow_mut()?;
+        let mut this = alone(slf)?;
         if !this.inner.started {
             let message = "the environment has no state yet; call reset before step";
             return Err(match this.inner.acrobot.task() {
@@ -213,7 +218,7 @@ impl Acrobot {
             let rng = env.getattr("np_random")?;
             let draw: f64 = rng.call_method1("uniform", (-noise, noise))?.extract()?;
             torque += draw;
-            this = slf.try_borrow_mut()?;
+            this = alone(slf)?;
         }
         let step = this.inner.acrobot.step(torque)?;
         this.lent = None;
@@ -227,31 +232,31 @@ impl Acrobot {
         Ok((observation, f64::from(step.reward), step.terminated, false, PyDict::new(py)))
     }
 
-    fn render<'py>(&mut self, py: Python<'py>, mode: &str) -> PyResult<Bound<'py, PyAny>> {
-        self.read_lent(py)?;
-        let acrobot = &self.inner.acrobot;
-        render(py, acrobot.params(), acrobot.state(), mode)
+    fn render<'py>(slf: &Bound<'py, Self>, mode: &str) -> PyResult<Bound<'py, PyAny>> {
+        let mut this = alone(slf)?;
+        this.read_lent(slf.py())?;
+        let acrobot = &this.inner.acrobot;
+        render(slf.py(), acrobot.params(), acrobot.state(), mode)
     }
 
     /// Every protocol of pickle calls this.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<impl IntoPyObject<'py>> {
-        let state = slf.try_borrow_mut()?.__getstate__(slf.py())?;
-        Ok((slf.get_type(), (), state))
+        Ok((slf.get_type(), (), Self::__getstate__(slf)?))
     }
 
-    fn __getstate__<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        self.read_lent(py)?;
-        save(py, &self.inner)
+    fn __getstate__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyBytes>> {
+        let mut this = alone(slf)?;
+        this.read_lent(slf.py())?;
+        save(slf.py(), &this.inner)
     }
 
-    fn __setstate__(&mut self, bytes: &[u8]) -> PyResult<()> {
+    fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
         let mut inner: Inner = load(bytes)?;
         inner.validate()?;
         // Damaged bytes may have numbers that are no `f32`.
         let state: [f64; 4] = inner.acrobot.state().into();
         inner.single &= state.iter().all(|&x| f64::from(x as f32) == x);
-        self.inner = inner;
-        self.lent = None;
+        *alone(slf)? = Self { inner, lent: None };
         Ok(())
     }
 }

@@ -10,11 +10,11 @@ import acrobot_rs
 import gymnasium
 import numpy as np
 from acrobot_rs import LogUniform, Normal, Uniform
-from acrobot_rs.parameters import _NAMES
 from acrobot_rs.swingup import Swingup
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from vectors import SINGLE_KINDS
 
 #: What a call may raise. A panic in Rust raises none of these.
 REJECTIONS = (
@@ -40,7 +40,7 @@ ANYTHING = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(BOUND, inner),
     max_leaves=4,
 )
-NAMES = st.sampled_from(tuple(dict.fromkeys((*_NAMES, *Swingup._NAMES))))
+NAMES = st.sampled_from(tuple(dict.fromkeys((*acrobot_rs.AcrobotEnv._NAMES, *Swingup._NAMES))))
 TORQUES = st.lists(NUMBERS, min_size=3, max_size=3)
 VALUES = st.one_of(NUMBERS, TORQUES, st.sampled_from(["book", "nips"]), ANYTHING)
 #: Also valid ones.
@@ -115,12 +115,7 @@ def set_element(env, index, value):
 
 
 @given(
-    st.sampled_from(
-        [
-            *(acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotV0Env),
-            *(acrobot_rs.AcrobotContinuousEnv, acrobot_rs.AcrobotSwingupEnv),
-        ]
-    ),
+    st.sampled_from(SINGLE_KINDS),
     st.sampled_from([None, "ansi", "ansi", "ansi", "rgb_array"]),
     calls(
         *(SEEDS, VALUES, STATES | ANYTHING),

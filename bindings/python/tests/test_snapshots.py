@@ -5,23 +5,10 @@ import pickle
 
 import numpy as np
 import pytest
-from acrobot_rs import (
-    AcrobotContinuousEnv,
-    AcrobotEnv,
-    AcrobotV0Env,
-    AcrobotVectorEnv,
-    LogUniform,
-    Normal,
-    Uniform,
-)
-from acrobot_rs.swingup import AcrobotSwingupEnv, AcrobotSwingupSparseEnv, AcrobotSwingupVectorEnv
-from acrobot_rs.vector import AcrobotContinuousVectorEnv
-from vectors import rejects
+from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotEnv, AcrobotSwingupVectorEnv
+from acrobot_rs import AcrobotVectorEnv, LogUniform, Normal, Uniform
+from vectors import SINGLE_KINDS, rejects
 
-SINGLE = (
-    *(AcrobotEnv, AcrobotV0Env, AcrobotContinuousEnv),
-    *(AcrobotSwingupEnv, AcrobotSwingupSparseEnv),
-)
 DRAWN = {"FRICTION_1": np.linspace(0, 0.1, 37), "LINK_MOI_2": Uniform(0.1, 0.2)}
 OWN = {"LINK_MASS_1": np.linspace(0.5, 1.5, 37), "dt": Uniform(0.1, 0.2)}
 INFOS = {"gravity": Normal(9.8, 1.0, 5.0, 12.0), "info_parameters": ["gravity"]}
@@ -75,7 +62,7 @@ AGAIN = [
 
 
 @pytest.mark.parametrize("again", AGAIN)
-@pytest.mark.parametrize("kind", [*((kind,) for kind in SINGLE), *VECTOR])
+@pytest.mark.parametrize("kind", [*((kind,) for kind in SINGLE_KINDS), *VECTOR])
 def test_copies_continue_bit_identically(kind, again):
     envs = made(*kind)
     twin = again(envs)

@@ -7,9 +7,8 @@ import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import LogUniform, Normal, Uniform
-from acrobot_rs.vector import AcrobotContinuousVectorEnv
-from vectors import CONTINUOUS, make_vec, rejects
+from acrobot_rs import AcrobotContinuousVectorEnv, LogUniform, Normal, Uniform
+from vectors import make_vec, rejects
 
 
 @pytest.mark.parametrize("gymnasium_episodes", [False, True])
@@ -17,6 +16,7 @@ from vectors import CONTINUOUS, make_vec, rejects
     ("error", "name", "value", "message"),
     [
         (ValueError, "LINK_MASS_1", [1, 0, 2], r"\[1\] must be finite and above 0 kg, got 0"),
+        (TypeError, "LINK_MASS_1", vars(Uniform(1, 2)), " must be a number, got {"),
         (TypeError, "LINK_MASS_1", [1, 2, None], r"\[2\] must be a number, got None"),
         (ValueError, "LINK_MASS_1", [1, 2], " must be .* each of 3 environments, or a draw "),
         (ValueError, "book_or_nips", ["book"], " must be .* each of 3 environments, got 1 values"),
@@ -24,13 +24,11 @@ from vectors import CONTINUOUS, make_vec, rejects
         (ValueError, "AVAIL_TORQUE", [-1, 1], r" must be 3 numbers, such as \[-2, 0, 2\], got 2"),
         (ValueError, "AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, np.inf, 3]], r"\[2\]\[1\] must be a f"),
         (ValueError, "AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], r"\[1\] must be 3 numbers, s"),
-        (ValueError, "MAX_VEL_1", [1, 1e300, 1], r"\[1\] must be "),
         (ValueError, "book_or_nips", ["book", "nips", "b"], r'\[2\] must be "book" .*, got "b"'),
         (ValueError, "dt", Uniform(0, 1), " must be finite and above 0 s, got 0"),
         (ValueError, "MAX_VEL_2", LogUniform(1, 1e300), " must be "),
         (ValueError, "LINK_COM_POS_2", Uniform(0, 1), "LINK_MOI must be above 0 kg m² if the"),
         (TypeError, "AVAIL_TORQUE", Uniform(0, 1), r" must be a sequence of 3 numbers, got 0\.0"),
-        (TypeError, "AVAIL_TORQUE", Normal(0, 1, -1, 1), " must be a sequence of 3 numbers, got -"),
         (TypeError, "book_or_nips", Uniform(0, 1), ' must be "book" or "nips", got 0'),
     ],
 )
@@ -45,25 +43,26 @@ def test_a_rejected_parameter_changes_nothing(error, name, value, message, gymna
                 attempt(envs, name, value)
 
 
-@pytest.mark.parametrize("number", [1e300, 3.5e38, 1e-300])
-def test_the_number_given_is_in_the_message(number):
+TORQUES = [(-1.0, 0.0, 1.0), (-1.0, 1e300, 1.0)]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "number"),
+    [
+        *(("dt", 1e300, "1e300"), ("LINK_MASS_1", [1.0, 1e-300, 1.0], "1e-300")),
+        *(("LINK_MASS_1", LogUniform(1e-300, 1.0), "1e-300"), ("LINK_MOI", 1e300, "1e300")),
+        ("LINK_LENGTH_2", Uniform(1.0, 3.5e38), "3.5e38"),
+        *(
+            ("AVAIL_TORQUE", torques, "1e300")
+            for torques in ([*TORQUES, [0] * 3], Uniform(*TORQUES))
+        ),
+    ],
+)
+def test_the_number_given_is_in_the_message(name, value, number):
     """Not the infinity or the 0 that it becomes in float32."""
     envs = make_vec(3)
-    shown = str(number).replace("+", "")
-    for name in ("dt", "LINK_MASS_1", "LINK_LENGTH_2", "AVAIL_TORQUE"):
-        if name == "AVAIL_TORQUE":
-            if number < 1.0:
-                continue  # becomes 0, which is valid
-            bounds = (-1.0, 0.0, 1.0), (number, 0.0, 1.0)
-            values = [bounds[1], [bounds[0], bounds[1], bounds[0]], Uniform(*bounds)]
-        else:
-            bounds = sorted([1.0, number])
-            values = [number, [1.0, number, 1.0], Uniform(*bounds), LogUniform(*bounds)]
-        for value in values:
-            with rejects(envs, ValueError, f"^{name}.* must be .*, got {shown}$"):
-                setattr(envs, name, value)
-    with rejects(envs, ValueError, "^LINK_MOI must .*, got 1e300$"):
-        envs.LINK_MOI = 1e300
+    with rejects(envs, ValueError, f"^{name}.* must be .*, got {number}$"):
+        setattr(envs, name, value)
 
 
 def test_zeros_of_both_signs_are_different_values():
@@ -83,13 +82,13 @@ UNIFORM = (
     *("gravity", "dt", "MAX_VEL_1", "MAX_VEL_2"),
 )
 #: What has equal bounds, here a torque, is not drawn.
-TORQUES = {"AVAIL_TORQUE": Uniform((-1.5, 0.0, 0.5), (-0.5, 0.0, 1.5))}
+DRAWN_TORQUES = {"AVAIL_TORQUE": Uniform((-1.5, 0.0, 0.5), (-0.5, 0.0, 1.5))}
 WIDE = Uniform(0.3, 1.7)
 NORMALS = {"LINK_MASS_2": Normal(1.0, 0.125, 0.5, 2.0), "gravity": Normal(9.5, 4.0, 9.0, 12.0)}
 #: In the order of their draws, which is not that of the assignments.
 DRAWS = (
-    {name: WIDE for name in UNIFORM} | TORQUES | {"torque_noise_max": WIDE},
-    {"dt": WIDE, **TORQUES},
+    {name: WIDE for name in UNIFORM} | DRAWN_TORQUES | {"torque_noise_max": WIDE},
+    {"dt": WIDE, **DRAWN_TORQUES},
     {"LINK_MASS_2": LogUniform(0.5, 2.0)},
     {**NORMALS, "dt": Uniform(0.125, 0.25)},
     {"LINK_MOI": Uniform(0.5, 2.0)},
@@ -235,15 +234,7 @@ def test_drawn_parameters_in_infos_and_arrays():
         envs.get_parameter("mass_1")
 
 
-def test_spaces_follow_the_parameters():
-    envs = gymnasium.make_vec(CONTINUOUS, num_envs=3, AVAIL_TORQUE=[-3.0, 0.0, 2.0])
-    assert envs.single_action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
-    envs.AVAIL_TORQUE = [[-1, 0, 1], [-5, 0, 1], [-1, 0, 4]]
-    assert envs.single_action_space == gymnasium.spaces.Box(-5.0, 4.0, (1,), np.float32)
-    assert envs.action_space == gymnasium.spaces.Box(-5.0, 4.0, (3, 1), np.float32)
-
-
-def test_subclasses_can_draw_parameters():
+def test_subclasses_can_draw_parameters_which_spaces_follow():
     class Random(AcrobotContinuousVectorEnv):
         MAX_VEL_1 = Uniform(20.0, 30.0)
         AVAIL_TORQUE = Uniform([-3.0, 0.0, 1.0], [-2.0, 0.0, 2.0])
@@ -253,6 +244,9 @@ def test_subclasses_can_draw_parameters():
     assert envs.single_action_space == gymnasium.spaces.Box(-3.0, 2.0, (1,), np.float32)
     envs.reset(seed=1)
     assert len(set(envs.get_attr("MAX_VEL_1"))) == 50
+    envs.AVAIL_TORQUE = [[-1, 0, 1], [-5, 0, 1], [-1, 0, 4]] + [[0, 0, 0]] * 47
+    assert envs.single_action_space == gymnasium.spaces.Box(-5.0, 4.0, (1,), np.float32)
+    assert envs.action_space == gymnasium.spaces.Box(-5.0, 4.0, (50, 1), np.float32)
     with pytest.raises(ValueError, match="MAX_VEL_1 must "):
         type("Wrong", (Random,), {"MAX_VEL_1": Uniform(-1.0, 2.0)})
     single = acrobot_rs.AcrobotEnv()

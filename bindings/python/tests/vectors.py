@@ -4,15 +4,18 @@ import contextlib
 import pickle
 import warnings
 
+import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
 from acrobot_rs.arrays import warn_of_other_sines
-from acrobot_rs.parameters import _NAMES as NAMES
 from gymnasium.vector import AutoresetMode
 
+KINDS = [getattr(acrobot_rs, name) for name in acrobot_rs.__all__ if name.endswith("Env")]
+SINGLE_KINDS = [kind for kind in KINDS if issubclass(kind, gymnasium.Env)]
 V1 = "acrobot_rs/Acrobot-v1"
 CONTINUOUS = "acrobot_rs/AcrobotContinuous-v0"
+SWINGUPS = ["acrobot_rs/AcrobotSwingup-v0", "acrobot_rs/AcrobotSwingupSparse-v0"]
 MODES = pytest.mark.parametrize("mode", AutoresetMode)
 
 
@@ -27,15 +30,14 @@ def make_vec(num_envs, **kwargs):
     )
 
 
-def pair(num_envs, mode="NextStep", theirs="Acrobot-v1", ours=V1, **kwargs):
-    """Gymnasium's SyncVectorEnv of an environment, by default Gymnasium's, and ours like it."""
-    if OTHER_SINES and theirs == "Acrobot-v1":
+def pair(num_envs, mode="NextStep", **kwargs):
+    """Gymnasium's SyncVectorEnv of its environments, and ours like it."""
+    if OTHER_SINES:
         pytest.skip(str(OTHER_SINES[0].message))
     sync = {"vectorization_mode": "sync", "vector_kwargs": {"autoreset_mode": mode}}
-    kwargs["num_envs"] = num_envs
     return (
-        gymnasium.make_vec(theirs, **sync, **kwargs),
-        gymnasium.make_vec(ours, autoreset_mode=mode, gymnasium_episodes=True, **kwargs),
+        gymnasium.make_vec("Acrobot-v1", num_envs, **sync, **kwargs),
+        make_vec(num_envs, autoreset_mode=mode, gymnasium_episodes=True, **kwargs),
     )
 
 
@@ -64,23 +66,21 @@ def rejects(env, error, message=None):
     assert pickle.dumps(env) == before
 
 
-def reset_ended(envs, ended):
-    """Resets environments whose episode has ended, if they have no autoreset."""
-    if ended.any() and envs.metadata["autoreset_mode"] is AutoresetMode.DISABLED:
-        envs.reset(options={"reset_mask": ended.copy()})
-
-
 def different(count, seed):
     """A value of each parameter for each of these environments."""
     rng = np.random.default_rng(seed)
-    values = {name: list(rng.uniform(0.8, 1.2, count)) for name in NAMES if name.startswith("LINK")}
+    values = {
+        name: list(rng.uniform(0.8, 1.2, count))
+        for name in acrobot_rs.AcrobotEnv._NAMES
+        if name.startswith("LINK")
+    }
     values["dt"] = tuple(rng.uniform(0.05, 0.25, count).tolist())
     values["MAX_VEL_1"] = rng.uniform(2, 12, count)
     values["MAX_VEL_2"] = rng.uniform(2, 28, count).astype(np.float32)
     values["AVAIL_TORQUE"] = rng.uniform(-2, 2, (count, 3))
     values["torque_noise_max"] = rng.choice([0.0, 0.5], count)
     values["book_or_nips"] = rng.choice(["book", "nips"], count).tolist()
-    assert values.keys() == set(NAMES) - {"gravity"}, (
+    assert values.keys() == set(acrobot_rs.AcrobotEnv._NAMES) - {"gravity"}, (
         "Gymnasium's environment has no name for gravity"
     )
     return values

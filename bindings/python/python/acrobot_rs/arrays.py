@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 
 #: The options of ``reset``. Not all environments have all.
-_OPTIONS = ("low", "high", "reset_mask", "state")
+OPTIONS = ("low", "high", "reset_mask", "state")
 #: A Box, a reset and a policy have float32, which rounds other numbers with a warning.
 LARGEST = float(np.finfo(np.float32).max)
 
@@ -52,7 +52,7 @@ def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
     require(Mapping | None, "a dict or None", options=options)
     for key in options or ():
         name = key.lower() if isinstance(key, str) else ""
-        near = difflib.get_close_matches(name, _OPTIONS, n=1, cutoff=0.52)
+        near = difflib.get_close_matches(name, OPTIONS, n=1, cutoff=0.52)
         if near and key not in known:
             meant = f"; did you mean {near[0]!r}?" if near[0] in known else ""
             raise must_be("the keys of options", f"among {list(known)}", f"{key!r}{meant}")
@@ -92,8 +92,7 @@ def numbers(
     """Actions or states as an array.
 
     They may be an array, a list or another sequence that NumPy converts to one, of this shape and
-    of integers (``iu``) or floats (``f``). Texts, bytes, bools, complex numbers, other objects,
-    sets, mappings and iterators are rejected.
+    of integers (``iu``) or floats (``f``).
     """
     array = None
     # NumPy takes the bytes of a bytearray, and the keys of some mappings.
@@ -170,7 +169,7 @@ def _digits(seed: Any) -> str | None:
 
 
 class Missing:
-    """An attribute of Gymnasium's environments that ours do not have.
+    """An attribute of Gymnasium's environments that ours do not have: the error says what to use.
 
     It is no ``__getattr__``, which slows all attributes.
     """
@@ -182,12 +181,11 @@ class Missing:
         self._name = name
 
     def __get__(self, env: object, kind: type) -> NoReturn:
-        """Say what to use instead."""
         raise AttributeError(f"{kind.__name__} has no attribute {self._name!r}; {self._use}")
 
 
 class Hints:
-    """Says what to use instead of what programs read of Gymnasium's environments."""
+    """What programs read of Gymnasium's environments."""
 
     if not TYPE_CHECKING:  # a checker says that they do not exist
         _dsdt = Missing("the equations are in Rust: assign state and call step")

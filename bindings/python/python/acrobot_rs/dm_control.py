@@ -108,12 +108,10 @@ class Environment(dm_env.Environment):
         return {"orientations": orientations, "velocity": np.array(velocity)}
 
     def observation_spec(self) -> dict[str, specs.Array]:
-        """The shapes of what observations contain."""
         shapes = {"observations": 6} if self._flat else {"orientations": 4, "velocity": 2}
         return {name: specs.Array((size,), float, name) for name, size in shapes.items()}
 
     def action_spec(self) -> specs.BoundedArray:
-        """A number from -1 to 1."""
         return specs.BoundedArray((1,), float, [-1.0], [1.0])
 
     def control_timestep(self) -> float:

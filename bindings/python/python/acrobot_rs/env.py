@@ -35,18 +35,9 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     ## Observation Space
 
-    ``Box`` of shape ``(6,)``, ``float32``:
-
-    | Num | Observation                        | Min   | Max  |
-    |-----|------------------------------------|-------|------|
-    | 0   | cosine of theta1                   | -1    | 1    |
-    | 1   | sine of theta1                     | -1    | 1    |
-    | 2   | cosine of theta2                   | -1    | 1    |
-    | 3   | sine of theta2                     | -1    | 1    |
-    | 4   | angular velocity of theta1, rad/s  | -4 pi | 4 pi |
-    | 5   | angular velocity of theta2, rad/s  | -9 pi | 9 pi |
-
-    theta1 is the angle of link 1, 0 hanging straight down, theta2 that of link 2 from link 1.
+    ``Box`` of shape ``(6,)``, ``float32``: the cosine and the sine of theta1, those of theta2, and
+    the velocities of both, rad/s, within 4 pi and 9 pi. theta1 is the angle of link 1, 0 hanging
+    straight down, theta2 that of link 2 from link 1.
 
     ## Rewards
 
@@ -65,9 +56,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     ## Arguments
 
-    ``render_mode``: ``None``, ``"human"`` (a window, by pygame, which each reset and step updates),
-    ``"rgb_array"`` (an array of shape ``(500, 500, 3)``, ``uint8``) or ``"ansi"`` (20 lines of
-    braille characters and a line of numbers). And parameters, for example ``LINK_MASS_1=2.0``.
+    ``render_mode``: ``None``, ``"human"`` (a window, by pygame), ``"rgb_array"`` or ``"ansi"``
+    (braille characters). And parameters, for example ``LINK_MASS_1=2.0``.
 
     A rejected call raises an error that says what is valid, and changes nothing.
 
@@ -150,9 +140,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         Args:
             seed: Seeds the generator: an integer of at least 0, of any size. With ``None`` its
                 stream continues.
-            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s; by
-                default -0.1 and 0.1. Or ``"state"``, the initial state itself, which replaces the
-                drawn one.
+            options: ``"low"`` and ``"high"``, the bounds of the initial state, rad and rad/s. Or
+                ``"state"``, the initial state itself, which replaces the drawn one.
 
         Returns:
             The observation of the initial state, and an empty info.
@@ -163,7 +152,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         low, high = reset_bounds(options, self._BOUND, ("low", "high", "state"))
         seed = plain_seed(seed)
         given = None
-        if options is not None and "state" in options:
+        if options and "state" in options:
             rule = "four finite numbers in the range of float32"
             given = numbers("state", rule, options["state"], (4,))
             with np.errstate(over="ignore"):
@@ -184,8 +173,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         if self._ANGLES:
             return s
         # Gymnasium's calls of NumPy, whose float32 sines are its own.
-        first, second = (np.cos(s[0]), np.sin(s[0])), (np.cos(s[1]), np.sin(s[1]))
-        return np.array([*first, *second, *s[2:]], dtype=np.float32)
+        sines = [function(angle) for angle in s[:2] for function in (np.cos, np.sin)]
+        return np.array([*sines, *s[2:]], dtype=np.float32)
 
     def step(
         self, action: ArrayLike
@@ -196,9 +185,8 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
             action: An element of the action space. ``Box``: an array of one torque, N m.
 
         Returns:
-            The observation; the reward, -1.0, or 0.0 if the step reaches the goal; whether it does;
-            ``False``, because the wrapper of ``gymnasium.make`` counts the steps and truncates; and
-            an empty info.
+            The observation; the reward; whether the step reaches the goal; ``False``, because the
+            wrapper of ``gymnasium.make`` truncates; and an empty info.
 
         Raises:
             gymnasium.error.InvalidAction: If the action is another one.
@@ -239,7 +227,6 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
         pygame.display.flip()
 
     def close(self) -> None:
-        """Close the window."""
         if self.screen is not None:
             import pygame
 
@@ -253,14 +240,11 @@ class AcrobotContinuousEnv(AcrobotEnv):
 
     The action space is a ``Box`` of shape ``(1,)``, ``float32``: a torque in N m. Its bounds are
     the smallest and the largest number in ``AVAIL_TORQUE``, by default -1 and 1. A torque outside
-    is clipped. NaN and other shapes are rejected.
+    is clipped.
 
-    >>> import gymnasium as gym
     >>> import acrobot_rs
-    >>> gym.register_envs(acrobot_rs)
-    >>> env = gym.make("acrobot_rs/AcrobotContinuous-v0")
-    >>> env.action_space
-    Box(-1.0, 1.0, (1,), float32)
+    >>> acrobot_rs.AcrobotContinuousEnv(AVAIL_TORQUE=[-2.0, 2.0]).action_space
+    Box(-2.0, 2.0, (1,), float32)
     """
 
     _CONTINUOUS = True
@@ -277,8 +261,8 @@ class AcrobotContinuousEnv(AcrobotEnv):
 class AcrobotV0Env(AcrobotEnv):
     """``Acrobot-v0``, which Gymnasium has removed: :class:`AcrobotEnv`, which observes the state.
 
-    The observation is theta1, theta2 (within pi, rad) and their velocities (within 4 pi and 9 pi,
-    rad/s), ``float32``. ``gymnasium.make`` truncates episodes after 200 steps.
+    The observation is theta1, theta2 (within pi, rad) and their velocities, ``float32``.
+    ``gymnasium.make`` truncates episodes after 200 steps.
     """
 
     _ANGLES = True

@@ -7,19 +7,18 @@ from typing import Any
 
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
-from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector import VectorEnv
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
-from acrobot_rs._native import Batch
+from acrobot_rs._native import BUSY
 from acrobot_rs.arrays import Seed, read_only
 from acrobot_rs.parameters import Drawn, _hint
 
 Floats = NDArray[np.float32]
 Bools = NDArray[np.bool_]
 
-#: What ``get_attr`` and ``call`` know, with the parameters. ``set_attr`` knows the parameters and
-#: ``state``.
+#: What ``get_attr`` and ``call`` know, with the parameters.
 _ATTRIBUTES = (
     *("action_space", "elapsed_steps", "max_episode_steps", "metadata", "observation_space"),
     *("render", "render_mode", "spec", "state"),
@@ -35,10 +34,7 @@ class Alone:
 
     def __enter__(self) -> None:
         if not self._acquire(False):
-            raise RuntimeError(
-                "another thread is stepping or resetting an environment; "
-                "change parameters and call methods between its steps"
-            )
+            raise RuntimeError(BUSY)
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
         self._release()
@@ -52,28 +48,8 @@ class Alone:
 class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray]):
     """What the vector environments of both tasks share. A rejected call changes nothing."""
 
-    num_envs: int
-    max_episode_steps: int | None
-    autoreset_mode: AutoresetMode
-    #: Whether each call returns observations in a new array.
-    copy: bool
-    #: Parameters that infos have.
-    info_parameters: tuple[str, ...] = ()
-    #: The names of the parameters.
-    _NAMES: tuple[str, ...]
-    _BOUND: float
-
-    _native: Batch
-    #: Whether rewards are ``float64``, and seeds those of ``SyncVectorEnv``.
-    _gymnasium_episodes = False
-    #: Whether states are ``float64``.
-    _float64 = False
     #: Whether it was reset and not closed.
     _ready = False
-    #: Without autoreset: the environments that must be reset before the next step.
-    _ended: Bools | None
-    #: The array that all calls return, or ``None`` if each returns a new one.
-    _observations: Floats | None
 
     def reset(
         self, *, seed: Seed = None, options: dict[str, Any] | None = None
@@ -85,12 +61,10 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
                 environments' streams; with ``gymnasium_episodes``, ``seed + i`` seeds environment
                 ``i``. Or a list with an integer or ``None`` for each environment. With ``None``
                 streams continue.
-            options: ``"reset_mask"``: an array of ``bool``; environments whose element is false are
-                neither seeded nor reset. ``"state"``: the initial states, of shape
-                ``(num_envs, 4)``, or ``(4,)`` for the same one in all, which replace the drawn
-                ones: theta1, theta2 (rad) and their velocities (rad/s). Or ``"low"`` and
-                ``"high"``: the bounds of the drawn ones, by default -0.1 and 0.1; in the swing-up
-                those of the angles, by default -pi and pi. Autoresets ignore all options.
+            options: As in a single environment, and ``"reset_mask"``: an array of ``bool``;
+                environments whose element is false are neither seeded nor reset. ``"state"`` has
+                the shape ``(num_envs, 4)``, or ``(4,)`` for the same one in all. Autoresets ignore
+                all options.
 
         Returns:
             The observations of all environments, of shape ``(num_envs, 6)``, and infos, empty
@@ -98,10 +72,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
         Raises:
             TypeError, ValueError, gymnasium.error.Error: If options or a seed are invalid.
-            RuntimeError: If another thread is stepping or resetting the environments.
+            RuntimeError: If another thread uses the environments.
         """
-        known = ("low", "high", "reset_mask", "state")
-        low, high = arrays.reset_bounds(options, self._BOUND, known)
+        low, high = arrays.reset_bounds(options, self._BOUND, arrays.OPTIONS)
         self._check_open()
         options = options or {}
         mask = arrays.reset_mask(options, self.num_envs)
@@ -136,9 +109,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
         Returns:
             Observations, of shape ``(num_envs, 6)``; rewards; where the goal was reached; where the
-            limit of steps was reached; and infos. In mode ``SameStep``, if an episode ended, they
-            have ``"final_obs"`` and ``"final_info"`` as in ``SyncVectorEnv``. They have the
-            ``info_parameters`` of the new states.
+            limit of steps was reached; and infos: the ``info_parameters`` of the new states, and in
+            mode ``SameStep``, if an episode ended, ``"final_obs"`` and ``"final_info"`` as in
+            ``SyncVectorEnv``.
 
         Raises:
             gymnasium.error.InvalidAction: If an action is invalid, or the type or shape of the
@@ -146,7 +119,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             gymnasium.error.ResetNeeded: Before the first reset. In mode ``Disabled`` also if an
                 episode has ended and its environment was not reset.
             gymnasium.error.ClosedEnvironmentError: After ``close``.
-            RuntimeError: If another thread is stepping or resetting the environments.
+            RuntimeError: If another thread uses the environments.
         """
         with self._alone:
             self._check_ready()
@@ -224,14 +197,11 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         return tuple(value) if name in ("state", "elapsed_steps") else (value,) * self.num_envs
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
-        """The value of an attribute for each environment. As :meth:`call`."""
+        """As :meth:`call`."""
         return self.call(name)
 
     def get_parameter(self, name: str) -> NDArray[Any]:
-        """A parameter of each environment, as a new array.
-
-        It has the shape ``(num_envs,)``, for ``AVAIL_TORQUE`` ``(num_envs, 3)``.
-        """
+        """A parameter of each environment, in a new array with a row of 3 of ``AVAIL_TORQUE``."""
         self._check_open()
         if name not in self._NAMES:
             hint = _hint(name, self._NAMES)
@@ -245,8 +215,6 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
     def _parameter_infos(self) -> dict[str, Any]:
         """The parameters that infos have, as SyncVectorEnv collects the infos of environments."""
-        if not self.info_parameters:
-            return {}
         infos = {name: self.get_parameter(name) for name in self.info_parameters}
         return infos | {f"_{name}": np.ones(self.num_envs, np.bool_) for name in infos}
 

@@ -20,8 +20,6 @@ from acrobot_rs import arrays
 from acrobot_rs._native import Acrobot, Batch
 from acrobot_rs.arrays import LARGEST, must_be, numbers
 
-#: The names of the parameters. The class below defines them.
-_NAMES: tuple[str, ...] = ()
 _EQUATIONS = (
     "the equations are in Rust: change parameters, or use gymnasium.envs.classic_control.AcrobotEnv"
 )
@@ -102,11 +100,10 @@ class Normal(Drawn):
 
 def _from_json(value: Any) -> Any:
     """A draw, if the value is what the JSON of a spec has for it."""
-    kinds = {"Uniform": Uniform, "LogUniform": LogUniform, "Normal": Normal}
+    kinds = {kind.__name__: kind for kind in (Uniform, LogUniform, Normal)}
     if not (isinstance(value, dict) and value.get("kind") in kinds):
         return value
-    numbers = {name: number for name, number in value.items() if name != "kind"}
-    return kinds[value["kind"]](**numbers)
+    return kinds[value["kind"]](**{name: value[name] for name in value if name != "kind"})
 
 
 def _fixed(name: str, value: Any) -> Any:
@@ -119,8 +116,8 @@ def _fixed(name: str, value: Any) -> Any:
 def _reject_ignored(cls: type[Parameters], name: str) -> None:
     if name in _IGNORED:
         raise TypeError(f"{name} would have no effect on {cls.__name__}; {_IGNORED[name]}")
-    names = cls._NAMES
-    if name not in names and not name.startswith("_") and _near(name, names, 0.8):
+    is_known = name in cls._NAMES or name.startswith("_")
+    if not is_known and _near(name, cls._NAMES, 0.8):
         raise _unknown(cls, name)
 
 
@@ -187,10 +184,8 @@ if TYPE_CHECKING:
 class Parameters(arrays.Hints):
     """The parameters of the physics, with Gymnasium's names.
 
-    Set them as arguments, on an environment or in a subclass. A value is checked immediately and
-    acts from the next step. An invalid value raises a ``ValueError`` or a ``TypeError`` that says
-    what is valid, and an unknown name an ``AttributeError``. A new environment copies its class's
-    parameters. The spaces follow them.
+    Set them as arguments, on an environment or in a subclass, whose parameters a new environment
+    copies. A value is checked immediately and acts from the next step. The spaces follow.
     """
 
     dt: Each = 0.2  #: duration of a step, s; above 0
@@ -217,6 +212,7 @@ class Parameters(arrays.Hints):
     spec: Any
     render_mode: str | None
     _native: Acrobot | Batch
+    #: The names of the parameters.
     _NAMES: tuple[str, ...] = ()
     #: The task, by its name in Rust.
     _TASK = "acrobot"
@@ -284,10 +280,8 @@ class Parameters(arrays.Hints):
     def _pass(self, name: str, value: Any) -> Any:
         """Pass a parameter to the native part, which checks it. Return it unchangeable."""
         if isinstance(value, Drawn):
-            rule = (
-                "a number, because only gymnasium.make_vec draws parameters, also with num_envs=1"
-            )
-            raise must_be(name, rule, repr(value), TypeError)
+            reason = "because only gymnasium.make_vec draws parameters, also with num_envs=1"
+            raise must_be(name, f"a number, {reason}", repr(value), TypeError)
         self._native.set(name, value)
         return _fixed(name, value)
 
@@ -365,4 +359,4 @@ class Parameters(arrays.Hints):
 
 
 _PUBLIC = (name for name in Parameters.__annotations__ if not name.startswith("_"))
-_NAMES = Parameters._NAMES = tuple(name for name in _PUBLIC if hasattr(Parameters, name))
+Parameters._NAMES = tuple(name for name in _PUBLIC if hasattr(Parameters, name))

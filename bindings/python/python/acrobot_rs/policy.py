@@ -1,7 +1,7 @@
 """Saves a trained perceptron for the crate ``crates/policy``: on a microcontroller, in a browser.
 
-:func:`save` takes a model and compares the file's actions with the model's. :func:`write` takes
-arrays. :func:`load` plays a file. None needs torch beside the model.
+:func:`save` takes a model, :func:`write` arrays, and :func:`load` plays a file. None needs torch
+beside the model.
 """
 
 from __future__ import annotations
@@ -153,9 +153,7 @@ def save(
     observations: NDArray[np.float32] | None = None,
     torque_limit: float | None = None,
 ) -> None:
-    """Write a model's greedy or mean policy.
-
-    Means and deviations of ``VecNormalize`` become part of the first layer.
+    """Write a model's greedy or mean policy, with what its ``VecNormalize`` does.
 
     Args:
         model: A model of Stable-Baselines3 (PPO, A2C, DQN) or sb3-contrib (QR-DQN) with
@@ -170,8 +168,7 @@ def save(
     Raises:
         TypeError: If the model, or a layer, is of another kind.
         ValueError: If a shape or a number is wrong, if the file's actions would differ from the
-            model's or its outputs would not be finite, or if a ``Sequential`` has Dropout in
-            training mode. No file is written then.
+            model's, or if a ``Sequential`` is not in evaluation mode. No file is written then.
     """
     policy = getattr(model, "policy", None)
     if policy is None and not isinstance(model, Iterable):

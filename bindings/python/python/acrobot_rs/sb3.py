@@ -15,9 +15,9 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from numpy.typing import NDArray
 from stable_baselines3.common.vec_env import VecEnv
 
-from acrobot_rs.parameters import Drawn
 from acrobot_rs.arrays import must_be
 from acrobot_rs.native_vector import NativeVectorEnv
+from acrobot_rs.parameters import Drawn
 
 Indices = int | Iterable[int] | None
 
@@ -29,11 +29,9 @@ class AcrobotVecEnv(VecEnv):
     environment's info has ``"terminal_observation"`` and ``"TimeLimit.truncated"``.
     Stable-Baselines3's ``VecMonitor`` logs the returns of episodes.
 
-    >>> import gymnasium as gym
     >>> import acrobot_rs
     >>> from acrobot_rs.sb3 import AcrobotVecEnv
-    >>> gym.register_envs(acrobot_rs)
-    >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=64, autoreset_mode="SameStep")
+    >>> envs = acrobot_rs.AcrobotVectorEnv(num_envs=64, autoreset_mode="SameStep")
     >>> AcrobotVecEnv(envs).reset().shape
     (64, 6)
     """
@@ -59,16 +57,11 @@ class AcrobotVecEnv(VecEnv):
         return observations
 
     def step_async(self, actions: NDArray[Any]) -> None:
-        """Keep the actions. :meth:`step_wait` steps."""
         self._actions = actions
 
     def step_wait(
         self,
     ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_], list[dict[str, Any]]]:
-        """Step, and reset the environments whose episode ends.
-
-        Returns observations, rewards, whether the episodes ended, and an info for each environment.
-        """
         if self._actions is None:
             raise NoAsyncCallError("call step_async with the actions before each step_wait", "step")
         actions, self._actions = self._actions, None
@@ -78,16 +71,14 @@ class AcrobotVecEnv(VecEnv):
         observations, rewards, terminated, truncated, infos = self.envs.step(actions)
         ended = terminated | truncated
         each: list[dict[str, Any]] = [
-            {"TimeLimit.truncated": False, **{name: parameters[name][index] for name in names}}
-            for index in range(self.num_envs)
+            {"TimeLimit.truncated": only, **{name: parameters[name][index] for name in names}}
+            for index, only in enumerate((truncated & ~terminated).tolist())
         ]
         for index in np.flatnonzero(ended):
-            each[index]["TimeLimit.truncated"] = bool(truncated[index] and not terminated[index])
             each[index]["terminal_observation"] = infos["final_obs"][index]
         return observations, rewards.astype(np.float32, copy=False), ended, each
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
-        """The value of an attribute for each of these. See :meth:`NativeVectorEnv.call`."""
         return self.env_method(attr_name, indices=indices)
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
@@ -121,13 +112,10 @@ class AcrobotVecEnv(VecEnv):
     def env_is_wrapped(
         self, wrapper_class: type[gymnasium.Wrapper], indices: Indices = None
     ) -> list[bool]:
-        """``False`` for each of these environments: they have no wrappers."""
-        return [False for _ in self._get_indices(indices)]
+        return [False for _ in self._get_indices(indices)]  # they have no wrappers
 
     def get_images(self) -> Sequence[NDArray[np.uint8] | str | None]:
-        """A picture of each environment, which ``render`` joins."""
         return self.envs.render() or [None] * self.num_envs
 
     def close(self) -> None:
-        """Close the environments."""
         self.envs.close()

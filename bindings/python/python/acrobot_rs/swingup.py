@@ -116,17 +116,12 @@ class AcrobotSwingupSparseEnv(AcrobotSwingupEnv):
 class AcrobotSwingupVectorEnv(
     Swingup, AcrobotContinuousVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]
 ):
-    """Many :class:`AcrobotSwingupEnv`, bit-identical on every machine.
+    """Many :class:`AcrobotSwingupEnv`, with actions of shape ``(num_envs, 1)``.
 
-    They are computed in ``float32``, or with ``float64=True`` in ``float64``.
+    All else is as in :class:`acrobot_rs.AcrobotVectorEnv`, without ``gymnasium_episodes``.
 
-    Actions have the shape ``(num_envs, 1)``. All else is as in
-    :class:`acrobot_rs.AcrobotVectorEnv`, without ``gymnasium_episodes``.
-
-    >>> import gymnasium as gym
     >>> import acrobot_rs
-    >>> gym.register_envs(acrobot_rs)
-    >>> envs = gym.make_vec("acrobot_rs/AcrobotSwingup-v0", num_envs=1024, FRICTION_1=0.1)
+    >>> envs = acrobot_rs.AcrobotSwingupVectorEnv(num_envs=1024, FRICTION_1=0.1)
     >>> envs.reset(seed=42)[0].shape
     (1024, 6)
     """

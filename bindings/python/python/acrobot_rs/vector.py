@@ -41,10 +41,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
     which each reset draws. Reading it gives what was set, and :meth:`get_parameter` what each
     environment has.
 
-    >>> import gymnasium as gym
     >>> import acrobot_rs
-    >>> gym.register_envs(acrobot_rs)
-    >>> envs = gym.make_vec("acrobot_rs/Acrobot-v1", num_envs=1024, autoreset_mode="SameStep")
+    >>> envs = acrobot_rs.AcrobotVectorEnv(num_envs=1024, autoreset_mode="SameStep")
     >>> envs.reset(seed=42)[0].shape
     (1024, 6)
     """
@@ -77,15 +75,13 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             max_episode_steps: The steps after which an episode is truncated. ``None``: no limit.
             render_mode: ``None``, ``"rgb_array"`` or ``"ansi"``.
             autoreset_mode: ``NextStep``: the step after an episode's end resets, ignores its action
-                and returns a reward of 0. ``SameStep``: the step that ends an episode also resets,
-                and ``infos["final_obs"]`` has the episode's last observation. ``Disabled``: an
-                environment whose episode has ended must be reset before the next step.
+                and returns a reward of 0. ``SameStep``: the step that ends an episode also resets.
+                ``Disabled``: an ended environment must be reset before the next step.
             copy: Whether each call returns observations in a new array, not in the same one.
             gymnasium_episodes: Whether to play the episodes of Gymnasium's ``Acrobot-v1`` in
                 ``SyncVectorEnv``, bit-identical where those of :class:`acrobot_rs.AcrobotEnv` are.
             threads: The threads that compute a step; ``None``: as many as the process has cores.
-                They change no bit, and help above 16,384 environments, or 1,024 in
-                ``float64``.
+                They help above 16,384 environments, or 1,024 in ``float64``.
             info_parameters: Parameters that ``infos`` have, as arrays from :meth:`get_parameter`.
             float64: Whether to compute in ``float64``, with correctly rounded sines. Steps take
                 longer.
@@ -133,8 +129,10 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         self.max_episode_steps = max_episode_steps
         self.copy = copy
         self.info_parameters = tuple(info_parameters)
+        #: The array that all calls return, or ``None`` if each returns a new one.
         self._observations = None if copy else self._empty()
         self._same_step = mode is AutoresetMode.SAME_STEP
+        #: Without autoreset: the environments that must be reset before the next step.
         self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
         super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
@@ -180,15 +178,9 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
 
 
 class AcrobotContinuousVectorEnv(AcrobotVectorEnv, VectorEnv[Floats, NDArray[Any], np.ndarray]):
-    """As :class:`AcrobotVectorEnv`, but the actions are torques, N m: ``(num_envs, 1)`` floats.
+    """:class:`AcrobotVectorEnv` with the actions of :class:`acrobot_rs.AcrobotContinuousEnv`.
 
-    The bounds of the action space are the smallest and the largest of ``AVAIL_TORQUE``. A torque
-    beyond acts as the nearest bound.
-
-    >>> import acrobot_rs
-    >>> envs = acrobot_rs.AcrobotContinuousVectorEnv(num_envs=1024)
-    >>> envs.action_space.shape
-    (1024, 1)
+    They have the shape ``(num_envs, 1)``.
     """
 
     _CONTINUOUS = True
