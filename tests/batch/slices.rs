@@ -10,7 +10,6 @@ use common::twins::{LEVELS, MODES};
 
 type Small = Batch<Fast, ([Block; 1], [Pcg64; 3])>;
 
-/// A batch without a heap.
 fn small() -> Small {
     Batch::new(1, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 3])).unwrap()
 }
@@ -59,8 +58,8 @@ fn rejections(
     let [rewards, terminated, truncated, rows, finals] = lengths;
     std::array::from_fn(|kind| {
         let mut rewards = vec![9.0; rewards];
-        let mut ends = [vec![true; terminated], vec![true; truncated]];
-        let mut rows = [vec![[9.0; 6]; rows], vec![[9.0; 6]; finals]];
+        let mut ends = [terminated, truncated].map(|len| vec![true; len]);
+        let mut rows = [rows, finals].map(|len| vec![[9.0; 6]; len]);
         let [terminated, truncated] = &mut ends;
         let [observations, finals] = &mut rows;
         let buffers = StepBuffers::new(&mut rewards, terminated, truncated)
@@ -120,15 +119,10 @@ fn rejected_changes_change_nothing() {
     let range = common::params_range::<Fast>(Dynamics::Book);
     let shared = "a batch must have memory for the parameters of each acrobot";
     let mut rows = [[9.0; 6]; 4];
+    let masked = |batch: &mut Small, mask: &[_]| batch.reset_masked(mask, ResetOptions::default());
     for (result, message) in [
-        (
-            batch.reset_masked(&[true; 2], ResetOptions::default()),
-            "mask must have 3 elements, got 2",
-        ),
-        (
-            batch.reset_masked(&[true; 4], ResetOptions::default()),
-            "mask must have 3 elements, got 4",
-        ),
+        (masked(&mut batch, &[true; 2]), "mask must have 3 elements, got 2"),
+        (masked(&mut batch, &[true; 4]), "mask must have 3 elements, got 4"),
         (batch.reset_to(&[State::default(); 2]), "states must have 3 elements, got 2"),
         (
             batch.reset_to(&[State::default(), State::default(), NAN]),

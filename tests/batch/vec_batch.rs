@@ -1,35 +1,9 @@
-//! The batch that owns its memory: its results, and another batch in its place.
+//! The batch that owns its memory: another batch in its place, and members of one in another.
 
-use acrobot::batch::{Autoreset, Batch, Block, StepBuffers, VecBatch};
+use acrobot::batch::{Autoreset, Batch, Block, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
 use acrobot::{Error, Fast, Params, ResetOptions};
-
-#[test]
-fn a_batch_in_vecs_equals_one_in_arrays() {
-    let mut owning = VecBatch::<Fast>::new(SeedSequence::new(9), 20).unwrap();
-    let mut arrays = Batch::<Fast, _>::new(9, ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20])).unwrap();
-    let (mut rewards, mut terminated, mut truncated) = ([0.0; 20], [false; 20], [false; 20]);
-    let (mut observations, mut final_observations) = ([[0.0; 6]; 20], [[0.0; 6]; 20]);
-    owning.set_limit(5.try_into().unwrap());
-    owning.set_autoreset(Autoreset::SameStep);
-    arrays.set_limit(5.try_into().unwrap());
-    arrays.set_autoreset(Autoreset::SameStep);
-    assert_eq!(owning.reset_with_seed(7).len(), 20);
-    arrays.reset_with_seed(7);
-    for _ in 0..30 {
-        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-            .with_observations(&mut observations)
-            .with_final_observations(&mut final_observations);
-        arrays.step(&[2_u8; 20], buffers).unwrap();
-        let results = owning.step(&[2_u8; 20]).unwrap();
-        assert_eq!(results.rewards, rewards);
-        assert_eq!(results.terminated, terminated);
-        assert_eq!(results.truncated, truncated);
-        assert_eq!(results.observations, observations);
-        assert_eq!(results.final_observations, final_observations);
-    }
-}
 
 /// `DerefMut` gives access to the batch inside, so a batch of another length can replace it.
 #[test]
