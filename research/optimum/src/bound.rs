@@ -167,7 +167,6 @@ impl Bound {
     }
 }
 
-/// Proves the statement for all states.
 pub fn prove() -> anyhow::Result<()> {
     /// Parts in each dimension.
     const PARTS: u32 = 16;

@@ -182,7 +182,6 @@ fn products(a: [f64; 4], b: [f64; 4]) -> [f64; 10] {
     })
 }
 
-/// A constant.
 impl From<f64> for TaylorModel {
     fn from(constant: f64) -> Self {
         Self { constant, size: 1.0 + constant.abs(), ..Self::ZERO }
