@@ -64,7 +64,6 @@ fn frames_equal_gymnasiums() {
             .count();
         worst = worst.min(close as f64 / (SIDE * SIDE) as f64);
     }
-    println!("worst {worst}");
     assert!(worst >= LEAST_SHARE, "{worst}");
 }
 

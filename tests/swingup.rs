@@ -56,7 +56,6 @@ fn steps_observations_and_rewards_are_dm_controls() {
         (errors::<SwingupSparse<Reference>>(SPARSE), 1e-12),
         (errors::<SwingupSparse<Fast>>(SPARSE), 5e-6),
     ] {
-        println!("{state:e} {observation:e} {reward:e}");
         assert!(state < limit, "{state:e}");
         // Observations and rewards are `f32`.
         assert!(observation < limit + 1e-6, "{observation:e}");

@@ -8,18 +8,15 @@ use acrobot::{Error, Fast, Params, ResetOptions};
 /// `DerefMut` gives access to the batch inside, so a batch of another length can replace it.
 #[test]
 fn replaced_batches_of_other_lengths_have_their_own_results() {
-    const LENGTHS: [usize; 2] = [5, 40];
-    let mut batches =
-        LENGTHS.map(|len| VecBatch::<Fast>::new(SeedSequence::new(len as u64), len).unwrap());
-    for batch in &mut batches {
+    let new = |len| {
+        let mut batch = VecBatch::<Fast>::new(SeedSequence::new(len as u64), len).unwrap();
         batch.set_limit(3.try_into().unwrap());
         batch.set_autoreset(Autoreset::SameStep);
-    }
-    let mut expected = batches.clone();
-    expected.reverse();
-    let [first, second] = &mut batches;
-    std::mem::swap::<Batch<_, _, _>>(first, second);
-    for (swapped, expected) in batches.iter_mut().zip(&mut expected) {
+        batch
+    };
+    let (mut first, mut second) = (new(5), new(40));
+    std::mem::swap::<Batch<_, _, _>>(&mut first, &mut second);
+    for (swapped, expected) in [(&mut first, &mut new(40)), (&mut second, &mut new(5))] {
         let len = expected.len();
         assert_eq!(swapped.observations(), expected.observations());
         let mask: Vec<bool> = (0..len).map(|i| i % 2 == 0).collect();
@@ -36,7 +33,6 @@ fn replaced_batches_of_other_lengths_have_their_own_results() {
         }
     }
 
-    let [mut first, second] = batches;
     let shorter = (vec![Block::EMPTY], vec![Pcg64::UNSEEDED; 2], vec![]);
     let shorter = Batch::new(3, shorter).unwrap();
     assert_eq!(std::mem::replace(&mut *first, shorter).len(), 40);

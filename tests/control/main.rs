@@ -79,7 +79,6 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
             *worst = worst.max(relative(&found, expected));
         }
     }
-    println!("{}, cases from {first}: {worst:?}", A::NAME);
     worst
 }
 

@@ -41,7 +41,6 @@ fn gains_equal_scipys() {
     assert_eq!(lines(&text, "lqr").count(), 32);
     for x in lines(&text, "lqr").map(numbers) {
         let (double, single) = (errors::<f64>(&x), errors::<f32>(&x));
-        println!("{:.2} rad, {} s, R {}: f64 {double:?}, f32 {single:?}", x[0], x[1], x[38]);
         assert!(double.into_iter().all(|error| error < 1e-11), "{double:?}");
         // The elements of A are rounded to 6e-8, and those that matter are about dt.
         let limit = if x[1] < 0.01 { 5e-3 } else { 1e-3 };
