@@ -1,19 +1,18 @@
 //! Promise 1, Gymnasium's numbers: the error of its integration against that of `data/truth.py`.
 
-use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::{Fast, Params, Portable, State};
-use common::{assert_says, distance, dynamics_of};
+use common::{assert_says, distance, dynamics_of, lines, numbers};
 
 /// A run under torques that last 0.2 s each.
 struct Run {
     dynamics: Dynamics,
     start: &'static str,
     state: State,
-    torques: &'static [f64],
+    torques: Vec<f64>,
     after: Vec<Row>,
 }
 
@@ -25,37 +24,29 @@ struct Row {
 }
 
 static RUNS: LazyLock<Vec<Run>> = LazyLock::new(|| {
-    let state = |words: &[&str]| {
-        State::from(std::array::from_fn(|i| {
-            f64::from_bits(u64::from_str_radix(words[i], 16).unwrap())
-        }))
-    };
-    let mut torques = HashMap::new();
-    let mut runs: Vec<Run> = Vec::new();
-    for line in include_str!("data/truth.txt").lines() {
-        let words: Vec<&str> = line.split(' ').collect();
-        match words[0] {
-            "#" => {}
-            "torques" => {
-                let numbers: Vec<f64> = words[2..].iter().map(|n| n.parse().unwrap()).collect();
-                torques.insert(words[1], &*numbers.leak());
-            }
-            "start" => runs.push(Run {
-                dynamics: dynamics_of(words[1]),
-                start: words[2],
-                state: state(&words[4..]),
-                torques: torques[words[3]],
-                after: Vec::new(),
-            }),
-            "after" => runs.last_mut().unwrap().after.push(Row {
-                seconds: words[1].parse().unwrap(),
-                state: state(&words[2..]),
-                uncertainty: words[6].parse().unwrap(),
-            }),
-            name => panic!("unknown row {name}"),
+    let text = include_str!("data/truth.txt");
+    let number = |bits| f64::from_bits(u64::from_str_radix(bits, 16).unwrap());
+    let state = |words: &[&str]| State::from(std::array::from_fn(|i| number(words[i])));
+    let runs = text.split("\nstart ").skip(1).map(|run| {
+        let mut rows = run.lines().map(|line| line.split(' ').collect::<Vec<_>>());
+        let start = rows.next().unwrap();
+        let mut torques = lines(text, "torques");
+        let torques = torques.find_map(|line| line.strip_prefix(start[2])).unwrap();
+        Run {
+            dynamics: dynamics_of(start[0]),
+            start: start[1],
+            torques: numbers(torques.trim_start()),
+            state: state(&start[3..]),
+            after: rows
+                .map(|row| Row {
+                    seconds: row[1].parse().unwrap(),
+                    state: state(&row[2..]),
+                    uncertainty: row[6].parse().unwrap(),
+                })
+                .collect(),
         }
-    }
-    runs
+    });
+    runs.collect()
 });
 
 impl Run {
@@ -86,7 +77,7 @@ impl Run {
         let mut pendulum = self.pendulum::<A>(parts);
         let mut errors = Vec::new();
         let mut rows = self.after.iter().peekable();
-        for (held, &torque) in (1..).zip(self.torques) {
+        for (held, &torque) in (1..).zip(&self.torques) {
             for _ in 0..parts {
                 pendulum.step(Real::from_f64(torque)).unwrap();
             }

@@ -27,18 +27,15 @@ fn settings_are_returned_as_set() {
     let params = Params { dt: 0.1, ..Params::DEFAULT };
     batch.set_params(params).unwrap();
     assert_eq!(batch.params_of(0), Some(params));
-    for level in LEVELS {
-        batch.set_simd_level(level);
-        assert_eq!(batch.simd_level(), level);
-    }
     let bounds = ResetBounds::new(1.0, 2.0).unwrap();
     batch.set_reset_bounds(bounds);
     assert_eq!(batch.reset_bounds(), bounds);
     batch.set_limit(NonZeroU32::MIN);
     assert_eq!(batch.limit(), NonZeroU32::MIN);
-    for autoreset in MODES {
+    for (level, autoreset) in LEVELS.into_iter().zip(MODES) {
+        batch.set_simd_level(level);
         batch.set_autoreset(autoreset);
-        assert_eq!(batch.autoreset(), autoreset);
+        assert_eq!((batch.simd_level(), batch.autoreset()), (level, autoreset));
     }
 }
 

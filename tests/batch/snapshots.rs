@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
-use acrobot::{Acrobot, Action, Fast, Params, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params};
 use common::params_range;
 use common::twins::{MODES, Twins};
 use serde::Serialize;
@@ -30,15 +30,16 @@ fn running(kind: Kind, autoreset: Autoreset, noise: f32) -> Twins<Fast> {
     let mut twins = Twins::new(LEN, kind != Kind::Shared, autoreset);
     let limit = 150.try_into().unwrap();
     twins.batch.set_limit(limit);
-    for alone in &mut twins.alone {
-        *alone = TimeLimit::new(alone.inner().clone(), limit);
-    }
+    twins.alone.iter_mut().for_each(|alone| alone.set_limit(limit));
     match kind {
         Kind::Shared => twins.set_params(draw()),
         Kind::Own => {
-            let mut params = [(); LEN].map(|()| draw());
-            params[0].gravity = -0.0;
-            twins.set_params_of_each(&params);
+            for (i, alone) in twins.alone.iter_mut().enumerate() {
+                let drawn = draw();
+                let params = if i == 0 { Params { gravity: -0.0, ..drawn } } else { drawn };
+                twins.batch.set_params_of(i, params).unwrap();
+                alone.set_params(params).unwrap();
+            }
         }
         Kind::Drawn => twins.batch.set_params_range(Some(range)).unwrap(),
     }

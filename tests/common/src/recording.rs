@@ -144,29 +144,34 @@ fn f64s(bytes: &[u8]) -> Vec<f64> {
     words.map(|x| f64::from_le_bytes(*x)).collect()
 }
 
-/// A single recorded step, from a state anywhere within the bounds.
-pub struct RecordedStep {
-    pub params: Params,
-    pub state: State,
-    pub action: Action,
-    pub next: State,
-}
-
-pub fn recorded_steps() -> Vec<RecordedStep> {
-    let numbers = f64s(&read("tests/data/steps.bin"));
-    let (records, rest) = numbers.as_chunks();
-    assert!(rest.is_empty());
-    records.iter().map(read_step).collect()
-}
-
-fn read_step(record: &[f64; 23]) -> RecordedStep {
-    let [length1, length2, mass1, mass2, center_of_mass1, center_of_mass2, inertia1, rest @ ..] =
-        *record;
-    let [dt, max_velocity1, max_velocity2, rest @ ..] = rest;
-    let [torque0, torque1, torque2, dynamics, rest @ ..] = rest;
-    let [theta1, theta2, dtheta1, dtheta2, action, next @ ..] = rest;
-    RecordedStep {
-        params: Params {
+/// Takes each step of the episodes from its recorded state, and then each of the single steps with
+/// other parameters. Calls `check` with a name of the step, the state before it, the state that it
+/// reached, and the recorded one.
+pub fn take_recorded_steps<A: Arithmetic>(
+    mut check: impl FnMut(String, State, State<A::Scalar>, State),
+) {
+    let mut take = |name, acrobot: &mut Acrobot<A>, state: State, action, next| {
+        acrobot.set_state(state.cast()).unwrap();
+        acrobot.step(action);
+        check(name, state, acrobot.state(), next);
+    };
+    for (number, episode) in RECORDING.episodes.iter().enumerate() {
+        let mut acrobot = episode.start();
+        for (i, &action) in episode.actions.iter().enumerate() {
+            let name = format!("step {} of episode {number}", i + 1);
+            take(name, &mut acrobot, episode.states[i], action, episode.states[i + 1]);
+        }
+    }
+    let singles = f64s(&read("tests/data/steps.bin"));
+    let (singles, rest) = singles.as_chunks::<23>();
+    assert!(rest.is_empty() && singles.len() == 2600);
+    for (number, single) in singles.iter().enumerate() {
+        let [length1, length2, mass1, mass2, rest @ ..] = *single;
+        let [center_of_mass1, center_of_mass2, inertia1, dt, rest @ ..] = rest;
+        let [max_velocity1, max_velocity2, rest @ ..] = rest;
+        let [torque0, torque1, torque2, dynamics, rest @ ..] = rest;
+        let [theta1, theta2, dtheta1, dtheta2, action, next @ ..] = rest;
+        let params = Params {
             length1,
             length2,
             mass1,
@@ -181,9 +186,10 @@ fn read_step(record: &[f64; 23]) -> RecordedStep {
             torques: [torque0, torque1, torque2],
             dynamics: [Dynamics::Book, Dynamics::Nips][dynamics as usize],
             ..Params::DEFAULT
-        },
-        state: State { theta1, theta2, dtheta1, dtheta2 },
-        action: Action::try_from(action as u8).unwrap(),
-        next: next.into(),
+        };
+        let mut acrobot = Acrobot::with_params(0, params.cast()).unwrap();
+        let state = State { theta1, theta2, dtheta1, dtheta2 };
+        let action = Action::try_from(action as u8).unwrap();
+        take(format!("single step {number}"), &mut acrobot, state, action, next.into());
     }
 }

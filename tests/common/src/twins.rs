@@ -39,14 +39,6 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.assert_equal();
     }
 
-    pub fn set_params_of_each(&mut self, params: &[Params<A::Scalar>]) {
-        for (i, alone) in self.alone.iter_mut().enumerate() {
-            self.batch.set_params_of(i, params[i]).unwrap();
-            alone.set_params(params[i]).unwrap();
-        }
-        self.assert_equal();
-    }
-
     /// Resets all acrobots, or those of a mask.
     pub fn reset(&mut self, mask: Option<&[bool]>, options: ResetOptions) {
         let rows = match mask {

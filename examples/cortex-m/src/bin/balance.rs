@@ -5,9 +5,9 @@
 //!
 //! For each motor it plans once, from hanging at rest, with less torque than the motor has. Each
 //! acrobot follows the plan, and then a regulator holds it. One that falls swings up without a
-//! plan. Prints one figure a line, `torque figure value`, with `in_time` as the torque for the first
-//! 5; `figures.py` explains each. It fails if a tick misses its deadline, and if the plan for 1 N m
-//! is not bit-identical to that of a desktop.
+//! plan. Prints one figure a line, `torque figure value`, with `in_time` as the torque for the
+//! first 5; `figures.py` explains each. It fails if a tick misses its deadline, and if the plan for
+//! 1 N m is not bit-identical to that of a desktop.
 
 #![no_std]
 #![no_main]

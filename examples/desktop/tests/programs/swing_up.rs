@@ -39,7 +39,6 @@ fn swing_up_learns_the_same_from_the_same_seed() {
     assert!(folder.read("again") == one.1);
 }
 
-/// Learning must improve on the untrained policy, torque against θ̇1, by more than chance.
 #[test]
 fn swing_up_is_better_than_torque_against_the_velocity() {
     let folder = Folder::new("baseline");
@@ -51,9 +50,8 @@ fn swing_up_is_better_than_torque_against_the_velocity() {
         numbers.collect::<Vec<f64>>().try_into().unwrap()
     };
     let [learnt, against, random] = ["learnt", "torque against θ̇1", "random"].map(row);
-    // Three standard errors of the difference, with 1,000 episodes each.
-    let chance = 3.0 * ((learnt[1] * learnt[1] + against[1] * against[1]) / 1000.0).sqrt();
-    assert!(learnt[0] - against[0] > chance, "{output}");
+    // Far more than three standard errors, 3, of the means of 1,000 episodes.
+    assert!(learnt[0] - against[0] > 10.0, "{output}");
     assert_eq!([learnt[2], against[2]], [0.0, 0.0], "{output}");
     assert!(random[0] < -490.0 && random[2] > 900.0, "{output}");
 

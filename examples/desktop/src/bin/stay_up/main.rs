@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The planner, of `crates/controller`, plans before the acrobot moves. Prints the mean return of
-//! episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or how
-//! many of Gymnasium's initial states end upright.
+//! episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or
+//! how many of Gymnasium's initial states end upright.
 
 mod observer;
 mod replan;

@@ -9,8 +9,8 @@
 //! With `--quiet` it prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the
 //! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better. R and S are
 //! the mean and standard deviation of 1,000 greedy episodes from initial states that it was not
-//! trained on, and K of these missed the goal. The time of learning goes to stderr. With `--evaluate
-//! N` a line `steps M greedy_mean R` for every N steps comes before.
+//! trained on, and K of these missed the goal. The time of learning goes to stderr. With
+//! `--evaluate N` a line `steps M greedy_mean R` for every N steps comes before.
 //!
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into
 //! torque against θ̇1. This is the baseline.
