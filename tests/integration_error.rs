@@ -25,7 +25,7 @@ struct Row {
 
 static RUNS: LazyLock<Vec<Run>> = LazyLock::new(|| {
     let text = include_str!("data/truth.txt");
-    let number = |bits| f64::from_bits(u64::from_str_radix(bits, 16).unwrap());
+    let number = |bits: &str| f64::from_bits(u64::from_str_radix(bits, 16).unwrap());
     let state = |words: &[&str]| State::from(std::array::from_fn(|i| number(words[i])));
     let runs = text.split("\nstart ").skip(1).map(|run| {
         let mut rows = run.lines().map(|line| line.split(' ').collect::<Vec<_>>());

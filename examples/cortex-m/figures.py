@@ -45,8 +45,7 @@ ROWS = {
     "size": "RAM of an `Acrobot`, bytes",
     "stack": "stack of a step, bytes",
     "learn": "instructions per step of training",
-    "training": "training until the mean return of 100 episodes is −100, millions of "
-    "instructions",
+    "training": "training until the mean return of 100 episodes is −100, millions of instructions",
     "milliseconds": "time of this training at 168 MHz, estimated, ms",
     "decision": "instructions per decision of a perceptron with 64 and 64 units",
     "decision_ram": "RAM of the whole firmware that plays this perceptron, bytes",
