@@ -10,7 +10,7 @@ use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::{Dynamics, ParamsRange};
-use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -94,6 +94,14 @@ fn load<T: Snapshot>(bytes: &[u8]) {
     }
 }
 
+/// Angles and velocities are within their bounds, so none is NaN.
+fn assert_settled<S: Real>(state: State<S>, params: &Params<S>) {
+    let limits = [S::PI, S::PI, params.max_velocity1, params.max_velocity2];
+    for (x, limit) in <[S; 4]>::from(state).into_iter().zip(limits) {
+        assert!(-limit <= x && x <= limit, "{state:?}");
+    }
+}
+
 impl<A: Arithmetic> Snapshot for Acrobot<A> {
     fn sample() -> Self {
         let mut acrobot = Acrobot::new(42);
@@ -108,8 +116,12 @@ impl<A: Arithmetic> Snapshot for Acrobot<A> {
         assert!(self == self.clone());
         assert!(self.params().validate().is_ok() && self.state().validate().is_ok());
         for action in Action::ALL {
-            self.step(action);
-            assert!(self.state().validate().is_ok());
+            let step = self.step(action);
+            assert_settled(self.state(), self.params());
+            let [sines @ .., dtheta1, dtheta2] = step.observation.to_array();
+            assert!(sines.iter().all(|x| x.abs() <= 1.0), "{step:?}");
+            assert!(!dtheta1.is_nan() && !dtheta2.is_nan(), "{step:?}");
+            assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
         }
         self.reset();
         assert!(self.state().validate().is_ok());
@@ -146,14 +158,17 @@ impl<A: Arithmetic> Snapshot for Member<A> {
     }
 
     fn check(self) -> bool {
+        use Autoreset::{Disabled, NextStep, SameStep};
+
         let has_friction = self.params.friction != Params::DEFAULT.friction;
         let valid = self.state.validate().is_ok()
             && self.params.validate().is_ok()
             && (A::HAS_FRICTION || !has_friction);
-        for autoreset in [Autoreset::NextStep, Autoreset::SameStep, Autoreset::Disabled] {
+        for autoreset in [NextStep, SameStep, Disabled] {
             let seed = SeedSequence::new(0);
             let mut batch = VecBatch::<A>::with_own_params(seed, 1).expect("memory for one");
             batch.set_autoreset(autoreset);
+            batch.set_limit(NonZeroU32::MAX);
             assert_eq!(batch.set_member(0, self.clone()).is_ok(), valid);
             assert_steps(&mut batch);
         }
@@ -162,10 +177,14 @@ impl<A: Arithmetic> Snapshot for Member<A> {
 }
 
 fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, N>) {
+    let pending: Vec<_> = (0..batch.len()).map(|i| batch.member(i)).collect();
     assert!(batch.step(&vec![2_u8; batch.len()]).is_ok());
-    for index in 0..batch.len() {
+    for (index, before) in pending.into_iter().enumerate() {
         let member = batch.member(index).expect("it has as many");
         assert!(member.state.validate().is_ok() && member.params.validate().is_ok());
+        if !before.is_some_and(|before| before.reset_pending) && member.elapsed > 0 {
+            assert_settled(member.state, &member.params);
+        }
     }
 }
 
@@ -173,11 +192,13 @@ fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, N>) {
 impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, N> {
     fn sample() -> Self {
         let seed = SeedSequence::new(42);
+        let low = Params::<A::Scalar>::default();
+        let mut high = low;
+        high.torque_noise = A::Scalar::from_f64(0.5);
         let batch = if N < 4 {
+            let range = ParamsRange::new(low, high);
             VecBatch::with_own_params(seed, 4).and_then(|mut batch: Self| {
-                let low = Params::<A::Scalar>::default();
-                let high = Params { torque_noise: A::Scalar::from_f64(0.5), ..low };
-                batch.set_params_range(Some(ParamsRange::new(low, high)?))?;
+                batch.set_params_range(Some(range?))?;
                 batch.reset();
                 Ok(batch)
             })
