@@ -110,15 +110,12 @@ fn reset_with_takes_a_seed_and_bounds() {
     let bounds = ResetBounds::new(-3.0, 5.0).unwrap();
     let mut acrobot = TimeLimit::v1(Acrobot::<Fast>::new(0));
     let new = TimeLimit::v1(Acrobot::new(7));
-    type Reset = fn(&mut TimeLimit<Acrobot<Fast>>) -> Observation;
-    let resets: [Reset; 3] = [
-        |acrobot| acrobot.reset_with_seed(7),
-        |acrobot| acrobot.reset_with(7.into()),
-        |acrobot| acrobot.reset_with(SeedSequence::new(7).into()),
-    ];
-    for reset in resets {
+    acrobot.step(Action::Zero);
+    assert_eq!(acrobot.reset_with_seed(7), new.observation());
+    assert_eq!(acrobot, new);
+    for options in [ResetOptions::from(7), SeedSequence::new(7).into()] {
         acrobot.step(Action::Zero);
-        assert_eq!(reset(&mut acrobot), new.observation());
+        assert_eq!(acrobot.reset_with(options), new.observation());
         assert_eq!(acrobot, new);
     }
 
@@ -139,7 +136,6 @@ fn reset_with_takes_a_seed_and_bounds() {
     assert_eq!(acrobot, expected, "without a seed the stream continues");
 }
 
-/// Every bit of a state, an observation, a reward and an end.
 fn bits_of<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) -> ([u64; 4], [u64; 6], u32, bool) {
     (
         bits(acrobot.state()),
@@ -223,15 +219,14 @@ fn both_observations_show_the_state() {
     let (sin2, cos2) = Portable::sin_cos(-2.0);
     let seen = acrobot.observation();
     assert_eq!(seen.to_array(), [cos1, sin1, cos2, sin2, 3.0, -4.0].map(|x| x as f32));
-    let [sines, velocities] = [
-        [seen.cos_theta1(), seen.sin_theta1(), seen.cos_theta2()],
-        [seen.sin_theta2(), seen.dtheta1(), seen.dtheta2()],
-    ];
-    assert_eq!([sines, velocities].concat(), seen.as_ref());
+    let [link1, link2] =
+        [[seen.cos_theta1(), seen.sin_theta1()], [seen.cos_theta2(), seen.sin_theta2()]];
+    assert_eq!([link1, link2, [seen.dtheta1(), seen.dtheta2()]].as_flattened(), seen.as_ref());
     let angles = Observation::<4>::from(acrobot.state());
     assert_eq!(angles.to_array(), [0.5, -2.0, 3.0, -4.0]);
-    assert_eq!([angles.theta1(), angles.theta2()], [0.5, -2.0]);
-    assert_eq!([angles.dtheta1(), angles.dtheta2()], [3.0, -4.0]);
+    let [positions, velocities] =
+        [[angles.theta1(), angles.theta2()], [angles.dtheta1(), angles.dtheta2()]];
+    assert_eq!([positions, velocities].as_flattened(), angles.as_ref());
 }
 
 #[test]

@@ -10,36 +10,6 @@ use acrobot::env::{
 use acrobot::{Acrobot, Action, Fast, Observation, ResetOptions, Step, TimeLimit};
 use rand_core::Rng;
 
-/// How an environment can break the contract.
-#[derive(Clone)]
-enum Flaw {
-    /// No flaw: the wrapper itself keeps the contract.
-    None,
-    /// Observations leave their space.
-    Outside,
-    /// The first observation is outside its space.
-    OutsideAtReset,
-    /// A reward is NaN.
-    Reward,
-    /// The first observation depends on the number of resets.
-    Resets(Cell<u32>),
-    /// The seed is ignored.
-    Seed,
-    /// A reset does not restart the time limit's count, so truncation is reported again.
-    Count(Cell<u32>),
-    /// As `Count`, but a reset with a seed restarts the count.
-    Unseeded(Cell<u32>),
-    /// Clones share a count.
-    Shared(Rc<Cell<u32>>),
-    /// Clones share a count that each reset restarts.
-    SharedInEpisode(Rc<Cell<u32>>),
-    /// Rendering moves the acrobot.
-    Render,
-    /// A space does not contain its samples.
-    ObservationSamples,
-    ActionSamples,
-}
-
 /// A space that alters its samples.
 struct Altered<S: Space> {
     space: S,
@@ -61,7 +31,15 @@ impl<S: Space> Space for Altered<S> {
 #[derive(Clone)]
 struct Broken {
     env: TimeLimit<AcrobotEnv<Fast, Observation>>,
-    flaw: Flaw,
+    /// How it breaks the contract: a text of the test below.
+    flaw: &'static str,
+    count: Cell<u32>,
+    shared_count: Rc<Cell<u32>>,
+}
+
+fn increase(count: &Cell<u32>) -> u32 {
+    count.set(count.get() + 1);
+    count.get()
 }
 
 impl Env for Broken {
@@ -72,18 +50,19 @@ impl Env for Broken {
     type Unwrapped = Acrobot<Fast>;
 
     fn reset_with(&mut self, mut options: ResetOptions) -> (Observation, Info) {
-        match &self.flaw {
-            Flaw::Seed => options.seed = None,
-            Flaw::Unseeded(count) if options.seed.is_some() => count.set(0),
-            Flaw::SharedInEpisode(count) => count.set(0),
+        match self.flaw {
+            "the seed is ignored" => options.seed = None,
+            "a reset without a seed does not restart the count" if options.seed.is_some() => {
+                self.count.set(0);
+            }
+            "clones share a count that each reset restarts" => self.shared_count.set(0),
             _ => {}
         }
         let (mut observation, info) = self.env.reset_with(options);
-        match &self.flaw {
-            Flaw::OutsideAtReset => observation.as_mut()[1] = -1.5,
-            Flaw::Resets(count) => {
-                count.set(count.get() + 1);
-                observation.as_mut()[4] = count.get() as f32;
+        match self.flaw {
+            "the first observation is outside" => observation.as_mut()[1] = -1.5,
+            "the first observation depends on the number of resets" => {
+                observation.as_mut()[4] = increase(&self.count) as f32;
             }
             _ => {}
         }
@@ -92,16 +71,15 @@ impl Env for Broken {
 
     fn step(&mut self, action: Action) -> Step<Observation, Info> {
         let mut step = self.env.step(action);
-        match &self.flaw {
-            Flaw::Outside => step.observation.as_mut()[0] += 1.0,
-            Flaw::Reward => step.reward = f32::NAN,
-            Flaw::Count(count) | Flaw::Unseeded(count) => {
-                count.set(count.get() + 1);
-                step.truncated = count.get() >= 500;
+        match self.flaw {
+            "observations are outside" => step.observation.as_mut()[0] += 1.0,
+            "a reward is NaN" => step.reward = f32::NAN,
+            "a reset does not restart the count"
+            | "a reset without a seed does not restart the count" => {
+                step.truncated = increase(&self.count) >= 500;
             }
-            Flaw::Shared(count) | Flaw::SharedInEpisode(count) => {
-                count.set(count.get() + 1);
-                step.reward -= (count.get() % 7) as f32;
+            "clones share a count" | "clones share a count that each reset restarts" => {
+                step.reward -= (increase(&self.shared_count) % 7) as f32;
             }
             _ => {}
         }
@@ -112,7 +90,7 @@ impl Env for Broken {
         Altered {
             space: DiscreteSpace::new(&[Action::Negative, Action::Zero]).unwrap(),
             alter: match self.flaw {
-                Flaw::ActionSamples => |_| Action::Positive,
+                "samples of actions are outside" => |_| Action::Positive,
                 _ => |action| action,
             },
         }
@@ -122,14 +100,16 @@ impl Env for Broken {
         Altered {
             space: self.env.observation_space(),
             alter: match self.flaw {
-                Flaw::ObservationSamples => |seen| seen.to_array().map(|x| x + 60.0).into(),
+                "samples of observations are outside" => {
+                    |seen| seen.to_array().map(|x| x + 60.0).into()
+                }
                 _ => |seen| seen,
             },
         }
     }
 
     fn render(&mut self) -> Result<Rendering, Error> {
-        if matches!(self.flaw, Flaw::Render) {
+        if self.flaw == "rendering moves the acrobot" {
             self.unwrapped_mut().step(Action::Zero);
         }
         Err(Error::NoRenderMode)
@@ -146,26 +126,29 @@ impl Env for Broken {
 
 #[test]
 fn every_violation_is_found() {
-    let check = |flaw| check_env(&Broken { env: TimeLimit::v1(AcrobotEnv::default()), flaw }, 1);
-    assert_eq!(check(Flaw::None), Ok(()));
+    let check = |flaw| {
+        let env = TimeLimit::v1(AcrobotEnv::default());
+        check_env(&Broken { env, flaw, count: Cell::default(), shared_count: Rc::default() }, 1)
+    };
+    assert_eq!(check("none"), Ok(()));
     let in_space = "observations are in the observation space";
     let repeats = "the same seed and actions give the same episode";
     let restarts = "a reset after the end begins a full new episode";
     for (flaw, rule) in [
-        (Flaw::Outside, in_space),
-        (Flaw::OutsideAtReset, in_space),
-        (Flaw::ObservationSamples, in_space),
-        (Flaw::ActionSamples, "the action space contains its samples"),
-        (Flaw::Reward, "rewards are finite"),
-        (Flaw::Seed, repeats),
-        (Flaw::Resets(Cell::default()), repeats),
-        (Flaw::Shared(Rc::default()), repeats),
-        (Flaw::SharedInEpisode(Rc::default()), "a clone behaves like its original"),
-        (Flaw::Count(Cell::default()), restarts),
-        (Flaw::Unseeded(Cell::default()), restarts),
-        (Flaw::Render, "rendering changes nothing"),
+        ("observations are outside", in_space),
+        ("the first observation is outside", in_space),
+        ("samples of observations are outside", in_space),
+        ("samples of actions are outside", "the action space contains its samples"),
+        ("a reward is NaN", "rewards are finite"),
+        ("the seed is ignored", repeats),
+        ("the first observation depends on the number of resets", repeats),
+        ("clones share a count", repeats),
+        ("clones share a count that each reset restarts", "a clone behaves like its original"),
+        ("a reset does not restart the count", restarts),
+        ("a reset without a seed does not restart the count", restarts),
+        ("rendering moves the acrobot", "rendering changes nothing"),
     ] {
-        let violation = check(flaw).expect_err(rule);
+        let violation = check(flaw).expect_err(flaw);
         let Violation { rule: broken, found } = &violation;
         assert_eq!(*broken, rule, "{found}");
         assert!(!found.is_empty());

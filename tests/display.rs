@@ -76,10 +76,8 @@ fn a_display_rejects_frames_from_its_own_function() {
     assert_eq!(next(), Ok(None));
     assert!(next().is_err(), "the sender is dropped");
     assert_eq!(other_frames.try_iter().count(), 1);
-    assert_eq!(
-        Error::DisplayBusy.to_string(),
-        "the function of a display must not render on that display"
-    );
+    let rule = "the function of a display must not render on that display";
+    assert_eq!(Error::DisplayBusy.to_string(), rule);
 }
 
 #[test]

@@ -1,19 +1,18 @@
 //! Promise 1, Gymnasium's numbers: the error of its integration against that of `data/truth.py`.
 
-use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::{Dynamics, Pendulum};
 use acrobot::{Fast, Params, Portable, State};
-use common::{assert_says, distance, dynamics_of};
+use common::{assert_says, distance, dynamics_of, lines, numbers};
 
 /// A run under torques that last 0.2 s each.
 struct Run {
     dynamics: Dynamics,
     start: &'static str,
     state: State,
-    torques: &'static [f64],
+    torques: Vec<f64>,
     after: Vec<Row>,
 }
 
@@ -25,41 +24,33 @@ struct Row {
 }
 
 static RUNS: LazyLock<Vec<Run>> = LazyLock::new(|| {
-    let state = |words: &[&str]| {
-        State::from(std::array::from_fn(|i| {
-            f64::from_bits(u64::from_str_radix(words[i], 16).unwrap())
-        }))
-    };
-    let mut torques = HashMap::new();
-    let mut runs: Vec<Run> = Vec::new();
-    for line in include_str!("data/truth.txt").lines() {
-        let words: Vec<&str> = line.split(' ').collect();
-        match words[0] {
-            "#" => {}
-            "torques" => {
-                let numbers: Vec<f64> = words[2..].iter().map(|n| n.parse().unwrap()).collect();
-                torques.insert(words[1], &*numbers.leak());
-            }
-            "start" => runs.push(Run {
-                dynamics: dynamics_of(words[1]),
-                start: words[2],
-                state: state(&words[4..]),
-                torques: torques[words[3]],
-                after: Vec::new(),
-            }),
-            "after" => runs.last_mut().unwrap().after.push(Row {
-                seconds: words[1].parse().unwrap(),
-                state: state(&words[2..]),
-                uncertainty: words[6].parse().unwrap(),
-            }),
-            name => panic!("unknown row {name}"),
+    let text = include_str!("data/truth.txt");
+    let number = |bits: &str| f64::from_bits(u64::from_str_radix(bits, 16).unwrap());
+    let state = |words: &[&str]| State::from(std::array::from_fn(|i| number(words[i])));
+    let runs = text.split("\nstart ").skip(1).map(|run| {
+        let mut rows = run.lines().map(|line| line.split(' ').collect::<Vec<_>>());
+        let start = rows.next().unwrap();
+        let mut torques = lines(text, "torques");
+        let torques = torques.find_map(|line| line.strip_prefix(start[2])).unwrap();
+        Run {
+            dynamics: dynamics_of(start[0]),
+            start: start[1],
+            torques: numbers(torques.trim_start()),
+            state: state(&start[3..]),
+            after: rows
+                .map(|row| Row {
+                    seconds: row[1].parse().unwrap(),
+                    state: state(&row[2..]),
+                    uncertainty: row[6].parse().unwrap(),
+                })
+                .collect(),
         }
-    }
-    runs
+    });
+    runs.collect()
 });
 
 impl Run {
-    /// The pendulum at the beginning. Its step lasts 0.2 s / `parts`.
+    /// The pendulum at the beginning, with steps of 0.2 s / `parts`.
     fn pendulum<A: Arithmetic>(&self, parts: u32) -> Pendulum<A> {
         let params = Params {
             dt: 0.2 / f64::from(parts),
@@ -75,20 +66,18 @@ impl Run {
     /// The largest change of the energy in 100 s without a torque, J.
     fn drift<A: Arithmetic>(&self, parts: u32) -> f64 {
         let mut pendulum = self.pendulum::<A>(parts);
-        let energy = |pendulum: &Pendulum<A>| pendulum.energy().to_f64();
-        let first = energy(&pendulum);
+        let first = pendulum.energy();
         (0..500 * parts).fold(0.0, |drift: f64, _| {
             pendulum.step(Real::from_f64(0.0)).unwrap();
-            drift.max((energy(&pendulum) - first).abs())
+            drift.max((pendulum.energy().to_f64() - first.to_f64()).abs())
         })
     }
 
-    /// The error at each row.
     fn errors<A: Arithmetic>(&self, parts: u32) -> Vec<f64> {
         let mut pendulum = self.pendulum::<A>(parts);
         let mut errors = Vec::new();
         let mut rows = self.after.iter().peekable();
-        for (held, &torque) in (1..).zip(self.torques) {
+        for (held, &torque) in (1..).zip(&self.torques) {
             for _ in 0..parts {
                 pendulum.step(Real::from_f64(torque)).unwrap();
             }
@@ -110,7 +99,7 @@ fn worst<A: Arithmetic>(dynamics: Dynamics, start: &str, parts: u32) -> Vec<f64>
         .unwrap()
 }
 
-/// The number of steps for each torque of 0.2 s: dt is 0.2, 0.1, 0.05 and 0.01 s.
+/// Steps for each torque of 0.2 s.
 const PARTS: [u32; 4] = [1, 2, 4, 20];
 
 #[test]
@@ -127,9 +116,7 @@ fn errors_are_as_the_docs_say() {
             rows.push(row);
         }
     }
-    let table = rows.join("\n");
-    println!("{table}");
-    assert_says("docs/accuracy.md", &table);
+    assert_says("docs/accuracy.md", &rows.join("\n"));
 }
 
 /// The book's equations keep the energy.
@@ -140,17 +127,12 @@ fn energies_drift_as_the_docs_say() {
         for start in ["rest", "fast"] {
             let run = RUNS.iter().find(|run| run.start == start).unwrap();
             assert_eq!(run.dynamics, Dynamics::Book);
-            row += &format!(
-                " {:.1e} | {:.1e} |",
-                run.drift::<Portable>(parts),
-                run.drift::<Fast>(parts)
-            );
+            let [portable, fast] = [run.drift::<Portable>(parts), run.drift::<Fast>(parts)];
+            row += &format!(" {portable:.1e} | {fast:.1e} |");
         }
         row
     });
-    let table = rows.join("\n");
-    println!("{table}");
-    assert_says("docs/accuracy.md", &table);
+    assert_says("docs/accuracy.md", &rows.join("\n"));
 }
 
 /// The measured errors are therefore those of the method, not of the recorded states.

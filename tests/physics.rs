@@ -1,4 +1,4 @@
-//! The equations of motion are right, in both forms, and so are mass matrix and energy.
+//! The equations of motion are right, in both forms, and so are positions, mass matrix and energy.
 
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
 use acrobot::batch::VecBatch;
@@ -83,10 +83,11 @@ fn the_equations_are_the_inverse_of_newton_and_eulers() {
     }
 }
 
-/// The mass matrix has the torques that accelerations add. The energy is that of both centres of
-/// mass, and half of the velocities times it.
+/// Elbow and tip are at the ends of their links, x to the right and y up. The mass matrix has the
+/// torques that accelerations add. The energy is that of both centres of mass, and half of the
+/// velocities times it.
 #[test]
-fn energies_follow_from_torques_and_positions() {
+fn positions_and_energies_follow_from_states_and_torques() {
     for (params, state, _) in random_cases() {
         let moving = Pendulum::<Portable>::new(params, state).unwrap();
         let at_rest = State { dtheta1: 0.0, dtheta2: 0.0, ..state };
@@ -100,9 +101,16 @@ fn energies_follow_from_torques_and_positions() {
             assert!(relative(rows.map(|row| row[i]), added) <= ROUNDING, "{params:?} {state:?}");
         }
 
-        let [elbow, tip] = resting.positions().map(|[_, up]| up);
-        let center1 = elbow * params.center_of_mass1 / params.length1;
-        let center2 = elbow + (tip - elbow) * params.center_of_mass2 / params.length2;
+        let [(sin1, cos1), (sin_sum, cos_sum)] =
+            [state.theta1, state.theta1 + state.theta2].map(Portable::sin_cos);
+        let elbow = [params.length1 * sin1, -params.length1 * cos1];
+        let tip = [elbow[0] + params.length2 * sin_sum, elbow[1] - params.length2 * cos_sum];
+        let found = resting.positions();
+        assert!(relative(found[0], elbow).max(relative(found[1], tip)) <= ROUNDING, "{found:?}");
+        assert!((resting.tip_height() - tip[1]).abs() <= ROUNDING);
+
+        let center1 = -params.center_of_mass1 * cos1;
+        let center2 = elbow[1] - params.center_of_mass2 * cos_sum;
         let potential = params.gravity * (params.mass1 * center1 + params.mass2 * center2);
         let [momentum1, momentum2] = rows.map(|[x, y]| x * state.dtheta1 + y * state.dtheta2);
         let kinetic = (momentum1 * state.dtheta1 + momentum2 * state.dtheta2) / 2.0;

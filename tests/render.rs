@@ -64,22 +64,22 @@ fn frames_equal_gymnasiums() {
             .count();
         worst = worst.min(close as f64 / (SIDE * SIDE) as f64);
     }
-    println!("worst {worst}");
     assert!(worst >= LEAST_SHARE, "{worst}");
 }
 
-const THEME: Theme<BinaryColor> = Theme::MONOCHROME;
+/// Whether each pixel of a display is lit.
+fn drawn(figure: Figure, top_left: Point, [width, height]: [u32; 2]) -> Vec<bool> {
+    let mut canvas = Canvas::new(top_left, Size::new(width, height));
+    figure.draw(&mut canvas, &Theme::MONOCHROME).unwrap();
+    canvas.pixels.into_iter().map(|pixel| pixel == Some(BinaryColor::On)).collect()
+}
 
 /// The drawing on a 128×64 display, one character for each pixel.
 fn ascii(figure: Figure) -> String {
-    let mut canvas = Canvas::new(Point::zero(), Size::new(128, 64));
-    figure.draw(&mut canvas, &THEME).unwrap();
-    let rows = canvas.pixels.chunks(128).map(|row| {
-        let row: String = row
-            .iter()
-            .map(|pixel| if *pixel == Some(BinaryColor::On) { '#' } else { '.' })
-            .collect();
-        row + "\n"
+    let pixels = drawn(figure, Point::zero(), [128, 64]);
+    let rows = pixels.chunks(128).map(|row| {
+        let row = row.iter().map(|lit| if *lit { '#' } else { '.' });
+        row.collect::<String>() + "\n"
     });
     rows.collect()
 }
@@ -118,14 +118,11 @@ fn a_torque_is_drawn_if_it_is_not_0_and_there_is_room() {
     let still = ascii(figure(0.6, -1.5));
     assert_eq!(ascii(figure(0.6, -1.5).with_torque(0.0)), still);
     assert_eq!(ascii(figure(0.6, -1.5).with_torque(f32::NAN)), still);
-    let drawn = |figure: Figure, height| {
-        let mut canvas = Canvas::new(Point::zero(), Size::new(200, height));
-        figure.draw(&mut canvas, &THEME).unwrap();
-        canvas.pixels
-    };
-    assert_ne!(drawn(figure(0.6, -1.5).with_torque(1.0), 48), drawn(figure(0.6, -1.5), 48));
-    let tiny = |figure| drawn(figure, 47);
-    assert_eq!(tiny(figure(0.6, -1.5).with_torque(1.0)), tiny(figure(0.6, -1.5)));
+    for (height, has_room) in [(48, true), (47, false)] {
+        let [still, pushed] = [figure(0.6, -1.5), figure(0.6, -1.5).with_torque(1.0)]
+            .map(|figure| drawn(figure, Point::zero(), [200, height]));
+        assert_eq!(still != pushed, has_room);
+    }
 }
 
 /// A link too short to see has no direction: only the other link and the joints are drawn.
@@ -133,10 +130,9 @@ fn a_torque_is_drawn_if_it_is_not_0_and_there_is_room() {
 fn a_link_of_almost_no_length_is_not_drawn() {
     // Around the origin floats are dense enough to distinguish the two ends of such a link.
     let columns = |figure: Figure| {
-        let mut canvas = Canvas::new(Point::new(-64, -32), Size::new(128, 64));
-        figure.draw(&mut canvas, &THEME).unwrap();
-        let rows = canvas.pixels.chunks(128).skip(32);
-        let lit = rows.flat_map(|row| (0..128).filter(|&x| row[x] == Some(BinaryColor::On)));
+        let pixels = drawn(figure, Point::new(-64, -32), [128, 64]);
+        let rows = pixels.chunks(128).skip(32);
+        let lit = rows.flat_map(|row| (0..128).filter(|&x| row[x]));
         lit.fold((128, 0), |(first, last), x| (first.min(x), last.max(x)))
     };
     let hanging = columns(figure_of([0.0, 0.0, 1e-300, 1.0]));

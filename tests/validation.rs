@@ -18,10 +18,9 @@ fn errors_name_the_value_and_the_rule() {
         change(&mut params);
         params.validate()
     }
-    fn range(change_low: fn(&mut Params), change_high: fn(&mut Params)) -> Result<(), Error> {
+    fn range(change: fn(&mut Params, &mut Params)) -> Result<(), Error> {
         let [mut low, mut high] = [Params::DEFAULT; 2];
-        change_low(&mut low);
-        change_high(&mut high);
+        change(&mut low, &mut high);
         ParamsRange::new(low, high).map(drop)
     }
     fn bounds(low: f64, high: f64) -> Result<(), Error> {
@@ -37,26 +36,23 @@ fn errors_name_the_value_and_the_rule() {
     let mut members = batch::<35>().unwrap();
     let mut messages = Vec::new();
     for (result, message) in [
+        (params(|p| p.gravity = f64::NAN), "gravity must be a finite number of m/s², got NaN"),
         (
-            params(|params| params.gravity = f64::NAN),
-            "gravity must be a finite number of m/s², got NaN",
-        ),
-        (
-            params(|params| params.torque_noise = -0.5),
+            params(|p| p.torque_noise = -0.5),
             "torque_noise must be finite and at least 0 N m, got -0.5",
         ),
-        (params(|params| params.dt = 0.0), "dt must be finite and above 0 s, got 0"),
+        (params(|p| p.dt = 0.0), "dt must be finite and above 0 s, got 0"),
         (
-            params(|params| params.friction.joint2 = -0.1),
+            params(|p| p.friction.joint2 = -0.1),
             "friction.joint2 must be finite and at least 0 N m s/rad, got -0.1",
         ),
         (
-            params(|params| params.max_velocity2 = f64::INFINITY),
+            params(|p| p.max_velocity2 = f64::INFINITY),
             "max_velocity2 must be from 1.2e-38 to 3.4e38 rad/s, got inf",
         ),
         (
             // Subnormal in `f32`: NEON of 32-bit ARM would take it for 0.
-            params(|params| params.max_velocity1 = 1.1754942e-38),
+            params(|p| p.max_velocity1 = 1.1754942e-38),
             "max_velocity1 must be from 1.2e-38 to 3.4e38 rad/s, \
                 got 0.000000000000000000000000000000000000011754942",
         ),
@@ -74,20 +70,20 @@ fn errors_name_the_value_and_the_rule() {
             "the lower reset bound must not be above the upper one, got 0.2 and -0.2 rad and rad/s",
         ),
         (
-            range(|params| params.mass2 = 3.0, |_| {}),
+            range(|low, _| low.mass2 = 3.0),
             "the lower mass2 must not be above the upper one, got 3 and 1 kg",
         ),
         (
-            range(|params| params.gravity = f64::MIN, |params| params.gravity = f64::MAX),
+            range(|low, high| (low.gravity, high.gravity) = (f64::MIN, f64::MAX)),
             "gravity must be a range of finite width in m/s², got inf",
         ),
-        (range(|params| params.dt = -0.1, |_| {}), "dt must be finite and above 0 s, got -0.1"),
+        (range(|low, _| low.dt = -0.1), "dt must be finite and above 0 s, got -0.1"),
         (
-            range(|_| {}, |params| params.dynamics = Dynamics::Nips),
+            range(|_, high| high.dynamics = Dynamics::Nips),
             "dynamics must be the same in both bounds of a range",
         ),
         (
-            params(|params| (params.inertia1, params.center_of_mass1) = (0.0, 0.0)),
+            params(|p| (p.inertia1, p.center_of_mass1) = (0.0, 0.0)),
             "inertia1 must be above 0 kg m² if the centre of mass is on the joint, got 0",
         ),
         (batch::<0>().map(drop), "a batch must have at least 1 acrobot, got 0 generators"),
@@ -182,29 +178,19 @@ fn parameters_out_of_range_are_rejected_by_name() {
 
 #[test]
 fn a_link_needs_inertia_about_its_joint() {
-    let params = |inertia1, center_of_mass1, inertia2, center_of_mass2| Params {
-        inertia1,
-        center_of_mass1,
-        inertia2,
-        center_of_mass2,
-        ..Params::DEFAULT
-    };
-    for point in [
-        params(0.0, 0.0, 1.0, 0.5),
-        params(1.0, 0.5, 0.0, 0.0),
-        // Their squares underflow to 0 in f64.
-        params(1.0, 0.5, 0.0, 1e-170),
-    ] {
-        let error = point.validate().unwrap_err();
+    let point2 = |center_of_mass2| Params { inertia2: 0.0, center_of_mass2, ..Params::DEFAULT };
+    // The square of the second one underflows to 0 in f64.
+    for center in [0.0, 1e-170] {
+        let error = point2(center).validate().unwrap_err();
         assert!(matches!(error, Error::NoInertia { value: 0.0, .. }), "{error}");
     }
     // This one underflows only in f32.
-    let small = params(1.0, 0.5, 0.0, 1e-30);
+    let small = point2(1e-30);
     small.validate().unwrap();
     let error = small.cast::<f32>().validate().unwrap_err();
     assert!(matches!(error, Error::NoInertia { .. }), "{error}");
     // Point masses at the tips are a pendulum.
-    params(0.0, 1.0, 0.0, 1.0).validate().unwrap();
+    Params { inertia1: 0.0, center_of_mass1: 1.0, ..point2(1.0) }.validate().unwrap();
 }
 
 #[test]

@@ -1,12 +1,12 @@
-"""Measures this crate and other Acrobots from PyPI and crates.io, on one core of a Linux machine.
+"""Measures this crate and other Acrobots from PyPI and crates.io, as README.md says.
 
     python3 compare.py                 prints the table
     python3 compare.py --update        also writes it into docs/benchmarks.md
     python3 compare.py --quick         one short round, to try it
     python3 compare.py NAME SECONDS    plays one Python package, which is installed
 
-Each implementation plays a random policy once a round, in its own process: this file in the virtual
-environment of a Python package, or `src/main.rs`. The table has medians.
+Each implementation plays in its own process: this file in the virtual environment of a Python
+package, or `src/main.rs`.
 """
 
 import argparse
@@ -124,7 +124,7 @@ def together(envs, count):
 
 
 # For each implementation: its name in the table and, for one in Python, a function that returns one
-# that plays some steps, and its packages. The first of these is the key of `REQUIREMENTS`.
+# that plays some steps, and its packages, the key of `REQUIREMENTS` first.
 GYMNAX = "gymnax and jax on the CPU, 4,096 in `jit`, `vmap` and `scan`"
 MAKE_VEC = "acrobot_rs for Python, `make_vec` of 1,024"
 IMPLEMENTATIONS = {

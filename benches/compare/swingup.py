@@ -52,8 +52,6 @@ play(begin, actions[:20]).reward.block_until_ready()  # compiles
 
 
 def dm_control():
-    if dense.step(actions[0, 0]).last():
-        dense.reset()
     for each in actions[:, :10].reshape(-1, 1):
         if dense.step(each).last():
             dense.reset()
@@ -65,33 +63,31 @@ def mujoco_rollout():
     return STEPS * ENVS
 
 
-def envpool_256():
-    for each in actions[:20, :256]:
-        pool.step(each)
-    return 20 * 256
-
-
 def mujoco_playground():
     play(begin, actions[:20]).reward.block_until_ready()
     return 20 * ENVS
 
 
-def single():
-    for each in actions[:, :10].reshape(-1, 1):
+def stepped(env, actions):
+    for each in actions:
         env.step(each)
-    return STEPS * 10
+    return actions.size
+
+
+def envpool_256():
+    return stepped(pool, actions[:20, :256])
+
+
+def single():
+    return stepped(env, actions[:, :10].reshape(-1, 1))
 
 
 def vector():
-    for each in actions:
-        envs.step(each)
-    return STEPS * ENVS
+    return stepped(envs, actions)
 
 
 def vector_float64():
-    for each in actions:
-        in_float64.step(each)
-    return STEPS * ENVS
+    return stepped(in_float64, actions)
 
 
 def rate(run):

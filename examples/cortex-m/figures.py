@@ -26,17 +26,11 @@ import cycles
 DOCUMENT = pathlib.Path("../../docs/embedded-figures.md")
 M4F = "thumbv7em-none-eabihf"
 TUNED = "-C target-cpu=cortex-m4"
-ARITHMETICS = {
-    "fast": "`Fast`",
-    "micro": "`Micro`",
-    "reference": "`Reference`",
-    "portable": "`Portable`",
-}
+ARITHMETICS = {name: f"`{name.title()}`" for name in ("fast", "micro", "reference", "portable")}
 COLUMNS = ARITHMETICS | {
     "reference_libgcc": "`Reference`, libgcc",
     "portable_libgcc": "`Portable`, libgcc",
 }
-TRAINING = "training until the mean return of 100 episodes is −100, millions of instructions"
 ROWS = {
     "step": "instructions per step, with observation, end test and resets",
     "cycles": "cycles per step, estimated",
@@ -51,7 +45,7 @@ ROWS = {
     "size": "RAM of an `Acrobot`, bytes",
     "stack": "stack of a step, bytes",
     "learn": "instructions per step of training",
-    "training": TRAINING,
+    "training": "training until the mean return of 100 episodes is −100, millions of instructions",
     "milliseconds": "time of this training at 168 MHz, estimated, ms",
     "decision": "instructions per decision of a perceptron with 64 and 64 units",
     "decision_ram": "RAM of the whole firmware that plays this perceptron, bytes",
@@ -62,8 +56,9 @@ CORE_COLUMNS = ARITHMETICS | {
     "fast_soft_floats": "`Fast`, soft-floats",
     "micro_soft_floats": "`Micro`, soft-floats",
 }
-CORE = "words target has_fpu rustflags machine"
-Core = collections.namedtuple("Core", CORE, defaults=[False, "", ""])
+Core = collections.namedtuple(
+    "Core", "words target has_fpu rustflags machine", defaults=[False, "", ""]
+)
 # These rows exclude the first table, which has more figures of the Cortex-M4F.
 CORES = {
     "m0": Core("Cortex-M0", "thumbv6m-none-eabi"),
@@ -75,13 +70,8 @@ CORES = {
     "rv32imafc": Core("RV32IMAFC", "riscv32imafc-unknown-none-elf", True),
 }
 CORE_ROWS = {name: f"{core.words}, `{core.target}`" for name, core in CORES.items()}
-LIMITS = {
-    "10_Nm": "10 N m, 1,000 initial states",
-    "7_Nm": "7 N m, 100",
-    "5_Nm": "5 N m, 100",
-    "2_Nm": "2 N m, 100",
-    "1_Nm": "1 N m, 100",
-}
+LIMITS = {"10_Nm": "10 N m, 1,000 initial states"}
+LIMITS |= {f"{limit}_Nm": f"{limit} N m, 100" for limit in (7, 5, 2, 1)}
 BALANCE = {
     "plan_s": "time of the plan, s",
     "plan_millions": "planning, millions of instructions",
@@ -176,9 +166,9 @@ def measure_m4f():
             figures[column, "flash"] = size
             each = cycles.per_instruction(path)
             figures[column, "cycles"] = round(figures[column, "step"] * each)
-    steps = dict(counted("step", ARITHMETICS, rustflags=TUNED))
+    tuned = dict(steps(ARITHMETICS, rustflags=TUNED))
     for arithmetic, path, _ in minimal(ARITHMETICS, rustflags=TUNED):
-        each = round(steps[arithmetic] * cycles.per_instruction(path))
+        each = round(tuned[arithmetic] * cycles.per_instruction(path))
         figures[arithmetic, "tuned"] = each
         figures[arithmetic, "rate"] = int(float(f"{64e6 / each:.3g}"))
     [(_, _, figures["fast", "physics"])] = minimal(["physics"])
@@ -189,28 +179,27 @@ def measure_m4f():
     return figures
 
 
-def measure_cores(measure, *arguments):
-    """A function that returns the figures of each core: {(arithmetic, core): value}. `measure`
-    returns those of one build: [(arithmetic, value)]."""
-    measure = functools.partial(measure, *arguments)
-
-    def measure_each():
-        figures = {}
-        for name, core in CORES.items():
-            options = {"target": core.target, "rustflags": core.rustflags, "machine": core.machine}
-            each = measure(ARITHMETICS, **options)
-            if not core.has_fpu:
-                soft = measure(["fast", "micro"], features="soft-floats", **options)
-                each += [(f"{arithmetic}_soft_floats", value) for arithmetic, value in soft]
-            figures |= {(arithmetic, name): value for arithmetic, value in each}
-        return figures
-
-    return measure_each
+def of_cores(measure):
+    """The figures of each core: {(arithmetic, core): value}. `measure` returns those of one build:
+    [(arithmetic, value)]."""
+    figures = {}
+    for name, core in CORES.items():
+        options = {"target": core.target, "rustflags": core.rustflags, "machine": core.machine}
+        each = measure(ARITHMETICS, **options)
+        if not core.has_fpu:
+            soft = measure(["fast", "micro"], features="soft-floats", **options)
+            each += [(f"{arithmetic}_soft_floats", value) for arithmetic, value in soft]
+        figures |= {(arithmetic, name): value for arithmetic, value in each}
+    return figures
 
 
-def counted(figure, arithmetics, **options):
+def steps(arithmetics, figure="step", **options):
     figures = printed("steps", **options)
     return [(arithmetic, figures[arithmetic, figure]) for arithmetic in arithmetics]
+
+
+def stacks(arithmetics, **options):
+    return steps(arithmetics, "stack", **options)
 
 
 def sizes(arithmetics, **options):
@@ -220,10 +209,9 @@ def sizes(arithmetics, **options):
 def measure_levels():
     figures = {}
     for level in LEVELS:
-        steps = dict(counted("step", ARITHMETICS, level=level))
-        for arithmetic, _, size in minimal(ARITHMETICS, level=level):
-            figures[arithmetic, f"step {level}"] = steps[arithmetic]
-            figures[arithmetic, f"flash {level}"] = size
+        for row, measure in ("step", steps), ("flash", sizes):
+            values = measure(ARITHMETICS, level=level)
+            figures |= {(arithmetic, f"{row} {level}"): value for arithmetic, value in values}
     return figures
 
 
@@ -252,13 +240,9 @@ TABLES = {
     "additions": Table(ADDED, {"fast": "bytes"}, ADDITIONS, measure_additions),
     "balance": Table("largest torque", LIMITS, BALANCE, measure_balance),
     "control": Table(UPRIGHT, ARITHMETICS, CONTROL, lambda: printed("bench", features="")),
-    "cores": Table(
-        "instructions per step", CORE_COLUMNS, CORE_ROWS, measure_cores(counted, "step")
-    ),
-    "stacks": Table(
-        "bytes of stack of a step", ARITHMETICS, CORE_ROWS, measure_cores(counted, "stack")
-    ),
-    "sizes": Table("bytes of flash", CORE_COLUMNS, CORE_ROWS, measure_cores(sizes)),
+    "cores": Table("instructions per step", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(steps)),
+    "stacks": Table("bytes of stack of a step", ARITHMETICS, CORE_ROWS, lambda: of_cores(stacks)),
+    "sizes": Table("bytes of flash", CORE_COLUMNS, CORE_ROWS, lambda: of_cores(sizes)),
     "levels": Table("`opt-level` on a Cortex-M4F", ARITHMETICS, LEVEL_ROWS, measure_levels),
 }
 

@@ -10,7 +10,6 @@ use common::twins::{LEVELS, MODES};
 
 type Small = Batch<Fast, ([Block; 1], [Pcg64; 3])>;
 
-/// A batch without a heap.
 fn small() -> Small {
     Batch::new(1, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 3])).unwrap()
 }
@@ -28,18 +27,15 @@ fn settings_are_returned_as_set() {
     let params = Params { dt: 0.1, ..Params::DEFAULT };
     batch.set_params(params).unwrap();
     assert_eq!(batch.params_of(0), Some(params));
-    for level in LEVELS {
-        batch.set_simd_level(level);
-        assert_eq!(batch.simd_level(), level);
-    }
     let bounds = ResetBounds::new(1.0, 2.0).unwrap();
     batch.set_reset_bounds(bounds);
     assert_eq!(batch.reset_bounds(), bounds);
     batch.set_limit(NonZeroU32::MIN);
     assert_eq!(batch.limit(), NonZeroU32::MIN);
-    for autoreset in MODES {
+    for (level, autoreset) in LEVELS.into_iter().zip(MODES) {
+        batch.set_simd_level(level);
         batch.set_autoreset(autoreset);
-        assert_eq!(batch.autoreset(), autoreset);
+        assert_eq!((batch.simd_level(), batch.autoreset()), (level, autoreset));
     }
 }
 
@@ -59,8 +55,8 @@ fn rejections(
     let [rewards, terminated, truncated, rows, finals] = lengths;
     std::array::from_fn(|kind| {
         let mut rewards = vec![9.0; rewards];
-        let mut ends = [vec![true; terminated], vec![true; truncated]];
-        let mut rows = [vec![[9.0; 6]; rows], vec![[9.0; 6]; finals]];
+        let mut ends = [terminated, truncated].map(|len| vec![true; len]);
+        let mut rows = [rows, finals].map(|len| vec![[9.0; 6]; len]);
         let [terminated, truncated] = &mut ends;
         let [observations, finals] = &mut rows;
         let buffers = StepBuffers::new(&mut rewards, terminated, truncated)
@@ -120,15 +116,10 @@ fn rejected_changes_change_nothing() {
     let range = common::params_range::<Fast>(Dynamics::Book);
     let shared = "a batch must have memory for the parameters of each acrobot";
     let mut rows = [[9.0; 6]; 4];
+    let masked = |batch: &mut Small, mask: &[_]| batch.reset_masked(mask, ResetOptions::default());
     for (result, message) in [
-        (
-            batch.reset_masked(&[true; 2], ResetOptions::default()),
-            "mask must have 3 elements, got 2",
-        ),
-        (
-            batch.reset_masked(&[true; 4], ResetOptions::default()),
-            "mask must have 3 elements, got 4",
-        ),
+        (masked(&mut batch, &[true; 2]), "mask must have 3 elements, got 2"),
+        (masked(&mut batch, &[true; 4]), "mask must have 3 elements, got 4"),
         (batch.reset_to(&[State::default(); 2]), "states must have 3 elements, got 2"),
         (
             batch.reset_to(&[State::default(), State::default(), NAN]),

@@ -3,11 +3,10 @@
 
 use std::fmt::Debug;
 
-use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
-use acrobot::{Acrobot, Action, Fast, Params, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params};
 use common::params_range;
 use common::twins::{MODES, Twins};
 use serde::Serialize;
@@ -28,21 +27,19 @@ fn running(kind: Kind, autoreset: Autoreset, noise: f32) -> Twins<Fast> {
     let mut rng = Pcg64::new(5);
     let range = params_range::<Fast>(Dynamics::Nips);
     let mut draw = || Params { torque_noise: noise, ..range.draw(&mut rng) };
-    let mut twins = match kind {
-        Kind::Shared => Twins::new(LEN, autoreset),
-        Kind::Own | Kind::Drawn => Twins::with_own_params(LEN, autoreset),
-    };
+    let mut twins = Twins::new(LEN, kind != Kind::Shared, autoreset);
     let limit = 150.try_into().unwrap();
     twins.batch.set_limit(limit);
-    for alone in &mut twins.alone {
-        *alone = TimeLimit::new(alone.inner().clone(), limit);
-    }
+    twins.alone.iter_mut().for_each(|alone| alone.set_limit(limit));
     match kind {
         Kind::Shared => twins.set_params(draw()),
         Kind::Own => {
-            let mut params = [(); LEN].map(|()| draw());
-            params[0].gravity = -0.0;
-            twins.set_params_of_each(&params);
+            for (i, alone) in twins.alone.iter_mut().enumerate() {
+                let drawn = draw();
+                let params = if i == 0 { Params { gravity: -0.0, ..drawn } } else { drawn };
+                twins.batch.set_params_of(i, params).unwrap();
+                alone.set_params(params).unwrap();
+            }
         }
         Kind::Drawn => twins.batch.set_params_range(Some(range)).unwrap(),
     }
@@ -78,25 +75,18 @@ fn assert_continues<const N: usize>(stored: &Twins<Fast>, loaded: VecBatch<Fast,
     twins.swing(300);
 }
 
+/// The snapshot depends neither on the memory nor on the width.
 #[test]
-fn loaded_batches_continue_to_the_same_bits() {
+fn loaded_batches_continue_to_the_same_bits_and_are_saved_to_the_same_bytes() {
     for stored in every_batch() {
         let json = serde_json::to_string(&stored.batch).unwrap();
         assert_continues::<16>(&stored, serde_json::from_str(&json).unwrap());
         let bytes = postcard::to_stdvec(&stored.batch).unwrap();
-        assert_continues::<3>(&stored, postcard::from_bytes(&bytes).unwrap());
-    }
-}
-
-/// The snapshot depends neither on the memory nor on the width.
-#[test]
-fn a_loaded_batch_is_saved_to_the_same_bytes() {
-    for Twins { batch, .. } in every_batch() {
-        let bytes = postcard::to_stdvec(&batch).unwrap();
-        let wide: VecBatch<Fast, 32> = postcard::from_bytes(&bytes).unwrap();
-        assert_eq!(postcard::to_stdvec(&wide).unwrap(), bytes);
+        let loaded: VecBatch<Fast, 3> = postcard::from_bytes(&bytes).unwrap();
+        assert_eq!(postcard::to_stdvec(&loaded).unwrap(), bytes);
+        assert_continues(&stored, loaded);
         let mut deserializer = postcard::Deserializer::from_bytes(&bytes);
-        let own = if batch.params_of(0) == batch.params_of(1) { 0 } else { LEN };
+        let own = if stored.batch.params_of(0) == stored.batch.params_of(1) { 0 } else { LEN };
         let lane_params = vec![LaneParams::default(); own];
         let memory = ([Block::EMPTY; LEN], [Pcg64::UNSEEDED; LEN], lane_params);
         let narrow = Batch::<Fast, _, 1>::from_snapshot(memory, &mut deserializer).unwrap();
@@ -132,11 +122,16 @@ fn fields_have_any_order_and_unknown_ones_are_ignored() {
 }
 
 fn three(own_params: bool) -> VecBatch<Fast> {
-    let seed = SeedSequence::new(1);
-    match own_params {
-        true => VecBatch::with_own_params(seed, 3).unwrap(),
-        false => VecBatch::new(seed, 3).unwrap(),
-    }
+    let new = if own_params { VecBatch::with_own_params } else { VecBatch::new };
+    new(SeedSequence::new(1), 3).unwrap()
+}
+
+/// Three, whose resets draw parameters.
+fn three_drawn() -> VecBatch<Fast> {
+    let mut batch = three(true);
+    let range = params_range::<Fast>(Dynamics::Book);
+    batch.set_params_range(Some(range)).unwrap();
+    batch
 }
 
 /// The error of loading JSON, without the position.
@@ -145,13 +140,13 @@ fn error<T: Debug>(loaded: Result<T, serde_json::Error>) -> String {
     error.split(" at line").next().unwrap().to_owned()
 }
 
-fn load<A: Arithmetic>(json: &str) -> String {
-    error(serde_json::from_str::<VecBatch<A>>(json))
+fn load(json: &str) -> String {
+    error(serde_json::from_str::<VecBatch<Fast>>(json))
 }
 
-/// Loads into memory for three acrobots that share their parameters.
-fn load_shared(json: &str) -> String {
-    let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 3]);
+/// Loads into memory for `LEN` acrobots in one block, with this many elements of parameters.
+fn load_into<const LEN: usize>(json: &str, own: usize) -> String {
+    let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; LEN], vec![LaneParams::default(); own]);
     let json = &mut serde_json::Deserializer::from_str(json);
     error(Batch::<Fast, _>::from_snapshot(memory, json))
 }
@@ -190,63 +185,44 @@ fn invalid_snapshots_are_rejected() {
         ),
     ] {
         let changed = replaced(from, to);
-        assert_eq!(load::<Fast>(&changed), message);
-        assert_eq!(load_shared(&changed), message);
+        assert_eq!(load(&changed), message);
+        assert_eq!(load_into::<3>(&changed, 0), message);
     }
 
-    let kind = |json: &str| load::<Fast>(json);
     let expected = "expected the settings of a batch and its members";
-    assert_eq!(kind("[]"), format!("invalid length 0, {expected}"));
+    assert_eq!(load("[]"), format!("invalid length 0, {expected}"));
     let acrobot = serde_json::to_string(&Acrobot::<Fast>::new(1)).unwrap();
-    assert_eq!(kind(&acrobot), format!("invalid type: map, {expected}"));
+    assert_eq!(load(&acrobot), format!("invalid type: map, {expected}"));
     let settings = format!("{}]", text.split_once(",{\"params\"").unwrap().0);
-    let empty = "a batch must have at least 1 acrobot, got 0 generators";
-    assert_eq!(kind(&settings), empty);
-    let none = "members must have 3 elements, got 0";
-    assert_eq!(load_shared(&settings), none);
+    assert_eq!(load(&settings), "a batch must have at least 1 acrobot, got 0 generators");
+    assert_eq!(load_into::<3>(&settings, 0), "members must have 3 elements, got 0");
 }
 
 #[test]
 fn snapshots_that_do_not_fit_into_the_memory_are_rejected() {
-    fn load<const LEN: usize>(batch: &VecBatch<Fast>, own: usize) -> String {
-        let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; LEN], vec![LaneParams::default(); own]);
-        let text = serde_json::to_string(batch).unwrap();
-        let json = &mut serde_json::Deserializer::from_str(&text);
-        error(Batch::<Fast, _>::from_snapshot(memory, json))
-    }
-    for own in [0, 1] {
-        let batch = &three(own == 1);
-        let message = "members must have 4 elements, got 3";
-        assert_eq!(load::<4>(batch, own), message);
-        let message = "members must have 2 elements, got 3";
-        assert_eq!(load::<2>(batch, own), message);
+    let [shared, own, drawn] = [three(false), three(true), three_drawn()]
+        .map(|batch| serde_json::to_string(&batch).unwrap());
+    for (json, elements) in [(&shared, 0), (&own, 1)] {
+        assert_eq!(load_into::<4>(json, elements), "members must have 4 elements, got 3");
+        assert_eq!(load_into::<2>(json, elements), "members must have 2 elements, got 3");
     }
     let message = "a batch must have at least 1 acrobot, got 0 generators";
-    assert_eq!(load::<0>(&three(false), 0), message);
-    let message = "lane_params must have 1 elements, got 2";
-    assert_eq!(load::<3>(&three(true), 2), message);
-
-    let shared = "a batch must have memory for the parameters of each acrobot";
-    let mut different = three(true);
-    let heavy = Params { mass1: 2.0, ..Params::DEFAULT };
-    different.set_params_of(2, heavy).unwrap();
-    assert_eq!(load::<3>(&different, 0), shared);
-    let mut drawn = three(true);
-    let range = params_range::<Fast>(Dynamics::Book);
-    drawn.set_params_range(Some(range)).unwrap();
-    assert_eq!(load::<3>(&drawn, 0), shared);
+    assert_eq!(load_into::<0>(&shared, 0), message);
+    assert_eq!(load_into::<3>(&own, 2), "lane_params must have 1 elements, got 2");
+    let different = own.replacen("\"mass2\":1.0", "\"mass2\":2.0", 1);
+    for json in [different, drawn] {
+        let message = "a batch must have memory for the parameters of each acrobot";
+        assert_eq!(load_into::<3>(&json, 0), message);
+    }
 }
 
 #[test]
 fn invalid_ranges_are_rejected() {
-    let mut drawn = three(true);
-    let range = params_range::<Fast>(Dynamics::Book);
-    drawn.set_params_range(Some(range)).unwrap();
-    let value = serde_json::to_value(&drawn).unwrap();
+    let value = serde_json::to_value(three_drawn()).unwrap();
     let changed = |change: fn(&mut Vec<Value>)| {
         let mut value = value.clone();
         change(value[0]["params_range"].as_array_mut().unwrap());
-        load::<Fast>(&value.to_string())
+        load(&value.to_string())
     };
     assert_eq!(
         changed(|range| range.reverse()),

@@ -28,7 +28,7 @@ fn any_angle_steps_as_in_single_acrobots() {
     const STRIDE: usize = if cfg!(debug_assertions) { 8192 } else { 256 };
 
     fn check<A: Arithmetic<Scalar = f32>>() {
-        let mut twins = Twins::<A>::new(1024, Autoreset::Disabled);
+        let mut twins = Twins::<A>::new(1024, false, Autoreset::Disabled);
         // At rest and without a torque a step changes the angles little.
         for first in (0..f32::INFINITY.to_bits()).step_by(1024 * STRIDE) {
             for sign in [1.0, -1.0] {
@@ -43,7 +43,6 @@ fn any_angle_steps_as_in_single_acrobots() {
     check::<Micro>();
 }
 
-/// Every bit of the results of a step.
 fn bits_of(results: &StepResults) -> [Vec<u32>; 5] {
     let bits = |xs: &[f32]| xs.iter().map(|x| x.to_bits()).collect();
     let ends = |xs: &[bool]| xs.iter().map(|x| u32::from(*x)).collect();
@@ -97,12 +96,6 @@ fn slices_that_change_their_length_cannot_panic() {
         changed: Rc<Cell<usize>>,
     }
 
-    impl<T: Clone> Fickle<T> {
-        fn new(value: T, len: usize) -> Self {
-            Self { all: vec![value; len], changed: Rc::new(len.into()) }
-        }
-    }
-
     impl<T> AsRef<[T]> for Fickle<T> {
         fn as_ref(&self) -> &[T] {
             &self.all
@@ -129,31 +122,32 @@ fn slices_that_change_their_length_cannot_panic() {
         (all, [all, len, 0]),
         (all, [all, len, all]),
     ] {
+        let lengths = [all, len, own].map(|len| Rc::new(Cell::new(len)));
+        let [blocks, generators, lane_params] = lengths.clone();
         let memory = (
-            Fickle::new(Block::EMPTY, all),
-            Fickle::new(Pcg64::UNSEEDED, len),
-            Fickle::new(LaneParams::default(), own),
+            Fickle { all: vec![Block::EMPTY; all], changed: blocks },
+            Fickle { all: vec![Pcg64::UNSEEDED; len], changed: generators },
+            Fickle { all: vec![LaneParams::default(); own], changed: lane_params },
         );
-        let lengths = [&memory.0.changed, &memory.1.changed, &memory.2.changed].map(Rc::clone);
         let mut one = Batch::<Portable, _>::new(3, memory).unwrap();
         one.set_limit(NonZeroU32::MIN);
         let mut many = one.clone();
-        for (len, changed) in lengths.into_iter().zip(changed) {
+        for (len, changed) in lengths.iter().zip(changed) {
             len.set(changed);
         }
         let step = |batch: &mut Batch<_, _>, parallel| {
-            let (mut rewards, mut terminated, mut truncated) =
-                (vec![9.0; len], vec![true; len], vec![true; len]);
+            let mut rewards = vec![9.0; len];
+            let mut ends = [vec![true; len], vec![true; len]];
             let mut rows = vec![[9.0; 6]; len];
-            let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-                .with_observations(&mut rows);
+            let [terminated, truncated] = &mut ends;
+            let buffers =
+                StepBuffers::new(&mut rewards, terminated, truncated).with_observations(&mut rows);
             let torques = &vec![1.0; len];
-            if parallel {
-                batch.par_step(torques, buffers).unwrap();
-            } else {
-                batch.step(torques, buffers).unwrap();
+            match parallel {
+                true => batch.par_step(torques, buffers).unwrap(),
+                false => batch.step(torques, buffers).unwrap(),
             }
-            (rewards, terminated, truncated, rows)
+            (rewards, ends, rows)
         };
         for _ in 0..2 {
             assert!(step(&mut one, false) == step(&mut many, true));

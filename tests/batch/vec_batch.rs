@@ -1,51 +1,22 @@
-//! The batch that owns its memory: its results, and another batch in its place.
+//! The batch that owns its memory: another batch in its place, and members of one in another.
 
-use acrobot::batch::{Autoreset, Batch, Block, StepBuffers, VecBatch};
+use acrobot::batch::{Autoreset, Batch, Block, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
 use acrobot::{Error, Fast, Params, ResetOptions};
 
-#[test]
-fn a_batch_in_vecs_equals_one_in_arrays() {
-    let mut owning = VecBatch::<Fast>::new(SeedSequence::new(9), 20).unwrap();
-    let mut arrays = Batch::<Fast, _>::new(9, ([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20])).unwrap();
-    let (mut rewards, mut terminated, mut truncated) = ([0.0; 20], [false; 20], [false; 20]);
-    let (mut observations, mut final_observations) = ([[0.0; 6]; 20], [[0.0; 6]; 20]);
-    owning.set_limit(5.try_into().unwrap());
-    owning.set_autoreset(Autoreset::SameStep);
-    arrays.set_limit(5.try_into().unwrap());
-    arrays.set_autoreset(Autoreset::SameStep);
-    assert_eq!(owning.reset_with_seed(7).len(), 20);
-    arrays.reset_with_seed(7);
-    for _ in 0..30 {
-        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-            .with_observations(&mut observations)
-            .with_final_observations(&mut final_observations);
-        arrays.step(&[2_u8; 20], buffers).unwrap();
-        let results = owning.step(&[2_u8; 20]).unwrap();
-        assert_eq!(results.rewards, rewards);
-        assert_eq!(results.terminated, terminated);
-        assert_eq!(results.truncated, truncated);
-        assert_eq!(results.observations, observations);
-        assert_eq!(results.final_observations, final_observations);
-    }
-}
-
 /// `DerefMut` gives access to the batch inside, so a batch of another length can replace it.
 #[test]
 fn replaced_batches_of_other_lengths_have_their_own_results() {
-    const LENGTHS: [usize; 2] = [5, 40];
-    let mut batches =
-        LENGTHS.map(|len| VecBatch::<Fast>::new(SeedSequence::new(len as u64), len).unwrap());
-    for batch in &mut batches {
+    let new = |len| {
+        let mut batch = VecBatch::<Fast>::new(SeedSequence::new(len as u64), len).unwrap();
         batch.set_limit(3.try_into().unwrap());
         batch.set_autoreset(Autoreset::SameStep);
-    }
-    let mut expected = batches.clone();
-    expected.reverse();
-    let [first, second] = &mut batches;
-    std::mem::swap::<Batch<_, _, _>>(first, second);
-    for (swapped, expected) in batches.iter_mut().zip(&mut expected) {
+        batch
+    };
+    let (mut first, mut second) = (new(5), new(40));
+    std::mem::swap::<Batch<_, _, _>>(&mut first, &mut second);
+    for (swapped, expected) in [(&mut first, &mut new(40)), (&mut second, &mut new(5))] {
         let len = expected.len();
         assert_eq!(swapped.observations(), expected.observations());
         let mask: Vec<bool> = (0..len).map(|i| i % 2 == 0).collect();
@@ -62,7 +33,6 @@ fn replaced_batches_of_other_lengths_have_their_own_results() {
         }
     }
 
-    let [mut first, second] = batches;
     let shorter = (vec![Block::EMPTY], vec![Pcg64::UNSEEDED; 2], vec![]);
     let shorter = Batch::new(3, shorter).unwrap();
     assert_eq!(std::mem::replace(&mut *first, shorter).len(), 40);

@@ -57,7 +57,6 @@ fn a_weak_motor_holds_as_little_as_the_docs_say() {
             .map(|(params, weight)| largest_lean(params, limit, weight).to_string());
         format!("| {limit} | {} |", leans.join(" | "))
     });
-    println!("{}", rows.join("\n"));
     assert_says("docs/control.md", &rows.join("\n"));
 }
 
@@ -91,7 +90,6 @@ fn single_precision_loses_upright_what_the_docs_say() {
         assert!(hanging < 1e-3 && portable < 1e-3);
         format!("| {rate} | {upright:.2} | {hanging:.2} | {portable:.2} |")
     });
-    println!("{}", rows.join("\n"));
     assert_says("docs/control.md", &rows.join("\n"));
 }
 

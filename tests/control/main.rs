@@ -21,14 +21,12 @@ fn vector<const N: usize>(elements: &[f64]) -> [f64; N] {
 /// The largest |found − expected|, relative to the largest |expected|.
 fn relative<S: Real>(found: &[S], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len());
-    let largest = |x: &mut dyn Iterator<Item = f64>| {
-        x.fold(0.0_f64, |most, x| {
-            assert!(x.is_finite());
-            most.max(x.abs())
-        })
-    };
-    let differences = &mut found.iter().zip(expected).map(|(x, y)| x.to_f64() - y);
-    largest(differences) / largest(&mut expected.iter().copied())
+    let (mut error, mut largest) = (0.0_f64, 0.0_f64);
+    for (x, y) in found.iter().zip(expected) {
+        assert!(x.is_finite());
+        (error, largest) = (error.max((x.to_f64() - y).abs()), largest.max(y.abs()));
+    }
+    error / largest
 }
 
 /// The first of forty cases with moderate parameters, with those over six decades, and with
@@ -37,79 +35,50 @@ const MODERATE: usize = 0;
 const DECADES: usize = 40;
 const DAMPED: usize = 80;
 
-/// A pendulum, a torque and accelerations of the recording, and what 200 digits give for them.
-struct Case {
-    params: Params,
-    state: State,
-    torque: f64,
-    accelerations: [f64; 2],
-    continuous: Vec<f64>,
-    discrete: Vec<f64>,
-    motion: Vec<f64>,
-}
-
-fn cases(first: usize) -> Vec<Case> {
-    let text = text_of("tests/data/control.txt");
-    let results = |word| lines(&text, word).map(numbers).collect::<Vec<_>>();
-    let [continuous, discrete, motion] = ["continuous", "discrete", "motion"].map(results);
-    assert_eq!(continuous.len(), 120);
-    let cases = lines(&text, "case")
-        .zip(continuous)
-        .zip(discrete.into_iter().zip(motion))
-        .skip(first)
-        .take(40);
-    cases
-        .map(|((line, continuous), (discrete, motion))| {
-            let (dynamics, given) = line.split_once(' ').unwrap();
-            let x: [f64; 19] = vector(&numbers(given));
-            Case {
-                params: Params {
-                    length1: x[0],
-                    length2: x[1],
-                    mass1: x[2],
-                    mass2: x[3],
-                    center_of_mass1: x[4],
-                    center_of_mass2: x[5],
-                    inertia1: x[6],
-                    inertia2: x[7],
-                    gravity: x[8],
-                    dt: x[9],
-                    dynamics: dynamics_of(dynamics),
-                    friction: Viscous { joint1: x[10], joint2: x[11] },
-                    ..Params::default()
-                },
-                state: State::from(vector(&x[12..16])),
-                torque: x[16],
-                accelerations: vector(&x[17..]),
-                continuous,
-                discrete,
-                motion,
-            }
-        })
-        .collect()
-}
-
 /// The largest error of each function over all cases, with the arithmetic `A`.
 fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
+    let text = text_of("tests/data/control.txt");
+    let recorded = |word| lines(&text, word).skip(first).take(40);
+    assert_eq!(recorded("motion").count(), 40);
+    let results = ["continuous", "discrete", "motion"].map(|word| recorded(word).map(numbers));
+    let [continuous, discrete, motion] = results;
     let mut worst = [0.0_f64; 4];
-    for case in cases(first) {
-        let pendulum = Pendulum::<A>::new(case.params.cast(), case.state.cast()).unwrap();
-        let torque = Real::from_f64(case.torque);
+    let cases = recorded("case").zip(continuous).zip(discrete.zip(motion));
+    for ((case, by_time), (by_step, motion)) in cases {
+        let (dynamics, given) = case.split_once(' ').unwrap();
+        let x: [f64; 19] = vector(&numbers(given));
+        let params = Params {
+            length1: x[0],
+            length2: x[1],
+            mass1: x[2],
+            mass2: x[3],
+            center_of_mass1: x[4],
+            center_of_mass2: x[5],
+            inertia1: x[6],
+            inertia2: x[7],
+            gravity: x[8],
+            dt: x[9],
+            dynamics: dynamics_of(dynamics),
+            friction: Viscous { joint1: x[10], joint2: x[11] },
+            ..Params::default()
+        };
+        let state = State::from(vector(&x[12..16])).cast();
+        let pendulum = Pendulum::<A>::new(params.cast(), state).unwrap();
+        let torque = Real::from_f64(x[16]);
         let continuous = linearize(&pendulum, torque).unwrap();
         let discrete = discretize(&pendulum, torque).unwrap();
         let Forces { torques, reaction, elbow } =
-            inverse_dynamics(&pendulum, cast(case.accelerations)).unwrap();
+            inverse_dynamics(&pendulum, cast(vector::<2>(&x[17..]))).unwrap();
         let pairs = [
-            ([continuous.a.as_flattened(), &continuous.b].concat(), &case.continuous[..]),
-            ([discrete.a.as_flattened(), &discrete.b].concat(), &case.discrete),
-            ([torques, reaction, elbow].concat(), &case.motion[..6]),
-            (velocities(&pendulum).unwrap().concat(), &case.motion[6..]),
+            ([continuous.a.as_flattened(), &continuous.b].concat(), &by_time[..]),
+            ([discrete.a.as_flattened(), &discrete.b].concat(), &by_step),
+            ([torques, reaction, elbow].concat(), &motion[..6]),
+            (velocities(&pendulum).unwrap().concat(), &motion[6..]),
         ];
         for (worst, (found, expected)) in worst.iter_mut().zip(pairs) {
             *worst = worst.max(relative(&found, expected));
         }
     }
-    println!("{}, cases from {first}: {worst:?}", A::NAME);
     worst
 }
 

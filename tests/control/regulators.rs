@@ -21,64 +21,29 @@ pub fn diagonal(x: [f64; 4]) -> [[f64; 4]; 4] {
 const IDENTITY: [[f64; 4]; 4] =
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
-/// What SciPy computed for one regulator.
-struct Recorded {
-    theta1: f64,
-    dt: f64,
-    model: DiscreteModel,
-    q: [[f64; 4]; 4],
-    r: f64,
-    gain: [f64; 4],
-    cost_to_go: [[f64; 4]; 4],
-}
-
-fn regulators() -> Vec<Recorded> {
-    let text = text_of("tests/data/control.txt");
-    let recorded = lines(&text, "lqr").map(|line| {
-        let x = numbers(line);
-        assert_eq!(x.len(), 59);
-        Recorded {
-            theta1: x[0],
-            dt: x[1],
-            model: DiscreteModel { a: matrix(&x[2..18]), b: vector(&x[18..22]) },
-            q: matrix(&x[22..38]),
-            r: x[38],
-            gain: vector(&x[39..43]),
-            cost_to_go: matrix(&x[43..]),
-        }
-    });
-    recorded.collect()
-}
-
-/// The model and the weights in another scalar.
-fn regulate<S: Real>(Recorded { model, q, r, .. }: &Recorded) -> Result<Lqr<S>, ControlError> {
-    let model = DiscreteModel { a: model.a.map(cast), b: cast(model.b) };
-    lqr(&model, &q.map(cast), S::from_f64(*r))
-}
-
-/// The errors of the gain and of the cost to go.
-fn errors_of_lqr<S: Real>(recorded: &Recorded) -> [f64; 2] {
-    let found = regulate::<S>(recorded).unwrap();
-    let columns: [[S; 4]; 4] = from_fn(|j| found.cost_to_go.map(|row| row[j]));
-    assert_eq!(found.cost_to_go, columns, "not symmetric");
-    [
-        relative(&found.gain, &recorded.gain),
-        relative(found.cost_to_go.as_flattened(), recorded.cost_to_go.as_flattened()),
-    ]
+/// The regulator of A, B, Q and R, as a line of the recording has them.
+fn regulate<S: Real>(x: &[f64]) -> Lqr<S> {
+    let [a, q] = [&x[..16], &x[20..36]].map(|m| matrix(m).map(cast));
+    let b = cast(vector(&x[16..20]));
+    lqr(&DiscreteModel { a, b }, &q, S::from_f64(x[36])).unwrap()
 }
 
 #[test]
 fn gains_equal_scipys() {
-    let recorded = regulators();
-    assert_eq!(recorded.len(), 32);
-    for recorded in recorded {
-        let double = errors_of_lqr::<f64>(&recorded);
-        let single = errors_of_lqr::<f32>(&recorded);
-        let Recorded { theta1, dt, r, .. } = recorded;
-        println!("{theta1:.2} rad, {dt} s, R {r}: f64 {double:?}, f32 {single:?}");
+    /// The errors of the gain and of the cost to go.
+    fn errors<S: Real>(x: &[f64]) -> [f64; 2] {
+        let Lqr { gain, cost_to_go } = regulate::<S>(&x[2..39]);
+        let columns: [[S; 4]; 4] = from_fn(|j| cost_to_go.map(|row| row[j]));
+        assert_eq!(cost_to_go, columns, "not symmetric");
+        [relative(&gain, &x[39..43]), relative(cost_to_go.as_flattened(), &x[43..])]
+    }
+    let text = text_of("tests/data/control.txt");
+    assert_eq!(lines(&text, "lqr").count(), 32);
+    for x in lines(&text, "lqr").map(numbers) {
+        let (double, single) = (errors::<f64>(&x), errors::<f32>(&x));
         assert!(double.into_iter().all(|error| error < 1e-11), "{double:?}");
         // The elements of A are rounded to 6e-8, and those that matter are about dt.
-        let limit = if dt < 0.01 { 5e-3 } else { 1e-3 };
+        let limit = if x[1] < 0.01 { 5e-3 } else { 1e-3 };
         assert!(single.into_iter().all(|error| error < limit), "{single:?}");
     }
 }
@@ -94,10 +59,7 @@ fn gains_are_exact_over_many_decades() {
             let mut x = numbers(given);
             // Short texts of `f32`.
             x[..37].iter_mut().for_each(|x| *x = f64::from(*x as f32));
-            let [a, q] = [&x[..16], &x[20..36]].map(|m| matrix(m).map(cast));
-            let b = cast(vector(&x[16..20]));
-            let found = lqr::<S>(&DiscreteModel { a, b }, &q, S::from_f64(x[36])).unwrap();
-            let error = relative(&found.gain, &x[37..]);
+            let error = relative(&regulate::<S>(&x).gain, &x[37..]);
             assert!(error < limit, "{error:e} {line}");
             count += 1;
         }

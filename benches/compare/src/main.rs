@@ -25,7 +25,6 @@ const IMPLEMENTATIONS: [(&str, &str, New); 3] = [
     ("rlevo", "rlevo-environments", rlevo),
 ];
 
-/// The acrobots of a batch.
 const ACROBOTS: usize = 1024;
 /// Steps between two readings of the clock: a few milliseconds, and whole steps of a batch.
 const STEPS: usize = 16 * ACROBOTS;
@@ -50,7 +49,6 @@ fn main() {
     println!("{name} {} {steps} {elapsed}", version(package));
 }
 
-/// The version in the lock file.
 fn version(package: &str) -> &'static str {
     let lock = include_str!("../Cargo.lock");
     let (_, rest) =

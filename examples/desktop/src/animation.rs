@@ -15,12 +15,9 @@ const LAST: u16 = 200;
 /// it as one picture.
 pub fn svg(states: &[State], delay: u16) -> String {
     let last = usize::from(LAST / delay);
-    let [angles1, angles2] = [
-        rotations(states.iter().map(|state| state.theta1), last),
-        rotations(states.iter().map(|state| state.theta2), last),
-    ];
-    let seconds = f64::from(delay) / 100.0 * angles1.split(';').count() as f64;
-    let rotate = |angles: &str| {
+    let seconds = f64::from(delay) / 100.0 * (states.len() + last) as f64;
+    let rotate = |angle: fn(&State) -> f64| {
+        let angles = rotations(states.iter().map(angle), last);
         format!(
             "<animateTransform attributeName=\"transform\" type=\"rotate\" dur=\"{seconds:.2}s\" \
             repeatCount=\"indefinite\" values=\"{angles}\"/>"
@@ -41,8 +38,8 @@ pub fn svg(states: &[State], delay: u16) -> String {
 </g>
 </svg>
 "##,
-        rotate(&angles1),
-        rotate(&angles2)
+        rotate(|state| state.theta1),
+        rotate(|state| state.theta2)
     )
 }
 

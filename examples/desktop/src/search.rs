@@ -4,10 +4,9 @@
 //! states that the learner values most. The search ends at the first path to the goal, because no
 //! later one is shorter. The acrobot follows the path until the search finds a shorter one.
 //!
-//! Looking a few steps ahead is worse than not planning. Values are learnt along the policy's own
-//! paths, and a search finds states off these paths whose values are too high. From about ten steps
-//! on, true rewards outweigh that. Thirty steps give nearly all of the gain. Sixty give 0.2 steps
-//! more, and most searches end earlier.
+//! Looking a few steps ahead is worse than not planning: a search finds states off the policy's own
+//! paths, along which values are learnt, whose values are too high. From about ten steps on, true
+//! rewards outweigh that. Thirty steps give nearly all of the gain, and sixty 0.2 steps more.
 
 use acrobot::physics::Pendulum;
 use acrobot::{Action, Fast, State};
@@ -15,7 +14,6 @@ use acrobot::{Action, Fast, State};
 /// The width of the beam: states that are followed at the same time.
 const BEAM: usize = 8;
 
-/// A beam search on the model, in fixed memory.
 #[derive(Debug)]
 pub struct Search {
     model: Pendulum<Fast>,

@@ -47,7 +47,6 @@ pub fn search(values: &Values, width: usize, initial: State, depth: usize) -> Op
     None
 }
 
-/// The actions to a node.
 fn path(origins: &[Vec<(u32, Action)>], last: (u32, Action)) -> Vec<Action> {
     let (mut parent, action) = last;
     let mut actions = vec![action];

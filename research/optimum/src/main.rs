@@ -92,3 +92,15 @@ fn search(width: usize, file: &Path) -> anyhow::Result<()> {
     println!("{shorter} shorter sequences; the mean return is {mean:.3}");
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_beam_without_states_and_a_missing_file_are_rejected_with_a_reason() {
+        let parsed = Options::try_parse_from(["optimum", "search", "--width", "0"]);
+        assert!(parsed.err().unwrap().to_string().contains("0 is not in 1.."));
+        assert_eq!(load(Path::new("none.txt")).unwrap_err().to_string(), "none.txt");
+    }
+}

@@ -27,10 +27,7 @@ fn parse(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
     let text = fs::read_to_string(path)?;
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     let sequences = lines.map(|line| {
-        let action = |sign| {
-            let index = SIGNS.iter().position(|&s| s == sign);
-            index.map(|i| Action::ALL[i])
-        };
+        let action = |sign| Some(Action::ALL[SIGNS.iter().position(|&s| s == sign)?]);
         let actions = line.chars().map(action).collect::<Option<_>>();
         actions.with_context(|| format!("a line must have only - 0 +, got {line}"))
     });
@@ -46,7 +43,6 @@ fn parse(path: &Path) -> anyhow::Result<Vec<Vec<Action>>> {
     Ok(sequences)
 }
 
-/// The text of the file.
 pub fn text(sequences: &[Vec<Action>]) -> String {
     let mut text = HEAD.to_string();
     for sequence in sequences {

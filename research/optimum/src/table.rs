@@ -14,7 +14,6 @@ use crate::{SEEDS, bound, initial, mean_return};
 const SEED: u64 = 42;
 const STEPS: u32 = 1_000_000;
 
-/// Prints a row for each policy.
 pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
     println!("| policy | mean return |\n|---|---|");
     let row = |name: &str, mean: f64| println!("| {name} | −{:.2} |", -mean);
@@ -43,7 +42,6 @@ pub fn print(best: &[Vec<Action>]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A learner after its training.
 fn learnt<const S: usize, const T: usize, const N: usize>(
     memory: &mut Memory<S, T, N>,
 ) -> QLambda<'_, S, T> {

@@ -74,6 +74,15 @@ impl TaylorModel {
         [value - self.error, value + self.error]
     }
 
+    /// Fails unless the function can have this value at a position in the box.
+    #[cfg(test)]
+    #[track_caller]
+    pub fn assert_contains(&self, t: [f64; 4], value: f64, slack: f64) {
+        for [low, high] in [self.range_at(t), [self.low(), self.high()]] {
+            assert!(low - slack <= value && value <= high + slack, "{value}: {self:?}");
+        }
+    }
+
     /// The largest magnitudes of the linear and of the quadratic terms.
     #[inline(always)]
     fn magnitudes(&self) -> [f64; 2] {
@@ -182,7 +191,6 @@ fn products(a: [f64; 4], b: [f64; 4]) -> [f64; 10] {
     })
 }
 
-/// A constant.
 impl From<f64> for TaylorModel {
     fn from(constant: f64) -> Self {
         Self { constant, size: 1.0 + constant.abs(), ..Self::ZERO }
@@ -259,15 +267,6 @@ mod tests {
         (model, value)
     }
 
-    #[track_caller]
-    fn assert_contains(model: TaylorModel, t: [f64; 4], exact: f64) {
-        let slack = 1e-12 * model.size;
-        let [low, high] = model.range_at(t);
-        assert!(low - slack <= exact && exact <= high + slack, "{exact}: {model:?}");
-        let (low, high) = (model.low(), model.high());
-        assert!(low - slack <= exact && exact <= high + slack, "{exact}: {low} to {high}");
-    }
-
     /// Each operation, also roots and reciprocals where a part of the box is below the least
     /// number.
     #[test]
@@ -277,18 +276,20 @@ mod tests {
         for _ in 0..200_000 {
             let t = [(); 4].map(|()| uniform(&mut rng, -4.0, 4.0).clamp(-1.0, 1.0));
             let [(x, a), (y, b)] = [(); 2].map(|()| draw(&mut rng, t));
-            assert_contains(x, t, a);
-            assert_contains(x + y, t, a + b);
-            assert_contains(x - y, t, a - b);
-            assert_contains(x * y, t, a * b);
-            assert_contains(x.square(), t, a * a);
+            let contains =
+                |model: TaylorModel, exact| model.assert_contains(t, exact, 1e-12 * model.size);
+            contains(x, a);
+            contains(x + y, a + b);
+            contains(x - y, a - b);
+            contains(x * y, a * b);
+            contains(x.square(), a * a);
             let (sin, cos) = Reference::sin_cos(a);
             let [sine, cosine] = x.sin_cos();
-            assert_contains(sine, t, sin);
-            assert_contains(cosine, t, cos);
+            contains(sine, sin);
+            contains(cosine, cos);
             if a >= LEAST {
-                assert_contains(x.sqrt(LEAST), t, a.sqrt());
-                assert_contains(x.inverse(LEAST), t, 1.0 / a);
+                contains(x.sqrt(LEAST), a.sqrt());
+                contains(x.inverse(LEAST), 1.0 / a);
             }
         }
     }

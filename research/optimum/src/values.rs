@@ -128,7 +128,6 @@ fn is_goal(state: &State<f32>) -> bool {
 /// The states that a batch steps at a time.
 const LANES: usize = 512;
 
-/// Steps many states at once.
 pub struct Stepper(VecBatch<Fast>);
 
 impl Default for Stepper {

@@ -13,7 +13,6 @@ pub struct Canvas {
     pub area: Rectangle,
     pub pixels: Vec<Option<BinaryColor>>,
     pub written: usize,
-    /// The most pixels that are taken.
     pub most: usize,
 }
 

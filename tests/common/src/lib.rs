@@ -91,17 +91,14 @@ pub fn assert_snapshot(name: &str, found: &str) {
     }
 }
 
-/// Where a file of the repository is.
 pub fn absolute(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
 
-/// A text of the repository.
 pub fn text_of(path: &str) -> String {
     String::from_utf8(read(path)).unwrap()
 }
 
-/// A file of the repository.
 fn read(path: &str) -> Vec<u8> {
     fs::read(absolute(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }

@@ -14,7 +14,6 @@ use crate::read;
 
 pub const STEPS: usize = 500;
 
-/// One of the episodes that `tests/data/record.py` recorded.
 pub struct Episode {
     pub seed: SeedSequence,
     pub bounds: ResetBounds,
@@ -88,19 +87,17 @@ pub fn is_recorded_library() -> bool {
 }
 
 fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
-    let fields: Vec<&str> = line.split(' ').collect();
-    let [decimal, low, high, dynamics, noise, dt] = fields[..] else {
-        panic!("not six fields: {line}")
-    };
+    let [decimal, low, high, dynamics, noise, dt] =
+        line.split(' ').collect::<Vec<_>>().try_into().unwrap();
     let number = |text: &str| text.parse::<f64>().unwrap();
     let mut take = |n| {
         let (head, tail) = bytes.split_at(n);
         *bytes = tail;
         head
     };
-    let f32s = |bytes: &[u8]| -> Vec<f32> {
+    let f32s = |bytes: &[u8]| {
         let words = bytes.as_chunks().0.iter();
-        words.map(|x| f32::from_le_bytes(*x)).collect()
+        words.map(|x| f32::from_le_bytes(*x)).collect::<Vec<_>>()
     };
     Episode {
         seed: decimal.parse().unwrap(),
@@ -113,7 +110,7 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
         },
         actions: take(STEPS).iter().map(|&n| Action::try_from(n).unwrap()).collect(),
         states: f64s(take((STEPS + 1) * 32))
-            .as_chunks::<4>()
+            .as_chunks()
             .0
             .iter()
             .map(|y| State::from(*y))
@@ -125,7 +122,6 @@ fn read_episode(line: &str, bytes: &mut &[u8]) -> Episode {
     }
 }
 
-/// The dynamics with this name in a recording.
 pub fn dynamics_of(name: &str) -> Dynamics {
     match name {
         "book" => Dynamics::Book,
@@ -139,7 +135,6 @@ pub fn lines<'a>(text: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> 
     text.lines().filter_map(move |line| line.strip_prefix(word)?.strip_prefix(' '))
 }
 
-/// The numbers in a line of a recording.
 pub fn numbers(line: &str) -> Vec<f64> {
     line.split(' ').map(|x| x.parse().unwrap()).collect()
 }
@@ -149,42 +144,52 @@ fn f64s(bytes: &[u8]) -> Vec<f64> {
     words.map(|x| f64::from_le_bytes(*x)).collect()
 }
 
-/// A single recorded step, from a state anywhere within the bounds.
-pub struct RecordedStep {
-    pub params: Params,
-    pub state: State,
-    pub action: Action,
-    pub next: State,
-}
-
-pub fn recorded_steps() -> Vec<RecordedStep> {
-    let numbers = f64s(&read("tests/data/steps.bin"));
-    let (records, rest) = numbers.as_chunks();
-    assert!(rest.is_empty());
-    records.iter().map(read_step).collect()
-}
-
-fn read_step(record: &[f64; 23]) -> RecordedStep {
-    let state = |y: &[f64]| State::from(<[f64; 4]>::try_from(y).unwrap());
-    RecordedStep {
-        params: Params {
-            length1: record[0],
-            length2: record[1],
-            mass1: record[2],
-            mass2: record[3],
-            center_of_mass1: record[4],
-            center_of_mass2: record[5],
-            inertia1: record[6],
-            inertia2: record[6],
-            dt: record[7],
-            max_velocity1: record[8],
-            max_velocity2: record[9],
-            torques: [record[10], record[11], record[12]],
-            dynamics: [Dynamics::Book, Dynamics::Nips][record[13] as usize],
+/// Takes each step of the episodes from its recorded state, and then each of the single steps with
+/// other parameters. Calls `check` with a name of the step, the state before it, the state that it
+/// reached, and the recorded one.
+pub fn take_recorded_steps<A: Arithmetic>(
+    mut check: impl FnMut(String, State, State<A::Scalar>, State),
+) {
+    let mut take = |name, acrobot: &mut Acrobot<A>, state: State, action, next| {
+        acrobot.set_state(state.cast()).unwrap();
+        acrobot.step(action);
+        check(name, state, acrobot.state(), next);
+    };
+    for (number, episode) in RECORDING.episodes.iter().enumerate() {
+        let mut acrobot = episode.start();
+        for (i, &action) in episode.actions.iter().enumerate() {
+            let name = format!("step {} of episode {number}", i + 1);
+            take(name, &mut acrobot, episode.states[i], action, episode.states[i + 1]);
+        }
+    }
+    let singles = f64s(&read("tests/data/steps.bin"));
+    let (singles, rest) = singles.as_chunks::<23>();
+    assert!(rest.is_empty() && singles.len() == 2600);
+    for (number, single) in singles.iter().enumerate() {
+        let [length1, length2, mass1, mass2, rest @ ..] = *single;
+        let [center_of_mass1, center_of_mass2, inertia1, dt, rest @ ..] = rest;
+        let [max_velocity1, max_velocity2, rest @ ..] = rest;
+        let [torque0, torque1, torque2, dynamics, rest @ ..] = rest;
+        let [theta1, theta2, dtheta1, dtheta2, action, next @ ..] = rest;
+        let params = Params {
+            length1,
+            length2,
+            mass1,
+            mass2,
+            center_of_mass1,
+            center_of_mass2,
+            inertia1,
+            inertia2: inertia1,
+            dt,
+            max_velocity1,
+            max_velocity2,
+            torques: [torque0, torque1, torque2],
+            dynamics: [Dynamics::Book, Dynamics::Nips][dynamics as usize],
             ..Params::DEFAULT
-        },
-        state: state(&record[14..18]),
-        action: Action::try_from(record[18] as u8).unwrap(),
-        next: state(&record[19..23]),
+        };
+        let mut acrobot = Acrobot::with_params(0, params.cast()).unwrap();
+        let state = State { theta1, theta2, dtheta1, dtheta2 };
+        let action = Action::try_from(action as u8).unwrap();
+        take(format!("single step {number}"), &mut acrobot, state, action, next.into());
     }
 }

@@ -1,10 +1,10 @@
 //! A batch beside single acrobots.
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::batch::{Autoreset, Batch, Block, LaneParams, SimdLevel, StepBuffers, VecBatch};
-use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::batch::{Autoreset, SimdLevel, StepResults, VecBatch};
+use acrobot::numpy::SeedSequence;
 use acrobot::physics::{Dynamics, ResetBounds};
-use acrobot::{Acrobot, Action, Error, Observation, Params, ResetOptions, State, Step, TimeLimit};
+use acrobot::{Acrobot, Action, Observation, Params, ResetOptions, State, Step, TimeLimit};
 use bits::against;
 
 use crate::{bits, params_range};
@@ -14,10 +14,6 @@ pub const MODES: [Autoreset; 3] = [Autoreset::NextStep, Autoreset::SameStep, Aut
 /// A level that the machine does not have acts as the baseline.
 pub const LEVELS: [SimdLevel; 3] = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
 
-pub type InVecs<A, const N: usize> =
-    Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>), N>;
-
-/// A batch and its scalar twins.
 pub struct Twins<A: Arithmetic, const N: usize = 16> {
     pub batch: VecBatch<A, N>,
     pub alone: Vec<TimeLimit<Acrobot<A>>>,
@@ -26,27 +22,13 @@ pub struct Twins<A: Arithmetic, const N: usize = 16> {
 }
 
 impl<A: Arithmetic, const N: usize> Twins<A, N> {
-    pub fn new(len: usize, autoreset: Autoreset) -> Self {
-        Self::of(VecBatch::new(SeedSequence::new(42), len), autoreset)
-    }
-
-    pub fn with_own_params(len: usize, autoreset: Autoreset) -> Self {
-        let batch = VecBatch::with_own_params(SeedSequence::new(42), len);
-        Self::of(batch, autoreset)
-    }
-
-    /// Twins of a new batch with the seed 42.
-    fn of(batch: Result<VecBatch<A, N>, Error>, autoreset: Autoreset) -> Self {
-        let mut batch = batch.unwrap();
+    pub fn new(len: usize, own_params: bool, autoreset: Autoreset) -> Self {
+        let seed = SeedSequence::new(42);
+        let new = if own_params { VecBatch::with_own_params } else { VecBatch::new };
+        let mut batch = new(seed.clone(), len).unwrap();
         batch.set_autoreset(autoreset);
-        let seeds = SeedSequence::new(42).spawn(batch.len() as u64);
-        Self {
-            alone: seeds
-                .map(|seed| TimeLimit::new(Acrobot::with_rng(seed.into()), A::TASK.limit()))
-                .collect(),
-            pending: vec![false; batch.len()],
-            batch,
-        }
+        let alone = |i| TimeLimit::new(Acrobot::with_rng(seed.child(i).into()), A::TASK.limit());
+        Self { batch, alone: (0..len as u64).map(alone).collect(), pending: vec![false; len] }
     }
 
     pub fn set_params(&mut self, params: Params<A::Scalar>) {
@@ -57,20 +39,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
         self.assert_equal();
     }
 
-    pub fn set_params_of_each(&mut self, params: &[Params<A::Scalar>]) {
-        for (i, alone) in self.alone.iter_mut().enumerate() {
-            self.batch.set_params_of(i, params[i]).unwrap();
-            alone.set_params(params[i]).unwrap();
-        }
-        self.assert_equal();
-    }
-
-    pub fn reset(&mut self, options: ResetOptions) {
-        self.reset_some(None, options);
-    }
-
     /// Resets all acrobots, or those of a mask.
-    pub fn reset_some(&mut self, mask: Option<&[bool]>, options: ResetOptions) {
+    pub fn reset(&mut self, mask: Option<&[bool]>, options: ResetOptions) {
         let rows = match mask {
             Some(mask) => self.batch.reset_masked(mask, options.clone()).unwrap(),
             None => self.batch.reset_with(options.clone()),
@@ -91,7 +61,7 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
     pub fn set_bounds(&mut self, low: f64, high: f64) {
         let bounds = ResetBounds::new(low, high).unwrap();
         self.batch.set_reset_bounds(bounds);
-        self.reset(ResetOptions::default());
+        self.reset(None, ResetOptions::default());
     }
 
     /// Call it when the batch has reset those whose reset was pending.
@@ -117,57 +87,43 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
 
     /// Steps both with the same actions and compares every bit.
     pub fn step(&mut self, actions: &[Action]) {
-        self.step_by(
-            |batch, buffers| batch.step(actions, buffers),
-            |i, alone| alone.step(actions[i]),
-        );
+        let results = self.batch.step(actions).unwrap().clone();
+        self.step_alone(&results, |i, alone| alone.step(actions[i]));
     }
 
     /// [`step`](Self::step) with torques.
     pub fn step_torques(&mut self, torques: &[A::Scalar]) {
-        self.step_by(
-            |batch, buffers| batch.step(torques, buffers),
-            |i, alone| alone.step_torque(torques[i]).unwrap(),
-        );
+        let results = self.batch.step(torques).unwrap().clone();
+        self.step_alone(&results, |i, alone| alone.step_torque(torques[i]).unwrap());
     }
 
-    fn step_by(
+    fn step_alone(
         &mut self,
-        step: impl FnOnce(&mut InVecs<A, N>, StepBuffers<'_>) -> Result<(), Error>,
-        step_alone: impl Fn(usize, &mut TimeLimit<Acrobot<A>>) -> Step,
+        results: &StepResults,
+        step: impl Fn(usize, &mut TimeLimit<Acrobot<A>>) -> Step,
     ) {
-        let len = self.alone.len();
-        let (mut rewards, mut terminated, mut truncated) =
-            (vec![9.0; len], vec![true; len], vec![true; len]);
-        let (mut rows, mut finals) = (vec![[9.0; 6]; len], vec![[9.0; 6]; len]);
-        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
-            .with_observations(&mut rows)
-            .with_final_observations(&mut finals);
-        step(&mut self.batch, buffers).unwrap();
         let autoreset = self.batch.autoreset();
         let reset = |alone: &mut _| reset_one(&self.batch, alone, ResetOptions::default());
         for (i, alone) in self.alone.iter_mut().enumerate() {
-            let mut last = [9.0; 6].into();
-            let expected = if std::mem::take(&mut self.pending[i]) {
-                (reset(alone), 0.0, false, false)
+            let (observation, reward, terminated, truncated);
+            if std::mem::take(&mut self.pending[i]) {
+                (observation, reward, terminated, truncated) = (reset(alone), 0.0, false, false);
             } else {
-                let step = step_alone(i, alone);
-                let mut observation = step.observation;
-                match autoreset {
-                    Autoreset::SameStep if step.done() => {
-                        last = observation;
-                        observation = reset(alone);
-                    }
-                    Autoreset::NextStep => self.pending[i] = step.done(),
-                    _ => {}
+                let step = step(i, alone);
+                (reward, terminated, truncated) = (step.reward, step.terminated, step.truncated);
+                self.pending[i] = step.done() && autoreset == Autoreset::NextStep;
+                if step.done() && autoreset == Autoreset::SameStep {
+                    let last = &results.final_observations[i];
+                    assert!(equal(last, &step.observation), "acrobot {i}");
+                    observation = reset(alone);
+                } else {
+                    observation = step.observation;
                 }
-                (observation, step.reward, step.terminated, step.truncated)
-            };
-            assert!(equal(&rows[i], &expected.0), "acrobot {i}");
-            assert!(equal(&finals[i], &last), "acrobot {i}");
+            }
+            assert!(equal(&results.observations[i], &observation), "acrobot {i}");
             assert_eq!(
-                (rewards[i], terminated[i], truncated[i]),
-                (expected.1, expected.2, expected.3)
+                (results.rewards[i], results.terminated[i], results.truncated[i]),
+                (reward, terminated, truncated)
             );
         }
         self.assert_equal();
@@ -205,8 +161,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
     pub fn at_every_level() {
         let range = params_range::<A>(Dynamics::Book);
         for level in LEVELS {
-            let mut shared = Self::new(37, Autoreset::SameStep);
-            let mut drawn = Self::with_own_params(37, Autoreset::NextStep);
+            let mut shared = Self::new(37, false, Autoreset::SameStep);
+            let mut drawn = Self::new(37, true, Autoreset::NextStep);
             drawn.batch.set_params_range(Some(range)).unwrap();
             for twins in [&mut shared, &mut drawn] {
                 twins.batch.set_simd_level(level);
@@ -244,7 +200,6 @@ fn reset_one<A: Arithmetic, const N: usize>(
     alone.reset_with(ResetOptions { seed, bounds })
 }
 
-/// Whether a row has the bits of an observation.
 fn equal(row: &[f32; 6], observation: &Observation) -> bool {
     row.map(f32::to_bits) == observation.to_array().map(f32::to_bits)
 }

@@ -26,7 +26,6 @@ enum Call<S> {
     Reset(Option<Vec<bool>>, Option<u64>, Option<ResetBounds>),
     ResetTo(Vec<State<S>>),
     State(usize, State<S>),
-    /// Stores a member.
     Store(usize),
     /// Sets a member to the stored one.
     Load(usize),
@@ -68,7 +67,6 @@ fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
     .boxed()
 }
 
-/// A batch, the acrobots alone, and a stored member.
 struct Model<A: Arithmetic, const N: usize> {
     twins: Twins<A, N>,
     own_params: bool,
@@ -77,11 +75,7 @@ struct Model<A: Arithmetic, const N: usize> {
 
 impl<A: Tested, const N: usize> Model<A, N> {
     fn new(len: usize, own_params: bool) -> Self {
-        let twins = match own_params {
-            true => Twins::with_own_params(len, Autoreset::NextStep),
-            false => Twins::new(len, Autoreset::NextStep),
-        };
-        Self { twins, own_params, stored: None }
+        Self { twins: Twins::new(len, own_params, Autoreset::NextStep), own_params, stored: None }
     }
 
     /// A rejected call leaves the batch as it was.
@@ -115,7 +109,7 @@ impl<A: Tested, const N: usize> Model<A, N> {
             Call::Reset(mask, seed, bounds) => {
                 let mask = mask.as_ref().map(|mask| &mask[..len]);
                 let seed = seed.map(SeedSequence::new);
-                self.twins.reset_some(mask, ResetOptions { seed, bounds });
+                self.twins.reset(mask, ResetOptions { seed, bounds });
             }
             Call::ResetTo(states) => self.twins.reset_to(&states[..len]),
             Call::State(index, state) => {
@@ -195,6 +189,4 @@ fn any_width_equals_single_acrobots() {
     Twins::<Fast, 7>::at_every_level();
     Twins::<Fast, 8>::at_every_level();
     Twins::<Fast, 32>::at_every_level();
-    Twins::<Micro, 7>::at_every_level();
-    Twins::<Portable, 4>::at_every_level();
 }

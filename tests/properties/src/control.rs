@@ -2,11 +2,11 @@
 
 use std::array::from_fn;
 
+use acrobot::State;
 use acrobot::arithmetic::Real;
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
-    ControlError, DiscreteModel, difference, discretize, inverse_dynamics, linearize, lqr,
-    velocities,
+    ControlError, DiscreteModel, discretize, inverse_dynamics, linearize, lqr, velocities,
 };
 use common::in_every_arithmetic;
 use proptest::prelude::*;
@@ -37,34 +37,6 @@ fn results_are_finite_or_errors() {
                 forces.map(|forces| { [forces.torques, forces.reaction, forces.elbow].concat() })
             ));
             assert!(is_finite(velocities(&pendulum).map(|points| points.concat())));
-        });
-    }
-    in_every_arithmetic!(check);
-}
-
-/// With moderate numbers nothing overflows, and the inverse dynamics undo the derivative.
-#[test]
-fn moderate_pendulums_have_models() {
-    fn check<A: Tested>() {
-        let given = (params::<A>(Range::Moderate), state(Range::Moderate), number(Range::Moderate));
-        holds(1000, given, |(params, state, torque)| {
-            let pendulum = Pendulum::<A>::new(params, state).unwrap();
-            assert!(linearize(&pendulum, torque).is_ok());
-            assert!(velocities(&pendulum).is_ok());
-            let [_, _, ddtheta1, ddtheta2] = pendulum.derivative(torque);
-            let forces = inverse_dynamics(&pendulum, [ddtheta1, ddtheta2]).unwrap();
-
-            let [[_, m12], [_, m22]] = pendulum.mass_matrix().map(|row| row.map(Real::to_f64));
-            let [x, y] = forces.elbow.map(Real::to_f64);
-            let reach = params.center_of_mass2.to_f64();
-            let parts = m12.abs() * ddtheta1.to_f64().abs()
-                + m22 * (ddtheta1.to_f64().abs() + ddtheta2.to_f64().abs())
-                + reach * (x.abs() + y.abs())
-                + torque.to_f64().abs();
-            let rounding =
-                if A::Scalar::PI.to_f64() == std::f64::consts::PI { 1e-12 } else { 1e-3 };
-            let error = (forces.torques[1] - torque).to_f64().abs();
-            assert!(error <= rounding * parts, "{error:e} of {parts:e}");
         });
     }
     in_every_arithmetic!(check);
@@ -120,8 +92,7 @@ fn moderate_pendulums_can_be_held_upright() {
     fn check<A: Tested>() {
         let weight = (-4.0..4.0_f64).prop_map(f64::exp);
         holds(500, (params::<A>(Range::Moderate), weight), |(params, r)| {
-            let target = acrobot::State::UPRIGHT;
-            let pendulum = Pendulum::<A>::new(params, target).unwrap();
+            let pendulum = Pendulum::<A>::new(params, State::UPRIGHT).unwrap();
             let zero = A::Scalar::ZERO;
             let Ok(model) = discretize(&pendulum, zero) else {
                 return;
@@ -144,8 +115,6 @@ fn moderate_pendulums_can_be_held_upright() {
             }
             let largest = closed.as_flattened().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
             assert!(largest < 0.1, "{regulator:?} {largest}");
-            let error = difference(pendulum.state(), target);
-            assert_eq!(error, [zero; 4]);
         });
     }
     in_every_arithmetic!(check);

@@ -44,7 +44,6 @@ pub trait Tested: Arithmetic<Scalar: Number> {}
 
 impl<A: Arithmetic<Scalar: Number>> Tested for A {}
 
-/// A scalar that can be generated.
 pub trait Number: Modeled {
     /// Any finite number. All exponents are equally likely.
     fn finite() -> BoxedStrategy<Self>;
@@ -63,7 +62,6 @@ macro_rules! impl_number {
 
 impl_number!(f32, f64);
 
-/// The size of numbers.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Range {
     /// Within a factor of thirty of Gymnasium's values.
@@ -72,7 +70,6 @@ pub enum Range {
     Any,
 }
 
-/// Finite numbers of either sign.
 pub fn number<S: Number>(range: Range) -> BoxedStrategy<S> {
     let moderate = (-30.0..30.0).prop_map(S::from_f64);
     match range {
@@ -94,7 +91,6 @@ fn positive<S: Number>(range: Range, usual: f64) -> BoxedStrategy<S> {
     }
 }
 
-/// Valid parameters of an arithmetic.
 pub fn params<A: Tested>(range: Range) -> BoxedStrategy<Params<A::Scalar>> {
     let above_0 = |usual| positive::<A::Scalar>(range, usual);
     let or_0 = |usual| prop_oneof![4 => above_0(usual), 1 => Just(A::Scalar::ZERO)].boxed();
@@ -138,7 +134,6 @@ pub fn params<A: Tested>(range: Range) -> BoxedStrategy<Params<A::Scalar>> {
     .boxed()
 }
 
-/// Any finite state.
 pub fn state<S: Number>(range: Range) -> BoxedStrategy<State<S>> {
     [(); 4].map(|()| number::<S>(range)).prop_map(State::from).boxed()
 }
@@ -147,7 +142,6 @@ pub fn action() -> impl Strategy<Value = Action> {
     prop::sample::select(&Action::ALL[..])
 }
 
-/// Any valid bounds.
 pub fn reset_bounds() -> impl Strategy<Value = ResetBounds> {
     let bound = || {
         prop_oneof![number::<f64>(Range::Moderate), number::<f32>(Range::Any).prop_map(f64::from)]
@@ -155,7 +149,6 @@ pub fn reset_bounds() -> impl Strategy<Value = ResetBounds> {
     (bound(), bound()).prop_map(|(x, y)| ResetBounds::new(x.min(y), x.max(y)).unwrap())
 }
 
-/// An acrobot with these parameters in this state.
 pub fn acrobot<A: Arithmetic>(
     params: Params<A::Scalar>,
     state: State<A::Scalar>,

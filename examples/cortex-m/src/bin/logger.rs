@@ -1,4 +1,4 @@
-//! Logs an episode of five steps through defmt. `./logger` decodes it.
+//! Logs an episode of two steps through defmt. `./logger` decodes it.
 
 #![no_std]
 #![no_main]
@@ -13,7 +13,7 @@ use semihosting::process;
 // The transport, and the critical section that it needs.
 use {cortex_m as _, defmt_semihosting as _};
 
-const STEPS: NonZeroU32 = NonZeroU32::new(5).unwrap();
+const STEPS: NonZeroU32 = NonZeroU32::new(2).unwrap();
 
 /// The log's clock: steps taken.
 static CLOCK: AtomicU32 = AtomicU32::new(0);

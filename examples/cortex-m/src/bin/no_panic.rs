@@ -79,12 +79,15 @@ fn params<S: Real>() -> Params<S> {
     Params { torque_noise: number(), mass1: number(), ..Params::default() }
 }
 
-/// The physics alone.
 fn pendulum<A: Arithmetic>() {
     let _ = black_box(Pendulum::<A>::new(params(), state()));
     let mut pendulum = Pendulum::<A>::hanging();
     for _ in 0..black_box(10) {
-        let _ = black_box(pendulum.step(number()));
+        let _ = black_box((
+            pendulum.step(number()),
+            pendulum.set_params(params()).map_err(|error| error.message()),
+            pendulum.set_state(state()),
+        ));
         black_box((
             pendulum.state(),
             pendulum.sin_cos(),
@@ -94,27 +97,24 @@ fn pendulum<A: Arithmetic>() {
             pendulum.mass_matrix(),
             pendulum.tip_height(),
         ));
-        if let Err(error) = pendulum.set_params(params()) {
-            black_box(error.message());
-        }
-        let _ = black_box(pendulum.set_state(state()));
     }
     black_box(wrap::<A::Scalar>(number()));
 }
 
-/// What a controller needs.
 fn control<A: Arithmetic>() {
     let Ok(pendulum) = Pendulum::<A>::new(params(), state()) else {
         return;
     };
-    let _ = black_box(linearize(&pendulum, number()));
-    let _ = black_box(inverse_dynamics(&pendulum, [number(), number()]));
-    let _ = black_box(velocities(&pendulum));
+    let weights = [(); 4].map(|()| [(); 4].map(|()| number()));
+    let _ = black_box((
+        linearize(&pendulum, number()),
+        inverse_dynamics(&pendulum, [number(), number()]),
+        velocities(&pendulum),
+        pendulum.regulator(number(), &weights, number()),
+    ));
     let Ok(model) = discretize(&pendulum, number()) else {
         return;
     };
-    let weights = [(); 4].map(|()| [(); 4].map(|()| number()));
-    let _ = black_box(pendulum.regulator(number(), &weights, number()));
     if let Ok(regulator) = black_box(lqr(&model, &weights, number())) {
         black_box(difference(pendulum.state(), state()));
         black_box(regulator.torque(pendulum.deviation(state())));
@@ -128,8 +128,7 @@ fn environment<A: Arithmetic>() {
         let mut acrobot = TimeLimit::v1(Acrobot::<A>::with_rng(seed.clone().into()));
         let mut trajectory = Trajectory::<A::Scalar, 8>::new();
         let inner = acrobot.inner_mut();
-        let _ = black_box(inner.set_params(params()));
-        let _ = black_box(inner.set_state(state()));
+        let _ = black_box((inner.set_params(params()), inner.set_state(state())));
         if let Ok(bounds) = ResetBounds::new(black_box(-0.2), black_box(0.2)) {
             black_box(bounds.draw(acrobot.inner_mut().rng_mut()));
             let (seed, bounds) = (Some(seed), Some(bounds));
@@ -142,10 +141,12 @@ fn environment<A: Arithmetic>() {
         black_box(display.data());
         for _ in 0..black_box(10) {
             let action = Action::sample(acrobot.inner_mut().rng_mut());
-            black_box(trajectory.step(&mut acrobot, action));
-            let _ = black_box(trajectory.step_torque(&mut acrobot, number()));
-            let _ = black_box(Action::try_from(black_box(3)));
-            let _ = black_box(acrobot.step_torque(number()));
+            let _ = black_box((
+                trajectory.step(&mut acrobot, action),
+                trajectory.step_torque(&mut acrobot, number()),
+                Action::try_from(black_box(3)),
+                acrobot.step_torque(number()),
+            ));
             let inner = acrobot.inner();
             black_box(inner.observation());
             let figure = Figure::new(inner).with_torque(black_box(1.0));
@@ -168,9 +169,11 @@ fn batch<A: Arithmetic, const LEN: usize, const N: usize>(memory: impl Storage<A
     let (mut rewards, mut terminated, mut truncated) = ([0.0; LEN], [false; LEN], [false; LEN]);
     for _ in 0..black_box(10) {
         batch.set_autoreset(black_box(Autoreset::Disabled));
-        let _ = black_box(batch.set_params(params()));
-        let _ = black_box(batch.set_params_of(black_box(3), params()));
-        let _ = black_box(batch.set_params_range(ParamsRange::new(params(), params()).ok()));
+        let _ = black_box((
+            batch.set_params(params()),
+            batch.set_params_of(black_box(3), params()),
+            batch.set_params_range(ParamsRange::new(params(), params()).ok()),
+        ));
         let actions = black_box([1_u8; LEN]);
         let torques = black_box([A::Scalar::ZERO; LEN]);
         let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
@@ -182,23 +185,23 @@ fn batch<A: Arithmetic, const LEN: usize, const N: usize>(memory: impl Storage<A
             batch.step(&torques, buffers)
         });
         black_box((&rewards, &terminated, &truncated, &rows, &finals));
-        let _ = black_box(batch.observe(&mut rows));
-        let _ = black_box(batch.reset_masked(&black_box([true; LEN]), ResetOptions::default()));
-        let _ = black_box(batch.reset_to(&black_box([State::default(); LEN])));
-        let _ = black_box(batch.set_state(black_box(3), state()));
+        let _ = black_box((
+            batch.observe(&mut rows),
+            batch.reset_masked(&black_box([true; LEN]), ResetOptions::default()),
+            batch.reset_to(&black_box([State::default(); LEN])),
+            batch.set_state(black_box(3), state()),
+        ));
         black_box((&rows, batch.state(black_box(3))));
         black_box((batch.params_of(black_box(3)), batch.elapsed(black_box(3))));
         if let Some(member) = batch.member(black_box(3)) {
             let _ = black_box(batch.set_member(black_box(4), member));
         }
         batch.reset();
-        batch.reset_with(ResetOptions::default());
         batch.reset_with_seed(black_box(7));
         black_box(batch.generators_mut());
     }
 }
 
-/// NumPy's random numbers.
 fn numbers() {
     let mut rng = Pcg64::new(black_box(42));
     black_box(uniform(&mut rng, black_box(-1.0), black_box(1.0)));
@@ -211,7 +214,6 @@ fn numbers() {
     black_box(SeedSequence::from_words(&black_box([7; 9])));
 }
 
-/// The learner of `learn`.
 fn learners() {
     let mut memory = black_box(Memory16::EMPTY);
     let (mut learner, mut env) = (training::learner(&mut memory), training::env());
@@ -220,7 +222,6 @@ fn learners() {
     black_box(training::digest(&learner));
 }
 
-/// The controller of `balance`.
 fn controller() {
     if let Ok(mut controller) = Controller::new(params(), number()) {
         let _ = black_box(controller.decide(state()));

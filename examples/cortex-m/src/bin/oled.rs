@@ -62,7 +62,7 @@ struct Panel {
     /// The position of the next byte.
     column: u8,
     page: u8,
-    /// Bytes on the bus, without addresses.
+    /// Bytes, without addresses.
     received: u32,
 }
 
@@ -76,8 +76,7 @@ impl Panel {
             }
             // The driver fills the window, so the last group of rows does not matter.
             [0x00, 0x22, first, _] => self.page = first,
-            // Settings, and power on.
-            [0x00, ..] => {}
+            [0x00, ..] => {} // settings, and power on
             [0x40, ref data @ ..] => data.iter().for_each(|&byte| self.write(byte)),
             _ => panic!("an SSD1306 does not know these bytes: {bytes:x?}"),
         }

@@ -29,7 +29,6 @@ impl Folder {
         command.args(words).current_dir(&self.0).output().unwrap()
     }
 
-    /// What a program prints.
     fn printed(&self, line: &str) -> String {
         let output = self.run(line);
         let errors = String::from_utf8_lossy(&output.stderr);

@@ -6,11 +6,9 @@
 //! cargo run --release -p desktop --bin stay_up -- --replan     # both in real time
 //! ```
 //!
-//! The planner is `Planner` of `crates/controller`. It knows the exact model and plans before the
-//! acrobot moves. With `--replan` the model is wrong, and it plans again while the acrobot moves.
-//!
-//! Prints the mean return of episodes of 1,000 steps, from the initial states of
-//! `Acrobot::new(seed)` for seeds from 0, or how many of Gymnasium's initial states end upright.
+//! The planner, of `crates/controller`, plans before the acrobot moves. Prints the mean return of
+//! episodes of 1,000 steps, from the initial states of `Acrobot::new(seed)` for seeds from 0, or
+//! how many of Gymnasium's initial states end upright.
 
 mod observer;
 mod replan;
@@ -30,7 +28,7 @@ use search::Search;
 
 type Task = Swingup<Fast>;
 
-/// dm_control's largest torque, and Gymnasium's, N m.
+/// Largest torques, N m.
 const SWINGUP: f32 = 2.0;
 const GYMNASIUM: f32 = 1.0;
 
@@ -46,7 +44,7 @@ const LENGTHS: Range<usize> = 150..600;
 const AGAIN: u32 = 2;
 const POOR: f64 = 500.0;
 
-/// Plays the swing-up by planning.
+/// Plays dm_control's swing-up by planning.
 #[derive(Parser)]
 struct Options {
     /// Episodes to play.
@@ -109,11 +107,12 @@ fn swing_up(seed: u64) -> anyhow::Result<Episode> {
     let mut search = Search::new(Acrobot::new(seed), SWINGUP, LENGTHS, 1000, seed)?;
     let (mut best, _) = search.run(1)?;
     for _ in 0..AGAIN {
-        if best.total < POOR {
-            let (other, _) = search.run(1)?;
-            if other.total > best.total {
-                best = other;
-            }
+        if best.total >= POOR {
+            break;
+        }
+        let (other, _) = search.run(1)?;
+        if other.total > best.total {
+            best = other;
         }
     }
     Ok(best)
@@ -151,13 +150,13 @@ fn main() -> anyhow::Result<()> {
         return Ok(());
     }
     let totals = episodes.iter().map(|episode| episode.total);
-    let mean = totals.clone().sum::<f64>() / f64::from(count);
-    let variance = totals.clone().map(|x| (x - mean) * (x - mean)).sum::<f64>() / f64::from(count);
+    let average = |numbers: &mut dyn Iterator<Item = f64>| numbers.sum::<f64>() / f64::from(count);
+    let mean = average(&mut totals.clone());
+    let sd = average(&mut totals.clone().map(|x| (x - mean) * (x - mean))).sqrt();
     let worst = totals.fold(f64::INFINITY, f64::min);
     let held = episodes.iter().filter(|episode| episode.holds(1000)).count();
     println!(
-        "mean return of {count} episodes: {mean:.0} ± {:.0}, the worst {worst:.0}, held {held}",
-        variance.sqrt()
+        "mean return of {count} episodes: {mean:.0} ± {sd:.0}, the worst {worst:.0}, held {held}"
     );
     Ok(())
 }

@@ -112,10 +112,9 @@ mod tests {
         let nominal = Params::SWINGUP;
         let factors = [1.03, 0.98, 1.02, 0.97];
         let mut observer = Observer::new(nominal)?;
-        observer.estimate[4..].copy_from_slice(&factors);
-        let (_, params) = observer.parts(observer.estimate);
+        let [f1, f2, f3, f4] = factors;
+        let (_, params) = observer.parts([0.0, 0.0, 0.0, 0.0, f1, f2, f3, f4]);
         let mut machine = Pendulum::<Swingup<Portable>>::new(params, State::HANGING)?;
-        observer = Observer::new(nominal)?;
         for i in 0..200 {
             let noise = if i % 3 == 0 { 1e-4 } else { -5e-5 };
             let [x1, x2, x3, x4] = machine.state().into();

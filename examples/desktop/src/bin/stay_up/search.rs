@@ -13,7 +13,6 @@ use controller::{Planner, Step};
 
 use crate::{Episode, Task};
 
-/// First guesses.
 const GUESSES: usize = 120;
 /// After a few iterations the best of them are planned until no iteration helps.
 const FEW: u32 = 25;

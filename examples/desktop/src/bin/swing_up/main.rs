@@ -6,14 +6,11 @@
 //! cargo run --release -p desktop --bin swing_up -- --steps 0 --load weights.bin
 //! ```
 //!
-//! The learner is `crates/learners`, bit-identical on microcontrollers and in browsers. `--quiet`
-//! prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the first n ≥ 100 for
-//! which the mean return of episodes n − 99 to n is −100 or better. R and S are the mean and
-//! standard deviation of 1,000 greedy episodes from initial states that it was not trained on, and
-//! K of these missed the goal. The time of learning goes to stderr. With `--evaluate N` a line
-//! `steps M greedy_mean R` for every N steps comes before. Without `--quiet` it draws the learning
-//! curve, the values and a greedy episode. With `--plan 60` it also plays a beam search on the
-//! model over the learnt values.
+//! With `--quiet` it prints one line, `solved_at E greedy_mean R greedy_sd S misses K`: E is the
+//! first n ≥ 100 for which the mean return of episodes n − 99 to n is −100 or better. R and S are
+//! the mean and standard deviation of 1,000 greedy episodes from initial states that it was not
+//! trained on, and K of these missed the goal. The time of learning goes to stderr. With
+//! `--evaluate N` a line `steps M greedy_mean R` for every N steps comes before.
 //!
 //! Untrained, all values tie, so the learner takes the first action, and mirroring turns that into
 //! torque against θ̇1. This is the baseline.
@@ -34,7 +31,8 @@ mod pictures;
 use learners::{Budget, Memory, Memory16, Memory32, Memory64, QLambda, evaluation, play, training};
 use pictures::svg;
 
-/// Learns to swing up, and compares the learnt policy with two simple ones.
+/// Learns to swing up, compares the learnt policy with two simple ones, and draws the learning
+/// curve, the values and a greedy episode.
 #[derive(Parser)]
 #[command(allow_negative_numbers = true)]
 struct Options {
@@ -63,7 +61,7 @@ struct Options {
     #[arg(long, value_name = "STEPS", conflicts_with = "quiet")]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=128))]
     plan: Option<u32>,
-    /// Prints only one line, and draws nothing.
+    /// Prints one line of figures, and draws nothing.
     #[arg(long)]
     quiet: bool,
 }
@@ -86,7 +84,6 @@ fn main() -> anyhow::Result<()> {
     }
 }
 
-/// Learns, and prints the results.
 fn run<const S: usize, const T: usize, const N: usize>(
     options: &Options,
     mut memory: Memory<S, T, N>,
@@ -163,7 +160,7 @@ fn draw<const S: usize, const T: usize>(
     save("swing_up.svg", animation::svg(&states, animation::DELAY), &content)
 }
 
-/// Learns. Returns the return of each episode.
+/// Returns the return of each episode.
 fn train<const S: usize, const T: usize>(
     learner: &mut QLambda<S, T>,
     options: &Options,

@@ -32,9 +32,6 @@ pub fn svg(
 
 /// The return of each episode, and the running mean.
 pub fn draw_curve(area: &Area, returns: &[f32]) -> anyhow::Result<()> {
-    const MEAN: RGBColor = RGBColor(33, 145, 140);
-    const THRESHOLD: RGBColor = RGBColor(200, 60, 40);
-
     let body = area.titled("Learning to swing up", TITLE)?;
     // Both axes are logarithmic: most is learnt in few episodes, and the last steps are the hardest
     // to save.
@@ -63,19 +60,18 @@ pub fn draw_curve(area: &Area, returns: &[f32]) -> anyhow::Result<()> {
         let point = |n| (n as f64, doublings(f64::from(value(n)).clamp(worst, best)));
         (1..=returns.len()).map(point).collect()
     };
-    for (name, points, style) in [
+    let threshold = [1.0, last].map(|n| (n, doublings(threshold))).to_vec();
+    for (name, points, color, width) in [
+        ("return of an episode", line(&|n| returns[n - 1]), RGBColor(185, 195, 205), 1),
+        ("solved: -100", threshold, RGBColor(200, 60, 40), 1),
         (
-            "return of an episode",
-            line(&|n| returns[n - 1]),
-            RGBColor(185, 195, 205).stroke_width(1),
+            "mean of the latest 100",
+            line(&|n| running_mean(&returns[..n])),
+            RGBColor(33, 145, 140),
+            3,
         ),
-        (
-            "solved: -100",
-            [1.0, last].map(|n| (n, doublings(threshold))).to_vec(),
-            THRESHOLD.stroke_width(1),
-        ),
-        ("mean of the latest 100", line(&|n| running_mean(&returns[..n])), MEAN.stroke_width(3)),
     ] {
+        let style = color.stroke_width(width);
         chart
             .draw_series(LineSeries::new(points, style))?
             .label(name)
