@@ -31,6 +31,7 @@ pub fn play<D: DrawTarget<Color = BinaryColor>>(
     }
 }
 
+/// The number of frames.
 pub const FRAMES: u32 = 95;
 
 /// The digest of all frames, each as the 1024 bytes in the memory of an SSD1306: eight rows at a

@@ -7,16 +7,19 @@ use crate::Digest;
 
 pub type Learner<'w> = QLambda<'w, 1408, 16>;
 
+/// The seed of the acrobot.
 const SEED: u64 = 42;
 /// The episodes over which the learner's step size falls.
 pub const EPISODES: u32 = 200;
 /// The episodes after which the weights are compared.
 pub const COMPARED: u32 = 100;
 
+/// An untrained learner.
 pub fn learner(memory: &mut Memory16) -> Learner<'_> {
     QLambda::new(Budget::Episodes(EPISODES), memory)
 }
 
+/// The acrobot of the training.
 pub fn env() -> Env {
     learners::training(SeedSequence::new(SEED))
 }
@@ -26,6 +29,7 @@ pub fn evaluation() -> Env {
     learners::evaluation(&SeedSequence::new(SEED))
 }
 
+/// A digest of every weight's bits.
 pub fn digest(learner: &Learner) -> u64 {
     let mut digest = Digest::default();
     for weight in learner.weights().iter().flatten() {
@@ -34,6 +38,7 @@ pub fn digest(learner: &Learner) -> u64 {
     digest.0
 }
 
+/// Trains and returns the digest.
 pub fn weights() -> u64 {
     let mut memory = Memory16::EMPTY;
     let (mut learner, mut env) = (learner(&mut memory), env());
