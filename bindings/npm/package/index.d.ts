@@ -172,7 +172,10 @@ export class Acrobot extends Kept {
   /** The state: a frozen copy. Setting it, to finite numbers, continues the episode. */
   get state(): Readonly<State>;
   set state(state: Readonly<State>);
-  /** The total energy, J. The potential energy is 0 at the height of the fixed joint. */
+  /**
+   * The total energy, J. The potential energy is 0 at the height of the fixed joint. Extreme
+   * velocities or parameters can make it infinite or NaN.
+   */
   get energy(): number;
   /** The height of the tip above the fixed joint, m. */
   get tipHeight(): number;

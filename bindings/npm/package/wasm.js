@@ -168,6 +168,6 @@ export function accept(length, valueOf) {
   const plain = name.replace(".joint", "");
   const camel = plain.replace(/_(\w)/g, (_, letter) => letter.toUpperCase());
   // JavaScript chooses no arithmetic, but a task.
-  const own = rule.replace("an arithmetic without friction", 'the task "acrobot"');
+  const own = rule.replace("the arithmetic is Damped", 'the task is "swingup"');
   throw invalidSingle(`${camel} must be ${own} ${unit}`, valueOf(camel));
 }

@@ -216,7 +216,7 @@ test("invalid arguments are rejected with the value and the rule, and nothing ch
     ["RangeError", "torque must be a finite number of N m",
       ["NaN", push(NaN)], ["1e+39, which is Infinity in single precision", push(1e39)]],
     ["TypeError", "torque must be a finite number of N m", ['"1"', push("1")]],
-    ["RangeError", 'friction1 must be 0 in the task "acrobot", in N m s/rad',
+    ["RangeError", 'friction1 must be 0 unless the task is "swingup", in N m s/rad',
       ["0.1", set({ friction1: 0.1 })], ["0.2", range({ friction1: [0, 0.2] })]],
     ["RangeError", "mass1 must have a low of at most its high, in kg",
       ["[2,1]", range({ mass1: [2, 1] })]],

@@ -53,8 +53,15 @@ function start() {
   };
 
   const step = () => {
-    const next = action();
-    if (next === undefined) return pause("The replay has ended.");
+    let next;
+    try {
+      next = action();
+    } catch (error) {
+      return pause(minus(error.message)); // With extreme physics an energy is infinite.
+    }
+    if (next === undefined) {
+      return pause("The replay has ended. Press Restart, or an arrow and Play.");
+    }
     game.step(next);
     players.add($("policy").value);
     shown = 0;
@@ -66,7 +73,7 @@ function start() {
     const result = `${isGoal ? "Goal" : "Out of time"} after ${game.steps} steps.`;
     const continues = playing && !["keys", "link"].includes($("policy").value);
     if (continues) nextAt = performance.now() + INTERVAL;
-    say(continues ? `${result} The next seed follows.` : result);
+    say(`${result} ${continues ? "The next seed follows." : "Press Restart or Next seed."}`);
   };
 
   const begin = (seed, params = game.params) => {
@@ -130,12 +137,16 @@ function start() {
     if (policy !== "keys" && game.end !== null) begin(game.seed);
     address();
     if (playing) say(player());
+    else if (policy === "keys") say("You play. Press Play.");
     changed();
   };
 
   // ---- what the page shows
 
-  const number = (value, digits = 2) => minus(value.toFixed(digits));
+  const number = (value, digits = 2) => {
+    if (!Number.isFinite(value)) return "too large";
+    return minus(Math.abs(value) < 1e6 ? value.toFixed(digits) : value.toPrecision(4));
+  };
   /** Draws a plot of columns, and a caption with their last values and further parts. */
   const show = (id, title, names, unit, columns, options, ...more) => {
     const kinds = ["first", "second"];
@@ -174,9 +185,8 @@ function start() {
     $("step").textContent = game.steps;
     $("return").textContent = minus(String(game.return));
     $("best").textContent = best.get(record()) ?? "–";
-    const { value: policy, selectedOptions: [{ label }] } = $("policy");
-    const isOwn = policy === "keys";
-    $("best-label").textContent = isOwn ? "Your fewest steps" : `Fewest steps of ${label}`;
+    const isOwn = $("policy").value === "keys";
+    $("best-label").textContent = isOwn ? "Your fewest steps" : "Fewest steps";
     $("pause").textContent = playing ? "Pause" : "Play";
     const verdicts = { goal: `Goal! ${game.steps} steps`, limit: "Out of time" };
     $("verdict").textContent = verdicts[game.end] ?? "";
@@ -196,6 +206,7 @@ function start() {
 
   let last = performance.now();
   const frame = (now) => {
+    requestAnimationFrame(frame);
     // A page in the background gets no frames. Afterwards it does not catch up.
     const elapsed = Math.min(Math.max(now - last, 0), 100) / 1000;
     last = now;
@@ -212,10 +223,13 @@ function start() {
     } else {
       shown = Math.min(shown + elapsed * Number($("pace").value), dt);
     }
-    if (now >= nextAt && playing) next();
+    if (now >= nextAt && playing) {
+      const { hidden } = $("link-field");
+      next();
+      $("link-field").hidden = hidden;
+    }
     drawStage(game, calm.matches ? 1 : Math.min(shown / dt, 1), !calm.matches);
     if (dirty) update();
-    requestAnimationFrame(frame);
   };
 
   // ---- keys and buttons
@@ -229,7 +243,13 @@ function start() {
   const sides = { ArrowLeft: "left", ArrowRight: "right" };
   document.addEventListener("keydown", (event) => {
     const { key, target } = event;
-    if (event.ctrlKey || event.metaKey || event.altKey || target.closest("input, select")) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const field = target.closest("input, select");
+    if (field) {
+      const leaves = field.matches("select") ? key in sides : ["Enter", "Escape"].includes(key);
+      if (leaves) field.blur();
+      if (!(leaves && key in sides)) return;
+    }
     // The space bar presses the focused button.
     if (key === " " && target.closest("button, summary, a")) return;
     if (key in sides) hold(sides[key], true);
@@ -268,12 +288,14 @@ function start() {
     for (const [type, on] of [["keydown", true], ["keyup", false]]) {
       button.addEventListener(type, ({ key }) => [" ", "Enter"].includes(key) && hold(side, on));
     }
+    button.addEventListener("blur", () => hold(side, false));
   }
   const buttons = { pause: toggle, single, reset, next };
   for (const [id, act] of Object.entries(buttons)) $(id).onclick = act;
   $("policy").onchange = ({ target }) => choose(target.value);
-  // Otherwise ← and → would choose from the list that has the focus.
-  $("app").addEventListener("change", ({ target }) => target.matches("select") && target.blur());
+  // After a click. Who uses the keyboard may go on with ↑ and ↓.
+  const leaves = ({ target }) => target.matches("select:not(:focus-visible)") && target.blur();
+  $("app").addEventListener("change", leaves);
 
   // ---- settings
 
@@ -288,7 +310,8 @@ function start() {
     () => game.params,
     (params) => {
       begin(game.seed, params);
-      say("The episode restarts, because the physics has changed.");
+      const restarts = "The episode restarts, because the physics has changed.";
+      say(playing ? `${restarts} ${player()}` : restarts);
     },
   );
 
@@ -307,7 +330,7 @@ function start() {
       if (length > 0) say(`Replay of a link: ${length} steps of seed ${name(run.seed)}.`);
     } catch (error) {
       address();
-      say(`The link is invalid: ${minus(error.message)}`);
+      say(`The link is invalid: ${minus(error.message).slice(0, 200)}`);
       $("status").scrollIntoView({ block: "nearest" });
     }
   };
@@ -333,6 +356,8 @@ function start() {
   const training = trainingPanel(learner, {
     ready(policy) {
       learnt = policy;
+      // Those of the policy before.
+      for (const key of best.keys()) if (key.startsWith('["learnt"')) best.delete(key);
       option.disabled = false;
       option.textContent = "Learnt";
     },

@@ -47,6 +47,8 @@ export function parametersPanel(get, set) {
     let held = false;
     slider.onkeydown = () => (held = true);
     slider.onchange = () => held || change();
+    // So that ← and → are the torque again.
+    slider.onpointerup = () => slider.blur();
     slider.onkeyup = slider.onblur = () => {
       held = false;
       change();

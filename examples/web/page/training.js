@@ -1,6 +1,7 @@
 // The panel "Train a policy": a worker, the learning curve, and files of weights.
 
 import { Perceptron } from "./acrobot-rs/policies.js";
+import { attempt } from "./parameters.js";
 import { color, minus, plot, rangeOf } from "./plot.js";
 import { parseSeed } from "./settings.js";
 
@@ -12,6 +13,12 @@ export const BASELINE = -84;
 const EPISODES = 1_000_000;
 
 const $ = (id) => document.getElementById(id);
+
+function parseEpisodes(text) {
+  const episodes = /^[0-9]+$/.test(text.trim()) ? Number(text) : 0;
+  if (episodes >= 1 && episodes <= EPISODES) return episodes;
+  throw new Error(`episodes must be digits from 1 to ${EPISODES}, got ${text || "an empty text"}`);
+}
 
 /** Calls `ready` with each learnt policy, and `drive` when the user wants to watch it. */
 export function trainingPanel(learner, { ready, drive }) {
@@ -46,20 +53,14 @@ export function trainingPanel(learner, { ready, drive }) {
   };
 
   const train = () => {
-    const reason = $("training-reason");
-    reason.textContent = "";
-    const episodes = Number($("episodes").value);
-    let seed;
-    try {
-      if (!Number.isInteger(episodes) || episodes < 1 || episodes > EPISODES) {
-        const got = $("episodes").value || "an empty text";
-        throw new Error(`episodes must be an integer from 1 to 1,000,000, got ${got}`);
-      }
-      seed = parseSeed($("training-seed").value);
-    } catch (error) {
-      reason.textContent = minus(error.message);
-      return;
-    }
+    const read = (id, parse) => {
+      let value = null;
+      attempt($(id), $("training-reason"), () => (value = parse($(id).value)));
+      return value;
+    };
+    const episodes = read("episodes", parseEpisodes);
+    const seed = episodes && read("training-seed", parseSeed);
+    if (seed === null) return;
     const returns = [];
     let sum = 0;
     means = [];
@@ -80,6 +81,7 @@ export function trainingPanel(learner, { ready, drive }) {
       const text = [
         `${returns.length.toLocaleString("en")} of ${episodes.toLocaleString("en")} episodes`,
         `mean return ${minus(mean.toFixed(1))}`,
+        ...(means.length === 0 ? [`the curve begins after ${WINDOW} episodes`] : []),
         solved < 0 ? "not solved yet" : `solved at episode ${solved + WINDOW}`,
         `${rate.toLocaleString("en")} episodes per minute`,
       ].join(" · ");
@@ -102,7 +104,9 @@ export function trainingPanel(learner, { ready, drive }) {
     $("weights-reason").textContent = "";
     if (file === undefined) return;
     try {
-      take(new Uint8Array(await file.arrayBuffer()));
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      take(bytes);
+      stop(); // The next report would replace these weights.
       $("training-status").textContent = `${file.name} is loaded.`;
     } catch (error) {
       $("weights-reason").textContent = `${file.name}: ${error.message}`;

@@ -170,7 +170,7 @@ onPage("parameters act as in the crate, and invalid ones are rejected", async (p
   await page.keyboard.up("ArrowRight");
   await shows(page, "#mass1-reason", "");
   await shows(page, "#step", "0");
-  await shows(page, "#status", "The episode restarts, because the physics has changed.");
+  await says(page, "#status", /^The episode restarts, because the physics has changed\./);
   await press(page, ACTIONS);
   assert.notDeepEqual(await shownBits(page), state);
 
@@ -209,7 +209,7 @@ test("a link replays a run, and an invalid link is rejected", async () => {
   const { hash } = new URL(link);
   await open({ hash }, async (page) => {
     await page.selectOption("#pace", "4");
-    await says(page, "#status", /^The replay has ended\.$/);
+    await says(page, "#status", /^The replay has ended\. Press Restart, or an arrow and Play\.$/);
     await showsBits(page, state);
     assert.equal(await page.inputValue("#length2"), "1.5");
     assert.equal(await page.url(), link);
@@ -339,6 +339,33 @@ onPage("with reduced motion the page begins paused and moves step by step", calm
   await shows(page, "#step", "0");
 });
 
+onPage("a policy that cannot play says so, and the page goes on", async (page) => {
+  await page.fill("#mass1", "3e38");
+  await page.selectOption("#policy", "energy_law");
+  await says(page, "#status", /energy must be a finite number, got −Infinity$/);
+  await shows(page, "#pause", "Play");
+  assert.match(await text(page, "#energy-caption"), /too large J/);
+  await page.click("#defaults");
+  await page.click("#pause");
+  await stepped(page, 2);
+});
+
+onPage("a torque ends where its button loses the focus, and begins from a list", async (page) => {
+  const held = () => page.evaluate(() => document.querySelectorAll(".held").length);
+  await page.focus("#left");
+  await page.keyboard.down("Space");
+  assert.equal(await held(), 1);
+  await page.keyboard.press("Tab");
+  assert.equal(await held(), 0);
+  await page.keyboard.up("Space");
+  await page.selectOption("#policy", "bang_bang");
+  await page.focus("#policy");
+  await page.keyboard.down("ArrowRight");
+  assert.equal(await held(), 1);
+  assert.equal(await page.inputValue("#policy"), "keys");
+  await page.keyboard.up("ArrowRight");
+});
+
 onPage("the fewest steps are those of who played, with these parameters", async (page) => {
   await paused(page, 42);
   await page.selectOption("#policy", "bang_bang");
@@ -346,7 +373,7 @@ onPage("the fewest steps are those of who played, with these parameters", async 
   const best = await text(page, "#best");
   await shows(page, "#verdict", `Goal! ${best} steps`);
   await shows(page, "#status", "The episode has ended. Press Restart or Next seed.");
-  await shows(page, "#best-label", "Fewest steps of Bang-bang");
+  await shows(page, "#best-label", "Fewest steps");
   await page.selectOption("#policy", "keys");
   await shows(page, "#best", "–");
   await shows(page, "#best-label", "Your fewest steps");
