@@ -8,13 +8,20 @@ impl Folder {
     }
 
     /// The figures of the line that `--quiet` prints: the episode that solved the task, if any, the
-    /// greedy policy's mean and standard deviation, and its misses.
+    /// greedy policy's mean and standard deviation, and its misses. Checks the form of the line.
     fn figures(&self, arguments: &str) -> [Option<f64>; 4] {
         let line = self.swing_up(&format!("--quiet {arguments}"));
         let words: Vec<&str> = line.split_whitespace().collect();
-        let names = [words[0], words[2], words[4], words[6]];
-        assert_eq!(names, ["solved_at", "greedy_mean", "greedy_sd", "misses"]);
-        [1, 3, 5, 7].map(|i| words[i].parse().ok())
+        let [solved, rest @ ..]: [Option<f64>; 4] = [1, 3, 5, 7].map(|i| words[i].parse().ok());
+        let solved_at = solved.map_or("never".into(), |n| n.to_string());
+        let [mean, sd, misses] = rest.map(Option::unwrap);
+        assert_eq!(
+            line,
+            format!(
+                "solved_at {solved_at} greedy_mean {mean:.2} greedy_sd {sd:.2} misses {misses:.0}\n"
+            )
+        );
+        [solved, Some(mean), Some(sd), Some(misses)]
     }
 }
 
