@@ -1,5 +1,4 @@
-//! Code that the benchmarks and the program `throughput` share: bare loops as yardsticks, and a
-//! random policy for batches.
+//! Code that the benchmarks share: bare loops as yardsticks, and a random policy for batches.
 
 mod loops;
 mod play;

@@ -10,7 +10,7 @@ import functools
 import re
 import subprocess
 
-STEPS = 200
+STEPS = 50
 COSTS = {"vdiv": 14, "vmla": 3, "vmls": 3, "udiv": 7, "sdiv": 7}
 REGISTERS = re.compile(r"[rsd](\d+)(?:-[rsd](\d+))?|lr|pc|ip|fp|sl|sb")
 

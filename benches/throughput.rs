@@ -8,7 +8,7 @@
 //! the best of several runs, interleaved with runs of the yardstick.
 //!
 //! ```text
-//! cargo run --release -p benches
+//! cargo bench -p benches --bench throughput
 //! ```
 
 use std::hint::black_box;
