@@ -1,5 +1,5 @@
-//! A plan for a motor of 10 N m, which takes a fraction of the time of one for 1 N m, and a digest of
-//! the plan and of following it.
+//! A plan for a motor of 10 N m, which is found in a twentieth of the time of one for 1 N m, and a
+//! digest of the plan and of following it.
 
 use acrobot::numpy::Pcg64;
 use acrobot::physics::bound;
