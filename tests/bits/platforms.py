@@ -47,7 +47,7 @@ PLATFORMS = [
     Platform("WebAssembly", "wasm32-wasip1"),
     Platform("WebAssembly with SIMD", "wasm32-wasip1", "-C target-feature=+simd128"),
     # These show that a difference is found.
-    Platform("M4F, fused by LLVM", M4F, "-C llvm-args=-fp-contract=fast", equal=False),
+    Platform("Cortex-M4F, fused by LLVM", M4F, "-C llvm-args=-fp-contract=fast", equal=False),
     Platform("Cortex-M55 with Helium", M33, "-C target-cpu=cortex-m55", "mps3-an547", equal=False),
 ]
 HEAD = ["| platform | Rust target | options | bits |", "|---|---|---|---|"]
