@@ -5,7 +5,9 @@ mod balance;
 mod regulators;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
-use acrobot::physics::control::{Forces, discretize, inverse_dynamics, linearize, velocities};
+use acrobot::physics::control::{
+    Forces, difference, discretize, inverse_dynamics, linearize, velocities,
+};
 use acrobot::physics::{Pendulum, Viscous};
 use acrobot::{Fast, Params, Portable, State};
 use common::{dynamics_of, lines, numbers, text_of};
@@ -102,6 +104,14 @@ fn derivatives_forces_and_velocities_equal_those_of_200_digits() {
     ] {
         assert!(worst.into_iter().all(|error| error < limit), "{worst:?}");
     }
+}
+
+#[test]
+fn differences_of_angles_are_wrapped_and_those_of_velocities_are_not() {
+    let [state, target] = [[3.0, -1.0, 2.0, 5.0], [-3.0, 0.5, -1.0, 7.0]].map(State::from);
+    let [first, others @ ..] = difference(state, target);
+    assert!((first - (6.0 - std::f64::consts::TAU)).abs() < 1e-15, "{first}");
+    assert_eq!(others, [-1.5, 3.0, -2.0]);
 }
 
 #[test]
