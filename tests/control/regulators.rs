@@ -107,6 +107,30 @@ fn a_gain_that_rounding_makes_useless_is_an_error() {
     assert_eq!(found::<f32>(), Err(ControlError::IllConditioned { error }));
 }
 
+/// One torque tells motions that grow by nearly the same factor apart only with large gains, and
+/// costs far below the torque's underflow.
+#[test]
+fn a_gain_that_rounding_spoils_is_an_error() {
+    let twins = |factor| diagonal([2.0, factor, 0.5, 0.4]);
+    let found =
+        |a, weight| lqr(&DiscreteModel { a, b: [1.0; 4] }, &diagonal([weight; 4]), 1.0).map(drop);
+    let is_error = |found| matches!(found, Err(ControlError::IllConditioned { error }) if (1e-9..=1.0).contains(&error));
+    assert_eq!(found(twins(2.00005), 1.0), Ok(()));
+    assert!(is_error(found(twins(2.00002), 1.0)));
+    assert_eq!(found(twins(3.0), 1e-249), Ok(()));
+    assert!(is_error(found(twins(3.0), 1e-251)));
+}
+
+/// The doubling divides by a pivot that is small unless rows are exchanged.
+#[test]
+fn a_motion_that_grows_ten_thousandfold_is_stopped() {
+    let a = [[1e4, 0.0, 0.01, 0.0], [0.0; 4], [1e4, 0.0, 0.0, 0.0], [0.0; 4]];
+    let found = lqr(&DiscreteModel { a, b: [0.0, 0.0, 100.0, 0.0] }, &IDENTITY, 1.0).unwrap();
+    // 200 digits.
+    let expected = [100000099.00999901, 0.0, 99.99999900999901, 0.0];
+    assert!(relative(&found.gain, &expected) < 1e-15, "{found:?}");
+}
+
 /// Motions that persist without a gain: their powers leave the range in which `f64` adds exactly.
 #[test]
 fn motions_that_the_torque_does_not_reach_have_no_gain() {
