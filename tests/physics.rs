@@ -1,6 +1,8 @@
 //! The equations of motion are right, in both forms, and so are positions, mass matrix and energy.
 
-use acrobot::arithmetic::{Arithmetic, Damped, Form, Reference};
+use std::f64::consts::{PI, TAU};
+
+use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Reference};
 use acrobot::batch::VecBatch;
 use acrobot::env::{AcrobotEnv, RenderMode};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
@@ -152,4 +154,32 @@ fn an_arithmetic_without_friction_rejects_it() {
     }
     let after = (pendulum, acrobot, batch.member(1), batch.params_range().copied());
     assert_eq!(after, before);
+}
+
+/// Without gravity and torque the acrobot rests, so that a step only wraps. Each turn that is
+/// subtracted is rounded.
+#[test]
+fn angles_are_wrapped_after_any_number_of_turns() {
+    fn check<A: Arithmetic<Scalar = f64>>() {
+        let step = |[theta1, theta2]: [f64; 2]| {
+            let params = Params { gravity: 0.0, ..Params::DEFAULT };
+            let state = State { theta1, theta2, ..State::HANGING };
+            let mut pendulum = Pendulum::<A>::new(params, state).unwrap();
+            pendulum.step(0.0).unwrap();
+            [pendulum.state().theta1, pendulum.state().theta2]
+        };
+        // π and −π stay, also where the other angle is wrapped.
+        assert_eq!([step([PI, 9.0])[0], step([-PI, 9.0])[0]], [PI, -PI]);
+        for turns in [1.0, 63.0, 64.0, 65.0, 1e6] {
+            for angle in [3.0, 0.5, -0.5, -3.0] {
+                let given = angle + turns * TAU;
+                let [found1, found2] = step([given, -given]);
+                let error = (found1 - angle).abs().max((found2 + angle).abs());
+                assert!(error < 1e-7, "{given}: {found1}, {found2}");
+            }
+        }
+    }
+    check::<Host>();
+    check::<Reference>();
+    check::<Portable>();
 }

@@ -3,7 +3,7 @@
 
 use std::fmt::Debug;
 
-use acrobot::arithmetic::{Arithmetic, Damped, Micro, Reference};
+use acrobot::arithmetic::{Arithmetic, Damped, Micro, Reference, Swingup, SwingupSparse};
 use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::SeedSequence;
 use acrobot::physics::{Dynamics, ParamsRange, ResetBounds, Viscous};
@@ -58,6 +58,8 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
         let at_its_end = reason == no_snapshot && error.ends_with(reason);
         assert!(error == reason || at_its_end, "{error}");
     }
+    let names = [Damped::<Fast>::NAME, Swingup::<Fast>::NAME, SwingupSparse::<Fast>::NAME];
+    assert_eq!(names, ["damped fast", "swing fast", "sparse fast"]);
     // A binary format can hold NaN, JSON cannot.
     let acrobot = Acrobot::<Portable>::new(0);
     let state = postcard::to_stdvec(&acrobot.state()).unwrap();

@@ -3,7 +3,7 @@
 use acrobot::batch::{Autoreset, Batch, Block, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
-use acrobot::{Error, Fast, Params, ResetOptions};
+use acrobot::{Error, Fast, Params, ResetOptions, State};
 
 /// `DerefMut` gives access to the batch inside, so a batch of another length can replace it.
 #[test]
@@ -22,7 +22,8 @@ fn replaced_batches_of_other_lengths_have_their_own_results() {
         let mask: Vec<bool> = (0..len).map(|i| i % 2 == 0).collect();
         for batch in [&mut *swapped, &mut *expected] {
             assert_eq!(batch.reset().len(), len);
-            batch.reset_masked(&mask, ResetOptions::default()).unwrap();
+            let rows = batch.reset_masked(&mask, ResetOptions::default()).unwrap();
+            assert_eq!(rows.len(), len);
         }
         assert_eq!(swapped.observations(), expected.observations());
         for _ in 0..5 {
@@ -39,6 +40,24 @@ fn replaced_batches_of_other_lengths_have_their_own_results() {
     assert_eq!(first.step(&[1_u8; 2]).unwrap().rewards, [-1.0; 2]);
     *first = (*second).clone();
     assert_eq!(first.observations().len(), 5);
+}
+
+#[test]
+fn a_seed_repeats_initial_states_and_each_state_has_its_index() {
+    let new = |seed| VecBatch::<Fast>::new(SeedSequence::new(seed), 40).unwrap();
+    let expected = new(7).reset_with_seed(7).to_vec();
+    let mut batch = new(3);
+    assert_ne!(batch.observations(), expected);
+    assert_eq!(batch.reset_with_seed(7), expected);
+    (*batch).reset();
+    assert_ne!(batch.observations(), expected);
+    (*batch).reset_with_seed(7);
+    assert_eq!(batch.observations(), expected);
+
+    let state = |i: usize| State { dtheta1: i as f32 / 10.0, ..State::HANGING };
+    (0..40).for_each(|i| batch.set_state(i, state(i)).unwrap());
+    assert!((0..40).all(|i| batch.state(i) == Some(state(i))));
+    assert_eq!(batch.state(40), None);
 }
 
 #[test]
