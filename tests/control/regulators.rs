@@ -127,7 +127,7 @@ fn a_motion_that_grows_ten_thousandfold_is_stopped() {
     let a = [[1e4, 0.0, 0.01, 0.0], [0.0; 4], [1e4, 0.0, 0.0, 0.0], [0.0; 4]];
     let found = lqr(&DiscreteModel { a, b: [0.0, 0.0, 100.0, 0.0] }, &IDENTITY, 1.0).unwrap();
     // 200 digits.
-    let expected = [100000099.00999901, 0.0, 99.99999900999901, 0.0];
+    let expected = [100_000_099.009_999, 0.0, 99.99999900999901, 0.0];
     assert!(relative(&found.gain, &expected) < 1e-15, "{found:?}");
 }
 
