@@ -107,11 +107,11 @@ fn a_gain_that_rounding_makes_useless_is_an_error() {
     assert_eq!(found::<f32>(), Err(ControlError::IllConditioned { error }));
 }
 
-/// One torque tells motions that grow by nearly the same factor apart only with large gains, and
-/// costs far below the torque's underflow.
+/// Motions that grow by nearly the same factor need large gains, whose rounding matters. Costs far
+/// below that of the torque would underflow.
 #[test]
 fn a_gain_that_rounding_spoils_is_an_error() {
-    let twins = |factor| diagonal([2.0, factor, 0.5, 0.4]);
+    let growing = |factor| diagonal([2.0, factor, 0.5, 0.4]);
     let found = |a, weight| {
         let model = DiscreteModel { a, b: [1.0; 4] };
         match lqr(&model, &diagonal([weight; 4]), 1.0) {
@@ -120,10 +120,10 @@ fn a_gain_that_rounding_spoils_is_an_error() {
             Err(other) => panic!("{other}"),
         }
     };
-    assert_eq!(found(twins(2.00005), 1.0), 0.0);
-    assert!((1e-9..1e-7).contains(&found(twins(2.00002), 1.0)));
-    assert_eq!(found(twins(3.0), 1e-249), 0.0);
-    assert_eq!(found(twins(3.0), 1e-251), 1.0);
+    assert_eq!(found(growing(2.00005), 1.0), 0.0);
+    assert!((1e-9..1e-7).contains(&found(growing(2.00002), 1.0)));
+    assert_eq!(found(growing(3.0), 1e-249), 0.0);
+    assert_eq!(found(growing(3.0), 1e-251), 1.0);
 }
 
 /// The doubling divides by a pivot that is small unless rows are exchanged.
