@@ -12,13 +12,14 @@ use core::f64::consts::LN_10;
 
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::numpy::uniform;
-use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, difference, discretize};
+use acrobot::physics::control::{ControlError, DiscreteModel, difference, discretize};
 use acrobot::physics::{Pendulum, State, bound};
 use acrobot::rand_core::Rng;
 use acrobot::{Error, Params};
 
 use crate::plan::{NoPlan, Step};
-use crate::{catches, check_limit, dot, identity, regulator};
+use crate::recovery::Recovery;
+use crate::{dot, identity, plus};
 
 /// What a torque of 1 N m costs in a step, what a step far from upright costs, and what the
 /// logarithm of the regulator's cost at the end, beyond `NEAR`, costs.
@@ -39,6 +40,9 @@ const ITERATIONS: u32 = 150;
 /// The first damping: it is added to the curvature of the cost by a torque.
 const DAMPING: f64 = 1e-3;
 
+/// The most steps of a simulation of the regulator.
+const STEPS_AHEAD: u32 = 2000;
+
 /// A guess holds a random torque for this time, s.
 const HOLD: f64 = 0.25;
 /// The largest gain with which a guess pumps energy, s/rad.
@@ -48,11 +52,9 @@ const PUMP: f64 = 3.0;
 #[derive(Clone, Debug)]
 pub struct Planner<A: Arithmetic> {
     model: Pendulum<A>,
-    regulator: Lqr<A::Scalar>,
+    recovery: Recovery<A::Scalar>,
     /// The energy of standing upright, J.
     upright: A::Scalar,
-    /// The largest torque, N m.
-    limit: A::Scalar,
 }
 
 impl<A: Arithmetic> Planner<A> {
@@ -63,9 +65,9 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
     pub fn new(params: Params<A::Scalar>, limit: A::Scalar) -> Result<Self, ControlError> {
-        check_limit(limit)?;
+        let recovery = Recovery::new::<A>(params, limit)?;
         let model = Pendulum::new(params, State::UPRIGHT)?;
-        Ok(Self { regulator: regulator(&model)?, upright: model.energy(), model, limit })
+        Ok(Self { recovery, upright: model.energy(), model })
     }
 
     /// Plans from a state into memory of the caller, until a plan ends in a state from which the
@@ -114,7 +116,7 @@ impl<A: Arithmetic> Planner<A> {
     ) -> Result<(), Error> {
         let strength = uniform(rng, 0.0, 1.0);
         let gain: A::Scalar = number(PUMP * strength * strength * strength);
-        let noise = uniform(rng, 0.1, 0.75) * self.limit.to_f64();
+        let noise = uniform(rng, 0.1, 0.75) * self.recovery.limit.to_f64();
         let (mut push, mut held) = (A::Scalar::ZERO, HOLD);
         self.model.set_state(start)?;
         for step in plan {
@@ -125,7 +127,7 @@ impl<A: Arithmetic> Planner<A> {
             held += self.model.params().dt.to_f64();
             let missing = self.upright - self.model.energy();
             let state = self.model.state();
-            let torque = bound(push + gain * missing * state.dtheta2, self.limit);
+            let torque = bound(push + gain * missing * state.dtheta2, self.recovery.limit);
             self.model.step(torque)?;
             *step = Step { state, torque, ..Step::EMPTY };
         }
@@ -138,14 +140,15 @@ impl<A: Arithmetic> Planner<A> {
     ///
     /// # Errors
     ///
-    /// A number of the state or of the plan is not finite.
+    /// A number of the state or of the plan is not finite, or they are so extreme that the cost or
+    /// a derivative overflows.
     pub fn improve(
         &mut self,
         start: State<A::Scalar>,
         iterations: u32,
         plan: &mut [Step<A::Scalar>],
     ) -> Result<A::Scalar, ControlError> {
-        let mut cost = self.roll_out(start, plan, A::Scalar::ZERO, true)?;
+        let mut cost = finite(self.roll_out(start, plan, A::Scalar::ZERO, true)?)?;
         let (mut damping, mut stalled) = (DAMPING, 0);
         for _ in 0..iterations {
             let changed = self.look_back(plan, number(damping));
@@ -161,14 +164,14 @@ impl<A: Arithmetic> Planner<A> {
             };
         }
         self.track(plan)?;
-        Ok(self.roll_out(start, plan, A::Scalar::ZERO, false)?)
+        finite(self.roll_out(start, plan, A::Scalar::ZERO, false)?)
     }
 
     /// Replaces the gains by those of a regulator along the plan, with the weights of the one
     /// upright. Torques at their bound get some, too.
     fn track(&mut self, plan: &mut [Step<A::Scalar>]) -> Result<(), ControlError> {
         let one = A::Scalar::from_f64(1.0);
-        let mut cost = self.regulator.cost_to_go;
+        let mut cost = self.recovery.regulator.cost_to_go;
         for step in plan.iter_mut().rev() {
             self.model.set_state(step.state)?;
             let DiscreteModel { a, b } = discretize(&self.model, step.torque)?;
@@ -200,7 +203,7 @@ impl<A: Arithmetic> Planner<A> {
     ) -> A::Scalar {
         match plan.get(step) {
             Some(step) => step.follow(state),
-            None => self.regulator.torque(difference(state, State::UPRIGHT)),
+            None => self.recovery.regulator.torque(difference(state, State::UPRIGHT)),
         }
     }
 
@@ -208,8 +211,7 @@ impl<A: Arithmetic> Planner<A> {
     #[must_use]
     pub fn catches(&self, state: State<A::Scalar>) -> bool {
         let mut model = self.model.clone();
-        let set = model.set_state(state);
-        set.and_then(|()| catches(model, &self.regulator, self.limit)) == Ok(true)
+        model.set_state(state).is_ok() && self.recovery.succeeds(model, STEPS_AHEAD)
     }
 
     /// Changes the plan by the largest part of the change that lowers the cost, which it returns.
@@ -243,7 +245,7 @@ impl<A: Arithmetic> Planner<A> {
         for step in plan {
             let state = self.model.state();
             let feedback = dot(step.gain, difference(state, step.state));
-            let torque = bound(step.torque + part * step.change + feedback, self.limit);
+            let torque = bound(step.torque + part * step.change + feedback, self.recovery.limit);
             cost = cost + self.away().0 + torque * torque * number(EFFORT);
             self.model.step(torque)?;
             if keep {
@@ -251,7 +253,7 @@ impl<A: Arithmetic> Planner<A> {
             }
         }
         let x = self.model.deviation(State::UPRIGHT);
-        let to_go = dot(self.regulator.cost_to_go.map(|row| dot(row, x)), x).to_f64();
+        let to_go = self.recovery.cost(x).to_f64();
         Ok(cost + number(ARRIVAL * libm::log1p(to_go / NEAR)))
     }
 
@@ -264,10 +266,10 @@ impl<A: Arithmetic> Planner<A> {
         // The slope and the curvature of the cost from here on. Where the logarithm is concave, the
         // curvature is that without it.
         let x = self.model.deviation(State::UPRIGHT);
-        let p_x = self.regulator.cost_to_go.map(|row| dot(row, x));
+        let p_x = self.recovery.regulator.cost_to_go.map(|row| dot(row, x));
         let weight = A::Scalar::from_f64(2.0 * ARRIVAL) / (dot(p_x, x) + number(NEAR));
         let mut slope = p_x.map(|x| x * weight);
-        let mut curvature = self.regulator.cost_to_go.map(|row| row.map(|x| x * weight));
+        let mut curvature = self.recovery.regulator.cost_to_go.map(|row| row.map(|x| x * weight));
         for step in plan.iter_mut().rev() {
             self.model.set_state(step.state).ok()?;
             let DiscreteModel { a, b } = discretize(&self.model, step.torque).ok()?;
@@ -283,7 +285,7 @@ impl<A: Arithmetic> Planner<A> {
                 return None;
             }
             let wanted = step.torque - by_torque / divisor;
-            let torque = bound(wanted, self.limit);
+            let torque = bound(wanted, self.recovery.limit);
             step.change = torque - step.torque;
             // A torque at its bound has no feedback.
             step.gain = match torque == wanted {
@@ -334,13 +336,15 @@ impl<A: Arithmetic> Planner<A> {
     }
 }
 
-fn number<S: Real>(x: f64) -> S {
-    S::from_f64(x)
+fn finite<S: Real>(cost: S) -> Result<S, ControlError> {
+    match cost.is_finite() {
+        true => Ok(cost),
+        false => Err(ControlError::NotFinite { name: "cost", value: cost.to_f64() }),
+    }
 }
 
-/// x + h y.
-fn plus<S: Real>([x1, x2, x3, x4]: [S; 4], h: S, [y1, y2, y3, y4]: [S; 4]) -> [S; 4] {
-    [x1 + h * y1, x2 + h * y2, x3 + h * y3, x4 + h * y4]
+fn number<S: Real>(x: f64) -> S {
+    S::from_f64(x)
 }
 
 fn transpose<S: Real>([p, q, r, s]: [[S; 4]; 4]) -> [[S; 4]; 4] {

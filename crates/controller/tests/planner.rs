@@ -4,7 +4,7 @@
 use std::error::Error;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Real, Swingup};
-use acrobot::numpy::Pcg64;
+use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::control::difference;
 use acrobot::physics::{Pendulum, bound};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
@@ -123,5 +123,54 @@ fn bad_input_gives_an_error_and_no_torque_that_is_not_finite() {
         assert!(
             x.iter().all(|x| x.is_finite()) && memory.iter().all(|step| step.torque.is_finite())
         );
+    }
+}
+
+/// Numbers of any size, in single numbers of a state or in all.
+#[test]
+fn extreme_states_give_an_error_or_a_torque_within_the_limit() {
+    const OVERFLOW: &str = "torque must be a finite number of N m, got NaN";
+    let rng = &mut Pcg64::new(5);
+    let mut wild = || {
+        let size = 10_f64.powf(uniform(rng, -3.0, 38.0));
+        (if uniform(rng, -1.0, 1.0) < 0.0 { -size } else { size }) as f32
+    };
+    let mut plan = [Step::EMPTY; 5];
+    for limit in [0.5, 10.0] {
+        let params = Params { dt: 0.01, ..Params::DEFAULT };
+        let mut controller = Controller::new(params, limit).unwrap();
+        let mut planner = Planner::<Fast>::new(params, limit).unwrap();
+        let mut counts = [0; 4];
+        for i in 0..3000 {
+            let x = wild();
+            let state = State::from(match i % 3 {
+                0 => [x, wild(), wild(), wild()],
+                1 => [0.0, 0.5, x, 0.0],
+                _ => [3.1, 0.0, 0.0, x],
+            });
+            match controller.decide(state) {
+                Ok(torque) => {
+                    assert!(torque.abs() <= limit, "{state:?} {torque}");
+                    counts[0] += 1;
+                }
+                Err(error) => {
+                    assert_eq!(error.to_string(), OVERFLOW);
+                    counts[1] += 1;
+                }
+            }
+            plan.fill(Step::open(0.1));
+            match planner.improve(state, 1, &mut plan) {
+                Ok(cost) => {
+                    assert!(cost.is_finite(), "{state:?} {cost}");
+                    counts[2] += 1;
+                }
+                Err(error) => {
+                    let text = error.to_string();
+                    assert!(text == OVERFLOW || text.contains("must be finite"), "{text}");
+                    counts[3] += 1;
+                }
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 300), "{counts:?}");
     }
 }

@@ -1,0 +1,129 @@
+//! The regulator of the upright position with a bounded torque, and from which states it recovers.
+//!
+//! A linear-quadratic regulator stabilizes with half of its gain, too. So as long as it wants at
+//! most twice the largest torque u, xᵀ P x falls. The largest ellipsoid of such x is xᵀ P x ≤
+//! 4 u² / (K P⁻¹ Kᵀ). A simulation that enters half of it, near enough to upright for the linear
+//! model to hold, has recovered.
+
+use core::f64::consts::{FRAC_PI_2, SQRT_2};
+
+use acrobot::arithmetic::{Arithmetic, Real};
+use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, discretize, lqr};
+use acrobot::physics::{Pendulum, State, bound};
+use acrobot::{Error, Params};
+
+use crate::{dot, identity, plus};
+
+/// The regulator has failed beyond these deviations of θ1 and θ2, rad.
+const WIDE: [f64; 2] = [FRAC_PI_2, 3.1];
+/// The linear model holds for this deviation of θ1, rad.
+const LINEAR: f64 = 0.3;
+
+/// The regulator has failed after this time, s.
+const LONGEST: f64 = 4.0;
+
+/// A regulator whose torque is bounded.
+#[derive(Clone, Debug)]
+pub(crate) struct Recovery<S> {
+    pub(crate) regulator: Lqr<S>,
+    /// The largest torque of the regulator, N m.
+    pub(crate) limit: S,
+    /// F: where |F x| is below 1, the regulator succeeds.
+    factor: [[S; 4]; 4],
+    /// The steps of `LONGEST`.
+    steps: u32,
+}
+
+impl<S: Real> Recovery<S> {
+    /// The regulator of a machine with these parameters, whose `dt` is the time between two
+    /// decisions, and a largest torque, N m.
+    ///
+    /// # Errors
+    ///
+    /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
+    pub(crate) fn new<A: Arithmetic<Scalar = S>>(
+        params: Params<S>,
+        limit: S,
+    ) -> Result<Self, ControlError> {
+        if !(limit > S::ZERO && limit.is_finite()) {
+            return Err(ControlError::Invalid(Error::OutOfRange {
+                name: "the largest torque",
+                value: limit.to_f64(),
+                unit: "N m",
+                rule: "finite and above 0",
+            }));
+        }
+        let machine = Pendulum::<A>::new(params, State::UPRIGHT)?;
+        let regulator = machine.regulator(S::ZERO, &identity(), S::from_f64(1.0))?;
+        // In f64, because the weakest motions of P can be smaller than its rounding in f32.
+        let DiscreteModel { a, b } = discretize(&machine, S::ZERO)?;
+        let model = DiscreteModel { a: a.map(|row| row.map(S::to_f64)), b: b.map(S::to_f64) };
+        let factor = cholesky(lqr(&model, &identity(), 1.0)?.cost_to_go);
+        let most = limit.to_f64() / largest(&factor, regulator.gain.map(S::to_f64));
+        let safe = (most * SQRT_2).min(LINEAR / largest(&factor, [1.0, 0.0, 0.0, 0.0]));
+        let factor = factor.map(|row| row.map(|x| S::from_f64(x / safe)));
+        let steps = (LONGEST / params.dt.to_f64()) as u32;
+        Ok(Self { regulator, limit, factor, steps })
+    }
+
+    /// Whether the regulator succeeds from the model's state. Simulates at most so many steps.
+    pub(crate) fn succeeds<A: Arithmetic<Scalar = S>>(
+        &self,
+        mut model: Pendulum<A>,
+        most: u32,
+    ) -> bool {
+        for _ in 0..most.min(self.steps) {
+            let x = model.deviation(State::UPRIGHT);
+            if !is_near(x) {
+                return false;
+            }
+            let torque = self.torque(x);
+            let x = self.factor.map(|row| dot(row, x));
+            if dot(x, x) < S::from_f64(1.0) {
+                return true;
+            }
+            if model.step(torque).is_err() {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// The torque for a deviation, N m.
+    pub(crate) fn torque(&self, x: [S; 4]) -> S {
+        bound(self.regulator.torque(x), self.limit)
+    }
+
+    /// xᵀ P x: what the regulator would cost from a deviation on.
+    pub(crate) fn cost(&self, x: [S; 4]) -> S {
+        dot(self.regulator.cost_to_go.map(|row| dot(row, x)), x)
+    }
+}
+
+/// Whether the regulator has not failed.
+pub(crate) fn is_near<S: Real>([theta1, theta2, ..]: [S; 4]) -> bool {
+    let [most1, most2] = WIDE;
+    theta1.to_f64().abs() < most1 && theta2.to_f64().abs() < most2
+}
+
+/// U with P = Uᵀ U for a symmetric, positive definite P.
+fn cholesky(mut p: [[f64; 4]; 4]) -> [[f64; 4]; 4] {
+    [0, 1, 2, 3].map(|i| {
+        let root = Real::sqrt(p[i][i]);
+        let row = p[i].map(|x| x / root);
+        for (other, x) in p.iter_mut().zip(row) {
+            *other = plus(*other, -x, row);
+        }
+        row
+    })
+}
+
+/// The largest k x where |U x| ≤ 1: |y| for Uᵀ y = k.
+fn largest(u: &[[f64; 4]; 4], mut k: [f64; 4]) -> f64 {
+    let y = [0, 1, 2, 3].map(|i| {
+        let y = k[i] / u[i][i];
+        k = plus(k, -y, u[i]);
+        y
+    });
+    Real::sqrt(dot(y, y))
+}

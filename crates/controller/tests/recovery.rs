@@ -1,0 +1,119 @@
+//! What the regulator takes over, it holds: each accepted state, and the end of each plan.
+
+use acrobot::arithmetic::{Arithmetic, Damped, Real};
+use acrobot::numpy::{Pcg64, uniform};
+use acrobot::physics::{Pendulum, Viscous, bound};
+use acrobot::{Fast, Params, Portable, State};
+use controller::{Planner, Step};
+
+const REST: f64 = 20.0; // s after a plan
+
+/// Whether the machine that follows a plan is upright in the last second.
+fn holds<A: Arithmetic>(
+    planner: &Planner<A>,
+    mut machine: Pendulum<A>,
+    plan: &[Step<A::Scalar>],
+    limit: A::Scalar,
+) -> bool {
+    let rate = 1.0 / machine.params().dt.to_f64();
+    let steps = plan.len() + (REST * rate) as usize;
+    let mut upright = 0;
+    for i in 0..steps {
+        machine.step(bound(planner.follow(plan, i, machine.state()), limit)).unwrap();
+        let [x1, x2, ..] = machine.deviation(State::UPRIGHT).map(Real::to_f64);
+        if x1.abs().max(x2.abs()) > 0.1 {
+            upright = i + 1;
+        }
+    }
+    upright + rate as usize <= steps
+}
+
+fn scalars<S: Real, const N: usize>(numbers: [f64; N]) -> [S; N] {
+    numbers.map(S::from_f64)
+}
+
+/// How many states near the border of what the motor can hold are accepted, how many of these fall,
+/// and how many others would be held.
+fn count<A: Arithmetic>(params: Params<f64>, limit: f64, rng: &mut Pcg64) -> [u32; 3] {
+    let (params, [limit]) = (params.cast(), scalars([limit]));
+    let planner = Planner::<A>::new(params, limit).unwrap();
+    let [mut accepted, mut fallen, mut missed] = [0; 3];
+    for _ in 0..850 {
+        let size = uniform(rng, -6.0, 0.0).exp();
+        let [x1, x2, x3, x4] = [0.7, 1.4, 2.0, 4.0].map(|most| size * uniform(rng, -most, most));
+        let state = State::from(scalars([core::f64::consts::PI + x1, x2, x3, x4]));
+        let held = || holds(&planner, Pendulum::new(params, state).unwrap(), &[], limit);
+        match planner.catches(state) {
+            true => {
+                accepted += 1;
+                fallen += u32::from(!held());
+            }
+            false => missed += u32::from(held()),
+        }
+    }
+    [accepted, fallen, missed]
+}
+
+#[test]
+fn accepted_states_are_held_and_few_others_would_be() {
+    let mut counts = [0; 3];
+    let mut add = |more: [u32; 3]| counts = core::array::from_fn(|i| counts[i] + more[i]);
+    let rng = &mut Pcg64::new(3);
+    for limit in [1.0, 2.0, 5.0, 10.0] {
+        for dt in [0.01, 0.02, 0.05] {
+            add(count::<Fast>(Params { dt, ..Params::DEFAULT }, limit, rng));
+            add(count::<Damped<Portable>>(Params { dt, ..Params::SWINGUP }, limit, rng));
+        }
+    }
+    let [accepted, fallen, missed] = counts;
+    assert!(accepted > 10_000 && fallen == 0 && missed < accepted / 50, "{counts:?}");
+}
+
+/// Links and masses between those of a small machine and twice those of Gymnasium's.
+fn machine(rng: &mut Pcg64) -> (Params<f64>, f64) {
+    let mut log = |low: f64, high: f64| uniform(rng, low.ln(), high.ln()).exp();
+    let [length1, length2] = [0; 2].map(|_| log(0.2, 2.0));
+    let [mass1, mass2] = [0; 2].map(|_| log(0.2, 3.0));
+    let (dt, limit) = (log(0.005, 0.05), log(0.5, 10.0));
+    let mut part = |low, high| uniform(rng, low, high);
+    let params = Params {
+        mass1,
+        mass2,
+        length1,
+        length2,
+        center_of_mass1: length1 * part(0.3, 0.7),
+        center_of_mass2: length2 * part(0.3, 0.7),
+        inertia1: mass1 * length1 * length1 / 12.0,
+        inertia2: mass2 * length2 * length2 / 12.0,
+        friction: Viscous { joint1: part(0.0, 0.1), joint2: part(0.0, 0.1) },
+        dt,
+        ..Params::DEFAULT
+    };
+    (params, limit)
+}
+
+/// How many plans are found for random machines, and how many of them fall.
+fn plans<A: Arithmetic>(machines: u64) -> [u32; 2] {
+    let [mut found, mut fallen] = [0; 2];
+    for seed in 0..machines {
+        let rng = &mut Pcg64::new(seed);
+        let (params, limit) = machine(rng);
+        let (params, [limit]) = (params.cast(), scalars([limit]));
+        let [theta1, theta2] = scalars([0; 2].map(|_| uniform(rng, -3.1, 3.1)));
+        let start = State { theta1, theta2, ..State::HANGING };
+        let mut planner = Planner::<A>::new(params, limit).unwrap();
+        if let Ok(plan) = planner.plan(start, 8, rng, &mut [Step::EMPTY; 800]) {
+            found += 1;
+            let machine = Pendulum::new(params, start).unwrap();
+            fallen += u32::from(!holds(&planner, machine, plan, limit));
+        }
+    }
+    [found, fallen]
+}
+
+#[test]
+fn plans_for_random_machines_hold() {
+    let counts = [plans::<Damped<Fast>>(20), plans::<Damped<Portable>>(10)];
+    let [[found, fallen], [found64, fallen64]] = counts;
+    assert!(found + found64 > 10 && fallen + fallen64 == 0, "{counts:?}");
+}
