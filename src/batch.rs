@@ -74,6 +74,9 @@ use work::Work;
 /// [acrobot's](crate::Acrobot#snapshots) snapshot. A loaded batch continues bit-identically, with
 /// any `N` and on any machine.
 ///
+/// Any serde format can hold it as a field or an element. It is a sequence, the settings and then
+/// each acrobot, so it cannot be flattened into a struct.
+///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore (needs the serde feature)")]
 /// use acrobot::Fast;

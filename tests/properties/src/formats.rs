@@ -5,10 +5,10 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
-struct Flattened<T> {
-    name: String,
+pub struct Flattened<T> {
+    pub name: String,
     #[serde(flatten)]
-    value: T,
+    pub value: T,
 }
 
 #[derive(Serialize, Deserialize)]

@@ -9,7 +9,7 @@ use common::{bits, params_range};
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::formats::again;
+use crate::formats::{Flattened, again};
 use crate::given::{Range, Tested, acrobot, holds, params, state};
 
 /// An acrobot after some steps and draws, with any time limit.
@@ -70,4 +70,6 @@ fn every_format_stores_batches() {
             assert_eq!(found, expected, "{format}");
         }
     }
+    let error = serde_json::to_string(&Flattened { name: "a".into(), value: batch }).unwrap_err();
+    assert_eq!(error.to_string(), "can only flatten structs and maps (got a sequence)");
 }
