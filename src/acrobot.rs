@@ -66,7 +66,7 @@ impl<O, I> Step<O, I> {
 /// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
 /// serde format can hold it, also in flattened structs and in tagged enums.
 ///
-/// The first field holds the type, the version (1) and the [name of the
+/// The first field holds the type, the version (2) and the [name of the
 /// arithmetic](Arithmetic::NAME). Loading rejects another one, and what the setters reject;
 /// postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
 /// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
@@ -79,7 +79,7 @@ impl<O, I> Step<O, I> {
 ///
 /// let acrobot = Acrobot::<Fast>::new(42);
 /// let text = serde_json::to_string(&acrobot)?;
-/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":1,"arithmetic":"fast"}"#));
+/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":2,"arithmetic":"fast"}"#));
 /// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
 /// # Ok::<(), serde_json::Error>(())
 /// ```

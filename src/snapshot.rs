@@ -10,7 +10,7 @@ use serde::ser::{Serialize, Serializer};
 use crate::arithmetic::Arithmetic;
 
 /// Incremented whenever the fields of any snapshot change.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile:
 ///

@@ -31,23 +31,23 @@ fn busy() -> Limited {
 fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
     let text = serde_json::to_string(&busy()).unwrap();
     assert!(serde_json::from_str::<Limited>(&text).is_ok());
-    let header = r#""snapshot":{"of":"acrobot","version":1,"arithmetic":"portable"},"#;
+    let header = r#""snapshot":{"of":"acrobot","version":2,"arithmetic":"portable"},"#;
     // The header is checked before anything else is read.
     let unread = header.to_owned() + r#""params":{"#;
-    let newer = header.replace('1', "2") + r#""params":{}"#;
+    let older = header.replace('2', "1") + r#""params":{}"#;
     let got = |found| {
-        format!(r#"the snapshot must be "acrobot", version 1, arithmetic "portable", got {found}"#)
+        format!(r#"the snapshot must be "acrobot", version 2, arithmetic "portable", got {found}"#)
     };
-    let no_snapshot = "; the input must be a snapshot of version 1";
-    let version_2 = got(r#""acrobot", version 2, arithmetic "portable""#);
+    let no_snapshot = "; the input must be a snapshot of version 2";
+    let version_1 = got(r#""acrobot", version 1, arithmetic "portable""#);
     for (from, to, reason) in [
         (r#""mass2":1.5"#, r#""mass2":-1.5"#, "mass2 must be finite and above 0 kg, got -1.5"),
         (r#""limit":500"#, r#""limit":0"#, "invalid value: integer `0`, expected a nonzero u32"),
         (r#""Book""#, r#""Film""#, "unknown variant `Film`, expected `Book` or `Nips`"),
-        (r#""version":1"#, r#""version":2"#, &version_2),
-        (&unread, &newer, &version_2),
-        ("portable", "host", &got(r#""acrobot", version 1, arithmetic "host""#)),
-        (r#""acrobot""#, r#""batch""#, &got(r#""batch", version 1, arithmetic "portable""#)),
+        (r#""version":2"#, r#""version":1"#, &version_1),
+        (&unread, &older, &version_1),
+        ("portable", "host", &got(r#""acrobot", version 2, arithmetic "host""#)),
+        (r#""acrobot""#, r#""batch""#, &got(r#""batch", version 2, arithmetic "portable""#)),
         (r#""acrobot""#, r#""an environment of another kind""#, no_snapshot),
         (header, "", &format!("missing field `snapshot`{no_snapshot}")),
     ] {
@@ -121,8 +121,8 @@ fn stored<T: Serialize + DeserializeOwned>(original: T, lines: &mut std::str::Li
 
 /// Each version has its own file.
 #[test]
-fn snapshots_of_version_1_stay_readable() {
-    let file = include_str!("data/snapshots_1.txt");
+fn snapshots_of_version_2_stay_readable() {
+    let file = include_str!("data/snapshots_2.txt");
     let mut lines = file.lines();
     let found = [
         stored(busy(), &mut lines),

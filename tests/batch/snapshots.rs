@@ -162,8 +162,8 @@ fn invalid_snapshots_are_rejected() {
         (
             r#""of":"batch""#,
             r#""of":"acrobot""#,
-            "the snapshot must be \"batch\", version 1, arithmetic \"fast\", \
-                got \"acrobot\", version 1, arithmetic \"fast\"",
+            "the snapshot must be \"batch\", version 2, arithmetic \"fast\", \
+                got \"acrobot\", version 2, arithmetic \"fast\"",
         ),
         (r#""limit":500"#, r#""limit":0"#, "invalid value: integer `0`, expected a nonzero u32"),
         (
