@@ -72,6 +72,7 @@ impl<S: Real> Recovery<S> {
         mut model: Pendulum<A>,
         most: u32,
     ) -> bool {
+        let mut inside = 0;
         for _ in 0..most.min(self.steps) {
             let x = model.deviation(State::UPRIGHT);
             if !is_near(x) {
@@ -79,7 +80,8 @@ impl<S: Real> Recovery<S> {
             }
             let torque = self.torque(x);
             let x = self.factor.map(|row| dot(row, x));
-            if dot(x, x) < S::from_f64(1.0) {
+            inside = if dot(x, x) < S::from_f64(1.0) { inside + 1 } else { 0 };
+            if inside > self.steps / 16 {
                 return true;
             }
             if model.step(torque).is_err() {
