@@ -92,7 +92,7 @@ function shown(value) {
   try {
     const json = () => JSON.stringify(value, marked).replace(/"\\u0000(.*?)\\u0000"/g, "$1");
     const text = / (Object|Array|String)]/.test(tag) ? json() : tag;
-    return text.length > 80 ? `${text.slice(0, 80)}…` : text;
+    return text.replace(/^(.{80}).+/su, "$1…"); // whole characters, whatever their length
   } catch {
     return tag; // a cycle, a BigInt
   }

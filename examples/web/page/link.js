@@ -29,9 +29,9 @@ export function decodeRun(hash) {
   }
   if (fields.has("dynamics")) params.dynamics = fields.get("dynamics");
   const actions = fields.get("actions") ?? "";
-  const wrong = actions.search(/[^012]/);
-  if (wrong >= 0) {
-    const got = `'${actions[wrong]}' as character ${wrong + 1}`;
+  const wrong = /[^012]/u.exec(actions);
+  if (wrong) {
+    const got = `'${wrong[0]}' as character ${wrong.index + 1}`;
     throw new Error(`actions must be 0, 1 or 2, got ${got}`);
   }
   if (actions.length > LIMIT) {

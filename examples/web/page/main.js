@@ -330,7 +330,8 @@ function start() {
       if (length > 0) say(`Replay of a link: ${length} steps of seed ${name(run.seed)}.`);
     } catch (error) {
       address();
-      say(`The link is invalid: ${minus(error.message).slice(0, 200)}`);
+      // Only whole characters.
+      say(`The link is invalid: ${minus(error.message).replace(/^(.{200}).+/su, "$1…")}`);
       $("status").scrollIntoView({ block: "nearest" });
     }
   };

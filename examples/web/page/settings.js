@@ -25,8 +25,8 @@ export function parseSeed(text) {
   const digits = text.trim();
   const rule = "seed must be a decimal integer of at least 0 with at most 600 digits";
   if (digits === "") throw new Error(`${rule}, got an empty text`);
-  const wrong = digits.search(/[^0-9]/);
-  if (wrong >= 0) throw new Error(`${rule}, got '${digits[wrong]}' as character ${wrong + 1}`);
+  const wrong = /[^0-9]/u.exec(digits);
+  if (wrong) throw new Error(`${rule}, got '${wrong[0]}' as character ${wrong.index + 1}`);
   if (digits.length > 600) throw new Error(`${rule}, got ${digits.length} digits`);
   return BigInt(digits);
 }

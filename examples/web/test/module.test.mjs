@@ -103,6 +103,8 @@ test("an invalid link is rejected with the reason", () => {
     ["#seed=4&gravity=g", /^gravity must be a finite number of m\/s², got g$/],
     ["#seed=4&mass1=", /^mass1 must be a finite number of kg, got an empty text$/],
     ["#sed=4", /^names in the link must be seed, .*, got "sed"$/],
+    ["#seed=💥", /^seed must be .*, got '💥' as character 1$/],
+    ["#actions=1💥", /^actions must be 0, 1 or 2, got '💥' as character 2$/],
   ]) {
     assert.throws(() => decodeRun(bad), { message });
   }

@@ -228,6 +228,11 @@ test("a link replays a run, and an invalid link is rejected", async () => {
     assert.match(await page.url(), /#seed=42$/);
     assert.equal(await page.inputValue("#seed"), "42");
     assert.equal(await page.inputValue("#mass1"), "1");
+    // A long reason is cut between characters of two units, wherever these begin.
+    for (const name of ["", "x"].map((first) => first + "💥".repeat(200))) {
+      await page.evaluate((name) => (location.hash = `${name}=`), name);
+      await says(page, "#status", /got "x?(💥)+…$/);
+    }
   });
 });
 
