@@ -2,13 +2,16 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, addressOf, drawParams, isAction, isFinite32, keep, orFree, readState, seedSample,
-  writeState,
+  ACTION, Kept, addressOf as addressOfKept, drawParams, isAction, isFinite32, keep, orFree,
+  readState, seedSample, writeState,
 } from "./kept.js";
 import { TASKS, begins, head, header, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
 import {
   accept, bytes, checked, invalid, invalidSingle, numbers, positive, wasm, writeSeed,
 } from "./wasm.js";
+
+/** As a private getter it would throw an error that does not name the class. */
+const addressOf = (acrobot) => addressOfKept(acrobot, "acrobot");
 
 /** A loop, because `slice` takes half as long again. */
 function observation() {
@@ -46,13 +49,9 @@ export class Acrobot extends Kept {
     orFree(this, () => {
       this.setParams(params);
       this.setParamsRange(paramsRange);
-      wasm().acrobot_reset(this.#address, writeSeed(seed));
+      wasm().acrobot_reset(addressOf(this), writeSeed(seed));
       drawParams(this, 0);
     });
-  }
-
-  get #address() {
-    return addressOf(this);
   }
 
   static restore(snapshot) {
@@ -62,7 +61,7 @@ export class Acrobot extends Kept {
   }
 
   reset(seed) {
-    wasm().acrobot_reset(this.#address, seed === undefined ? 0 : writeSeed(seed));
+    wasm().acrobot_reset(addressOf(this), seed === undefined ? 0 : writeSeed(seed));
     [this.#action, this.#torque] = [1];
     const first = observation();
     drawParams(this, 0);
@@ -70,69 +69,74 @@ export class Acrobot extends Kept {
   }
 
   step(action) {
+    const address = addressOf(this);
     if (!isAction(action)) throw invalid(`action ${ACTION}`, action);
-    const flags = wasm().acrobot_step(this.#address, action);
+    const flags = wasm().acrobot_step(address, action);
     this.#action = action;
     this.#torque = undefined;
     return results(flags);
   }
 
   stepTorque(torque) {
+    const address = addressOf(this);
     if (!isFinite32(torque)) throw invalidSingle("torque must be a finite number of N m", torque);
-    const flags = wasm().acrobot_step_torque(this.#address, torque);
+    const flags = wasm().acrobot_step_torque(address, torque);
     this.#torque = torque;
     return results(flags);
   }
 
   sample(seed) {
-    return wasm().acrobot_sample(this.#address, seedSample(this, seed));
+    return wasm().acrobot_sample(addressOf(this), seedSample(this, seed));
   }
 
   get task() {
+    addressOf(this);
     return this.#task;
   }
 
   get observation() {
-    wasm().acrobot_observe(this.#address);
+    wasm().acrobot_observe(addressOf(this));
     return observation();
   }
 
   get state() {
-    wasm().acrobot_read(this.#address);
+    wasm().acrobot_read(addressOf(this));
     return readState();
   }
 
   set state(state) {
+    addressOf(this);
     const valueOf = writeState(state);
-    accept(wasm().acrobot_set_state(this.#address), valueOf);
+    accept(wasm().acrobot_set_state(addressOf(this)), valueOf);
   }
 
   get energy() {
-    wasm().acrobot_read(this.#address);
+    wasm().acrobot_read(addressOf(this));
     return numbers()[4];
   }
 
   get tipHeight() {
-    wasm().acrobot_read(this.#address);
+    wasm().acrobot_read(addressOf(this));
     return numbers()[5];
   }
 
   get elapsed() {
-    return wasm().acrobot_elapsed(this.#address) >>> 0;
+    return wasm().acrobot_elapsed(addressOf(this)) >>> 0;
   }
 
   get maxSteps() {
-    return wasm().acrobot_max_steps(this.#address) >>> 0;
+    return wasm().acrobot_max_steps(addressOf(this)) >>> 0;
   }
 
   snapshot() {
-    const length = wasm().acrobot_save(this.#address);
+    const length = wasm().acrobot_save(addressOf(this));
     return seal([head("acrobot", this.#task), bytes().subarray(0, length)]);
   }
 
   restore(snapshot) {
+    addressOf(this);
     const content = unseal(snapshot);
-    const [address, own] = [this.#address, head("acrobot", this.#task)];
+    const [address, own] = [addressOf(this), head("acrobot", this.#task)];
     const rule = `the snapshot must be a valid one of ${header(Uint8Array.from(own))}`;
     const reject = (got) => {
       throw new RangeError(`${rule}, got ${got}`);
@@ -146,6 +150,7 @@ export class Acrobot extends Kept {
   }
 
   draw(context, options) {
+    addressOf(this);
     const { params, state } = this;
     const torque = this.#torque ?? params.torques[this.#action];
     draw("draw(context, options)", context, state, params, torque, options);

@@ -2,8 +2,8 @@
 
 import { draw } from "./draw.js";
 import {
-  ACTION, Kept, PARAMS_LENGTH, addressOf, drawParams, elements, isAction, isFinite32, keep, orFree,
-  readChanges, readParams, readState, seedSample, writeParams, writeState,
+  ACTION, Kept, PARAMS_LENGTH, addressOf as addressOfKept, drawParams, elements, isAction,
+  isFinite32, keep, orFree, readChanges, readParams, readState, seedSample, writeParams, writeState,
 } from "./kept.js";
 import { TASKS, begins, head, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
 import {
@@ -28,6 +28,9 @@ const ARRAYS = {
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
 const SHARED = "a batch must be made with ownParams for parameters of each acrobot";
+
+/** As a private getter it would throw an error that does not name the class. */
+const addressOf = (batch) => addressOfKept(batch, "batch");
 
 /** An integer in seven bits a byte, the lowest first. The highest bit says whether more follow. */
 const varint = (value) =>
@@ -85,10 +88,6 @@ export class Batch extends Kept {
     this.#observe();
   }
 
-  get #address() {
-    return addressOf(this);
-  }
-
   /** Copies results out of the module's memory. */
   #copy(...names) {
     if (!this.#views?.rewards.length) {
@@ -106,46 +105,50 @@ export class Batch extends Kept {
   }
 
   #observe() {
-    wasm().batch_observe(this.#address);
+    wasm().batch_observe(addressOf(this));
     this.#copy("observations");
     this.#stale = false;
   }
 
   /** The batch's address, for a use of acrobot `index`. */
-  #addressFor(index, what = "") {
-    const address = this.#address;
-    if (!Number.isInteger(index) || index < 0 || index >= this.#count) {
-      throw invalid(`${what}index must be an integer from 0 to ${this.#count - 1}`, index);
+  static #addressFor(batch, index, what = "") {
+    const address = addressOf(batch);
+    if (!Number.isInteger(index) || index < 0 || index >= batch.#count) {
+      throw invalid(`${what}index must be an integer from 0 to ${batch.#count - 1}`, index);
     }
     return address;
   }
 
   get count() {
+    addressOf(this);
     return this.#count;
   }
 
   get settings() {
+    addressOf(this);
     return this.#settings;
   }
 
   get observations() {
-    this.#address;
+    addressOf(this);
     if (this.#stale || !this.#results.observations.length) this.#observe();
     return this.#results.observations;
   }
 
   reset(seed) {
+    addressOf(this);
     return this.#reset(new Uint8Array(this.#count).fill(1), seed);
   }
 
   resetMasked(mask, seed) {
+    addressOf(this);
     const isFlag = (element) => [true, false, 1, 0].includes(element);
     const rule = "must be true, false, 1 or 0";
     return this.#reset(elements("mask", mask, this.#count, isFlag, rule), seed);
   }
 
   #reset(mask, seed) {
-    const address = this.#address;
+    const address = addressOf(this);
     const words = seed === undefined ? 0 : writeSeed(seed);
     this.#copy();
     this.#views.mask.set(mask);
@@ -156,16 +159,18 @@ export class Batch extends Kept {
   }
 
   sample(seed) {
-    wasm().batch_sample(this.#address, seedSample(this, seed));
+    wasm().batch_sample(addressOf(this), seedSample(this, seed));
     this.#copy();
     return this.#views.actions.slice();
   }
 
   step(actions) {
+    addressOf(this);
     return this.#step("actions", actions, isAction, ACTION);
   }
 
   stepTorque(torques) {
+    addressOf(this);
     return this.#step("torques", torques, isFinite32, "must be a finite number of N m");
   }
 
@@ -176,7 +181,7 @@ export class Batch extends Kept {
     const isRead = typeOf(given) === name && given.byteLength === size;
     // Reading others can run code that frees the batch or makes memory grow, so it comes first.
     const inputs = isRead ? given : elements(what, given, this.#count, isValid, rule);
-    const address = this.#address;
+    const address = addressOf(this);
     this.#copy();
     const written = this.#views[what];
     written.set(inputs);
@@ -195,19 +200,19 @@ export class Batch extends Kept {
   }
 
   state(index) {
-    wasm().batch_state(this.#addressFor(index), index);
+    wasm().batch_state(Batch.#addressFor(this, index), index);
     return readState();
   }
 
   setState(index, state) {
-    this.#addressFor(index);
+    Batch.#addressFor(this, index);
     const valueOf = writeState(state);
-    accept(wasm().batch_set_state(this.#address, index), valueOf);
+    accept(wasm().batch_set_state(addressOf(this), index), valueOf);
     this.#stale = true;
   }
 
   get states() {
-    const [address, states] = [this.#address, new Float32Array(4 * this.#count)];
+    const [address, states] = [addressOf(this), new Float32Array(4 * this.#count)];
     for (let i = 0; i < this.#count; i++) {
       wasm().batch_state(address, i);
       states.set(numbers().subarray(0, 4), 4 * i);
@@ -216,9 +221,10 @@ export class Batch extends Kept {
   }
 
   setStates(states) {
+    addressOf(this);
     const rule = (i) => `must be a finite number of ${i % 4 < 2 ? "rad" : "rad/s"}`;
     const given = elements("states", states, 4 * this.#count, isFinite32, rule);
-    const address = this.#address;
+    const address = addressOf(this);
     for (let i = 0; i < this.#count; i++) {
       numbers().set(given.slice(4 * i, 4 * i + 4));
       wasm().batch_set_state(address, i);
@@ -227,13 +233,14 @@ export class Batch extends Kept {
   }
 
   elapsed(index) {
-    return wasm().batch_elapsed(this.#addressFor(index), index) >>> 0;
+    return wasm().batch_elapsed(Batch.#addressFor(this, index), index) >>> 0;
   }
 
   setParams(changes) {
+    addressOf(this);
     if (!this.#settings.ownParams) return super.setParams(changes);
     const given = readChanges(changes);
-    const address = this.#address;
+    const address = addressOf(this);
     const before = [];
     try {
       for (let i = 0; i < this.#count; i++) {
@@ -251,20 +258,21 @@ export class Batch extends Kept {
   }
 
   setParamsRange(range) {
+    addressOf(this);
     if (!this.#settings.ownParams) throw new Error(SHARED);
     super.setParamsRange(range);
     this.#draws = true;
   }
 
   paramsOf(index) {
-    return readParams("batch", this.#addressFor(index), index);
+    return readParams("batch", Batch.#addressFor(this, index), index);
   }
 
   setParamsOf(index, changes) {
-    this.#addressFor(index);
+    Batch.#addressFor(this, index);
     if (!this.#settings.ownParams) throw new Error(SHARED);
     const given = readChanges(changes);
-    writeParams("batch", this.#address, index, given);
+    writeParams("batch", addressOf(this), index, given);
   }
 
   #header() {
@@ -278,7 +286,7 @@ export class Batch extends Kept {
   }
 
   snapshot() {
-    const address = this.#address;
+    const address = addressOf(this);
     const member = (_, i) => bytes().slice(0, wasm().batch_save(address, i));
     const rust = seal([this.#header(), ...Array.from({ length: this.#count }, member)]);
     if (this.#settings.autoreset !== "Disabled") return rust;
@@ -316,7 +324,7 @@ export class Batch extends Kept {
   }
 
   #load(content) {
-    const [address, header] = [this.#address, this.#header()];
+    const [address, header] = [addressOf(this), this.#header()];
     if (!begins(content, header)) return false;
     let at = header.length;
     for (let index = 0; index < this.#count; index++) {
@@ -338,7 +346,7 @@ export class Batch extends Kept {
 
   draw(context, index, options) {
     const signature = "draw(context, index, options)";
-    this.#addressFor(index, `${signature}: `);
+    Batch.#addressFor(this, index, `${signature}: `);
     draw(signature, context, this.state(index), this.paramsOf(index), 0, options);
   }
 }

@@ -134,8 +134,10 @@ export interface DrawOptions {
   colors?: Partial<Record<"background" | "target" | "link" | "joint" | "torque", string>>;
 }
 
-/** What acrobots and batches share. Each method throws after `free()`. */
+/** What acrobots and batches share. After `free()` each use throws an `Error`. */
 declare abstract class Kept {
+  /** Throws: `snapshot()` saves. Because it is an own property, `structuredClone` throws, too. */
+  readonly toJSON: () => never;
   /** The parameters: a frozen copy. */
   get params(): Readonly<Params>;
   /** Changes some parameters for the next steps, or throws if one is outside its range. */

@@ -1,7 +1,7 @@
 // What acrobots and batches share: the checks of their arguments, and what the module keeps.
 
 import {
-  accept, bytes, checked, invalid, invalidSingle, numbers, wasm, writeSeed,
+  Opaque, accept, bytes, checked, foreign, invalid, invalidSingle, numbers, wasm, writeSeed,
 } from "./wasm.js";
 
 const STATE = ["theta1", "theta2", "dtheta1", "dtheta2"];
@@ -135,12 +135,13 @@ const registry = globalThis.FinalizationRegistry && new FinalizationRegistry(fre
 /**
  * `keep` gives an acrobot or a batch the memory at an address, and `addressOf` returns the address.
  * No caller of the package reaches them, so the module gets only addresses of its own, and none
- * that it has freed.
+ * that it has freed. Each use begins with `addressOf`, whose errors come before others.
  */
 export let keep, addressOf, drawParams, seedSample;
+let own;
 
 /** What the module keeps at an address: an acrobot or a batch. */
-export class Kept {
+export class Kept extends Opaque {
   #kind;
   #address = 0;
   /** The ranges from which each reset draws parameters. */
@@ -156,8 +157,13 @@ export class Kept {
       kept.#address = address;
       registry?.register(kept, { kind, address }, kept);
     };
-    addressOf = (kept) => {
-      if (kept.#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
+    own = (kept, kind) => {
+      if (#kind in Object(kept) && (!kind || kind === kept.#kind)) return kept;
+      const classes = { acrobot: "Acrobot", batch: "Batch" };
+      throw foreign(classes[kind] ?? "Acrobot and Batch", kept);
+    };
+    addressOf = (kept, kind) => {
+      if (own(kept, kind).#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
       return kept.#address;
     };
     // As in Python: after the initial state, from the same generator.
@@ -180,21 +186,19 @@ export class Kept {
     };
   }
 
-  /** Vue makes no proxy of an object with this property. A proxy has no private fields. */
-  get __v_skip() {
-    return true;
-  }
-
   get params() {
-    return readParams(this.#kind, addressOf(this), 0);
+    const address = addressOf(this);
+    return readParams(this.#kind, address, 0);
   }
 
   setParams(changes) {
+    addressOf(this);
     const given = readChanges(changes);
     writeParams(this.#kind, addressOf(this), 0, given);
   }
 
   setParamsRange(range) {
+    addressOf(this);
     const ranges = readRanges(range);
     const [kind, address] = [this.#kind, addressOf(this)];
     wasm()[`${kind}_params`](address, 0);
@@ -212,7 +216,7 @@ export class Kept {
   }
 
   free() {
-    if (this.#address === 0) return;
+    if (own(this).#address === 0) return;
     registry?.unregister(this);
     free({ kind: this.#kind, address: this.#address });
     this.#address = 0;
@@ -226,6 +230,7 @@ export class Kept {
   /** What Node.js's console shows. */
   [Symbol.for("nodejs.util.inspect.custom")](depth, options, inspect) {
     const { name } = this.constructor;
+    if (!(#address in this)) return `${name} proxy or copy`;
     if (this.#address === 0) return `${name} freed`;
     const { state, elapsed, maxSteps, params, settings } = this; // an acrobot has no settings
     return `${name} ${inspect(settings ?? { state, elapsed, maxSteps, params }, options)}`;

@@ -35,6 +35,8 @@ export class Learner {
   save(): Uint8Array;
   /** Loads weights, or throws an error with the reason for which they are rejected. */
   load(weights: Uint8Array): void;
+  /** Throws: `save()` saves. Because it is an own property, `structuredClone` throws, too. */
+  readonly toJSON: () => never;
 }
 
 /** A perceptron from Python's `acrobot_rs.policy.save`, bit-identical to a microcontroller's. */
@@ -43,6 +45,8 @@ export class Perceptron {
   constructor(file: Uint8Array);
   /** The action with the highest score, or of the torque's sign. */
   act(acrobot: { readonly observation: ArrayLike<number> }): Action;
+  /** As `Learner.toJSON`: keep the file. */
+  readonly toJSON: () => never;
 }
 
 /** As in `acrobot-rs`, for this file's module. */

@@ -1,7 +1,8 @@
 // Policies, and a learner in a separate module. policies.d.ts describes the interface.
 
 import {
-  checked, copied, decoded, instantiate, invalid, invalidSingle, positive, seedWords,
+  Opaque, checked, copied, decoded, foreign, instantiate, invalid, invalidSingle, positive,
+  seedWords,
 } from "./wasm.js";
 
 export { moduleBytes, setModule } from "./wasm.js";
@@ -57,10 +58,11 @@ class Instance {
   }
 }
 
-export class Learner {
+export class Learner extends Opaque {
   #module;
 
   constructor(options = {}) {
+    super();
     const { episodes = 2000, seed } = checked("options", options, ["episodes", "seed"]);
     positive("episodes", episodes);
     const words = seedWords(seed);
@@ -73,34 +75,40 @@ export class Learner {
     return "Learner";
   }
 
-  get __v_skip() {
-    return true;
+  static #moduleOf(learner) {
+    if (!(#module in Object(learner))) throw foreign("Learner", learner);
+    return learner.#module;
   }
 
   train(...others) {
+    const module = Learner.#moduleOf(this);
     if (others.length > 0) throw invalid("train() must have no arguments", others[0], []);
-    return this.#module.exports.train();
+    return module.exports.train();
   }
 
   act(acrobot) {
+    const module = Learner.#moduleOf(this);
     const names = ["theta1", "theta2", "dtheta1", "dtheta2"];
     const state = finite("act(acrobot): acrobot.state", acrobot?.state, ...names);
-    return this.#module.exports.act(...state);
+    return module.exports.act(...state);
   }
 
   save() {
-    return this.#module.bytes(this.#module.exports.save()).slice();
+    const module = Learner.#moduleOf(this);
+    return module.bytes(module.exports.save()).slice();
   }
 
   load(weights) {
-    this.#module.load("weights", weights, this.#module.exports.load);
+    const module = Learner.#moduleOf(this);
+    module.load("weights", weights, module.exports.load);
   }
 }
 
-export class Perceptron {
+export class Perceptron extends Opaque {
   #module = new Instance();
 
   constructor(file) {
+    super();
     this.#module.load("the policy", file, this.#module.exports.load_perceptron);
   }
 
@@ -108,11 +116,8 @@ export class Perceptron {
     return "Perceptron";
   }
 
-  get __v_skip() {
-    return true;
-  }
-
   act(acrobot) {
+    if (!(#module in Object(this))) throw foreign("Perceptron", this);
     const given = acrobot?.observation;
     const observation = finite("act(acrobot): acrobot.observation", given, 0, 1, 2, 3, 4, 5);
     return this.#module.exports.act_perceptron(...observation);

@@ -70,6 +70,29 @@ const { get } = Object.getOwnPropertyDescriptor(TypedArray, Symbol.toStringTag);
 /** The type's name of a typed array of any realm, or undefined for other values and proxies. */
 export const typeOf = (value) => get.call(value);
 
+/** The error where a method's `this` has no private fields. */
+export const foreign = (classes, value) => {
+  const rule = "must be called on the object itself, not on a proxy or a copy";
+  return invalid(`methods of ${classes} ${rule}`, value, []);
+};
+
+function toJSON() {
+  const by = this.snapshot ? "snapshot()" : this.save ? "save()" : "the file it was made of";
+  const { name } = this.constructor;
+  throw new TypeError(`${name} must be saved by ${by}, not by JSON or structuredClone`);
+}
+
+/** An object whose data are in private fields. Copies and proxies have none of them. */
+export class Opaque {
+  /** An own property, because `structuredClone` ignores methods, and rejects functions. */
+  toJSON = toJSON;
+
+  /** For error messages. Vue makes proxies only of what is called Object, as without this. */
+  get [Symbol.toStringTag]() {
+    return this.constructor.name;
+  }
+}
+
 /** A copy of a Uint8Array: other threads may write shared memory, and a proxy can run code. */
 export function copied(what, given) {
   const valid = typeOf(given) === "Uint8Array" || given instanceof Uint8Array;
