@@ -27,7 +27,9 @@ const ARRAYS = {
 };
 const AUTORESETS = ["NextStep", "SameStep", "Disabled"];
 
-const SHARED = "a batch must be made with ownParams for parameters of each acrobot";
+/** The error of a batch whose acrobots share their parameters. */
+const shared = () =>
+  invalid("ownParams must be true for parameters of each acrobot", false, ["boolean"]);
 
 /** As a private getter it would throw an error that does not name the class. */
 const addressOf = (batch) => addressOfKept(batch, "batch");
@@ -259,7 +261,7 @@ export class Batch extends Kept {
 
   setParamsRange(range) {
     addressOf(this);
-    if (!this.#settings.ownParams) throw new Error(SHARED);
+    if (!this.#settings.ownParams) throw shared();
     super.setParamsRange(range);
     this.#draws = true;
   }
@@ -270,7 +272,7 @@ export class Batch extends Kept {
 
   setParamsOf(index, changes) {
     Batch.#addressFor(this, index);
-    if (!this.#settings.ownParams) throw new Error(SHARED);
+    if (!this.#settings.ownParams) throw shared();
     const given = readChanges(changes);
     writeParams("batch", addressOf(this), index, given);
   }

@@ -12,7 +12,7 @@ export function moduleBytes() {
 }
 
 export function setModule(module) {
-  if (Object.prototype.toString.call(module) !== "[object WebAssembly.Module]") {
+  if (tagOf(module) !== "[object WebAssembly.Module]") {
     throw invalid("module must be a WebAssembly.Module", module, []);
   }
   const names = WebAssembly.Module.exports(module).map(({ name }) => name).join();
@@ -102,13 +102,15 @@ export function copied(what, given) {
   return copy;
 }
 
+const tagOf = (value) => Object.prototype.toString.call(value);
+
 /** A value in an error message. */
 function shown(value) {
   if (typeof value === "function") return "a function";
   if (typeof value === "bigint") return `${value}n`;
   if (Object.is(value, -0)) return "-0";
   if (typeof value !== "string" && Object(value) !== value) return String(value);
-  const tag = Object.prototype.toString.call(value);
+  const tag = tagOf(value);
   // JSON has neither NaN and infinity, nor -0 and undefined.
   const isMarked = (each) => typeof each === "number" || each === undefined;
   const marked = (_, each) => (isMarked(each) ? `\0${shown(each)}\0` : each);
@@ -134,19 +136,27 @@ export function invalidSingle(rule, value) {
   return invalid(rule, value, ["number"], lost ? `, which is ${single} in single precision` : "");
 }
 
+/** Whether an object is of no class, in any realm. */
+function isPlain(object) {
+  const prototype = Object.getPrototypeOf(object);
+  return prototype === null || Object.getPrototypeOf(prototype) === null;
+}
+
 /**
  * A copy of an object with no properties but `names`. Each is read once, because that can run code
  * of the caller, which may change the module's memory.
  */
 export function checked(what, given, names) {
-  if (typeof given !== "object" || given === null || Array.isArray(given)) {
-    throw invalid(`${what} must be an object`, given, []);
+  const isObject = / (Object|Module)]/.test(tagOf(given));
+  const found = isObject ? names.filter((name) => name in given) : [];
+  // An object of a class may have the names. Without them it is not meant as `{}`.
+  if (found.length === 0 && !(isObject && isPlain(given))) {
+    throw invalid(`${what} must be a plain object`, given, []);
   }
   const unknown = Object.keys(given).find((name) => !names.includes(name));
   if (unknown !== undefined) {
     throw new TypeError(`${what} must be among ${names.join(", ")}, got ${unknown}`);
   }
-  const found = names.filter((name) => name in given);
   return Object.fromEntries(found.map((name) => [name, given[name]]));
 }
 

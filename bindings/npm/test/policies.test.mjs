@@ -83,6 +83,8 @@ test("invalid weights and other arguments are rejected, weights with the native 
     ["RangeError", "episodes must be an integer from 1 to 2^32 - 1",
       ["0", () => new Learner({ episodes: 0 })]],
     ["TypeError", "options must be among episodes, seed", ["sed", () => new Learner({ sed: 1 })]],
+    ["TypeError", "options must be a plain object",
+      ["[object Map]", () => new Learner(new Map([["seed", 1]]))]],
   ];
   assertRejected(rows, () => assert.deepEqual(learner.save(), good));
   assert.throws(() => new Learner({ seed: -1 }), /^RangeError: seed must be .*, got -1$/);
