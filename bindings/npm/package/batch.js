@@ -5,7 +5,7 @@ import {
   ACTION, Kept, PARAMS_LENGTH, addressOf as addressOfKept, drawParams, elements, isAction,
   isFinite32, keep, orFree, readChanges, readParams, readState, seedSample, writeParams, writeState,
 } from "./kept.js";
-import { TASKS, begins, head, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
+import { TASKS, VERSION, begins, head, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
 import {
   accept, bytes, checked, invalid, numbers, positive, typeOf, wasm, writeSeed,
 } from "./wasm.js";
@@ -298,7 +298,8 @@ export class Batch extends Kept {
 
   static restore(snapshot) {
     const content = unseal(snapshot);
-    const rule = 'the snapshot must be a valid one of a batch, version 1, arithmetic "fast"';
+    const what = `batch, version ${VERSION}, arithmetic "fast"`;
+    const rule = `the snapshot must be a valid one of a ${what}`;
     const wrong = new RangeError(`${rule}, got ${content.length} other bytes`);
     let at = 0;
     const read = () => {

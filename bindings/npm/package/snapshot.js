@@ -49,10 +49,13 @@ export function taskIndex(task) {
   return names.indexOf(task);
 }
 
+/** The version of the crate's snapshots. */
+export const VERSION = 2;
+
 /** The bytes of a header. */
 export function head(kind, task) {
   const text = (text) => [text.length, ...Array.from(text, (letter) => letter.charCodeAt(0))];
-  return [...text(kind), 1, ...text(TASKS[task][0])];
+  return [...text(kind), VERSION, ...text(TASKS[task][0])];
 }
 
 /** Whether bytes begin with others. */

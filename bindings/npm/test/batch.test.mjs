@@ -210,9 +210,9 @@ test('with "Disabled" a snapshot is that of Rust, then `ended`, each with a chec
 });
 
 test("a batch's snapshot has the bytes of Rust's postcard, and any other is rejected", () => {
-  // What version 1 stored for two acrobots with own parameters from a range: here both have those
+  // What version 2 stored for two acrobots with own parameters from a range: here both have those
   // of the first.
-  const stored = new URL("../../../tests/data/snapshots_1.txt", import.meta.url);
+  const stored = new URL("../../../tests/data/snapshots_2.txt", import.meta.url);
   const [line] = /^03056261746368.*$/m.exec(readFileSync(stored, "utf8"));
   const rust = Buffer.from(line, "hex");
   const bounds = Buffer.from(Float64Array.of(-0.1, 0.1).buffer);
