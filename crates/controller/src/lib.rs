@@ -44,7 +44,7 @@ const ENERGY_GAIN: f32 = 0.2;
 const STEPS_AHEAD: u32 = 200;
 
 /// Decides on the torque of the motor.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Controller {
     /// It has the state of the machine.
     model: Pendulum<Fast>,

@@ -2,7 +2,7 @@
 //!
 //! A linear-quadratic regulator stabilizes with half of its gain, too. So as long as it wants at
 //! most twice the largest torque u, xᵀ P x falls. The largest ellipsoid of such x is xᵀ P x ≤
-//! 4 u² / (K P⁻¹ Kᵀ). A simulation that enters half of it, near enough to upright for the linear
+//! 4 u² / (K P⁻¹ Kᵀ). A simulation that stays in half of it, near enough to upright for the linear
 //! model to hold, has recovered.
 
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
@@ -18,7 +18,6 @@ use crate::{dot, identity, plus};
 const WIDE: [f64; 2] = [FRAC_PI_2, 3.1];
 /// The linear model holds for this deviation of θ1, rad.
 const LINEAR: f64 = 0.3;
-
 /// The regulator has failed after this time, s.
 const LONGEST: f64 = 4.0;
 
@@ -41,6 +40,7 @@ impl<S: Real> Recovery<S> {
     /// # Errors
     ///
     /// A parameter is out of range, the torque is not finite and above 0, or the gains overflow.
+    #[inline(never)] // saves flash: the planner and the controller call it
     pub(crate) fn new<A: Arithmetic<Scalar = S>>(
         params: Params<S>,
         limit: S,
@@ -54,12 +54,16 @@ impl<S: Real> Recovery<S> {
             }));
         }
         let machine = Pendulum::<A>::new(params, State::UPRIGHT)?;
-        let regulator = machine.regulator(S::ZERO, &identity(), S::from_f64(1.0))?;
-        // In f64, because the weakest motions of P can be smaller than its rounding in f32.
         let DiscreteModel { a, b } = discretize(&machine, S::ZERO)?;
         let model = DiscreteModel { a: a.map(|row| row.map(S::to_f64)), b: b.map(S::to_f64) };
-        let factor = cholesky(lqr(&model, &identity(), 1.0)?.cost_to_go);
-        let most = limit.to_f64() / largest(&factor, regulator.gain.map(S::to_f64));
+        // In f64, because the rounding of P to f32 can be larger than its smallest eigenvalue.
+        let exact = lqr(&model, &identity(), 1.0)?;
+        let regulator = Lqr {
+            gain: exact.gain.map(S::from_f64),
+            cost_to_go: exact.cost_to_go.map(|row| row.map(S::from_f64)),
+        };
+        let factor = cholesky(exact.cost_to_go);
+        let most = limit.to_f64() / largest(&factor, exact.gain);
         let safe = (most * SQRT_2).min(LINEAR / largest(&factor, [1.0, 0.0, 0.0, 0.0]));
         let factor = factor.map(|row| row.map(|x| S::from_f64(x / safe)));
         let steps = (LONGEST / params.dt.to_f64()) as u32;
@@ -67,6 +71,9 @@ impl<S: Real> Recovery<S> {
     }
 
     /// Whether the regulator succeeds from the model's state. Simulates at most so many steps.
+    ///
+    /// A plan can end inside the ellipsoid where the linear model does not hold, and leave it. So
+    /// the simulation has to stay inside for a sixteenth of the longest time.
     pub(crate) fn succeeds<A: Arithmetic<Scalar = S>>(
         &self,
         mut model: Pendulum<A>,

@@ -189,6 +189,7 @@ fn make_plan(motor: Motor) {
 fn run(next_tick: fn(), motor: Motor, name: &str, episodes: u32) -> Result<u32, ControlError> {
     let rate = motor.rate;
     let params = Params { torque_noise: DISTURBANCE, ..plan::params(rate) };
+    let controller = Controller::new(params, motor.limit)?;
     let (mut uncaught, mut ticks, mut caught, mut longest) = (0, 0, 0, 0);
     let (mut error, mut counts, mut slowest) = (0_f32, 0, 0);
     for seed in 0..episodes {
@@ -196,7 +197,7 @@ fn run(next_tick: fn(), motor: Motor, name: &str, episodes: u32) -> Result<u32, 
         machine.set_params(params)?;
         let episode = Episode {
             machine,
-            controller: Controller::new(params, motor.limit)?,
+            controller: controller.clone(),
             motor,
             ticks: 0,
             held: 0,
