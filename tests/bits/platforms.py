@@ -27,6 +27,7 @@ class Platform(NamedTuple):
 
 
 M4F, M33 = "thumbv7em-none-eabihf", "thumbv8m.main-none-eabihf"
+FAST_MATH = "-C link-arg=-Ofast"
 RAM_OF_AN500 = "-C link-arg=--defsym=RAM_ORIGIN=0x60000000"
 PLATFORMS = [
     Platform("x86-64", "x86_64-unknown-linux-gnu"),
@@ -49,6 +50,7 @@ PLATFORMS = [
     # These show that a difference is found.
     Platform("Cortex-M4F, fused by LLVM", M4F, "-C llvm-args=-fp-contract=fast", equal=False),
     Platform("Cortex-M55 with Helium", M33, "-C target-cpu=cortex-m55", "mps3-an547", equal=False),
+    Platform("x86-64, flushed by gcc", "x86_64-unknown-linux-gnu", FAST_MATH, equal=False),
 ]
 HEAD = ["| platform | Rust target | options | bits |", "|---|---|---|---|"]
 

@@ -25,6 +25,9 @@ pub mod batch;
 
 mod memory;
 
+#[cfg(target_feature = "sse")]
+mod mode;
+
 unsafe extern "C" {
     /// Does not exist: a program links only if no branch that panics is left.
     fn acrobot_has_a_panicking_branch() -> !;

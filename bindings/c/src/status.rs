@@ -120,6 +120,9 @@ impl From<ControlError> for Rejected {
 
 /// The status of a call.
 pub fn status(call: impl FnOnce() -> Result<(), Rejected>) -> acrobot_status_t {
+    // Behind `black_box` no operation on an argument moves before the change of the mode.
+    #[cfg(target_feature = "sse")]
+    let (_callers, call) = (crate::mode::Replaced::by_default(), core::hint::black_box(call));
     call().map_or_else(|rejected| rejected.status, |()| ACROBOT_OK)
 }
 
