@@ -30,7 +30,9 @@ const PASSES = [
 /** Compiles a crate of this workspace to target/`library`.wasm, and returns its bytes. */
 function compile(library) {
   const flags = [...SMALL.map((option) => `-Cllvm-args=${option}`), "-Ctarget-feature=+simd128"];
-  const args = ["--quiet", "--locked", "--release", "--target-dir", "target"];
+  // Named, because a user's configuration of Cargo may have others.
+  const places = ["--target", "wasm32-unknown-unknown", "--target-dir", "target"];
+  const args = ["--quiet", "--locked", "--release", ...places];
   const env = { ...process.env, RUSTFLAGS: flags.join(" ") };
   run("cargo", ["build", "--package", library.replace("_", "-"), ...args], env);
   const [text, out] = [`target/${library}.wat`, `target/${library}.wasm`];

@@ -120,7 +120,8 @@ def run(*command, rustflags="", machine="", minimal=""):
 def cargo(command, binary, target=M4F, features="", level="3", **settings):
     # With `defmt` the flash with a `RefCell` is 24 bytes larger. The table has it so.
     own = {"steps": "", "minimal": "acrobot/defmt"}.get(binary, binary)
-    options = ["--target", target, "--features", f"{own} {features}", "--bin", binary]
+    options = ["--target", target, "--target-dir", "target"]  # whatever the user's configuration
+    options += ["--features", f"{own} {features}", "--bin", binary]
     options += ["--config", f"profile.release.opt-level={level}"]
     return run("cargo", command, "--quiet", "--locked", "--release", *options, **settings)
 

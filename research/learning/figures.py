@@ -17,6 +17,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/learning.md"
+CARGO = "--quiet --release --locked --package=desktop --bin=swing_up".split()
 # The learner was tuned with seeds from 1000 to 1999.
 FIRST_SEED = 4000
 EVALUATE = 5000
@@ -44,8 +45,8 @@ def learn(run, seed):
     the end, and its misses."""
     memory, steps, _ = run
     options = f"--quiet --memory {memory} --steps {steps} --seed {seed} --evaluate {EVALUATE}"
-    command = [ROOT / "target/release/swing_up", *options.split()]
-    *curve, last = subprocess.check_output(command, text=True).splitlines()
+    command = ["cargo", "run", *CARGO, "--", *options.split()]
+    *curve, last = subprocess.check_output(command, text=True, cwd=ROOT).splitlines()
     points = [(int(line.split()[1]), float(line.split()[3])) for line in curve]
     first = lambda goal: min((at for at, mean in points if mean >= goal), default=float("inf"))
     reached = [first(goal) for goal in GOALS]
@@ -56,8 +57,7 @@ def learn(run, seed):
 
 def measure():
     """The results of all seeds of each run."""
-    build = "cargo build --quiet --release --locked --package=desktop --bin=swing_up"
-    subprocess.run(build.split(), check=True, cwd=ROOT)
+    subprocess.run(["cargo", "build", *CARGO], check=True, cwd=ROOT)
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         learning = [(run, range(FIRST_SEED, FIRST_SEED + run[-1])) for run in RUNS]
         futures = [(run, [pool.submit(learn, run, seed) for seed in all]) for run, all in learning]
