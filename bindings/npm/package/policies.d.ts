@@ -43,7 +43,10 @@ export class Learner {
 export class Perceptron {
   /** Throws an error with the reason if the file is rejected. Layers may have up to 256 units. */
   constructor(file: Uint8Array);
-  /** The action with the highest score, or of the torque's sign. */
+  /**
+   * The action with the highest score, or of the torque's sign. If the outputs are not all finite,
+   * because sums overflow, it is 1, no torque.
+   */
   act(acrobot: { readonly observation: ArrayLike<number> }): Action;
   /** As `Learner.toJSON`: keep the file. */
   readonly toJSON: () => never;

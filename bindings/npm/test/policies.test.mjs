@@ -106,3 +106,13 @@ test("a perceptron from Python plays as natively, and other files are rejected",
   }
   assert.throws(() => perceptron.act({}), /acrobot\.observation\.0 must be a finite number/);
 });
+
+test("a perceptron whose sums overflow plays no torque, as natively", () => {
+  const url = new URL("../../../crates/policy/overflow.txt", import.meta.url);
+  for (const line of readFileSync(url, "utf8").trimEnd().split("\n")) {
+    const [name, ...words] = line.split(" ");
+    const [observation, [action, , file]] = [words.slice(0, 6).map(Number), words.slice(6)];
+    const perceptron = new Perceptron(Buffer.from(file, "hex"));
+    assert.equal(perceptron.act({ observation }), Number(action), `${name} ${observation}`);
+  }
+});

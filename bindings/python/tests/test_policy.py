@@ -5,6 +5,7 @@ Stand-ins have the attributes of torch's modules.
 
 import struct
 import zlib
+from pathlib import Path
 from types import SimpleNamespace as Attributes
 
 import acrobot_rs
@@ -176,6 +177,21 @@ def test_a_file_acts_as_its_model(tmp_path):
     for wrong in seen[:, :5], np.full(6, np.nan), 1.0:
         with pytest.raises(ValueError, match="^observation must be finite numbers of shape"):
             loaded.act(wrong)
+
+
+def test_sums_that_overflow_play_no_torque(tmp_path):
+    """As the crate's: alone and among other observations, with its recording."""
+    recording = Path(__file__).parents[3] / "crates/policy/overflow.txt"
+    lines = [line.split() for line in recording.read_text().splitlines()]
+    for file in dict.fromkeys(line[-1] for line in lines):
+        (tmp_path / "p").write_bytes(bytes.fromhex(file))
+        loaded = policy.load(tmp_path / "p")
+        names, *columns = zip(*(line[:-1] for line in lines if line[-1] == file), strict=True)
+        seen = np.float32(columns[:6]).T
+        column = 6 if loaded.torque_limit is None else 7
+        expected = np.float32(columns[column]).reshape(4, *[1] * (column - 6))
+        np.testing.assert_array_equal(loaded.act(seen), expected, names[0])
+        np.testing.assert_array_equal([*map(loaded.act, seen)], expected, names[0])
 
 
 def test_other_files_are_rejected(tmp_path):

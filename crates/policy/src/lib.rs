@@ -14,6 +14,9 @@
 //! a fused multiply-add; tanh is `libm`'s. So the outputs have the same bits on every machine, and
 //! differ from torch's, which adds in another order, in the last digits.
 //!
+//! A policy whose outputs are not all finite, because its sums overflow, plays no torque:
+//! [`Action::Zero`], or 0 N m.
+//!
 //! # The file
 //!
 //! Little-endian, in this order:
@@ -136,7 +139,9 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
     /// The action with the highest score; among equal ones the first. A policy with a torque takes
     /// the action of its sign.
     pub fn action(&self, observation: &Observation) -> Action {
-        let scores = self.outputs(observation);
+        let Some(scores) = self.finite_outputs(observation) else {
+            return Action::Zero;
+        };
         if self.torque_limit.is_some() {
             let [torque, ..] = scores;
             return match torque {
@@ -158,8 +163,13 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
     /// The torque within its limits, N m. None for a policy with scores of actions.
     pub fn torque(&self, observation: &Observation) -> Option<f32> {
         let limit = self.torque_limit?;
-        let [torque, ..] = self.outputs(observation);
+        let [torque, ..] = self.finite_outputs(observation).unwrap_or_default();
         Some(torque.min(limit).max(-limit)) // `clamp` can panic
+    }
+
+    fn finite_outputs(&self, observation: &Observation) -> Option<[f32; 3]> {
+        let outputs = self.outputs(observation);
+        outputs.iter().all(|x| x.is_finite()).then_some(outputs)
     }
 
     /// The outputs of the last layer: three scores, or a torque before its limits, N m. The rest is
@@ -184,7 +194,8 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
                 *output = match activation {
                     0 => sum,
                     1 => libm::tanhf(sum),
-                    _ => sum.max(0.0),
+                    _ if sum < 0.0 => 0.0,
+                    _ => sum, // also NaN, of which `max` would make 0
                 };
             }
             inputs = outputs;

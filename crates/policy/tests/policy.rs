@@ -137,3 +137,24 @@ fn the_trained_policy_swings_up() {
     });
     assert_eq!(steps, [101, 88, 96, 72, 72]);
 }
+
+/// As the tests of Python and of the npm package do with the same recording.
+#[test]
+fn sums_that_overflow_play_no_torque() {
+    for line in include_str!("../overflow.txt").lines() {
+        let words: Vec<_> = line.split(' ').collect();
+        let [name, numbers @ .., action, torque, hex] = &words[..] else { panic!("{line}") };
+        let numbers: Vec<f32> = numbers.iter().map(|number| number.parse().unwrap()).collect();
+        let observation = Observation::from(<[f32; 6]>::try_from(numbers).unwrap());
+        let digits = hex.as_bytes().as_chunks::<2>().0;
+        let byte = |pair| u8::from_str_radix(str::from_utf8(pair).unwrap(), 16).unwrap();
+        let file: Vec<_> = digits.iter().map(|pair| byte(pair)).collect();
+        let policy = Policy::<6>::new(&file).unwrap();
+        let played = (u8::from(policy.action(&observation)), policy.torque(&observation));
+        assert_eq!(
+            played,
+            (action.parse().unwrap(), torque.parse().ok()),
+            "{name} {observation:?}"
+        );
+    }
+}

@@ -31,7 +31,11 @@ _KINDS = {"Linear": None, "Tanh": "tanh", "ReLU": "relu"} | dict.fromkeys(
 
 
 class Policy:
-    """The policy in a file, without torch. Outputs differ from the crate's in the last digits."""
+    """The policy in a file, without torch. Outputs differ from the crate's in the last digits.
+
+    A policy whose outputs are not all finite, because its sums overflow, plays no torque: action 1,
+    or 0 N m.
+    """
 
     def __init__(self, layers: list[Layer], torque_limit: float | None) -> None:
         """Keep the layers, and the largest torque, N m, or ``None`` if the outputs are scores."""
@@ -50,6 +54,8 @@ class Policy:
             rule = "finite numbers of shape (6,) or (n, 6)"
             raise must_be("observation", rule, reprlib.repr(observation))
         outputs = _outputs(self.layers, seen)
+        no_torque = np.float32([0, 1, 0] if self.torque_limit is None else [0])
+        outputs = np.where(np.isfinite(outputs).all(-1, keepdims=True), outputs, no_torque)
         if self.torque_limit is None:
             return outputs.argmax(-1)
         return np.clip(outputs, -self.torque_limit, self.torque_limit)
@@ -89,10 +95,14 @@ def _read(file: bytes) -> Policy:
 
 def _outputs(layers: Sequence[Layer], x: NDArray[Any]) -> NDArray[Any]:
     """What the last layer answers, in ``float32``."""
-    for weights, biases, activation in layers:
-        with np.errstate(all="ignore"):
-            x = x @ np.asarray(weights, np.float32).T + np.asarray(biases, np.float32)
-        x = np.tanh(x) if activation == "tanh" else np.maximum(x, 0) if activation == "relu" else x
+    with np.errstate(all="ignore"):
+        for weights, biases, activation in layers:
+            inputs, x = x.T[..., np.newaxis], np.asarray(biases, np.float32)
+            # In the crate's order, by which some sums overflow and others do not.
+            for value, column in zip(inputs, np.asarray(weights, np.float32).T, strict=True):
+                x = x + value * column
+            if activation != "none":
+                x = np.tanh(x) if activation == "tanh" else np.maximum(x, 0)
     return x
 
 
