@@ -17,7 +17,7 @@ use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::pyclass::boolean_struct::False;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBool, PyByteArray, PyBytes};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -113,17 +113,28 @@ fn must_be(name: &str, rule: impl Display, got: impl Display) -> String {
     format!("{name} must be {rule}, got {got}")
 }
 
-/// Converts a parameter from Python, which is no bool, or raises a `TypeError` that names it.
+/// Converts a parameter from Python, or raises a `TypeError` that names it. Bools are no numbers,
+/// and bytes no sequence.
 fn convert<'a, 'py, T: FromPyObject<'a, 'py>>(
     name: &str,
     rule: &str,
     value: &'a Bound<'py, PyAny>,
 ) -> PyResult<T> {
     let wrong = || PyTypeError::new_err(must_be(name, rule, shown(value)));
-    if value.extract::<bool>().is_ok() {
+    let converted = value.extract().map_err(|_| wrong())?;
+    // What was converted has an end, which an iterator need not have.
+    let elements = value.try_iter().into_iter().flatten().flatten();
+    let is_bytes = value.is_instance_of::<PyBytes>() || value.is_instance_of::<PyByteArray>();
+    if is_bytes || elements.chain([value.clone()]).any(|each| is_bool(&each)) {
         return Err(wrong());
     }
-    value.extract().map_err(|_| wrong())
+    Ok(converted)
+}
+
+/// Whether a value is Python's bool, NumPy's, or an array of these.
+fn is_bool(value: &Bound<'_, PyAny>) -> bool {
+    let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<char>());
+    value.is_instance_of::<PyBool>() || kind.is_ok_and(|kind| kind == 'b')
 }
 
 /// A value in an error message.

@@ -166,9 +166,10 @@ NUMBERS = set(AcrobotEnv._NAMES) - {"AVAIL_TORQUE", "book_or_nips"}
         (ValueError, "torque_noise_max", (-0.1,)),
         (ValueError, "book_or_nips", ("paper",)),
         # A set has no order, and an iterator may have no end.
+        (TypeError, "AVAIL_TORQUE", ([-1.0, True], np.ones(3, bool), b"012", bytearray(b"012"))),
         (TypeError, "AVAIL_TORQUE", (None, {-1.0, 0.0, 1.0}, itertools.repeat(0.0, 10**6))),
         (TypeError, "book_or_nips", (1, None)),
-        *((TypeError, name, ("two", None, [1.0], 1j, True)) for name in NUMBERS),
+        *((TypeError, name, ("two", None, [1.0], 1j, True, np.array(True))) for name in NUMBERS),
     ],
 )
 def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error):
@@ -181,7 +182,9 @@ def test_invalid_parameters_are_rejected_by_their_names(env, name, values, error
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [({"low": 1, "high": 0}, "low"), ({"low": "x"}, "An option"), ({"high": None}, "An option"),
+    [({"low": 1, "high": 0}, "low"),
+     *(({name: value}, f"{name} must be a number, got ") for name in ("low", "high")
+       for value in ("x", "0.05", None, True, [0.05])),
      ({"high": np.inf}, "high"), ({"low": np.nan}, "low"), ({"low": -1e300}, "low"),
      ({"reset_mask": 0}, r"options must be among \['low', 'high', 'state'\], got 'reset_mask'")],
 )  # fmt: skip
@@ -225,7 +228,7 @@ def test_the_state_can_be_set_from_any_four_numbers(env):
     assert env.state.dtype == np.float32 and list(env.state) == [0.0, 2.0, 4.0, 6.0]
     env.state = (1, 2, 3, 4)
     assert env.state.dtype == np.float64 and list(env.state) == [1.0, 2.0, 3.0, 4.0]
-    for state in ([1, 2, 3], None, [True] * 4, [0.0, 0.0, 0.0, np.nan]):
+    for state in ([1, 2, 3], None, [True] * 4, [0.0, True, 0.0, 0.0], [0.0] * 3 + [np.nan]):
         with pytest.raises(ValueError, match="state must be .*four .*numbers, got |^dtheta2 must "):
             env.state = state
     assert list(env.state) == [1.0, 2.0, 3.0, 4.0]

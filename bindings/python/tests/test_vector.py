@@ -1,9 +1,11 @@
 """The vector environment is used as SyncVectorEnv is."""
 
+import collections
 import contextlib
 import copy
 import multiprocessing
 import pickle
+import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -16,7 +18,7 @@ from acrobot_rs import AcrobotContinuousVectorEnv, AcrobotEnv, AcrobotSwingupVec
 from acrobot_rs import AcrobotVectorEnv, Uniform
 from gymnasium.error import ClosedEnvironmentError, InvalidAction
 from gymnasium.vector import AutoresetMode
-from vectors import assert_equal, assert_resets_equal, different, make_vec, pair, rejects
+from vectors import NO_NAMES, assert_equal, assert_resets_equal, different, make_vec, pair, rejects
 
 
 def test_attributes_and_types_are_those_of_sync_vector_env():
@@ -59,13 +61,14 @@ def test_observations_are_copies_or_one_array():
 INVALID = {
     AcrobotVectorEnv: [
         [0, 1, 2, 3], [0, 0, 0, -1], [0, 0, 256, 0], [2**32] * 4, [0, 1, 2], [[0, 1, 2, 0]],
-        [0.0, 1.0, 2.0, 0.0], 1, [True] * 4,
+        [0.0, 1.0, 2.0, 0.0], 1, [True] * 4, [0, 1, np.True_, 0],
+        collections.UserList([False, 1, 2, 0]),
         *(np.array([2, number, 0, number], np.uint64) for number in (2**64 - 1, 2**63, 3)),
         b"\0\1\2\0", np.zeros((4, 1), np.float32)],
     AcrobotContinuousVectorEnv: [
         [[0.5]], [0.5] * 4, [[0.5, 0.5]] * 4, [[np.nan], [0.0], [0.0], [0.0]], [["0"]] * 4,
-        [[True]] * 4, [[1j]] * 4, np.zeros(4, np.int64), np.zeros(4, np.float32),
-        np.zeros((4, 1), object)],
+        [[True]] * 4, [[0.5], [True], [0.5], [0.5]], [[1j]] * 4, np.zeros(4, np.int64),
+        np.zeros(4, np.float32), np.zeros((4, 1), object)],
 }  # fmt: skip
 
 
@@ -106,18 +109,31 @@ COUNTS = "num_envs", "max_episode_steps", "threads"
     [
         *(("num_envs", count) for count in (0, -1, 2**40)),
         *(("max_episode_steps", count) for count in (0, 2**32)),
-        *(("autoreset_mode", mode) for mode in ("nextstep", None, 1, [])),
+        *(("autoreset_mode", mode) for mode in ("nextstep", *NO_NAMES)),
         ("threads", 0),
-        ("render_mode", "human"),
+        *(("render_mode", mode) for mode in ("human", *NO_NAMES[1:])),
         *((name, value) for name in COUNTS for value in (2.0, "2", True)),
         *((name, value) for name in ("copy", "gymnasium_episodes") for value in (1, "False", None)),
-        *(("info_parameters", value) for value in (True, None, "dt", [0])),
+        *(("info_parameters", value) for value in (True, None, "dt", [0], NO_NAMES)),
         ("float64", True),
     ],
 )
 def test_invalid_arguments_are_rejected(name, value):
     with pytest.raises((TypeError, ValueError), match=f"^{name} must be .*, got "):
         AcrobotVectorEnv(**{"num_envs": 2, "gymnasium_episodes": name == "float64", name: value})
+
+
+@pytest.mark.parametrize("name", NO_NAMES)
+def test_what_is_no_name_is_rejected(name):
+    envs, single = AcrobotVectorEnv(2), AcrobotEnv()
+    for call in (envs.call, envs.get_attr, envs.get_parameter, lambda name: envs.set_attr(name, 1)):
+        with rejects(envs, AttributeError, re.escape(repr(name))):
+            call(name)
+    with rejects(single, TypeError, f"^name must be a string, got {re.escape(repr(name))}"):
+        single.set_wrapper_attr(name, 1)
+    if name is not None:
+        with pytest.raises(TypeError, match=f"^render_mode must .*, got {re.escape(repr(name))}"):
+            AcrobotEnv(render_mode=name)
 
 
 @pytest.mark.parametrize(

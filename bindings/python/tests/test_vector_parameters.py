@@ -1,6 +1,7 @@
 """Parameters of each environment: values, draws, and what reads them."""
 
 import math
+import re
 import statistics
 
 import acrobot_rs
@@ -23,6 +24,7 @@ from vectors import make_vec, rejects
         (ValueError, "LINK_COM_POS_1", [0.1, 0, 0], r"LINK_MOI\[1\] must be above 0 kg m² if the"),
         (ValueError, "AVAIL_TORQUE", [-1, 1], r" must be 3 numbers, such as \[-2, 0, 2\], got 2"),
         (ValueError, "AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, np.inf, 3]], r"\[2\]\[1\] must be a f"),
+        (TypeError, "AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, True, 3]], r"\[2\] must be a seq"),
         (ValueError, "AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], r"\[1\] must be 3 numbers, s"),
         (ValueError, "book_or_nips", ["book", "nips", "b"], r'\[2\] must be "book" .*, got "b"'),
         (ValueError, "dt", Uniform(0, 1), " must be finite and above 0 s, got 0"),
@@ -201,6 +203,7 @@ def test_extreme_draws_end_within_their_bounds(draw):
         (ValueError, Uniform, ([-1, 0, 1], [-2, 0, 2]), "low must be at most high"),
         (ValueError, Uniform, ([-1, 0, 1], 2), "low must be at most high, and of the same length"),
         (TypeError, Uniform, ([1, 2], [3, 4]), r"low must be three .*, got int64 of shape \(2,\)"),
+        (TypeError, Uniform, ([0, 0, True], [1, 1, 1]), r"low must be .*, got \[0, 0, True\]"),
         (TypeError, Uniform, (0.2, None), "high must be a finite number, got None"),
         (ValueError, Uniform, (0.0, np.inf), "high must be a finite number, got inf"),
         (ValueError, LogUniform, (0.0, 1.0), "low must be above 0, got LogUniform"),
@@ -214,9 +217,18 @@ def test_invalid_draws_are_rejected_when_they_are_made(error, kind, numbers, mes
         kind(*numbers)
 
 
+@pytest.mark.parametrize("kind", [acrobot_rs.AcrobotEnv, acrobot_rs.AcrobotVectorEnv])
+@pytest.mark.parametrize(
+    "value", [{"kind": ["Uniform"]}, {"kind": "Uniform"}, {**vars(Uniform(1, 2)), "std": 3}, {}]
+)
+def test_other_dicts_than_the_json_of_a_draw_are_rejected(kind, value):
+    with pytest.raises(TypeError, match=re.escape(f"LINK_MASS_1 must be a number, got {value}")):
+        kind(LINK_MASS_1=value)
+
+
 def test_drawn_parameters_in_infos_and_arrays():
     draws = {"dt": LogUniform(0.1, 0.3), "AVAIL_TORQUE": Uniform([-2, 0, 1], [-1, 0, 2])}
-    arguments = {"autoreset_mode": "SameStep", "info_parameters": tuple(draws), **draws}
+    arguments = {"autoreset_mode": "SameStep", "info_parameters": iter(draws), **draws}
     envs = make_vec(3, max_episode_steps=1, **arguments)
     _, before = envs.reset(seed=1)
     after = envs.step([1] * 3)[-1]

@@ -8,7 +8,7 @@ import functools
 import math
 import reprlib
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -35,6 +35,9 @@ def reset_bounds(
 ) -> tuple[float, float]:
     """The bounds of initial states, rad and rad/s: the options, or ``-bound`` and ``bound``."""
     check_keys(options, known)
+    for name in ("low", "high"):
+        if options and name in options:
+            numbers(name, "a number", options[name], ())
     low, high = maybe_parse_reset_bounds(options, -bound, bound)
     if not (abs(low) <= LARGEST and abs(high) <= LARGEST):
         rule = "finite numbers in the range of float32"
@@ -58,11 +61,18 @@ def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
             raise must_be("the keys of options", f"among {list(known)}", f"{key!r}{meant}")
 
 
+def is_one_of(value: Any, names: Iterable[str]) -> bool:
+    """Whether a value of any type is one of these names.
+
+    Some values have no hash, and a comparison with an array is no bool.
+    """
+    return isinstance(value, str) and value in names
+
+
 def render_mode(mode: str | None, metadata: dict[str, Any]) -> str | None:
     """A render mode, if it is one of these environments."""
     modes = metadata["render_modes"]
-    # A comparison with an array is no bool.
-    if mode is not None and not (isinstance(mode, str) and mode in modes):
+    if mode is not None and not is_one_of(mode, modes):
         raise must_be("render_mode", f"None or one of {modes}", repr(mode))
     return mode
 
@@ -85,21 +95,25 @@ def numbers(
     name: str,
     rule: str,
     value: Any,
-    shape: tuple[int, ...],
+    shape: tuple[int, ...] | None,
     kinds: str = "fiu",
     error: type[Exception] = ValueError,
 ) -> NDArray[Any]:
     """Actions or states as an array.
 
-    They may be an array, a list or another sequence that NumPy converts to one, of this shape and
-    of integers (``iu``) or floats (``f``).
+    They may be an array, a list or another sequence that NumPy converts to one, of this shape, if
+    it is not ``None``, and of integers (``iu``) or floats (``f``).
     """
     array = None
     # NumPy takes the bytes of a bytearray, and the keys of some mappings.
     if not isinstance(value, bytearray | Mapping):
         with contextlib.suppress(TypeError, ValueError):  # rows of different lengths
             array = np.asarray(value)
-    if array is not None and array.dtype.kind in kinds and array.shape == shape:
+            # NumPy makes numbers of bools that are beside numbers.
+            if isinstance(value, Sequence) and array.dtype.kind != "b":
+                types = set(map(type, np.asarray(value, object).flat))
+                array = array if types.isdisjoint((bool, np.bool_)) else None
+    if array is not None and array.dtype.kind in kinds and shape in (None, array.shape):
         return array
     is_numeric = array is not None and array.dtype.kind in "biufc"
     found = f"{array.dtype} of shape {array.shape}" if is_numeric else reprlib.repr(value)
@@ -121,7 +135,9 @@ def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> N
 def require(kind: Any, rule: str, **arguments: Any) -> None:
     """Reject arguments of another type. A bool is no integer here, and a text no sequence."""
     for name, value in arguments.items():
-        if not isinstance(value, kind) or (kind is not bool and isinstance(value, bool | str)):
+        is_other = isinstance(value, bool) and kind is not bool
+        is_other |= isinstance(value, str) and kind is Iterable
+        if is_other or not isinstance(value, kind):
             raise must_be(name, rule, repr(value), TypeError)
 
 

@@ -11,7 +11,7 @@ from gymnasium.error import DependencyNotInstalled, InvalidAction
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs._native import Acrobot
-from acrobot_rs.arrays import must_be, numbers, plain_seed, reset_bounds
+from acrobot_rs.arrays import must_be, numbers, plain_seed, require, reset_bounds
 from acrobot_rs.parameters import Parameters
 
 if TYPE_CHECKING:
@@ -99,6 +99,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
         ``render`` rejects an unknown render mode, because ``gymnasium.make`` only warns of it.
         """
+        require(str | None, "a string or None", render_mode=render_mode)
         super().__init__(Acrobot(self._ANGLES, self._CONTINUOUS, self._TASK), None, parameters)
         self.render_mode = render_mode
         # The window, by the names of Gymnasium's environment.
@@ -109,6 +110,7 @@ class AcrobotEnv(Parameters, gymnasium.Env[NDArray[np.float32], np.int64]):
 
     def set_wrapper_attr(self, name: str, value: Any, **kwargs: Any) -> bool:
         """As in Gymnasium, but rejects an unknown name, which would have no effect."""
+        require(str, "a string", name=name)
         self._check_name(name)
         return super().set_wrapper_attr(name, value, **kwargs)
 

@@ -182,7 +182,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         self._check_open()
         known = (*_ATTRIBUTES, *self._NAMES)
-        if name not in known:
+        if not arrays.is_one_of(name, known):
             they_have = f"they have {', '.join(known)}"
             raise AttributeError(f"the environments have no attribute {name!r}; {they_have}")
         if name in ("action_space", "observation_space"):
@@ -203,8 +203,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
     def get_parameter(self, name: str) -> NDArray[Any]:
         """A parameter of each environment, in a new array with a row of 3 of ``AVAIL_TORQUE``."""
         self._check_open()
-        if name not in self._NAMES:
-            hint = _hint(name, self._NAMES)
+        if not arrays.is_one_of(name, self._NAMES):
+            hint = _hint(str(name), self._NAMES)
             raise AttributeError(f"the environments have no parameter {name!r}; {hint}")
         value, is_row = getattr(self, name), name == "AVAIL_TORQUE"
         if not isinstance(value, Drawn):
@@ -226,7 +226,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         self._check_open()
         known = ("state", *self._NAMES)
-        if name not in known:
+        if not arrays.is_one_of(name, known):
             raise AttributeError(f"set_attr cannot set {name!r}; it can set {', '.join(known)}")
         setattr(self, name, self._each(values) if name == "state" else values)
 

@@ -100,10 +100,11 @@ class Normal(Drawn):
 
 def _from_json(value: Any) -> Any:
     """A draw, if the value is what the JSON of a spec has for it."""
-    kinds = {kind.__name__: kind for kind in (Uniform, LogUniform, Normal)}
-    if not (isinstance(value, dict) and value.get("kind") in kinds):
-        return value
-    return kinds[value["kind"]](**{name: value[name] for name in value if name != "kind"})
+    for kind in (Uniform, LogUniform, Normal) if isinstance(value, dict) else ():
+        names = {field.name for field in dataclasses.fields(kind)}
+        if value.keys() == names and arrays.is_one_of(value["kind"], (kind.__name__,)):
+            return kind(**{name: value[name] for name in names - {"kind"}})
+    return value
 
 
 def _fixed(name: str, value: Any) -> Any:

@@ -19,7 +19,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from acrobot_rs.arrays import LARGEST, must_be, require
+from acrobot_rs.arrays import LARGEST, is_one_of, must_be, numbers, require
 
 Layer = tuple[Any, Any, str]
 """Weights ``(outputs, inputs)``, biases, and ``"none"``, ``"tanh"`` or ``"relu"``."""
@@ -38,7 +38,11 @@ class Policy:
     """
 
     def __init__(self, layers: list[Layer], torque_limit: float | None) -> None:
-        """Keep the layers, and the largest torque, N m, or ``None`` if the outputs are scores."""
+        """Keep the layers, and the largest torque, N m, or ``None`` if the outputs are scores.
+
+        They are those of :func:`write`, which rejects the same.
+        """
+        _content(layers, torque_limit)
         self.layers = layers
         self.torque_limit = torque_limit
 
@@ -49,9 +53,9 @@ class Policy:
         array whose last axis has the length 1. The actions of a swing-up are torques divided by the
         largest.
         """
-        seen = np.asarray(observation, np.float32)
+        rule = "finite numbers of shape (6,) or (n, 6)"
+        seen = _floats("observation", rule, observation)
         if seen.shape[-1:] != (6,) or seen.ndim > 2 or not np.isfinite(seen).all():
-            rule = "finite numbers of shape (6,) or (n, 6)"
             raise must_be("observation", rule, reprlib.repr(observation))
         outputs = _outputs(self.layers, seen)
         no_torque = np.float32([0, 1, 0] if self.torque_limit is None else [0])
@@ -86,11 +90,17 @@ def _read(file: bytes) -> Policy:
     at = 12 + 4 * count
     for i in range(count):
         outputs, activation = struct.unpack_from("<HB", file, 12 + 4 * i)
-        numbers = np.frombuffer(file, "<f4", outputs * (1 + inputs), at).reshape(outputs, -1)
-        layers.append((numbers[:, 1:], numbers[:, 0], _ACTIVATIONS[activation]))
-        at += numbers.nbytes
+        rows = np.frombuffer(file, "<f4", outputs * (1 + inputs), at).reshape(outputs, -1)
+        layers.append((rows[:, 1:], rows[:, 0], _ACTIVATIONS[activation]))
+        at += rows.nbytes
         inputs = outputs
     return Policy(layers, limit if kind else None)
+
+
+def _floats(name: str, rule: str, value: Any) -> NDArray[np.float32]:
+    """Numbers in ``float32``. Larger ones become infinite."""
+    with np.errstate(over="ignore"):
+        return numbers(name, rule, value, None).astype("<f4")
 
 
 def _outputs(layers: Sequence[Layer], x: NDArray[Any]) -> NDArray[Any]:
@@ -124,20 +134,20 @@ def write(path: str | Path, layers: Sequence[Layer], torque_limit: float | None 
 def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
     inputs, head, body = 6, b"", b""
     for i, (weights, biases, activation) in enumerate(layers):
-        with np.errstate(over="ignore"):
-            weights, biases = np.asarray(weights, "<f4"), np.asarray(biases, "<f4")
+        weights = _floats(f"the weights of layer {i}", "numbers", weights)
+        biases = _floats(f"the biases of layer {i}", "numbers", biases)
         outputs = len(biases) if biases.ndim == 1 else 0
         if not 1 <= outputs < 2**16 or weights.shape != (outputs, inputs):
             rule = f"weights of shape (outputs, {inputs}) and biases of shape (outputs,)"
             raise ValueError(f"layer {i} must have {rule}, got {weights.shape} and {biases.shape}")
-        if activation not in _ACTIVATIONS:
+        if not is_one_of(activation, _ACTIVATIONS):
             name = f"the activation of layer {i}"
             raise must_be(name, f"one of {_ACTIVATIONS}", repr(activation))
-        numbers = np.column_stack([biases, weights])
-        if not np.isfinite(numbers).all():
+        rows = np.column_stack([biases, weights])
+        if not np.isfinite(rows).all():
             raise ValueError(f"the numbers of layer {i} must be finite in float32")
         head += struct.pack("<HBB", outputs, _ACTIVATIONS.index(activation), 0)
-        body += numbers.tobytes()
+        body += rows.tobytes()
         inputs = outputs
     scores = torque_limit is None
     if inputs != (3 if scores else 1) or not 1 <= len(layers) < 256:
@@ -150,11 +160,10 @@ def _content(layers: Sequence[Layer], torque_limit: float | None) -> bytes:
 
 def _checked(torque_limit: float) -> float:
     require(Real, "a number of N m", torque_limit=torque_limit)
-    limit = float(torque_limit)
     # Up to 2^-150 it is 0 in float32.
-    if not 2.0**-150 < limit <= LARGEST:
+    if not 2.0**-150 < torque_limit <= LARGEST:
         raise must_be("torque_limit", "finite and above 0 N m in float32", torque_limit)
-    return limit
+    return float(torque_limit)
 
 
 def save(
@@ -214,10 +223,10 @@ def save(
     content = _content(layers, torque_limit)
     if observations is None:
         observations = _observations("AcrobotSwingup-v0" if is_swingup else "Acrobot-v1")
-    seen = np.asarray(observations, np.float32)
+    rule = "finite numbers of shape (n, 6)"
+    seen = _floats("observations", rule, observations)
     if seen.shape[1:] != (6,) or not seen.size or not np.isfinite(seen).all():
-        got = reprlib.repr(observations)
-        raise must_be("observations", "finite numbers of shape (n, 6)", got)
+        raise must_be("observations", rule, reprlib.repr(observations))
     expected = scale * _expected(model, policy, normalize, modules, seen)
     _compare(layers, seen, expected, torque_limit, note)
     Path(path).write_bytes(content)

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
 from acrobot_rs._native import Batch
-from acrobot_rs.arrays import must_be, numbers, read_only, require
+from acrobot_rs.arrays import is_one_of, must_be, numbers, read_only, require
 from acrobot_rs.native_vector import Alone, Floats, NativeVectorEnv
 from acrobot_rs.parameters import Drawn, Parameters, _fixed, _hint
 
@@ -92,11 +92,12 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             MemoryError: If the environments do not fit into memory.
         """
         require(Iterable, "a sequence of names of parameters", info_parameters=info_parameters)
-        for name in (each for each in info_parameters if each not in self._NAMES):
+        info_parameters = tuple(info_parameters)
+        for name in (each for each in info_parameters if not is_one_of(each, self._NAMES)):
             hint = _hint(str(name), self._NAMES)
             raise must_be("info_parameters", "names of parameters", f"{name!r}; {hint}")
         modes = [mode.value for mode in AutoresetMode]
-        if not isinstance(autoreset_mode, AutoresetMode) and autoreset_mode not in modes:
+        if not (isinstance(autoreset_mode, AutoresetMode) or is_one_of(autoreset_mode, modes)):
             raise must_be("autoreset_mode", f"one of {modes}", repr(autoreset_mode))
         flags = {"copy": copy, "gymnasium_episodes": gymnasium_episodes, "float64": float64}
         require(bool, "True or False", **flags)
@@ -128,7 +129,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         self.num_envs = num_envs
         self.max_episode_steps = max_episode_steps
         self.copy = copy
-        self.info_parameters = tuple(info_parameters)
+        self.info_parameters = info_parameters
         #: The array that all calls return, or ``None`` if each returns a new one.
         self._observations = None if copy else self._empty()
         self._same_step = mode is AutoresetMode.SAME_STEP
