@@ -1,61 +1,42 @@
 """The adapter for Stable-Baselines3 does what its DummyVecEnv does.
 
-Without Stable-Baselines3, which takes 5 GB, a base class stands in, and one test is skipped.
+Torch, which Stable-Baselines3 imports and which takes 5 GB, is not necessary: ``pip install
+--no-deps stable-baselines3``.
 """
 
 import importlib.util
+import re
 import sys
 import types
 import unittest.mock
+from pathlib import Path
 
 import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from vectors import rejects
+from vectors import NO_NAMES, rejects
 
-HAS_SB3 = importlib.util.find_spec("stable_baselines3") is not None
+if (SPEC := importlib.util.find_spec("stable_baselines3")) is None:
+    pytest.skip("needs stable-baselines3", allow_module_level=True)
+# Packages that import nothing, and instead of torch an object that nothing calls.
+PACKAGES = [".".join(["stable_baselines3", "common", "vec_env"][:count]) for count in (1, 2, 3)]
+for package in PACKAGES:
+    sys.modules[package] = types.ModuleType(package)
+    sys.modules[package].__path__ = [str(Path(SPEC.origin).parents[1] / package.replace(".", "/"))]
+with unittest.mock.patch.dict(sys.modules):
+    sys.modules["torch"] = sys.modules["torch.nn"] = unittest.mock.MagicMock()
+    from stable_baselines3.common.vec_env.base_vec_env import VecEnv
+    from stable_baselines3.common.vec_env.dummy_vec_env import DummyVecEnv
+    from stable_baselines3.common.vec_env.vec_monitor import VecMonitor
 
-
-class VecEnv:
-    """What the adapter uses of Stable-Baselines3 2.9's VecEnv."""
-
-    def __init__(self, num_envs, observation_space, action_space):
-        self.num_envs = num_envs
-        self.observation_space, self.action_space = observation_space, action_space
-        self._reset_seeds()
-        self._reset_options()
-        self.render_mode = self.get_attr("render_mode")[0]
-
-    def _reset_seeds(self):
-        self._seeds = [None] * self.num_envs
-
-    def _reset_options(self):
-        self._options = [{} for _ in range(self.num_envs)]
-
-    def _get_indices(self, indices):
-        all_or_some = range(self.num_envs) if indices is None else indices
-        return [indices] if isinstance(indices, int) else all_or_some
-
-    def seed(self, seed):
-        self._seeds = [seed + index for index in range(self.num_envs)]
-        return self._seeds
-
-    def set_options(self, options):
-        is_one = isinstance(options, dict)
-        self._options = [options] * self.num_envs if is_one else options
-
-    def step(self, actions):
-        self.step_async(actions)
-        return self.step_wait()
-
-
-if HAS_SB3:
+    names = {"VecEnv": VecEnv, "DummyVecEnv": DummyVecEnv, "SubprocVecEnv": None}
+    vars(sys.modules[PACKAGES[-1]]).update(names)
     from acrobot_rs.sb3 import AcrobotVecEnv
-else:
-    stand_in = {"stable_baselines3.common.vec_env": types.SimpleNamespace(VecEnv=VecEnv)}
-    with unittest.mock.patch.dict(sys.modules, stand_in):  # only for this import
-        from acrobot_rs.sb3 import AcrobotVecEnv
+    from stable_baselines3.common import env_util, monitor  # noqa: F401 others import them later
+
+    LOADED = {name: each for name, each in sys.modules.items() if PACKAGES[0] in name}
+sys.modules.update(LOADED)
 
 
 def make(num_envs, **kwargs):
@@ -104,28 +85,109 @@ def test_an_episode_that_reaches_the_goal_at_the_limit_is_not_truncated():
     assert infos[0]["TimeLimit.truncated"] is False and infos[1]["TimeLimit.truncated"] is True
 
 
-@pytest.mark.skipif(not HAS_SB3, reason="needs stable-baselines3")
-def test_gymnasium_s_episodes_are_those_of_dummy_vec_env():
-    """Also under VecMonitor."""
-    from stable_baselines3.common.vec_env import DummyVecEnv, VecMonitor
+class Infos(gymnasium.Wrapper):
+    """Infos with a parameter, and ``set_attr`` of DummyVecEnv sets the wrapped environment's."""
 
-    theirs = DummyVecEnv([lambda: gymnasium.make("Acrobot-v1", max_episode_steps=70)] * 8)
-    ours = make(8, max_episode_steps=70, gymnasium_episodes=True)
-    assert ours.observation_space == theirs.observation_space
-    assert ours.action_space == theirs.action_space
-    theirs, ours = VecMonitor(theirs), VecMonitor(ours)
-    for envs in (theirs, ours):
-        envs.seed(5)
-    observations = theirs.reset()
-    assert (ours.reset() == observations).all()
-    for _ in range(500):
-        actions = np.where(observations[:, 4] > 0, 0, 2)
-        expected, found = theirs.step(actions), ours.step(actions)
-        observations = expected[0]
-        for info in (*expected[3], *found[3]):
-            info.get("episode", {}).pop("t", None)  # the time
+    SETTINGS = "dt", "LINK_MASS_1", "book_or_nips", "torque_noise_max"
+
+    def reset(self, **kwargs):
+        return self.env.reset(**kwargs)[0], {"dt": self.unwrapped.dt}
+
+    def step(self, action):
+        return *self.env.step(action)[:4], {"dt": self.unwrapped.dt}
+
+    def __setattr__(self, name, value):
+        if name in self.SETTINGS:
+            setattr(self.unwrapped, name, value)
+        else:
+            super().__setattr__(name, value)
+
+
+def outcome(call, envs):
+    """What a call returns, or the type of its error."""
+    try:
+        result = call(envs)
+    except Exception as error:
+        return type(error)
+    for info in result[3] if isinstance(result, tuple) else ():
+        info.get("episode", {}).pop("t", None)  # the time
+    return result
+
+
+@pytest.mark.parametrize(
+    ("name", "mode", "wrap"),
+    [("Acrobot-v1", None, VecMonitor), ("acrobot_rs/Acrobot-v1", "rgb_array", lambda envs: envs)],
+)
+def test_attributes_and_methods_are_those_of_dummy_vec_env(name, mode, wrap):
+    """With Gymnasium's episodes, after random calls. The adapter's docstring names the others."""
+    arguments = {"render_mode": mode, "max_episode_steps": 70}
+    theirs = DummyVecEnv([lambda: Infos(gymnasium.make(name, **arguments))] * 5)
+    ours = make(5, gymnasium_episodes=True, info_parameters=["dt"], **arguments)
+    names, others = ({each for each in dir(envs) if each[0] != "_"} for envs in (ours, theirs))
+    assert names < others and all(each == "keys" or each[:4] == "buf_" for each in others - names)
+    assert ours.metadata["render_fps"] == theirs.metadata["render_fps"] == 15
+    different = {"envs", "metadata", "unwrapped"}
+    names = {each for each in names - different if not callable(getattr(ours, each))}
+    assert names == {"action_space", "num_envs", "observation_space", "render_mode", "reset_infos"}
+    both = wrap(theirs), wrap(ours)
+
+    def compare(call):
+        expected, found = (outcome(call, envs) for envs in both)
+        assert type(found) is type(expected)
         np.testing.assert_equal(found, expected)
-        assert [each.dtype for each in found[:3]] == [each.dtype for each in expected[:3]]
+        for each in (*names, "_seeds", "_options"):
+            np.testing.assert_equal(getattr(ours, each), getattr(theirs, each), each)
+        return expected
+
+    def step(envs):
+        """The parts of a step, and then the types of its arrays."""
+        envs.step_async(actions)
+        results = envs.step_wait()
+        return *results, [each.dtype for each in results[:3]]
+
+    rng, ends = np.random.default_rng(1), 0
+    compare(lambda envs: envs.seed(5))
+    observations = compare(lambda envs: envs.reset())
+    for _ in range(800):
+        actions = np.where(observations[:, 4] > 0, 0, 2)
+        observations, _, ended, *_ = compare(step)
+        ends += ended.sum()
+        number = rng.uniform(0.1, 0.2)
+        indices = [None, 3, -1, [0, 2], np.array([1, 4]), range(2), [], 5, [-6], "0", 1.5, ["1"]]
+        some = indices[rng.integers(len(indices))]
+        attribute = ["dt", "book_or_nips", "render_mode", "action_space"][rng.integers(4)]
+        calls = [
+            ("seed", int(number * 1e9)),
+            ("set_options", {"low": -number}),
+            ("reset",),
+            *(("set_attr", each, "nips" if each == "book_or_nips" else number, some)
+              for each in Infos.SETTINGS),
+            *(("get_attr", attribute, some), ("get_attr", "length"), ("env_method", "length")),
+            *(("has_attr", each) for each in (attribute, "state", "spec", "length")),
+            ("env_is_wrapped", gymnasium.wrappers.RecordVideo, some),
+        ]  # fmt: skip
+        if mode:
+            calls += [("get_images",), ("render",), ("render", "rgb_array")]
+        if rng.random() < 0.3:
+            method, *given = calls[rng.integers(len(calls))]
+            result = compare(lambda envs: getattr(envs, method)(*given))  # noqa: B023
+            observations = result if method == "reset" else observations
+        if mode and rng.random() < 0.01:
+            compare(lambda envs: envs.env_method("render", indices=some))  # noqa: B023
+    assert ends > 20
+
+
+@pytest.mark.parametrize("mode", [None, "ansi"])
+def test_without_pictures_the_warnings_are_those_of_dummy_vec_env(mode):
+    theirs = DummyVecEnv([lambda: gymnasium.make("acrobot_rs/Acrobot-v1", render_mode=mode)] * 2)
+    warned = []
+    for envs in theirs, make(2, render_mode=mode):
+        envs.reset()
+        with pytest.warns(UserWarning) as warnings:
+            assert envs.get_images() == [None, None] and envs.render() is None
+            assert envs.render("human") is None
+        warned.append([str(each.message) for each in warnings])
+    assert warned[0] == warned[1] and len(warned[0]) == 3 - (mode is not None)
 
 
 def test_attributes_and_methods():
@@ -151,11 +213,15 @@ def test_attributes_and_methods():
     assert envs.env_is_wrapped(gymnasium.Wrapper, 0) == [False]
     [frame] = envs.env_method("render", indices=2)
     assert (frame == envs.get_images()[2]).all() and frame.shape == (500, 500, 3)
-    if HAS_SB3:
-        assert envs.render().shape == (1000, 1000, 3)
-    envs.set_options([{"low": -0.5}, {}, {}])
-    with pytest.raises(ValueError, match="options must be the same"):
-        envs.reset()
+    assert envs.render().shape == (1000, 1000, 3)
+    zeros, state = ([{"state": np.full(4, each)} for each in 2 * [number]] for number in (0.0, 1.0))
+    for options in [{"low": -0.5}, {}, {}], [{}], [], [*zeros, state[0]]:
+        envs.set_options(options)
+        with pytest.raises(ValueError, match="options must be the same for all .*, got"):
+            envs.reset()
+    envs.set_options([*state, *state[:1]])
+    envs.reset()
+    assert np.all(envs.get_attr("state") == np.ones(4))
     envs.close()
     with pytest.raises(gymnasium.error.ClosedEnvironmentError):
         envs.step(np.zeros(3, int))
@@ -189,6 +255,7 @@ def test_infos_have_the_parameters_of_the_episode():
         before = envs.get_attr("dt")
         infos = envs.step(np.ones(3, int))[3]
         assert [info["dt"] for info in infos] == before
+        assert envs.reset_infos == [{"dt": dt} for dt in envs.get_attr("dt")]
         assert (envs.get_attr("dt") != before) == ended
 
 
@@ -203,3 +270,19 @@ def test_misuse_is_rejected():
         with rejects(envs.envs, gymnasium.error.NoAsyncCallError, "call step_async with the act"):
             envs.step_wait()
         envs.step([0, 1])
+    for name in NO_NAMES:
+        for call in envs.get_attr, envs.env_method, lambda name: envs.set_attr(name, 1):
+            with rejects(envs.envs, AttributeError, re.escape(repr(name))):
+                call(name)
+        assert not envs.has_attr(name)
+    calls = (
+        lambda indices: envs.get_attr("dt", indices),
+        lambda indices: envs.set_attr("dt", 0.1, indices),
+        lambda indices: envs.env_is_wrapped(gymnasium.Wrapper, indices),
+        lambda indices: envs.env_method("render", indices=indices),
+    )
+    rule, wrong = "indices must be None or integers from -2 to 1, got", (True, "0", 0.5, [0, True])
+    for call in calls:
+        for error, indices in [*((TypeError, each) for each in wrong), (IndexError, 2)]:
+            with rejects(envs.envs, error, rule):
+                call(indices)
