@@ -14,9 +14,10 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference, Swingup};
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Reference};
 use acrobot::batch::{SimdLevel, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
+use acrobot::task::{Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
 use benches::{Lanes, Play, bare_f32, bare_f64};
 
@@ -29,14 +30,13 @@ fn main() {
     for len in [1024, 1 << 20] {
         batch::<Fast>("fast", len, SimdLevel::widest());
     }
-    let own = VecBatch::with_own_params(SeedSequence::new(0), 1024).expect("memory for the batch");
-    versus::<Fast, Fast>("fast_1024_own_params", Play::from(own), Play::new(1024));
-    versus::<Swingup<Fast>, Fast>("fast_1024_swingup", Play::new(1024), Play::new(1024));
-    versus::<Swingup<Portable>, Portable>(
-        "portable_1024_swingup",
-        Play::new(1024),
-        Play::new(1024),
-    );
+    let own = VecBatch::<Fast>::with_own_params(SeedSequence::new(0), 1024)
+        .expect("memory for the batch");
+    versus("fast_1024_own_params", Play::from(own), Play::<Fast>::new(1024));
+    let swingup = Play::<Damped<Fast>, Swingup>::new(1024);
+    versus("fast_1024_swingup", swingup, Play::<Fast>::new(1024));
+    let swingup = Play::<Damped<Portable>, Swingup>::new(1024);
+    versus("portable_1024_swingup", swingup, Play::<Portable>::new(1024));
     batch::<Fast>("fast_avx2", 1024, SimdLevel::Avx2);
     batch::<Fast>("fast_baseline", 1024, SimdLevel::Baseline);
     batch::<Portable>("portable", 1024, SimdLevel::widest());
@@ -111,7 +111,11 @@ fn batch<A: Arithmetic>(arithmetic: &str, len: usize, level: SimdLevel) {
 }
 
 /// A batch with observations; the ratio is to another one.
-fn versus<A: Arithmetic, B: Arithmetic>(name: &str, mut ours: Play<A>, mut other: Play<B>) {
+fn versus<A: Arithmetic, T: Task>(
+    name: &str,
+    mut ours: Play<A, T>,
+    mut other: Play<impl Arithmetic>,
+) {
     let rates = compare(
         || (0..2000).map(|_| ours.play(true)).sum(),
         || (0..2000).map(|_| other.play(true)).sum(),

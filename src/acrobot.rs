@@ -6,12 +6,10 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::{Real, SinCos};
-use crate::numpy::{Pcg64, uniform};
-use crate::observation::Observation;
-use crate::physics::{
-    Params, Pendulum, ResetBounds, State, Task, check_torque, default_model, reward,
-};
-use crate::reset_options::ResetOptions;
+use crate::numpy::Pcg64;
+use crate::physics::{Params, Pendulum, State, check_torque, default_model};
+use crate::task::ResetOptions;
+use crate::task::{Gymnasium, Observation, Of, ResetBounds, Seen, Task, episode};
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -21,7 +19,7 @@ pub const REWARD_THRESHOLD: f32 = -100.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Step<O = Observation, I = ()> {
+pub struct Step<O = [f32; 6], I = ()> {
     /// The observation of the new state.
     pub observation: O,
     /// −1, or 0 if `terminated`; of a swing-up from 0 to 1.
@@ -66,9 +64,9 @@ impl<O, I> Step<O, I> {
 /// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
 /// serde format can hold it, also in flattened structs and in tagged enums.
 ///
-/// The first field holds the type, the version (2) and the [name of the
-/// arithmetic](Arithmetic::NAME). Loading rejects another one, and what the setters reject;
-/// postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
+/// The first field holds the type, the version (3), the [name of the task](Task::NAME), the [name
+/// of the arithmetic](Arithmetic::NAME) and whether it has friction. Loading rejects another one,
+/// and what the setters reject; postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
 /// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
 ///
 /// `Params`, `State` and [`Pcg64`] can also be saved alone, without a version.
@@ -79,17 +77,18 @@ impl<O, I> Step<O, I> {
 ///
 /// let acrobot = Acrobot::<Fast>::new(42);
 /// let text = serde_json::to_string(&acrobot)?;
-/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":2,"arithmetic":"fast"}"#));
+/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":3,"task":"gymnasium","#));
 /// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
 /// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Acrobot<A: Arithmetic, R = Pcg64> {
+pub struct Acrobot<A: Arithmetic, T = Gymnasium, R = Pcg64> {
     pendulum: Pendulum<A>,
     rng: R,
+    task: T,
 }
 
-impl<A: Arithmetic> Acrobot<A> {
+impl<A: Arithmetic, T: Task> Acrobot<A, T> {
     /// An acrobot with the default parameters, in the initial state of Gymnasium's
     /// `reset(seed=seed)`. For a [`SeedSequence`](crate::numpy::SeedSequence):
     /// `Acrobot::with_rng(sequence.into())`.
@@ -107,24 +106,24 @@ impl<A: Arithmetic> Acrobot<A> {
     }
 
     /// Gymnasium's `reset(seed=seed)`: seeds the generator and draws an initial state from it.
-    pub fn reset_with_seed(&mut self, seed: u64) -> Observation {
+    pub fn reset_with_seed(&mut self, seed: u64) -> T::Observation {
         self.rng = Pcg64::new(seed);
         self.reset()
     }
 
     /// Gymnasium's `reset(seed=…, options=…)`.
-    pub fn reset_with(&mut self, options: ResetOptions) -> Observation {
+    pub fn reset_with(&mut self, options: ResetOptions) -> T::Observation {
         if let Some(seed) = options.seed {
             self.rng = seed.into();
         }
-        self.begin(options.bounds.unwrap_or(A::TASK.reset_bounds()))
+        self.begin(options.bounds.unwrap_or(T::RESET_BOUNDS))
     }
 }
 
-impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
+impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
     /// Applies the torque of `action` for one dt.
     #[inline]
-    pub fn step(&mut self, action: Action) -> Step {
+    pub fn step(&mut self, action: Action) -> Step<T::Observation> {
         self.advance(self.params().torque(action))
     }
 
@@ -135,42 +134,30 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
     ///
     /// [`Error::OutOfRange`] for a torque that is not finite.
     #[inline]
-    pub fn step_torque(&mut self, torque: A::Scalar) -> Result<Step, Error> {
+    pub fn step_torque(&mut self, torque: A::Scalar) -> Result<Step<T::Observation>, Error> {
         check_torque(torque)?;
         Ok(self.advance(torque))
     }
 
     #[inline]
-    fn advance(&mut self, torque: A::Scalar) -> Step {
+    fn advance(&mut self, torque: A::Scalar) -> Step<T::Observation> {
         let noise = self.params().torque_noise;
-        let torque = if noise > A::Scalar::ZERO {
-            let noise = noise.to_f64();
-            torque + A::Scalar::from_f64(uniform(&mut self.rng, -noise, noise))
-        } else {
-            torque
-        };
-        let (terminated, sin_cos) = self.pendulum.advance(torque);
-        Step {
-            observation: self.observe(sin_cos),
-            reward: match reward::<A, A::Scalar>(self.params(), sin_cos) {
-                Some(reward) => reward.to_f64() as f32,
-                None if terminated => 0.0,
-                None => -1.0,
-            },
-            terminated,
-            truncated: false,
-            info: (),
-        }
+        let torque = episode::disturb(torque, noise, core::iter::once(Some(&mut self.rng)));
+        let (model, y, sin_cos) = self.pendulum.parts();
+        let (reward, terminated) =
+            episode::step::<A, T, A::Scalar>(model, y, sin_cos, torque, &self.task);
+        let sin_cos = *sin_cos;
+        Step { observation: self.observe(sin_cos), reward, terminated, truncated: false, info: () }
     }
 
-    /// Draws a new initial state from the task's [bounds](Task::reset_bounds) and returns its
+    /// Draws a new initial state from the task's [bounds](Task::RESET_BOUNDS) and returns its
     /// observation.
-    pub fn reset(&mut self) -> Observation {
-        self.begin(A::TASK.reset_bounds())
+    pub fn reset(&mut self) -> T::Observation {
+        self.begin(T::RESET_BOUNDS)
     }
 
-    fn begin(&mut self, bounds: ResetBounds) -> Observation {
-        let state = A::TASK.draw(bounds, &mut self.rng).cast();
+    fn begin(&mut self, bounds: ResetBounds) -> T::Observation {
+        let state = self.task.draw(bounds, &mut self.rng).cast();
         let sin_cos = self.pendulum.set_state_unchecked(state);
         self.observe(sin_cos)
     }
@@ -180,28 +167,38 @@ impl<A: Arithmetic, R: Rng> Acrobot<A, R> {
     /// adapter](crate::guide::rust#generators).
     #[must_use]
     pub fn with_rng(mut rng: R) -> Self {
-        let state = A::TASK.draw(A::TASK.reset_bounds(), &mut rng).cast();
-        let params = match A::TASK {
-            // Built field by field: see `Params::default`.
-            Task::Acrobot => Params::default(),
-            Task::Swingup | Task::SwingupSparse => const { default_model::<A>().params },
-        };
+        const { default_model::<A, Of<T>>() };
+        let state = T::DEFAULT.draw(T::RESET_BOUNDS, &mut rng).cast();
+        // Built field by field: see `Params::default`.
+        let params = T::PARAMS.cast();
         Self::from_pendulum(Pendulum::new_unchecked(params, state), rng)
     }
 }
 
-impl<A: Arithmetic, R> Acrobot<A, R> {
+impl<A: Arithmetic, T: Task, R> Acrobot<A, T, R> {
     /// The observation of the state.
     #[must_use]
     #[inline]
-    pub fn observation(&self) -> Observation {
+    pub fn observation(&self) -> T::Observation {
         self.observe(self.pendulum.sin_cos())
     }
 
     #[inline]
-    fn observe(&self, sin_cos: [SinCos<A::Scalar>; 2]) -> Observation {
-        let [_, _, dtheta1, dtheta2] = self.state().into();
-        Observation::of::<A>(sin_cos, [dtheta1, dtheta2])
+    fn observe(&self, sin_cos: [SinCos<A::Scalar>; 2]) -> T::Observation {
+        let seen = Seen { state: self.state(), sin_cos };
+        T::Observation::rounded(self.task.observe::<A, A::Scalar>(&seen))
+    }
+
+    /// The task.
+    #[must_use]
+    #[inline]
+    pub const fn task(&self) -> &T {
+        &self.task
+    }
+
+    /// Sets the task for the next steps and resets, such as another point to reach.
+    pub fn set_task(&mut self, task: T) {
+        self.task = task;
     }
 
     /// The state.
@@ -254,28 +251,29 @@ impl<A: Arithmetic, R> Acrobot<A, R> {
     /// [`static`](crate::guide::embedded#a-first-program).
     #[must_use]
     pub const fn hanging(rng: R) -> Self {
-        Self::from_pendulum(Pendulum::hanging(), rng)
+        let model = const { default_model::<A, Of<T>>() };
+        Self::from_pendulum(Pendulum::from_model(model, [A::Scalar::ZERO; 4]), rng)
     }
 
     /// An acrobot with the parameters and the state of `pendulum`, which [`Params::pendulum`] makes
     /// [in a `const`](crate::guide::embedded).
     #[must_use]
     pub const fn from_pendulum(pendulum: Pendulum<A>, rng: R) -> Self {
-        Self { pendulum, rng }
+        Self { pendulum, rng, task: T::DEFAULT }
     }
 }
 
 #[cfg(feature = "serde")]
-impl<A: Arithmetic> Acrobot<A> {
+impl<A: Arithmetic, T: Task> Acrobot<A, T> {
     /// The largest size of a snapshot in postcard's format, bytes, without a checksum.
-    pub const MAX_SNAPSHOT_SIZE: usize = crate::snapshot::Header::<A, false>::SIZE
+    pub const MAX_SNAPSHOT_SIZE: usize = crate::snapshot::Header::<A, T, false>::SIZE
         + (18 + 4) * size_of::<A::Scalar>() // the parameters and the state
         + 1 // the dynamics
         + Pcg64::MAX_SNAPSHOT_SIZE;
 }
 
 #[cfg(feature = "defmt")]
-impl<A: Arithmetic, R: defmt::Format> defmt::Format for Acrobot<A, R> {
+impl<A: Arithmetic, T: Task, R: defmt::Format> defmt::Format for Acrobot<A, T, R> {
     /// Parameters, state and generator.
     fn format(&self, f: defmt::Formatter<'_>) {
         let (params, state, rng) = (self.params(), self.state(), &self.rng);
@@ -292,6 +290,7 @@ mod snapshot {
     use crate::arithmetic::Arithmetic;
     use crate::physics::{Pendulum, State};
     use crate::snapshot::Header;
+    use crate::task::Task;
 
     #[derive(serde::Serialize, serde::Deserialize)]
     #[serde(rename = "Acrobot")]
@@ -302,10 +301,10 @@ mod snapshot {
         rng: R,
     }
 
-    impl<A: Arithmetic, R: Serialize> Serialize for Acrobot<A, R> {
-        fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
+    impl<A: Arithmetic, T: Task, R: Serialize> Serialize for Acrobot<A, T, R> {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
             Snapshot {
-                snapshot: Header::<A, false>::NEW,
+                snapshot: Header::<A, T, false>::NEW,
                 params: *self.params(),
                 state: self.state(),
                 rng: &self.rng,
@@ -314,10 +313,10 @@ mod snapshot {
         }
     }
 
-    impl<'de, A: Arithmetic, R: Deserialize<'de>> Deserialize<'de> for Acrobot<A, R> {
+    impl<'de, A: Arithmetic, T: Task, R: Deserialize<'de>> Deserialize<'de> for Acrobot<A, T, R> {
         /// Rejects what `set_params` and `set_state` reject.
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            let Snapshot::<Header<A, false>, _, _, _> { params, state, rng, .. } =
+            let Snapshot::<Header<A, T, false>, _, _, _> { params, state, rng, .. } =
                 Snapshot::deserialize(deserializer)?;
             let pendulum = Pendulum::new(params, state).map_err(D::Error::custom)?;
             Ok(Self::from_pendulum(pendulum, rng))

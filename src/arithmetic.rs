@@ -33,7 +33,6 @@ use core::marker::PhantomData;
 #[cfg(feature = "std")]
 use crate::math::sines::platform;
 use crate::math::sines::{self, correctly_rounded, fdlibm, polynomial, table};
-use crate::physics::Task;
 
 pub use crate::math::{Numbers, Real};
 pub use crate::physics::arithmetic::Arithmetic;
@@ -183,51 +182,16 @@ impl Arithmetic for Micro {
 }
 
 /// An arithmetic with [viscous friction](crate::physics::Viscous) of the joints, which is 0 by
-/// default. `TASK` is 0, or that of [`Swingup`] and [`SwingupSparse`].
+/// default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Damped<A, const TASK: u8 = 0>(PhantomData<A>);
+pub struct Damped<A>(PhantomData<A>);
 
-/// dm_control's `acrobot-swingup` in an arithmetic: see [`Task::Swingup`], and
-/// [`Params::SWINGUP`](crate::Params::SWINGUP) for its parameters. The guide has [an
-/// example](crate::guide::swingup).
-pub type Swingup<A> = Damped<A, 1>;
-
-/// dm_control's `acrobot-swingup_sparse`: see [`Task::SwingupSparse`].
-pub type SwingupSparse<A> = Damped<A, 2>;
-
-impl<A: Arithmetic, const TASK: u8> Damped<A, TASK> {
-    const PREFIX: &'static str = match TASK {
-        0 => "damped ",
-        1 => "swing ",
-        _ => "sparse ",
-    };
-    const LEN: usize = Self::PREFIX.len() + A::NAME.len();
-
-    /// `PREFIX` and the name of `A`, then zeros.
-    const JOINED: [u8; 64] = {
-        let mut joined = [0; 64];
-        let (first, rest) = joined.split_at_mut(Self::PREFIX.len());
-        first.copy_from_slice(Self::PREFIX.as_bytes());
-        rest.split_at_mut(A::NAME.len()).0.copy_from_slice(A::NAME.as_bytes());
-        joined
-    };
-}
-
-impl<A: Arithmetic, const TASK: u8> Arithmetic for Damped<A, TASK> {
-    const NAME: &'static str = match str::from_utf8(Self::JOINED.split_at(Self::LEN).0) {
-        Ok(name) => name,
-        Err(_) => panic!("both parts are UTF-8"),
-    };
+impl<A: Arithmetic> Arithmetic for Damped<A> {
+    const NAME: &'static str = A::NAME;
     type Scalar = A::Scalar;
     const FORM: Form = A::FORM;
     const HAS_FRICTION: bool = true;
-    const TASK: Task = match TASK {
-        0 => Task::Acrobot,
-        1 => Task::Swingup,
-        2 => Task::SwingupSparse,
-        _ => panic!("TASK must be 0, 1 or 2"),
-    };
     const SQUARES_IN_CONST: bool = A::SQUARES_IN_CONST;
 
     #[inline]

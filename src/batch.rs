@@ -49,7 +49,8 @@ pub use vec_batch::{StepResults, VecBatch};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::physics::{Params, ParamsRange, ResetBounds, State, check_params, default_model, model};
+use crate::physics::{Params, State, check_params, default_model, model};
+use crate::task::{Gymnasium, Of, ParamsRange, ResetBounds, Task};
 use buffers::{check_length, take_mut};
 use settings::{Parameters, Settings};
 use storage::SlicesMut;
@@ -64,8 +65,9 @@ use work::Work;
 /// `S` is its memory: see [`Storage`]. `N` must be from 1 to 32:
 ///
 /// ```compile_fail,E0080
-/// # use acrobot::{Fast, batch::{Batch, Block}, numpy::Pcg64};
-/// let batch = Batch::<Fast, _, 33>::new(42, ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 33]));
+/// # use acrobot::{Fast, batch::{Batch, Block}, numpy::Pcg64, task::Gymnasium};
+/// let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; 33]);
+/// let batch = Batch::<Fast, _, Gymnasium, 33>::new(42, memory);
 /// ```
 ///
 /// # Snapshots
@@ -92,13 +94,13 @@ use work::Work;
 /// # Ok::<(), postcard::Error>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Batch<A: Arithmetic, S, const N: usize = 16> {
-    settings: Settings<A>,
+pub struct Batch<A: Arithmetic, S, T = Gymnasium, const N: usize = 16> {
+    settings: Settings<A, T>,
     simd_level: SimdLevel,
     storage: S,
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
+impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// A batch with one acrobot for each generator, with the default parameters, in its initial
     /// state. Acrobot `i` is seeded with the `i`-th child that `seed` has not yet spawned.
     ///
@@ -114,19 +116,22 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
             return Err(Error::EmptyBatch);
         }
         check_length("blocks", blocks.len(), generators.len().div_ceil(N))?;
+        const { default_model::<A, Of<T>>() };
+        let model = model::<A>(T::PARAMS.cast());
         let parameters = if lane_params.is_empty() {
-            Parameters::Shared(const { default_model::<A>() })
+            Parameters::Shared(model)
         } else {
             check_length("lane_params", lane_params.len(), blocks.len())?;
-            lane_params.fill(LaneParams::default());
+            lane_params.fill(LaneParams::shared(&model));
             Parameters::Own(None)
         };
         let mut batch = Self {
             settings: Settings {
                 parameters,
-                bounds: A::TASK.reset_bounds(),
-                limit: A::TASK.limit(),
+                bounds: T::RESET_BOUNDS,
+                limit: T::LIMIT,
                 autoreset: Autoreset::default(),
+                task: T::DEFAULT,
             },
             simd_level: SimdLevel::widest(),
             storage,
@@ -153,7 +158,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     pub fn step<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],
-        buffers: StepBuffers<'_>,
+        buffers: StepBuffers<'_, T::Observation>,
     ) -> Result<(), Error> {
         let level = self.simd_level;
         level.step(self.work(inputs, buffers)?);
@@ -166,7 +171,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     pub fn par_step<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],
-        buffers: StepBuffers<'_>,
+        buffers: StepBuffers<'_, T::Observation>,
     ) -> Result<(), Error> {
         let level = self.simd_level;
         level.par_step(self.work(inputs, buffers)?);
@@ -177,8 +182,8 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     fn work<'a, I: Input<A::Scalar>>(
         &'a mut self,
         inputs: &'a [I],
-        buffers: StepBuffers<'a>,
-    ) -> Result<Work<'a, A, N>, Error> {
+        buffers: StepBuffers<'a, T::Observation>,
+    ) -> Result<Work<'a, A, T, N>, Error> {
         let inputs = I::inputs(inputs);
         inputs.check(self.len())?;
         buffers.check(self.len())?;
@@ -193,15 +198,15 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         })
     }
 
-    /// Writes the [observations](crate::Observation) of the states.
+    /// Writes the [observations](Task::Observation) of the states.
     ///
     /// # Errors
     ///
     /// [`Error::WrongLength`] unless there is one element for each acrobot.
-    pub fn observe(&self, mut observations: &mut [[f32; 6]]) -> Result<(), Error> {
+    pub fn observe(&self, mut observations: &mut [T::Observation]) -> Result<(), Error> {
         check_length("observations", observations.len(), self.len())?;
         for block in self.storage.slices().blocks {
-            block.observe(&mut observations);
+            block.observe(&self.settings.task, &mut observations);
         }
         Ok(())
     }
@@ -293,7 +298,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
     }
 
     /// Sets the range from which each reset, also one in a step, draws the acrobot's parameters
-    /// before its initial state.
+    /// after its initial state.
     ///
     /// # Errors
     ///
@@ -309,6 +314,17 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
             Parameters::Shared(_) => {}
         }
         Ok(())
+    }
+
+    /// The task.
+    #[must_use]
+    pub fn task(&self) -> &T {
+        &self.settings.task
+    }
+
+    /// Sets the task of all acrobots for the next steps and resets.
+    pub fn set_task(&mut self, task: T) {
+        self.settings.task = task;
     }
 
     /// The SIMD instructions that a step uses.

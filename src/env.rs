@@ -39,7 +39,7 @@ pub use space::{BoxSpace, DiscreteSpace, Space};
 pub use statistics::RecordEpisodeStatistics;
 
 use crate::acrobot::Step;
-use crate::reset_options::ResetOptions;
+use crate::task::ResetOptions;
 
 /// An environment: Gymnasium's `Env`, with its types known at compile time. [`check_env`] checks an
 /// implementation.

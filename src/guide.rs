@@ -18,6 +18,10 @@ pub mod rust {}
 pub mod embedded {}
 
 #[doc = include_str!("../docs/rustdoc-links.txt")]
+#[cfg_attr(any(not(doctest), feature = "alloc"), doc = include_str!("../docs/tasks.md"))]
+pub mod tasks {}
+
+#[doc = include_str!("../docs/rustdoc-links.txt")]
 #[doc = include_str!("../docs/balance.txt")]
 #[doc = include_str!("../docs/control.md")]
 pub mod control {}

@@ -10,7 +10,8 @@
 //! let mut observation = env.reset_with_seed(42); // env.reset(seed=42)
 //! loop {
 //!     // Torque against the velocity of link 1.
-//!     let action = match observation.dtheta1() > 0.0 {
+//!     let [.., dtheta1, _] = observation;
+//!     let action = match dtheta1 > 0.0 {
 //!         true => Action::Negative,
 //!         false => Action::Positive,
 //!     };
@@ -28,11 +29,12 @@
 //!
 //! # What everybody uses
 //!
-//! - [`Acrobot`] is the environment. Its type parameter is the arithmetic: [`Fast`] (`f32`),
-//!   [`Portable`] (`f64`), or [another one](arithmetic).
+//! - [`Acrobot`] is the environment. Its type parameters are the arithmetic, which is [`Fast`]
+//!   (`f32`), [`Portable`] (`f64`), or [another one](arithmetic), and the [task](task).
 //! - [`TimeLimit`] truncates episodes, after 500 steps as `Acrobot-v1`.
-//! - [`Action`] goes into a step. [`Step`] comes out, with the [`Observation`], the reward, and
-//!   whether the episode is done.
+//! - [`Action`] goes into a step. [`Step`] comes out, with the
+//!   [observation](task::Gymnasium#associatedtype.Observation), the reward, and whether the episode
+//!   is done.
 //! - [`State`] is two angles and two velocities; [`Params`] has lengths, masses, `dt` and torques.
 //! - [`ResetOptions`] has what a reset may choose: the seed, and the bounds of the initial state.
 //! - [`Error`] names a rejected value, its unit and the rule.
@@ -49,7 +51,8 @@
 //!   AVX2 or AVX-512.
 //! - `graphics` adds `render`.
 //! - `rayon` enables `std`, and adds batches on all cores.
-//! - `serde` adds snapshots, whose version and arithmetic are checked when loaded.
+//! - `serde` adds snapshots, whose version, task and arithmetic are checked when
+//!   loaded.
 //! - `defmt` adds `defmt::Format` for all public types except those of `env` and batches.
 #![no_std]
 #![deny(missing_docs, unsafe_code)]
@@ -88,13 +91,12 @@ mod error;
 pub mod guide;
 mod math;
 pub mod numpy;
-mod observation;
 pub mod physics;
 #[cfg(feature = "graphics")]
 pub mod render;
-mod reset_options;
 #[cfg(feature = "serde")]
 mod snapshot;
+pub mod task;
 mod time_limit;
 pub mod trajectory;
 
@@ -102,10 +104,9 @@ pub use acrobot::{Acrobot, REWARD_THRESHOLD, Step};
 pub use action::Action;
 pub use arithmetic::{Fast, Portable};
 pub use error::Error;
-pub use observation::Observation;
 pub use physics::{Params, State};
 /// The traits of generators, in the version of this crate: 0.10.
 #[doc(no_inline)]
 pub use rand_core;
-pub use reset_options::ResetOptions;
+pub use task::ResetOptions;
 pub use time_limit::TimeLimit;

@@ -36,6 +36,7 @@ pub(crate) use frame::text;
 use crate::acrobot::Acrobot;
 use crate::arithmetic::{Arithmetic, Real};
 use crate::physics::{Pendulum, directions};
+use crate::task::Task;
 
 /// The colours of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +111,7 @@ pub struct Figure {
 impl Figure {
     /// The figure of an acrobot, without a torque.
     #[must_use]
-    pub fn new<A: Arithmetic, R>(acrobot: &Acrobot<A, R>) -> Self {
+    pub fn new<A: Arithmetic, T: Task, R>(acrobot: &Acrobot<A, T, R>) -> Self {
         Self::of(acrobot.pendulum())
     }
 

@@ -1,4 +1,4 @@
-//! The header of a snapshot: type, version and arithmetic.
+//! The header of a snapshot: type, version, task and arithmetic.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -8,9 +8,10 @@ use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::{Serialize, Serializer};
 
 use crate::arithmetic::Arithmetic;
+use crate::task::Task;
 
 /// Incremented whenever the fields of any snapshot change.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// The longest text in a header, bytes. Saving an acrobot with a longer name does not compile:
 ///
@@ -35,46 +36,53 @@ const LIMIT: usize = 16;
 
 /// The first field of a snapshot of an acrobot or a batch. Zero-sized: its contents are constants,
 /// checked when loaded.
-pub(crate) struct Header<A, const BATCH: bool>(PhantomData<A>);
+pub(crate) struct Header<A, T, const BATCH: bool>(PhantomData<(A, T)>);
 
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Header")]
 struct Fields<Text> {
     of: Text,
     version: u32,
+    task: Text,
     arithmetic: Text,
+    friction: bool,
 }
 
 impl<Text: fmt::Debug> fmt::Display for Fields<Text> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { of, version, arithmetic } = self;
-        write!(f, "{of:?}, version {version}, arithmetic {arithmetic:?}")
+        let Self { of, version, task, arithmetic, friction } = self;
+        write!(f, "{of:?}, version {version}, task {task:?}, arithmetic {arithmetic:?}, ")?;
+        write!(f, "friction {friction}")
     }
 }
 
-impl<A: Arithmetic, const BATCH: bool> Header<A, BATCH> {
+impl<A: Arithmetic, T: Task, const BATCH: bool> Header<A, T, BATCH> {
     pub(crate) const NEW: Self = Self(PhantomData);
 
     /// The size in postcard's format, bytes: two texts, their lengths and the version, a byte each.
-    pub(crate) const SIZE: usize = 3 + Self::FIELDS.of.len() + A::NAME.len();
+    pub(crate) const SIZE: usize = 5 + Self::FIELDS.of.len() + T::NAME.len() + A::NAME.len();
 
     const FIELDS: Fields<&'static str> = {
         assert!(A::NAME.len() <= LIMIT, "an arithmetic's NAME must have at most 16 bytes");
+        assert!(T::NAME.len() <= LIMIT, "a task's NAME must have at most 16 bytes");
+        assert!(size_of::<T>() == 0, "a snapshot does not hold the data of a task");
         Fields {
             of: if BATCH { "batch" } else { "acrobot" },
             version: VERSION,
+            task: T::NAME,
             arithmetic: A::NAME,
+            friction: A::HAS_FRICTION,
         }
     };
 }
 
-impl<A: Arithmetic, const BATCH: bool> Serialize for Header<A, BATCH> {
+impl<A: Arithmetic, T: Task, const BATCH: bool> Serialize for Header<A, T, BATCH> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Self::FIELDS.serialize(serializer)
     }
 }
 
-impl<'de, A: Arithmetic, const BATCH: bool> Deserialize<'de> for Header<A, BATCH> {
+impl<'de, A: Arithmetic, T: Task, const BATCH: bool> Deserialize<'de> for Header<A, T, BATCH> {
     /// Rejects any other header.
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let found: Fields<String<LIMIT>> = Fields::deserialize(deserializer).map_err(|error| {
@@ -83,7 +91,9 @@ impl<'de, A: Arithmetic, const BATCH: bool> Deserialize<'de> for Header<A, BATCH
             ))
         })?;
         let rule = Self::FIELDS;
-        if found.of == rule.of && found.version == VERSION && found.arithmetic == A::NAME {
+        let same_names = found.task == T::NAME && found.arithmetic == A::NAME;
+        let same = found.of == rule.of && found.friction == A::HAS_FRICTION && same_names;
+        if same && found.version == VERSION {
             return Ok(Self::NEW);
         }
         let text = format_args!("the snapshot must be {rule}, got {found}");

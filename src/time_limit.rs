@@ -8,9 +8,12 @@ use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
-use crate::observation::Observation;
-use crate::physics::{Params, State, Task};
-use crate::reset_options::ResetOptions;
+use crate::physics::{Params, State};
+use crate::task::ResetOptions;
+use crate::task::{Gymnasium, Task, episode};
+
+/// The number of steps of an episode of `Acrobot-v0`.
+pub(crate) const V0_LIMIT: NonZeroU32 = NonZeroU32::new(200).unwrap();
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the
 /// limit on.
@@ -39,19 +42,6 @@ impl<E> TimeLimit<E> {
     #[must_use]
     pub const fn new(inner: E, limit: NonZeroU32) -> Self {
         Self { inner, limit, elapsed: 0 }
-    }
-
-    /// Truncates episodes after 500 steps, as `Acrobot-v1` does. A swing-up has
-    /// [1,000](Task::limit).
-    #[must_use]
-    pub const fn v1(inner: E) -> Self {
-        Self::new(inner, Task::Acrobot.limit())
-    }
-
-    /// Truncates episodes after 200 steps, as `Acrobot-v0` does.
-    #[must_use]
-    pub const fn v0(inner: E) -> Self {
-        Self::new(inner, const { NonZeroU32::new(200).unwrap() })
     }
 
     /// The number of steps after which episodes are truncated.
@@ -95,30 +85,50 @@ impl<E> TimeLimit<E> {
     /// Counts a step. Returns whether the episode is truncated.
     #[inline]
     pub(crate) fn count(&mut self) -> bool {
-        self.elapsed = self.elapsed.saturating_add(1);
-        self.elapsed >= self.limit.get()
+        episode::count(&mut self.elapsed, self.limit)
     }
 }
 
-impl<A: Arithmetic> TimeLimit<Acrobot<A>> {
+impl<A: Arithmetic, R> TimeLimit<Acrobot<A, Gymnasium, R>> {
+    /// Truncates episodes after 500 steps, as `Acrobot-v1` does. [`of`](Self::of) has the limit of
+    /// any task.
+    #[must_use]
+    pub const fn v1(inner: Acrobot<A, Gymnasium, R>) -> Self {
+        Self::of(inner)
+    }
+
+    /// Truncates episodes after 200 steps, as `Acrobot-v0` does.
+    #[must_use]
+    pub const fn v0(inner: Acrobot<A, Gymnasium, R>) -> Self {
+        Self::new(inner, V0_LIMIT)
+    }
+}
+
+impl<A: Arithmetic, T: Task> TimeLimit<Acrobot<A, T>> {
     /// As [`Acrobot::MAX_SNAPSHOT_SIZE`], with limit and count.
     #[cfg(feature = "serde")]
-    pub const MAX_SNAPSHOT_SIZE: usize = Acrobot::<A>::MAX_SNAPSHOT_SIZE + 2 * 5;
+    pub const MAX_SNAPSHOT_SIZE: usize = Acrobot::<A, T>::MAX_SNAPSHOT_SIZE + 2 * 5;
 
     /// Calls [`Acrobot::reset_with_seed`] and sets the count of steps to 0.
-    pub fn reset_with_seed(&mut self, seed: u64) -> Observation {
+    pub fn reset_with_seed(&mut self, seed: u64) -> T::Observation {
         self.elapsed = 0;
         self.inner.reset_with_seed(seed)
     }
 
     /// Calls [`Acrobot::reset_with`] and sets the count of steps to 0.
-    pub fn reset_with(&mut self, options: ResetOptions) -> Observation {
+    pub fn reset_with(&mut self, options: ResetOptions) -> T::Observation {
         self.elapsed = 0;
         self.inner.reset_with(options)
     }
 }
 
-impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
+impl<A: Arithmetic, T: Task, R> TimeLimit<Acrobot<A, T, R>> {
+    /// Truncates episodes after the steps that [the task has](Task::LIMIT).
+    #[must_use]
+    pub const fn of(inner: Acrobot<A, T, R>) -> Self {
+        Self::new(inner, T::LIMIT)
+    }
+
     /// The state.
     #[must_use]
     #[inline]
@@ -129,7 +139,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
     /// The observation of the state.
     #[must_use]
     #[inline]
-    pub fn observation(&self) -> Observation {
+    pub fn observation(&self) -> T::Observation {
         self.inner.observation()
     }
 
@@ -151,16 +161,16 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, R>> {
     }
 }
 
-impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
+impl<A: Arithmetic, T: Task, R: Rng> TimeLimit<Acrobot<A, T, R>> {
     /// Calls [`Acrobot::reset`] and sets the count of steps to 0.
-    pub fn reset(&mut self) -> Observation {
+    pub fn reset(&mut self) -> T::Observation {
         self.elapsed = 0;
         self.inner.reset()
     }
 
     /// Calls [`Acrobot::step`] and counts the step.
     #[inline]
-    pub fn step(&mut self, action: Action) -> Step {
+    pub fn step(&mut self, action: Action) -> Step<T::Observation> {
         let step = self.inner.step(action);
         let truncated = self.count();
         Step { truncated, ..step }
@@ -168,7 +178,7 @@ impl<A: Arithmetic, R: Rng> TimeLimit<Acrobot<A, R>> {
 
     /// Calls [`Acrobot::step_torque`], with its errors, and counts the step.
     #[inline]
-    pub fn step_torque(&mut self, torque: A::Scalar) -> Result<Step, Error> {
+    pub fn step_torque(&mut self, torque: A::Scalar) -> Result<Step<T::Observation>, Error> {
         let step = self.inner.step_torque(torque)?;
         let truncated = self.count();
         Ok(Step { truncated, ..step })

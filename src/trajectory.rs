@@ -35,6 +35,7 @@ use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Real};
 use crate::error::Error;
 use crate::physics::State;
+use crate::task::Task;
 use crate::time_limit::TimeLimit;
 
 /// One recorded step.
@@ -74,11 +75,11 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
     }
 
     /// Steps an acrobot and adds the transition.
-    pub fn step<A: Arithmetic<Scalar = S>, R: Rng>(
+    pub fn step<A: Arithmetic<Scalar = S>, T: Task, R: Rng>(
         &mut self,
-        acrobot: &mut TimeLimit<Acrobot<A, R>>,
+        acrobot: &mut TimeLimit<Acrobot<A, T, R>>,
         action: Action,
-    ) -> Step {
+    ) -> Step<T::Observation> {
         let (state, torque) = (acrobot.state(), acrobot.params().torque(action));
         let step = acrobot.step(action);
         self.record(state, torque, &step, acrobot.state());
@@ -90,11 +91,11 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for a torque that is not finite; nothing is added.
-    pub fn step_torque<A: Arithmetic<Scalar = S>, R: Rng>(
+    pub fn step_torque<A: Arithmetic<Scalar = S>, T: Task, R: Rng>(
         &mut self,
-        acrobot: &mut TimeLimit<Acrobot<A, R>>,
+        acrobot: &mut TimeLimit<Acrobot<A, T, R>>,
         torque: S,
-    ) -> Result<Step, Error> {
+    ) -> Result<Step<T::Observation>, Error> {
         let state = acrobot.state();
         let step = acrobot.step_torque(torque)?;
         self.record(state, torque, &step, acrobot.state());
@@ -102,7 +103,7 @@ impl<S: Real, const N: usize> Trajectory<S, N> {
     }
 
     #[inline]
-    fn record(&mut self, state: State<S>, torque: S, step: &Step, next: State<S>) {
+    fn record<O>(&mut self, state: State<S>, torque: S, step: &Step<O>, next: State<S>) {
         self.push(Transition {
             state,
             torque,

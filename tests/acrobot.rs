@@ -4,15 +4,14 @@
 use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::control::ControlError;
-use acrobot::physics::{Dynamics, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, Pendulum};
+use acrobot::task::{Gymnasium, ResetBounds};
 use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{
-    Acrobot, Action, Error, Fast, Observation, Params, Portable, REWARD_THRESHOLD, ResetOptions,
-    State, Step, TimeLimit,
+    Acrobot, Action, Error, Fast, Params, Portable, REWARD_THRESHOLD, ResetOptions, State, Step,
+    TimeLimit,
 };
 use common::bits;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 const fn is_send_sync_clone<T: Send + Sync + Unpin + Clone + core::fmt::Debug + 'static>() {}
 
@@ -24,7 +23,6 @@ const _: () = {
     assert!(size_of::<Acrobot<Portable>>() <= 400);
     assert!(size_of::<State<f32>>() == 16);
     assert!(REWARD_THRESHOLD == -100.0);
-    assert!(size_of::<Observation>() == 24);
     assert!(size_of::<Action>() == 1);
     assert!(size_of::<Fast>() == 0);
     assert!(size_of::<SeedSequence>() == 48);
@@ -137,12 +135,7 @@ fn reset_with_takes_a_seed_and_bounds() {
 }
 
 fn bits_of<A: Arithmetic>(acrobot: &Acrobot<A>, step: Step) -> ([u64; 4], [u64; 6], u32, bool) {
-    (
-        bits(acrobot.state()),
-        bits(step.observation.to_array()),
-        step.reward.to_bits(),
-        step.terminated,
-    )
+    (bits(acrobot.state()), bits(step.observation), step.reward.to_bits(), step.terminated)
 }
 
 #[test]
@@ -198,65 +191,19 @@ fn acrobots_made_by_the_compiler_equal_those_made_at_run_time() {
 }
 
 #[test]
-fn observation_bounds_equal_gymnasiums() {
-    // As its observation space prints them: 4π and 9π in f32.
-    let (four_pi, nine_pi) = (12.566_371, 28.274_334);
-    let high = Observation::HIGH.to_array();
-    assert_eq!(high, [1.0, 1.0, 1.0, 1.0, four_pi, nine_pi]);
-    assert_eq!(Observation::LOW.to_array(), high.map(|x| -x));
-    let pi = core::f32::consts::PI;
-    let high = Observation::V0_HIGH.to_array();
-    assert_eq!(high, [pi, pi, four_pi, nine_pi]);
-    assert_eq!(Observation::V0_LOW.to_array(), high.map(|x| -x));
-}
-
-#[test]
-fn both_observations_show_the_state() {
+fn an_observation_shows_the_state() {
     let state = State::from([0.5, -2.0, 3.0, -4.0]);
-    let acrobot =
-        Acrobot::from_pendulum(Pendulum::<Portable>::new(Params::DEFAULT, state).unwrap(), ());
+    let pendulum = Pendulum::<Portable>::new(Params::DEFAULT, state).unwrap();
+    let acrobot = Acrobot::<_, Gymnasium, _>::from_pendulum(pendulum, ());
     let (sin1, cos1) = Portable::sin_cos(0.5);
     let (sin2, cos2) = Portable::sin_cos(-2.0);
     let seen = acrobot.observation();
-    assert_eq!(seen.to_array(), [cos1, sin1, cos2, sin2, 3.0, -4.0].map(|x| x as f32));
-    let [link1, link2] =
-        [[seen.cos_theta1(), seen.sin_theta1()], [seen.cos_theta2(), seen.sin_theta2()]];
-    assert_eq!([link1, link2, [seen.dtheta1(), seen.dtheta2()]].as_flattened(), seen.as_ref());
-    let angles = Observation::<4>::from(acrobot.state());
-    assert_eq!(angles.to_array(), [0.5, -2.0, 3.0, -4.0]);
-    let [positions, velocities] =
-        [[angles.theta1(), angles.theta2()], [angles.dtheta1(), angles.dtheta2()]];
-    assert_eq!([positions, velocities].as_flattened(), angles.as_ref());
+    assert_eq!(seen, [cos1, sin1, cos2, sin2, 3.0, -4.0].map(|x| x as f32));
 }
 
 #[test]
-fn observations_are_arrays_and_are_stored() {
-    fn check<const N: usize>(seen: Observation<N>)
-    where
-        Observation<N>: Serialize + DeserializeOwned,
-    {
-        let numbers = <[f32; N]>::from(seen);
-        assert_eq!(numbers, seen.to_array());
-        assert_eq!(numbers, seen.as_slice());
-        assert_eq!((numbers[3], N), (seen[3], seen.len()));
-        assert!(numbers.iter().eq(seen.iter()));
-        assert_eq!(Observation::from(numbers), seen);
-
-        let json = serde_json::to_string(&seen).unwrap();
-        assert_eq!(json, serde_json::to_string(seen.as_slice()).unwrap());
-        assert_eq!(serde_json::from_str::<Observation<N>>(&json).unwrap(), seen);
-        let bytes = postcard::to_stdvec(&seen).unwrap();
-        assert_eq!(bytes.len(), 4 * N);
-        assert_eq!(postcard::from_bytes(&bytes), Ok(seen));
-    }
-    const HIGHEST: &[f32] = Observation::HIGH.as_slice();
-    assert_eq!(HIGHEST.len(), 6);
-
-    let mut acrobot = Acrobot::<Fast>::new(42);
-    let step = acrobot.step(Action::Positive);
-    check(step.observation);
-    check(Observation::<4>::from(acrobot.state()));
+fn a_step_is_stored() {
+    let step = Acrobot::<Fast>::new(42).step(Action::Positive);
     let json = serde_json::to_string(&step).unwrap();
     assert_eq!(serde_json::from_str::<Step>(&json).unwrap(), step);
-    assert!(serde_json::from_str::<Observation>("[0,0,0,0]").is_err());
 }

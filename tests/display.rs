@@ -8,9 +8,9 @@ use acrobot::env::{
     AcrobotEnv, Display, DynEnv, Env, Error, Options, RenderMode, Rendering, acrobot_v1, make_with,
 };
 use acrobot::render::{Figure, Frame};
-use acrobot::{Action, Observation, Portable, State, TimeLimit};
+use acrobot::{Action, Portable, State, TimeLimit};
 
-fn with_mode(render_mode: RenderMode) -> TimeLimit<AcrobotEnv<Portable, Observation>> {
+fn with_mode(render_mode: RenderMode) -> TimeLimit<AcrobotEnv<Portable, [f32; 6]>> {
     let mut env = acrobot_v1::<Portable>(Options { render_mode, ..Options::default() }).unwrap();
     env.reset_with_seed(1);
     env.unwrapped_mut().set_state(State::from([0.6, -1.5, 1.0, -2.0])).unwrap();

@@ -6,11 +6,10 @@ use acrobot::env::{
     Options, RecordEpisodeStatistics, RenderMode, Space, acrobot_v1, make, make_with,
 };
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, ResetBounds};
+use acrobot::physics::Dynamics;
 use acrobot::render::Figure;
-use acrobot::{
-    Acrobot, Action, Fast, Observation, Params, Portable, ResetOptions, State, TimeLimit,
-};
+use acrobot::task::{Gymnasium, ResetBounds, Task};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use common::{Digest, is_recorded_library, lines};
 
 #[test]
@@ -57,13 +56,15 @@ fn reset_to(mut env: impl Env<Observation = DynObservation>, x: f64) -> Vec<f32>
 
 #[test]
 fn versions_have_gymnasiums_spaces() {
+    // As its observation spaces print them: 4π and 9π in f32.
+    let (pi, four_pi, nine_pi) = (core::f32::consts::PI, 12.566_371, 28.274_334);
     let (mut v0, v1) = (make("Acrobot-v0").unwrap(), make("Acrobot-v1").unwrap());
-    for (env, low, high) in [
-        (&v0, Observation::V0_LOW.into(), Observation::V0_HIGH.into()),
-        (&v1, Observation::LOW.into(), Observation::HIGH.into()),
-    ] {
+    for (env, high) in
+        [(&v0, &[pi, pi, four_pi, nine_pi][..]), (&v1, &[1.0, 1.0, 1.0, 1.0, four_pi, nine_pi])]
+    {
         let space = env.observation_space();
-        assert_eq!((*space.low(), *space.high()), (low, high));
+        assert_eq!(space.high().as_slice(), high);
+        assert!(space.low().as_slice().iter().copied().eq(high.iter().map(|x| -x)));
         assert_eq!(env.action_space().n().get(), 3);
     }
     assert_eq!(reset_to(&mut v0, 0.3), [0.3; 4]);
@@ -122,8 +123,8 @@ fn boxed_and_borrowed_environments_are_environments() {
     let display = Display::new(move |frame| sender.send(frame.width()).unwrap());
     assert_eq!(format!("{display:?}"), "Display");
     let options = Options { render_mode: RenderMode::Human(display), ..Options::default() };
-    let mut env =
-        TimeLimit::v1(RecordEpisodeStatistics::new(make_with("Acrobot-v0", options).unwrap()));
+    let env = RecordEpisodeStatistics::new(make_with("Acrobot-v0", options).unwrap());
+    let mut env = TimeLimit::new(env, Gymnasium::LIMIT);
     env.reset();
     let length = (1..).find(|_| env.step(Action::Zero).truncated);
     assert_eq!(length, Some(200));
@@ -158,7 +159,7 @@ fn every_arithmetic_can_be_made() {
 
 #[test]
 fn statistics_cover_each_episode() {
-    let env = AcrobotEnv::<Fast, Observation>::default();
+    let env = AcrobotEnv::<Fast, [f32; 6]>::default();
     let mut env = RecordEpisodeStatistics::new(TimeLimit::new(env, 5.try_into().unwrap()));
     assert_eq!(env.mean_return(), None);
     for episode in 1..=120 {
@@ -216,7 +217,7 @@ fn rejections_name_the_rule() {
     let error = make_with("Acrobot-v1", options).unwrap_err();
     assert_eq!(error.to_string(), "mass1 must be finite and above 0 kg, got -1");
 
-    let error = AcrobotEnv::<Fast, Observation>::default().render().unwrap_err();
+    let error = AcrobotEnv::<Fast, [f32; 6]>::default().render().unwrap_err();
     let rule = "the render mode must be RgbArray, Ansi or Human to render, got None";
     assert_eq!(error.to_string(), rule);
     assert_eq!(make("Acrobot-v1").unwrap().render(), Err(error));

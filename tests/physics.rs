@@ -7,8 +7,9 @@ use acrobot::batch::VecBatch;
 use acrobot::env::{AcrobotEnv, RenderMode};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::control::inverse_dynamics;
-use acrobot::physics::{Dynamics, ParamsRange, Pendulum, Viscous};
-use acrobot::{Acrobot, Fast, Observation, Params, Portable, State, TimeLimit};
+use acrobot::physics::{Dynamics, Pendulum, Viscous};
+use acrobot::task::ParamsRange;
+use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 
 /// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the
 /// lean one.
@@ -148,7 +149,7 @@ fn an_arithmetic_without_friction_rejects_it() {
         batch.set_params_of(1, with),
         batch.set_member(1, member),
         batch.set_params_range(Some(range)),
-        AcrobotEnv::<Fast, Observation>::new(with, RenderMode::None).map(drop),
+        AcrobotEnv::<Fast, [f32; 6]>::new(with, RenderMode::None).map(drop),
     ] {
         assert_eq!(result.unwrap_err().to_string(), rule);
     }

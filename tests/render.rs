@@ -20,7 +20,7 @@ fn figure_of([theta1, theta2, length1, length2]: [f64; 4]) -> Figure {
     let params = Params { length1, length2, ..Params::DEFAULT };
     let state = State::from([theta1, theta2, 0.0, 0.0]);
     let pendulum = Pendulum::<Portable>::new(params, state).unwrap();
-    Figure::new(&Acrobot::from_pendulum(pendulum, ()))
+    Figure::new(&Acrobot::<Portable, acrobot::task::Gymnasium, _>::from_pendulum(pendulum, ()))
 }
 
 const SIDE: usize = 500;

@@ -3,10 +3,11 @@
 
 use std::f64::consts::PI;
 
-use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference, Swingup, SwingupSparse};
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
 use acrobot::render::Figure;
+use acrobot::task::{Swingup, SwingupSparse, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use common::{distance, numbers, text_of};
 
@@ -19,8 +20,8 @@ fn state(numbers: &[f64]) -> State {
 
 /// The largest error of a state, an observation and a reward, over the steps of ten episodes. The
 /// reward is in this column of the recording.
-fn errors<A: Arithmetic>(reward: usize) -> [f64; 3] {
-    let mut acrobot = Acrobot::<A>::new(0);
+fn errors<A: Arithmetic, T: Task>(reward: usize) -> [f64; 3] {
+    let mut acrobot = Acrobot::<A, T>::new(0);
     let (mut worst, mut count) = ([0.0_f64; 3], 0);
     let text = text_of("tests/data/swingup.txt");
     for line in text.lines().filter(|line| !line.starts_with('#')) {
@@ -28,10 +29,10 @@ fn errors<A: Arithmetic>(reward: usize) -> [f64; 3] {
         acrobot.set_state(state(&recorded[..4]).cast()).unwrap();
         let step = acrobot.step_torque(Real::from_f64(2.0 * recorded[4])).unwrap();
         assert!(!step.terminated);
-        let seen = step.observation.to_array().into_iter().zip(&recorded[9..15]);
+        let seen = step.observation.as_ref().iter().zip(&recorded[9..15]);
         let errors = [
             distance(acrobot.state().cast(), state(&recorded[5..9])),
-            seen.fold(0.0, |most, (x, y)| most.max((f64::from(x) - y).abs())),
+            seen.fold(0.0, |most, (x, y)| most.max((f64::from(*x) - y).abs())),
             (f64::from(step.reward) - recorded[reward]).abs(),
         ];
         for (worst, error) in worst.iter_mut().zip(errors) {
@@ -48,13 +49,13 @@ fn steps_observations_and_rewards_are_dm_controls() {
     const DENSE: usize = 15;
     const SPARSE: usize = 16;
     for ([state, observation, reward], limit) in [
-        (errors::<Swingup<Reference>>(DENSE), 1e-12),
-        (errors::<Swingup<Portable>>(DENSE), 1e-12),
-        (errors::<Swingup<Host>>(DENSE), 1e-12),
-        (errors::<Swingup<Fast>>(DENSE), 5e-6),
-        (errors::<Swingup<Micro>>(DENSE), 1e-5),
-        (errors::<SwingupSparse<Reference>>(SPARSE), 1e-12),
-        (errors::<SwingupSparse<Fast>>(SPARSE), 5e-6),
+        (errors::<Damped<Reference>, Swingup>(DENSE), 1e-12),
+        (errors::<Damped<Portable>, Swingup>(DENSE), 1e-12),
+        (errors::<Damped<Host>, Swingup>(DENSE), 1e-12),
+        (errors::<Damped<Fast>, Swingup>(DENSE), 5e-6),
+        (errors::<Damped<Micro>, Swingup>(DENSE), 1e-5),
+        (errors::<Damped<Reference>, SwingupSparse>(SPARSE), 1e-12),
+        (errors::<Damped<Fast>, SwingupSparse>(SPARSE), 5e-6),
     ] {
         assert!(state < limit, "{state:e}");
         // Observations and rewards are `f32`.
@@ -64,15 +65,15 @@ fn steps_observations_and_rewards_are_dm_controls() {
 }
 
 /// Where a link points up, down or aside, a rounding can lead beyond 1. Alone and in a batch.
-fn orientations_within_1<A: Arithmetic>() {
+fn orientations_within_1<A: Arithmetic, T: Task<Observation = [f32; 6]>>() {
     let within = |seen: &[f32; 6]| {
         let [sin1, sin_sum, cos1, cos_sum, ..] = *seen;
         let lengths = [sin1.hypot(cos1), sin_sum.hypot(cos_sum)];
         assert!(lengths.iter().all(|x| (x - 1.0).abs() < 3e-6), "{seen:?}");
         assert!(seen[..4].iter().all(|x| x.abs() <= 1.0), "{seen:?}");
     };
-    let mut acrobot = Acrobot::<A>::new(0);
-    let mut batch = VecBatch::<A>::new(SeedSequence::new(1), 20_000).unwrap();
+    let mut acrobot = Acrobot::<A, T>::new(0);
+    let mut batch = VecBatch::<A, T>::new(SeedSequence::new(1), 20_000).unwrap();
     for index in 0..batch.len() {
         let drawn = batch.state(index).unwrap();
         let aside = f64::from(index as u32 % 8) * (PI / 2.0) - drawn.theta1.to_f64();
@@ -80,7 +81,7 @@ fn orientations_within_1<A: Arithmetic>() {
         let state = State { theta2, ..drawn };
         batch.set_state(index, state).unwrap();
         acrobot.set_state(state).unwrap();
-        within(&acrobot.observation().to_array());
+        within(&acrobot.observation());
     }
     batch.observations().iter().for_each(within);
     let results = batch.step(&vec![Action::Zero; 20_000]).unwrap();
@@ -89,12 +90,12 @@ fn orientations_within_1<A: Arithmetic>() {
 
 #[test]
 fn orientations_are_within_1() {
-    orientations_within_1::<Swingup<Reference>>();
-    orientations_within_1::<Swingup<Host>>();
-    orientations_within_1::<Swingup<Portable>>();
-    orientations_within_1::<Swingup<Fast>>();
-    orientations_within_1::<Swingup<Micro>>();
-    orientations_within_1::<SwingupSparse<Fast>>();
+    orientations_within_1::<Damped<Reference>, Swingup>();
+    orientations_within_1::<Damped<Host>, Swingup>();
+    orientations_within_1::<Damped<Portable>, Swingup>();
+    orientations_within_1::<Damped<Fast>, Swingup>();
+    orientations_within_1::<Damped<Micro>, Swingup>();
+    orientations_within_1::<Damped<Fast>, SwingupSparse>();
 }
 
 /// With lengths so large that the distance from the target overflows, too.
@@ -102,20 +103,21 @@ fn orientations_are_within_1() {
 fn rewards_are_finite_from_0_to_1() {
     for length2 in [1e-3, 1.0, 1e3, 1e30] {
         let params = Params { length2, ..Params::<f32>::SWINGUP };
-        let mut acrobot = Acrobot::<Swingup<Fast>>::with_params(1, params).unwrap();
+        let mut acrobot = Acrobot::<Damped<Fast>, Swingup>::new(1);
+        acrobot.set_params(params).unwrap();
         for _ in 0..200 {
             let step = acrobot.step(Action::Positive);
             assert!((0.0..=1.0).contains(&step.reward), "{}", step.reward);
         }
     }
-    let mut upright = Acrobot::<Swingup<Fast>>::new(0);
+    let mut upright = Acrobot::<Damped<Fast>, Swingup>::new(0);
     upright.set_state(State::UPRIGHT).unwrap();
     assert_eq!(upright.step(Action::Zero).reward, 1.0);
 }
 
 #[test]
 fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
-    let mut acrobot = Acrobot::<Swingup<Fast>>::new(42);
+    let mut acrobot = Acrobot::<Damped<Fast>, Swingup>::new(42);
     let mut quadrants = [0; 16];
     for _ in 0..1000 {
         let State { theta1, theta2, dtheta1, dtheta2 } = acrobot.state();
@@ -126,7 +128,7 @@ fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
     }
     assert!(quadrants.into_iter().all(|count| count > 30), "{quadrants:?}");
 
-    let mut episode = TimeLimit::new(acrobot, Swingup::<Fast>::TASK.limit());
+    let mut episode = TimeLimit::new(acrobot, Swingup::LIMIT);
     let lengths = (1..).find(|_| episode.step(Action::Positive).done());
     assert_eq!(lengths, Some(1000));
 }
@@ -134,7 +136,7 @@ fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
 /// A picture shows the state, whatever the task observes.
 #[test]
 fn pictures_are_those_of_acrobots() {
-    let swingup = Acrobot::<Swingup<Fast>>::new(42);
+    let swingup = Acrobot::<Damped<Fast>, Swingup>::new(42);
     let mut acrobot = Acrobot::<Fast>::new(0);
     acrobot.set_state(swingup.state()).unwrap();
     assert_eq!(Figure::new(&swingup), Figure::new(&acrobot));

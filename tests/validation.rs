@@ -4,7 +4,8 @@
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::batch::{Batch, Block};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, ParamsRange, Pendulum, ResetBounds};
+use acrobot::physics::{Dynamics, Pendulum};
+use acrobot::task::{ParamsRange, ResetBounds};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, State, TimeLimit};
 use common::{Repeating, in_every_arithmetic};
 

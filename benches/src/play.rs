@@ -3,6 +3,7 @@
 use acrobot::arithmetic::Arithmetic;
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
+use acrobot::task::{Gymnasium, Task};
 
 /// The policy: the next action of a stream. It costs little compared with a step, and SIMD can
 /// compute it.
@@ -13,19 +14,20 @@ pub fn draw(stream: &mut u32) -> u8 {
 
 /// A batch, the random policy that plays it, and the buffers of its steps.
 #[derive(Debug)]
-pub struct Play<A: Arithmetic> {
-    pub batch: VecBatch<A>,
+pub struct Play<A: Arithmetic, T: Task = Gymnasium> {
+    pub batch: VecBatch<A, T>,
     streams: Vec<u32>,
     actions: Vec<u8>,
     rewards: Vec<f32>,
     terminated: Vec<bool>,
     truncated: Vec<bool>,
-    rows: Vec<[f32; 6]>,
+    rows: Vec<T::Observation>,
 }
 
-impl<A: Arithmetic> From<VecBatch<A>> for Play<A> {
-    fn from(batch: VecBatch<A>) -> Self {
+impl<A: Arithmetic, T: Task> From<VecBatch<A, T>> for Play<A, T> {
+    fn from(mut batch: VecBatch<A, T>) -> Self {
         let len = batch.len();
+        let rows = batch.observations().to_vec();
         Self {
             batch,
             streams: (0..len as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect(),
@@ -33,12 +35,12 @@ impl<A: Arithmetic> From<VecBatch<A>> for Play<A> {
             rewards: vec![0.0; len],
             terminated: vec![false; len],
             truncated: vec![false; len],
-            rows: vec![[0.0; 6]; len],
+            rows,
         }
     }
 }
 
-impl<A: Arithmetic> Play<A> {
+impl<A: Arithmetic, T: Task> Play<A, T> {
     pub fn new(len: usize) -> Self {
         Self::from(VecBatch::new(SeedSequence::new(0), len).expect("memory for the batch"))
     }

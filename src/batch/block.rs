@@ -5,10 +5,10 @@ use super::inputs::Inputs;
 use super::lane_params::LaneParams;
 use super::settings::{Autoreset, Parameters, Settings};
 use crate::arithmetic::{Arithmetic, Fast};
-use crate::math::{Lanes, Numbers, Real, SinCos};
-use crate::numpy::{Pcg64, uniform};
-use crate::observation::Observation;
-use crate::physics::{ResetBounds, State, reward, sin_cos, step};
+use crate::math::{Lanes, Real, SinCos};
+use crate::numpy::Pcg64;
+use crate::physics::{State, sin_cos};
+use crate::task::{Observation, ResetBounds, Seen, Task, episode};
 
 /// The states of `N` acrobots that are stepped side by side. A [`Batch`](super::Batch) has several.
 ///
@@ -85,13 +85,13 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         self.set_progress(lane, 0, false);
     }
 
-    /// Resets the lanes in `mask`, each with its generator, from which it first draws own
-    /// parameters. A lane without one has no acrobot and hangs at rest.
+    /// Resets the lanes in `mask`, each with its generator, from which it draws own
+    /// parameters after the state. A lane without one has no acrobot and hangs at rest.
     #[cold]
-    pub(super) fn reset(
+    pub(super) fn reset<T: Task>(
         &mut self,
         mask: &[bool; N],
-        settings: &Settings<A>,
+        settings: &Settings<A, T>,
         bounds: ResetBounds,
         generators: &mut [Pcg64],
         mut lane_params: Option<&mut LaneParams<A, N>>,
@@ -101,12 +101,13 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
             let rng = generators.next();
             if *resets {
                 let state = rng.map_or(State::HANGING, |rng| {
+                    let state = settings.task.draw(bounds, rng).cast();
                     if let (Some(params), Parameters::Own(Some(range))) =
                         (&mut lane_params, &settings.parameters)
                     {
                         params.set(lane, range.draw(rng));
                     }
-                    A::TASK.draw(bounds, rng).cast()
+                    state
                 });
                 self.begin_episode(lane, state);
             }
@@ -114,9 +115,9 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     }
 
     /// Ends pending resets: `SameStep` resets the lanes now, `Disabled` never.
-    pub(super) fn settle_pending_resets(
+    pub(super) fn settle_pending_resets<T: Task>(
         &mut self,
-        settings: &Settings<A>,
+        settings: &Settings<A, T>,
         generators: &mut [Pcg64],
         lane_params: Option<&mut LaneParams<A, N>>,
     ) {
@@ -131,28 +132,33 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     }
 
     #[inline(always)]
-    fn rows(&self) -> impl Iterator<Item = [f32; 6]> {
+    fn rows<T: Task>(&self, task: &T) -> impl Iterator<Item = T::Observation> {
         let [(sin1, cos1), (sin2, cos2)] = &self.sin_cos;
-        let [_, _, dtheta1, dtheta2] = &self.y;
-        let angles = (cos1.0.iter().zip(&sin1.0)).zip(cos2.0.iter().zip(&sin2.0));
-        let all = angles.zip(dtheta1.0.iter().zip(&dtheta2.0));
-        all.map(|(((cos1, sin1), (cos2, sin2)), (dtheta1, dtheta2))| {
-            let sin_cos = [(*sin1, *cos1), (*sin2, *cos2)];
-            Observation::of::<A>(sin_cos, [*dtheta1, *dtheta2]).to_array()
+        let [theta1, theta2, dtheta1, dtheta2] = &self.y;
+        let sines = (sin1.0.iter().zip(&cos1.0)).zip(sin2.0.iter().zip(&cos2.0));
+        let states = (theta1.0.iter().zip(&theta2.0)).zip(dtheta1.0.iter().zip(&dtheta2.0));
+        sines.zip(states).map(|(sines, states)| {
+            let (((sin1, cos1), (sin2, cos2)), ((theta1, theta2), (dtheta1, dtheta2))) =
+                (sines, states);
+            let seen = Seen {
+                state: [*theta1, *theta2, *dtheta1, *dtheta2].into(),
+                sin_cos: [(*sin1, *cos1), (*sin2, *cos2)],
+            };
+            T::Observation::rounded(task.observe::<A, A::Scalar>(&seen))
         })
     }
 
     /// Writes the observations, and removes the written elements from `to`.
     #[inline(always)]
-    pub(super) fn observe(&self, to: &mut &mut [[f32; 6]]) {
-        for (to, row) in take_mut(to, N).iter_mut().zip(self.rows()) {
+    pub(super) fn observe<T: Task>(&self, task: &T, to: &mut &mut [T::Observation]) {
+        for (to, row) in take_mut(to, N).iter_mut().zip(self.rows(task)) {
             *to = row;
         }
     }
 
     #[cold]
-    fn observe_masked(&self, mask: &[bool; N], to: &mut [[f32; 6]]) {
-        for ((to, row), mask) in to.iter_mut().zip(self.rows()).zip(mask) {
+    fn observe_masked<T: Task>(&self, task: &T, mask: &[bool; N], to: &mut [T::Observation]) {
+        for ((to, row), mask) in to.iter_mut().zip(self.rows(task)).zip(mask) {
             if *mask {
                 *to = row;
             }
@@ -161,35 +167,27 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
 
     /// One step of all lanes, without resets.
     #[inline(always)]
-    pub(super) fn advance(
+    pub(super) fn advance<T: Task>(
         &mut self,
-        settings: &Settings<A>,
+        settings: &Settings<A, T>,
         LaneParams { model }: &LaneParams<A, N>,
         inputs: Inputs<'_, A::Scalar>,
         generators: &mut [Pcg64],
     ) -> Results<N> {
-        let mut torques = inputs.torques(&model.params.torques);
-        let noise = model.params.torque_noise;
-        if !noise.all_within(Self::ZEROS) {
-            add_noise(&mut torques.0, &noise.0, &self.reset_pending, generators);
-        }
-        let terminated = step::<A, _>(model, &mut self.y, &mut self.sin_cos, torques);
-        let (mut rewards, mut truncated, mut ended) = ([-1.0; N], [false; N], [false; N]);
-        let results = rewards.iter_mut().zip(&mut truncated).zip(&mut ended);
-        for ((elapsed, terminated), ((reward, truncated), ended)) in
+        let torques = inputs.torques(&model.params.torques);
+        let generators = generators.iter_mut().zip(&self.reset_pending);
+        let generators = generators.map(|(rng, pending)| (!pending).then_some(rng));
+        let torques = episode::disturb(torques, model.params.torque_noise, generators);
+        let (y, sin_cos) = (&mut self.y, &mut self.sin_cos);
+        let (Lanes(rewards), terminated) =
+            episode::step::<A, T, Lanes<_, N>>(model, y, sin_cos, torques, &settings.task);
+        let (mut truncated, mut ended) = ([false; N], [false; N]);
+        let results = truncated.iter_mut().zip(&mut ended);
+        for ((elapsed, terminated), (truncated, ended)) in
             self.elapsed.iter_mut().zip(&terminated).zip(results)
         {
-            *elapsed = elapsed.saturating_add(1);
-            *truncated = *elapsed >= settings.limit.get();
-            if *terminated {
-                *reward = 0.0;
-            }
+            *truncated = episode::count(elapsed, settings.limit);
             *ended = *terminated | *truncated;
-        }
-        if let Some(swingup) = reward::<A, _>(&model.params, self.sin_cos) {
-            for (reward, x) in rewards.iter_mut().zip(swingup.0) {
-                *reward = x.to_f64() as f32;
-            }
         }
         let resets = match settings.autoreset {
             Autoreset::NextStep => core::mem::replace(&mut self.reset_pending, ended),
@@ -202,13 +200,13 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     /// Resets lanes whose episodes ended, writes the results, and removes the written elements from
     /// `buffers`.
     #[inline(always)]
-    pub(super) fn finish(
+    pub(super) fn finish<T: Task>(
         &mut self,
-        settings: &Settings<A>,
+        settings: &Settings<A, T>,
         mut results: Results<N>,
         generators: &mut [Pcg64],
         lane_params: Option<&mut LaneParams<A, N>>,
-        buffers: &mut StepBuffers<'_>,
+        buffers: &mut StepBuffers<'_, T::Observation>,
     ) {
         let finals = buffers.final_observations.as_mut();
         let finals = finals.map(|rows| take_mut(rows, N));
@@ -216,7 +214,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
             if settings.autoreset == Autoreset::NextStep {
                 results.clear();
             } else if let Some(finals) = finals {
-                self.observe_masked(&results.resets, finals);
+                self.observe_masked(&settings.task, &results.resets, finals);
             }
             let (mask, bounds) = (&results.resets, settings.bounds);
             self.reset(mask, settings, bounds, generators, lane_params);
@@ -225,7 +223,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         write(&mut buffers.terminated, &results.terminated);
         write(&mut buffers.truncated, &results.truncated);
         if let Some(rows) = &mut buffers.observations {
-            self.observe(rows);
+            self.observe(&settings.task, rows);
         }
     }
 }
@@ -248,24 +246,6 @@ impl<const N: usize> Results<N> {
             if resets {
                 (*reward, *terminated, *truncated) = (0.0, false, false);
             }
-        }
-    }
-}
-
-/// Adds a noise draw to each torque, except in lanes without noise and in those that this step only
-/// resets.
-#[cold]
-fn add_noise<S: Real, const N: usize>(
-    torques: &mut [S; N],
-    noise: &[S; N],
-    reset_pending: &[bool; N],
-    generators: &mut [Pcg64],
-) {
-    let lanes = torques.iter_mut().zip(noise).zip(reset_pending);
-    for (((torque, noise), pending), rng) in lanes.zip(generators) {
-        if *noise > S::ZERO && !pending {
-            let noise = noise.to_f64();
-            *torque = *torque + S::from_f64(uniform(rng, -noise, noise));
         }
     }
 }

@@ -5,21 +5,22 @@ use crate::error::Error;
 /// Where a step of a [`Batch`](super::Batch) writes its results, one element for each acrobot.
 #[derive(Debug)]
 #[non_exhaustive]
-pub struct StepBuffers<'a> {
+pub struct StepBuffers<'a, O = [f32; 6]> {
     /// −1, or 0 if the acrobot terminated or was only reset; of a swing-up from 0 to 1.
     pub rewards: &'a mut [f32],
     /// Whether the new state is a goal state.
     pub terminated: &'a mut [bool],
     /// Whether the time limit is reached.
     pub truncated: &'a mut [bool],
-    /// The [observations](crate::Observation) of the new states. With `None` they are not computed.
-    pub observations: Option<&'a mut [[f32; 6]]>,
+    /// The [observations](crate::task::Task::Observation) of the new states. With `None` they are
+    /// not computed.
+    pub observations: Option<&'a mut [O]>,
     /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of episodes
     /// that this step ended. Others are not written.
-    pub final_observations: Option<&'a mut [[f32; 6]]>,
+    pub final_observations: Option<&'a mut [O]>,
 }
 
-impl<'a> StepBuffers<'a> {
+impl<'a, O> StepBuffers<'a, O> {
     /// Buffers without observations.
     #[must_use]
     pub fn new(
@@ -32,14 +33,14 @@ impl<'a> StepBuffers<'a> {
 
     /// The same buffers, and one for the observations.
     #[must_use]
-    pub fn with_observations(mut self, observations: &'a mut [[f32; 6]]) -> Self {
+    pub fn with_observations(mut self, observations: &'a mut [O]) -> Self {
         self.observations = Some(observations);
         self
     }
 
     /// The same buffers, and one for the last observations of episodes that end.
     #[must_use]
-    pub fn with_final_observations(mut self, final_observations: &'a mut [[f32; 6]]) -> Self {
+    pub fn with_final_observations(mut self, final_observations: &'a mut [O]) -> Self {
         self.final_observations = Some(final_observations);
         self
     }

@@ -3,7 +3,7 @@
 use super::buffers::set;
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real};
-use crate::physics::{Dynamics, Model, Params, default_model, model};
+use crate::physics::{Defaults, Dynamics, Model, Params, default_model, model};
 
 /// The memory for the parameters of `N` acrobots, where each has its own.
 ///
@@ -24,7 +24,7 @@ pub struct LaneParams<A: Arithmetic = Fast, const N: usize = 16> {
 
 impl<A: Arithmetic, const N: usize> Default for LaneParams<A, N> {
     fn default() -> Self {
-        Self::shared(&const { default_model::<A>() })
+        Self::shared(&const { default_model::<A, Defaults>() })
     }
 }
 
@@ -48,7 +48,8 @@ impl<A: Arithmetic, const N: usize> LaneParams<A, N> {
     /// The parameters of a lane below `N`.
     pub(super) fn get(&self, lane: usize) -> Params<A::Scalar> {
         let number = |lanes: Lanes<A::Scalar, N>, _| *lanes.0.get(lane).unwrap_or(&A::Scalar::ZERO);
-        let Model { params, constants } = self.model.zip(&const { default_model::<A>() }, number);
+        let Model { params, constants } =
+            self.model.zip(&const { default_model::<A, Defaults>() }, number);
         Params {
             dynamics: if constants.nips > A::Scalar::ZERO {
                 Dynamics::Nips

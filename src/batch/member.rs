@@ -8,6 +8,7 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
 use crate::physics::{Params, State, check_params};
+use crate::task::Task;
 
 /// One acrobot of a batch, as plain data. Unlike a [whole batch](Batch#snapshots), it is stored
 /// without a version.
@@ -43,7 +44,7 @@ pub struct Member<A: Arithmetic> {
     pub rng: Pcg64,
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
+impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// Acrobot `index`, if there is one.
     #[must_use]
     pub fn member(&self, index: usize) -> Option<Member<A>> {

@@ -6,9 +6,10 @@ use super::{Batch, each_block};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::physics::State;
-use crate::reset_options::ResetOptions;
+use crate::task::ResetOptions;
+use crate::task::Task;
 
-impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
+impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// Resets all acrobots, each with the next draws of its stream.
     pub fn reset(&mut self) {
         self.reset_with(ResetOptions::default());

@@ -3,7 +3,8 @@
 use core::num::NonZeroU32;
 
 use crate::arithmetic::Arithmetic;
-use crate::physics::{Model, ParamsRange, ResetBounds};
+use crate::physics::Model;
+use crate::task::{ParamsRange, ResetBounds};
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
@@ -32,9 +33,10 @@ pub(super) enum Parameters<A: Arithmetic> {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Settings<A: Arithmetic> {
+pub(super) struct Settings<A: Arithmetic, T> {
     pub(super) parameters: Parameters<A>,
     pub(super) bounds: ResetBounds,
     pub(super) limit: NonZeroU32,
     pub(super) autoreset: Autoreset,
+    pub(super) task: T,
 }

@@ -2,6 +2,7 @@
 
 use super::work::Work;
 use crate::arithmetic::Arithmetic;
+use crate::task::Task;
 
 /// The SIMD instructions that a step of a [`Batch`](super::Batch) uses. They change no bit.
 ///
@@ -52,11 +53,11 @@ impl SimdLevel {
     #[allow(unsafe_code, reason = "the one place with instructions that the build does not assume")]
     // Inlined where there is one level, so that kernels which a program does not use are omitted.
     #[cfg_attr(not(all(feature = "std", target_arch = "x86_64")), inline(always))]
-    pub(super) fn step<A: Arithmetic, const N: usize>(self, work: Work<'_, A, N>) {
+    pub(super) fn step<A: Arithmetic, T: Task, const N: usize>(self, work: Work<'_, A, T, N>) {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {
             #[target_feature(enable = "avx2")]
-            fn with_avx2<A: Arithmetic, const N: usize>(work: Work<'_, A, N>) {
+            fn with_avx2<A: Arithmetic, T: Task, const N: usize>(work: Work<'_, A, T, N>) {
                 /// On the stack it aligns spilled registers. Without it they cross cache lines in
                 /// every second process, because a stack begins at a random multiple of 16, and a
                 /// step takes 25 % longer.
@@ -68,7 +69,7 @@ impl SimdLevel {
                 work.step::<false>();
             }
             #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-            fn with_avx512<A: Arithmetic, const N: usize>(work: Work<'_, A, N>) {
+            fn with_avx512<A: Arithmetic, T: Task, const N: usize>(work: Work<'_, A, T, N>) {
                 work.step::<true>();
             }
             // SAFETY: the machine has the features that the function was compiled for.
@@ -85,7 +86,10 @@ impl SimdLevel {
 
     /// As [`step`](Self::step), on all cores: halves the blocks until a task is too small to share.
     #[cfg(feature = "rayon")]
-    pub(super) fn par_step<A: Arithmetic, const N: usize>(self, mut work: Work<'_, A, N>) {
+    pub(super) fn par_step<A: Arithmetic, T: Task, const N: usize>(
+        self,
+        mut work: Work<'_, A, T, N>,
+    ) {
         // Both are about 100 µs of work: waking a thread takes 10 µs.
         let acrobots_of_a_task = match size_of::<A::Scalar>() {
             4 => 16_384,

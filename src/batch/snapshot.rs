@@ -18,14 +18,15 @@ use super::vec_batch::VecBatch;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::SeedSequence;
-use crate::physics::{Params, ParamsRange, ResetBounds};
+use crate::physics::Params;
 use crate::snapshot::Header;
+use crate::task::{ParamsRange, ResetBounds, Task};
 
 /// The settings. The parameters that all acrobots share are those of each member.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(rename = "Settings", bound = "")]
-struct Settings<A: Arithmetic> {
-    snapshot: Header<A, true>,
+struct Settings<A: Arithmetic, T: Task> {
+    snapshot: Header<A, T, true>,
     low: f64,
     high: f64,
     limit: NonZeroU32,
@@ -36,12 +37,12 @@ struct Settings<A: Arithmetic> {
     params_range: Vec<Params<A::Scalar>, 2>,
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Serialize for Batch<A, S, N> {
-    fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
+impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Serialize for Batch<A, S, T, N> {
+    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         let range = self.params_range();
         let ends = range.map(|range| Vec::from_array([*range.low(), *range.high()]));
         let mut records = serializer.serialize_seq(Some(1 + self.len()))?;
-        records.serialize_element(&Settings::<A> {
+        records.serialize_element(&Settings::<A, T> {
             snapshot: Header::NEW,
             low: self.settings.bounds.low(),
             high: self.settings.bounds.high(),
@@ -57,7 +58,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Serialize for Batch<A, S, 
     }
 }
 
-impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
+impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// Loads a [snapshot](Self#snapshots) of a batch into memory for as many acrobots.
     ///
     /// # Errors
@@ -90,7 +91,7 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
         self.set_member(index, member)
     }
 
-    fn apply(&mut self, settings: Settings<A>, members: usize) -> Result<(), Error> {
+    fn apply(&mut self, settings: Settings<A, T>, members: usize) -> Result<(), Error> {
         check_length("members", members, self.len())?;
         match *settings.params_range {
             [] => {}
@@ -105,14 +106,14 @@ impl<A: Arithmetic, S: Storage<A, N>, const N: usize> Batch<A, S, N> {
 }
 
 #[cfg(feature = "alloc")]
-impl<A: Arithmetic, const N: usize> Serialize for VecBatch<A, N> {
-    fn serialize<T: Serializer>(&self, serializer: T) -> Result<T::Ok, T::Error> {
+impl<A: Arithmetic, T: Task, const N: usize> Serialize for VecBatch<A, T, N> {
+    fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         (**self).serialize(serializer)
     }
 }
 
 #[cfg(feature = "alloc")]
-impl<'de, A: Arithmetic, const N: usize> serde::Deserialize<'de> for VecBatch<A, N> {
+impl<'de, A: Arithmetic, T: Task, const N: usize> serde::Deserialize<'de> for VecBatch<A, T, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut members = alloc::vec::Vec::new();
         let settings = read(deserializer, |member| {
@@ -139,32 +140,37 @@ impl<'de, A: Arithmetic, const N: usize> serde::Deserialize<'de> for VecBatch<A,
 }
 
 /// Reads a snapshot: calls `each` with the members in their order, and returns the settings.
-fn read<'de, A, D>(
+fn read<'de, A, T, D>(
     deserializer: D,
     each: impl FnMut(Member<A>) -> Result<(), Error>,
-) -> Result<Settings<A>, D::Error>
+) -> Result<Settings<A, T>, D::Error>
 where
     A: Arithmetic,
+    T: Task,
     D: Deserializer<'de>,
 {
-    struct Records<A, F>(F, PhantomData<A>);
+    struct Records<A, T, F>(F, PhantomData<(A, T)>);
 
-    impl<'de, A, F> Visitor<'de> for Records<A, F>
+    impl<'de, A, T, F> Visitor<'de> for Records<A, T, F>
     where
         A: Arithmetic,
+        T: Task,
         F: FnMut(Member<A>) -> Result<(), Error>,
     {
-        type Value = Settings<A>;
+        type Value = Settings<A, T>;
 
         fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
             f.write_str("the settings of a batch and its members")
         }
 
-        fn visit_seq<T: SeqAccess<'de>>(mut self, mut records: T) -> Result<Settings<A>, T::Error> {
+        fn visit_seq<Z: SeqAccess<'de>>(
+            mut self,
+            mut records: Z,
+        ) -> Result<Settings<A, T>, Z::Error> {
             let settings = records.next_element()?;
-            let settings = settings.ok_or_else(|| T::Error::invalid_length(0, &self))?;
+            let settings = settings.ok_or_else(|| Z::Error::invalid_length(0, &self))?;
             while let Some(member) = records.next_element()? {
-                (self.0)(member).map_err(T::Error::custom)?;
+                (self.0)(member).map_err(Z::Error::custom)?;
             }
             Ok(settings)
         }

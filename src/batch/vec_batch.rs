@@ -11,9 +11,11 @@ use super::lane_params::LaneParams;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::reset_options::ResetOptions;
+use crate::task::ResetOptions;
+use crate::task::{Gymnasium, Observation, Task};
 
-type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>), N>;
+type InVecs<A, T, const N: usize> =
+    Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>), T, N>;
 
 /// A [`Batch`] in `Vec`s, with the memory for the results of its steps.
 ///
@@ -39,16 +41,16 @@ type InVecs<A, const N: usize> = Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<Lan
 /// Each acrobot can have its own parameters: [an example that draws
 /// them](crate::guide::rust#many-at-once).
 #[derive(Clone, Debug)]
-pub struct VecBatch<A: Arithmetic, const N: usize = 16> {
-    batch: InVecs<A, N>,
-    results: StepResults,
+pub struct VecBatch<A: Arithmetic, T: Task = Gymnasium, const N: usize = 16> {
+    batch: InVecs<A, T, N>,
+    results: StepResults<T::Observation>,
 }
 
 /// The results of a step of a [`VecBatch`], with one element for each acrobot. The next step
 /// overwrites them.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct StepResults {
+pub struct StepResults<O = [f32; 6]> {
     /// −1, or 0 if the acrobot terminated or was only reset; of a swing-up from 0 to 1.
     pub rewards: Vec<f32>,
     /// Whether the new state is a goal state.
@@ -56,13 +58,26 @@ pub struct StepResults {
     /// Whether the time limit is reached.
     pub truncated: Vec<bool>,
     /// The observations of the new states.
-    pub observations: Vec<[f32; 6]>,
+    pub observations: Vec<O>,
     /// With [`Autoreset::SameStep`](super::Autoreset::SameStep), the last observations of the
     /// episodes that this step ended. Those of other acrobots are older, or 0.
-    pub final_observations: Vec<[f32; 6]>,
+    pub final_observations: Vec<O>,
 }
 
-impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
+impl<O> Default for StepResults<O> {
+    /// No results.
+    fn default() -> Self {
+        Self {
+            rewards: Vec::new(),
+            terminated: Vec::new(),
+            truncated: Vec::new(),
+            observations: Vec::new(),
+            final_observations: Vec::new(),
+        }
+    }
+}
+
+impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     /// A batch of `len` acrobots, with seeds and settings as those of [`Batch::new`].
     ///
     /// # Errors
@@ -91,17 +106,17 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     }
 
     /// Calls [`Batch::reset`] and returns the observations.
-    pub fn reset(&mut self) -> &[[f32; 6]] {
+    pub fn reset(&mut self) -> &[T::Observation] {
         self.reset_with(ResetOptions::default())
     }
 
     /// Calls [`Batch::reset_with_seed`] and returns the observations.
-    pub fn reset_with_seed(&mut self, seed: u64) -> &[[f32; 6]] {
+    pub fn reset_with_seed(&mut self, seed: u64) -> &[T::Observation] {
         self.reset_with(seed.into())
     }
 
     /// Calls [`Batch::reset_with`] and returns the observations.
-    pub fn reset_with(&mut self, options: ResetOptions) -> &[[f32; 6]] {
+    pub fn reset_with(&mut self, options: ResetOptions) -> &[T::Observation] {
         self.batch.reset_with(options);
         self.observations()
     }
@@ -112,7 +127,7 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
         &mut self,
         mask: &[bool],
         options: ResetOptions,
-    ) -> Result<&[[f32; 6]], Error> {
+    ) -> Result<&[T::Observation], Error> {
         self.batch.reset_masked(mask, options)?;
         Ok(self.observations())
     }
@@ -126,15 +141,15 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
                 rewards: fill(0.0, len, len)?,
                 terminated: fill(false, len, len)?,
                 truncated: fill(false, len, len)?,
-                observations: fill([0.0; 6], len, len)?,
-                final_observations: fill([0.0; 6], len, len)?,
+                observations: fill(T::Observation::ZEROS, len, len)?,
+                final_observations: fill(T::Observation::ZEROS, len, len)?,
             };
         }
         Ok(())
     }
 
     /// The observations of the states, for example after a reset.
-    pub fn observations(&mut self) -> &[[f32; 6]] {
+    pub fn observations(&mut self) -> &[T::Observation] {
         if self.fit_results().is_ok() {
             // It fails only for another length.
             let _ = self.batch.observe(&mut self.results.observations);
@@ -147,21 +162,27 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     /// # Errors
     ///
     /// Those of [`Batch::step`], and [`Error::OutOfMemory`].
-    pub fn step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
+    pub fn step<I: Input<A::Scalar>>(
+        &mut self,
+        inputs: &[I],
+    ) -> Result<&StepResults<T::Observation>, Error> {
         self.step_by(|batch, buffers| batch.step(inputs, buffers))
     }
 
     /// As [`step`](Self::step), with its errors, on all cores: see [`Batch::par_step`].
     #[cfg(feature = "rayon")]
-    pub fn par_step<I: Input<A::Scalar>>(&mut self, inputs: &[I]) -> Result<&StepResults, Error> {
+    pub fn par_step<I: Input<A::Scalar>>(
+        &mut self,
+        inputs: &[I],
+    ) -> Result<&StepResults<T::Observation>, Error> {
         self.step_by(|batch, buffers| batch.par_step(inputs, buffers))
     }
 
     #[inline(always)]
-    fn step_by(
-        &mut self,
-        step: impl FnOnce(&mut InVecs<A, N>, StepBuffers<'_>) -> Result<(), Error>,
-    ) -> Result<&StepResults, Error> {
+    fn step_by<F>(&mut self, step: F) -> Result<&StepResults<T::Observation>, Error>
+    where
+        F: FnOnce(&mut InVecs<A, T, N>, StepBuffers<'_, T::Observation>) -> Result<(), Error>,
+    {
         self.fit_results()?;
         let to = &mut self.results;
         let buffers = StepBuffers::new(&mut to.rewards, &mut to.terminated, &mut to.truncated)
@@ -172,15 +193,15 @@ impl<A: Arithmetic, const N: usize> VecBatch<A, N> {
     }
 }
 
-impl<A: Arithmetic, const N: usize> Deref for VecBatch<A, N> {
-    type Target = InVecs<A, N>;
+impl<A: Arithmetic, T: Task, const N: usize> Deref for VecBatch<A, T, N> {
+    type Target = InVecs<A, T, N>;
 
     fn deref(&self) -> &Self::Target {
         &self.batch
     }
 }
 
-impl<A: Arithmetic, const N: usize> DerefMut for VecBatch<A, N> {
+impl<A: Arithmetic, T: Task, const N: usize> DerefMut for VecBatch<A, T, N> {
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.batch
     }

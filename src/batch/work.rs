@@ -9,25 +9,27 @@ use super::lane_params::LaneParams;
 use super::settings::{Parameters, Settings};
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
+use crate::task::Task;
 
 /// What a step reads and writes.
-pub(super) struct Work<'a, A: Arithmetic, const N: usize> {
-    pub(super) settings: &'a Settings<A>,
+pub(super) struct Work<'a, A: Arithmetic, T: Task, const N: usize> {
+    pub(super) settings: &'a Settings<A, T>,
     pub(super) blocks: &'a mut [Block<A, N>],
     pub(super) generators: &'a mut [Pcg64],
     /// Empty where acrobots share their parameters.
     pub(super) lane_params: &'a mut [LaneParams<A, N>],
     pub(super) inputs: Inputs<'a, A::Scalar>,
-    pub(super) buffers: StepBuffers<'a>,
+    pub(super) buffers: StepBuffers<'a, T::Observation>,
 }
 
-impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
+impl<'a, A: Arithmetic, T: Task, const N: usize> Work<'a, A, T, N> {
     /// Whether acrobots share their parameters is decided once, and not for each block, which would
     /// be 3 to 6 % slower. `HIDE` keeps the model in memory: with AVX-512 the compiler would hold
     /// it in registers and spill the state, 16 % slower.
     #[inline(always)]
     pub(super) fn step<const HIDE: bool>(self) {
-        let Self { settings, blocks, mut generators, lane_params, mut inputs, mut buffers } = self;
+        let Self { settings, blocks, mut generators, lane_params, mut inputs, mut buffers, .. } =
+            self;
         if let Parameters::Shared(model) = &settings.parameters {
             let shared = LaneParams::shared(model);
             for block in blocks {
@@ -47,7 +49,7 @@ impl<'a, A: Arithmetic, const N: usize> Work<'a, A, N> {
 
     /// Splits off the first `blocks` blocks. Cannot panic, whatever the lengths.
     #[cfg(feature = "rayon")]
-    pub(super) fn take(&mut self, blocks: usize) -> Work<'a, A, N> {
+    pub(super) fn take(&mut self, blocks: usize) -> Work<'a, A, T, N> {
         let acrobots = blocks * N;
         Work {
             settings: self.settings,

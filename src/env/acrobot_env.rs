@@ -1,6 +1,7 @@
 //! The environment that [`make`](super::make) wraps: an acrobot with a kind of observation and a
 //! render mode.
 
+use core::f32::consts::PI;
 use core::fmt;
 use core::marker::PhantomData;
 
@@ -12,10 +13,10 @@ use crate::acrobot::{Acrobot, Step};
 use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error as Rejected;
-use crate::observation::Observation;
-use crate::physics::{Params, ResetBounds, State, check_params};
+use crate::physics::{Params, State, check_params};
 use crate::render::Figure;
-use crate::reset_options::ResetOptions;
+use crate::task::ResetBounds;
+use crate::task::ResetOptions;
 
 /// A kind of observation of an acrobot: those of `Acrobot-v1` and of `Acrobot-v0`, or one of yours.
 pub trait ObservationKind:
@@ -29,27 +30,25 @@ pub trait ObservationKind:
     fn space(params: &Params<f32>) -> BoxSpace<Self>;
 }
 
-impl ObservationKind for Observation<6> {
+impl ObservationKind for [f32; 6] {
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self {
         acrobot.observation()
     }
 
     fn space(params: &Params<f32>) -> BoxSpace<Self> {
-        let [cos1, sin1, cos2, sin2, ..] = Self::HIGH.to_array();
         let [dtheta1, dtheta2] = highest_velocities(params);
-        BoxSpace::symmetric([cos1, sin1, cos2, sin2, dtheta1, dtheta2].into())
+        BoxSpace::symmetric([1.0, 1.0, 1.0, 1.0, dtheta1, dtheta2])
     }
 }
 
-impl ObservationKind for Observation<4> {
+impl ObservationKind for [f32; 4] {
     fn of<A: Arithmetic>(acrobot: &Acrobot<A>) -> Self {
-        acrobot.state().into()
+        acrobot.state().cast().into()
     }
 
     fn space(params: &Params<f32>) -> BoxSpace<Self> {
-        let [theta1, theta2, ..] = Self::V0_HIGH.to_array();
         let [dtheta1, dtheta2] = highest_velocities(params);
-        BoxSpace::symmetric([theta1, theta2, dtheta1, dtheta2].into())
+        BoxSpace::symmetric([PI, PI, dtheta1, dtheta2])
     }
 }
 

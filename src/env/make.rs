@@ -13,10 +13,9 @@ use super::{Env, Info};
 use crate::acrobot::Step;
 use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Reference};
-use crate::observation::Observation;
 use crate::physics::Params;
-use crate::reset_options::ResetOptions;
-use crate::time_limit::TimeLimit;
+use crate::task::{Gymnasium, ResetOptions, Task};
+use crate::time_limit::{TimeLimit, V0_LIMIT};
 
 /// The arithmetic that [`make_with`] computes in.
 #[non_exhaustive]
@@ -62,18 +61,18 @@ pub type DynEnv = dyn Env<
 /// [`Error::Invalid`] for invalid parameters.
 pub fn acrobot_v1<A: Arithmetic>(
     options: Options,
-) -> Result<TimeLimit<AcrobotEnv<A, Observation<6>>>, Error> {
+) -> Result<TimeLimit<AcrobotEnv<A, [f32; 6]>>, Error> {
     let env = AcrobotEnv::new(options.params, options.render_mode)?;
-    Ok(TimeLimit::v1(env))
+    Ok(TimeLimit::new(env, Gymnasium::LIMIT))
 }
 
 /// `Acrobot-v0`: observations with the angles, and 200 steps. Its errors are those of
 /// [`acrobot_v1`].
 pub fn acrobot_v0<A: Arithmetic>(
     options: Options,
-) -> Result<TimeLimit<AcrobotEnv<A, Observation<4>>>, Error> {
+) -> Result<TimeLimit<AcrobotEnv<A, [f32; 4]>>, Error> {
     let env = AcrobotEnv::new(options.params, options.render_mode)?;
-    Ok(TimeLimit::v0(env))
+    Ok(TimeLimit::new(env, V0_LIMIT))
 }
 
 impl fmt::Debug for DynEnv {
@@ -125,9 +124,9 @@ fn make_in<A: Arithmetic>(id: &str, options: Options) -> Result<Box<DynEnv>, Err
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DynObservation {
     /// Four numbers, in `Acrobot-v0`.
-    V0(Observation<4>),
+    V0([f32; 4]),
     /// Six numbers, in `Acrobot-v1`.
-    V1(Observation<6>),
+    V1([f32; 6]),
 }
 
 impl DynObservation {
@@ -138,14 +137,14 @@ impl DynObservation {
     }
 }
 
-impl From<Observation<4>> for DynObservation {
-    fn from(observation: Observation<4>) -> Self {
+impl From<[f32; 4]> for DynObservation {
+    fn from(observation: [f32; 4]) -> Self {
         Self::V0(observation)
     }
 }
 
-impl From<Observation<6>> for DynObservation {
-    fn from(observation: Observation<6>) -> Self {
+impl From<[f32; 6]> for DynObservation {
+    fn from(observation: [f32; 6]) -> Self {
         Self::V1(observation)
     }
 }

@@ -77,10 +77,9 @@ impl<T: Clone + PartialEq> Space for DiscreteSpace<T> {
 ///
 /// ```
 /// use acrobot::env::{BoxSpace, Space};
-/// use acrobot::Observation;
 /// use acrobot::numpy::Pcg64;
 ///
-/// let space = BoxSpace::new(Observation::LOW, Observation::HIGH).unwrap();
+/// let space = BoxSpace::new([-1.0, -12.6], [1.0, 12.6]).unwrap();
 /// let sample = space.sample(&mut Pcg64::new(42));
 /// assert!(space.contains(&sample));
 /// assert!(BoxSpace::new([1.0], [0.0]).is_none());

@@ -8,7 +8,7 @@ use super::rendering::Rendering;
 use super::wrapper::forward;
 use super::{Env, EpisodeStatistics, Info};
 use crate::acrobot::Step;
-use crate::reset_options::ResetOptions;
+use crate::task::ResetOptions;
 
 /// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode reports its statistics in
 /// [`Info`].

@@ -6,7 +6,7 @@ use super::error::Error;
 use super::rendering::Rendering;
 use super::{Env, Info};
 use crate::acrobot::Step;
-use crate::reset_options::ResetOptions;
+use crate::task::ResetOptions;
 use crate::time_limit::TimeLimit;
 
 /// Forwards parts of [`Env`] to the wrapped one: its types; an episode, which is `reset_with` and

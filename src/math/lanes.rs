@@ -19,7 +19,10 @@ pub trait Numbers<S: Real>:
     + Neg<Output = Self>
 {
     /// A truth value for each number.
-    type Mask;
+    type Mask: Copy;
+
+    /// As many numbers in `f32`, as rewards are.
+    type Single: Numbers<f32, Mask = Self::Mask>;
 
     /// Whether this is a single number.
     const IS_ONE: bool;
@@ -53,6 +56,12 @@ pub trait Numbers<S: Real>:
     /// Which numbers are above `limit`.
     fn above(self, limit: S) -> Self::Mask;
 
+    /// Each number rounded to `f32`.
+    fn to_f32(self) -> Self::Single;
+
+    /// `yes` where `mask` is true, `no` elsewhere.
+    fn either(mask: Self::Mask, yes: S, no: S) -> Self;
+
     /// Each number clamped to \[−`limit`, `limit`\]; NaN stays NaN.
     #[inline(always)]
     fn bound(self, limit: Self) -> Self {
@@ -63,6 +72,7 @@ pub trait Numbers<S: Real>:
 
 impl<S: Real> Numbers<S> for S {
     type Mask = bool;
+    type Single = f32;
     const IS_ONE: bool = true;
 
     #[inline(always)]
@@ -88,6 +98,16 @@ impl<S: Real> Numbers<S> for S {
     #[inline(always)]
     fn above(self, limit: S) -> bool {
         self > limit
+    }
+
+    #[inline(always)]
+    fn to_f32(self) -> f32 {
+        self.to_f64() as f32
+    }
+
+    #[inline(always)]
+    fn either(mask: bool, yes: S, no: S) -> S {
+        if mask { yes } else { no }
     }
 }
 
@@ -124,6 +144,7 @@ impl<S: Real, const N: usize> Neg for Lanes<S, N> {
 // instructions of its caller.
 impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
     type Mask = [bool; N];
+    type Single = Lanes<f32, N>;
     const IS_ONE: bool = false;
 
     #[inline(always)]
@@ -165,5 +186,23 @@ impl<S: Real, const N: usize> Numbers<S> for Lanes<S, N> {
             *above = x > limit;
         }
         above
+    }
+
+    #[inline(always)]
+    fn to_f32(self) -> Lanes<f32, N> {
+        let mut numbers = [0.0; N];
+        for (number, x) in numbers.iter_mut().zip(self.0) {
+            *number = x.to_f64() as f32;
+        }
+        Lanes(numbers)
+    }
+
+    #[inline(always)]
+    fn either(mask: [bool; N], yes: S, no: S) -> Self {
+        let mut numbers = [no; N];
+        for (number, mask) in numbers.iter_mut().zip(mask) {
+            *number = if mask { yes } else { no };
+        }
+        Self(numbers)
     }
 }

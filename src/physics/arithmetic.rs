@@ -3,9 +3,8 @@
 use core::fmt;
 
 use super::friction::Viscous;
-use super::model::{Form, Model, Modeled};
+use super::model::{Form, Given, Model, Modeled, Models};
 use super::params::Params;
-use super::task::Task;
 use crate::error::Error;
 use crate::math::{Numbers, Real};
 
@@ -46,9 +45,6 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
         Self::sin_cos_near(x).1
     }
 
-    /// The task: Gymnasium's, unless it is replaced as in [`Swingup`](crate::arithmetic::Swingup).
-    const TASK: Task = Task::Acrobot;
-
     /// The square of `x`: only `Host` replaces it.
     #[doc(hidden)]
     #[inline]
@@ -61,21 +57,17 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     const SQUARES_IN_CONST: bool = true;
 }
 
-/// The model of the task's default parameters.
-pub(crate) const fn default_model<A: Arithmetic>() -> Model<A::Scalar> {
-    let models = match A::FORM {
-        Form::Lean => A::Scalar::LEAN,
-        Form::Gymnasium => A::Scalar::GYMNASIUM,
-    };
-    let [acrobot, swingup] = models;
-    let mut model = match A::TASK {
-        Task::Acrobot => acrobot,
-        Task::Swingup | Task::SwingupSparse => swingup,
-    };
-    if !A::HAS_FRICTION {
-        model.params.friction = Viscous { joint1: A::Scalar::ZERO, joint2: A::Scalar::ZERO };
+/// The model of given parameters, which must suit the arithmetic.
+pub(crate) const fn default_model<A: Arithmetic, G: Given>() -> Model<A::Scalar> {
+    const {
+        let Viscous { joint1, joint2 } = G::PARAMS.friction;
+        let suits = check_friction::<A>([joint1, joint2]).is_ok() && G::PARAMS.check().is_ok();
+        assert!(suits, "the arithmetic must be Damped, because the parameters have friction");
     }
-    model
+    match A::FORM {
+        Form::Lean => <A::Scalar as Modeled>::Of::<G>::LEAN,
+        Form::Gymnasium => <A::Scalar as Modeled>::Of::<G>::GYMNASIUM,
+    }
 }
 
 /// The model of valid parameters.

@@ -30,15 +30,3 @@ pub(super) fn wrap<A: Arithmetic, V: Numbers<A::Scalar>>(x: V) -> V {
         Form::Gymnasium => gymnasium::wrap(x),
     }
 }
-
-/// Whether −cos θ1 − cos(θ1 + θ2) > 1, whatever the lengths of the links.
-#[inline(always)]
-pub(super) fn reaches_goal<A: Arithmetic, V: Numbers<A::Scalar>>(
-    angles: [V; 2],
-    sin_cos: [SinCos<V>; 2],
-) -> V::Mask {
-    match A::FORM {
-        Form::Lean => lean::reaches_goal(sin_cos),
-        Form::Gymnasium => gymnasium::reaches_goal::<A, V>(angles, sin_cos),
-    }
-}

@@ -7,7 +7,7 @@ use crate::math::SinCos;
 
 /// Elbow and tip as \[x, y\], m.
 #[inline(always)]
-pub(super) fn positions<V>(params: &Params<V>, sin_cos: [SinCos<V>; 2]) -> [[V; 2]; 2]
+pub(crate) fn positions<V>(params: &Params<V>, sin_cos: [SinCos<V>; 2]) -> [[V; 2]; 2]
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<Output = V> + Neg<Output = V>,
 {

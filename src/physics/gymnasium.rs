@@ -72,21 +72,6 @@ pub(super) fn wrap<S: Real, V: Numbers<S>>(x: V) -> V {
     })
 }
 
-#[inline(always)]
-pub(super) fn reaches_goal<A: Arithmetic, V: Numbers<A::Scalar>>(
-    [theta1, theta2]: [V; 2],
-    [(_, cos1), _]: [SinCos<V>; 2],
-) -> V::Mask {
-    // Without a positive −cos θ1 the sum cannot exceed 1, so the second cosine is not computed.
-    let zero = V::splat(A::Scalar::ZERO);
-    let lowest = cos1.map(|cos1| if cos1 < A::Scalar::ZERO { cos1 } else { A::Scalar::ZERO });
-    if lowest.all_within(zero) {
-        return zero.above(A::Scalar::ONE);
-    }
-    let height = -cos1 - A::cos_near(theta2 + theta1);
-    height.above(A::Scalar::ONE)
-}
-
 #[cold]
 fn wrap_by_remainder<S: Real>(x: S) -> S {
     let x = x.remainder(S::TAU);

@@ -4,7 +4,7 @@ use super::arithmetic::{Arithmetic, resist};
 use super::friction::Viscous;
 use super::model::{Constants, Model};
 use crate::math::sealed::Sealed;
-use crate::math::{Numbers, Real, SinCos};
+use crate::math::{Numbers, SinCos};
 
 /// The determinant is a positive constant plus a square, so nothing cancels. Gymnasium's cos(θ1 −
 /// π/2) is sin θ1 here, and its cos(θ1 + θ2 − π/2) is sin(θ1 + θ2), by the addition theorem.
@@ -46,12 +46,4 @@ pub(super) fn derivative<A: Arithmetic, V: Numbers<A::Scalar>>(
     let ddtheta1 = -(common * inverse);
     let ddtheta2 = (common + upper * force2 + coupling_cos * force1) * inverse;
     [dtheta1, dtheta2, ddtheta1, ddtheta2]
-}
-
-#[inline(always)]
-pub(super) fn reaches_goal<S: Real, V: Numbers<S>>(
-    [(sin1, cos1), (sin2, cos2)]: [SinCos<V>; 2],
-) -> V::Mask {
-    let cos_sum = cos1 * cos2 - sin1 * sin2;
-    (-cos1 - cos_sum).above(S::ONE)
 }

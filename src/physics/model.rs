@@ -67,16 +67,34 @@ impl<V: Copy> Model<V> {
     }
 }
 
-/// A scalar with the models of the default parameters: `f32` or `f64`. A generic constant cannot
-/// compute them.
-pub trait Modeled: Real {
-    /// The models of [`Params::DEFAULT`] and [`Params::SWINGUP`] in the lean form.
-    #[doc(hidden)]
-    const LEAN: [Model<Self>; 2];
+/// Parameters that are known at compile time.
+pub trait Given {
+    const PARAMS: Params;
+}
 
-    /// The same in Gymnasium's form.
+/// Their models. A generic constant cannot compute them, so each scalar has a type that does.
+pub trait Models<S> {
+    const LEAN: Model<S>;
+    const GYMNASIUM: Model<S>;
+}
+
+/// Gymnasium's parameters.
+pub(crate) struct Defaults;
+
+impl Given for Defaults {
+    const PARAMS: Params = Params::<f64>::ACROBOT;
+}
+
+/// A scalar with the models of parameters that are known at compile time: `f32` or `f64`.
+pub trait Modeled: Real {
     #[doc(hidden)]
-    const GYMNASIUM: [Model<Self>; 2];
+    type Of<G: Given>: Models<Self>;
+
+    #[doc(hidden)]
+    const DEFAULT: Params<Self>;
+
+    #[doc(hidden)]
+    const SWINGUP: Params<Self>;
 
     /// The model of `params`, given l1², lc1² and lc2².
     #[doc(hidden)]
@@ -85,10 +103,10 @@ pub trait Modeled: Real {
 
 impl<S: Modeled> Params<S> {
     /// The parameters of Gymnasium's `Acrobot-v1`, each rounded to the scalar.
-    pub const DEFAULT: Self = S::LEAN[0].params;
+    pub const DEFAULT: Self = S::DEFAULT;
 
     /// The parameters of dm_control's acrobot, whose velocities have no bounds.
-    pub const SWINGUP: Self = S::LEAN[1].params;
+    pub const SWINGUP: Self = S::SWINGUP;
 }
 
 for_f32_and_f64! {
@@ -138,19 +156,34 @@ for_f32_and_f64! {
         }
     }
 
-    impl Modeled for S {
-        const LEAN: [Model<Self>; 2] = [
-            Model::<S>::new(Form::Lean, Params::<S>::ACROBOT, [1.0, 0.25, 0.25]),
-            Model::<S>::new(Form::Lean, Params::<S>::CAPSULES, [1.0, 0.25, 0.25]),
-        ];
-        const GYMNASIUM: [Model<Self>; 2] = [
-            Model::<S>::new(Form::Gymnasium, Params::<S>::ACROBOT, [1.0, 0.25, 0.25]),
-            Model::<S>::new(Form::Gymnasium, Params::<S>::CAPSULES, [1.0, 0.25, 0.25]),
-        ];
+    const _: () = {
+        #[derive(Debug)]
+        pub struct Of<G>(core::marker::PhantomData<G>);
 
-        #[inline(always)]
-        fn model(form: Form, params: Params<Self>, squares: [Self; 3]) -> Model<Self> {
-            Model::<S>::new(form, params, squares)
+        impl<G: Given> Of<G> {
+            const fn model(form: Form) -> Model<S> {
+                let params = Params::<S>::round(&G::PARAMS);
+                let (l1, lc1, lc2) =
+                    (params.length1, params.center_of_mass1, params.center_of_mass2);
+                Model::<S>::new(form, params, [l1 * l1, lc1 * lc1, lc2 * lc2])
+            }
         }
-    }
+
+        impl<G: Given> Models<S> for Of<G> {
+            const LEAN: Model<S> = Self::model(Form::Lean);
+            const GYMNASIUM: Model<S> = Self::model(Form::Gymnasium);
+        }
+
+        impl Modeled for S {
+            type Of<G: Given> = Of<G>;
+
+            const DEFAULT: Params<Self> = Params::<S>::ACROBOT;
+            const SWINGUP: Params<Self> = Params::<S>::CAPSULES;
+
+            #[inline(always)]
+            fn model(form: Form, params: Params<Self>, squares: [Self; 3]) -> Model<Self> {
+                Model::<S>::new(form, params, squares)
+            }
+        }
+    };
 }

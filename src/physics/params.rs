@@ -221,6 +221,32 @@ const fn inertia_of_capsule(radius: f64) -> f64 {
 
 for_f32_and_f64! {
     impl Params<S> {
+        /// [`Params::cast`] in a `const`.
+        pub(super) const fn round(params: &Params) -> Self {
+            let ([negative, zero, positive], friction) = (params.torques, params.friction);
+            Self {
+                length1: params.length1 as S,
+                length2: params.length2 as S,
+                mass1: params.mass1 as S,
+                mass2: params.mass2 as S,
+                center_of_mass1: params.center_of_mass1 as S,
+                center_of_mass2: params.center_of_mass2 as S,
+                inertia1: params.inertia1 as S,
+                inertia2: params.inertia2 as S,
+                gravity: params.gravity as S,
+                dt: params.dt as S,
+                max_velocity1: params.max_velocity1 as S,
+                max_velocity2: params.max_velocity2 as S,
+                torques: [negative as S, zero as S, positive as S],
+                torque_noise: params.torque_noise as S,
+                dynamics: params.dynamics,
+                friction: Viscous {
+                    joint1: friction.joint1 as S,
+                    joint2: friction.joint2 as S,
+                },
+            }
+        }
+
         /// See [`Params::DEFAULT`].
         pub(super) const ACROBOT: Self = Self {
             length1: 1.0,

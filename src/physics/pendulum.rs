@@ -4,7 +4,7 @@ use super::arithmetic::{Arithmetic, check_friction, check_params, default_model,
 use super::equations;
 use super::friction::Viscous;
 use super::geometry;
-use super::model::Model;
+use super::model::{Defaults, Model};
 use super::params::Params;
 use super::state::State;
 use super::step::step;
@@ -52,7 +52,7 @@ impl<A: Arithmetic> Pendulum<A> {
     /// A pendulum with the default parameters that hangs at rest.
     #[must_use]
     pub const fn hanging() -> Self {
-        Self::from_model(const { default_model::<A>() }, [A::Scalar::ZERO; 4])
+        Self::from_model(const { default_model::<A, Defaults>() }, [A::Scalar::ZERO; 4])
     }
 
     /// A pendulum with these parameters in this state.
@@ -68,7 +68,7 @@ impl<A: Arithmetic> Pendulum<A> {
     }
 
     /// A pendulum with this model in a state that is known to be finite.
-    const fn from_model(model: Model<A::Scalar>, y: [A::Scalar; 4]) -> Self {
+    pub(crate) const fn from_model(model: Model<A::Scalar>, y: [A::Scalar; 4]) -> Self {
         Self { model, y, sin_cos: [(A::Scalar::ZERO, A::Scalar::ZERO); 2], is_current: false }
     }
 
@@ -84,26 +84,28 @@ impl<A: Arithmetic> Pendulum<A> {
     }
 
     /// Applies a torque, N m, for one dt. [`bound`](super::bound) limits it to that of a motor.
-    /// Returns whether the new state is a goal state: −cos θ1 − cos(θ1 + θ2) > 1.
     ///
     /// # Errors
     ///
     /// [`Error::OutOfRange`] for a torque that is not finite.
     #[inline]
-    pub fn step(&mut self, torque: A::Scalar) -> Result<bool, Error> {
+    pub fn step(&mut self, torque: A::Scalar) -> Result<(), Error> {
         check_torque(torque)?;
-        let (terminated, _) = self.advance(torque);
-        Ok(terminated)
+        let (model, y, sin_cos) = self.parts();
+        step::<A, A::Scalar>(model, y, sin_cos, torque);
+        Ok(())
     }
 
-    /// As [`step`](Self::step), with a finite torque. Also returns the sines and cosines.
+    /// What a step reads and changes: the model, the state, its sines and cosines.
     #[inline]
-    pub(crate) fn advance(&mut self, torque: A::Scalar) -> (bool, [SinCos<A::Scalar>; 2]) {
+    #[expect(clippy::type_complexity)]
+    pub(crate) fn parts(
+        &mut self,
+    ) -> (&Model<A::Scalar>, &mut [A::Scalar; 4], &mut [SinCos<A::Scalar>; 2]) {
         if !self.is_current {
             self.compute_sines();
         }
-        let terminated = step::<A, A::Scalar>(&self.model, &mut self.y, &mut self.sin_cos, torque);
-        (terminated, self.sin_cos)
+        (&self.model, &mut self.y, &mut self.sin_cos)
     }
 
     /// The state.

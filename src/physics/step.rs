@@ -1,21 +1,20 @@
 //! One step, of one acrobot or of many side by side.
 
 use super::arithmetic::Arithmetic;
-use super::equations::{reaches_goal, wrap};
+use super::equations::wrap;
 use super::model::Model;
 use super::rk4::rk4;
-use super::task::Task;
 use crate::math::{Numbers, Real, SinCos};
 
 /// Advances `y` = \[θ1, θ2, θ̇1, θ̇2\] and the sines and cosines of θ1 and θ2 by one dt under a
-/// constant torque, N m. Returns whether the new state ends the task.
+/// constant torque, N m.
 #[inline(always)]
 pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
     model: &Model<V>,
     y: &mut [V; 4],
     sin_cos: &mut [SinCos<V>; 2],
     torque: V,
-) -> V::Mask {
+) {
     let angles = [y[0], y[1]];
     *y = rk4::<A, V>(model, *y, *sin_cos, torque);
     // One acrobot seldom leaves its bounds: out of line this saves flash. Among many lanes one
@@ -26,10 +25,6 @@ pub(crate) fn step<A: Arithmetic, V: Numbers<A::Scalar>>(
         enforce_bounds_out_of_line::<A, V>(model, y, angles);
     }
     *sin_cos = [A::sin_cos_near(y[0]), A::sin_cos_near(y[1])];
-    match A::TASK {
-        Task::Acrobot => reaches_goal::<A, V>([y[0], y[1]], *sin_cos),
-        Task::Swingup | Task::SwingupSparse => V::splat(A::Scalar::ZERO).above(A::Scalar::ZERO),
-    }
 }
 
 /// Whether all angles are within ±π and all velocities within their bounds; false for NaN.

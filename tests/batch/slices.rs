@@ -4,7 +4,8 @@ use std::num::NonZeroU32;
 
 use acrobot::batch::{Autoreset, Batch, Block, Member, SimdLevel, StepBuffers};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::{Dynamics, ResetBounds};
+use acrobot::physics::Dynamics;
+use acrobot::task::ResetBounds;
 use acrobot::{Fast, Params, ResetOptions, State};
 use common::twins::{LEVELS, MODES};
 

@@ -6,6 +6,7 @@ use std::fmt::Debug;
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
+use acrobot::task::Gymnasium;
 use acrobot::{Acrobot, Action, Fast, Params};
 use common::params_range;
 use common::twins::{MODES, Twins};
@@ -64,7 +65,7 @@ fn every_batch() -> impl Iterator<Item = Twins<Fast>> {
 }
 
 /// Continues beside the single acrobots that the stored batch was beside.
-fn assert_continues<const N: usize>(stored: &Twins<Fast>, loaded: VecBatch<Fast, N>) {
+fn assert_continues<const N: usize>(stored: &Twins<Fast>, loaded: VecBatch<Fast, Gymnasium, N>) {
     assert_eq!(loaded.params_range(), stored.batch.params_range());
     assert_eq!(loaded.reset_bounds(), stored.batch.reset_bounds());
     assert_eq!(loaded.limit(), stored.batch.limit());
@@ -82,14 +83,15 @@ fn loaded_batches_continue_to_the_same_bits_and_are_saved_to_the_same_bytes() {
         let json = serde_json::to_string(&stored.batch).unwrap();
         assert_continues::<16>(&stored, serde_json::from_str(&json).unwrap());
         let bytes = postcard::to_stdvec(&stored.batch).unwrap();
-        let loaded: VecBatch<Fast, 3> = postcard::from_bytes(&bytes).unwrap();
+        let loaded: VecBatch<Fast, Gymnasium, 3> = postcard::from_bytes(&bytes).unwrap();
         assert_eq!(postcard::to_stdvec(&loaded).unwrap(), bytes);
         assert_continues(&stored, loaded);
         let mut deserializer = postcard::Deserializer::from_bytes(&bytes);
         let own = if stored.batch.params_of(0) == stored.batch.params_of(1) { 0 } else { LEN };
         let lane_params = vec![LaneParams::default(); own];
         let memory = ([Block::EMPTY; LEN], [Pcg64::UNSEEDED; LEN], lane_params);
-        let narrow = Batch::<Fast, _, 1>::from_snapshot(memory, &mut deserializer).unwrap();
+        let narrow =
+            Batch::<Fast, _, Gymnasium, 1>::from_snapshot(memory, &mut deserializer).unwrap();
         assert_eq!(postcard::to_stdvec(&narrow).unwrap(), bytes);
     }
 }
@@ -162,8 +164,9 @@ fn invalid_snapshots_are_rejected() {
         (
             r#""of":"batch""#,
             r#""of":"acrobot""#,
-            "the snapshot must be \"batch\", version 2, arithmetic \"fast\", \
-                got \"acrobot\", version 2, arithmetic \"fast\"",
+            "the snapshot must be \"batch\", version 3, task \"gymnasium\", arithmetic \"fast\", \
+                friction false, got \"acrobot\", version 3, task \"gymnasium\", \
+                arithmetic \"fast\", friction false",
         ),
         (r#""limit":500"#, r#""limit":0"#, "invalid value: integer `0`, expected a nonzero u32"),
         (

@@ -3,6 +3,7 @@
 use acrobot::batch::{Autoreset, Batch, Block, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
+use acrobot::task::ParamsRange;
 use acrobot::{Error, Fast, Params, ResetOptions, State};
 
 /// `DerefMut` gives access to the batch inside, so a batch of another length can replace it.
@@ -102,5 +103,28 @@ fn a_member_with_another_zero_than_all_share_is_rejected() {
         batch.set_member(1, own).unwrap();
         let other = with_gravity(-gravity).member(0).unwrap();
         assert_eq!(batch.set_member(1, other), Err(Error::SharedParams));
+    }
+}
+
+/// The packages for Python and JavaScript compare with the same line.
+#[test]
+fn parameters_are_drawn_after_the_initial_state_in_the_order_of_the_fields() {
+    let low = Params { mass2: 0.8, gravity: 9.0, ..Params::DEFAULT };
+    let high = Params { mass2: 1.2, gravity: 10.0, ..Params::DEFAULT };
+    let mut batch = VecBatch::<Fast>::with_own_params(SeedSequence::new(0), 3).unwrap();
+    batch.set_params_range(Some(ParamsRange::new(low, high).unwrap())).unwrap();
+    batch.reset_with(SeedSequence::new(42).into());
+    let found = [0, 1, 2].map(|i| {
+        let Params { mass2, gravity, .. } = batch.params_of(i).unwrap();
+        let [theta1, theta2, dtheta1, dtheta2] = batch.state(i).unwrap().into();
+        [mass2, gravity, theta1, theta2, dtheta1, dtheta2]
+    });
+    let recorded: [[f32; 6]; 3] = serde_json::from_str(include_str!("../data/draws.json")).unwrap();
+    assert_eq!(found, recorded, "{}", serde_json::to_string(&found).unwrap());
+
+    // Without a range the states are the same.
+    let plain = VecBatch::<Fast>::new(SeedSequence::new(42), 3).unwrap();
+    for i in 0..3 {
+        assert_eq!(plain.state(i), batch.state(i));
     }
 }

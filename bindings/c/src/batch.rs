@@ -5,6 +5,7 @@ use core::{ptr, slice};
 
 use acrobot::batch::{Autoreset, Batch, Block, StepBuffers};
 use acrobot::numpy::Pcg64;
+use acrobot::task::Gymnasium;
 use acrobot::{Fast, Params, ResetOptions};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t};
@@ -62,7 +63,7 @@ type LanesBlock = Block<Fast, LANES>;
 pub struct Placed {
     /// Where `acrobot_batch_init` put it.
     address: usize,
-    batch: Batch<Fast, (&'static mut [LanesBlock], &'static mut [Pcg64]), LANES>,
+    batch: Batch<Fast, (&'static mut [LanesBlock], &'static mut [Pcg64]), Gymnasium, LANES>,
 }
 
 impl Holder for acrobot_batch_t {

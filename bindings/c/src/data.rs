@@ -3,7 +3,7 @@
 use core::ffi::c_int;
 
 use acrobot::physics::Dynamics;
-use acrobot::{Observation, Params, State, Step};
+use acrobot::{Params, State, Step};
 
 use crate::status::Rejected;
 
@@ -34,10 +34,8 @@ pub struct acrobot_observation_t {
     pub dtheta2: f32,
 }
 
-impl From<Observation> for acrobot_observation_t {
-    fn from(observation: Observation) -> Self {
-        let [cos_theta1, sin_theta1, cos_theta2, sin_theta2, dtheta1, dtheta2] =
-            observation.to_array();
+impl From<[f32; 6]> for acrobot_observation_t {
+    fn from([cos_theta1, sin_theta1, cos_theta2, sin_theta2, dtheta1, dtheta2]: [f32; 6]) -> Self {
         Self { cos_theta1, sin_theta1, cos_theta2, sin_theta2, dtheta1, dtheta2 }
     }
 }

@@ -4,7 +4,7 @@ use core::ffi::c_int;
 use core::num::NonZeroU32;
 use core::ptr;
 
-use acrobot::physics::ResetBounds;
+use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t};

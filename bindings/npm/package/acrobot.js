@@ -5,7 +5,7 @@ import {
   ACTION, Kept, addressOf as addressOfKept, drawParams, isAction, isFinite32, keep, orFree,
   readState, seedSample, writeState,
 } from "./kept.js";
-import { TASKS, begins, head, header, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
+import { begins, head, header, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
 import {
   accept, bytes, checked, invalid, invalidSingle, numbers, positive, wasm, writeSeed,
 } from "./wasm.js";
@@ -41,11 +41,11 @@ export class Acrobot extends Kept {
     super();
     const names = ["seed", "params", "maxSteps", "task", "paramsRange"];
     const given = checked("options", options, names);
-    const { seed, params = {}, task = "acrobot", paramsRange = {} } = given;
+    const { seed, params = {}, maxSteps, task = "acrobot", paramsRange = {} } = given;
     const index = taskIndex(task);
-    const { maxSteps = TASKS[task][1] } = given;
+    const limit = maxSteps === undefined ? 0 : positive("maxSteps", maxSteps);
     this.#task = task;
-    keep(this, "acrobot", wasm().acrobot_new(positive("maxSteps", maxSteps), index), 1);
+    keep(this, "acrobot", wasm().acrobot_new(limit, index), 1);
     orFree(this, () => {
       this.setParams(params);
       this.setParamsRange(paramsRange);

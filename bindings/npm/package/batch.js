@@ -5,7 +5,7 @@ import {
   ACTION, Kept, PARAMS_LENGTH, addressOf as addressOfKept, drawParams, elements, isAction,
   isFinite32, keep, orFree, readChanges, readParams, readState, seedSample, writeParams, writeState,
 } from "./kept.js";
-import { TASKS, VERSION, begins, head, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
+import { VERSION, begins, head, seal, taskIndex, taskOf, unseal } from "./snapshot.js";
 import {
   accept, bytes, checked, invalid, numbers, positive, typeOf, wasm, writeSeed,
 } from "./wasm.js";
@@ -65,17 +65,17 @@ export class Batch extends Kept {
     const { count, seed, params = {}, autoreset = "NextStep", task = "acrobot" } = given;
     const { paramsRange, ownParams = paramsRange !== undefined } = given;
     const index = taskIndex(task);
-    const { maxSteps = TASKS[task][1] } = given;
     positive("count", count);
-    positive("maxSteps", maxSteps);
+    const limit = given.maxSteps === undefined ? 0 : positive("maxSteps", given.maxSteps);
     const mode = AUTORESETS.indexOf(autoreset);
     if (mode < 0) throw invalid(`autoreset must be ${AUTORESETS.join(", ")}`, autoreset, []);
     if (![true, false].includes(ownParams)) {
       throw invalid("ownParams must be true or false", ownParams, []);
     }
     const words = writeSeed(seed);
-    keep(this, "batch", wasm().batch_new(count, words, maxSteps, mode, ownParams, index), count);
-    this.#addresses = new Uint32Array(bytes().slice(0, 36).buffer);
+    keep(this, "batch", wasm().batch_new(count, words, limit, mode, ownParams, index), count);
+    this.#addresses = new Uint32Array(bytes().slice(0, 40).buffer);
+    const maxSteps = this.#addresses[9]; // follows the addresses
     this.#count = count;
     this.#settings = Object.freeze({ count, maxSteps, autoreset, ownParams, task });
     this.#names = Object.keys(ARRAYS).slice(0, autoreset === "SameStep" ? 6 : 5);
@@ -279,7 +279,7 @@ export class Batch extends Kept {
 
   #header() {
     const { count, maxSteps, autoreset, ownParams, task } = this.#settings;
-    const bound = TASKS[task][2];
+    const bound = wasm().task_bound(taskIndex(task));
     const bounds = new Uint8Array(Float64Array.of(-bound, bound).buffer);
     // No range of parameters.
     const flags = [AUTORESETS.indexOf(autoreset), Number(ownParams), 0];

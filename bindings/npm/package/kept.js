@@ -166,7 +166,7 @@ export class Kept extends Opaque {
       if (own(kept, kind).#address === 0) throw new Error(`the ${kept.#kind} has been freed`);
       return kept.#address;
     };
-    // As in Python: after the initial state, from the same generator.
+    // As in the crate: after the initial state, from the same generator.
     drawParams = (kept, index) => {
       if (kept.#ranges.length === 0) return;
       const [kind, address] = [kept.#kind, addressOf(kept)];

@@ -36,11 +36,8 @@ export function unseal(snapshot) {
   return content;
 }
 
-/** By task: the arithmetic, the default limit of steps, and the bounds of initial states. */
-export const TASKS = {
-  acrobot: ["fast", 500, 0.1],
-  swingup: ["swing fast", 1000, Math.PI],
-};
+/** By task, in the order of the module's numbers: the crate's name, and whether it has friction. */
+const TASKS = { acrobot: ["gymnasium", 0], swingup: ["swingup", 1] };
 
 /** The module's number of a task. */
 export function taskIndex(task) {
@@ -50,12 +47,13 @@ export function taskIndex(task) {
 }
 
 /** The version of the crate's snapshots. */
-export const VERSION = 2;
+export const VERSION = 3;
 
 /** The bytes of a header. */
 export function head(kind, task) {
   const text = (text) => [text.length, ...Array.from(text, (letter) => letter.charCodeAt(0))];
-  return [...text(kind), VERSION, ...text(TASKS[task][0])];
+  const [name, friction] = TASKS[task];
+  return [...text(kind), VERSION, ...text(name), ...text("fast"), friction];
 }
 
 /** Whether bytes begin with others. */
@@ -65,11 +63,18 @@ export const begins = (bytes, others) => others.every((byte, i) => byte === byte
 export const taskOf = (kind, bytes) =>
   Object.keys(TASKS).find((task) => begins(bytes, head(kind, task)));
 
-/** The header of a snapshot: two texts after their lengths, with the version between them. */
+/** The header of a snapshot: texts after their lengths, version and friction. */
 export function header(bytes) {
-  const text = (at) => String.fromCharCode(...bytes.subarray(at + 1, at + 1 + bytes[at]));
-  const version = 1 + bytes[0];
-  const words = `"${text(0)}", version ${bytes[version]}, arithmetic "${text(version + 1)}"`;
-  const isHeader = /^"\w+", version \d+, arithmetic "[\w ]+"$/.test(words);
-  return isHeader ? words : `${bytes.length} other bytes`;
+  let at = 0;
+  const byte = () => bytes[at++];
+  const text = () => {
+    const start = at + 1;
+    at = start + bytes[at];
+    return `"${String.fromCharCode(...bytes.subarray(start, at))}"`;
+  };
+  const own = `${text()}, version ${byte()}`;
+  const rest = `, task ${text()}, arithmetic ${text()}, friction ${[false, true][byte()]}`;
+  // Other versions have other fields.
+  const form = /^"\w+", version \d+(, task "\w+", arithmetic "[\w ]+", friction (true|false)$)?/;
+  return form.exec(own + rest)?.[0] ?? `${bytes.length} other bytes`;
 }

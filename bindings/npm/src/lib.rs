@@ -10,6 +10,7 @@ mod many;
 mod memory;
 mod single;
 
+use acrobot::task::{Gymnasium, Swingup, Task};
 use lol_alloc::{AssumeSingleThreaded, FreeListAllocator};
 
 #[cfg(target_feature = "atomics")]
@@ -25,6 +26,16 @@ static ALLOCATOR: AssumeSingleThreaded<FreeListAllocator> =
 pub enum Tasks<A, B> {
     Acrobot(A),
     Swingup(B),
+}
+
+/// A task's bound of initial states on both sides.
+#[unsafe(no_mangle)]
+pub extern "C" fn task_bound(task: u32) -> f64 {
+    let bounds = match task {
+        0 => Gymnasium::RESET_BOUNDS,
+        _ => Swingup::RESET_BOUNDS,
+    };
+    bounds.high()
 }
 
 /// Does something with what an enum [`Tasks`] has, whatever the task.

@@ -3,9 +3,10 @@
 use std::alloc::{Layout, alloc_zeroed};
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Swingup};
+use acrobot::arithmetic::{Arithmetic, Damped};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, StepBuffers};
 use acrobot::numpy::{Pcg64, uniform};
+use acrobot::task::{Gymnasium, Swingup, Task};
 use acrobot::{Error, Fast, Params, ResetOptions};
 
 use crate::memory::{self, set_bytes, set_numbers};
@@ -17,11 +18,11 @@ const LANES: usize = 4;
 /// Vectors for parameters of each acrobot, too, or for none. Compiling both takes 13 KB.
 type Memory<A> = (Vec<Block<A, LANES>>, Vec<Pcg64>, Vec<LaneParams<A, LANES>>);
 
-type Acrobots<A> = Batch<A, Memory<A>, LANES>;
+type Acrobots<A, T> = Batch<A, Memory<A>, T, LANES>;
 
 /// A batch with its memory, and what JavaScript reads and writes.
 pub struct Many {
-    batch: Tasks<Acrobots<Fast>, Acrobots<Swingup<Fast>>>,
+    batch: Tasks<Acrobots<Fast, Gymnasium>, Acrobots<Damped<Fast>, Swingup>>,
     own_params: bool,
     /// Draws random actions.
     action_space: Pcg64,
@@ -58,7 +59,11 @@ unsafe fn zeros<T>(count: usize) -> Option<Vec<T>> {
     }
 }
 
-fn make<A: Arithmetic>(words: usize, count: usize, own_params: bool) -> Option<Acrobots<A>> {
+fn make<A: Arithmetic, T: Task>(
+    words: usize,
+    count: usize,
+    own_params: bool,
+) -> Option<Acrobots<A, T>> {
     let len = count.div_ceil(LANES);
     // SAFETY: all are numbers and flags, which `Batch::new` writes.
     let memory = unsafe { (zeros(len)?, zeros(count)?, zeros(if own_params { len } else { 0 })?) };
@@ -89,7 +94,8 @@ impl Many {
     }
 }
 
-/// Writes the addresses of what JavaScript reads and writes. Returns 0 without memory.
+/// Writes the addresses of what JavaScript reads and writes, then the limit of steps, for which a 0
+/// stands for the task's. Returns 0 without memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn batch_new(
     count: usize,
@@ -105,9 +111,10 @@ pub extern "C" fn batch_new(
         1 => Autoreset::SameStep,
         _ => Autoreset::Disabled,
     };
-    with_task!(&mut many.batch, batch => {
-        batch.set_limit(NonZeroU32::new(max_steps).unwrap_or(NonZeroU32::MIN));
+    let limit = with_task!(&mut many.batch, batch => {
+        batch.set_limit(NonZeroU32::new(max_steps).unwrap_or(batch.limit()));
         batch.set_autoreset(autoreset);
+        batch.limit()
     });
     let addresses = [
         many.observations.as_ptr().addr(),
@@ -119,6 +126,7 @@ pub extern "C" fn batch_new(
         many.actions.as_ptr().addr(),
         many.mask.as_ptr().addr(),
         many.torques.as_ptr().addr(),
+        limit.get() as usize,
     ];
     set_bytes(addresses.into_iter().flat_map(usize::to_le_bytes));
     Some(many)

@@ -1,8 +1,9 @@
 //! Single acrobots: the class `Acrobot` of the package.
 
-use acrobot::arithmetic::Swingup;
+use acrobot::arithmetic::Damped;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Pendulum;
+use acrobot::task::{Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Step};
 
 use crate::memory::{self, set_numbers};
@@ -10,20 +11,22 @@ use crate::{Tasks, with_task};
 
 /// An acrobot under a limit of steps.
 pub struct One {
-    acrobot: Tasks<Acrobot<Fast>, Acrobot<Swingup<Fast>>>,
+    acrobot: Tasks<Acrobot<Fast>, Acrobot<Damped<Fast>, Swingup>>,
     max_steps: u32,
     elapsed: u32,
     /// Draws random actions.
     action_space: Pcg64,
 }
 
-/// Makes an acrobot that JavaScript resets. Returns 0 without memory.
+/// Makes an acrobot that JavaScript resets. A limit of 0 steps stands for the task's. Returns 0
+/// without memory.
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_new(max_steps: u32, task: u32) -> Option<Box<One>> {
-    let acrobot = match task {
-        0 => Tasks::Acrobot(Acrobot::hanging(Pcg64::UNSEEDED)),
-        _ => Tasks::Swingup(Acrobot::hanging(Pcg64::UNSEEDED)),
+    let (acrobot, limit) = match task {
+        0 => (Tasks::Acrobot(Acrobot::hanging(Pcg64::UNSEEDED)), Gymnasium::LIMIT),
+        _ => (Tasks::Swingup(Acrobot::hanging(Pcg64::UNSEEDED)), Swingup::LIMIT),
     };
+    let max_steps = if max_steps > 0 { max_steps } else { limit.get() };
     memory::keep(One { acrobot, max_steps, elapsed: 0, action_space: Pcg64::UNSEEDED })
 }
 
@@ -40,14 +43,14 @@ pub extern "C" fn acrobot_reset(one: &mut One, words: usize) {
         if let Some(seed) = seed {
             *acrobot.rng_mut() = seed;
         }
-        set_numbers(acrobot.reset().to_array());
+        set_numbers(acrobot.reset());
     });
 }
 
 /// Writes the observation and the reward. In the result, bit 0 says that the step reached the goal,
 /// and bit 1 that the episode was truncated.
 fn results(one: &mut One, step: Step) -> u32 {
-    let [a, b, c, d, e, f] = step.observation.to_array();
+    let [a, b, c, d, e, f] = step.observation;
     set_numbers([a, b, c, d, e, f, step.reward]);
     one.elapsed = one.elapsed.saturating_add(1);
     u32::from(step.terminated) | u32::from(one.elapsed >= one.max_steps) << 1
@@ -77,7 +80,7 @@ pub extern "C" fn acrobot_sample(one: &mut One, words: usize) -> u8 {
 
 #[unsafe(no_mangle)]
 pub extern "C" fn acrobot_observe(one: &One) {
-    set_numbers(with_task!(&one.acrobot, acrobot => acrobot.observation()).to_array());
+    set_numbers(with_task!(&one.acrobot, acrobot => acrobot.observation()));
 }
 
 /// Writes the state, the energy and the tip's height.

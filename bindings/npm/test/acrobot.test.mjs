@@ -111,7 +111,7 @@ test("a swing-up's steps are those that dm_control recorded", () => {
   assert.equal(lines.length, 1000);
   const resumed = Acrobot.restore(acrobot.snapshot());
   assert.deepEqual(resumed.stepTorque(0.3), acrobot.stepTorque(0.3));
-  const rule = /"acrobot", version 2, arithmetic "fast", got .* arithmetic "swing fast"$/;
+  const rule = /task "gymnasium", .*friction false, got .*task "swingup", .*friction true$/;
   assert.throws(() => new Acrobot().restore(acrobot.snapshot()), rule);
 });
 
@@ -286,9 +286,10 @@ test("a snapshot continues with the same bits, in another acrobot too", () => {
 });
 
 test("a snapshot has the bytes of Rust's postcard, then its checksum", () => {
-  // What version 2 stored for `Acrobot::<Fast>::new(3)`; a `TimeLimit` adds limit and steps.
-  const stored = new URL("../../../tests/data/snapshots_2.txt", import.meta.url);
-  const [rust] = /^076163726f626f740204666173740.*$/m.exec(readFileSync(stored, "utf8"));
+  // What version 3 stored for `Acrobot::<Fast>::new(3)`; a `TimeLimit` adds limit and steps.
+  const stored = new URL("../../../tests/data/snapshots_3.txt", import.meta.url);
+  const start = /^076163726f626f74030967796d6e617369756d046661737400.*$/m;
+  const [rust] = start.exec(readFileSync(stored, "utf8"));
   const snapshot = Buffer.from(new Acrobot({ seed: 3 }).snapshot());
   assert.deepEqual(snapshot, sealed(Buffer.from(`${rust}f40300`, "hex")));
 });
@@ -318,13 +319,17 @@ test("damaged snapshots, and those of others, are rejected, and nothing changes"
   }
   assert.ok(restores(before));
 
-  assert.ok(restores(changed(before, 8, 2)));
-  const [version1, own] = [1, 2].map((each) => `"acrobot", version ${each}, arithmetic "fast"`);
+  assert.ok(restores(changed(before, 8, 3)));
+  const fields = 'task "gymnasium", arithmetic "fast", friction false';
+  const [version4, own] = [4, 3].map((each) => `"acrobot", version ${each}, ${fields}`);
+  const rule = `the snapshot must be a valid one of ${own}`;
   for (const [bytes, message] of [
-    [changed(before, 8, 1), `the snapshot must be a valid one of ${own}, got ${version1}`],
-    [changed(before, 10, ...Buffer.from("host")), /got "acrobot", version 2, arithmetic "host"$/],
+    [changed(before, 8, 4), `${rule}, got ${version4}`],
+    [changed(before, 20, ...Buffer.from("host")), /got "acrobot", .*, arithmetic "host", friction/],
     // A length1 of NaN.
-    [changed(before, 14, 0, 0, 0xc0, 0x7f), /got "acrobot", version 2, arithmetic "fast"$/],
+    [changed(before, 25, 0, 0, 0xc0, 0x7f), `${rule}, got ${own}`],
+    // Version 2 had no task.
+    [sealed(Buffer.from("076163726f626f7402046661737400", "hex")), /got "acrobot", version 2$/],
     [Buffer.concat([changed(before, 0, 7).subarray(0, -4), Buffer.of(0)]), /checksum/],
   ]) {
     assert.throws(() => Acrobot.restore(bytes), { name: "RangeError", message });

@@ -5,7 +5,7 @@ use std::ops::DerefMut;
 
 use acrobot::batch::{Autoreset, StepBuffers};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::ResetBounds;
+use acrobot::task::ResetBounds;
 use acrobot::{ResetOptions, State};
 use numpy::{
     PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2,

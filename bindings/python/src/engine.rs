@@ -1,11 +1,11 @@
-//! A batch of one of seven arithmetics.
+//! A batch of one of seven pairs of arithmetic and task.
 
 use std::ops::DerefMut;
 
-use acrobot::arithmetic::{Arithmetic, Host, Real, Reference, Swingup, SwingupSparse};
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{ParamsRange, Task};
+use acrobot::task::{Gymnasium, ParamsRange, Swingup, SwingupSparse, Task};
 use acrobot::{Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -45,11 +45,11 @@ pub enum Engine {
     Fast(Many<Fast>),
     /// Computes as Gymnasium does.
     Host(Many<Host>),
-    Swingup(Many<Swingup<Fast>>),
-    SwingupSparse(Many<SwingupSparse<Fast>>),
+    Swingup(Many<Damped<Fast>, Swingup>),
+    SwingupSparse(Many<Damped<Fast>, SwingupSparse>),
     Reference(Many<Reference>),
-    ReferenceSwingup(Many<Swingup<Reference>>),
-    ReferenceSwingupSparse(Many<SwingupSparse<Reference>>),
+    ReferenceSwingup(Many<Damped<Reference>, Swingup>),
+    ReferenceSwingupSparse(Many<Damped<Reference>, SwingupSparse>),
 }
 
 impl Engine {
@@ -67,7 +67,7 @@ impl Engine {
     }
 }
 
-/// Does something with the batch in an engine, whatever its arithmetic.
+/// Does something with the batch in an engine, whatever its arithmetic and task.
 macro_rules! with_batch {
     ($engine:expr, $many:ident => $result:expr) => {
         match $engine {
@@ -86,8 +86,8 @@ pub(crate) use with_batch;
 /// A batch, and memory for its inputs. Numbers are `f64` outside, which `f32` becomes exactly.
 #[derive(Serialize, Deserialize)]
 #[serde(bound(serialize = "A::Scalar: Serialize", deserialize = "A::Scalar: Deserialize<'de>"))]
-pub struct Many<A: Arithmetic> {
-    pub batch: VecBatch<A>,
+pub struct Many<A: Arithmetic, T: Task = Gymnasium> {
+    pub batch: VecBatch<A, T>,
     /// Whether each acrobot has its own parameters, which takes more memory.
     pub own: bool,
     pub draws: Draws,
@@ -98,7 +98,7 @@ pub struct Many<A: Arithmetic> {
     torques: Vec<A::Scalar>,
 }
 
-impl<A: Arithmetic> Many<A> {
+impl<A: Arithmetic, T: Task> Many<A, T> {
     pub fn new(len: usize, seed: SeedSequence) -> PyResult<Self> {
         Ok(Self {
             batch: VecBatch::new(seed, len).map_err(out_of_memory)?,
@@ -119,7 +119,7 @@ impl<A: Arithmetic> Many<A> {
 
     /// The parameters with one of them changed.
     pub fn with(&self, params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
-        with(A::TASK, params, name, value)
+        with(T::NAME, params, name, value)
     }
 
     /// The parameters of all acrobots, or one for all if they share them.
@@ -165,7 +165,7 @@ impl<A: Arithmetic> Many<A> {
                     }
                 }
             }
-            invalid(A::TASK, message)
+            invalid(T::NAME, message)
         })
     }
 
@@ -192,7 +192,7 @@ impl<A: Arithmetic> Many<A> {
             } else {
                 self.batch.set_params(params)
             }
-            .map_err(|error| invalid(A::TASK, error))?;
+            .map_err(|error| invalid(T::NAME, error))?;
         }
         self.draws = draws;
         Ok(())
@@ -200,7 +200,10 @@ impl<A: Arithmetic> Many<A> {
 
     /// Draws the parameters of acrobots that were reset. A range of the crate would have one
     /// distribution, another LINK_MOI for each link, and no different values.
-    pub fn draw(&mut self, were_reset: impl Fn(&VecBatch<A>, usize) -> bool) -> Result<(), Error> {
+    pub fn draw(
+        &mut self,
+        were_reset: impl Fn(&VecBatch<A, T>, usize) -> bool,
+    ) -> Result<(), Error> {
         if self.draws.distributions.is_empty() {
             return Ok(());
         }
@@ -216,7 +219,7 @@ impl<A: Arithmetic> Many<A> {
     }
 
     /// The same batch with memory for the parameters of each acrobot.
-    fn owning(&self) -> PyResult<VecBatch<A>> {
+    fn owning(&self) -> PyResult<VecBatch<A, T>> {
         let seed = SeedSequence::new(0);
         let mut batch = VecBatch::with_own_params(seed, self.batch.len()).map_err(out_of_memory)?;
         batch.set_limit(self.batch.limit());
@@ -255,9 +258,9 @@ impl<A: Arithmetic> Many<A> {
                     |torque| !torque.is_nan(),
                     |index, torque| {
                         let (low, high) = if self.own { bounds(index) } else { first };
-                        A::Scalar::from_f64(torque_of(A::TASK, torque.into(), low, high))
+                        A::Scalar::from_f64(torque_of(T::NAME, torque.into(), low, high))
                     },
-                    if A::TASK == Task::Acrobot {
+                    if T::NAME == Gymnasium::NAME {
                         "a number, N m"
                     } else {
                         "a number from -1 to 1"
@@ -268,7 +271,11 @@ impl<A: Arithmetic> Many<A> {
     }
 
     /// Steps on this thread, or on all threads of rayon's current pool, into the buffers.
-    pub fn step(&mut self, buffers: StepBuffers<'_>, parallel: bool) -> Result<(), Error> {
+    pub fn step(
+        &mut self,
+        buffers: StepBuffers<'_, T::Observation>,
+        parallel: bool,
+    ) -> Result<(), Error> {
         let (actions, torques) = (&self.actions, &self.torques);
         let batch = self.batch.deref_mut();
         match (torques.is_empty(), parallel) {

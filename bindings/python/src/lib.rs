@@ -10,8 +10,9 @@ use std::fmt::Display;
 
 use acrobot::arithmetic::Host;
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
-use acrobot::physics::{Dynamics, Task};
-use acrobot::{Observation, Params, State};
+use acrobot::physics::Dynamics;
+use acrobot::task::{Gymnasium, Task};
+use acrobot::{Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -47,9 +48,9 @@ fn alone<'py, T: PyClass<Frozen = False>>(object: &Bound<'py, T>) -> PyResult<Py
 /// The torque of a continuous action, N m, which is within the smallest and the largest torque.
 /// Gymnasium's task has torques as actions. In a swing-up the action 1 is the largest torque, −1
 /// the smallest and 0 none.
-fn torque_of(task: Task, action: f64, low: f64, high: f64) -> f64 {
+fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
     let torque = match task {
-        Task::Acrobot => action,
+        Gymnasium::NAME => action,
         _ => match action.clamp(-1.0, 1.0) {
             action if action < 0.0 => action * -low,
             action => action * high,
@@ -97,11 +98,11 @@ fn rejected(error: impl std::error::Error) -> PyErr {
 }
 
 /// The same for parameters of a task: the message begins with Python's name of one.
-fn invalid(task: Task, error: impl Display) -> PyErr {
+fn invalid(task: &str, error: impl Display) -> PyErr {
     let message = error.to_string();
     let renamed = NUMBERS.iter().find_map(|(pythons, name, _)| {
         let rest = message.strip_prefix(name)?;
-        let known = *pythons != "LINK_MOI" || task == Task::Acrobot;
+        let known = *pythons != "LINK_MOI" || task == Gymnasium::NAME;
         let whole = known && rest.starts_with([' ', '[']);
         whole.then(|| format!("{pythons}{rest}"))
     });
@@ -149,7 +150,7 @@ fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
 }
 
 /// The parameters of a task with one of them changed.
-fn with(task: Task, mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+fn with(task: &str, mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
     match name {
         "AVAIL_TORQUE" => {
             let count = value.len().unwrap_or(3); // without a length, it is no sequence
@@ -192,7 +193,7 @@ fn render<'py>(
         friction: Default::default(), // which no picture shows
         ..params
     };
-    let mut env = AcrobotEnv::<Host, Observation>::new(params, mode).map_err(rejected)?;
+    let mut env = AcrobotEnv::<Host, [f32; 6]>::new(params, mode).map_err(rejected)?;
     env.unwrapped_mut().set_state(state).map_err(rejected)?;
     match env.render().map_err(rejected)? {
         Rendering::Frame(frame) => {
@@ -207,7 +208,7 @@ fn render<'py>(
 }
 
 /// The version of this package's snapshots. Those of the crate, inside, have their own.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Serializes a snapshot, for pickle.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {

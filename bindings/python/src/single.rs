@@ -1,8 +1,8 @@
 //! The single environments: one acrobot, bit-identical to Gymnasium's, or dm_control's swing-up.
 
-use acrobot::arithmetic::{Host, Swingup, SwingupSparse};
-use acrobot::physics::Task;
-use acrobot::{Observation, Portable, State, Step};
+use acrobot::arithmetic::{Arithmetic, Damped, Host};
+use acrobot::task::{Gymnasium, Swingup, SwingupSparse, Task};
+use acrobot::{Portable, State, Step};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyAssertionError, PyValueError};
 use pyo3::prelude::*;
@@ -28,8 +28,8 @@ pub struct Acrobot {
 #[derive(Clone, Serialize, Deserialize)]
 enum One {
     Acrobot(acrobot::Acrobot<Host>),
-    Swingup(acrobot::Acrobot<Swingup<Portable>>),
-    SwingupSparse(acrobot::Acrobot<SwingupSparse<Portable>>),
+    Swingup(acrobot::Acrobot<Damped<Portable>, Swingup>),
+    SwingupSparse(acrobot::Acrobot<Damped<Portable>, SwingupSparse>),
 }
 
 /// Does something with the acrobot, whatever its task.
@@ -53,12 +53,12 @@ impl One {
         })
     }
 
-    fn task(&self) -> Task {
-        match self {
-            Self::Acrobot(_) => Task::Acrobot,
-            Self::Swingup(_) => Task::Swingup,
-            Self::SwingupSparse(_) => Task::SwingupSparse,
+    /// The name of the task.
+    fn task(&self) -> &'static str {
+        fn name<A: Arithmetic, T: Task>(_: &acrobot::Acrobot<A, T>) -> &'static str {
+            T::NAME
         }
+        with_one!(self, acrobot => name(acrobot))
     }
 
     fn params(&self) -> Params {
@@ -185,7 +185,7 @@ impl Acrobot {
     fn observation<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let this = alone(slf)?;
         let observation = with_one!(&this.inner.acrobot, acrobot => acrobot.observation());
-        Ok(PyArray1::from_slice(slf.py(), observation.as_ref()))
+        Ok(PyArray1::from_slice(slf.py(), &observation))
     }
 
     /// Steps by an action of the environment, whose generator draws the noise. Returns what
@@ -203,7 +203,7 @@ impl Acrobot {
         if !this.inner.started {
             let message = "the environment has no state yet; call reset before step";
             return Err(match this.inner.acrobot.task() {
-                Task::Acrobot => PyAssertionError::new_err(message), // as Gymnasium's
+                Gymnasium::NAME => PyAssertionError::new_err(message), // as Gymnasium's
                 _ => ResetNeeded::new_err(message),
             });
         }
@@ -224,10 +224,10 @@ impl Acrobot {
         this.lent = None;
         this.inner.single = false;
         let observation = if this.inner.angles {
-            let state = this.inner.acrobot.state();
-            PyArray1::from_slice(py, Observation::<4>::from(state).as_ref())
+            let state: [f32; 4] = this.inner.acrobot.state().cast().into();
+            PyArray1::from_slice(py, &state)
         } else {
-            PyArray1::from_slice(py, step.observation.as_ref())
+            PyArray1::from_slice(py, &step.observation)
         };
         Ok((observation, f64::from(step.reward), step.terminated, false, PyDict::new(py)))
     }

@@ -1,8 +1,10 @@
 """Parameters of each environment: values, draws, and what reads them."""
 
+import json
 import math
 import re
 import statistics
+from pathlib import Path
 
 import acrobot_rs
 import gymnasium
@@ -265,3 +267,12 @@ def test_subclasses_can_draw_parameters_which_spaces_follow():
     message = "LINK_MASS_1 must be a number, because only gymnasium.make_vec draws .*, got Uniform"
     with pytest.raises(TypeError, match=message):
         single.LINK_MASS_1 = Uniform(1.0, 2.0)
+
+
+def test_draws_are_those_of_rust_and_javascript():
+    """By NumPy: rows of ``LINK_MASS_2``, ``gravity`` and the state."""
+    recorded = json.loads((Path(__file__).parents[3] / "tests/data/draws.json").read_text())
+    envs = make_vec(3, LINK_MASS_2=Uniform(0.8, 1.2), gravity=Uniform(9, 10))
+    envs.reset(seed=42)
+    drawn = np.column_stack([envs.get_attr("LINK_MASS_2"), envs.get_attr("gravity"), envs.state])
+    np.testing.assert_array_equal(drawn, np.float32(recorded))

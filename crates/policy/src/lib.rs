@@ -34,7 +34,7 @@
 
 #![no_std]
 
-use acrobot::{Action, Observation};
+use acrobot::Action;
 
 /// The number of inputs: those of an observation.
 const INPUTS: usize = 6;
@@ -138,7 +138,7 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
 
     /// The action with the highest score; among equal ones the first. A policy with a torque takes
     /// the action of its sign.
-    pub fn action(&self, observation: &Observation) -> Action {
+    pub fn action(&self, observation: &[f32; 6]) -> Action {
         let Some(scores) = self.finite_outputs(observation) else {
             return Action::Zero;
         };
@@ -161,22 +161,22 @@ impl<'a, const WIDTH: usize> Policy<'a, WIDTH> {
     }
 
     /// The torque within its limits, N m. None for a policy with scores of actions.
-    pub fn torque(&self, observation: &Observation) -> Option<f32> {
+    pub fn torque(&self, observation: &[f32; 6]) -> Option<f32> {
         let limit = self.torque_limit?;
         let [torque, ..] = self.finite_outputs(observation).unwrap_or_default();
         Some(torque.min(limit).max(-limit)) // `clamp` can panic
     }
 
-    fn finite_outputs(&self, observation: &Observation) -> Option<[f32; 3]> {
+    fn finite_outputs(&self, observation: &[f32; 6]) -> Option<[f32; 3]> {
         let outputs = self.outputs(observation);
         outputs.iter().all(|x| x.is_finite()).then_some(outputs)
     }
 
     /// The outputs of the last layer: three scores, or a torque before its limits, N m. The rest is
     /// 0.
-    pub fn outputs(&self, observation: &Observation) -> [f32; 3] {
+    pub fn outputs(&self, observation: &[f32; 6]) -> [f32; 3] {
         let mut inputs = [0.0; WIDTH];
-        for (input, x) in inputs.iter_mut().zip(observation.to_array()) {
+        for (input, x) in inputs.iter_mut().zip(*observation) {
             *input = x;
         }
         let mut width = INPUTS;

@@ -1,6 +1,6 @@
 //! Policies from files: outputs against sums by hand, and files that must be rejected.
 
-use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, TimeLimit};
 use policy::Policy;
 
 const SEEN: [f32; 6] = [0.9, -0.4, 0.5, 0.8, -1.5, 3.0];
@@ -60,25 +60,25 @@ fn by_hand() -> Vec<f64> {
 fn outputs_are_those_of_the_layers() {
     let file = file(None);
     let policy = Policy::<6>::new(&file).unwrap();
-    let outputs = policy.outputs(&Observation::from(SEEN));
+    let outputs = policy.outputs(&SEEN);
     for (output, expected) in outputs.into_iter().zip(by_hand()) {
         assert!((f64::from(output) - expected).abs() < 1e-6, "{output} {expected}");
     }
     let best = (0..3).max_by(|&i, &j| outputs[i].total_cmp(&outputs[j])).unwrap();
-    assert_eq!(policy.action(&Observation::from(SEEN)), Action::ALL[best]);
-    assert_eq!(policy.torque(&Observation::from(SEEN)), None);
+    assert_eq!(policy.action(&SEEN), Action::ALL[best]);
+    assert_eq!(policy.torque(&SEEN), None);
 }
 
 #[test]
 fn a_torque_is_within_its_limit() {
     let wide = file(Some(100.0));
     let policy = Policy::<64>::new(&wide).unwrap();
-    let [output, ..] = policy.outputs(&Observation::from(SEEN));
-    assert_eq!(policy.torque(&Observation::from(SEEN)), Some(output));
+    let [output, ..] = policy.outputs(&SEEN);
+    assert_eq!(policy.torque(&SEEN), Some(output));
     let expected = if output < 0.0 { Action::Negative } else { Action::Positive };
-    assert_eq!(policy.action(&Observation::from(SEEN)), expected);
+    assert_eq!(policy.action(&SEEN), expected);
     let narrow = file(Some(0.01));
-    let torque = Policy::<64>::new(&narrow).unwrap().torque(&Observation::from(SEEN));
+    let torque = Policy::<64>::new(&narrow).unwrap().torque(&SEEN);
     assert_eq!(torque, Some(0.01_f32.copysign(output)));
 }
 
@@ -118,7 +118,7 @@ fn any_accepted_file_decides() {
     for at in 0..good.len() - 4 {
         for byte in [0, 1, 2, 3, 127, 128, 255] {
             if let Ok(policy) = Policy::<64>::new(&changed(&good, at, &[byte])) {
-                policy.action(&Observation::from([f32::MAX; 6]));
+                policy.action(&[f32::MAX; 6]);
                 accepted += 1;
             }
         }
@@ -145,7 +145,7 @@ fn sums_that_overflow_play_no_torque() {
         let words: Vec<_> = line.split(' ').collect();
         let [name, numbers @ .., action, torque, hex] = &words[..] else { panic!("{line}") };
         let numbers: Vec<f32> = numbers.iter().map(|number| number.parse().unwrap()).collect();
-        let observation = Observation::from(<[f32; 6]>::try_from(numbers).unwrap());
+        let observation = <[f32; 6]>::try_from(numbers).unwrap();
         let digits = hex.as_bytes().as_chunks::<2>().0;
         let byte = |pair| u8::from_str_radix(str::from_utf8(pair).unwrap(), 16).unwrap();
         let file: Vec<_> = digits.iter().map(|pair| byte(pair)).collect();

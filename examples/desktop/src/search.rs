@@ -8,15 +8,15 @@
 //! paths, along which values are learnt, whose values are too high. From about ten steps on, true
 //! rewards outweigh that. Thirty steps give nearly all of the gain, and sixty 0.2 steps more.
 
-use acrobot::physics::Pendulum;
-use acrobot::{Action, Fast, State};
+use acrobot::numpy::Pcg64;
+use acrobot::{Acrobot, Action, Fast, State};
 
 /// The width of the beam: states that are followed at the same time.
 const BEAM: usize = 8;
 
 #[derive(Debug)]
 pub struct Search {
-    model: Pendulum<Fast>,
+    model: Acrobot<Fast>,
     /// The followed states, and the new states that each action leads to.
     beam: [Node; 2 * BEAM],
     /// The shortest known path to the goal from the state of the next choice.
@@ -58,7 +58,11 @@ struct Node {
 
 impl Default for Search {
     fn default() -> Self {
-        Self { model: Pendulum::hanging(), beam: [Node::default(); 2 * BEAM], plan: None }
+        Self {
+            model: Acrobot::hanging(Pcg64::UNSEEDED),
+            beam: [Node::default(); 2 * BEAM],
+            plan: None,
+        }
     }
 }
 
@@ -94,16 +98,13 @@ impl Search {
             let children = 2 * followed;
             for (child, node) in self.beam.iter_mut().enumerate().take(children) {
                 let (parent, action) = (from[child / 2], child % 2);
-                let model = &mut self.model;
-                let reached = model
-                    .set_state(parent.state)
-                    .and_then(|()| model.step(model.params().torque(ACTIONS[action])))
-                    .expect("finite states and torques");
+                self.model.set_state(parent.state).expect("a finite state");
+                let step = self.model.step(ACTIONS[action]);
                 node.path = parent.path.then(action);
-                if reached {
+                if step.terminated {
                     return (node.path, true);
                 }
-                node.state = model.state();
+                node.state = self.model.state();
                 node.value = value(&node.state);
             }
             self.beam[..children].sort_unstable_by(|a, b| b.value.total_cmp(&a.value));

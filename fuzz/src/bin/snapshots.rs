@@ -9,7 +9,8 @@ use std::path::Path;
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, ParamsRange};
+use acrobot::physics::Dynamics;
+use acrobot::task::{Gymnasium, ParamsRange};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 use serde::Serialize;
@@ -42,8 +43,8 @@ const KINDS: [Kind; 12] = [
     kind::<Member<Fast>>(),
     kind::<Member<Portable>>(),
     kind::<VecBatch<Fast>>(),
-    kind::<VecBatch<Fast, 1>>(),
-    kind::<VecBatch<Portable, 3>>(),
+    kind::<VecBatch<Fast, Gymnasium, 1>>(),
+    kind::<VecBatch<Portable, Gymnasium, 3>>(),
 ];
 
 // The first byte chooses a type. Loads a snapshot of it from the other bytes, in each format.
@@ -118,7 +119,7 @@ impl<A: Arithmetic> Snapshot for Acrobot<A> {
         for action in Action::ALL {
             let step = self.step(action);
             assert_settled(self.state(), self.params());
-            let [sines @ .., dtheta1, dtheta2] = step.observation.to_array();
+            let [sines @ .., dtheta1, dtheta2] = step.observation;
             assert!(sines.iter().all(|x| x.abs() <= 1.0), "{step:?}");
             assert!(!dtheta1.is_nan() && !dtheta2.is_nan(), "{step:?}");
             assert_eq!(step.reward, if step.terminated { 0.0 } else { -1.0 });
@@ -176,7 +177,7 @@ impl<A: Arithmetic> Snapshot for Member<A> {
     }
 }
 
-fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, N>) {
+fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, Gymnasium, N>) {
     let pending: Vec<_> = (0..batch.len()).map(|i| batch.member(i)).collect();
     assert!(batch.step(&vec![2_u8; batch.len()]).is_ok());
     for (index, before) in pending.into_iter().enumerate() {
@@ -189,7 +190,7 @@ fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, N>) {
 }
 
 /// With one or three lanes each acrobot has its own parameters.
-impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, N> {
+impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
     fn sample() -> Self {
         let seed = SeedSequence::new(42);
         let low = Params::<A::Scalar>::default();
@@ -220,11 +221,12 @@ impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, N> {
         let mut generators = vec![Pcg64::UNSEEDED; len];
         let mut from = postcard::Deserializer::from_bytes(&bytes);
         let memory = (&mut blocks[..], &mut generators[..]);
-        let shared = Batch::<A, _, 1>::from_snapshot(memory, &mut from);
+        let shared = Batch::<A, _, Gymnasium, 1>::from_snapshot(memory, &mut from);
         assert_eq!(shared.is_ok(), fits);
         let mut from = postcard::Deserializer::from_bytes(&bytes);
         let memory = (blocks, generators, vec![LaneParams::default(); len]);
-        let own = Batch::<A, _, 1>::from_snapshot(memory, &mut from).expect("it was saved");
+        let own =
+            Batch::<A, _, Gymnasium, 1>::from_snapshot(memory, &mut from).expect("it was saved");
         for index in 0..len {
             assert_eq!(own.member(index), self.member(index));
         }

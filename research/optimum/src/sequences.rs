@@ -5,8 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use acrobot::arithmetic::{Arithmetic, Reference};
-use acrobot::physics::Pendulum;
-use acrobot::{Action, State};
+use acrobot::{Acrobot, Action, State};
 use anyhow::{Context, ensure};
 
 use crate::{SEEDS, initial};
@@ -54,12 +53,9 @@ pub fn text(sequences: &[Vec<Action>]) -> String {
 
 /// Whether the last action reaches the goal, and none before.
 pub fn reaches<A: Arithmetic<Scalar = f64>>(initial: State, actions: &[Action]) -> bool {
-    let mut pendulum = Pendulum::<A>::hanging();
-    pendulum.set_state(initial).expect("a finite state");
-    let last = actions.iter().position(|&action| {
-        let torque = pendulum.params().torque(action);
-        pendulum.step(torque).expect("a finite torque")
-    });
+    let mut acrobot = Acrobot::<A>::new(0);
+    acrobot.set_state(initial).expect("a finite state");
+    let last = actions.iter().position(|&action| acrobot.step(action).terminated);
     last.is_some_and(|last| last + 1 == actions.len())
 }
 

@@ -9,7 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::{Dynamics, ParamsRange, Viscous};
+use acrobot::physics::{Dynamics, Viscous};
+use acrobot::task::ParamsRange;
 use acrobot::{Params, State};
 
 pub use bits::Digest;

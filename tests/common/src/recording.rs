@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 
 use acrobot::arithmetic::{Arithmetic, Host};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::{Dynamics, ResetBounds};
+use acrobot::physics::Dynamics;
+use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Params, ResetOptions, State};
 use bits::Digest;
 

@@ -3,8 +3,9 @@
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Autoreset, SimdLevel, StepResults, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{Dynamics, ResetBounds};
-use acrobot::{Acrobot, Action, Observation, Params, ResetOptions, State, Step, TimeLimit};
+use acrobot::physics::Dynamics;
+use acrobot::task::{Gymnasium, ResetBounds, Task};
+use acrobot::{Acrobot, Action, Params, ResetOptions, State, Step, TimeLimit};
 use bits::against;
 
 use crate::{bits, params_range};
@@ -14,20 +15,20 @@ pub const MODES: [Autoreset; 3] = [Autoreset::NextStep, Autoreset::SameStep, Aut
 /// A level that the machine does not have acts as the baseline.
 pub const LEVELS: [SimdLevel; 3] = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLevel::Avx512];
 
-pub struct Twins<A: Arithmetic, const N: usize = 16> {
-    pub batch: VecBatch<A, N>,
-    pub alone: Vec<TimeLimit<Acrobot<A>>>,
+pub struct Twins<A: Arithmetic, const N: usize = 16, T: Task = Gymnasium> {
+    pub batch: VecBatch<A, T, N>,
+    pub alone: Vec<TimeLimit<Acrobot<A, T>>>,
     /// Whether the next step resets each of `alone`.
     pub pending: Vec<bool>,
 }
 
-impl<A: Arithmetic, const N: usize> Twins<A, N> {
+impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
     pub fn new(len: usize, own_params: bool, autoreset: Autoreset) -> Self {
         let seed = SeedSequence::new(42);
         let new = if own_params { VecBatch::with_own_params } else { VecBatch::new };
         let mut batch = new(seed.clone(), len).unwrap();
         batch.set_autoreset(autoreset);
-        let alone = |i| TimeLimit::new(Acrobot::with_rng(seed.child(i).into()), A::TASK.limit());
+        let alone = |i| TimeLimit::new(Acrobot::with_rng(seed.child(i).into()), T::LIMIT);
         Self { batch, alone: (0..len as u64).map(alone).collect(), pending: vec![false; len] }
     }
 
@@ -99,8 +100,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
 
     fn step_alone(
         &mut self,
-        results: &StepResults,
-        step: impl Fn(usize, &mut TimeLimit<Acrobot<A>>) -> Step,
+        results: &StepResults<T::Observation>,
+        step: impl Fn(usize, &mut TimeLimit<Acrobot<A, T>>) -> Step<T::Observation>,
     ) {
         let autoreset = self.batch.autoreset();
         let reset = |alone: &mut _| reset_one(&self.batch, alone, ResetOptions::default());
@@ -132,7 +133,8 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
     /// Compares every bit of the states, the observations, the steps since the last reset, the
     /// generators and the parameters.
     pub fn assert_equal(&self) {
-        let mut rows = vec![[9.0; 6]; self.alone.len()];
+        let other = self.alone[0].inner().clone().step(Action::Zero).observation;
+        let mut rows = vec![other; self.alone.len()];
         self.batch.observe(&mut rows).unwrap();
         for (i, alone) in self.alone.iter().enumerate() {
             let member = self.batch.member(i).unwrap();
@@ -183,23 +185,21 @@ impl<A: Arithmetic, const N: usize> Twins<A, N> {
 }
 
 /// What a reset of a batch does to one acrobot. Its seed is the acrobot's own.
-fn reset_one<A: Arithmetic, const N: usize>(
-    batch: &VecBatch<A, N>,
-    alone: &mut TimeLimit<Acrobot<A>>,
-    ResetOptions { mut seed, bounds }: ResetOptions,
-) -> Observation {
+fn reset_one<A: Arithmetic, T: Task, const N: usize>(
+    batch: &VecBatch<A, T, N>,
+    alone: &mut TimeLimit<Acrobot<A, T>>,
+    ResetOptions { seed, bounds }: ResetOptions,
+) -> T::Observation {
+    let bounds = Some(bounds.unwrap_or(batch.reset_bounds()));
+    let seen = alone.reset_with(ResetOptions { seed, bounds });
     if let Some(range) = batch.params_range() {
-        let rng = alone.inner_mut().rng_mut();
-        if let Some(seed) = seed.take() {
-            *rng = seed.into();
-        }
-        let params = range.draw(rng);
+        let params = range.draw(alone.inner_mut().rng_mut());
         alone.set_params(params).unwrap();
     }
-    let bounds = Some(bounds.unwrap_or(batch.reset_bounds()));
-    alone.reset_with(ResetOptions { seed, bounds })
+    seen
 }
 
-fn equal(row: &[f32; 6], observation: &Observation) -> bool {
-    row.map(f32::to_bits) == observation.to_array().map(f32::to_bits)
+fn equal<O: AsRef<[f32]>>(x: &O, y: &O) -> bool {
+    let [x, y] = [x, y].map(|numbers| numbers.as_ref().iter().map(|x| x.to_bits()));
+    x.eq(y)
 }

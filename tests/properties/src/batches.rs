@@ -2,10 +2,11 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference, Swingup};
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Member, SimdLevel};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::{Dynamics, ResetBounds};
+use acrobot::physics::Dynamics;
+use acrobot::task::{Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use common::params_range;
 use common::twins::{LEVELS, MODES, Twins};
@@ -67,13 +68,16 @@ fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
     .boxed()
 }
 
-struct Model<A: Arithmetic, const N: usize> {
-    twins: Twins<A, N>,
+/// A member, the acrobot beside it, and whether the next step resets it.
+type Stored<A, T> = (Member<A>, TimeLimit<Acrobot<A, T>>, bool);
+
+struct Model<A: Arithmetic, T: Task, const N: usize> {
+    twins: Twins<A, N, T>,
     own_params: bool,
-    stored: Option<(Member<A>, TimeLimit<Acrobot<A>>, bool)>,
+    stored: Option<Stored<A, T>>,
 }
 
-impl<A: Tested, const N: usize> Model<A, N> {
+impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
     fn new(len: usize, own_params: bool) -> Self {
         Self { twins: Twins::new(len, own_params, Autoreset::NextStep), own_params, stored: None }
     }
@@ -164,21 +168,21 @@ impl<A: Tested, const N: usize> Model<A, N> {
 
 #[test]
 fn any_calls_in_any_order_equal_single_acrobots() {
-    fn check<A: Tested, const N: usize>() {
+    fn check<A: Tested, T: Task, const N: usize>() {
         let calls = prop::collection::vec(call::<A>(), 0..40);
         holds(200, (1..=LEN, any::<bool>(), calls), |(len, own, calls)| {
-            let mut model = Model::<A, N>::new(len, own);
+            let mut model = Model::<A, T, N>::new(len, own);
             calls.into_iter().for_each(|call| model.call(call));
         });
     }
-    check::<Fast, 3>();
-    check::<Fast, 16>();
-    check::<Portable, 4>();
-    check::<Micro, 16>();
-    check::<Reference, 16>();
-    check::<Host, 16>();
-    check::<Damped<Reference>, 3>();
-    check::<Swingup<Fast>, 16>();
+    check::<Fast, Gymnasium, 3>();
+    check::<Fast, Gymnasium, 16>();
+    check::<Portable, Gymnasium, 4>();
+    check::<Micro, Gymnasium, 16>();
+    check::<Reference, Gymnasium, 16>();
+    check::<Host, Gymnasium, 16>();
+    check::<Damped<Reference>, Gymnasium, 3>();
+    check::<Damped<Fast>, Swingup, 16>();
 }
 
 /// Below, at and above the width of a vector.

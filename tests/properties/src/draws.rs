@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use acrobot::Error;
 use acrobot::env::{BoxSpace, DiscreteSpace, Space};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
-use acrobot::physics::ResetBounds;
+use acrobot::task::ResetBounds;
 use common::Repeating;
 use proptest::prelude::*;
 use rand_core::SeedableRng;

@@ -4,7 +4,8 @@ use std::fmt::Debug;
 
 use acrobot::arithmetic::{Arithmetic, Modeled, Real};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::{Dynamics, Pendulum, ResetBounds, Viscous};
+use acrobot::physics::{Dynamics, Pendulum, Viscous};
+use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Params, State};
 use proptest::num::{f32, f64};
 use proptest::prelude::*;

@@ -102,5 +102,5 @@ pub extern "C" fn load_perceptron(len: usize) -> usize {
 /// The policy's action for the six numbers of an observation.
 #[unsafe(no_mangle)]
 pub extern "C" fn act_perceptron(a: f32, b: f32, c: f32, d: f32, e: f32, f: f32) -> u8 {
-    PERCEPTRON.get().map_or(1, |policy| policy.action(&[a, b, c, d, e, f].into()).into())
+    PERCEPTRON.get().map_or(1, |policy| policy.action(&[a, b, c, d, e, f]).into())
 }

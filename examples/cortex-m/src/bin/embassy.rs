@@ -8,7 +8,7 @@
 #![no_main]
 
 use acrobot::numpy::Pcg64;
-use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, TimeLimit};
 use acrobot_cortex_m::episode::{decide, finish};
 use cortex_m::Peripherals;
 use cortex_m_rt::exception;
@@ -29,7 +29,7 @@ embassy_time_driver::time_driver_impl!(
     static CLOCK: SystickDriver<1> = SystickDriver::new_default(25_000_000)
 );
 
-static OBSERVATION: Signal<CriticalSectionRawMutex, Observation> = Signal::new();
+static OBSERVATION: Signal<CriticalSectionRawMutex, [f32; 6]> = Signal::new();
 static ACTION: Signal<CriticalSectionRawMutex, Action> = Signal::new();
 
 #[exception]
@@ -63,7 +63,7 @@ async fn machine(mut acrobot: TimeLimit<Acrobot<Fast>>) {
 async fn controller() {
     loop {
         let observation = OBSERVATION.wait().await;
-        ACTION.signal(decide(&observation));
+        ACTION.signal(decide(observation));
     }
 }
 

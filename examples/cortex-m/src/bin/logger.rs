@@ -6,7 +6,7 @@
 use core::num::NonZeroU32;
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use acrobot::physics::ResetBounds;
+use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, Params, TimeLimit};
 use cortex_m_rt::entry;
 use semihosting::process;

@@ -13,14 +13,15 @@ use core::hint::black_box;
 use core::num::NonZeroU32;
 use core::panic::PanicInfo;
 
-use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference, Swingup};
+use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::control::{
     difference, discretize, inverse_dynamics, linearize, lqr, velocities,
 };
-use acrobot::physics::{ParamsRange, Pendulum, ResetBounds, wrap};
+use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
+use acrobot::task::{Gymnasium, ParamsRange, ResetBounds, Swingup, Task};
 use acrobot::trajectory::Trajectory;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::training;
@@ -45,13 +46,13 @@ fn panic(_: &PanicInfo) -> ! {
 #[entry]
 fn main() -> ! {
     loop {
-        all_of::<Fast>();
-        all_of::<Micro>();
-        all_of::<Portable>();
-        all_of::<Reference>();
-        all_of::<Swingup<Fast>>();
+        all_of::<Fast, Gymnasium>();
+        all_of::<Micro, Gymnasium>();
+        all_of::<Portable, Gymnasium>();
+        all_of::<Reference, Gymnasium>();
+        all_of::<Damped<Fast>, Swingup>();
         let own_params = [LaneParams::default(); 2];
-        batch::<Fast, 6, 4>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6], own_params));
+        batch::<Fast, Gymnasium, 6, 4>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6], own_params));
         numbers();
         learners();
         controller();
@@ -59,11 +60,11 @@ fn main() -> ! {
     }
 }
 
-fn all_of<A: Arithmetic>() {
+fn all_of<A: Arithmetic, T: Task<Observation = [f32; 6]>>() {
     pendulum::<A>();
     control::<A>();
-    environment::<A>();
-    batch::<A, 20, 16>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]));
+    environment::<A, T>();
+    batch::<A, T, 20, 16>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 20]));
 }
 
 /// A number that the compiler cannot know.
@@ -122,10 +123,10 @@ fn control<A: Arithmetic>() {
 }
 
 /// An acrobot with a time limit, recorded and drawn.
-fn environment<A: Arithmetic>() {
+fn environment<A: Arithmetic, T: Task>() {
     let mut seeds = SeedSequence::new(black_box(42));
     for seed in seeds.spawn(black_box(2)) {
-        let mut acrobot = TimeLimit::v1(Acrobot::<A>::with_rng(seed.clone().into()));
+        let mut acrobot = TimeLimit::of(Acrobot::<A, T>::with_rng(seed.clone().into()));
         let mut trajectory = Trajectory::<A::Scalar, 8>::new();
         let inner = acrobot.inner_mut();
         let _ = black_box((inner.set_params(params()), inner.set_state(state())));
@@ -161,8 +162,12 @@ fn environment<A: Arithmetic>() {
 }
 
 /// A batch whose last block is not full.
-fn batch<A: Arithmetic, const LEN: usize, const N: usize>(memory: impl Storage<A, N>) {
-    let Ok(mut batch) = Batch::new(black_box(42), memory) else {
+fn batch<A, T, const LEN: usize, const N: usize>(memory: impl Storage<A, N>)
+where
+    A: Arithmetic,
+    T: Task<Observation = [f32; 6]>,
+{
+    let Ok(mut batch) = Batch::<A, _, T, N>::new(black_box(42), memory) else {
         return;
     };
     let (mut rows, mut finals) = ([[0.0; 6]; LEN], [[0.0; 6]; LEN]);
@@ -227,7 +232,7 @@ fn controller() {
         let _ = black_box(controller.decide(state()));
     }
     planner::<Fast>();
-    planner::<Swingup<Portable>>();
+    planner::<Damped<Portable>>();
 }
 
 fn planner<A: Arithmetic>() {
@@ -248,7 +253,7 @@ type Display =
 fn policy() {
     static FILE: [u8; 1000] = [0; 1000];
     if let Ok(policy) = Policy::<64>::new(black_box(&FILE)) {
-        let observation = black_box([0.0; 6]).into();
+        let observation = black_box([0.0; 6]);
         let _ = black_box((policy.action(&observation), policy.torque(&observation)));
     }
 }

@@ -17,7 +17,7 @@ mod device {
 #[rtic::app(device = crate::device, peripherals = false)]
 mod app {
     use acrobot::numpy::Pcg64;
-    use acrobot::{Acrobot, Action, Fast, Observation, TimeLimit};
+    use acrobot::{Acrobot, Action, Fast, TimeLimit};
     use acrobot_cortex_m::episode::{decide, finish};
     use cortex_m::peripheral::SCB;
     use cortex_m::peripheral::syst::SystClkSource;
@@ -28,7 +28,7 @@ mod app {
     #[shared]
     struct Shared {
         /// What the last tick saw.
-        observation: Observation,
+        observation: [f32; 6],
         /// The controller's last decision, which each tick applies.
         action: Action,
     }
@@ -46,7 +46,7 @@ mod app {
         syst.enable_counter();
         let shared = Shared {
             // Hanging at rest.
-            observation: [1.0, 0.0, 1.0, 0.0, 0.0, 0.0].into(),
+            observation: [1.0, 0.0, 1.0, 0.0, 0.0, 0.0],
             action: Action::Positive,
         };
         (shared, Local {})
@@ -79,7 +79,7 @@ mod app {
     #[task(binds = PendSV, priority = 1, shared = [observation, action])]
     fn controller(mut cx: controller::Context) {
         let observation = cx.shared.observation.lock(|seen| *seen);
-        let next = decide(&observation); // without a lock: a tick need not wait
+        let next = decide(observation); // without a lock: a tick need not wait
         cx.shared.action.lock(|action| *action = next);
     }
 }

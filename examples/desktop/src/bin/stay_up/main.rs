@@ -16,17 +16,16 @@ mod search;
 
 use std::ops::Range;
 
-use acrobot::arithmetic::{Arithmetic, Swingup};
+use acrobot::arithmetic::Arithmetic;
 use acrobot::numpy::Pcg64;
 use acrobot::physics::bound;
 use acrobot::physics::control::difference;
+use acrobot::task::Task;
 use acrobot::{Acrobot, Fast, Params, State};
 use clap::Parser;
 use controller::{NoPlan, Planner, Step};
 use rayon::prelude::*;
 use search::Search;
-
-type Task = Swingup<Fast>;
 
 /// Largest torques, N m.
 const SWINGUP: f32 = 2.0;
@@ -67,8 +66,8 @@ struct Episode {
 
 impl Episode {
     /// Follows a plan, and then the regulator.
-    fn play<A: Arithmetic<Scalar = f32>>(
-        mut acrobot: Acrobot<A>,
+    fn play<A: Arithmetic<Scalar = f32>, T: Task>(
+        mut acrobot: Acrobot<A, T>,
         planner: &Planner<A>,
         plan: &[Step<f32>],
         limit: f32,
@@ -83,9 +82,9 @@ impl Episode {
     }
 
     /// Takes step `i`.
-    fn step<A: Arithmetic<Scalar = f32>>(
+    fn step<A: Arithmetic<Scalar = f32>, T: Task>(
         &mut self,
-        acrobot: &mut Acrobot<A>,
+        acrobot: &mut Acrobot<A, T>,
         torque: f32,
         i: usize,
     ) -> anyhow::Result<()> {

@@ -5,7 +5,7 @@
 
 use std::array::from_fn;
 
-use acrobot::arithmetic::Swingup;
+use acrobot::arithmetic::Damped;
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::difference;
 use acrobot::{Error, Params, Portable, State};
@@ -19,7 +19,7 @@ const DOUBT: f64 = 0.02;
 const DRIFT: f64 = 1e-10;
 
 pub struct Observer {
-    model: Pendulum<Swingup<Portable>>,
+    model: Pendulum<Damped<Portable>>,
     nominal: Params,
     estimate: Estimate,
     covariance: [Estimate; 8],
@@ -114,7 +114,7 @@ mod tests {
         let mut observer = Observer::new(nominal)?;
         let [f1, f2, f3, f4] = factors;
         let (_, params) = observer.parts([0.0, 0.0, 0.0, 0.0, f1, f2, f3, f4]);
-        let mut machine = Pendulum::<Swingup<Portable>>::new(params, State::HANGING)?;
+        let mut machine = Pendulum::<Damped<Portable>>::new(params, State::HANGING)?;
         for i in 0..200 {
             let noise = if i % 3 == 0 { 1e-4 } else { -5e-5 };
             let [x1, x2, x3, x4] = machine.state().into();

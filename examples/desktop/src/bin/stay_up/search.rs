@@ -6,12 +6,14 @@
 
 use std::ops::Range;
 
+use acrobot::arithmetic::Damped;
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::bound;
-use acrobot::{Acrobot, Params, State};
+use acrobot::task::Swingup;
+use acrobot::{Acrobot, Fast, Params, State};
 use controller::{Planner, Step};
 
-use crate::{Episode, Task};
+use crate::Episode;
 
 const GUESSES: usize = 120;
 /// After a few iterations the best of them are planned until no iteration helps.
@@ -33,8 +35,8 @@ pub type Plan = Vec<Step<f32>>;
 /// The search for the best plan from a state.
 #[derive(Clone)]
 pub struct Search {
-    pub acrobot: Acrobot<Task>,
-    pub planner: Planner<Task>,
+    pub acrobot: Acrobot<Damped<Fast>, Swingup>,
+    pub planner: Planner<Damped<Fast>>,
     /// The largest torque of plans, N m.
     limit: f32,
     /// The steps of first guesses, and those of an episode.
@@ -46,7 +48,7 @@ pub struct Search {
 impl Search {
     /// Searches from the acrobot's state.
     pub fn new(
-        acrobot: Acrobot<Task>,
+        acrobot: Acrobot<Damped<Fast>, Swingup>,
         limit: f32,
         lengths: Range<usize>,
         steps: usize,

@@ -2,17 +2,17 @@
 
 use rand_core::Rng;
 
-use super::params::Params;
 use crate::error::Error;
 use crate::math::Real;
 use crate::numpy::uniform;
+use crate::physics::Params;
 
 /// A range for each parameter: domain randomization.
 ///
 /// ```
 /// use acrobot::Params;
 /// use acrobot::numpy::Pcg64;
-/// use acrobot::physics::ParamsRange;
+/// use acrobot::task::ParamsRange;
 ///
 /// let heavy = Params { mass2: 1.1, ..Params::<f64>::DEFAULT };
 /// let drawn = ParamsRange::new(Params::DEFAULT, heavy)?.draw(&mut Pcg64::new(42));

@@ -1,13 +1,13 @@
 //! What a reset may choose.
 
+use super::reset_bounds::ResetBounds;
 use crate::numpy::SeedSequence;
-use crate::physics::ResetBounds;
 
 /// The arguments of Gymnasium's `reset(seed=…, options=…)`.
 ///
 /// ```
 /// use acrobot::numpy::SeedSequence;
-/// use acrobot::physics::ResetBounds;
+/// use acrobot::task::ResetBounds;
 /// use acrobot::{Acrobot, Fast, ResetOptions};
 ///
 /// let mut acrobot = Acrobot::<Fast>::new(0);
@@ -26,7 +26,7 @@ pub struct ResetOptions {
     /// Seeds the generator. With `None` it continues its stream.
     pub seed: Option<SeedSequence>,
     /// The bounds of the initial state. `None`: those of the
-    /// [task](crate::physics::Task::reset_bounds) or of the
+    /// [task](crate::task::Task::RESET_BOUNDS) or of the
     /// [batch](crate::batch::Batch::reset_bounds).
     pub bounds: Option<ResetBounds>,
 }

@@ -1,0 +1,124 @@
+//! Tasks: where an episode begins, what an agent sees, its rewards, and when it ends.
+//!
+//! A [`Task`] is a type parameter of [`Acrobot`](crate::Acrobot) and of
+//! [`Batch`](crate::batch::Batch).
+
+pub(crate) mod episode;
+mod gymnasium;
+mod observation;
+mod params_range;
+mod reset_bounds;
+mod reset_options;
+mod swingup;
+
+use core::fmt;
+use core::marker::PhantomData;
+use core::num::NonZeroU32;
+use core::ops::{Add, Mul, Neg, Sub};
+
+use rand_core::Rng;
+
+pub use gymnasium::Gymnasium;
+pub use observation::Observation;
+pub use params_range::ParamsRange;
+pub use reset_bounds::ResetBounds;
+pub use reset_options::ResetOptions;
+pub use swingup::{DmControl, Swingup, SwingupSparse};
+
+use crate::arithmetic::{Arithmetic, Numbers, Real};
+use crate::physics::{Given, Params, State, directions, positions};
+
+/// What an acrobot is to do. Its functions compute for one acrobot or for many side by side, so
+/// they have no branches: [an example](crate::guide::tasks).
+pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
+    /// A short name in lower case, of at most 16 bytes. Snapshots hold it, so no other task can
+    /// load them.
+    const NAME: &'static str;
+
+    /// The task of a new acrobot, if it is not given one. A task can have data, such as a point to
+    /// reach.
+    const DEFAULT: Self;
+
+    /// The number of steps of an episode.
+    const LIMIT: NonZeroU32;
+
+    /// The default bounds of initial states.
+    const RESET_BOUNDS: ResetBounds = ResetBounds::DEFAULT;
+
+    /// The default parameters. With friction, the task compiles only in an arithmetic that has it:
+    ///
+    /// ```compile_fail,E0080
+    /// use acrobot::task::Swingup;
+    /// use acrobot::{Acrobot, Fast};
+    ///
+    /// Acrobot::<Fast, Swingup>::new(42); // the arithmetic must be Damped<Fast>
+    /// ```
+    const PARAMS: Params = Params::DEFAULT;
+
+    /// What an agent sees: `[f32; N]`.
+    type Observation: Observation;
+
+    /// Draws an initial state. It is `f32` in every arithmetic.
+    #[inline]
+    fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
+        bounds.draw(rng)
+    }
+
+    /// The observation: `[V; N]`, rounded to `f32` afterwards. That of
+    /// [`Acrobot-v1`](Gymnasium) is `Gymnasium.observe::<A, V>(seen)`.
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        seen: &Seen<V>,
+    ) -> <Self::Observation as Observation>::Of<V>;
+
+    /// Whether the new state ends the episode: never, unless it is replaced.
+    #[inline(always)]
+    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, _: &Seen<V>) -> V::Mask {
+        V::splat(A::Scalar::ZERO).above(A::Scalar::ZERO)
+    }
+
+    /// The reward of a step to the new state, which `ended` the episode or not. `torque` is the one
+    /// that acted, N m, with its noise.
+    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        seen: &Seen<V>,
+        params: &Params<V>,
+        torque: V,
+        ended: V::Mask,
+    ) -> V::Single;
+}
+
+/// A state, of one acrobot or of many, with the sines and cosines of its angles.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<V> {
+    /// The state.
+    pub state: State<V>,
+    /// Sine and cosine of θ1, then of θ2.
+    pub sin_cos: [(V, V); 2],
+}
+
+impl<V> Seen<V>
+where
+    V: Copy + Add<Output = V> + Sub<Output = V> + Mul<Output = V> + Neg<Output = V>,
+{
+    /// Sine and cosine of θ1, then of θ1 + θ2: the directions of the links.
+    #[must_use]
+    #[inline(always)]
+    pub fn directions(&self) -> [(V, V); 2] {
+        directions(self.sin_cos)
+    }
+
+    /// Elbow and tip, each \[x, y\] in m from the fixed joint, y upwards.
+    #[must_use]
+    #[inline(always)]
+    pub fn positions(&self, params: &Params<V>) -> [[V; 2]; 2] {
+        positions(params, self.sin_cos)
+    }
+}
+
+/// The parameters of a task, for a module that has no tasks.
+pub(crate) struct Of<T>(PhantomData<T>);
+
+impl<T: Task> Given for Of<T> {
+    const PARAMS: Params = T::PARAMS;
+}

@@ -1,0 +1,65 @@
+//! One step of an episode, of one acrobot or of many side by side.
+
+use core::num::NonZeroU32;
+
+use rand_core::Rng;
+
+use super::{Seen, Task};
+use crate::arithmetic::{Arithmetic, Numbers, Real};
+use crate::math::SinCos;
+use crate::numpy::uniform;
+use crate::physics::{Model, step as advance};
+
+/// A step's reward, and whether the new state ends the episode.
+pub(crate) type Outcome<S, V> = (<V as Numbers<S>>::Single, <V as Numbers<S>>::Mask);
+
+/// Advances [`step`](advance)'s numbers by one dt under a constant torque, N m.
+#[inline(always)]
+pub(crate) fn step<A: Arithmetic, T: Task, V: Numbers<A::Scalar>>(
+    model: &Model<V>,
+    y: &mut [V; 4],
+    sin_cos: &mut [SinCos<V>; 2],
+    torque: V,
+    task: &T,
+) -> Outcome<A::Scalar, V> {
+    advance::<A, V>(model, y, sin_cos, torque);
+    let seen = Seen { state: (*y).into(), sin_cos: *sin_cos };
+    let ended = task.ended::<A, V>(&seen);
+    (task.reward::<A, V>(&seen, &model.params, torque, ended), ended)
+}
+
+/// Adds a draw from \[−noise, noise) to each torque with noise, from its generator. One without
+/// draws nothing.
+#[inline(always)]
+pub(crate) fn disturb<'a, S: Real, V: Numbers<S>, R: Rng + 'a>(
+    torque: V,
+    noise: V,
+    generators: impl Iterator<Item = Option<&'a mut R>>,
+) -> V {
+    if noise.all_within(V::splat(S::ZERO)) {
+        return torque;
+    }
+    draw(torque, noise, generators)
+}
+
+#[cfg_attr(feature = "std", cold)]
+fn draw<'a, S: Real, V: Numbers<S>, R: Rng + 'a>(
+    torque: V,
+    noise: V,
+    mut generators: impl Iterator<Item = Option<&'a mut R>>,
+) -> V {
+    torque.zip(noise, |torque, noise| match generators.next().flatten() {
+        Some(rng) if noise > S::ZERO => {
+            let noise = noise.to_f64();
+            torque + S::from_f64(uniform(rng, -noise, noise))
+        }
+        _ => torque,
+    })
+}
+
+/// Counts a step. Returns whether it was the last that the limit allows.
+#[inline(always)]
+pub(crate) fn count(elapsed: &mut u32, limit: NonZeroU32) -> bool {
+    *elapsed = elapsed.saturating_add(1);
+    *elapsed >= limit.get()
+}

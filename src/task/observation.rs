@@ -1,0 +1,35 @@
+//! What an agent sees.
+
+use core::fmt;
+
+use crate::math::Real;
+
+/// `[f32; N]`: the numbers that an agent sees.
+pub trait Observation:
+    AsRef<[f32]> + AsMut<[f32]> + Copy + fmt::Debug + PartialEq + Send + Sync + Sealed + 'static
+{
+    /// As many numbers of one acrobot or of many: `[V; N]`.
+    type Of<V: Copy>;
+
+    #[doc(hidden)]
+    const ZEROS: Self;
+
+    /// Each number rounded to `f32`.
+    #[doc(hidden)]
+    fn rounded<S: Real>(numbers: Self::Of<S>) -> Self;
+}
+
+impl<const N: usize> Observation for [f32; N] {
+    type Of<V: Copy> = [V; N];
+
+    const ZEROS: Self = [0.0; N];
+
+    #[inline(always)]
+    fn rounded<S: Real>(numbers: [S; N]) -> Self {
+        numbers.map(|x| x.to_f64() as f32)
+    }
+}
+
+pub trait Sealed {}
+
+impl<const N: usize> Sealed for [f32; N] {}

@@ -1,0 +1,77 @@
+//! The bounds of initial states.
+
+use rand_core::Rng;
+
+use crate::error::{Error, Range};
+use crate::numpy::uniform;
+use crate::physics::State;
+
+/// The bounds between which a reset draws each number of an initial state, rad and rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ResetBounds {
+    low: f64,
+    high: f64,
+}
+
+impl ResetBounds {
+    /// Gymnasium's bounds: from −0.1 to 0.1.
+    pub const DEFAULT: Self = Self { low: -0.1, high: 0.1 };
+
+    /// Any angle: from −π to π.
+    pub(crate) const ANYWHERE: Self =
+        Self { low: -core::f64::consts::PI, high: core::f64::consts::PI };
+
+    /// Bounds from `low` to `high`, rad and rad/s. Equal bounds fix the initial state.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedRange`]
+    /// for a `low` above `high`.
+    pub const fn new(low: f64, high: f64) -> Result<Self, Error> {
+        let unit = "rad and rad/s";
+        if let Err(error) = Range::InF32.check("low", low, unit) {
+            return Err(error);
+        }
+        if let Err(error) = Range::InF32.check("high", high, unit) {
+            return Err(error);
+        }
+        match low <= high {
+            true => Ok(Self { low, high }),
+            false => Err(Error::ReversedRange { name: "reset bound", low, high, unit }),
+        }
+    }
+
+    /// Draws an initial state. It is `f32` in every arithmetic, as in Gymnasium.
+    #[inline(never)] // saves flash: each kind of reset calls it
+    pub fn draw<R: Rng + ?Sized>(&self, rng: &mut R) -> State<f32> {
+        let numbers = [(); 4].map(|()| uniform(rng, self.low, self.high) as f32);
+        numbers.into()
+    }
+
+    /// As [`draw`](Self::draw), with velocities of 0, for which it draws nothing.
+    pub(crate) fn draw_at_rest<R: Rng + ?Sized>(&self, rng: &mut R) -> State<f32> {
+        let [theta1, theta2] = [(); 2].map(|()| uniform(rng, self.low, self.high) as f32);
+        [theta1, theta2, 0.0, 0.0].into()
+    }
+
+    /// The lower bound, rad and rad/s.
+    #[must_use]
+    #[inline]
+    pub const fn low(&self) -> f64 {
+        self.low
+    }
+
+    /// The upper bound, rad and rad/s.
+    #[must_use]
+    #[inline]
+    pub const fn high(&self) -> f64 {
+        self.high
+    }
+}
+
+impl Default for ResetBounds {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}

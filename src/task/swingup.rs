@@ -1,0 +1,96 @@
+//! dm_control's swing-ups.
+
+use core::num::NonZeroU32;
+
+use rand_core::Rng;
+
+use super::reset_bounds::ResetBounds;
+use super::{Seen, Task};
+use crate::arithmetic::{Arithmetic, Numbers, Real};
+use crate::math::sealed::Sealed;
+use crate::physics::{Params, State};
+
+/// dm_control's `acrobot-swingup`: swing up from anywhere and stay up. The reward is 1 up to
+/// 0.2 m from the target, 2 m above the fixed joint, and falls to 0.1 at 1.2 m.
+pub type Swingup = DmControl<false>;
+
+/// dm_control's `acrobot-swingup_sparse`: as [`Swingup`], with a reward of 0 beyond 0.2 m.
+pub type SwingupSparse = DmControl<true>;
+
+/// [`Swingup`] or [`SwingupSparse`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct DmControl<const SPARSE: bool>;
+
+impl<const SPARSE: bool> Task for DmControl<SPARSE> {
+    const NAME: &'static str = if SPARSE { "swingup_sparse" } else { "swingup" };
+    const DEFAULT: Self = Self;
+    const LIMIT: NonZeroU32 = NonZeroU32::new(1000).unwrap();
+    const RESET_BOUNDS: ResetBounds = ResetBounds::ANYWHERE;
+    const PARAMS: Params = Params::SWINGUP;
+
+    /// The sines of both links' angles from upright, their cosines, θ̇1 and θ̇2, rad/s: hanging at
+    /// rest \[0, 0, −1, −1, 0, 0\].
+    type Observation = [f32; 6];
+
+    /// At rest.
+    #[inline]
+    fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
+        bounds.draw_at_rest(rng)
+    }
+
+    #[inline(always)]
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
+        let [(sin1, cos1), (sin_sum, cos_sum)] = seen.directions();
+        // A sum of two products can be beyond 1 by a rounding.
+        let one = V::splat(A::Scalar::ONE);
+        let [sin_sum, cos_sum] = [sin_sum, cos_sum].map(|x| x.bound(one));
+        [-sin1, -sin_sum, -cos1, -cos_sum, seen.state.dtheta1, seen.state.dtheta2]
+    }
+
+    #[inline(always)]
+    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        seen: &Seen<V>,
+        params: &Params<V>,
+        _: V,
+        _: V::Mask,
+    ) -> V::Single {
+        tolerance::<A::Scalar, V>(seen, params, SPARSE).to_f32()
+    }
+}
+
+/// dm_control's `tolerance` of the distance from the tip to the target, 0.1^(d²) at d metres from
+/// its edge.
+#[inline(always)]
+fn tolerance<S: Real, V: Numbers<S>>(seen: &Seen<V>, params: &Params<V>, is_sparse: bool) -> V {
+    const TARGET: f64 = 2.0;
+    const RADIUS: f64 = 0.2;
+    let number = |x| V::splat(S::from_f64(x));
+    let [_, [x, y]] = seen.positions(params);
+    let below = number(TARGET) - y;
+    let distance = (x * x + below * below).map(Real::sqrt);
+    let beyond = distance - number(RADIUS);
+    let outside = if is_sparse {
+        number(0.0)
+    } else {
+        exp2(beyond * beyond * number(-core::f64::consts::LOG2_10))
+    };
+    distance.select_within(S::from_f64(RADIUS), number(1.0), outside)
+}
+
+/// 2^x for x up to 0, for rewards, which are `f32`. Below −100, and for NaN, 2^−100.
+#[inline(always)]
+fn exp2<S: Real, V: Numbers<S>>(x: V) -> V {
+    const LEAST: f64 = -100.0;
+    let number = |x| V::splat(S::from_f64(x));
+    let x = x.select_within(S::from_f64(-LEAST), x, number(LEAST));
+    let whole = x.map(S::round_small);
+    // The Taylor series of e^y, |y| ≤ ln 2 / 2. Its first omitted term is at most 6e-9.
+    let y = (x - whole) * number(core::f64::consts::LN_2);
+    let factorials = [720.0, 120.0, 24.0, 6.0, 2.0, 1.0, 1.0];
+    let series = factorials
+        .into_iter()
+        .fold(number(1.0 / 5040.0), |sum, factorial| sum * y + number(1.0 / factorial));
+    series * whole.map(S::power_of_two)
+}

@@ -1,0 +1,153 @@
+//! A user's tasks run alone and in batches with equal bits, with rewards, ends, resets, parameters,
+//! observations and data of their own.
+
+use core::f64::consts::PI;
+use core::num::NonZeroU32;
+
+use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Numbers, Real, Reference};
+use acrobot::batch::VecBatch;
+use acrobot::numpy::SeedSequence;
+use acrobot::rand_core::Rng;
+use acrobot::task::{Gymnasium, ResetBounds, Seen, Task};
+use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
+use common::twins::{LEVELS, Twins};
+
+/// Stay upright. The reward is 1 less the errors of the angles, rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Balance;
+
+impl Task for Balance {
+    const NAME: &'static str = "balance";
+    const DEFAULT: Self = Self;
+    const LIMIT: NonZeroU32 = NonZeroU32::new(200).unwrap();
+    const PARAMS: Params =
+        Params { length1: 0.7, center_of_mass1: 0.3, dt: 0.05, ..Params::DEFAULT };
+
+    type Observation = [f32; 6];
+
+    fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
+        let drawn = bounds.draw(rng);
+        State { theta1: drawn.theta1 + core::f32::consts::PI, ..drawn }
+    }
+
+    #[inline(always)]
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
+        Gymnasium.observe::<A, V>(seen)
+    }
+
+    #[inline(always)]
+    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        seen: &Seen<V>,
+        _: &Params<V>,
+        _: V,
+        _: V::Mask,
+    ) -> V::Single {
+        let number = |x| V::splat(Real::from_f64(x));
+        let abs = |x: V| x.map(|x| if x < Real::ZERO { -x } else { x });
+        let error = number(PI) - abs(seen.state.theta1) + abs(seen.state.theta2);
+        (number(1.0) - error).to_f32()
+    }
+}
+
+/// Bring the tip near a point, m, with little effort, which ends the episode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Reach {
+    point: [f64; 2],
+}
+
+impl Reach {
+    /// How far the tip is beyond 0.2 m from the point, m², with links of 1 m.
+    #[inline(always)]
+    fn beyond<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V {
+        let number = |x| V::splat(Real::from_f64(x));
+        let [(sin1, cos1), (sin2, cos2)] = seen.directions();
+        let [x, y] = self.point.map(number);
+        let [x, y] = [sin1 + sin2 - x, -cos1 - cos2 - y];
+        x * x + y * y - number(0.04)
+    }
+}
+
+impl Task for Reach {
+    const NAME: &'static str = "reach";
+    const DEFAULT: Self = Self { point: [0.9, 0.5] };
+    const LIMIT: NonZeroU32 = NonZeroU32::new(300).unwrap();
+
+    type Observation = [f32; 5];
+
+    #[inline(always)]
+    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 5] {
+        let State { theta1, theta2, dtheta1, dtheta2 } = seen.state;
+        [theta1, theta2, dtheta1, dtheta2, self.beyond::<A, V>(seen)]
+    }
+
+    #[inline(always)]
+    fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
+        (-self.beyond::<A, V>(seen)).above(Real::ZERO)
+    }
+
+    #[inline(always)]
+    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
+        &self,
+        seen: &Seen<V>,
+        params: &Params<V>,
+        torque: V,
+        ended: V::Mask,
+    ) -> V::Single {
+        let [_, [x, y]] = seen.positions(params);
+        let cost = (x * x + y * y) * V::splat(Real::from_f64(0.1)) + torque * torque;
+        V::Single::either(ended, 100.0, 0.0) - cost.to_f32()
+    }
+}
+
+#[test]
+fn own_tasks_run_in_batches_with_equal_bits() {
+    Twins::<Fast, 16, Balance>::at_every_level();
+    Twins::<Fast, 3, Balance>::at_every_level();
+    Twins::<Damped<Reference>, 16, Balance>::at_every_level();
+    Twins::<Host, 16, Balance>::at_every_level();
+    Twins::<Fast, 16, Reach>::at_every_level();
+    Twins::<Micro, 16, Reach>::at_every_level();
+    Twins::<Portable, 8, Reach>::at_every_level();
+    assert!(LEVELS[0].is_available());
+}
+
+#[test]
+fn rewards_ends_and_limits_are_the_tasks() {
+    let mut acrobot = TimeLimit::of(Acrobot::<Fast, Balance>::new(42));
+    let first = acrobot.step(Action::Zero);
+    assert!((0.7..1.0).contains(&first.reward), "{first:?}");
+    let length = (2..).find(|_| acrobot.step(Action::Zero).done());
+    assert_eq!(length, Some(200));
+}
+
+/// An acrobot and a batch hang at the point that they are given.
+#[test]
+fn a_task_has_data() {
+    let mut acrobot = Acrobot::<Fast, Reach>::new(1);
+    let mut batch = VecBatch::<Fast, Reach>::new(SeedSequence::new(1), 20).unwrap();
+    let [.., beyond] = acrobot.observation();
+    assert!((6.0..8.0).contains(&beyond), "{beyond}");
+    assert!(!acrobot.step(Action::Zero).terminated);
+    assert_eq!(batch.step(&[Action::Zero; 20]).unwrap().terminated, [false; 20]);
+    let hanging = Reach { point: [0.0, -2.0] };
+    acrobot.set_task(hanging);
+    batch.set_task(hanging);
+    assert_eq!((*acrobot.task(), *batch.task()), (hanging, hanging));
+    let step = acrobot.step(Action::Zero);
+    assert!(step.terminated && step.reward > 99.0, "{step:?}");
+    assert!(batch.observations().iter().all(|[.., beyond]| *beyond < 0.0));
+    assert_eq!(batch.step(&[Action::Zero; 20]).unwrap().terminated, [true; 20]);
+}
+
+/// In a `const`, with the task's parameters. The tasks of the crate take no room.
+#[test]
+fn constants_have_the_tasks_parameters() {
+    const HANGING: Acrobot<Fast, Balance, ()> = Acrobot::hanging(());
+    assert_eq!(*HANGING.params(), Balance::PARAMS.cast());
+    assert_eq!(size_of::<Acrobot<Fast, Balance>>(), size_of::<Acrobot<Fast>>());
+    let text = serde_json::to_string(&Acrobot::<Fast, Balance>::new(1)).unwrap();
+    assert!(text.contains(r#""task":"balance""#), "{text}");
+    assert!(serde_json::from_str::<Acrobot<Fast>>(&text).is_err());
+    assert!(serde_json::from_str::<Acrobot<Fast, Balance>>(&text).is_ok());
+}
