@@ -1,7 +1,7 @@
 """Steps of dm_control's swing-up per second of processor time: dm_control, MuJoCo's own batch,
 EnvPool, MuJoCo Playground and this package.
 
-    pip install dm_control==1.0.50 mujoco==3.17.0 envpool==1.2.5 playground==0.2.0
+    pip install dm_control==1.0.50 mujoco==3.17.0 envpool==1.2.7 playground==0.2.0
     pip install bindings/python
     MUJOCO_GL=disable python benches/compare/swingup.py
 

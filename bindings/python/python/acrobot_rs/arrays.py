@@ -109,8 +109,9 @@ def numbers(
     if not isinstance(value, bytearray | Mapping):
         with contextlib.suppress(TypeError, ValueError):  # rows of different lengths
             array = np.asarray(value)
-            # NumPy makes numbers of bools that are beside numbers.
-            if isinstance(value, Sequence) and array.dtype.kind != "b":
+            # NumPy makes numbers of bools that are beside numbers. The test for an array comes
+            # first because it takes no time.
+            if array is not value and isinstance(value, Sequence) and array.dtype.kind != "b":
                 types = set(map(type, np.asarray(value, object).flat))
                 array = array if types.isdisjoint((bool, np.bool_)) else None
     if array is not None and array.dtype.kind in kinds and shape in (None, array.shape):
