@@ -8,8 +8,7 @@ use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::Pcg64;
 use crate::physics::{Params, Pendulum, State, check_torque, default_model};
-use crate::task::ResetOptions;
-use crate::task::{Gymnasium, Observation, Of, ResetBounds, Seen, Task, episode};
+use crate::task::{Gymnasium, Observation, Of, ResetBounds, ResetOptions, Seen, Task, episode};
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;

@@ -9,8 +9,7 @@ use crate::action::Action;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::physics::{Params, State};
-use crate::task::ResetOptions;
-use crate::task::{Gymnasium, Task, episode};
+use crate::task::{Gymnasium, ResetOptions, Task, episode};
 
 /// The number of steps of an episode of `Acrobot-v0`.
 pub(crate) const V0_LIMIT: NonZeroU32 = NonZeroU32::new(200).unwrap();

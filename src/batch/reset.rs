@@ -6,8 +6,7 @@ use super::{Batch, each_block};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::physics::State;
-use crate::task::ResetOptions;
-use crate::task::Task;
+use crate::task::{ResetOptions, Task};
 
 impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N> {
     /// Resets all acrobots, each with the next draws of its stream.

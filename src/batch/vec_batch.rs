@@ -11,8 +11,7 @@ use super::lane_params::LaneParams;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::task::ResetOptions;
-use crate::task::{Gymnasium, Observation, Task};
+use crate::task::{Gymnasium, Observation, ResetOptions, Task};
 
 type InVecs<A, T, const N: usize> =
     Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>), T, N>;

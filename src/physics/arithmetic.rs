@@ -61,8 +61,9 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
 pub(crate) const fn default_model<A: Arithmetic, G: Given>() -> Model<A::Scalar> {
     const {
         let Viscous { joint1, joint2 } = G::PARAMS.friction;
-        let suits = check_friction::<A>([joint1, joint2]).is_ok() && G::PARAMS.check().is_ok();
+        let suits = check_friction::<A>([joint1, joint2]).is_ok();
         assert!(suits, "the arithmetic must be Damped, because the parameters have friction");
+        assert!(G::PARAMS.check().is_ok(), "a parameter is out of range");
     }
     match A::FORM {
         Form::Lean => <A::Scalar as Modeled>::Of::<G>::LEAN,
