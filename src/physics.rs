@@ -40,7 +40,7 @@ mod step;
 pub mod control;
 
 pub(crate) use arithmetic::{check_params, default_model, model};
-pub use bounds::{bound, wrap};
+pub use bounds::{saturate, wrap};
 pub use friction::Viscous;
 pub(crate) use geometry::{directions, positions};
 pub(crate) use model::{Defaults, Given, Model};

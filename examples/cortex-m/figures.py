@@ -86,7 +86,7 @@ BALANCE = {
 }
 CONTROL = {
     "linearize": "`linearize`",
-    "discretize": "`discretize`",
+    "linearize_step": "`linearize_step`",
     "lqr": "`lqr`",
     "torque": "`difference` and `Lqr::torque`",
     "inverse_dynamics": "`inverse_dynamics`",
@@ -97,7 +97,7 @@ ADDITIONS = {
     "display": "flash of `set_params`, and `Display` of its error",
     "cell": "flash of a `RefCell`, with a panic handler that prints",
     "serde": "flash of saving and loading with serde, postcard and a CRC",
-    "lqr": "flash of `discretize`, `lqr`, `deviation` and the regulator's torque",
+    "lqr": "flash of `linearize_step`, `lqr`, `deviation` and the regulator's torque",
     "lqr_stack": "stack of `lqr`",
 }
 LEVELS = ["2", '"s"', '"z"']

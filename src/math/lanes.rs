@@ -64,7 +64,7 @@ pub trait Numbers<S: Real>:
 
     /// Each number clamped to \[−`limit`, `limit`\]; NaN stays NaN.
     #[inline(always)]
-    fn bound(self, limit: Self) -> Self {
+    fn saturate(self, limit: Self) -> Self {
         self.zip(limit, |x, limit| if x > limit { limit } else { x })
             .zip(limit, |x, limit| if x < -limit { -limit } else { x })
     }

@@ -5,18 +5,18 @@
 //! guide holds the acrobot upright with [a regulator](crate::guide::control).
 
 mod deviation;
-mod discretize;
 mod double;
 mod error;
 mod inverse_dynamics;
 mod linearize;
+mod linearize_step;
 mod lqr;
 mod matrix;
 mod regulator;
 
 pub use deviation::difference;
-pub use discretize::{DiscreteModel, discretize};
 pub use error::ControlError;
 pub use inverse_dynamics::{Forces, inverse_dynamics, velocities};
 pub use linearize::{ContinuousModel, linearize};
+pub use linearize_step::{DiscreteModel, linearize_step};
 pub use lqr::{Lqr, lqr};

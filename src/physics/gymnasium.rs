@@ -82,5 +82,5 @@ fn wrap_by_remainder<S: Real>(x: S) -> S {
     } else {
         S::ZERO
     };
-    (x + turn).bound(S::PI)
+    (x + turn).saturate(S::PI)
 }

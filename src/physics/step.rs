@@ -71,7 +71,7 @@ fn enforce_bounds<A: Arithmetic, V: Numbers<A::Scalar>>(
     *y = [
         wrap::<A, V>(theta1),
         wrap::<A, V>(theta2),
-        dtheta1.bound(model.params.max_velocity1),
-        dtheta2.bound(model.params.max_velocity2),
+        dtheta1.saturate(model.params.max_velocity1),
+        dtheta2.saturate(model.params.max_velocity2),
     ];
 }

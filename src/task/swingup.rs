@@ -44,7 +44,7 @@ impl<const SPARSE: bool> Task for DmControl<SPARSE> {
         let [(sin1, cos1), (sin_sum, cos_sum)] = seen.directions();
         // A sum of two products can be beyond 1 by a rounding.
         let one = V::splat(A::Scalar::ONE);
-        let [sin_sum, cos_sum] = [sin_sum, cos_sum].map(|x| x.bound(one));
+        let [sin_sum, cos_sum] = [sin_sum, cos_sum].map(|x| x.saturate(one));
         [-sin1, -sin_sum, -cos1, -cos_sum, seen.state.dtheta1, seen.state.dtheta2]
     }
 

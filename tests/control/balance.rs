@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::control::{Lqr, discretize, inverse_dynamics, lqr};
-use acrobot::physics::{Pendulum, bound};
+use acrobot::physics::control::{Lqr, inverse_dynamics, linearize_step, lqr};
+use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Fast, Params, Portable, State};
 use common::{assert_says, in_every_arithmetic};
 
@@ -40,7 +40,7 @@ fn largest_lean(params: Params, limit: f64, weight: f64) -> usize {
         pendulum.set_state(state).unwrap();
         for _ in 0..2000 {
             let torque = regulator.torque(pendulum.deviation(State::UPRIGHT));
-            pendulum.step(bound(torque, limit)).unwrap();
+            pendulum.step(saturate(torque, limit)).unwrap();
         }
         let left = pendulum.deviation(State::UPRIGHT);
         left.iter().all(|x| x.abs() < 1e-3)
@@ -103,7 +103,7 @@ fn a_regulator_needs_an_equilibrium() {
             let params = Params::<f64>::DEFAULT.cast();
             let pendulum = Pendulum::<A>::new(params, state.cast()).unwrap();
             let regulator = pendulum.regulator(torque, &q, Real::from_f64(1.0));
-            let model = discretize(&pendulum, torque).unwrap();
+            let model = linearize_step(&pendulum, torque).unwrap();
             let of_any_model = lqr(&model, &q, Real::from_f64(1.0)).unwrap();
             assert!(regulator.is_err() || regulator == Ok(of_any_model));
             regulator.map(drop).map_err(|error| error.to_string())

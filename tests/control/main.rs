@@ -6,7 +6,7 @@ mod regulators;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::physics::control::{
-    Forces, difference, discretize, inverse_dynamics, linearize, velocities,
+    Forces, difference, inverse_dynamics, linearize, linearize_step, velocities,
 };
 use acrobot::physics::{Pendulum, Viscous};
 use acrobot::{Fast, Params, Portable, State};
@@ -68,7 +68,7 @@ fn errors<A: Arithmetic>(first: usize) -> [f64; 4] {
         let pendulum = Pendulum::<A>::new(params.cast(), state).unwrap();
         let torque = Real::from_f64(x[16]);
         let continuous = linearize(&pendulum, torque).unwrap();
-        let discrete = discretize(&pendulum, torque).unwrap();
+        let discrete = linearize_step(&pendulum, torque).unwrap();
         let Forces { torques, reaction, elbow } =
             inverse_dynamics(&pendulum, cast(vector::<2>(&x[17..]))).unwrap();
         let pairs = [
@@ -119,7 +119,7 @@ fn inputs_that_are_not_finite_are_rejected() {
     let pendulum = Pendulum::<Fast>::hanging();
     let torque = "torque must be a finite number of N m, got NaN";
     assert_eq!(linearize(&pendulum, f32::NAN).unwrap_err().to_string(), torque);
-    assert_eq!(discretize(&pendulum, f32::NAN).unwrap_err().to_string(), torque);
+    assert_eq!(linearize_step(&pendulum, f32::NAN).unwrap_err().to_string(), torque);
     let error = inverse_dynamics(&pendulum, [0.0, f32::INFINITY]).unwrap_err();
     let rule = "ddtheta2 must be a finite number of rad/s², got inf";
     assert_eq!(error.to_string(), rule);

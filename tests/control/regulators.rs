@@ -4,7 +4,7 @@ use std::array::from_fn;
 
 use acrobot::arithmetic::Real;
 use acrobot::physics::Pendulum;
-use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, discretize, lqr};
+use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, linearize_step, lqr};
 use acrobot::{Params, Portable, State};
 use common::{lines, numbers, text_of};
 
@@ -151,7 +151,8 @@ fn motions_that_the_torque_does_not_reach_have_no_gain() {
 }
 
 fn upright() -> DiscreteModel {
-    discretize(&Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap(), 0.0).unwrap()
+    linearize_step(&Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT).unwrap(), 0.0)
+        .unwrap()
 }
 
 #[test]
@@ -204,7 +205,7 @@ fn a_regulator_that_cannot_exist_is_an_error() {
     let params =
         Params { center_of_mass1: 0.0, center_of_mass2: 0.0, gravity: 0.0, ..Params::DEFAULT };
     let pendulum = Pendulum::<Portable>::new(params, State::HANGING).unwrap();
-    let model = discretize(&pendulum, 0.0).unwrap();
+    let model = linearize_step(&pendulum, 0.0).unwrap();
     let error = lqr(&model, &IDENTITY, 1.0).unwrap_err();
     assert_eq!(error, ControlError::NotStabilizable);
 

@@ -22,7 +22,7 @@ mod recovery;
 
 use acrobot::arithmetic::Real;
 use acrobot::physics::control::{ControlError, difference};
-use acrobot::physics::{Pendulum, State, bound};
+use acrobot::physics::{Pendulum, State, saturate};
 use acrobot::{Error, Fast, Params};
 
 pub use plan::{NoPlan, Step};
@@ -79,7 +79,7 @@ impl Controller {
             is_near(x) && (self.holding || self.recovery.succeeds(self.model.clone(), STEPS_AHEAD));
         let torque = match self.holding {
             true => self.recovery.torque(x),
-            false => bound(self.swing_up(x), self.recovery.limit),
+            false => saturate(self.swing_up(x), self.recovery.limit),
         };
         match torque.is_nan() {
             true => Err(Error::OutOfRange {

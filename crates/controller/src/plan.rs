@@ -32,7 +32,7 @@ impl<S: Real> Step<S> {
         Self { state: State::HANGING, torque, gain: [S::ZERO; 4], change: S::ZERO }
     }
 
-    /// The torque that follows the plan from a measured state, N m. `bound` limits it to that of a
+    /// The torque that follows the plan from a measured state, N m. `saturate` limits it to that of a
     /// motor, which needs more torque than the plan to correct deviations.
     #[must_use]
     pub fn follow(&self, state: State<S>) -> S {

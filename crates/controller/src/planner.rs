@@ -12,8 +12,8 @@ use core::f64::consts::LN_10;
 
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::numpy::uniform;
-use acrobot::physics::control::{ControlError, DiscreteModel, difference, discretize};
-use acrobot::physics::{Pendulum, State, bound};
+use acrobot::physics::control::{ControlError, DiscreteModel, difference, linearize_step};
+use acrobot::physics::{Pendulum, State, saturate};
 use acrobot::rand_core::Rng;
 use acrobot::{Error, Params};
 
@@ -127,7 +127,7 @@ impl<A: Arithmetic> Planner<A> {
             held += self.model.params().dt.to_f64();
             let missing = self.upright - self.model.energy();
             let state = self.model.state();
-            let torque = bound(push + gain * missing * state.dtheta2, self.recovery.limit);
+            let torque = saturate(push + gain * missing * state.dtheta2, self.recovery.limit);
             self.model.step(torque)?;
             *step = Step { state, torque, ..Step::EMPTY };
         }
@@ -174,7 +174,7 @@ impl<A: Arithmetic> Planner<A> {
         let mut cost = self.recovery.regulator.cost_to_go;
         for step in plan.iter_mut().rev() {
             self.model.set_state(step.state)?;
-            let DiscreteModel { a, b } = discretize(&self.model, step.torque)?;
+            let DiscreteModel { a, b } = linearize_step(&self.model, step.torque)?;
             let cost_b = cost.map(|row| dot(row, b));
             let divisor = dot(b, cost_b) + one;
             let mut columns = transpose(a);
@@ -193,7 +193,7 @@ impl<A: Arithmetic> Planner<A> {
     }
 
     /// The torque at a decision, N m: that of the plan's step, and after the plan that of the
-    /// regulator. `bound` limits it, as in [`Step::follow`].
+    /// regulator. `saturate` limits it, as in [`Step::follow`].
     #[must_use]
     pub fn follow(
         &self,
@@ -245,7 +245,7 @@ impl<A: Arithmetic> Planner<A> {
         for step in plan {
             let state = self.model.state();
             let feedback = dot(step.gain, difference(state, step.state));
-            let torque = bound(step.torque + part * step.change + feedback, self.recovery.limit);
+            let torque = saturate(step.torque + part * step.change + feedback, self.recovery.limit);
             cost = cost + self.away().0 + torque * torque * number(EFFORT);
             self.model.step(torque)?;
             if keep {
@@ -272,7 +272,7 @@ impl<A: Arithmetic> Planner<A> {
         let mut curvature = self.recovery.regulator.cost_to_go.map(|row| row.map(|x| x * weight));
         for step in plan.iter_mut().rev() {
             self.model.set_state(step.state).ok()?;
-            let DiscreteModel { a, b } = discretize(&self.model, step.torque).ok()?;
+            let DiscreteModel { a, b } = linearize_step(&self.model, step.torque).ok()?;
             let columns = transpose(a);
             let curved_b = curvature.map(|row| dot(row, b));
             // The derivatives of the cost by the torque, by the state, and by both.
@@ -285,7 +285,7 @@ impl<A: Arithmetic> Planner<A> {
                 return None;
             }
             let wanted = step.torque - by_torque / divisor;
-            let torque = bound(wanted, self.recovery.limit);
+            let torque = saturate(wanted, self.recovery.limit);
             step.change = torque - step.torque;
             // A torque at its bound has no feedback.
             step.gain = match torque == wanted {

@@ -8,8 +8,8 @@
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use acrobot::arithmetic::{Arithmetic, Real};
-use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, discretize, lqr};
-use acrobot::physics::{Pendulum, State, bound};
+use acrobot::physics::control::{ControlError, DiscreteModel, Lqr, linearize_step, lqr};
+use acrobot::physics::{Pendulum, State, saturate};
 use acrobot::{Error, Params};
 
 use crate::{dot, identity, plus};
@@ -54,7 +54,7 @@ impl<S: Real> Recovery<S> {
             }));
         }
         let machine = Pendulum::<A>::new(params, State::UPRIGHT)?;
-        let DiscreteModel { a, b } = discretize(&machine, S::ZERO)?;
+        let DiscreteModel { a, b } = linearize_step(&machine, S::ZERO)?;
         let model = DiscreteModel { a: a.map(|row| row.map(S::to_f64)), b: b.map(S::to_f64) };
         // In f64, because the rounding of P to f32 can be larger than its smallest eigenvalue.
         let exact = lqr(&model, &identity(), 1.0)?;
@@ -100,7 +100,7 @@ impl<S: Real> Recovery<S> {
 
     /// The torque for a deviation, N m.
     pub(crate) fn torque(&self, x: [S; 4]) -> S {
-        bound(self.regulator.torque(x), self.limit)
+        saturate(self.regulator.torque(x), self.limit)
     }
 
     /// xᵀ P x: what the regulator would cost from a deviation on.

@@ -6,7 +6,7 @@ use std::error::Error;
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::control::difference;
-use acrobot::physics::{Pendulum, bound};
+use acrobot::physics::{Pendulum, saturate};
 use acrobot::{Acrobot, Fast, Params, Portable, State};
 use controller::{Controller, NoPlan, Planner, Step};
 
@@ -23,13 +23,13 @@ fn swings_up_and_holds<A: Arithmetic>(params: Params<A::Scalar>, limit: f64) {
     let nearby = State::from([0.05, -0.05, 0.1, 0.1].map(A::Scalar::from_f64));
     let mut disturbed = Pendulum::<A>::new(params, nearby).unwrap();
     for step in plan {
-        assert_eq!((step.state, bound(step.torque, planned)), (exact.state(), step.torque));
+        assert_eq!((step.state, saturate(step.torque, planned)), (exact.state(), step.torque));
         exact.step(step.torque).unwrap();
-        disturbed.step(bound(step.follow(disturbed.state()), limit)).unwrap();
+        disturbed.step(saturate(step.follow(disturbed.state()), limit)).unwrap();
     }
     for mut machine in [exact, disturbed] {
         for _ in 0..500 {
-            machine.step(bound(planner.follow(&[], 0, machine.state()), limit)).unwrap();
+            machine.step(saturate(planner.follow(&[], 0, machine.state()), limit)).unwrap();
         }
         let x = machine.deviation(State::UPRIGHT).map(Real::to_f64);
         assert!(x.iter().all(|x| x.abs() < 0.01), "{} {x:?}", A::NAME);
@@ -47,7 +47,7 @@ fn a_plan_from_hanging_serves_nearby_states() -> Result<(), Box<dyn Error>> {
     let mut machine = Acrobot::<Fast>::with_params(42, params)?;
     for tick in 0..2000 {
         let torque = planner.follow(plan, tick, machine.state()); // after the plan: holds
-        machine.step_torque(bound(torque, 1.0))?; // a fifth is for corrections
+        machine.step_torque(saturate(torque, 1.0))?; // a fifth is for corrections
     }
     let x = difference(machine.state(), State::UPRIGHT);
     assert!(x.iter().all(|x| x.abs() < 1e-2), "{x:?}");

@@ -2,7 +2,7 @@
 
 use acrobot::arithmetic::{Arithmetic, Damped, Real};
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::{Pendulum, Viscous, bound};
+use acrobot::physics::{Pendulum, Viscous, saturate};
 use acrobot::{Fast, Params, Portable, State};
 use controller::{Planner, Step};
 
@@ -19,7 +19,7 @@ fn holds<A: Arithmetic>(
     let steps = plan.len() + (REST * rate) as usize;
     let mut upright = 0;
     for i in 0..steps {
-        machine.step(bound(planner.follow(plan, i, machine.state()), limit)).unwrap();
+        machine.step(saturate(planner.follow(plan, i, machine.state()), limit)).unwrap();
         let [x1, x2, ..] = machine.deviation(State::UPRIGHT).map(Real::to_f64);
         if x1.abs().max(x2.abs()) > 0.1 {
             upright = i + 1;

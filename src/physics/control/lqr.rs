@@ -1,8 +1,8 @@
 //! The linear-quadratic regulator of a discrete model.
 
-use super::discretize::DiscreteModel;
 use super::double::{Double, MINUS_ONE, narrow, widen};
 use super::error::ControlError;
+use super::linearize_step::DiscreteModel;
 use super::matrix::{
     Matrix, add, add_outer, add_scaled, apply, check_finite, congruence, diagonal, dot, eliminate,
     identity, inner, largest, product, scale, spread, symmetrize, transpose,
@@ -24,7 +24,7 @@ pub struct Lqr<S = f64> {
 impl<S: Real> Lqr<S> {
     /// The torque −K x, N m, for a [deviation](crate::physics::Pendulum::deviation) x from the
     /// state of the linearization, rad and rad/s. Add the torque of the linearization, and
-    /// [`bound`](crate::physics::bound) the sum to that of a motor.
+    /// [`saturate`](crate::physics::saturate) the sum to that of a motor.
     #[must_use]
     pub fn torque(&self, x: [S; 4]) -> S {
         -dot(self.gain, x)

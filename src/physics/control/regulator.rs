@@ -1,7 +1,7 @@
 //! The regulator of an equilibrium.
 
-use super::discretize::discretize;
 use super::error::ControlError;
+use super::linearize_step::linearize_step;
 use super::lqr::{Lqr, lqr};
 use crate::math::Real;
 use crate::physics::arithmetic::Arithmetic;
@@ -17,14 +17,14 @@ impl<A: Arithmetic> Pendulum<A> {
     /// # Errors
     ///
     /// [`ControlError::NotInEquilibrium`] for a velocity that is not 0 or an acceleration above
-    /// 0.01 rad/s², and those of [`discretize`] and [`lqr`].
+    /// 0.01 rad/s², and those of [`linearize_step`] and [`lqr`].
     pub fn regulator(
         &self,
         torque: A::Scalar,
         q: &[[A::Scalar; 4]; 4],
         r: A::Scalar,
     ) -> Result<Lqr<A::Scalar>, ControlError> {
-        let model = discretize(self, torque)?;
+        let model = linearize_step(self, torque)?;
         let rates = self.derivative(torque).map(Real::to_f64);
         for (rate, largest) in rates.into_iter().zip([0.0, 0.0, LARGEST, LARGEST]) {
             if !(-largest..=largest).contains(&rate) {

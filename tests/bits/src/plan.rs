@@ -2,7 +2,7 @@
 //! following it.
 
 use acrobot::numpy::Pcg64;
-use acrobot::physics::bound;
+use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, State};
 use controller::{NoPlan, Planner, Step};
 
@@ -37,7 +37,7 @@ pub fn digest(plan: &[Step<f32>]) -> u64 {
     let set = acrobot.set_params(params(RATE));
     digest.add(u64::from(set.is_ok()));
     for step in plan {
-        let stepped = acrobot.step_torque(bound(step.follow(acrobot.state()), 1.0));
+        let stepped = acrobot.step_torque(saturate(step.follow(acrobot.state()), 1.0));
         digest.add(u64::from(stepped.is_ok()));
         let numbers = [step.state.into(), acrobot.state().into(), step.gain, [step.torque; 4]];
         for number in numbers.as_flattened() {

@@ -6,7 +6,7 @@ use acrobot::State;
 use acrobot::arithmetic::Real;
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
-    ControlError, DiscreteModel, discretize, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, DiscreteModel, inverse_dynamics, linearize, linearize_step, lqr, velocities,
 };
 use common::in_every_arithmetic;
 use proptest::prelude::*;
@@ -29,7 +29,7 @@ fn results_are_finite_or_errors() {
         holds(2000, given, |(params, state, torque, accelerations)| {
             let pendulum = Pendulum::<A>::new(params, state).unwrap();
             let continuous = linearize(&pendulum, torque);
-            let discrete = discretize(&pendulum, torque);
+            let discrete = linearize_step(&pendulum, torque);
             let forces = inverse_dynamics(&pendulum, accelerations);
             assert!(is_finite(continuous.map(|model| [model.a.as_flattened(), &model.b].concat())));
             assert!(is_finite(discrete.map(|model| [model.a.as_flattened(), &model.b].concat())));
@@ -94,7 +94,7 @@ fn moderate_pendulums_can_be_held_upright() {
         holds(500, (params::<A>(Range::Moderate), weight), |(params, r)| {
             let pendulum = Pendulum::<A>::new(params, State::UPRIGHT).unwrap();
             let zero = A::Scalar::ZERO;
-            let Ok(model) = discretize(&pendulum, zero) else {
+            let Ok(model) = linearize_step(&pendulum, zero) else {
                 return;
             };
             let one = A::Scalar::from_f64(1.0);

@@ -14,7 +14,7 @@
 
 use core::cell::RefCell;
 
-use acrobot::physics::bound;
+use acrobot::physics::saturate;
 use acrobot::physics::control::{ControlError, difference};
 use acrobot::{Acrobot, Error, Fast, Params, State};
 use acrobot_cortex_m::ram;
@@ -93,7 +93,7 @@ impl Episode {
         let before = SYST::get_current();
         let state = self.machine.state();
         let torque = match plan.get(self.ticks as usize) {
-            Some(step) => bound(step.follow(state), self.motor.limit),
+            Some(step) => saturate(step.follow(state), self.motor.limit),
             None => self.controller.decide(state)?,
         };
         // The counter counts down, and begins again from the period.

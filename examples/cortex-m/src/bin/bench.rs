@@ -10,7 +10,7 @@ use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
-    ControlError, difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, difference, linearize_step, inverse_dynamics, linearize, lqr, velocities,
 };
 use acrobot::render::{Figure, Theme};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, Step, TimeLimit};
@@ -87,7 +87,7 @@ fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Contr
     let [zero, one] = [0.0, 1.0].map(A::Scalar::from_f64);
     let weights =
         core::array::from_fn(|i| core::array::from_fn(|j| if i == j { one } else { zero }));
-    let model = discretize(&pendulum, zero)?;
+    let model = linearize_step(&pendulum, zero)?;
     let regulator = lqr(&model, &weights, one)?;
     let mut print = |figure, run: &mut dyn FnMut()| {
         println!("{name} {figure} {}", counter.count(100, run));
@@ -95,8 +95,8 @@ fn control<A: Arithmetic>(name: &str, counter: &mut Counter) -> Result<(), Contr
     print("linearize", &mut || {
         let _ = black_box(linearize(black_box(&pendulum), zero));
     });
-    print("discretize", &mut || {
-        let _ = black_box(discretize(black_box(&pendulum), zero));
+    print("linearize_step", &mut || {
+        let _ = black_box(linearize_step(black_box(&pendulum), zero));
     });
     print("lqr", &mut || {
         let _ = black_box(lqr(black_box(&model), &weights, one));

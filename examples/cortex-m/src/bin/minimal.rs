@@ -12,7 +12,7 @@ use core::hint::black_box;
 
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::physics::Pendulum;
-use acrobot::physics::control::{discretize, lqr};
+use acrobot::physics::control::{linearize_step, lqr};
 use acrobot::{Acrobot, Action, Error, Fast, Params, Portable};
 use acrobot_cortex_m::{nop, stack};
 use semihosting::{println, process};
@@ -71,7 +71,7 @@ fn set_params(acrobot: &mut Acrobot<Fast>) -> Result<(), Error> {
 
 /// Computes a gain, and the torque.
 fn regulate(acrobot: &mut Acrobot<Fast>) {
-    if let Ok(model) = discretize(acrobot.pendulum(), 0.0)
+    if let Ok(model) = linearize_step(acrobot.pendulum(), 0.0)
         && let Ok(regulator) = lqr(&model, &black_box([[1.0; 4]; 4]), 1.0)
     {
         let x = acrobot.pendulum().deviation(acrobot.state());
@@ -80,7 +80,7 @@ fn regulate(acrobot: &mut Acrobot<Fast>) {
 }
 
 fn print_stack() -> ! {
-    let model = discretize(&Pendulum::<Fast>::hanging(), 0.0);
+    let model = linearize_step(&Pendulum::<Fast>::hanging(), 0.0);
     let bytes = stack::depth(|| {
         let _ = black_box(model.map(|model| lqr(&model, &black_box([[1.0; 4]; 4]), 1.0)));
     });

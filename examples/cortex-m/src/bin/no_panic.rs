@@ -17,7 +17,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::control::{
-    difference, discretize, inverse_dynamics, linearize, lqr, velocities,
+    difference, linearize_step, inverse_dynamics, linearize, lqr, velocities,
 };
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
@@ -113,7 +113,7 @@ fn control<A: Arithmetic>() {
         velocities(&pendulum),
         pendulum.regulator(number(), &weights, number()),
     ));
-    let Ok(model) = discretize(&pendulum, number()) else {
+    let Ok(model) = linearize_step(&pendulum, number()) else {
         return;
     };
     if let Ok(regulator) = black_box(lqr(&model, &weights, number())) {

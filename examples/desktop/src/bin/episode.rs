@@ -8,7 +8,7 @@
 use std::path::PathBuf;
 
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::bound;
+use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 use clap::Parser;
 use controller::{Planner, Step};
@@ -89,7 +89,7 @@ fn balance(rng: Pcg64) -> anyhow::Result<Vec<State>> {
         if step % STEPS_PER_FRAME == 0 {
             states.push(state.cast());
         }
-        machine.step_torque(bound(planner.follow(plan, step, state), 2.0))?;
+        machine.step_torque(saturate(planner.follow(plan, step, state), 2.0))?;
     }
     Ok(states)
 }

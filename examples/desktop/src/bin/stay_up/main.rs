@@ -18,8 +18,8 @@ use std::ops::Range;
 
 use acrobot::arithmetic::Arithmetic;
 use acrobot::numpy::Pcg64;
-use acrobot::physics::bound;
 use acrobot::physics::control::difference;
+use acrobot::physics::saturate;
 use acrobot::task::Task;
 use acrobot::{Acrobot, Fast, Params, State};
 use clap::Parser;
@@ -76,7 +76,7 @@ impl Episode {
         let mut episode = Self::default();
         for i in 0..steps {
             let torque = planner.follow(plan, i, acrobot.state());
-            episode.step(&mut acrobot, bound(torque, limit), i)?;
+            episode.step(&mut acrobot, saturate(torque, limit), i)?;
         }
         Ok(episode)
     }

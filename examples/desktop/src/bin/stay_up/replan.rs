@@ -6,7 +6,7 @@ use std::array::from_fn;
 use std::time::{Duration, Instant};
 
 use acrobot::numpy::uniform;
-use acrobot::physics::bound;
+use acrobot::physics::saturate;
 use acrobot::{Acrobot, Fast, Params, State};
 use controller::Step;
 use rayon::prelude::*;
@@ -107,7 +107,7 @@ fn play(
             plan = search.again(state, observer.params(), steps - i, rest)?;
             next = 0;
         }
-        let torque = bound(search.planner.follow(&plan, next, state), limit);
+        let torque = saturate(search.planner.follow(&plan, next, state), limit);
         next += 1;
         observer.step(torque)?;
         let took = before.elapsed();

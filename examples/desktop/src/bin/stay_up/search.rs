@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use acrobot::arithmetic::Damped;
 use acrobot::numpy::{Pcg64, uniform};
-use acrobot::physics::bound;
+use acrobot::physics::saturate;
 use acrobot::task::Swingup;
 use acrobot::{Acrobot, Fast, Params, State};
 use controller::{Planner, Step};
@@ -85,7 +85,7 @@ impl Search {
             0 => {
                 let push = (f64::from(self.limit) * uniform(&mut self.rng, -1.0, 1.0)) as f32;
                 for torque in &mut torques[window] {
-                    *torque = bound(*torque + push, self.limit);
+                    *torque = saturate(*torque + push, self.limit);
                 }
             }
             1 if torques.len() > 2 * WINDOW => drop(torques.drain(window)),

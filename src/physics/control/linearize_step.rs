@@ -29,11 +29,11 @@ pub struct DiscreteModel<S = f64> {
 ///
 /// ```
 /// use acrobot::physics::Pendulum;
-/// use acrobot::physics::control::discretize;
+/// use acrobot::physics::control::linearize_step;
 /// use acrobot::{Params, Portable, State};
 ///
 /// let upright = Pendulum::<Portable>::new(Params::DEFAULT, State::UPRIGHT)?;
-/// let model = discretize(&upright, 0.0)?;
+/// let model = linearize_step(&upright, 0.0)?;
 ///
 /// let mut pushed = upright.clone();
 /// pushed.step(1e-6)?; // N m
@@ -44,7 +44,7 @@ pub struct DiscreteModel<S = f64> {
 /// # Errors
 ///
 /// Those of [`linearize`](super::linearize).
-pub fn discretize<A: Arithmetic>(
+pub fn linearize_step<A: Arithmetic>(
     pendulum: &Pendulum<A>,
     torque: A::Scalar,
 ) -> Result<DiscreteModel<A::Scalar>, ControlError> {
