@@ -126,8 +126,8 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
         self.advance(self.params().torque(action))
     }
 
-    /// Applies any finite torque, N m, for one dt. [`saturate`](crate::physics::saturate) limits it to
-    /// that of a motor.
+    /// Applies any finite torque, N m, for one dt. [`saturate`](crate::physics::saturate) limits it
+    /// to that of a motor.
     ///
     /// # Errors
     ///

@@ -15,8 +15,7 @@ use crate::math::{Numbers, Real};
 /// unit](crate::arithmetic).
 pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 'static {
     /// A short name in lower case, such as "fast". Snapshots hold it, so no other arithmetic can
-    /// load them. With more than 16 bytes, in [`Damped`](crate::arithmetic::Damped) 9, code that saves
-    /// or loads a snapshot does not compile.
+    /// load them. With more than 16 bytes, code that saves or loads a snapshot does not compile.
     const NAME: &'static str;
 
     /// The type of angles, velocities, torques and parameters.

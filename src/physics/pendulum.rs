@@ -83,7 +83,8 @@ impl<A: Arithmetic> Pendulum<A> {
         }
     }
 
-    /// Applies a torque, N m, for one dt. [`saturate`](super::saturate) limits it to that of a motor.
+    /// Applies a torque, N m, for one dt. [`saturate`](super::saturate) limits it to that of a
+    /// motor.
     ///
     /// # Errors
     ///

@@ -32,8 +32,9 @@ impl<S: Real> Step<S> {
         Self { state: State::HANGING, torque, gain: [S::ZERO; 4], change: S::ZERO }
     }
 
-    /// The torque that follows the plan from a measured state, N m. `saturate` limits it to that of a
-    /// motor, which needs more torque than the plan to correct deviations.
+    /// The torque that follows the plan from a measured state, N m. `saturate` limits it to that of
+    /// a motor, which needs more torque than the plan to correct deviations. From an extreme state
+    /// it can be infinite or NaN.
     #[must_use]
     pub fn follow(&self, state: State<S>) -> S {
         self.torque + dot(self.gain, difference(state, self.state))

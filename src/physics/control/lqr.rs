@@ -24,7 +24,8 @@ pub struct Lqr<S = f64> {
 impl<S: Real> Lqr<S> {
     /// The torque −K x, N m, for a [deviation](crate::physics::Pendulum::deviation) x from the
     /// state of the linearization, rad and rad/s. Add the torque of the linearization, and
-    /// [`saturate`](crate::physics::saturate) the sum to that of a motor.
+    /// [`saturate`](crate::physics::saturate) the sum to that of a motor. For an extreme deviation
+    /// it can be infinite or NaN.
     #[must_use]
     pub fn torque(&self, x: [S; 4]) -> S {
         -dot(self.gain, x)
