@@ -14,8 +14,8 @@
 
 use core::cell::RefCell;
 
-use acrobot::physics::saturate;
 use acrobot::physics::control::{ControlError, difference};
+use acrobot::physics::saturate;
 use acrobot::{Acrobot, Error, Fast, Params, State};
 use acrobot_cortex_m::ram;
 use bits::plan;

@@ -10,7 +10,7 @@ use acrobot::arithmetic::{Arithmetic, Micro, Real, Reference};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Pendulum;
 use acrobot::physics::control::{
-    ControlError, difference, linearize_step, inverse_dynamics, linearize, lqr, velocities,
+    ControlError, difference, inverse_dynamics, linearize, linearize_step, lqr, velocities,
 };
 use acrobot::render::{Figure, Theme};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, Step, TimeLimit};

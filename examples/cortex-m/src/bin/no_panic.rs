@@ -17,7 +17,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::physics::control::{
-    difference, linearize_step, inverse_dynamics, linearize, lqr, velocities,
+    difference, inverse_dynamics, linearize, linearize_step, lqr, velocities,
 };
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
