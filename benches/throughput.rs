@@ -30,8 +30,8 @@ fn main() {
     for len in [1024, 1 << 20] {
         batch::<Fast>("fast", len, SimdLevel::widest());
     }
-    let own = VecBatch::<Fast>::with_own_params(SeedSequence::new(0), 1024)
-        .expect("memory for the batch");
+    let mut own = VecBatch::<Fast>::new(SeedSequence::new(0), 1024).expect("memory for the batch");
+    own.own_params().expect("memory for the batch");
     versus("fast_1024_own_params", Play::from(own), Play::<Fast>::new(1024));
     let swingup = Play::<Damped<Fast>, Swingup>::new(1024);
     versus("fast_1024_swingup", swingup, Play::<Fast>::new(1024));

@@ -7,8 +7,10 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::Pcg64;
-use crate::physics::{Params, Pendulum, State, check_torque, default_model};
-use crate::task::{Gymnasium, Observation, Of, ResetBounds, ResetOptions, Seen, Task, episode};
+use crate::physics::{Params, Pendulum, State, check_params, check_torque, default_model};
+use crate::task::{
+    Draws, Gymnasium, Observation, Of, ResetBounds, ResetOptions, Seen, Task, episode,
+};
 
 /// Gymnasium's `reward_threshold`: the mean return of 100 episodes that solves `Acrobot-v1`.
 pub const REWARD_THRESHOLD: f32 = -100.0;
@@ -63,7 +65,7 @@ impl<O, I> Step<O, I> {
 /// bit-identically. A snapshot has only numbers of up to 64 bits and no optional field, so any
 /// serde format can hold it, also in flattened structs and in tagged enums.
 ///
-/// The first field holds the type, the version (3), the [name of the task](Task::NAME), the [name
+/// The first field holds the type, the version (4), the [name of the task](Task::NAME), the [name
 /// of the arithmetic](Arithmetic::NAME) and whether it has friction. Loading rejects another one,
 /// and what the setters reject; postcard's errors do not say why. `MAX_SNAPSHOT_SIZE`, also of a
 /// [`TimeLimit`](crate::TimeLimit), is the size of a buffer for postcard.
@@ -76,7 +78,7 @@ impl<O, I> Step<O, I> {
 ///
 /// let acrobot = Acrobot::<Fast>::new(42);
 /// let text = serde_json::to_string(&acrobot)?;
-/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":3,"task":"gymnasium","#));
+/// assert!(text.starts_with(r#"{"snapshot":{"of":"acrobot","version":4,"task":"gymnasium","#));
 /// assert_eq!(serde_json::from_str::<Acrobot<Fast>>(&text)?, acrobot);
 /// # Ok::<(), serde_json::Error>(())
 /// ```
@@ -153,6 +155,17 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
     /// observation.
     pub fn reset(&mut self) -> T::Observation {
         self.begin(T::RESET_BOUNDS)
+    }
+
+    /// Draws parameters for the next steps from the generator: call it after a reset.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`set_params`](Self::set_params), for what the draws can make of the parameters.
+    pub fn draw_params(&mut self, draws: &Draws<A::Scalar>) -> Result<(), Error> {
+        draws.ends(self.params()).iter().try_for_each(check_params::<A>)?;
+        let params = draws.draw(&{ *self.params() }, &mut self.rng);
+        self.set_params(params)
     }
 
     fn begin(&mut self, bounds: ResetBounds) -> T::Observation {

@@ -177,7 +177,7 @@ impl Arithmetic for Micro {
 
     #[inline(always)]
     fn sin_cos_near<V: Numbers<f32>>(x: V) -> (V, V) {
-        x.zip3(x, x, |x, _, _| table::sin_cos(x))
+        x.map2(table::sin_cos)
     }
 }
 

@@ -13,7 +13,7 @@
 //! let (mut rewards, mut terminated, mut truncated) = ([0.0; 50], [false; 50], [false; 50]);
 //! let mut observations = [[0.0; 6]; 50];
 //! let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
-//! batch.step(&[2_u8; 50], buffers.with_observations(&mut observations))?;
+//! batch.step_into(&[2_u8; 50], buffers.with_observations(&mut observations))?;
 //! assert_eq!(rewards, [-1.0; 50]);
 //! # Ok::<(), acrobot::Error>(())
 //! ```
@@ -50,8 +50,9 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
 use crate::physics::{Params, State, check_params, default_model, model};
-use crate::task::{Gymnasium, Of, ParamsRange, ResetBounds, Task};
+use crate::task::{Draws, Gymnasium, Of, ResetBounds, Task};
 use buffers::{check_length, take_mut};
+use lane_params::Own;
 use settings::{Parameters, Settings};
 use storage::SlicesMut;
 use work::Work;
@@ -111,7 +112,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// or none.
     pub fn new(seed: impl Into<SeedSequence>, mut storage: S) -> Result<Self, Error> {
         const { assert!(0 < N && N <= 32, "a block must hold from 1 to 32 acrobots") };
-        let SlicesMut { blocks, generators, lane_params } = storage.slices_mut();
+        let SlicesMut { blocks, generators, lane_params, .. } = storage.slices_mut();
         if generators.is_empty() {
             return Err(Error::EmptyBatch);
         }
@@ -123,13 +124,13 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         } else {
             check_length("lane_params", lane_params.len(), blocks.len())?;
             lane_params.fill(LaneParams::shared(&model));
-            Parameters::Own(None)
+            Parameters::Own
         };
         let mut batch = Self {
             settings: Settings {
                 parameters,
                 bounds: T::RESET_BOUNDS,
-                limit: T::LIMIT,
+                max_steps: T::MAX_STEPS,
                 autoreset: Autoreset::default(),
                 task: T::DEFAULT,
             },
@@ -155,7 +156,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// [`Error::WrongLength`] unless each slice has one element for each acrobot,
     /// [`Error::UnknownAction`] for a number above 2, and [`Error::OutOfRange`] for a torque that
     /// is not finite.
-    pub fn step<I: Input<A::Scalar>>(
+    pub fn step_into<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],
         buffers: StepBuffers<'_, T::Observation>,
@@ -165,10 +166,10 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         Ok(())
     }
 
-    /// As [`step`](Self::step), with its errors, on all cores with rayon. The number of threads
+    /// As [`step_into`](Self::step_into), with its errors, on all cores with rayon. The number of threads
     /// changes no bit.
     #[cfg(feature = "rayon")]
-    pub fn par_step<I: Input<A::Scalar>>(
+    pub fn par_step_into<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],
         buffers: StepBuffers<'_, T::Observation>,
@@ -193,6 +194,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
             blocks: slices.blocks,
             generators: slices.generators,
             lane_params: slices.lane_params,
+            draws: slices.draws.map(|draws| &*draws),
             inputs,
             buffers,
         })
@@ -218,23 +220,31 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// The number of steps of acrobot `index` since its last reset, if there is one.
     #[must_use]
-    pub fn elapsed(&self, index: usize) -> Option<u32> {
-        let (elapsed, _) = self.block_of(index).ok()?.progress(index % N)?;
-        Some(elapsed)
+    pub fn elapsed_steps_of(&self, index: usize) -> Option<u32> {
+        let (elapsed_steps, _) = self.block_of(index).ok()?.progress(index % N)?;
+        Some(elapsed_steps)
+    }
+
+    /// Whether the episode of acrobot `index`, if there is one, has ended and it waits for a reset:
+    /// by the next step or, with [`Autoreset::Disabled`], by the caller.
+    #[must_use]
+    pub fn ended(&self, index: usize) -> Option<bool> {
+        let (_, ended) = self.block_of(index).ok()?.progress(index % N)?;
+        Some(ended)
     }
 
     /// The state of acrobot `index`, if there is one.
     #[must_use]
-    pub fn state(&self, index: usize) -> Option<State<A::Scalar>> {
+    pub fn state_of(&self, index: usize) -> Option<State<A::Scalar>> {
         self.block_of(index).ok()?.state(index % N)
     }
 
-    /// Sets the state of acrobot `index`. Its number of steps and a pending reset do not change.
+    /// Sets the state of acrobot `index`. Its episode continues, or still waits for a reset.
     ///
     /// # Errors
     ///
     /// [`Error::NoSuchIndex`], and [`Error::OutOfRange`] for a number that is not finite.
-    pub fn set_state(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
+    pub fn set_state_of(&mut self, index: usize, state: State<A::Scalar>) -> Result<(), Error> {
         state.validate()?;
         self.block_of(index)?;
         if let Some(block) = self.storage.slices_mut().blocks.get_mut(index / N) {
@@ -256,14 +266,14 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         slices.generators.get(index)?;
         match &self.settings.parameters {
             Parameters::Shared(model) => Some(model.params),
-            Parameters::Own(_) => Some(slices.lane_params.get(index / N)?.get(index % N)),
+            Parameters::Own => Some(slices.lane_params.get(index / N)?.get(index % N)),
         }
     }
 
     /// Sets the parameters of all acrobots for the next steps, with the errors of
     /// [`Pendulum::set_params`](crate::physics::Pendulum::set_params).
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
-        check_params::<A>(&params)?;
+        self.check_params(&params)?;
         let model = model::<A>(params);
         let lane_params = self.storage.slices_mut().lane_params;
         lane_params.fill(LaneParams::shared(&model));
@@ -280,7 +290,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// Those of [`set_params`](Self::set_params), [`Error::NoSuchIndex`], and
     /// [`Error::SharedParams`] without memory for [`LaneParams`].
     pub fn set_params_of(&mut self, index: usize, params: Params<A::Scalar>) -> Result<(), Error> {
-        check_params::<A>(&params)?;
+        self.check_params(&params)?;
         self.block_of(index)?;
         let lane_params = self.storage.slices_mut().lane_params;
         let own = lane_params.get_mut(index / N).ok_or(Error::SharedParams)?;
@@ -288,30 +298,34 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         Ok(())
     }
 
-    /// The range from which each reset draws the acrobot's parameters.
-    #[must_use]
-    pub fn params_range(&self) -> Option<&ParamsRange<A::Scalar>> {
-        match &self.settings.parameters {
-            Parameters::Shared(_) => None,
-            Parameters::Own(range) => range.as_ref(),
-        }
+    /// Checks parameters, and what the draws can make of them.
+    fn check_params(&self, params: &Params<A::Scalar>) -> Result<(), Error> {
+        check_params::<A>(params)?;
+        let ends = self.draws().ends(params);
+        ends.iter().try_for_each(check_params::<A>)
     }
 
-    /// Sets the range from which each reset, also one in a step, draws the acrobot's parameters
-    /// after its initial state.
+    /// What each reset draws of the parameters.
+    #[must_use]
+    pub fn draws(&self) -> Draws<A::Scalar> {
+        *self.storage.slices().draws.unwrap_or(&Draws::NONE)
+    }
+
+    /// Sets what each reset, also one in a step, draws of the acrobot's parameters after its
+    /// initial state.
     ///
     /// # Errors
     ///
-    /// [`Error::SharedParams`] for a range without memory for [`LaneParams`].
-    pub fn set_params_range(&mut self, range: Option<ParamsRange<A::Scalar>>) -> Result<(), Error> {
-        if let Some(range) = &range {
-            check_params::<A>(range.low())?;
-            check_params::<A>(range.high())?;
+    /// Those of [`set_params`](Self::set_params), for what the draws can make of the parameters of
+    /// each acrobot, and [`Error::SharedParams`] without memory for [`LaneParams`].
+    pub fn set_draws(&mut self, draws: Draws<A::Scalar>) -> Result<(), Error> {
+        for params in (0..self.len()).filter_map(|index| self.params_of(index)) {
+            draws.ends(&params).iter().try_for_each(check_params::<A>)?;
         }
-        match &mut self.settings.parameters {
-            Parameters::Own(own) => *own = range,
-            Parameters::Shared(_) if range.is_some() => return Err(Error::SharedParams),
-            Parameters::Shared(_) => {}
+        match (&self.settings.parameters, self.storage.slices_mut().draws) {
+            (Parameters::Own, Some(own)) => *own = draws,
+            _ if draws == Draws::NONE => {}
+            _ => return Err(Error::SharedParams),
         }
         Ok(())
     }
@@ -352,13 +366,13 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     /// The number of steps after which episodes are truncated.
     #[must_use]
-    pub fn limit(&self) -> NonZeroU32 {
-        self.settings.limit
+    pub fn max_steps(&self) -> NonZeroU32 {
+        self.settings.max_steps
     }
 
     /// Sets the number of steps after which episodes are truncated.
-    pub fn set_limit(&mut self, limit: NonZeroU32) {
-        self.settings.limit = limit;
+    pub fn set_max_steps(&mut self, max_steps: NonZeroU32) {
+        self.settings.max_steps = max_steps;
     }
 
     /// When ended episodes are reset.
@@ -367,19 +381,18 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         self.settings.autoreset
     }
 
-    /// Sets when ended episodes are reset. [`Autoreset::SameStep`] immediately resets acrobots
-    /// whose reset is pending, and [`Autoreset::Disabled`] never.
+    /// Sets when ended episodes are reset. [`Autoreset::SameStep`] immediately resets those
+    /// that wait for it.
     pub fn set_autoreset(&mut self, autoreset: Autoreset) {
         self.settings.autoreset = autoreset;
         for (block, generators, own) in each_block(&mut self.storage) {
-            block.settle_pending_resets(&self.settings, generators, own);
+            block.reset_ended(&self.settings, generators, own);
         }
     }
 }
 
 /// A block with its generators, fewer than `N` in the last block, and its own parameters, if any.
-type Part<'a, A, const N: usize> =
-    (&'a mut Block<A, N>, &'a mut [Pcg64], Option<&'a mut LaneParams<A, N>>);
+type Part<'a, A, const N: usize> = (&'a mut Block<A, N>, &'a mut [Pcg64], Option<Own<'a, A, N>>);
 
 fn each_block<A: Arithmetic, const N: usize>(
     storage: &mut impl Storage<A, N>,
@@ -387,5 +400,9 @@ fn each_block<A: Arithmetic, const N: usize>(
     let slices = storage.slices_mut();
     let (mut generators, mut lane_params) = (slices.generators, slices.lane_params.iter_mut());
     let blocks = slices.blocks.iter_mut();
-    blocks.map(move |block| (block, take_mut(&mut generators, N), lane_params.next()))
+    let draws = slices.draws.map(|draws| &*draws);
+    blocks.map(move |block| {
+        let own = lane_params.next().zip(draws);
+        (block, take_mut(&mut generators, N), own)
+    })
 }

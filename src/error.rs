@@ -26,27 +26,13 @@ pub enum Error {
         /// The rule, before the unit: `"finite and above 0"`.
         rule: &'static str,
     },
-    /// A link has neither a moment of inertia nor a distance between its centre of mass and its
-    /// joint.
-    NoInertia {
-        /// `"inertia1"` or `"inertia2"`.
+    /// A joint has friction, and the arithmetic has none.
+    NoFriction {
+        /// `"friction.joint1"` or `"friction.joint2"`.
         name: &'static str,
-        /// The moment of inertia given, kg m².
+        /// The coefficient given, N m s/rad.
         value: f64,
     },
-    /// The lower bound of initial states, or of a parameter, is above the upper one.
-    ReversedRange {
-        /// `"reset bound"` or the parameter.
-        name: &'static str,
-        /// The lower bound given, in `unit`.
-        low: f64,
-        /// The upper bound given, in `unit`.
-        high: f64,
-        /// The SI unit.
-        unit: &'static str,
-    },
-    /// The two bounds of a range of parameters have different dynamics.
-    DifferentDynamics,
     /// A batch has no memory for the parameters of each acrobot.
     SharedParams,
     /// A batch has no acrobots.
@@ -94,15 +80,30 @@ pub enum Error {
 }
 
 impl Error {
+    /// The field or argument that was rejected; empty for an error that has none.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::OutOfRange { name, .. }
+            | Self::NoFriction { name, .. }
+            | Self::WrongLength { name, .. } => name,
+            Self::UnknownAction(_) => "action",
+            _ => "",
+        }
+    }
+
+    /// The message with another [name](Self::name), such as that of another language.
+    pub fn named(&self, name: impl fmt::Display) -> impl fmt::Display {
+        Named(*self, name)
+    }
+
     /// The kind of error. `Display` adds the numbers, and needs [more flash than the
     /// crate](crate::guide::embedded_figures#what-adds-flash).
     #[must_use]
     pub const fn message(&self) -> &'static str {
         match self {
             Self::OutOfRange { .. } => "a number is out of range",
-            Self::NoInertia { .. } => "a link has no moment of inertia",
-            Self::ReversedRange { .. } => "a lower bound is above the upper one",
-            Self::DifferentDynamics => "dynamics must be the same in both bounds of a range",
+            Self::NoFriction { .. } => "the arithmetic has no friction",
             Self::SharedParams => "a batch must have memory for the parameters of each acrobot",
             Self::EmptyBatch => "a batch must have at least 1 acrobot",
             #[cfg(feature = "alloc")]
@@ -118,36 +119,36 @@ impl Error {
     }
 }
 
-impl fmt::Display for Error {
+/// An error with another name of its field or argument.
+struct Named<N>(Error, N);
+
+impl<N: fmt::Display> fmt::Display for Named<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::OutOfRange { name, value, unit, rule } => {
+        let Self(error, name) = self;
+        match *error {
+            Error::OutOfRange { value, unit, rule, .. } => {
                 write!(f, "{name} must be {rule} {unit}, got {value}")
             }
-            Self::NoInertia { name, value } => write!(
+            Error::NoFriction { value, .. } => write!(
                 f,
-                "{name} must be above 0 kg m² if the centre of mass is on the joint, got {value}"
+                "{name} must be 0 unless the arithmetic is Damped, in N m s/rad, got {value}"
             ),
-            Self::ReversedRange { name, low, high, unit } => write!(
-                f,
-                "the lower {name} must not be above the upper one, got {low} and {high} {unit}"
-            ),
-            Self::DifferentDynamics | Self::SharedParams => f.write_str(self.message()),
-            Self::EmptyBatch => write!(f, "{}, got 0 generators", self.message()),
-            #[cfg(feature = "alloc")]
-            Self::OutOfMemory { len } => write!(f, "{}, got {len} acrobots", self.message()),
-            Self::WrongLength { name, len, expected } => {
+            Error::WrongLength { len, expected, .. } => {
                 write!(f, "{name} must have {expected} elements, got {len}")
             }
-            Self::NoSuchIndex { index, len } => {
+            Error::SharedParams => f.write_str(error.message()),
+            Error::EmptyBatch => write!(f, "{}, got 0 generators", error.message()),
+            #[cfg(feature = "alloc")]
+            Error::OutOfMemory { len } => write!(f, "{}, got {len} acrobots", error.message()),
+            Error::NoSuchIndex { index, len } => {
                 write!(f, "member index must be below {len}, got {index}")
             }
-            Self::UnknownAction(number) => write!(
+            Error::UnknownAction(number) => write!(
                 f,
-                "action must be 0 (negative torque), 1 (none) or 2 (positive), got {number}"
+                "{name} must be 0 (negative torque), 1 (none) or 2 (positive), got {number}"
             ),
             #[cfg(feature = "std")]
-            Self::MalformedSeed { found, position } => {
+            Error::MalformedSeed { found, position } => {
                 f.write_str("seed must be a decimal integer of at least 0, got ")?;
                 match found {
                     Some(found) => write!(f, "{found:?} as character {position}"),
@@ -155,10 +156,16 @@ impl fmt::Display for Error {
                 }
             }
             #[cfg(feature = "std")]
-            Self::SeedTooLong { len, limit } => {
+            Error::SeedTooLong { len, limit } => {
                 write!(f, "seed must have at most {limit} digits, got {len} bytes")
             }
         }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Named(*self, self.name()).fmt(f)
     }
 }
 

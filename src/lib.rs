@@ -21,7 +21,7 @@
 //!     }
 //!     observation = step.observation;
 //! }
-//! assert_eq!(env.elapsed(), 94);
+//! assert_eq!(env.elapsed_steps(), 94);
 //! ```
 //!
 //! Get started [in Rust](guide::rust), [on a microcontroller](guide::embedded), [in C](guide::c),

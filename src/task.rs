@@ -3,10 +3,10 @@
 //! A [`Task`] is a type parameter of [`Acrobot`](crate::Acrobot) and of
 //! [`Batch`](crate::batch::Batch).
 
+mod draws;
 pub(crate) mod episode;
 mod gymnasium;
 mod observation;
-mod params_range;
 mod reset_bounds;
 mod reset_options;
 mod swingup;
@@ -18,9 +18,9 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use rand_core::Rng;
 
+pub use draws::{Draw, Draws};
 pub use gymnasium::Gymnasium;
 pub use observation::Observation;
-pub use params_range::ParamsRange;
 pub use reset_bounds::ResetBounds;
 pub use reset_options::ResetOptions;
 pub use swingup::{DmControl, Swingup, SwingupSparse};
@@ -40,7 +40,7 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
     const DEFAULT: Self;
 
     /// The number of steps of an episode.
-    const LIMIT: NonZeroU32;
+    const MAX_STEPS: NonZeroU32;
 
     /// The default bounds of initial states.
     const RESET_BOUNDS: ResetBounds = ResetBounds::DEFAULT;

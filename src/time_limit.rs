@@ -12,7 +12,7 @@ use crate::physics::{Params, State};
 use crate::task::{Gymnasium, ResetOptions, Task, episode};
 
 /// The number of steps of an episode of `Acrobot-v0`.
-pub(crate) const V0_LIMIT: NonZeroU32 = NonZeroU32::new(200).unwrap();
+pub(crate) const V0_MAX_STEPS: NonZeroU32 = NonZeroU32::new(200).unwrap();
 
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the
 /// limit on.
@@ -32,33 +32,33 @@ pub(crate) const V0_LIMIT: NonZeroU32 = NonZeroU32::new(200).unwrap();
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TimeLimit<E> {
     pub(crate) inner: E,
-    limit: NonZeroU32,
-    pub(crate) elapsed: u32,
+    max_steps: NonZeroU32,
+    pub(crate) elapsed_steps: u32,
 }
 
 impl<E> TimeLimit<E> {
-    /// Truncates episodes after `limit` steps.
+    /// Truncates episodes after `max_steps` steps.
     #[must_use]
-    pub const fn new(inner: E, limit: NonZeroU32) -> Self {
-        Self { inner, limit, elapsed: 0 }
+    pub const fn new(inner: E, max_steps: NonZeroU32) -> Self {
+        Self { inner, max_steps, elapsed_steps: 0 }
     }
 
     /// The number of steps after which episodes are truncated.
     #[must_use]
-    pub const fn limit(&self) -> NonZeroU32 {
-        self.limit
+    pub const fn max_steps(&self) -> NonZeroU32 {
+        self.max_steps
     }
 
     /// Sets the number of steps after which episodes are truncated. The count does not change.
-    pub const fn set_limit(&mut self, limit: NonZeroU32) {
-        self.limit = limit;
+    pub const fn set_max_steps(&mut self, max_steps: NonZeroU32) {
+        self.max_steps = max_steps;
     }
 
     /// The number of steps since the last reset.
     #[must_use]
     #[inline]
-    pub const fn elapsed(&self) -> u32 {
-        self.elapsed
+    pub const fn elapsed_steps(&self) -> u32 {
+        self.elapsed_steps
     }
 
     /// The wrapped environment.
@@ -84,7 +84,7 @@ impl<E> TimeLimit<E> {
     /// Counts a step. Returns whether the episode is truncated.
     #[inline]
     pub(crate) fn count(&mut self) -> bool {
-        episode::count(&mut self.elapsed, self.limit)
+        episode::count(&mut self.elapsed_steps, self.max_steps)
     }
 }
 
@@ -99,7 +99,7 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, Gymnasium, R>> {
     /// Truncates episodes after 200 steps, as `Acrobot-v0` does.
     #[must_use]
     pub const fn v0(inner: Acrobot<A, Gymnasium, R>) -> Self {
-        Self::new(inner, V0_LIMIT)
+        Self::new(inner, V0_MAX_STEPS)
     }
 }
 
@@ -110,22 +110,22 @@ impl<A: Arithmetic, T: Task> TimeLimit<Acrobot<A, T>> {
 
     /// Calls [`Acrobot::reset_with_seed`] and sets the count of steps to 0.
     pub fn reset_with_seed(&mut self, seed: u64) -> T::Observation {
-        self.elapsed = 0;
+        self.elapsed_steps = 0;
         self.inner.reset_with_seed(seed)
     }
 
     /// Calls [`Acrobot::reset_with`] and sets the count of steps to 0.
     pub fn reset_with(&mut self, options: ResetOptions) -> T::Observation {
-        self.elapsed = 0;
+        self.elapsed_steps = 0;
         self.inner.reset_with(options)
     }
 }
 
 impl<A: Arithmetic, T: Task, R> TimeLimit<Acrobot<A, T, R>> {
-    /// Truncates episodes after the steps that [the task has](Task::LIMIT).
+    /// Truncates episodes after the steps that [the task has](Task::MAX_STEPS).
     #[must_use]
     pub const fn of(inner: Acrobot<A, T, R>) -> Self {
-        Self::new(inner, T::LIMIT)
+        Self::new(inner, T::MAX_STEPS)
     }
 
     /// The state.
@@ -163,7 +163,7 @@ impl<A: Arithmetic, T: Task, R> TimeLimit<Acrobot<A, T, R>> {
 impl<A: Arithmetic, T: Task, R: Rng> TimeLimit<Acrobot<A, T, R>> {
     /// Calls [`Acrobot::reset`] and sets the count of steps to 0.
     pub fn reset(&mut self) -> T::Observation {
-        self.elapsed = 0;
+        self.elapsed_steps = 0;
         self.inner.reset()
     }
 

@@ -65,7 +65,7 @@ fn time_limits_truncate_whether_or_not_an_episode_terminates() {
         (TimeLimit::v1(Acrobot::<Fast>::new(1)), 500),
         (TimeLimit::v0(Acrobot::<Fast>::new(1)), 200),
     ] {
-        assert_eq!(acrobot.limit().get(), limit);
+        assert_eq!(acrobot.max_steps().get(), limit);
         for n in 1..limit {
             assert!(!acrobot.step(Action::Zero).truncated, "step {n}");
         }
@@ -73,15 +73,15 @@ fn time_limits_truncate_whether_or_not_an_episode_terminates() {
         acrobot.set_state(upright).unwrap();
         let last = acrobot.step(Action::Zero);
         assert!(last.terminated && last.truncated, "both on the last step");
-        assert_eq!(acrobot.elapsed(), limit);
+        assert_eq!(acrobot.elapsed_steps(), limit);
         acrobot.set_state(State::default()).unwrap();
         let beyond = acrobot.step(Action::Zero);
         assert!(!beyond.terminated && beyond.truncated, "as in Gymnasium");
         assert!(beyond.done() && last.done());
         acrobot.reset();
-        assert_eq!(acrobot.elapsed(), 0);
+        assert_eq!(acrobot.elapsed_steps(), 0);
         assert!(!acrobot.step(Action::Zero).done());
-        acrobot.set_limit(3.try_into().unwrap());
+        acrobot.set_max_steps(3.try_into().unwrap());
         assert!(!acrobot.step(Action::Zero).done());
         assert!(acrobot.step(Action::Zero).truncated, "the count goes on");
     }

@@ -124,7 +124,7 @@ fn boxed_and_borrowed_environments_are_environments() {
     assert_eq!(format!("{display:?}"), "Display");
     let options = Options { render_mode: RenderMode::Human(display), ..Options::default() };
     let env = RecordEpisodeStatistics::new(make_with("Acrobot-v0", options).unwrap());
-    let mut env = TimeLimit::new(env, Gymnasium::LIMIT);
+    let mut env = TimeLimit::new(env, Gymnasium::MAX_STEPS);
     env.reset();
     let length = (1..).find(|_| env.step(Action::Zero).truncated);
     assert_eq!(length, Some(200));
@@ -191,7 +191,7 @@ fn unwrapping_changes_nothing() {
         wrapped.step(Action::Positive);
     }
     let inner = wrapped.into_inner();
-    assert_eq!(inner.elapsed(), 3);
+    assert_eq!(inner.elapsed_steps(), 3);
     assert_eq!(inner.unwrapped(), env.unwrapped());
     assert_eq!(inner.into_inner().unwrapped(), env.unwrapped());
 }

@@ -8,7 +8,6 @@ use acrobot::env::{AcrobotEnv, RenderMode};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
 use acrobot::physics::control::inverse_dynamics;
 use acrobot::physics::{Dynamics, Pendulum, Viscous};
-use acrobot::task::ParamsRange;
 use acrobot::{Acrobot, Fast, Params, Portable, State, TimeLimit};
 
 /// `Portable`'s scalar and sines with Gymnasium's form of the equations, where `Portable` has the
@@ -128,15 +127,15 @@ fn an_arithmetic_without_friction_rejects_it() {
     let rule = "friction.joint2 must be 0 unless the arithmetic is Damped, in N m s/rad, got 0.5";
     let friction = Viscous { joint1: -0.0, joint2: 0.5 };
     let (with, without) = (Params { friction, ..Params::DEFAULT }, Params::DEFAULT);
-    let range = ParamsRange::new(without, with).unwrap();
+    let draws = common::between(without, with);
     let mut pendulum = Pendulum::<Portable>::hanging();
     let mut acrobot = TimeLimit::v1(Acrobot::<Portable>::new(0));
-    let mut batch = VecBatch::<Portable>::with_own_params(SeedSequence::new(0), 2).unwrap();
+    let mut batch = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
+    batch.own_params().unwrap();
     let mut shared = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
     let mut member = batch.member(0).unwrap();
     member.params = with;
-    let before =
-        (pendulum.clone(), acrobot.clone(), batch.member(1), batch.params_range().copied());
+    let before = (pendulum.clone(), acrobot.clone(), batch.member(1), batch.draws());
     for result in [
         Pendulum::<Portable>::new(with, State::HANGING).map(drop),
         with.pendulum::<Portable>(State::HANGING).map(drop),
@@ -148,12 +147,12 @@ fn an_arithmetic_without_friction_rejects_it() {
         batch.set_params(with),
         batch.set_params_of(1, with),
         batch.set_member(1, member),
-        batch.set_params_range(Some(range)),
+        batch.set_draws(draws),
         AcrobotEnv::<Fast, [f32; 6]>::new(with, RenderMode::None).map(drop),
     ] {
         assert_eq!(result.unwrap_err().to_string(), rule);
     }
-    let after = (pendulum, acrobot, batch.member(1), batch.params_range().copied());
+    let after = (pendulum, acrobot, batch.member(1), batch.draws());
     assert_eq!(after, before);
 }
 

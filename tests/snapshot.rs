@@ -6,8 +6,8 @@ use std::fmt::Debug;
 use acrobot::arithmetic::{Arithmetic, Damped, Micro, Reference};
 use acrobot::batch::{Member, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::{Dynamics, Viscous};
-use acrobot::task::{ParamsRange, ResetBounds};
+use acrobot::physics::Viscous;
+use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
 use crc::{CRC_32_ISCSI, Crc};
 use serde::Serialize;
@@ -33,37 +33,41 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
     let text = serde_json::to_string(&busy()).unwrap();
     assert!(serde_json::from_str::<Limited>(&text).is_ok());
     let header = concat!(
-        r#""snapshot":{"of":"acrobot","version":3,"task":"gymnasium","arithmetic":"portable","#,
+        r#""snapshot":{"of":"acrobot","version":4,"task":"gymnasium","arithmetic":"portable","#,
         r#""friction":false},"#
     );
     // The header is checked before anything else is read.
     let unread = header.to_owned() + r#""params":{"#;
-    let older = header.replace('3', "2") + r#""params":{}"#;
+    let older = header.replace('4', "3") + r#""params":{}"#;
     let words = |of, version, task, arithmetic| {
         format!(
             "{of:?}, version {version}, task {task:?}, arithmetic {arithmetic:?}, friction false"
         )
     };
-    let ours = words("acrobot", 3, "gymnasium", "portable");
+    let ours = words("acrobot", 4, "gymnasium", "portable");
     let got = |of, version, task, arithmetic| {
         format!("the snapshot must be {ours}, got {}", words(of, version, task, arithmetic))
     };
-    let no_snapshot = "; the input must be a snapshot of version 3";
-    let version_2 = got("acrobot", 2, "gymnasium", "portable");
+    let no_snapshot = "; the input must be a snapshot of version 4";
+    let version_3 = got("acrobot", 3, "gymnasium", "portable");
     for (from, to, reason) in [
         (r#""mass2":1.5"#, r#""mass2":-1.5"#, "mass2 must be finite and above 0 kg, got -1.5"),
-        (r#""limit":500"#, r#""limit":0"#, "invalid value: integer `0`, expected a nonzero u32"),
+        (
+            r#""max_steps":500"#,
+            r#""max_steps":0"#,
+            "invalid value: integer `0`, expected a nonzero u32",
+        ),
         (r#""Book""#, r#""Film""#, "unknown variant `Film`, expected `Book` or `Nips`"),
-        (r#""version":3"#, r#""version":2"#, &version_2),
-        (&unread, &older, &version_2),
-        ("portable", "host", &got("acrobot", 3, "gymnasium", "host")),
-        (r#""gymnasium""#, r#""swingup""#, &got("acrobot", 3, "swingup", "portable")),
+        (r#""version":4"#, r#""version":3"#, &version_3),
+        (&unread, &older, &version_3),
+        ("portable", "host", &got("acrobot", 4, "gymnasium", "host")),
+        (r#""gymnasium""#, r#""swingup""#, &got("acrobot", 4, "swingup", "portable")),
         (
             "false",
             "true",
             &format!("the snapshot must be {ours}, got {}", ours.replace("false", "true")),
         ),
-        (r#""acrobot""#, r#""batch""#, &got("batch", 3, "gymnasium", "portable")),
+        (r#""acrobot""#, r#""batch""#, &got("batch", 4, "gymnasium", "portable")),
         (r#""acrobot""#, r#""an environment of another kind""#, no_snapshot),
         (header, "", &format!("missing field `snapshot`{no_snapshot}")),
     ] {
@@ -87,23 +91,23 @@ fn snapshots_that_are_invalid_or_of_another_type_are_rejected() {
 /// file compiles no batch's.
 fn batch() -> VecBatch<Fast> {
     let seed = SeedSequence::new(42);
-    let range = common::params_range::<Fast>(Dynamics::Book);
     let bounds = ResetBounds::new(-0.5, 0.25).unwrap();
-    let mut batch = VecBatch::with_own_params(seed.clone(), 2).unwrap();
-    batch.set_params_range(Some(range)).unwrap();
+    let mut batch = VecBatch::new(seed.clone(), 2).unwrap();
+    batch.own_params().unwrap();
+    batch.set_draws(common::draws::<Fast>()).unwrap();
     batch.set_reset_bounds(bounds);
-    batch.set_limit(30.try_into().unwrap());
+    batch.set_max_steps(30.try_into().unwrap());
     for i in 0..2 {
         let mut alone = Acrobot::<Fast>::with_rng(seed.child(i as u64).into());
         alone.reset_with(bounds.into());
-        let params = range.draw(alone.rng_mut());
-        alone.set_params(params).unwrap();
+        alone.draw_params(&batch.draws()).unwrap();
+        let params = *alone.params();
         alone.step(Action::Positive);
         let member = Member {
             params,
             state: alone.state(),
-            elapsed: 1,
-            reset_pending: false,
+            elapsed_steps: 1,
+            ended: false,
             rng: alone.rng().clone(),
         };
         batch.set_member(i, member).unwrap();
@@ -135,8 +139,8 @@ fn stored<T: Serialize + DeserializeOwned>(original: T, lines: &mut std::str::Li
 
 /// Each version has its own file.
 #[test]
-fn snapshots_of_version_3_stay_readable() {
-    let file = include_str!("data/snapshots_3.txt");
+fn snapshots_of_version_4_stay_readable() {
+    let file = include_str!("data/snapshots_4.txt");
     let mut lines = file.lines();
     let found = [
         stored(busy(), &mut lines),
@@ -174,16 +178,12 @@ fn every_missing_field_is_an_error() {
         }
     }
     fn batch<A: Arithmetic>() -> VecBatch<A> {
-        let mut batch = VecBatch::with_own_params(SeedSequence::new(1), 2).unwrap();
-        let params = batch.params_of(0).unwrap();
-        let range = ParamsRange::new(params, params).unwrap();
-        batch.set_params_range(Some(range)).unwrap();
-        batch
+        VecBatch::new(SeedSequence::new(1), 2).unwrap()
     }
     check(&busy(), 38);
     check(&TimeLimit::v1(Acrobot::<Damped<Fast>>::new(0)), 38);
-    check(&batch::<Fast>(), 110);
-    check(&batch::<Damped<Portable>>(), 110);
+    check(&batch::<Fast>(), 92);
+    check(&batch::<Damped<Portable>>(), 92);
     let friction = Viscous { joint1: 0.5, joint2: 0.25 };
     check(&Params::<f64> { friction, ..Params::DEFAULT }, 18);
 }
@@ -198,8 +198,8 @@ fn no_snapshot_is_larger_than_its_constant() {
         largest["inner"]["rng"] = serde_json::json!(
             { "seed": seed, "position": u64::MAX, "has_half": true, "half": half }
         );
-        largest["limit"] = u32::MAX.into();
-        largest["elapsed"] = u32::MAX.into();
+        largest["max_steps"] = u32::MAX.into();
+        largest["elapsed_steps"] = u32::MAX.into();
         let largest: TimeLimit<Acrobot<A>> = serde_json::from_value(largest).unwrap();
         let bytes = postcard::to_stdvec(&largest).unwrap();
         assert_eq!(bytes.len(), TimeLimit::<Acrobot<A>>::MAX_SNAPSHOT_SIZE);

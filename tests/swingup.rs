@@ -75,11 +75,11 @@ fn orientations_within_1<A: Arithmetic, T: Task<Observation = [f32; 6]>>() {
     let mut acrobot = Acrobot::<A, T>::new(0);
     let mut batch = VecBatch::<A, T>::new(SeedSequence::new(1), 20_000).unwrap();
     for index in 0..batch.len() {
-        let drawn = batch.state(index).unwrap();
+        let drawn = batch.state_of(index).unwrap();
         let aside = f64::from(index as u32 % 8) * (PI / 2.0) - drawn.theta1.to_f64();
         let theta2 = Real::from_f64(aside);
         let state = State { theta2, ..drawn };
-        batch.set_state(index, state).unwrap();
+        batch.set_state_of(index, state).unwrap();
         acrobot.set_state(state).unwrap();
         within(&acrobot.observation());
     }
@@ -128,7 +128,7 @@ fn episodes_begin_at_rest_anywhere_and_last_a_thousand_steps() {
     }
     assert!(quadrants.into_iter().all(|count| count > 30), "{quadrants:?}");
 
-    let mut episode = TimeLimit::new(acrobot, Swingup::LIMIT);
+    let mut episode = TimeLimit::new(acrobot, Swingup::MAX_STEPS);
     let lengths = (1..).find(|_| episode.step(Action::Positive).done());
     assert_eq!(lengths, Some(1000));
 }

@@ -19,7 +19,7 @@ struct Balance;
 impl Task for Balance {
     const NAME: &'static str = "balance";
     const DEFAULT: Self = Self;
-    const LIMIT: NonZeroU32 = NonZeroU32::new(200).unwrap();
+    const MAX_STEPS: NonZeroU32 = NonZeroU32::new(200).unwrap();
     const PARAMS: Params =
         Params { length1: 0.7, center_of_mass1: 0.3, dt: 0.05, ..Params::DEFAULT };
 
@@ -71,7 +71,7 @@ impl Reach {
 impl Task for Reach {
     const NAME: &'static str = "reach";
     const DEFAULT: Self = Self { point: [0.9, 0.5] };
-    const LIMIT: NonZeroU32 = NonZeroU32::new(300).unwrap();
+    const MAX_STEPS: NonZeroU32 = NonZeroU32::new(300).unwrap();
 
     type Observation = [f32; 5];
 

@@ -68,8 +68,8 @@ impl<A: Arithmetic, T: Task> Play<A, T> {
         }
         // The batch inside, which writes into buffers.
         let stepped = match parallel {
-            true => (*self.batch).par_step(&self.actions, buffers),
-            false => (*self.batch).step(&self.actions, buffers),
+            true => (*self.batch).par_step_into(&self.actions, buffers),
+            false => (*self.batch).step_into(&self.actions, buffers),
         };
         stepped.expect("slices of the batch's length");
         self.batch.len()

@@ -2,8 +2,8 @@
 
 use super::buffers::{StepBuffers, set, take_mut};
 use super::inputs::Inputs;
-use super::lane_params::LaneParams;
-use super::settings::{Autoreset, Parameters, Settings};
+use super::lane_params::{LaneParams, Own};
+use super::settings::{Autoreset, Settings};
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real, SinCos};
 use crate::numpy::Pcg64;
@@ -26,9 +26,9 @@ pub struct Block<A: Arithmetic = Fast, const N: usize = 16> {
     y: [Lanes<A::Scalar, N>; 4],
     /// Sines and cosines of θ1 and θ2, for the observation and the next step.
     sin_cos: [SinCos<Lanes<A::Scalar, N>>; 2],
-    elapsed: [u32; N],
-    /// Whether the next step resets the lane.
-    reset_pending: [bool; N],
+    elapsed_steps: [u32; N],
+    /// Whether the lane's episode has ended and it waits for a reset.
+    ended: [bool; N],
 }
 
 impl<A: Arithmetic, const N: usize> Block<A, N> {
@@ -41,8 +41,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
     pub const EMPTY: Self = Self {
         y: [Self::ZEROS; 4],
         sin_cos: [(Self::ZEROS, Self::ZEROS); 2],
-        elapsed: [0; N],
-        reset_pending: [false; N],
+        elapsed_steps: [0; N],
+        ended: [false; N],
     };
 }
 
@@ -70,14 +70,14 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// The number of steps of a lane's episode, and whether the next step resets it.
+    /// The number of steps of a lane's episode, and whether that has ended.
     pub(super) fn progress(&self, lane: usize) -> Option<(u32, bool)> {
-        Some((*self.elapsed.get(lane)?, *self.reset_pending.get(lane)?))
+        Some((*self.elapsed_steps.get(lane)?, *self.ended.get(lane)?))
     }
 
-    pub(super) fn set_progress(&mut self, lane: usize, elapsed: u32, reset_pending: bool) {
-        set(&mut self.elapsed, lane, elapsed);
-        set(&mut self.reset_pending, lane, reset_pending);
+    pub(super) fn set_progress(&mut self, lane: usize, elapsed_steps: u32, ended: bool) {
+        set(&mut self.elapsed_steps, lane, elapsed_steps);
+        set(&mut self.ended, lane, ended);
     }
 
     pub(super) fn begin_episode(&mut self, lane: usize, state: State<A::Scalar>) {
@@ -94,7 +94,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         settings: &Settings<A, T>,
         bounds: ResetBounds,
         generators: &mut [Pcg64],
-        mut lane_params: Option<&mut LaneParams<A, N>>,
+        mut own: Option<Own<'_, A, N>>,
     ) {
         let mut generators = generators.iter_mut();
         for (lane, resets) in mask.iter().enumerate() {
@@ -102,10 +102,8 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
             if *resets {
                 let state = rng.map_or(State::HANGING, |rng| {
                     let state = settings.task.draw(bounds, rng).cast();
-                    if let (Some(params), Parameters::Own(Some(range))) =
-                        (&mut lane_params, &settings.parameters)
-                    {
-                        params.set(lane, range.draw(rng));
+                    if let Some((params, draws)) = &mut own {
+                        params.set(lane, draws.draw(&params.get(lane), rng));
                     }
                     state
                 });
@@ -114,20 +112,16 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         }
     }
 
-    /// Ends pending resets: `SameStep` resets the lanes now, `Disabled` never.
-    pub(super) fn settle_pending_resets<T: Task>(
+    /// With `SameStep` no lane waits: resets those whose episode has ended.
+    pub(super) fn reset_ended<T: Task>(
         &mut self,
         settings: &Settings<A, T>,
         generators: &mut [Pcg64],
-        lane_params: Option<&mut LaneParams<A, N>>,
+        own: Option<Own<'_, A, N>>,
     ) {
-        let pending = self.reset_pending;
-        match settings.autoreset {
-            Autoreset::NextStep => {}
-            Autoreset::SameStep => {
-                self.reset(&pending, settings, settings.bounds, generators, lane_params);
-            }
-            Autoreset::Disabled => self.reset_pending = [false; N],
+        if settings.autoreset == Autoreset::SameStep {
+            let ended = self.ended;
+            self.reset(&ended, settings, settings.bounds, generators, own);
         }
     }
 
@@ -175,24 +169,28 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         generators: &mut [Pcg64],
     ) -> Results<N> {
         let torques = inputs.torques(&model.params.torques);
-        let generators = generators.iter_mut().zip(&self.reset_pending);
-        let generators = generators.map(|(rng, pending)| (!pending).then_some(rng));
+        let resets = settings.autoreset == Autoreset::NextStep;
+        let generators = generators.iter_mut().zip(&self.ended);
+        let generators = generators.map(|(rng, ended)| (!(resets & ended)).then_some(rng));
         let torques = episode::disturb(torques, model.params.torque_noise, generators);
         let (y, sin_cos) = (&mut self.y, &mut self.sin_cos);
         let (Lanes(rewards), terminated) =
             episode::step::<A, T, Lanes<_, N>>(model, y, sin_cos, torques, &settings.task);
         let (mut truncated, mut ended) = ([false; N], [false; N]);
         let results = truncated.iter_mut().zip(&mut ended);
-        for ((elapsed, terminated), (truncated, ended)) in
-            self.elapsed.iter_mut().zip(&terminated).zip(results)
+        for ((elapsed_steps, terminated), (truncated, ended)) in
+            self.elapsed_steps.iter_mut().zip(&terminated).zip(results)
         {
-            *truncated = episode::count(elapsed, settings.limit);
+            *truncated = episode::count(elapsed_steps, settings.max_steps);
             *ended = *terminated | *truncated;
         }
         let resets = match settings.autoreset {
-            Autoreset::NextStep => core::mem::replace(&mut self.reset_pending, ended),
+            Autoreset::NextStep => core::mem::replace(&mut self.ended, ended),
             Autoreset::SameStep => ended,
-            Autoreset::Disabled => [false; N],
+            Autoreset::Disabled => {
+                self.ended.iter_mut().zip(ended).for_each(|(waits, ended)| *waits |= ended);
+                [false; N]
+            }
         };
         Results { rewards, terminated, truncated, resets }
     }
@@ -205,7 +203,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
         settings: &Settings<A, T>,
         mut results: Results<N>,
         generators: &mut [Pcg64],
-        lane_params: Option<&mut LaneParams<A, N>>,
+        own: Option<Own<'_, A, N>>,
         buffers: &mut StepBuffers<'_, T::Observation>,
     ) {
         let finals = buffers.final_observations.as_mut();
@@ -217,7 +215,7 @@ impl<A: Arithmetic, const N: usize> Block<A, N> {
                 self.observe_masked(&settings.task, &results.resets, finals);
             }
             let (mask, bounds) = (&results.resets, settings.bounds);
-            self.reset(mask, settings, bounds, generators, lane_params);
+            self.reset(mask, settings, bounds, generators, own);
         }
         write(&mut buffers.rewards, &results.rewards);
         write(&mut buffers.terminated, &results.terminated);

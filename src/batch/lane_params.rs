@@ -4,6 +4,7 @@ use super::buffers::set;
 use crate::arithmetic::{Arithmetic, Fast};
 use crate::math::{Lanes, Real};
 use crate::physics::{Defaults, Dynamics, Model, Params, default_model, model};
+use crate::task::Draws;
 
 /// The memory for the parameters of `N` acrobots, where each has its own.
 ///
@@ -21,6 +22,10 @@ pub struct LaneParams<A: Arithmetic = Fast, const N: usize = 16> {
     /// lane.
     pub(super) model: Model<Lanes<A::Scalar, N>>,
 }
+
+/// The parameters of a block's acrobots, and what resets draw of them.
+pub(super) type Own<'a, A, const N: usize> =
+    (&'a mut LaneParams<A, N>, &'a Draws<<A as Arithmetic>::Scalar>);
 
 impl<A: Arithmetic, const N: usize> Default for LaneParams<A, N> {
     fn default() -> Self {

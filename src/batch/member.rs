@@ -7,7 +7,7 @@ use super::storage::{SlicesMut, Storage};
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::Pcg64;
-use crate::physics::{Params, State, check_params};
+use crate::physics::{Params, State};
 use crate::task::Task;
 
 /// One acrobot of a batch, as plain data. Unlike a [whole batch](Batch#snapshots), it is stored
@@ -36,10 +36,9 @@ pub struct Member<A: Arithmetic> {
     /// The state.
     pub state: State<A::Scalar>,
     /// The number of steps since the last reset.
-    pub elapsed: u32,
-    /// Whether the next step resets it; only with
-    /// [`Autoreset::NextStep`](super::Autoreset::NextStep).
-    pub reset_pending: bool,
+    pub elapsed_steps: u32,
+    /// Whether its episode has ended and it waits for a reset.
+    pub ended: bool,
     /// The generator of its initial states and its torque noise.
     pub rng: Pcg64,
 }
@@ -49,18 +48,18 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     #[must_use]
     pub fn member(&self, index: usize) -> Option<Member<A>> {
         let block = self.block_of(index).ok()?;
-        let (elapsed, reset_pending) = block.progress(index % N)?;
+        let (elapsed_steps, ended) = block.progress(index % N)?;
         Some(Member {
             params: self.params_of(index)?,
             state: block.state(index % N)?,
-            elapsed,
-            reset_pending,
+            elapsed_steps,
+            ended,
             rng: self.storage.slices().generators.get(index)?.clone(),
         })
     }
 
-    /// Replaces acrobot `index` by `member`. A pending reset is settled as in
-    /// [`set_autoreset`](Self::set_autoreset).
+    /// Replaces acrobot `index` by `member`. [`Autoreset::SameStep`](super::Autoreset) resets
+    /// it immediately if its episode has ended.
     ///
     /// # Errors
     ///
@@ -68,23 +67,23 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// [`Error::SharedParams`] for parameters other than those that all acrobots of this batch
     /// share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {
-        check_params::<A>(&member.params)?;
+        self.check_params(&member.params)?;
         member.state.validate()?;
         self.block_of(index)?;
         match &self.settings.parameters {
             Parameters::Shared(model) if model.params.same(&member.params) => {}
             _ => self.set_params_of(index, member.params)?,
         }
-        let SlicesMut { blocks, generators, lane_params } = self.storage.slices_mut();
+        let SlicesMut { blocks, generators, lane_params, draws } = self.storage.slices_mut();
         let mut generators = generators.get_mut(index - index % N..);
         let generators = take_mut(generators.get_or_insert_default(), N);
         if let (Some(block), Some(rng)) = (blocks.get_mut(index / N), generators.get_mut(index % N))
         {
             block.set_state(index % N, member.state);
-            block.set_progress(index % N, member.elapsed, member.reset_pending);
+            block.set_progress(index % N, member.elapsed_steps, member.ended);
             *rng = member.rng;
-            let own = lane_params.get_mut(index / N);
-            block.settle_pending_resets(&self.settings, generators, own);
+            let own = lane_params.get_mut(index / N).zip(draws.as_deref());
+            block.reset_ended(&self.settings, generators, own);
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use core::num::NonZeroU32;
 
 use crate::arithmetic::Arithmetic;
 use crate::physics::Model;
-use crate::task::{ParamsRange, ResetBounds};
+use crate::task::ResetBounds;
 
 /// When a batch resets an acrobot whose episode has ended: Gymnasium's `AutoresetMode`.
 #[non_exhaustive]
@@ -28,15 +28,15 @@ pub enum Autoreset {
 pub(super) enum Parameters<A: Arithmetic> {
     /// All have those of this model.
     Shared(Model<A::Scalar>),
-    /// Each has its own, and a reset draws them if there is a range.
-    Own(Option<ParamsRange<A::Scalar>>),
+    /// Each has its own.
+    Own,
 }
 
 #[derive(Clone, Debug)]
 pub(super) struct Settings<A: Arithmetic, T> {
     pub(super) parameters: Parameters<A>,
     pub(super) bounds: ResetBounds,
-    pub(super) limit: NonZeroU32,
+    pub(super) max_steps: NonZeroU32,
     pub(super) autoreset: Autoreset,
     pub(super) task: T,
 }

@@ -4,7 +4,6 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::num::NonZeroU32;
 
-use heapless::Vec;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::ser::{Serialize, SerializeSeq, Serializer};
 
@@ -20,7 +19,7 @@ use crate::error::Error;
 use crate::numpy::SeedSequence;
 use crate::physics::Params;
 use crate::snapshot::Header;
-use crate::task::{ParamsRange, ResetBounds, Task};
+use crate::task::{Draw, Draws, ResetBounds, Task};
 
 /// The settings. The parameters that all acrobots share are those of each member.
 #[derive(serde::Serialize, serde::Deserialize)]
@@ -29,27 +28,24 @@ struct Settings<A: Arithmetic, T: Task> {
     snapshot: Header<A, T, true>,
     low: f64,
     high: f64,
-    limit: NonZeroU32,
+    max_steps: NonZeroU32,
     autoreset: Autoreset,
     /// Whether each acrobot has its own parameters.
     own_params: bool,
-    /// Both ends of the range, or nothing.
-    params_range: Vec<Params<A::Scalar>, 2>,
+    draws: Params<Draw<A::Scalar>>,
 }
 
 impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Serialize for Batch<A, S, T, N> {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
-        let range = self.params_range();
-        let ends = range.map(|range| Vec::from_array([*range.low(), *range.high()]));
         let mut records = serializer.serialize_seq(Some(1 + self.len()))?;
         records.serialize_element(&Settings::<A, T> {
             snapshot: Header::NEW,
             low: self.settings.bounds.low(),
             high: self.settings.bounds.high(),
-            limit: self.settings.limit,
+            max_steps: self.settings.max_steps,
             autoreset: self.settings.autoreset,
-            own_params: matches!(self.settings.parameters, Parameters::Own(_)),
-            params_range: ends.unwrap_or_default(),
+            own_params: matches!(self.settings.parameters, Parameters::Own),
+            draws: *self.draws().params(),
         })?;
         for member in (0..self.len()).filter_map(|index| self.member(index)) {
             records.serialize_element(&member)?;
@@ -64,7 +60,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// # Errors
     ///
     /// Those of the format, of [`new`](Self::new), of [`set_member`](Self::set_member), of
-    /// [`ResetBounds::new`] and of [`ParamsRange::new`], and [`Error::WrongLength`] for another
+    /// [`ResetBounds::new`] and of [`Draws::new`], and [`Error::WrongLength`] for another
     /// number of members. The contents of the memory are then unspecified.
     pub fn from_snapshot<'de, D>(storage: S, deserializer: D) -> Result<Self, D::Error>
     where
@@ -93,13 +89,9 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
 
     fn apply(&mut self, settings: Settings<A, T>, members: usize) -> Result<(), Error> {
         check_length("members", members, self.len())?;
-        match *settings.params_range {
-            [] => {}
-            [low, high] => self.set_params_range(Some(ParamsRange::new(low, high)?))?,
-            ref ends => check_length("params_range", ends.len(), 2)?,
-        }
+        self.set_draws(Draws::new(settings.draws)?)?;
         self.set_reset_bounds(ResetBounds::new(settings.low, settings.high)?);
-        self.set_limit(settings.limit);
+        self.set_max_steps(settings.max_steps);
         self.set_autoreset(settings.autoreset);
         Ok(())
     }
@@ -125,10 +117,10 @@ impl<'de, A: Arithmetic, T: Task, const N: usize> serde::Deserialize<'de> for Ve
         })?;
         let assemble = || {
             let (seed, len) = (SeedSequence::new(0), members.len());
-            let mut batch = match settings.own_params {
-                true => Self::with_own_params(seed, len),
-                false => Self::new(seed, len),
-            }?;
+            let mut batch = Self::new(seed, len)?;
+            if settings.own_params {
+                batch.own_params()?;
+            }
             for (index, member) in members.into_iter().enumerate() {
                 batch.load(index, member)?;
             }

@@ -4,14 +4,16 @@ use super::block::Block;
 use super::lane_params::LaneParams;
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
+use crate::task::Draws;
 
 /// The memory of a [`Batch`](super::Batch): arrays, slices or `Vec`s, as `(blocks, generators)`
-/// where acrobots share their parameters, and `(blocks, generators, lane_params)` where each has
-/// its own. Their lengths must never change.
+/// where acrobots share their parameters, and `(blocks, generators, lane_params, draws)` where each
+/// has its own, from which resets draw. Their lengths must never change.
 ///
 /// ```
 /// use acrobot::batch::{Batch, Block, LaneParams};
 /// use acrobot::numpy::Pcg64;
+/// use acrobot::task::Draws;
 /// use acrobot::{Fast, Params};
 ///
 /// let mut blocks = vec![Block::EMPTY; 4]; // 16 acrobots in each
@@ -19,7 +21,8 @@ use crate::numpy::Pcg64;
 /// let shared = (&mut blocks[..], &mut generators[..]);
 /// assert_eq!(Batch::<Fast, _>::new(42, shared)?.len(), 50);
 ///
-/// let own = ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50], [LaneParams::default(); 4]);
+/// let lane_params = [LaneParams::default(); 4];
+/// let own = ([Block::EMPTY; 4], [Pcg64::UNSEEDED; 50], lane_params, Draws::NONE);
 /// Batch::<Fast, _>::new(42, own)?.set_params_of(49, Params::DEFAULT)?;
 /// # Ok::<(), acrobot::Error>(())
 /// ```
@@ -28,12 +31,13 @@ pub trait Storage<A: Arithmetic, const N: usize>: SealedStorage<A, N> {}
 impl<A: Arithmetic, S: SealedStorage<A, N>, const N: usize> Storage<A, N> for S {}
 
 /// The blocks, one for each `N` acrobots, the generators, one for each acrobot, and the parameters:
-/// one [`LaneParams`] for each block, or none where acrobots share them.
+/// one [`LaneParams`] for each block, or none where acrobots share them, and what resets draw.
 #[derive(Debug)]
 pub struct Slices<'a, A: Arithmetic, const N: usize> {
     pub blocks: &'a [Block<A, N>],
     pub generators: &'a [Pcg64],
     pub lane_params: &'a [LaneParams<A, N>],
+    pub draws: Option<&'a Draws<A::Scalar>>,
 }
 
 /// The same slices, to change their elements.
@@ -42,6 +46,7 @@ pub struct SlicesMut<'a, A: Arithmetic, const N: usize> {
     pub blocks: &'a mut [Block<A, N>],
     pub generators: &'a mut [Pcg64],
     pub lane_params: &'a mut [LaneParams<A, N>],
+    pub draws: Option<&'a mut Draws<A::Scalar>>,
 }
 
 /// What only this crate uses of a [`Storage`], and only it implements.
@@ -58,15 +63,25 @@ where
     G: AsRef<[Pcg64]> + AsMut<[Pcg64]>,
 {
     fn slices(&self) -> Slices<'_, A, N> {
-        Slices { blocks: self.0.as_ref(), generators: self.1.as_ref(), lane_params: &[] }
+        Slices {
+            blocks: self.0.as_ref(),
+            generators: self.1.as_ref(),
+            lane_params: &[],
+            draws: None,
+        }
     }
 
     fn slices_mut(&mut self) -> SlicesMut<'_, A, N> {
-        SlicesMut { blocks: self.0.as_mut(), generators: self.1.as_mut(), lane_params: &mut [] }
+        SlicesMut {
+            blocks: self.0.as_mut(),
+            generators: self.1.as_mut(),
+            lane_params: &mut [],
+            draws: None,
+        }
     }
 }
 
-impl<A, B, G, P, const N: usize> SealedStorage<A, N> for (B, G, P)
+impl<A, B, G, P, const N: usize> SealedStorage<A, N> for (B, G, P, Draws<A::Scalar>)
 where
     A: Arithmetic,
     B: AsRef<[Block<A, N>]> + AsMut<[Block<A, N>]>,
@@ -78,6 +93,7 @@ where
             blocks: self.0.as_ref(),
             generators: self.1.as_ref(),
             lane_params: self.2.as_ref(),
+            draws: Some(&self.3),
         }
     }
 
@@ -86,6 +102,7 @@ where
             blocks: self.0.as_mut(),
             generators: self.1.as_mut(),
             lane_params: self.2.as_mut(),
+            draws: Some(&mut self.3),
         }
     }
 }

@@ -8,18 +8,20 @@ use super::block::Block;
 use super::buffers::StepBuffers;
 use super::inputs::Input;
 use super::lane_params::LaneParams;
+use super::settings::Parameters;
 use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::numpy::{Pcg64, SeedSequence};
-use crate::task::{Gymnasium, Observation, ResetOptions, Task};
+use crate::task::{Draws, Gymnasium, Observation, Task};
 
-type InVecs<A, T, const N: usize> =
-    Batch<A, (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>), T, N>;
+type Memory<A, const N: usize> =
+    (Vec<Block<A, N>>, Vec<Pcg64>, Vec<LaneParams<A, N>>, Draws<<A as Arithmetic>::Scalar>);
+
+type InVecs<A, T, const N: usize> = Batch<A, Memory<A, N>, T, N>;
 
 /// A [`Batch`] in `Vec`s, with the memory for the results of its steps.
 ///
-/// It has all methods of [`Batch`], except that its steps return their results, and its resets the
-/// observations.
+/// It has all methods of [`Batch`]. Its steps return their results.
 ///
 /// A [`Batch`] of another length may replace the one inside. The next results need new memory:
 /// without it a step returns [`Error::OutOfMemory`], and the observations are empty.
@@ -83,20 +85,8 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
     ///
     /// [`Error::EmptyBatch`] for a `len` of 0, and [`Error::OutOfMemory`].
     pub fn new(seed: SeedSequence, len: usize) -> Result<Self, Error> {
-        Self::allocate(seed, len, 0)
-    }
-
-    /// As [`new`](Self::new), with its errors, and with parameters for each acrobot.
-    pub fn with_own_params(seed: SeedSequence, len: usize) -> Result<Self, Error> {
-        Self::allocate(seed, len, len.div_ceil(N))
-    }
-
-    fn allocate(seed: SeedSequence, len: usize, lane_params: usize) -> Result<Self, Error> {
-        let storage = (
-            fill(Block::EMPTY, len.div_ceil(N), len)?,
-            fill(Pcg64::UNSEEDED, len, len)?,
-            fill(LaneParams::default(), lane_params, len)?,
-        );
+        let blocks = fill(Block::EMPTY, len.div_ceil(N), len)?;
+        let storage = (blocks, fill(Pcg64::UNSEEDED, len, len)?, Vec::new(), Draws::NONE);
         let batch = Batch::new(seed, storage)?;
         let results = StepResults::default();
         let mut batch = Self { batch, results };
@@ -104,31 +94,19 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
         Ok(batch)
     }
 
-    /// Calls [`Batch::reset`] and returns the observations.
-    pub fn reset(&mut self) -> &[T::Observation] {
-        self.reset_with(ResetOptions::default())
-    }
-
-    /// Calls [`Batch::reset_with_seed`] and returns the observations.
-    pub fn reset_with_seed(&mut self, seed: u64) -> &[T::Observation] {
-        self.reset_with(seed.into())
-    }
-
-    /// Calls [`Batch::reset_with`] and returns the observations.
-    pub fn reset_with(&mut self, options: ResetOptions) -> &[T::Observation] {
-        self.batch.reset_with(options);
-        self.observations()
-    }
-
-    /// Calls [`Batch::reset_masked`], with its errors, and returns the observations of all
-    /// acrobots.
-    pub fn reset_masked(
-        &mut self,
-        mask: &[bool],
-        options: ResetOptions,
-    ) -> Result<&[T::Observation], Error> {
-        self.batch.reset_masked(mask, options)?;
-        Ok(self.observations())
+    /// Allocates parameters for each acrobot, which [`set_params_of`](Batch::set_params_of) and
+    /// [`set_draws`](Batch::set_draws) need. They begin as those that all share.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfMemory`]. Then nothing changes.
+    pub fn own_params(&mut self) -> Result<(), Error> {
+        if let Parameters::Shared(model) = &self.batch.settings.parameters {
+            let len = self.batch.len();
+            self.batch.storage.2 = fill(LaneParams::shared(model), len.div_ceil(N), len)?;
+            self.batch.settings.parameters = Parameters::Own;
+        }
+        Ok(())
     }
 
     /// Allocates new results if the batch has another length. If that fails, the results are empty.
@@ -156,25 +134,25 @@ impl<A: Arithmetic, T: Task, const N: usize> VecBatch<A, T, N> {
         &self.results.observations
     }
 
-    /// Calls [`Batch::step`] with actions or torques, and returns the results.
+    /// Calls [`Batch::step_into`] with actions or torques, and returns the results.
     ///
     /// # Errors
     ///
-    /// Those of [`Batch::step`], and [`Error::OutOfMemory`].
+    /// Those of [`Batch::step_into`], and [`Error::OutOfMemory`].
     pub fn step<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],
     ) -> Result<&StepResults<T::Observation>, Error> {
-        self.step_by(|batch, buffers| batch.step(inputs, buffers))
+        self.step_by(|batch, buffers| batch.step_into(inputs, buffers))
     }
 
-    /// As [`step`](Self::step), with its errors, on all cores: see [`Batch::par_step`].
+    /// As [`step`](Self::step), with its errors, on all cores: see [`Batch::par_step_into`].
     #[cfg(feature = "rayon")]
     pub fn par_step<I: Input<A::Scalar>>(
         &mut self,
         inputs: &[I],
     ) -> Result<&StepResults<T::Observation>, Error> {
-        self.step_by(|batch, buffers| batch.par_step(inputs, buffers))
+        self.step_by(|batch, buffers| batch.par_step_into(inputs, buffers))
     }
 
     #[inline(always)]

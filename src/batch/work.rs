@@ -9,7 +9,7 @@ use super::lane_params::LaneParams;
 use super::settings::{Parameters, Settings};
 use crate::arithmetic::Arithmetic;
 use crate::numpy::Pcg64;
-use crate::task::Task;
+use crate::task::{Draws, Task};
 
 /// What a step reads and writes.
 pub(super) struct Work<'a, A: Arithmetic, T: Task, const N: usize> {
@@ -18,6 +18,7 @@ pub(super) struct Work<'a, A: Arithmetic, T: Task, const N: usize> {
     pub(super) generators: &'a mut [Pcg64],
     /// Empty where acrobots share their parameters.
     pub(super) lane_params: &'a mut [LaneParams<A, N>],
+    pub(super) draws: Option<&'a Draws<A::Scalar>>,
     pub(super) inputs: Inputs<'a, A::Scalar>,
     pub(super) buffers: StepBuffers<'a, T::Observation>,
 }
@@ -28,8 +29,7 @@ impl<'a, A: Arithmetic, T: Task, const N: usize> Work<'a, A, T, N> {
     /// it in registers and spill the state, 16 % slower.
     #[inline(always)]
     pub(super) fn step<const HIDE: bool>(self) {
-        let Self { settings, blocks, mut generators, lane_params, mut inputs, mut buffers, .. } =
-            self;
+        let Self { settings, blocks, mut generators, mut inputs, mut buffers, .. } = self;
         if let Parameters::Shared(model) = &settings.parameters {
             let shared = LaneParams::shared(model);
             for block in blocks {
@@ -39,10 +39,11 @@ impl<'a, A: Arithmetic, T: Task, const N: usize> Work<'a, A, T, N> {
                 block.finish(settings, results, generators, None, &mut buffers);
             }
         } else {
-            for (block, own) in blocks.iter_mut().zip(lane_params) {
+            for (block, own) in blocks.iter_mut().zip(self.lane_params) {
                 let generators = take_mut(&mut generators, N);
                 let results = block.advance(settings, own, inputs.take(N), generators);
-                block.finish(settings, results, generators, Some(own), &mut buffers);
+                let own = self.draws.map(|draws| (own, draws));
+                block.finish(settings, results, generators, own, &mut buffers);
             }
         }
     }
@@ -56,6 +57,7 @@ impl<'a, A: Arithmetic, T: Task, const N: usize> Work<'a, A, T, N> {
             blocks: take_mut(&mut self.blocks, blocks),
             generators: take_mut(&mut self.generators, acrobots),
             lane_params: take_mut(&mut self.lane_params, blocks),
+            draws: self.draws,
             inputs: self.inputs.take(acrobots),
             buffers: self.buffers.take(acrobots),
         }

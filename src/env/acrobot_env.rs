@@ -190,10 +190,8 @@ impl<A: Arithmetic> DynAcrobot for Acrobot<A> {
 
 /// The error of a number that is valid as `given`, and not after it was rounded to `f32`.
 fn as_given(error: Rejected, given: &[(&'static str, f64)]) -> Rejected {
-    let (name, rounded, unit) = match error {
-        Rejected::OutOfRange { name, value, unit, .. } => (name, value, unit),
-        Rejected::NoInertia { name, value } => (name, value, "kg m²"),
-        _ => return error,
+    let Rejected::OutOfRange { name, value: rounded, unit, .. } = error else {
+        return error;
     };
     match given.iter().find(|(other, _)| *other == name) {
         Some(&(_, value)) if value != rounded => {

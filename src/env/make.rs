@@ -15,7 +15,7 @@ use crate::action::Action;
 use crate::arithmetic::{Arithmetic, Fast, Host, Micro, Portable, Reference};
 use crate::physics::Params;
 use crate::task::{Gymnasium, ResetOptions, Task};
-use crate::time_limit::{TimeLimit, V0_LIMIT};
+use crate::time_limit::{TimeLimit, V0_MAX_STEPS};
 
 /// The arithmetic that [`make_with`] computes in.
 #[non_exhaustive]
@@ -63,7 +63,7 @@ pub fn acrobot_v1<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, [f32; 6]>>, Error> {
     let env = AcrobotEnv::new(options.params, options.render_mode)?;
-    Ok(TimeLimit::new(env, Gymnasium::LIMIT))
+    Ok(TimeLimit::new(env, Gymnasium::MAX_STEPS))
 }
 
 /// `Acrobot-v0`: observations with the angles, and 200 steps. Its errors are those of
@@ -72,7 +72,7 @@ pub fn acrobot_v0<A: Arithmetic>(
     options: Options,
 ) -> Result<TimeLimit<AcrobotEnv<A, [f32; 4]>>, Error> {
     let env = AcrobotEnv::new(options.params, options.render_mode)?;
-    Ok(TimeLimit::new(env, V0_LIMIT))
+    Ok(TimeLimit::new(env, V0_MAX_STEPS))
 }
 
 impl fmt::Debug for DynEnv {

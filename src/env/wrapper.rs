@@ -65,7 +65,7 @@ impl<E: Env> Env for TimeLimit<E> {
     forward!(types E);
 
     fn reset_with(&mut self, options: ResetOptions) -> (E::Observation, Info) {
-        self.elapsed = 0;
+        self.elapsed_steps = 0;
         self.inner.reset_with(options)
     }
 

@@ -39,6 +39,12 @@ pub trait Numbers<S: Real>:
     /// Applies `f` to each pair of numbers.
     fn zip(self, other: Self, f: impl FnMut(S, S) -> S) -> Self;
 
+    /// Applies `f` to each number. Its results are the numbers of two.
+    #[inline(always)]
+    fn map2(self, mut f: impl FnMut(S) -> (S, S)) -> (Self, Self) {
+        self.zip3(self, self, |x, _, _| f(x))
+    }
+
     /// Applies `f` to each triple of numbers. Its results are the numbers of two.
     fn zip3(self, second: Self, third: Self, f: impl FnMut(S, S, S) -> (S, S)) -> (Self, Self);
 

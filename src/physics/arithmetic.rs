@@ -6,7 +6,7 @@ use super::friction::Viscous;
 use super::model::{Form, Given, Model, Modeled, Models};
 use super::params::Params;
 use crate::error::Error;
-use crate::math::{Numbers, Real};
+use crate::math::Numbers;
 
 /// The numbers that an acrobot computes with: a scalar, its sines and the form of the equations.
 /// They determine every bit of a result.
@@ -35,7 +35,7 @@ pub trait Arithmetic: Copy + fmt::Debug + Default + PartialEq + Send + Sync + 's
     /// |x| ≤ 2¹⁹ rad. Beyond, any result is valid, even NaN. Steps call it for speed.
     #[inline(always)]
     fn sin_cos_near<V: Numbers<Self::Scalar>>(x: V) -> (V, V) {
-        x.zip3(x, x, |x, _, _| Self::sin_cos(x))
+        x.map2(Self::sin_cos)
     }
 
     /// The cosines of [`sin_cos_near`](Self::sin_cos_near). Only [`Form::Gymnasium`] calls it.
@@ -78,7 +78,7 @@ pub(crate) fn model<A: Arithmetic>(params: Params<A::Scalar>) -> Model<A::Scalar
 }
 
 /// Checks parameters, and that there is no friction where the arithmetic has none.
-pub(crate) fn check_params<A: Arithmetic>(params: &Params<impl Real>) -> Result<(), Error> {
+pub(crate) fn check_params<A: Arithmetic>(params: &Params<impl Modeled>) -> Result<(), Error> {
     params.validate()?;
     let Viscous { joint1, joint2 } = params.friction;
     check_friction::<A>([joint1.to_f64(), joint2.to_f64()])
@@ -92,12 +92,7 @@ pub(super) const fn check_friction<A: Arithmetic>(friction: [f64; 2]) -> Result<
         [0.0, joint2] => ("friction.joint2", joint2),
         [joint1, _] => ("friction.joint1", joint1),
     };
-    Err(Error::OutOfRange {
-        name,
-        value,
-        unit: "N m s/rad",
-        rule: "0 unless the arithmetic is Damped, in",
-    })
+    Err(Error::NoFriction { name, value })
 }
 
 /// A torque less that of a joint's friction, N m.

@@ -1,6 +1,7 @@
 //! The model: parameters, and the constants of the equations that follow from them.
 
 use super::params::{Dynamics, Params};
+use crate::error::Error;
 use crate::math::Real;
 
 /// How the equations of motion are evaluated. Both forms agree up to rounding.
@@ -96,6 +97,9 @@ pub trait Modeled: Real {
     #[doc(hidden)]
     const SWINGUP: Params<Self>;
 
+    #[doc(hidden)]
+    fn check(params: &Params<Self>) -> Result<(), Error>;
+
     /// The model of `params`, given l1², lc1² and lc2².
     #[doc(hidden)]
     fn model(form: Form, params: Params<Self>, squares: [Self; 3]) -> Model<Self>;
@@ -107,6 +111,17 @@ impl<S: Modeled> Params<S> {
 
     /// The parameters of dm_control's acrobot, whose velocities have no bounds.
     pub const SWINGUP: Self = S::SWINGUP;
+
+    /// Checks every field against the range in its documentation. With extreme but valid parameters
+    /// [a step can still overflow](super::Pendulum#results-that-are-not-finite).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] with the first field outside its range, and for a link without inertia
+    /// about its joint.
+    pub fn validate(&self) -> Result<(), Error> {
+        S::check(self)
+    }
 }
 
 for_f32_and_f64! {
@@ -179,6 +194,10 @@ for_f32_and_f64! {
 
             const DEFAULT: Params<Self> = Params::<S>::ACROBOT;
             const SWINGUP: Params<Self> = Params::<S>::CAPSULES;
+
+            fn check(params: &Params<Self>) -> Result<(), Error> {
+                params.check()
+            }
 
             #[inline(always)]
             fn model(form: Form, params: Params<Self>, squares: [Self; 3]) -> Model<Self> {

@@ -85,21 +85,6 @@ impl<S: Real> Default for Params<S> {
 }
 
 impl<S: Real> Params<S> {
-    /// Checks every field against the range in its documentation. With extreme but valid parameters
-    /// [a step can still overflow](super::Pendulum#results-that-are-not-finite).
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OutOfRange`] with the first field outside its range, and [`Error::NoInertia`] for a
-    /// link without inertia about its joint.
-    pub fn validate(&self) -> Result<(), Error> {
-        // The casts change nothing: `S` is one of these two.
-        match size_of::<S>() {
-            4 => self.cast::<f32>().check(),
-            _ => self.cast::<f64>().check(),
-        }
-    }
-
     /// The torque of an action, N m.
     #[must_use]
     #[inline]
@@ -124,6 +109,37 @@ impl<S: Real> Params<S> {
 }
 
 impl<S: Copy> Params<S> {
+    /// The name and the value of each number, in the order of the fields.
+    #[must_use]
+    pub fn numbers(&self) -> [(&'static str, S); 18] {
+        self.fields().map(|(name, number, ..)| (name, number))
+    }
+
+    /// Each number, to change it, in the order of the fields.
+    pub fn numbers_mut(&mut self) -> [&mut S; 18] {
+        let [negative, zero, positive] = &mut self.torques;
+        [
+            &mut self.length1,
+            &mut self.length2,
+            &mut self.mass1,
+            &mut self.mass2,
+            &mut self.center_of_mass1,
+            &mut self.center_of_mass2,
+            &mut self.inertia1,
+            &mut self.inertia2,
+            &mut self.gravity,
+            &mut self.dt,
+            &mut self.max_velocity1,
+            &mut self.max_velocity2,
+            negative,
+            zero,
+            positive,
+            &mut self.torque_noise,
+            &mut self.friction.joint1,
+            &mut self.friction.joint2,
+        ]
+    }
+
     /// The name, value, unit and range of each number.
     pub(crate) const fn fields(&self) -> [(&'static str, S, &'static str, Range); 18] {
         use Range::{AboveZero, AtLeastZero, Finite, NormalF32};
@@ -204,7 +220,8 @@ for_f32_and_f64! {
             } else {
                 return Ok(());
             };
-            Err(Error::NoInertia { name, value })
+            let rule = "above 0 if the centre of mass is on the joint, in";
+            Err(Error::OutOfRange { name, value, unit: "kg m²", rule })
         }
     }
 }

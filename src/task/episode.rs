@@ -57,9 +57,9 @@ fn draw<'a, S: Real, V: Numbers<S>, R: Rng + 'a>(
     })
 }
 
-/// Counts a step. Returns whether it was the last that the limit allows.
+/// Counts a step. Returns whether it is the last of the episode.
 #[inline(always)]
-pub(crate) fn count(elapsed: &mut u32, limit: NonZeroU32) -> bool {
-    *elapsed = elapsed.saturating_add(1);
-    *elapsed >= limit.get()
+pub(crate) fn count(elapsed_steps: &mut u32, max_steps: NonZeroU32) -> bool {
+    *elapsed_steps = elapsed_steps.saturating_add(1);
+    *elapsed_steps >= max_steps.get()
 }

@@ -16,7 +16,7 @@ pub struct Gymnasium;
 impl Task for Gymnasium {
     const NAME: &'static str = "gymnasium";
     const DEFAULT: Self = Self;
-    const LIMIT: NonZeroU32 = NonZeroU32::new(500).unwrap();
+    const MAX_STEPS: NonZeroU32 = NonZeroU32::new(500).unwrap();
 
     /// \[cos θ1, sin θ1, cos θ2, sin θ2, θ̇1, θ̇2\], velocities in rad/s: hanging at rest \[1, 0,
     /// 1, 0, 0, 0\].

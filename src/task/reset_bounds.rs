@@ -26,8 +26,7 @@ impl ResetBounds {
     ///
     /// # Errors
     ///
-    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and [`Error::ReversedRange`]
-    /// for a `low` above `high`.
+    /// [`Error::OutOfRange`] for a bound that is not finite in `f32`, and for a `low` above `high`.
     pub const fn new(low: f64, high: f64) -> Result<Self, Error> {
         let unit = "rad and rad/s";
         if let Err(error) = Range::InF32.check("low", low, unit) {
@@ -38,7 +37,9 @@ impl ResetBounds {
         }
         match low <= high {
             true => Ok(Self { low, high }),
-            false => Err(Error::ReversedRange { name: "reset bound", low, high, unit }),
+            false => {
+                Err(Error::OutOfRange { name: "low", value: low, unit, rule: "at most high, in" })
+            }
         }
     }
 

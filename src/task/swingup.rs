@@ -25,7 +25,7 @@ pub struct DmControl<const SPARSE: bool>;
 impl<const SPARSE: bool> Task for DmControl<SPARSE> {
     const NAME: &'static str = if SPARSE { "swingup_sparse" } else { "swingup" };
     const DEFAULT: Self = Self;
-    const LIMIT: NonZeroU32 = NonZeroU32::new(1000).unwrap();
+    const MAX_STEPS: NonZeroU32 = NonZeroU32::new(1000).unwrap();
     const RESET_BOUNDS: ResetBounds = ResetBounds::ANYWHERE;
     const PARAMS: Params = Params::SWINGUP;
 

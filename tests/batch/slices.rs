@@ -4,8 +4,7 @@ use std::num::NonZeroU32;
 
 use acrobot::batch::{Autoreset, Batch, Block, Member, SimdLevel, StepBuffers};
 use acrobot::numpy::Pcg64;
-use acrobot::physics::Dynamics;
-use acrobot::task::ResetBounds;
+use acrobot::task::{Draws, ResetBounds};
 use acrobot::{Fast, Params, ResetOptions, State};
 use common::twins::{LEVELS, MODES};
 
@@ -22,7 +21,7 @@ fn settings_are_returned_as_set() {
     assert_eq!(batch.params_of(0), Some(Params::DEFAULT));
     assert_eq!(batch.simd_level(), SimdLevel::widest());
     assert_eq!(batch.reset_bounds(), ResetBounds::DEFAULT);
-    assert_eq!(batch.limit().get(), 500);
+    assert_eq!(batch.max_steps().get(), 500);
     assert_eq!(batch.autoreset(), Autoreset::NextStep);
 
     let params = Params { dt: 0.1, ..Params::DEFAULT };
@@ -31,8 +30,8 @@ fn settings_are_returned_as_set() {
     let bounds = ResetBounds::new(1.0, 2.0).unwrap();
     batch.set_reset_bounds(bounds);
     assert_eq!(batch.reset_bounds(), bounds);
-    batch.set_limit(NonZeroU32::MIN);
-    assert_eq!(batch.limit(), NonZeroU32::MIN);
+    batch.set_max_steps(NonZeroU32::MIN);
+    assert_eq!(batch.max_steps(), NonZeroU32::MIN);
     for (level, autoreset) in LEVELS.into_iter().zip(MODES) {
         batch.set_simd_level(level);
         batch.set_autoreset(autoreset);
@@ -64,10 +63,10 @@ fn rejections(
             .with_observations(observations)
             .with_final_observations(finals);
         let result = match kind {
-            0 => batch.step(actions, buffers),
-            1 => batch.par_step(actions, buffers),
-            2 => batch.step(torques, buffers),
-            _ => batch.par_step(torques, buffers),
+            0 => batch.step_into(actions, buffers),
+            1 => batch.par_step_into(actions, buffers),
+            2 => batch.step_into(torques, buffers),
+            _ => batch.par_step_into(torques, buffers),
         };
         assert_eq!(members(batch), before);
         assert!(rewards.iter().all(|x| *x == 9.0));
@@ -114,7 +113,6 @@ fn rejected_changes_change_nothing() {
     let heavy = Params { mass1: 2.0, ..Params::DEFAULT };
     let mut other = member.clone();
     other.params = heavy;
-    let range = common::params_range::<Fast>(Dynamics::Book);
     let shared = "a batch must have memory for the parameters of each acrobot";
     let mut rows = [[9.0; 6]; 4];
     let masked = |batch: &mut Small, mask: &[_]| batch.reset_masked(mask, ResetOptions::default());
@@ -127,29 +125,29 @@ fn rejected_changes_change_nothing() {
             "theta2 must be a finite number of rad, got NaN",
         ),
         // Lane 3 of the block holds no acrobot.
-        (batch.set_state(3, State::default()), "member index must be below 3, got 3"),
-        (batch.set_state(16, State::default()), "member index must be below 3, got 16"),
-        (batch.set_state(1, NAN), "theta2 must be a finite number of rad, got NaN"),
+        (batch.set_state_of(3, State::default()), "member index must be below 3, got 3"),
+        (batch.set_state_of(16, State::default()), "member index must be below 3, got 16"),
+        (batch.set_state_of(1, NAN), "theta2 must be a finite number of rad, got NaN"),
         (batch.set_member(3, member), "member index must be below 3, got 3"),
         (batch.set_member(1, invalid), "theta2 must be a finite number of rad, got NaN"),
         (batch.set_params(massless), "mass1 must be finite and above 0 kg, got 0"),
         (batch.set_params_of(3, Params::DEFAULT), "member index must be below 3, got 3"),
         (batch.set_params_of(0, heavy), shared),
         (batch.set_member(0, other), shared),
-        (batch.set_params_range(Some(range)), shared),
+        (batch.set_draws(common::draws::<Fast>()), shared),
         (batch.observe(&mut rows), "observations must have 3 elements, got 4"),
     ] {
         assert_eq!(result.unwrap_err().to_string(), message);
     }
     assert_eq!(rows, [[9.0; 6]; 4]);
-    assert_eq!((batch.state(3), batch.member(3)), (None, None));
-    assert_eq!((batch.params_of(3), batch.elapsed(3)), (None, None));
-    assert_eq!(batch.params_range(), None);
+    assert_eq!((batch.state_of(3), batch.member(3)), (None, None));
+    assert_eq!((batch.params_of(3), batch.elapsed_steps_of(3)), (None, None));
+    assert_eq!((batch.draws(), batch.ended(3)), (Draws::NONE, None));
     assert_eq!(members(&batch), members(&twin));
     for batch in [&mut batch, &mut twin] {
-        batch
-            .step(&[2_u8; 3], StepBuffers::new(&mut [0.0; 3], &mut [false; 3], &mut [false; 3]))
-            .unwrap();
+        let (mut rewards, mut terminated, mut truncated) = ([0.0; 3], [false; 3], [false; 3]);
+        let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated);
+        batch.step_into(&[2_u8; 3], buffers).unwrap();
     }
     assert_eq!(members(&batch), members(&twin));
 }

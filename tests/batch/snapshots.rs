@@ -6,13 +6,13 @@ use std::fmt::Debug;
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
-use acrobot::task::Gymnasium;
+use acrobot::task::{Draws, Gymnasium};
 use acrobot::{Acrobot, Action, Fast, Params};
-use common::params_range;
+use common::draws;
 use common::twins::{MODES, Twins};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 const LEN: usize = 35;
 
@@ -26,12 +26,12 @@ enum Kind {
 /// A batch in the middle of episodes, of which some have ended.
 fn running(kind: Kind, autoreset: Autoreset, noise: f32) -> Twins<Fast> {
     let mut rng = Pcg64::new(5);
-    let range = params_range::<Fast>(Dynamics::Nips);
-    let mut draw = || Params { torque_noise: noise, ..range.draw(&mut rng) };
+    let nips = Params { dynamics: Dynamics::Nips, ..Params::DEFAULT };
+    let mut draw = || Params { torque_noise: noise, ..draws::<Fast>().draw(&nips, &mut rng) };
     let mut twins = Twins::new(LEN, kind != Kind::Shared, autoreset);
     let limit = 150.try_into().unwrap();
-    twins.batch.set_limit(limit);
-    twins.alone.iter_mut().for_each(|alone| alone.set_limit(limit));
+    twins.batch.set_max_steps(limit);
+    twins.alone.iter_mut().for_each(|alone| alone.set_max_steps(limit));
     match kind {
         Kind::Shared => twins.set_params(draw()),
         Kind::Own => {
@@ -42,12 +42,12 @@ fn running(kind: Kind, autoreset: Autoreset, noise: f32) -> Twins<Fast> {
                 alone.set_params(params).unwrap();
             }
         }
-        Kind::Drawn => twins.batch.set_params_range(Some(range)).unwrap(),
+        Kind::Drawn => twins.batch.set_draws(draws::<Fast>()).unwrap(),
     }
     twins.set_bounds(-0.5, 0.25);
     twins.swing(200);
     if autoreset == Autoreset::NextStep {
-        while !twins.pending.contains(&true) {
+        while !twins.ended.contains(&true) {
             twins.swing(1);
         }
     }
@@ -66,12 +66,12 @@ fn every_batch() -> impl Iterator<Item = Twins<Fast>> {
 
 /// Continues beside the single acrobots that the stored batch was beside.
 fn assert_continues<const N: usize>(stored: &Twins<Fast>, loaded: VecBatch<Fast, Gymnasium, N>) {
-    assert_eq!(loaded.params_range(), stored.batch.params_range());
+    assert_eq!(loaded.draws(), stored.batch.draws());
     assert_eq!(loaded.reset_bounds(), stored.batch.reset_bounds());
-    assert_eq!(loaded.limit(), stored.batch.limit());
+    assert_eq!(loaded.max_steps(), stored.batch.max_steps());
     assert_eq!(loaded.autoreset(), stored.batch.autoreset());
     let mut twins =
-        Twins { batch: loaded, alone: stored.alone.clone(), pending: stored.pending.clone() };
+        Twins { batch: loaded, alone: stored.alone.clone(), ended: stored.ended.clone() };
     twins.assert_equal();
     twins.swing(300);
 }
@@ -88,8 +88,8 @@ fn loaded_batches_continue_to_the_same_bits_and_are_saved_to_the_same_bytes() {
         assert_continues(&stored, loaded);
         let mut deserializer = postcard::Deserializer::from_bytes(&bytes);
         let own = if stored.batch.params_of(0) == stored.batch.params_of(1) { 0 } else { LEN };
-        let lane_params = vec![LaneParams::default(); own];
-        let memory = ([Block::EMPTY; LEN], [Pcg64::UNSEEDED; LEN], lane_params);
+        let own = vec![LaneParams::default(); own];
+        let memory = ([Block::EMPTY; LEN], [Pcg64::UNSEEDED; LEN], own, Draws::NONE);
         let narrow =
             Batch::<Fast, _, Gymnasium, 1>::from_snapshot(memory, &mut deserializer).unwrap();
         assert_eq!(postcard::to_stdvec(&narrow).unwrap(), bytes);
@@ -101,6 +101,8 @@ fn loaded_batches_continue_to_the_same_bits_and_are_saved_to_the_same_bytes() {
 fn fields_have_any_order_and_unknown_ones_are_ignored() {
     fn add(value: &mut Value) {
         match value {
+            // The name of a draw, and not a field.
+            Value::Object(fields) if fields.contains_key("Uniform") => {}
             Value::Object(fields) => {
                 fields.values_mut().for_each(add);
                 fields.insert("an unknown field".into(), "new".into());
@@ -124,15 +126,17 @@ fn fields_have_any_order_and_unknown_ones_are_ignored() {
 }
 
 fn three(own_params: bool) -> VecBatch<Fast> {
-    let new = if own_params { VecBatch::with_own_params } else { VecBatch::new };
-    new(SeedSequence::new(1), 3).unwrap()
+    let mut batch = VecBatch::new(SeedSequence::new(1), 3).unwrap();
+    if own_params {
+        batch.own_params().unwrap();
+    }
+    batch
 }
 
 /// Three, whose resets draw parameters.
 fn three_drawn() -> VecBatch<Fast> {
     let mut batch = three(true);
-    let range = params_range::<Fast>(Dynamics::Book);
-    batch.set_params_range(Some(range)).unwrap();
+    batch.set_draws(draws::<Fast>()).unwrap();
     batch
 }
 
@@ -148,7 +152,8 @@ fn load(json: &str) -> String {
 
 /// Loads into memory for `LEN` acrobots in one block, with this many elements of parameters.
 fn load_into<const LEN: usize>(json: &str, own: usize) -> String {
-    let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; LEN], vec![LaneParams::default(); own]);
+    let own = vec![LaneParams::default(); own];
+    let memory = ([Block::EMPTY; 1], [Pcg64::UNSEEDED; LEN], own, Draws::NONE);
     let json = &mut serde_json::Deserializer::from_str(json);
     error(Batch::<Fast, _>::from_snapshot(memory, json))
 }
@@ -164,16 +169,16 @@ fn invalid_snapshots_are_rejected() {
         (
             r#""of":"batch""#,
             r#""of":"acrobot""#,
-            "the snapshot must be \"batch\", version 3, task \"gymnasium\", arithmetic \"fast\", \
-                friction false, got \"acrobot\", version 3, task \"gymnasium\", \
+            "the snapshot must be \"batch\", version 4, task \"gymnasium\", arithmetic \"fast\", \
+                friction false, got \"acrobot\", version 4, task \"gymnasium\", \
                 arithmetic \"fast\", friction false",
         ),
-        (r#""limit":500"#, r#""limit":0"#, "invalid value: integer `0`, expected a nonzero u32"),
         (
-            r#""low":-0.1"#,
-            r#""low":0.5"#,
-            "the lower reset bound must not be above the upper one, got 0.5 and 0.1 rad and rad/s",
+            r#""max_steps":500"#,
+            r#""max_steps":0"#,
+            "invalid value: integer `0`, expected a nonzero u32",
         ),
+        (r#""low":-0.1"#, r#""low":0.5"#, "low must be at most high, in rad and rad/s, got 0.5"),
         (
             r#""autoreset":"NextStep""#,
             r#""autoreset":"Never""#,
@@ -220,17 +225,20 @@ fn snapshots_that_do_not_fit_into_the_memory_are_rejected() {
 }
 
 #[test]
-fn invalid_ranges_are_rejected() {
+fn invalid_draws_are_rejected() {
     let value = serde_json::to_value(three_drawn()).unwrap();
-    let changed = |change: fn(&mut Vec<Value>)| {
+    let changed = |draw: Value| {
         let mut value = value.clone();
-        change(value[0]["params_range"].as_array_mut().unwrap());
+        value[0]["draws"]["length1"] = draw;
         load(&value.to_string())
     };
     assert_eq!(
-        changed(|range| range.reverse()),
-        "the lower length1 must not be above the upper one, got 2 and 0.5 m"
+        changed(json!({ "Uniform": { "low": 2.0, "high": 0.5 } })),
+        "length1 must be drawn from a low of at most its high, in m, got 2"
     );
-    assert_eq!(changed(|range| range.truncate(1)), "params_range must have 2 elements, got 1");
-    assert!(changed(|range| range.push(range[0].clone())).contains("invalid length 3"));
+    assert_eq!(
+        changed(json!({ "Uniform": { "low": 0.0, "high": 0.5 } })),
+        "length1 must be finite and above 0 m, got 0"
+    );
+    assert!(changed(json!("Sometimes")).starts_with("unknown variant `Sometimes`"));
 }

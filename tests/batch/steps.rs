@@ -7,10 +7,10 @@ use std::rc::Rc;
 use acrobot::arithmetic::{Arithmetic, Host, Micro, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, StepResults, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence, uniform};
-use acrobot::physics::Dynamics;
+use acrobot::task::Draws;
 use acrobot::{Action, Fast, Portable, State};
 use common::twins::Twins;
-use common::{bits, params_range};
+use common::{bits, draws};
 
 #[test]
 fn every_arithmetic_and_simd_level_equals_single_acrobots() {
@@ -59,13 +59,13 @@ fn bits_of(results: &StepResults) -> [Vec<u32>; 5] {
 fn threads_change_no_bit() {
     let (seed, len) = (SeedSequence::new(3), 40_003);
     let shared = VecBatch::<Fast>::new(seed.clone(), len).unwrap();
-    let mut own = VecBatch::with_own_params(seed, len).unwrap();
-    let range = params_range::<Fast>(Dynamics::Book);
-    own.set_params_range(Some(range)).unwrap();
+    let mut own = VecBatch::new(seed, len).unwrap();
+    own.own_params().unwrap();
+    own.set_draws(draws::<Fast>()).unwrap();
     own.reset();
     for mut one in [shared, own] {
         one.set_autoreset(Autoreset::SameStep);
-        one.set_limit(NonZeroU32::new(7).unwrap());
+        one.set_max_steps(NonZeroU32::new(7).unwrap());
         let mut many = one.clone();
         let mut rng = Pcg64::new(1);
         // This exceeds the limit of steps, with optimization eight times.
@@ -128,9 +128,10 @@ fn slices_that_change_their_length_cannot_panic() {
             Fickle { all: vec![Block::EMPTY; all], changed: blocks },
             Fickle { all: vec![Pcg64::UNSEEDED; len], changed: generators },
             Fickle { all: vec![LaneParams::default(); own], changed: lane_params },
+            Draws::NONE,
         );
         let mut one = Batch::<Portable, _>::new(3, memory).unwrap();
-        one.set_limit(NonZeroU32::MIN);
+        one.set_max_steps(NonZeroU32::MIN);
         let mut many = one.clone();
         for (len, changed) in lengths.iter().zip(changed) {
             len.set(changed);
@@ -144,8 +145,8 @@ fn slices_that_change_their_length_cannot_panic() {
                 StepBuffers::new(&mut rewards, terminated, truncated).with_observations(&mut rows);
             let torques = &vec![1.0; len];
             match parallel {
-                true => batch.par_step(torques, buffers).unwrap(),
-                false => batch.step(torques, buffers).unwrap(),
+                true => batch.par_step_into(torques, buffers).unwrap(),
+                false => batch.step_into(torques, buffers).unwrap(),
             }
             (rewards, ends, rows)
         };

@@ -1,18 +1,39 @@
-"""Draws initial states and then parameters by NumPy, as resets with ranges of parameters do: writes
-draws.json to its folder. A row an acrobot: mass2 in [0.8, 1.2], gravity in [9, 10], the state.
+"""Draws initial states, and then parameters, by NumPy: writes draws.csv to its folder.
+
+A row is a reset: of an acrobot with a seed, or of one of three in a batch with seed 42. Mass 2 is
+uniform, the inertia of both links log-uniform, gravity normal.
 """
 
-import json
+import csv
 from pathlib import Path
 
 import numpy as np
 
-LOW, HIGH = np.float32([0.8, 9.0]), np.float32([1.2, 10.0])
+COLUMNS = "seed child mass2 inertia1 inertia2 gravity theta1 theta2 dtheta1 dtheta2"
 
-rows = []
-for seed in np.random.SeedSequence(42).spawn(3):
-    rng = np.random.default_rng(seed)
+
+def normal(rng, mean, std, low, high):
+    """By rejection: a uniform draw is accepted by the density."""
+    low, high = max(low, mean - 8 * std), min(high, mean + 8 * std)
+    while True:
+        drawn = rng.uniform(low, high)
+        if rng.uniform() < np.exp(-0.5 * ((drawn - mean) / std) ** 2):
+            return drawn
+
+
+def row(rng):
     state = rng.uniform(-0.1, 0.1, 4)
-    params = [rng.uniform(low, high) for low, high in zip(LOW.astype(float), HIGH.astype(float))]
-    rows.append([float(str(np.float32(x))) for x in (*params, *state)])
-(Path(__file__).parent / "draws.json").write_text(json.dumps(rows) + "\n")
+    single = lambda *numbers: np.float32(numbers).astype(float)
+    mass2 = rng.uniform(*single(0.8, 1.2))
+    inertia = np.exp(rng.uniform(*np.log(single(0.5, 2.0))))
+    gravity = normal(rng, *single(9.8, 0.1, 9.5, 10.1))
+    return [str(np.float32(x)) for x in (mass2, inertia, inertia, gravity, *state)]
+
+
+with (Path(__file__).parent / "draws.csv").open("w", newline="") as file:
+    rows = csv.writer(file, lineterminator="\n")
+    rows.writerow(COLUMNS.split())
+    for seed in range(42, 52):
+        rows.writerow([seed, "", *row(np.random.default_rng(seed))])
+    for child, seed in enumerate(np.random.SeedSequence(42).spawn(3)):
+        rows.writerow([42, child, *row(np.random.default_rng(seed))])

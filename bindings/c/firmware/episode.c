@@ -24,7 +24,7 @@ int main(void)
         }
     }
     if (status == ACROBOT_OK) {
-        status = acrobot_elapsed(&acrobot, &steps);
+        status = acrobot_elapsed_steps(&acrobot, &steps);
     }
     if (status != ACROBOT_OK) {
         print(acrobot_status_text(status));

@@ -53,6 +53,22 @@
 // The equations of Sutton's paper of 1996 (NIPS 8), which do not conserve energy.
 #define ACROBOT_DYNAMICS_NIPS 1
 
+// The parameter stays as it is.
+#define ACROBOT_DRAW_FIXED 0
+
+// The number of the parameter before it: `inertia2` is `inertia1`.
+#define ACROBOT_DRAW_AS_BEFORE 1
+
+// Uniformly from `low` to `high`.
+#define ACROBOT_DRAW_UNIFORM 2
+
+// Its logarithm uniformly; `low` is above 0.
+#define ACROBOT_DRAW_LOG_UNIFORM 3
+
+// From a normal distribution with this `mean` and standard deviation, above 0, truncated at `low`
+// and `high`. `mean` is between these.
+#define ACROBOT_DRAW_NORMAL 4
+
 // The bytes of an acrobot_t: the most that any target needs.
 #define ACROBOT_SIZE 240
 
@@ -191,6 +207,34 @@ typedef struct {
   int dynamics;
 } acrobot_params_t;
 
+// How a parameter is drawn, in its unit.
+typedef struct {
+  // One of the ACROBOT_DRAW numbers.
+  int kind;
+  float low;
+  float high;
+  float mean;
+  float standard_deviation;
+} acrobot_draw_t;
+
+// How each parameter is drawn, in the order of acrobot_params_t. Zeros draw nothing.
+typedef struct {
+  acrobot_draw_t length1;
+  acrobot_draw_t length2;
+  acrobot_draw_t mass1;
+  acrobot_draw_t mass2;
+  acrobot_draw_t center_of_mass1;
+  acrobot_draw_t center_of_mass2;
+  acrobot_draw_t inertia1;
+  acrobot_draw_t inertia2;
+  acrobot_draw_t gravity;
+  acrobot_draw_t dt;
+  acrobot_draw_t max_velocity1;
+  acrobot_draw_t max_velocity2;
+  acrobot_draw_t torques[3];
+  acrobot_draw_t torque_noise;
+} acrobot_draws_t;
+
 // Draws random actions: Gymnasium's `action_space`. You may copy and move it.
 typedef struct ACROBOT_ALIGNED(16) {
   uint8_t bytes[ACROBOT_ACTION_SPACE_SIZE];
@@ -251,10 +295,12 @@ acrobot_status_t acrobot_step_torque(acrobot_t *acrobot,
 acrobot_status_t acrobot_observe(const acrobot_t *acrobot, acrobot_observation_t *observation);
 
 // The number of steps since the last reset.
-acrobot_status_t acrobot_elapsed(const acrobot_t *acrobot, uint32_t *steps);
+acrobot_status_t acrobot_elapsed_steps(const acrobot_t *acrobot, uint32_t *steps);
 
 // Sets the number of steps after which episodes are truncated, above 0; 500 by default.
-acrobot_status_t acrobot_set_limit(acrobot_t *acrobot, uint32_t limit, acrobot_error_t *error);
+acrobot_status_t acrobot_set_max_steps(acrobot_t *acrobot,
+                                       uint32_t max_steps,
+                                       acrobot_error_t *error);
 
 // The state.
 acrobot_status_t acrobot_state(const acrobot_t *acrobot, acrobot_state_t *state);
@@ -271,6 +317,11 @@ acrobot_status_t acrobot_params(const acrobot_t *acrobot, acrobot_params_t *para
 acrobot_status_t acrobot_set_params(acrobot_t *acrobot,
                                     const acrobot_params_t *params,
                                     acrobot_error_t *error);
+
+// Draws parameters for the next steps from the acrobot's generator: call it after a reset.
+acrobot_status_t acrobot_draw_params(acrobot_t *acrobot,
+                                     const acrobot_draws_t *draws,
+                                     acrobot_error_t *error);
 
 // The total energy of the state, J.
 acrobot_status_t acrobot_energy(const acrobot_t *acrobot, float *energy);
@@ -352,21 +403,21 @@ acrobot_status_t acrobot_batch_set_autoreset(acrobot_batch_t *batch,
                                              int autoreset,
                                              acrobot_error_t *error);
 
-// As acrobot_set_limit, for all acrobots.
-acrobot_status_t acrobot_batch_set_limit(acrobot_batch_t *batch,
-                                         uint32_t limit,
-                                         acrobot_error_t *error);
+// As acrobot_set_max_steps, for all acrobots.
+acrobot_status_t acrobot_batch_set_max_steps(acrobot_batch_t *batch,
+                                             uint32_t max_steps,
+                                             acrobot_error_t *error);
 
 // The state of acrobot `index`.
-acrobot_status_t acrobot_batch_state(const acrobot_batch_t *batch,
-                                     size_t index,
-                                     acrobot_state_t *state);
+acrobot_status_t acrobot_batch_state_of(const acrobot_batch_t *batch,
+                                        size_t index,
+                                        acrobot_state_t *state);
 
 // Sets the state of acrobot `index`. Its number of steps does not change.
-acrobot_status_t acrobot_batch_set_state(acrobot_batch_t *batch,
-                                         size_t index,
-                                         const acrobot_state_t *state,
-                                         acrobot_error_t *error);
+acrobot_status_t acrobot_batch_set_state_of(acrobot_batch_t *batch,
+                                            size_t index,
+                                            const acrobot_state_t *state,
+                                            acrobot_error_t *error);
 
 // The parameters of all acrobots.
 acrobot_status_t acrobot_batch_params(const acrobot_batch_t *batch, acrobot_params_t *params);

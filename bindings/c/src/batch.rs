@@ -10,7 +10,7 @@ use acrobot::{Fast, Params, ResetOptions};
 
 use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t};
 use crate::memory::{Holder, Span, array, change, check, check_apart, get, optional, read};
-use crate::single::check_limit;
+use crate::single::check_max_steps;
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
 /// The alignment of the memory for a batch, bytes.
@@ -185,7 +185,7 @@ pub unsafe extern "C" fn acrobot_batch_step(
         let mut buffers = StepBuffers::new(&mut *rewards, &mut *terminated, &mut *truncated);
         buffers.observations = observations.as_mut();
         buffers.final_observations = finals.as_mut();
-        placed.batch.step(&*actions, buffers)?;
+        placed.batch.step_into(&*actions, buffers)?;
         Ok(())
     })
 }
@@ -295,42 +295,42 @@ pub unsafe extern "C" fn acrobot_batch_set_autoreset(
     })
 }
 
-/// As acrobot_set_limit, for all acrobots.
+/// As acrobot_set_max_steps, for all acrobots.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_set_limit(
+pub unsafe extern "C" fn acrobot_batch_set_max_steps(
     batch: *mut acrobot_batch_t,
-    limit: u32,
+    max_steps: u32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(batch, ptr::null_mut(), error, |placed| {
-        placed.batch.set_limit(check_limit(limit)?);
+        placed.batch.set_max_steps(check_max_steps(max_steps)?);
         Ok(())
     })
 }
 
 /// The state of acrobot `index`.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_state(
+pub unsafe extern "C" fn acrobot_batch_state_of(
     batch: *const acrobot_batch_t,
     index: usize,
     state: *mut acrobot_state_t,
 ) -> acrobot_status_t {
     get(batch, state, |placed| {
-        let state = placed.batch.state(index);
+        let state = placed.batch.state_of(index);
         Ok(state.ok_or(ACROBOT_ERROR_NO_SUCH_INDEX)?.into())
     })
 }
 
 /// Sets the state of acrobot `index`. Its number of steps does not change.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_batch_set_state(
+pub unsafe extern "C" fn acrobot_batch_set_state_of(
     batch: *mut acrobot_batch_t,
     index: usize,
     state: *const acrobot_state_t,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(batch, ptr::null_mut(), error, |placed| {
-        Ok(placed.batch.set_state(index, read(state)?.into())?)
+        Ok(placed.batch.set_state_of(index, read(state)?.into())?)
     })
 }
 

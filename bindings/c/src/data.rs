@@ -1,8 +1,10 @@
 //! The structs that pass data.
 
+use core::convert::identity;
 use core::ffi::c_int;
 
-use acrobot::physics::Dynamics;
+use acrobot::physics::{Dynamics, Viscous};
+use acrobot::task::{Draw, Draws};
 use acrobot::{Params, State, Step};
 
 use crate::status::Rejected;
@@ -128,28 +130,102 @@ pub struct acrobot_params_t {
     pub dynamics: c_int,
 }
 
-/// A struct of another type with the same parameters. Only `dynamics` has another type, too.
-macro_rules! same_params {
-    ($type:ident, $from:ident, $dynamics:expr $(, $friction:ident)?) => {
+/// The parameter stays as it is.
+pub const ACROBOT_DRAW_FIXED: c_int = 0;
+
+/// The number of the parameter before it: `inertia2` is `inertia1`.
+pub const ACROBOT_DRAW_AS_BEFORE: c_int = 1;
+
+/// Uniformly from `low` to `high`.
+pub const ACROBOT_DRAW_UNIFORM: c_int = 2;
+
+/// Its logarithm uniformly; `low` is above 0.
+pub const ACROBOT_DRAW_LOG_UNIFORM: c_int = 3;
+
+/// From a normal distribution with this `mean` and standard deviation, above 0, truncated at `low`
+/// and `high`. `mean` is between these.
+pub const ACROBOT_DRAW_NORMAL: c_int = 4;
+
+/// How a parameter is drawn, in its unit.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_draw_t {
+    /// One of the ACROBOT_DRAW numbers.
+    pub kind: c_int,
+    pub low: f32,
+    pub high: f32,
+    pub mean: f32,
+    pub standard_deviation: f32,
+}
+
+/// How each parameter is drawn, in the order of acrobot_params_t. Zeros draw nothing.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct acrobot_draws_t {
+    pub length1: acrobot_draw_t,
+    pub length2: acrobot_draw_t,
+    pub mass1: acrobot_draw_t,
+    pub mass2: acrobot_draw_t,
+    pub center_of_mass1: acrobot_draw_t,
+    pub center_of_mass2: acrobot_draw_t,
+    pub inertia1: acrobot_draw_t,
+    pub inertia2: acrobot_draw_t,
+    pub gravity: acrobot_draw_t,
+    pub dt: acrobot_draw_t,
+    pub max_velocity1: acrobot_draw_t,
+    pub max_velocity2: acrobot_draw_t,
+    pub torques: [acrobot_draw_t; 3],
+    pub torque_noise: acrobot_draw_t,
+}
+
+/// A struct of another type with the same fields, converted by a function.
+macro_rules! same_fields {
+    ($type:ident, $from:ident, $convert:expr, $($others:tt)*) => {
         $type {
-            length1: $from.length1,
-            length2: $from.length2,
-            mass1: $from.mass1,
-            mass2: $from.mass2,
-            center_of_mass1: $from.center_of_mass1,
-            center_of_mass2: $from.center_of_mass2,
-            inertia1: $from.inertia1,
-            inertia2: $from.inertia2,
-            gravity: $from.gravity,
-            dt: $from.dt,
-            max_velocity1: $from.max_velocity1,
-            max_velocity2: $from.max_velocity2,
-            torques: $from.torques,
-            torque_noise: $from.torque_noise,
-            dynamics: $dynamics,
-            $($friction: acrobot::physics::Viscous::default(),)?
+            length1: $convert($from.length1),
+            length2: $convert($from.length2),
+            mass1: $convert($from.mass1),
+            mass2: $convert($from.mass2),
+            center_of_mass1: $convert($from.center_of_mass1),
+            center_of_mass2: $convert($from.center_of_mass2),
+            inertia1: $convert($from.inertia1),
+            inertia2: $convert($from.inertia2),
+            gravity: $convert($from.gravity),
+            dt: $convert($from.dt),
+            max_velocity1: $convert($from.max_velocity1),
+            max_velocity2: $convert($from.max_velocity2),
+            torques: $from.torques.map(&mut $convert),
+            torque_noise: $convert($from.torque_noise),
+            $($others)*
         }
     };
+}
+
+impl TryFrom<acrobot_draws_t> for Draws<f32> {
+    type Error = Rejected;
+
+    fn try_from(draws: acrobot_draws_t) -> Result<Self, Rejected> {
+        let mut unknown = None;
+        let mut convert = |draw: acrobot_draw_t| {
+            let acrobot_draw_t { kind, low, high, mean, standard_deviation: std } = draw;
+            match kind {
+                ACROBOT_DRAW_FIXED => Draw::Fixed,
+                ACROBOT_DRAW_AS_BEFORE => Draw::AsBefore,
+                ACROBOT_DRAW_UNIFORM => Draw::Uniform { low, high },
+                ACROBOT_DRAW_LOG_UNIFORM => Draw::LogUniform { low, high },
+                ACROBOT_DRAW_NORMAL => Draw::Normal { mean, std, low, high },
+                _ => {
+                    unknown = Some(kind);
+                    Draw::Fixed
+                }
+            }
+        };
+        let draws = same_fields!(Params, draws, convert, ..Draws::FIXED);
+        match unknown {
+            Some(kind) => Err(Rejected::number("kind", kind.into(), "", "from 0 to 4")),
+            None => Ok(Self::new(draws)?),
+        }
+    }
 }
 
 impl From<Params<f32>> for acrobot_params_t {
@@ -158,7 +234,7 @@ impl From<Params<f32>> for acrobot_params_t {
             Dynamics::Nips => ACROBOT_DYNAMICS_NIPS,
             _ => ACROBOT_DYNAMICS_BOOK,
         };
-        same_params!(acrobot_params_t, params, dynamics)
+        same_fields!(acrobot_params_t, params, identity, dynamics)
     }
 }
 
@@ -175,6 +251,6 @@ impl TryFrom<acrobot_params_t> for Params<f32> {
                 return Err(Rejected::number("dynamics", other.into(), "", rule));
             }
         };
-        Ok(same_params!(Params, params, dynamics, friction))
+        Ok(same_fields!(Params, params, identity, dynamics, friction: Viscous::default()))
     }
 }

@@ -7,7 +7,9 @@ use core::ptr;
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Action, Fast, TimeLimit};
 
-use crate::data::{acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t};
+use crate::data::{
+    acrobot_draws_t, acrobot_observation_t, acrobot_params_t, acrobot_state_t, acrobot_step_t,
+};
 use crate::memory::{Holder, change, check, get, read};
 use crate::status::{Rejected, acrobot_error_t, acrobot_status_t, acrobot_status_t::*, status};
 
@@ -115,28 +117,28 @@ pub unsafe extern "C" fn acrobot_observe(
 
 /// The number of steps since the last reset.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_elapsed(
+pub unsafe extern "C" fn acrobot_elapsed_steps(
     acrobot: *const acrobot_t,
     steps: *mut u32,
 ) -> acrobot_status_t {
-    get(acrobot, steps, |acrobot| Ok(acrobot.elapsed()))
+    get(acrobot, steps, |acrobot| Ok(acrobot.elapsed_steps()))
 }
 
 /// Sets the number of steps after which episodes are truncated, above 0; 500 by default.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn acrobot_set_limit(
+pub unsafe extern "C" fn acrobot_set_max_steps(
     acrobot: *mut acrobot_t,
-    limit: u32,
+    max_steps: u32,
     error: *mut acrobot_error_t,
 ) -> acrobot_status_t {
     change(acrobot, ptr::null_mut(), error, |acrobot| {
-        acrobot.set_limit(check_limit(limit)?);
+        acrobot.set_max_steps(check_max_steps(max_steps)?);
         Ok(())
     })
 }
 
-pub fn check_limit(limit: u32) -> Result<NonZeroU32, Rejected> {
-    NonZeroU32::new(limit).ok_or(Rejected::number("limit", 0.0, "steps", "above 0"))
+pub fn check_max_steps(max_steps: u32) -> Result<NonZeroU32, Rejected> {
+    NonZeroU32::new(max_steps).ok_or(Rejected::number("max_steps", 0.0, "steps", "above 0"))
 }
 
 /// The state.
@@ -176,6 +178,18 @@ pub unsafe extern "C" fn acrobot_set_params(
 ) -> acrobot_status_t {
     change(acrobot, ptr::null_mut(), error, |acrobot| {
         Ok(acrobot.set_params(read(params)?.try_into()?)?)
+    })
+}
+
+/// Draws parameters for the next steps from the acrobot's generator: call it after a reset.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn acrobot_draw_params(
+    acrobot: *mut acrobot_t,
+    draws: *const acrobot_draws_t,
+    error: *mut acrobot_error_t,
+) -> acrobot_status_t {
+    change(acrobot, ptr::null_mut(), error, |acrobot| {
+        Ok(acrobot.inner_mut().draw_params(&read(draws)?.try_into()?)?)
     })
 }
 

@@ -85,14 +85,6 @@ impl From<Error> for Rejected {
     fn from(error: Error) -> Self {
         match error {
             Error::OutOfRange { name, value, unit, rule } => Self::number(name, value, unit, rule),
-            Error::NoInertia { name, value } => {
-                let rule = "(with the centre of mass on the joint) above 0";
-                Self::number(name, value, "kg m²", rule)
-            }
-            // Of reset bounds: a library for C draws no parameters.
-            Error::ReversedRange { low, unit, .. } => {
-                Self::number("low", low, unit, "at most high in")
-            }
             Error::UnknownAction(_) => ACROBOT_ERROR_UNKNOWN_ACTION.into(),
             Error::NoSuchIndex { .. } => ACROBOT_ERROR_NO_SUCH_INDEX.into(),
             // EmptyBatch and WrongLength. No function here can cause the others.

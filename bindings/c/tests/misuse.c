@@ -9,6 +9,8 @@ static const acrobot_state_t REST = {0, 0, 0, 0}, FAR = {INF, 0, 0, 0};
 #define WITH_MASS1(mass1) \
     {1, 1, mass1, 1, .5f, .5f, 1, 1, 9.8f, .2f, 1, 1, {-1, 0, 1}, 0, ACROBOT_DYNAMICS_BOOK}
 static const acrobot_params_t PARAMS = WITH_MASS1(1), NO_MASS = WITH_MASS1(0);
+// `main` reverses one.
+static acrobot_draws_t draws, reversed;
 static const acrobot_state_t ONES = {1, 1, 1, 1}, NEGATIVE = {1, -2, 1, 1};
 static const acrobot_state_t UPRIGHT = {3.1415927f, 0, 0, 0};
 // Neither actions nor dynamics. The lowest byte of the last three is one.
@@ -50,12 +52,13 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     RESULT(ALONE, acrobot_step_t, acrobot_step_torque(acrobot, 1, out, NULL)) \
     ERROR(ALONE, acrobot_step_torque(acrobot, INF, &step, out)) \
     RESULT(ALONE, row_t, acrobot_observe(acrobot, out)) \
-    RESULT(ALONE, uint32_t, acrobot_elapsed(acrobot, out)) \
-    ERROR(ALONE, acrobot_set_limit(acrobot, 0, out)) \
+    RESULT(ALONE, uint32_t, acrobot_elapsed_steps(acrobot, out)) \
+    ERROR(ALONE, acrobot_set_max_steps(acrobot, 0, out)) \
     RESULT(ALONE, acrobot_state_t, acrobot_state(acrobot, out)) \
     ERROR(ALONE, acrobot_set_state(acrobot, &FAR, out)) \
     RESULT(ALONE, acrobot_params_t, acrobot_params(acrobot, out)) \
     ERROR(ALONE, acrobot_set_params(acrobot, &NO_MASS, out)) \
+    ERROR(ALONE, acrobot_draw_params(acrobot, &reversed, out)) \
     RESULT(ALONE, float, acrobot_energy(acrobot, out)) \
     RESULT(ALONE, float, acrobot_tip_height(acrobot, out)) \
     RESULT(ALONE, acrobot_state_t, acrobot_deviation(acrobot, &REST, out)) \
@@ -70,9 +73,9 @@ enum { OK = ACROBOT_OK, RANGE = ACROBOT_ERROR_OUT_OF_RANGE };
     RESULT(BATCH, rows_t, acrobot_batch_observe(batch, (row_t *)out, COUNT)) \
     RESULT(BATCH, size_t, acrobot_batch_count(batch, out)) \
     ERROR(BATCH, acrobot_batch_set_autoreset(batch, 3, out)) \
-    ERROR(BATCH, acrobot_batch_set_limit(batch, 0, out)) \
-    RESULT(BATCH, acrobot_state_t, acrobot_batch_state(batch, 0, out)) \
-    ERROR(BATCH, acrobot_batch_set_state(batch, 0, &FAR, out)) \
+    ERROR(BATCH, acrobot_batch_set_max_steps(batch, 0, out)) \
+    RESULT(BATCH, acrobot_state_t, acrobot_batch_state_of(batch, 0, out)) \
+    ERROR(BATCH, acrobot_batch_set_state_of(batch, 0, &FAR, out)) \
     RESULT(BATCH, acrobot_params_t, acrobot_batch_params(batch, out)) \
     ERROR(BATCH, acrobot_batch_set_params(batch, &NO_MASS, out))
 
@@ -214,8 +217,8 @@ static void arguments_of_an_acrobot(void)
                      "dynamics", params.dynamics, "", "0 (book) or 1 (NIPS)");
     }
     OUT_OF_RANGE(acrobot_reset_within(acrobot, .2, -.1, NULL, &error),
-                 "low", .2, "rad and rad/s", "at most high in rad and rad/s");
-    OUT_OF_RANGE(acrobot_set_limit(acrobot, 0, &error), "limit", 0, "steps", "above 0 steps");
+                 "low", .2, "rad and rad/s", "at most high, in rad and rad/s");
+    OUT_OF_RANGE(acrobot_set_max_steps(acrobot, 0, &error), "max_steps", 0, "steps", "above 0 steps");
     REJECTED(NULL, acrobot_set_state(acrobot, NULL, &error));
     OUT_OF_RANGE(acrobot_set_state(acrobot, &FAR, &error),
                  "theta1", INF, "rad", "a finite number of rad");
@@ -225,7 +228,13 @@ static void arguments_of_an_acrobot(void)
     params = PARAMS;
     params.inertia2 = params.center_of_mass2 = 0;
     OUT_OF_RANGE(acrobot_set_params(acrobot, &params, &error),
-                 "inertia2", 0, "kg m²", "(with the centre of mass on the joint) above 0 kg m²");
+                 "inertia2", 0, "kg m²",
+                 "above 0 if the centre of mass is on the joint, in kg m²");
+    REJECTED(NULL, acrobot_draw_params(acrobot, NULL, &error));
+    OUT_OF_RANGE(acrobot_draw_params(acrobot, &reversed, &error),
+                 "length1", 2, "m", "drawn from a low of at most its high, in m");
+    draws.gravity.kind = 5;
+    OUT_OF_RANGE(acrobot_draw_params(acrobot, &draws, &error), "kind", 5, "", "from 0 to 4");
     REJECTED(NULL, acrobot_deviation(acrobot, NULL, &x));
     REJECTED(OUT_OF_RANGE, acrobot_deviation(acrobot, &FAR, &x));
     REJECTED(NULL, acrobot_lqr(acrobot, NULL, &ONES, 1, &x, &error));
@@ -316,9 +325,9 @@ static void arguments_of_a_batch(void)
     __builtin_memcpy(&mask[2], &odd, 1);
     REJECTED(OUT_OF_RANGE, acrobot_batch_reset_masked(batch, mask, COUNT));
     REJECTED(OUT_OF_RANGE, acrobot_batch_set_autoreset(batch, 256, NULL));
-    REJECTED(NO_SUCH_INDEX, acrobot_batch_state(batch, COUNT, &state));
-    REJECTED(NO_SUCH_INDEX, acrobot_batch_set_state(batch, COUNT, &REST, NULL));
-    REJECTED(NULL, acrobot_batch_set_state(batch, 0, NULL, NULL));
+    REJECTED(NO_SUCH_INDEX, acrobot_batch_state_of(batch, COUNT, &state));
+    REJECTED(NO_SUCH_INDEX, acrobot_batch_set_state_of(batch, COUNT, &REST, NULL));
+    REJECTED(NULL, acrobot_batch_set_state_of(batch, 0, NULL, NULL));
     REJECTED(NULL, acrobot_batch_set_params(batch, NULL, NULL));
     CHECK(same(batch, saved, SIZE));
     ACCEPTED(acrobot_batch_step(batch, actions, &all, COUNT));
@@ -327,6 +336,9 @@ static void arguments_of_a_batch(void)
 
 int main(void)
 {
+    reversed.length1.kind = ACROBOT_DRAW_UNIFORM;
+    reversed.length1.low = 2;
+    reversed.length1.high = 1;
     holders();
     pointers();
     arguments_of_an_acrobot();

@@ -1,6 +1,7 @@
 // Each value goes where its name says.
 
 #include "check.h"
+#include "draws.h"
 
 #define COUNT 2
 
@@ -50,15 +51,15 @@ static void an_acrobot(void)
     ACCEPTED(acrobot_step_torque(&twin, PARAMS.torques[1], &twin_step, NULL));
     CHECK(step.observation.dtheta1 == twin_step.observation.dtheta1);
     CHECK(step.reward == -1 && twin_step.reward == -1);
-    ACCEPTED(acrobot_elapsed(&acrobot, &steps));
+    ACCEPTED(acrobot_elapsed_steps(&acrobot, &steps));
     CHECK(steps == 1);
 
     ACCEPTED(acrobot_reset_within(&acrobot, .5, .5, NULL, NULL));
     ACCEPTED(acrobot_state(&acrobot, &state));
     CHECK(state.theta1 == .5f && state.dtheta2 == .5f);
-    ACCEPTED(acrobot_elapsed(&acrobot, &steps));
+    ACCEPTED(acrobot_elapsed_steps(&acrobot, &steps));
     CHECK(steps == 0);
-    ACCEPTED(acrobot_set_limit(&acrobot, 2, NULL));
+    ACCEPTED(acrobot_set_max_steps(&acrobot, 2, NULL));
     for (steps = 1; steps <= 2; steps++) {
         ACCEPTED(acrobot_step(&acrobot, ACROBOT_ACTION_ZERO, &step));
         CHECK(step.truncated == (steps == 2));
@@ -85,10 +86,10 @@ static void a_batch(void)
     ACCEPTED(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch));
     ACCEPTED(acrobot_batch_count(batch, &count));
     CHECK(count == COUNT);
-    ACCEPTED(acrobot_batch_set_state(batch, 1, &MOVING, NULL));
-    ACCEPTED(acrobot_batch_state(batch, 1, &state));
+    ACCEPTED(acrobot_batch_set_state_of(batch, 1, &MOVING, NULL));
+    ACCEPTED(acrobot_batch_state_of(batch, 1, &state));
     CHECK(same(&state, &MOVING, sizeof state));
-    ACCEPTED(acrobot_batch_state(batch, 0, &state));
+    ACCEPTED(acrobot_batch_state_of(batch, 0, &state));
     CHECK(!same(&state, &MOVING, sizeof state));
     ACCEPTED(acrobot_batch_set_params(batch, &PARAMS, NULL));
     ACCEPTED(acrobot_batch_params(batch, &params));
@@ -107,12 +108,12 @@ static void a_batch(void)
     CHECK(rows[1].dtheta2 == step.observation.dtheta2);
     CHECK(rows[0].dtheta2 <= .1f && rows[0].dtheta2 >= -.1f);
     ACCEPTED(acrobot_batch_reset(batch));
-    ACCEPTED(acrobot_batch_state(batch, 1, &state));
+    ACCEPTED(acrobot_batch_state_of(batch, 1, &state));
     CHECK(state.theta1 <= .1f && state.theta1 >= -.1f);
     ACCEPTED(acrobot_batch_reset_with_seed(batch, 42));
     ACCEPTED(acrobot_batch_observe(batch, rows, COUNT));
     ACCEPTED(acrobot_batch_init(memory, sizeof memory, COUNT, 42, &batch));
-    ACCEPTED(acrobot_batch_state(batch, 1, &state));
+    ACCEPTED(acrobot_batch_state_of(batch, 1, &state));
     CHECK(state.dtheta1 == rows[1].dtheta1);
 
     ACCEPTED(acrobot_batch_reset_with_seeds(batch, seeds, COUNT));
@@ -121,16 +122,43 @@ static void a_batch(void)
         ACCEPTED(acrobot_reset_with_seed(&alone, seeds[i], &step.observation));
         CHECK(same(&rows[i], &step.observation, sizeof rows[i]));
     }
-    ACCEPTED(acrobot_batch_set_limit(batch, 2, NULL));
+    ACCEPTED(acrobot_batch_set_max_steps(batch, 2, NULL));
     for (int steps = 1; steps <= 2; steps++) {
         ACCEPTED(acrobot_batch_step(batch, actions, &results, COUNT));
         CHECK(truncated[0] == (steps == 2) && truncated[1] == (steps == 2));
     }
 }
 
+// Each row: seed, four parameters, and the state.
+static void drawn_parameters(void)
+{
+    static acrobot_draws_t draws;
+    const acrobot_draw_t mass2 = {ACROBOT_DRAW_UNIFORM, .8f, 1.2f, 0, 0};
+    const acrobot_draw_t inertia1 = {ACROBOT_DRAW_LOG_UNIFORM, .5f, 2, 0, 0};
+    const acrobot_draw_t gravity = {ACROBOT_DRAW_NORMAL, 9.5f, 10.1f, 9.8f, .1f};
+    draws.mass2 = mass2;
+    draws.inertia1 = inertia1;
+    draws.inertia2.kind = ACROBOT_DRAW_AS_BEFORE;
+    draws.gravity = gravity;
+    for (size_t i = 0; i < sizeof DRAWS / sizeof DRAWS[0]; i++) {
+        acrobot_t acrobot;
+        acrobot_state_t state;
+        acrobot_params_t params;
+        const float *row = DRAWS[i];
+        ACCEPTED(acrobot_init(&acrobot, (uint64_t)row[0]));
+        ACCEPTED(acrobot_draw_params(&acrobot, &draws, NULL));
+        ACCEPTED(acrobot_params(&acrobot, &params));
+        ACCEPTED(acrobot_state(&acrobot, &state));
+        CHECK(params.mass2 == row[1] && params.inertia1 == row[2] && params.inertia2 == row[3]);
+        CHECK(params.gravity == row[4] && params.mass1 == 1);
+        CHECK(same(&state, row + 5, sizeof state));
+    }
+}
+
 int main(void)
 {
     an_acrobot();
+    drawn_parameters();
     a_batch();
     return report("values");
 }

@@ -108,7 +108,7 @@ impl<'w, const S: usize, const T: usize> QLambda<'w, S, T> {
         self.replay();
         let passed = match self.budget {
             Budget::Episodes(_) => 1,
-            Budget::Steps(_) => env.elapsed(),
+            Budget::Steps(_) => env.elapsed_steps(),
         };
         self.passed = self.passed.saturating_add(passed);
         sum

@@ -99,7 +99,7 @@ fn the_weights_equal_those_of_the_definition() {
             let latest = steps.len().saturating_sub(STEPS);
             let (all, more) = match budget {
                 Budget::Episodes(all) => (all, 1),
-                Budget::Steps(all) => (all, twin.elapsed()),
+                Budget::Steps(all) => (all, twin.elapsed_steps()),
             };
             let share = f64::from(passed) / f64::from(all);
             let alpha = 0.3 + (0.005 - 0.3) * share.min(1.0);

@@ -10,7 +10,7 @@ use acrobot::arithmetic::{Arithmetic, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, Member, VecBatch};
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::Dynamics;
-use acrobot::task::{Gymnasium, ParamsRange};
+use acrobot::task::{Gymnasium, Draw, Draws};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 use libfuzzer_sys::fuzz_target;
 use serde::Serialize;
@@ -138,10 +138,10 @@ impl<A: Arithmetic> Snapshot for TimeLimit<Acrobot<A>> {
     }
 
     fn check(mut self) -> bool {
-        let elapsed = self.elapsed();
+        let elapsed = self.elapsed_steps();
         let step = self.step(Action::Negative);
-        assert_eq!(self.elapsed(), elapsed.saturating_add(1));
-        assert_eq!(step.truncated, self.elapsed() >= self.limit().get());
+        assert_eq!(self.elapsed_steps(), elapsed.saturating_add(1));
+        assert_eq!(step.truncated, self.elapsed_steps() >= self.max_steps().get());
         self.inner().clone().check()
     }
 }
@@ -152,8 +152,8 @@ impl<A: Arithmetic> Snapshot for Member<A> {
         Self {
             params: Params { dynamics: Dynamics::Nips, ..*acrobot.params() },
             state: acrobot.state(),
-            elapsed: 3,
-            reset_pending: true,
+            elapsed_steps: 3,
+            ended: true,
             rng: acrobot.rng().clone(),
         }
     }
@@ -167,9 +167,10 @@ impl<A: Arithmetic> Snapshot for Member<A> {
             && (A::HAS_FRICTION || !has_friction);
         for autoreset in [NextStep, SameStep, Disabled] {
             let seed = SeedSequence::new(0);
-            let mut batch = VecBatch::<A>::with_own_params(seed, 1).expect("memory for one");
+            let mut batch = VecBatch::<A>::new(seed, 1).expect("memory for one");
+            batch.own_params().expect("memory for one");
             batch.set_autoreset(autoreset);
-            batch.set_limit(NonZeroU32::MAX);
+            batch.set_max_steps(NonZeroU32::MAX);
             assert_eq!(batch.set_member(0, self.clone()).is_ok(), valid);
             assert_steps(&mut batch);
         }
@@ -183,7 +184,7 @@ fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, Gymnasium
     for (index, before) in pending.into_iter().enumerate() {
         let member = batch.member(index).expect("it has as many");
         assert!(member.state.validate().is_ok() && member.params.validate().is_ok());
-        if !before.is_some_and(|before| before.reset_pending) && member.elapsed > 0 {
+        if !before.is_some_and(|before| before.ended) && member.elapsed_steps > 0 {
             assert_settled(member.state, &member.params);
         }
     }
@@ -193,21 +194,16 @@ fn assert_steps<A: Arithmetic, const N: usize>(batch: &mut VecBatch<A, Gymnasium
 impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
     fn sample() -> Self {
         let seed = SeedSequence::new(42);
-        let low = Params::<A::Scalar>::default();
-        let mut high = low;
-        high.torque_noise = A::Scalar::from_f64(0.5);
-        let batch = if N < 4 {
-            let range = ParamsRange::new(low, high);
-            VecBatch::with_own_params(seed, 4).and_then(|mut batch: Self| {
-                batch.set_params_range(Some(range?))?;
-                batch.reset();
-                Ok(batch)
-            })
-        } else {
-            VecBatch::new(seed, 4)
-        };
-        let mut batch = batch.expect("memory for four");
-        batch.set_limit(NonZeroU32::MIN);
+        let mut batch = Self::new(seed, 4).expect("memory for four");
+        if N < 4 {
+            let [low, high] = [0.0, 0.5].map(A::Scalar::from_f64);
+            let torque_noise = Draw::Uniform { low, high };
+            let draws = Draws::new(Params { torque_noise, ..Draws::FIXED });
+            batch.own_params().expect("memory for four");
+            batch.set_draws(draws.expect("valid")).expect("valid");
+            batch.reset();
+        }
+        batch.set_max_steps(NonZeroU32::MIN);
         assert!(batch.step(&[2_u8; 4]).is_ok());
         batch
     }
@@ -216,7 +212,7 @@ impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
         let (len, bytes) = (self.len(), binary(&self));
         let first = self.params_of(0);
         let same = (0..len).all(|index| self.params_of(index) == first);
-        let fits = same && self.params_range().is_none();
+        let fits = same && self.draws() == Draws::NONE;
         let mut blocks = vec![Block::EMPTY; len];
         let mut generators = vec![Pcg64::UNSEEDED; len];
         let mut from = postcard::Deserializer::from_bytes(&bytes);
@@ -224,7 +220,7 @@ impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
         let shared = Batch::<A, _, Gymnasium, 1>::from_snapshot(memory, &mut from);
         assert_eq!(shared.is_ok(), fits);
         let mut from = postcard::Deserializer::from_bytes(&bytes);
-        let memory = (blocks, generators, vec![LaneParams::default(); len]);
+        let memory = (blocks, generators, vec![LaneParams::default(); len], Draws::NONE);
         let own =
             Batch::<A, _, Gymnasium, 1>::from_snapshot(memory, &mut from).expect("it was saved");
         for index in 0..len {

@@ -50,7 +50,7 @@ fn learnt<const S: usize, const T: usize, const N: usize>(
     let mut steps = 0;
     while steps < STEPS {
         learner.learn(&mut env);
-        steps += env.elapsed();
+        steps += env.elapsed_steps();
     }
     learner
 }

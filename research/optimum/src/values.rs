@@ -152,7 +152,7 @@ impl Stepper {
             let results = batch.step(&[action; LANES]).expect("valid actions");
             let reached = results.terminated[..states.len()].to_vec();
             for (i, reached) in reached.into_iter().enumerate() {
-                let next = batch.state(i).expect("a lane");
+                let next = batch.state_of(i).expect("a lane");
                 to(chunk * LANES + i, next, reached);
             }
         }

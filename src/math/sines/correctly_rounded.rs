@@ -31,9 +31,9 @@ const TINY: f64 = 1.0 / 134_217_728.0;
 #[inline(always)]
 pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     if V::IS_ONE {
-        return x.zip3(x, x, |x, _, _| of_one(x));
+        return x.map2(of_one);
     }
-    let (sin, cos) = x.zip3(x, x, |x, _, _| {
+    let (sin, cos) = x.map2(|x| {
         if !HAS_SIMD {
             return of_one(x);
         }

@@ -26,11 +26,11 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
     let is_fast = if V::IS_ONE { HAS_F64 } else { HAS_SIMD };
     if !is_fast {
         // `libm` has branches instead, so it needs fewer instructions.
-        return x.zip3(x, x, |x, _, _| libm::sincos(x));
+        return x.map2(libm::sincos);
     }
     if V::IS_ONE && x.all_within(largest) {
         // A branch is faster than the reduction, for which one number has to wait.
-        return x.zip3(x, x, |x, _, _| reduced(MAGIC, x, 0.0));
+        return x.map2(|x| reduced(MAGIC, x, 0.0));
     }
     let shifted = x * c(core::f64::consts::FRAC_2_PI) + c(MAGIC);
     let n = shifted - c(MAGIC);
@@ -49,7 +49,7 @@ pub fn sin_cos<V: Numbers<f64>>(x: V) -> (V, V) {
 #[cold]
 #[inline(never)]
 fn by_libm<V: Numbers<f64>>(x: V) -> (V, V) {
-    x.zip3(x, x, |x, _, _| libm::sincos(x))
+    x.map2(libm::sincos)
 }
 
 /// Sine and cosine of y + `tail` + n π/2. The lowest bits of `shifted` are those of n.

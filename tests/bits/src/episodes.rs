@@ -4,7 +4,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Batch, Block, LaneParams, StepBuffers, Storage};
 use acrobot::numpy::Pcg64;
 use acrobot::physics::Viscous;
-use acrobot::task::{Gymnasium, ParamsRange, Swingup, Task};
+use acrobot::task::{Draw, Draws, Gymnasium, Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
 
 use crate::{Digest, against};
@@ -159,15 +159,18 @@ fn subnormal_batch<const N: usize, const BLOCKS: usize>() -> u64 {
 /// As [`shared_params`] for eight, of which each reset draws parameters.
 #[inline(never)]
 fn own_params<const N: usize, const BLOCKS: usize>() -> u64 {
-    let low =
-        Params { mass1: 0.9, inertia2: 0.9, gravity: 9.0, torque_noise: 0.0, ..Params::DEFAULT };
-    let high =
-        Params { mass1: 1.1, inertia2: 1.1, gravity: 10.0, torque_noise: 0.1, ..Params::DEFAULT };
+    let draws = Draws::new(Params {
+        mass1: Draw::LogUniform { low: 0.9, high: 1.1 },
+        inertia2: Draw::Uniform { low: 0.9, high: 1.1 },
+        gravity: Draw::Normal { mean: 9.8, std: 0.5, low: 9.0, high: 10.0 },
+        torque_noise: Draw::Uniform { low: 0.0, high: 0.1 },
+        ..Draws::FIXED
+    });
     let generators = [Pcg64::UNSEEDED; 8];
-    let memory = ([Block::EMPTY; BLOCKS], generators, [LaneParams::default(); BLOCKS]);
+    let memory = ([Block::EMPTY; BLOCKS], generators, [LaneParams::default(); BLOCKS], Draws::NONE);
     batch::<8, N, _>(memory, |batch| {
         // It does not fail: a failure changes the digest.
-        let _ = batch.set_params_range(ParamsRange::new(low, high).ok());
+        let _ = draws.and_then(|draws| batch.set_draws(draws));
         batch.reset();
     })
 }
@@ -190,7 +193,7 @@ fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
         let buffers = StepBuffers::new(&mut rewards, &mut terminated, &mut truncated)
             .with_observations(&mut rows)
             .with_final_observations(&mut finals);
-        if batch.step(&actions, buffers).is_err() {
+        if batch.step_into(&actions, buffers).is_err() {
             return 0;
         }
         let seen = rows.iter().chain(&finals).flatten().chain(&rewards);
@@ -203,7 +206,7 @@ fn batch<const LEN: usize, const N: usize, S: Storage<Fast, N>>(
 pub const BATCHES: [u64; 3] = [
     0xeae8_bc44_fb2b_ab5e, // shared parameters
     0xcc78_d474_8108_4cf5, // subnormal numbers
-    0x2ccf_3fb3_f605_439e, // own parameters
+    0x386b_bd46_1da1_e6cd, // own parameters
 ];
 
 pub const SUBNORMAL: [u64; 4] = [

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::physics::{Dynamics, Viscous};
-use acrobot::task::ParamsRange;
+use acrobot::task::{Draw, Draws};
 use acrobot::{Params, State};
 
 pub use bits::Digest;
@@ -47,8 +47,20 @@ macro_rules! in_every_arithmetic {
     }};
 }
 
+/// Uniform draws of all parameters that differ.
+pub fn between<S: Real>(low: Params<S>, high: Params<S>) -> Draws<S> {
+    let mut draws = Draws::FIXED;
+    let ends = low.numbers().into_iter().zip(high.numbers());
+    for (draw, ((_, low), (_, high))) in draws.numbers_mut().into_iter().zip(ends) {
+        if low != high {
+            *draw = Draw::Uniform { low, high };
+        }
+    }
+    Draws::new(draws).unwrap()
+}
+
 /// All parameters that an arithmetic has, each from a wide range.
-pub fn params_range<A: Arithmetic>(dynamics: Dynamics) -> ParamsRange<A::Scalar> {
+pub fn draws<A: Arithmetic>() -> Draws<A::Scalar> {
     let [low, high] = [0, 1].map(|i| Params {
         length1: [0.5, 2.0][i],
         length2: [0.5, 2.0][i],
@@ -64,14 +76,14 @@ pub fn params_range<A: Arithmetic>(dynamics: Dynamics) -> ParamsRange<A::Scalar>
         max_velocity2: [5.0, 40.0][i],
         torques: [[-2.0, -0.5, 0.5], [-0.5, 0.5, 2.0]][i],
         torque_noise: [0.0, 0.5][i],
-        dynamics,
+        dynamics: Dynamics::Book,
         friction: if A::HAS_FRICTION && i == 1 {
             Viscous { joint1: 0.5, joint2: 0.3 }
         } else {
             Viscous::default()
         },
     });
-    ParamsRange::new(low.cast(), high.cast()).unwrap()
+    between(low.cast(), high.cast())
 }
 
 /// Fails with the text that a page of the docs should contain. Line breaks do not count.

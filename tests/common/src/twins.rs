@@ -3,12 +3,11 @@
 use acrobot::arithmetic::{Arithmetic, Real};
 use acrobot::batch::{Autoreset, SimdLevel, StepResults, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::Dynamics;
 use acrobot::task::{Gymnasium, ResetBounds, Task};
 use acrobot::{Acrobot, Action, Params, ResetOptions, State, Step, TimeLimit};
 use bits::against;
 
-use crate::{bits, params_range};
+use crate::{bits, draws};
 
 pub const MODES: [Autoreset; 3] = [Autoreset::NextStep, Autoreset::SameStep, Autoreset::Disabled];
 
@@ -18,18 +17,20 @@ pub const LEVELS: [SimdLevel; 3] = [SimdLevel::Baseline, SimdLevel::Avx2, SimdLe
 pub struct Twins<A: Arithmetic, const N: usize = 16, T: Task = Gymnasium> {
     pub batch: VecBatch<A, T, N>,
     pub alone: Vec<TimeLimit<Acrobot<A, T>>>,
-    /// Whether the next step resets each of `alone`.
-    pub pending: Vec<bool>,
+    /// Whether the episode of each of `alone` has ended and it waits for a reset.
+    pub ended: Vec<bool>,
 }
 
 impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
     pub fn new(len: usize, own_params: bool, autoreset: Autoreset) -> Self {
         let seed = SeedSequence::new(42);
-        let new = if own_params { VecBatch::with_own_params } else { VecBatch::new };
-        let mut batch = new(seed.clone(), len).unwrap();
+        let mut batch = VecBatch::new(seed.clone(), len).unwrap();
+        if own_params {
+            batch.own_params().unwrap();
+        }
         batch.set_autoreset(autoreset);
-        let alone = |i| TimeLimit::new(Acrobot::with_rng(seed.child(i).into()), T::LIMIT);
-        Self { batch, alone: (0..len as u64).map(alone).collect(), pending: vec![false; len] }
+        let alone = |i| TimeLimit::new(Acrobot::with_rng(seed.child(i).into()), T::MAX_STEPS);
+        Self { batch, alone: (0..len as u64).map(alone).collect(), ended: vec![false; len] }
     }
 
     pub fn set_params(&mut self, params: Params<A::Scalar>) {
@@ -42,16 +43,16 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
 
     /// Resets all acrobots, or those of a mask.
     pub fn reset(&mut self, mask: Option<&[bool]>, options: ResetOptions) {
-        let rows = match mask {
+        match mask {
             Some(mask) => self.batch.reset_masked(mask, options.clone()).unwrap(),
             None => self.batch.reset_with(options.clone()),
-        };
-        let rows = rows.to_vec();
+        }
+        let rows = self.batch.observations().to_vec();
         for (i, alone) in self.alone.iter_mut().enumerate() {
             if mask.is_none_or(|mask| mask[i]) {
                 let seed = options.seed.as_ref().map(|seed| seed.child(i as u64));
                 reset_one(&self.batch, alone, ResetOptions { seed, ..options });
-                self.pending[i] = false;
+                self.ended[i] = false;
             }
             assert!(equal(&rows[i], &alone.inner().observation()));
         }
@@ -65,10 +66,10 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
         self.reset(None, ResetOptions::default());
     }
 
-    /// Call it when the batch has reset those whose reset was pending.
-    pub fn reset_pending(&mut self) {
-        for (alone, pending) in self.alone.iter_mut().zip(&mut self.pending) {
-            if std::mem::take(pending) {
+    /// Call it when the batch has reset those whose episode had ended.
+    pub fn reset_ended(&mut self) {
+        for (alone, ended) in self.alone.iter_mut().zip(&mut self.ended) {
+            if std::mem::take(ended) {
                 reset_one(&self.batch, alone, ResetOptions::default());
             }
         }
@@ -79,10 +80,10 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
     pub fn reset_to(&mut self, states: &[State<A::Scalar>]) {
         self.batch.reset_to(states).unwrap();
         for (alone, state) in self.alone.iter_mut().zip(states) {
-            *alone = TimeLimit::new(alone.inner().clone(), alone.limit());
+            *alone = TimeLimit::new(alone.inner().clone(), alone.max_steps());
             alone.set_state(*state).unwrap();
         }
-        self.pending.fill(false);
+        self.ended.fill(false);
         self.assert_equal();
     }
 
@@ -107,12 +108,13 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
         let reset = |alone: &mut _| reset_one(&self.batch, alone, ResetOptions::default());
         for (i, alone) in self.alone.iter_mut().enumerate() {
             let (observation, reward, terminated, truncated);
-            if std::mem::take(&mut self.pending[i]) {
+            let waits = std::mem::take(&mut self.ended[i]);
+            if waits && autoreset == Autoreset::NextStep {
                 (observation, reward, terminated, truncated) = (reset(alone), 0.0, false, false);
             } else {
                 let step = step(i, alone);
                 (reward, terminated, truncated) = (step.reward, step.terminated, step.truncated);
-                self.pending[i] = step.done() && autoreset == Autoreset::NextStep;
+                self.ended[i] = (waits || step.done()) && autoreset != Autoreset::SameStep;
                 if step.done() && autoreset == Autoreset::SameStep {
                     let last = &results.final_observations[i];
                     assert!(equal(last, &step.observation), "acrobot {i}");
@@ -141,9 +143,10 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
             let inner = alone.inner();
             assert!(equal(&rows[i], &inner.observation()), "acrobot {i}");
             assert_eq!(bits(member.state), bits(inner.state()), "acrobot {i}");
-            assert_eq!(member.elapsed, alone.elapsed(), "acrobot {i}");
-            assert_eq!(self.batch.elapsed(i), Some(member.elapsed));
-            assert_eq!(member.reset_pending, self.pending[i], "acrobot {i}");
+            assert_eq!(member.elapsed_steps, alone.elapsed_steps(), "acrobot {i}");
+            assert_eq!(self.batch.elapsed_steps_of(i), Some(member.elapsed_steps));
+            assert_eq!(member.ended, self.ended[i], "acrobot {i}");
+            assert_eq!(self.batch.ended(i), Some(member.ended));
             assert_eq!(member.rng, *inner.rng(), "acrobot {i}");
             assert_eq!(member.params, *inner.params(), "acrobot {i}");
             assert_eq!(self.batch.params_of(i), Some(member.params));
@@ -161,11 +164,10 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
     /// Plays with every SIMD level, with shared parameters and with drawn ones. Initial states are
     /// far outside of the bounds, and there is noise.
     pub fn at_every_level() {
-        let range = params_range::<A>(Dynamics::Book);
         for level in LEVELS {
             let mut shared = Self::new(37, false, Autoreset::SameStep);
             let mut drawn = Self::new(37, true, Autoreset::NextStep);
-            drawn.batch.set_params_range(Some(range)).unwrap();
+            drawn.batch.set_draws(draws::<A>()).unwrap();
             for twins in [&mut shared, &mut drawn] {
                 twins.batch.set_simd_level(level);
                 twins.swing(200);
@@ -192,10 +194,7 @@ fn reset_one<A: Arithmetic, T: Task, const N: usize>(
 ) -> T::Observation {
     let bounds = Some(bounds.unwrap_or(batch.reset_bounds()));
     let seen = alone.reset_with(ResetOptions { seed, bounds });
-    if let Some(range) = batch.params_range() {
-        let params = range.draw(alone.inner_mut().rng_mut());
-        alone.set_params(params).unwrap();
-    }
+    alone.inner_mut().draw_params(&batch.draws()).unwrap();
     seen
 }
 

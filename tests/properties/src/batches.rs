@@ -5,10 +5,9 @@ use std::num::NonZeroU32;
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Real, Reference};
 use acrobot::batch::{Autoreset, Member, SimdLevel};
 use acrobot::numpy::{Pcg64, SeedSequence};
-use acrobot::physics::Dynamics;
-use acrobot::task::{Gymnasium, ResetBounds, Swingup, Task};
+use acrobot::task::{Draws, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
-use common::params_range;
+use common::draws;
 use common::twins::{LEVELS, MODES, Twins};
 use proptest::prelude::*;
 
@@ -23,7 +22,7 @@ enum Call<S> {
     Params(Params<S>),
     /// Valid, or without mass.
     ParamsOf(usize, Params<S>, bool),
-    ParamsRange(Option<Dynamics>),
+    Draws(bool),
     Reset(Option<Vec<bool>>, Option<u64>, Option<ResetBounds>),
     ResetTo(Vec<State<S>>),
     State(usize, State<S>),
@@ -46,7 +45,6 @@ fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
     let level = prop::sample::select(&LEVELS[..]);
     let limit = prop_oneof![1..5_u32, Just(500), Just(u32::MAX)];
     let limit = limit.prop_map(|limit| limit.try_into().unwrap());
-    let dynamics = prop::sample::select(&[Dynamics::Book, Dynamics::Nips][..]);
     let bounds = || prop_oneof![Just(ResetBounds::DEFAULT), reset_bounds()];
     let reset =
         (prop::option::of(each(any::<bool>())), any::<Option<u64>>(), prop::option::of(bounds()));
@@ -55,7 +53,7 @@ fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
         3 => (mode, limit, level, bounds()).prop_map(|(a, b, c, d)| Call::Settings(a, b, c, d)),
         1 => params::<A>(Range::Any).prop_map(Call::Params),
         3 => of_one.prop_map(|(index, params, valid)| Call::ParamsOf(index, params, valid)),
-        1 => prop::option::of(dynamics).prop_map(Call::ParamsRange),
+        1 => any::<bool>().prop_map(Call::Draws),
         3 => reset.prop_map(|(mask, seed, bounds)| Call::Reset(mask, seed, bounds)),
         2 => each(state(Range::Any)).prop_map(Call::ResetTo),
         2 => (index(), state(Range::Any)).prop_map(|(index, state)| Call::State(index, state)),
@@ -68,7 +66,7 @@ fn call<A: Tested>() -> BoxedStrategy<Call<A::Scalar>> {
     .boxed()
 }
 
-/// A member, the acrobot beside it, and whether the next step resets it.
+/// A member, the acrobot beside it, and whether its episode has ended.
 type Stored<A, T> = (Member<A>, TimeLimit<Acrobot<A, T>>, bool);
 
 struct Model<A: Arithmetic, T: Task, const N: usize> {
@@ -84,15 +82,15 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
 
     /// A rejected call leaves the batch as it was.
     fn call(&mut self, call: Call<A::Scalar>) {
-        let Twins { batch, alone, pending } = &mut self.twins;
+        let Twins { batch, alone, ended } = &mut self.twins;
         let len = alone.len();
         match call {
             Call::Settings(autoreset, limit, level, bounds) => {
                 batch.set_reset_bounds(bounds);
-                batch.set_limit(limit);
+                batch.set_max_steps(limit);
                 batch.set_simd_level(level);
                 batch.set_autoreset(autoreset);
-                alone.iter_mut().for_each(|alone| alone.set_limit(limit));
+                alone.iter_mut().for_each(|alone| alone.set_max_steps(limit));
                 self.settle();
             }
             Call::Params(params) => self.twins.set_params(params),
@@ -106,9 +104,9 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                     alone[index].set_params(params).unwrap();
                 }
             }
-            Call::ParamsRange(dynamics) => {
-                let set = batch.set_params_range(dynamics.map(params_range::<A>));
-                assert_eq!(set.is_ok(), self.own_params || dynamics.is_none());
+            Call::Draws(some) => {
+                let set = batch.set_draws(if some { draws::<A>() } else { Draws::NONE });
+                assert_eq!(set.is_ok(), self.own_params || !some);
             }
             Call::Reset(mask, seed, bounds) => {
                 let mask = mask.as_ref().map(|mask| &mask[..len]);
@@ -117,7 +115,7 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
             }
             Call::ResetTo(states) => self.twins.reset_to(&states[..len]),
             Call::State(index, state) => {
-                assert_eq!(batch.set_state(index, state).is_ok(), index < len);
+                assert_eq!(batch.set_state_of(index, state).is_ok(), index < len);
                 if let Some(alone) = alone.get_mut(index) {
                     alone.set_state(state).unwrap();
                 }
@@ -125,10 +123,10 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
             Call::Store(index) => {
                 let member = batch.member(index);
                 assert_eq!(member.is_some(), index < len);
-                self.stored = member.map(|member| (member, alone[index].clone(), pending[index]));
+                self.stored = member.map(|member| (member, alone[index].clone(), ended[index]));
             }
             Call::Load(index) => {
-                let Some((member, stored, was_pending)) = self.stored.clone() else {
+                let Some((member, stored, had_ended)) = self.stored.clone() else {
                     return;
                 };
                 let fits = self.own_params || member.params == *alone[0].params();
@@ -136,11 +134,11 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
                 assert_eq!(set.is_ok(), fits && index < len);
                 if set.is_ok() {
                     alone[index] = stored;
-                    alone[index].set_limit(batch.limit());
+                    alone[index].set_max_steps(batch.max_steps());
                     // Shared parameters can differ from the stored ones in the sign of zero.
                     let params = batch.params_of(index).unwrap();
                     alone[index].set_params(params).unwrap();
-                    pending[index] = was_pending;
+                    ended[index] = had_ended;
                     self.settle();
                 }
             }
@@ -156,12 +154,10 @@ impl<A: Tested, T: Task, const N: usize> Model<A, T, N> {
         self.twins.assert_equal();
     }
 
-    /// What a mode does with resets that are pending.
+    /// With `SameStep` no acrobot waits for a reset.
     fn settle(&mut self) {
-        match self.twins.batch.autoreset() {
-            Autoreset::SameStep => self.twins.reset_pending(),
-            Autoreset::Disabled => self.twins.pending.fill(false),
-            _ => {}
+        if self.twins.batch.autoreset() == Autoreset::SameStep {
+            self.twins.reset_ended();
         }
     }
 }

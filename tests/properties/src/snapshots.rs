@@ -3,9 +3,9 @@
 use acrobot::arithmetic::Damped;
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
-use acrobot::physics::Dynamics;
+use acrobot::task::Draws;
 use acrobot::{Acrobot, Action, Fast, Portable, TimeLimit};
-use common::{bits, params_range};
+use common::{bits, draws};
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -59,9 +59,10 @@ struct Saved {
 
 #[test]
 fn every_format_stores_batches() {
-    let mut batch = VecBatch::with_own_params(SeedSequence::new(42), 3).unwrap();
-    for range in [None, Some(params_range::<Fast>(Dynamics::Nips))] {
-        batch.set_params_range(range).unwrap();
+    let mut batch = VecBatch::new(SeedSequence::new(42), 3).unwrap();
+    batch.own_params().unwrap();
+    for draws in [Draws::NONE, draws::<Fast>()] {
+        batch.set_draws(draws).unwrap();
         batch.reset();
         let batch = batch.clone();
         let expected = serde_json::to_string(&batch).unwrap();

@@ -22,7 +22,7 @@ int main(void)
         k_msleep(200);
         status = acrobot_step(&acrobot, action, &step);
         if (status == ACROBOT_OK && (step.terminated || step.truncated)) {
-            status = acrobot_elapsed(&acrobot, &steps);
+            status = acrobot_elapsed_steps(&acrobot, &steps);
             printk("the episode ended after %u steps\n", (unsigned)steps);
             break;
         }

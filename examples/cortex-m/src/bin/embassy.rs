@@ -48,7 +48,7 @@ async fn machine(mut acrobot: TimeLimit<Acrobot<Fast>>) {
         let step = acrobot.step(action);
         if step.done() {
             // Since the clock started.
-            if Instant::MIN.elapsed() / acrobot.elapsed() != PERIOD {
+            if Instant::MIN.elapsed() / acrobot.elapsed_steps() != PERIOD {
                 println!("the ticks came at another rate");
                 process::exit(1)
             }

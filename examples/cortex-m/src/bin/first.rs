@@ -46,7 +46,7 @@ fn SysTick() {
             false => Action::Positive,
         };
         if acrobot.step(action).done() {
-            println!("the episode ended after {} steps", acrobot.elapsed());
+            println!("the episode ended after {} steps", acrobot.elapsed_steps());
             process::exit(0)
         }
     });

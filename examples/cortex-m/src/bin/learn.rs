@@ -45,7 +45,7 @@ fn train(learner: &mut Learner, counter: &mut Counter) -> bool {
         instructions += u64::from(counter.count(1, || {
             gained = learner.learn(&mut env);
         }));
-        steps += env.elapsed();
+        steps += env.elapsed_steps();
         returns.write(gained);
         if episode % 10 == 0 {
             let mean = returns.oldest_ordered().rev().take(10).sum::<f32>() as i32 / 10;

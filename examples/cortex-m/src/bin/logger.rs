@@ -38,7 +38,7 @@ fn main() -> ! {
             false => Action::Positive,
         };
         let step = acrobot.step(action);
-        CLOCK.store(acrobot.elapsed(), Ordering::Relaxed);
+        CLOCK.store(acrobot.elapsed_steps(), Ordering::Relaxed);
         defmt::debug!("{} {}", action, step);
         if step.done() {
             defmt::info!("end {}", acrobot.inner());

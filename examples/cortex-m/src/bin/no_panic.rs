@@ -21,9 +21,9 @@ use acrobot::physics::control::{
 };
 use acrobot::physics::{Pendulum, wrap};
 use acrobot::render::{Figure, Theme};
-use acrobot::task::{Gymnasium, ParamsRange, ResetBounds, Swingup, Task};
+use acrobot::task::{Draw, Draws, Gymnasium, ResetBounds, Swingup, Task};
 use acrobot::trajectory::Trajectory;
-use acrobot::{Acrobot, Action, Fast, Params, Portable, ResetOptions, State, TimeLimit};
+use acrobot::{Acrobot, Action, Error, Fast, Params, Portable, ResetOptions, State, TimeLimit};
 use bits::training;
 use controller::{Controller, Planner, Step};
 use cortex_m_rt::entry;
@@ -51,8 +51,8 @@ fn main() -> ! {
         all_of::<Portable, Gymnasium>();
         all_of::<Reference, Gymnasium>();
         all_of::<Damped<Fast>, Swingup>();
-        let own_params = [LaneParams::default(); 2];
-        batch::<Fast, Gymnasium, 6, 4>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6], own_params));
+        let (own, draws) = ([LaneParams::default(); 2], Draws::NONE);
+        batch::<Fast, Gymnasium, 6, 4>(([Block::EMPTY; 2], [Pcg64::UNSEEDED; 6], own, draws));
         numbers();
         learners();
         controller();
@@ -78,6 +78,15 @@ fn state<S: Real>() -> State<S> {
 
 fn params<S: Real>() -> Params<S> {
     Params { torque_noise: number(), mass1: number(), ..Params::default() }
+}
+
+fn draws<S: Real>() -> Result<Draws<S>, Error> {
+    let (mean, std, low, high) = (number(), number(), number(), number());
+    Draws::new(Params {
+        mass1: black_box(Draw::Normal { mean, std, low, high }),
+        torque_noise: black_box(Draw::LogUniform { low, high }),
+        ..Draws::FIXED
+    })
 }
 
 fn pendulum<A: Arithmetic>() {
@@ -129,7 +138,11 @@ fn environment<A: Arithmetic, T: Task>() {
         let mut acrobot = TimeLimit::of(Acrobot::<A, T>::with_rng(seed.clone().into()));
         let mut trajectory = Trajectory::<A::Scalar, 8>::new();
         let inner = acrobot.inner_mut();
-        let _ = black_box((inner.set_params(params()), inner.set_state(state())));
+        let _ = black_box((
+            inner.set_params(params()),
+            inner.set_state(state()),
+            draws().and_then(|draws| inner.draw_params(&draws)),
+        ));
         if let Ok(bounds) = ResetBounds::new(black_box(-0.2), black_box(0.2)) {
             black_box(bounds.draw(acrobot.inner_mut().rng_mut()));
             let (seed, bounds) = (Some(seed), Some(bounds));
@@ -177,7 +190,7 @@ where
         let _ = black_box((
             batch.set_params(params()),
             batch.set_params_of(black_box(3), params()),
-            batch.set_params_range(ParamsRange::new(params(), params()).ok()),
+            draws().and_then(|draws| batch.set_draws(draws)),
         ));
         let actions = black_box([1_u8; LEN]);
         let torques = black_box([A::Scalar::ZERO; LEN]);
@@ -185,19 +198,19 @@ where
             .with_observations(&mut rows)
             .with_final_observations(&mut finals);
         let _ = black_box(if black_box(true) {
-            batch.step(&actions, buffers)
+            batch.step_into(&actions, buffers)
         } else {
-            batch.step(&torques, buffers)
+            batch.step_into(&torques, buffers)
         });
         black_box((&rewards, &terminated, &truncated, &rows, &finals));
         let _ = black_box((
             batch.observe(&mut rows),
             batch.reset_masked(&black_box([true; LEN]), ResetOptions::default()),
             batch.reset_to(&black_box([State::default(); LEN])),
-            batch.set_state(black_box(3), state()),
+            batch.set_state_of(black_box(3), state()),
         ));
-        black_box((&rows, batch.state(black_box(3))));
-        black_box((batch.params_of(black_box(3)), batch.elapsed(black_box(3))));
+        black_box((&rows, batch.state_of(black_box(3))));
+        black_box((batch.params_of(black_box(3)), batch.elapsed_steps_of(black_box(3))));
         if let Some(member) = batch.member(black_box(3)) {
             let _ = black_box(batch.set_member(black_box(4), member));
         }

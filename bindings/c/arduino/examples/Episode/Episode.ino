@@ -25,7 +25,7 @@ void loop() {
   check(acrobot_step(&acrobot, action, &result));
   if (result.terminated || result.truncated) {
     uint32_t steps;
-    check(acrobot_elapsed(&acrobot, &steps));
+    check(acrobot_elapsed_steps(&acrobot, &steps));
     Serial.print("the episode ended after ");
     Serial.print(steps);
     Serial.println(" steps");

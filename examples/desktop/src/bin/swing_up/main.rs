@@ -156,7 +156,7 @@ fn draw<const S: usize, const T: usize>(
         learner.greedy(state)
     });
     states.push(env.state().cast());
-    let content = format!("a greedy episode, {} steps", env.elapsed());
+    let content = format!("a greedy episode, {} steps", env.elapsed_steps());
     save("swing_up.svg", animation::svg(&states, animation::DELAY), &content)
 }
 
@@ -177,7 +177,7 @@ fn train<const S: usize, const T: usize>(
     while done < length {
         returns.push(learner.learn(&mut env));
         let before = steps;
-        steps += env.elapsed();
+        steps += env.elapsed_steps();
         done = match options.budget() {
             Budget::Episodes(_) => returns.len() as u32,
             Budget::Steps(_) => steps,

@@ -1,0 +1,208 @@
+//! What each reset draws of the parameters: domain randomization.
+
+use rand_core::Rng;
+
+use crate::error::Error;
+use crate::math::Real;
+use crate::numpy::uniform;
+use crate::physics::{Dynamics, Params, Viscous};
+
+/// How a reset draws one parameter, in its unit. Where both bounds are equal, it draws nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Draw<S = f64> {
+    /// The parameter stays as it is.
+    Fixed,
+    /// The number of the parameter before it: `inertia2` is `inertia1`.
+    AsBefore,
+    /// Uniformly.
+    Uniform {
+        /// The lower bound.
+        low: S,
+        /// The upper bound.
+        high: S,
+    },
+    /// Its logarithm uniformly.
+    LogUniform {
+        /// The lower bound, above 0.
+        low: S,
+        /// The upper bound.
+        high: S,
+    },
+    /// From a normal distribution, truncated at the bounds.
+    Normal {
+        /// The mean without the bounds, between which it is.
+        mean: S,
+        /// The standard deviation without the bounds, above 0.
+        std: S,
+        /// The lower bound.
+        low: S,
+        /// The upper bound.
+        high: S,
+    },
+}
+
+impl<S: Real> Draw<S> {
+    /// The bounds; of one that does not draw, its number.
+    fn bounds(self, number: S, before: [S; 2]) -> [S; 2] {
+        match self {
+            Self::Fixed => [number; 2],
+            Self::AsBefore => before,
+            Self::Uniform { low, high }
+            | Self::LogUniform { low, high }
+            | Self::Normal { low, high, .. } => [low, high],
+        }
+    }
+
+    fn check(self, name: &'static str, unit: &'static str) -> Result<(), Error> {
+        let [low, high] = self.bounds(S::ZERO, [S::ZERO; 2]).map(S::to_f64);
+        let out_of_range = |value, rule| Err(Error::OutOfRange { name, value, unit, rule });
+        if !(low <= high) {
+            return out_of_range(low, "drawn from a low of at most its high, in");
+        }
+        if !(high - low).is_finite() {
+            return out_of_range(high - low, "drawn from a range of finite width in");
+        }
+        match self {
+            Self::LogUniform { .. } if low <= 0.0 => out_of_range(low, "drawn from above 0"),
+            Self::Normal { mean, .. } if !(low <= mean.to_f64() && mean.to_f64() <= high) => {
+                out_of_range(mean.to_f64(), "drawn with a mean between its bounds, in")
+            }
+            Self::Normal { std, .. } if !(std > S::ZERO && std.is_finite()) => {
+                out_of_range(std.to_f64(), "drawn with a finite standard deviation above 0")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A number between the bounds, with the same bits on all machines.
+    fn draw<R: Rng + ?Sized>(self, number: S, before: S, rng: &mut R) -> S {
+        let [low, high] = self.bounds(number, [before; 2]);
+        if low == high {
+            return low;
+        }
+        let [low, high] = [low, high].map(S::to_f64);
+        let drawn = match self {
+            Self::LogUniform { .. } => libm::exp(uniform(rng, libm::log(low), libm::log(high))),
+            Self::Normal { mean, std, .. } => normal(rng, mean.to_f64(), std.to_f64(), low, high),
+            _ => uniform(rng, low, high),
+        };
+        S::from_f64(drawn.max(low).min(high))
+    }
+}
+
+/// Draws from a normal distribution that is truncated at the bounds.
+fn normal<R: Rng + ?Sized>(rng: &mut R, mean: f64, std: f64, low: f64, high: f64) -> f64 {
+    // One of 10¹⁵ draws would be farther from the mean.
+    let (low, high) = (low.max(mean - 8.0 * std), high.min(mean + 8.0 * std));
+    // A uniform draw is accepted by the density: one in seven. Only a generator or bounds that
+    // always give the same number get to the end.
+    for _ in 0..1000 {
+        let drawn = uniform(rng, low, high);
+        let z = (drawn - mean) / std;
+        if uniform(rng, 0.0, 1.0) < libm::exp(-0.5 * z * z) {
+            return drawn;
+        }
+    }
+    mean
+}
+
+/// How each reset draws the parameters: after the initial state, in the order of the fields, from
+/// the same generator.
+///
+/// ```
+/// use acrobot::numpy::Pcg64;
+/// use acrobot::task::{Draw, Draws};
+/// use acrobot::{Acrobot, Fast, Params};
+///
+/// let draws = Draws::new(Params {
+///     mass2: Draw::Uniform { low: 0.8, high: 1.2 },
+///     inertia1: Draw::LogUniform { low: 0.5, high: 2.0 },
+///     inertia2: Draw::AsBefore,
+///     ..Draws::FIXED
+/// })?;
+/// let mut acrobot = Acrobot::<Fast>::new(42);
+/// acrobot.draw_params(&draws)?;
+/// let Params { mass2, inertia1, inertia2, length1, .. } = *acrobot.params();
+/// assert!(inertia1 == inertia2 && length1 == 1.0 && (0.8..=1.2).contains(&mass2));
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Draws<S = f64>(Params<Draw<S>>);
+
+impl<S: Real> Draws<S> {
+    /// Draws nothing.
+    pub const NONE: Self = Self(Self::FIXED);
+
+    /// Parameters that stay as they are, to begin from. The dynamics have no meaning.
+    pub const FIXED: Params<Draw<S>> = Params {
+        length1: Draw::Fixed,
+        length2: Draw::Fixed,
+        mass1: Draw::Fixed,
+        mass2: Draw::Fixed,
+        center_of_mass1: Draw::Fixed,
+        center_of_mass2: Draw::Fixed,
+        inertia1: Draw::Fixed,
+        inertia2: Draw::Fixed,
+        gravity: Draw::Fixed,
+        dt: Draw::Fixed,
+        max_velocity1: Draw::Fixed,
+        max_velocity2: Draw::Fixed,
+        torques: [Draw::Fixed; 3],
+        torque_noise: Draw::Fixed,
+        dynamics: Dynamics::Book,
+        friction: Viscous { joint1: Draw::Fixed, joint2: Draw::Fixed },
+    };
+
+    /// Draws parameters so.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OutOfRange`] for a lower bound above the upper one, for an infinite width, for a
+    /// [`LogUniform`](Draw::LogUniform) that begins at 0 or below, and for a
+    /// [`Normal`](Draw::Normal) whose mean is not between its bounds or whose standard deviation is
+    /// not above 0.
+    pub fn new(params: Params<Draw<S>>) -> Result<Self, Error> {
+        for (name, draw, unit, _) in params.fields() {
+            draw.check(name, unit)?;
+        }
+        Ok(Self(params))
+    }
+
+    /// How each parameter is drawn.
+    #[must_use]
+    pub const fn params(&self) -> &Params<Draw<S>> {
+        &self.0
+    }
+
+    /// These parameters with each drawn one at its lower and at its upper bound. All draws are
+    /// valid if both are: a draw is between them.
+    pub(crate) fn ends(&self, params: &Params<S>) -> [Params<S>; 2] {
+        [0, 1].map(|end: usize| {
+            let mut before = S::ZERO;
+            params.zip(&self.0, |number, draw| {
+                let [low, high] = draw.bounds(number, [before; 2]);
+                before = if end == 0 { low } else { high };
+                before
+            })
+        })
+    }
+
+    /// These parameters, with each drawn one replaced.
+    pub fn draw<R: Rng + ?Sized>(&self, params: &Params<S>, rng: &mut R) -> Params<S> {
+        let mut before = S::ZERO;
+        params.zip(&self.0, |number, draw| {
+            before = draw.draw(number, before, rng);
+            before
+        })
+    }
+}
+
+impl<S: Real> Default for Draws<S> {
+    /// [`Draws::NONE`].
+    fn default() -> Self {
+        Self::NONE
+    }
+}
