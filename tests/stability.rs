@@ -5,7 +5,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Micro, Real, Reference};
 use acrobot::numpy::{Pcg64, uniform};
 use acrobot::physics::Viscous;
 use acrobot::{Acrobot, Action, Fast, Params, Portable, TimeLimit};
-use bits::{Digest, episodes, plan, training};
+use bits::{Digest, balance, episodes, plan, training};
 
 /// Every bit of the states, rewards and ends of random episodes with 64 seeds: about 100,000 steps.
 fn digest<A: Arithmetic>(friction: Viscous<A::Scalar>) -> u64 {
@@ -118,6 +118,11 @@ fn subnormal_numbers_friction_and_the_swing_up_are_stable() {
     let found = (episodes::subnormal(), episodes::damped(), episodes::swingup());
     let expected = (episodes::SUBNORMAL, episodes::DAMPED, episodes::SWINGUP);
     assert!(found == expected, "{found:#018x?}");
+}
+
+#[test]
+fn a_users_task_is_stable() {
+    assert!(balance::digest() == balance::DIGEST, "{:#018x}", balance::digest());
 }
 
 /// The program `bits` tries other widths.

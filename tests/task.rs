@@ -1,54 +1,15 @@
 //! A user's tasks run alone and in batches with equal bits, with rewards, ends, resets, parameters,
 //! observations and data of their own.
 
-use core::f64::consts::PI;
 use core::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Numbers, Real, Reference};
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
-use acrobot::rand_core::Rng;
-use acrobot::task::{Gymnasium, ResetBounds, Seen, Task};
+use acrobot::task::{Seen, Task};
 use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
+use bits::balance::Balance;
 use common::twins::Twins;
-
-/// Stay upright. The reward is 1 less the errors of the angles, rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Balance;
-
-impl Task for Balance {
-    const NAME: &'static str = "balance";
-    const DEFAULT: Self = Self;
-    const MAX_STEPS: NonZeroU32 = NonZeroU32::new(200).unwrap();
-    const PARAMS: Params =
-        Params { length1: 0.7, center_of_mass1: 0.3, dt: 0.05, ..Params::DEFAULT };
-
-    type Observation = [f32; 6];
-
-    fn draw<R: Rng + ?Sized>(&self, bounds: ResetBounds, rng: &mut R) -> State<f32> {
-        let drawn = bounds.draw(rng);
-        State { theta1: drawn.theta1 + core::f32::consts::PI, ..drawn }
-    }
-
-    #[inline(always)]
-    fn observe<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> [V; 6] {
-        Gymnasium.observe::<A, V>(seen)
-    }
-
-    #[inline(always)]
-    fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
-        &self,
-        seen: &Seen<V>,
-        _: &Params<V>,
-        _: V,
-        _: V::Mask,
-    ) -> V::Single {
-        let number = |x| V::splat(Real::from_f64(x));
-        let abs = |x: V| x.map(|x| if x < Real::ZERO { -x } else { x });
-        let error = number(PI) - abs(seen.state.theta1) + abs(seen.state.theta2);
-        (number(1.0) - error).to_f32()
-    }
-}
 
 /// Bring the tip near a point, m, with little effort, which ends the episode.
 #[derive(Clone, Copy, Debug, PartialEq)]

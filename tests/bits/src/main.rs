@@ -14,7 +14,7 @@ use std::process;
 use acrobot::arithmetic::{Arithmetic, Micro, Reference};
 use acrobot::{Fast, Portable};
 use bits::episodes::*;
-use bits::{plan, training};
+use bits::{balance, plan, training};
 #[cfg(target_os = "none")]
 use semihosting::{println, process};
 // Linked because it is named.
@@ -32,6 +32,7 @@ fn main() -> ! {
         report("subnormal numbers", &subnormal(), &SUBNORMAL),
         report("friction", &damped(), &DAMPED),
         report("swing-up", &swingup(), &SWINGUP),
+        report("a user's task", &[balance::digest()], &[balance::DIGEST]),
         report("batches of 1 lane", &batches::<1, 20, 8>(), &BATCHES),
         report("batches of 4 lanes", &batches::<4, 5, 2>(), &BATCHES),
         // More of them do not fit into 256 KiB of flash.
@@ -42,7 +43,7 @@ fn main() -> ! {
             || report("training", &[training::weights()], &[training::WEIGHTS]),
         cfg!(target_os = "none") || report("plan", &[plan::planned()], &[plan::PLAN]),
     ];
-    process::exit(if equal == [true; 12] { 0 } else { 1 })
+    process::exit(if equal == [true; 13] { 0 } else { 1 })
 }
 
 fn check<A: Arithmetic>(expected: &[u64; 16]) -> bool {
