@@ -82,10 +82,10 @@ fn orientations_within_1<A: Arithmetic, T: Task<Observation = [f32; 6]>>() {
         batch.set_state_of(index, state).unwrap();
         acrobot.set_state(state).unwrap();
         within(&acrobot.observation());
+        within(&acrobot.step(Action::Zero).observation);
     }
+    // No step of the batch: those of six arithmetics take a minute to compile.
     batch.observations().iter().for_each(within);
-    let results = batch.step(&vec![Action::Zero; 20_000]).unwrap();
-    results.observations.iter().for_each(within);
 }
 
 #[test]

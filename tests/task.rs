@@ -3,11 +3,11 @@
 
 use core::num::NonZeroU32;
 
-use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Numbers, Real, Reference};
+use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
 use acrobot::numpy::SeedSequence;
 use acrobot::task::{Seen, Task};
-use acrobot::{Acrobot, Action, Fast, Params, Portable, State, TimeLimit};
+use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
 use bits::balance::Balance;
 use common::twins::Twins;
 
@@ -64,12 +64,7 @@ impl Task for Reach {
 #[test]
 fn own_tasks_run_in_batches_with_equal_bits() {
     Twins::<Fast, 16, Balance>::at_every_level();
-    Twins::<Fast, 3, Balance>::at_every_level();
-    Twins::<Damped<Reference>, 16, Balance>::at_every_level();
-    Twins::<Host, 16, Balance>::at_every_level();
     Twins::<Fast, 16, Reach>::at_every_level();
-    Twins::<Micro, 16, Reach>::at_every_level();
-    Twins::<Portable, 8, Reach>::at_every_level();
 }
 
 #[test]

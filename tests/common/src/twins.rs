@@ -186,6 +186,24 @@ impl<A: Arithmetic, const N: usize, T: Task> Twins<A, N, T> {
     }
 }
 
+impl<A: Arithmetic<Scalar = f32>> Twins<A> {
+    /// Lanes have the sines of one number at any angle, also where they overflow.
+    pub fn at_any_angle() {
+        const STRIDE: usize = if cfg!(debug_assertions) { 8192 } else { 256 };
+
+        let mut twins = Self::new(1024, false, Autoreset::Disabled);
+        // At rest and without a torque a step changes the angles little.
+        for first in (0..f32::INFINITY.to_bits()).step_by(1024 * STRIDE) {
+            for sign in [1.0, -1.0] {
+                let angle = |i| sign * f32::from_bits(first + i);
+                let states = (0..1024).map(|i| State::from([angle(i), angle(1023 - i), 0.0, 0.0]));
+                twins.reset_to(&states.collect::<Vec<_>>());
+                twins.step(&[Action::Zero; 1024]);
+            }
+        }
+    }
+}
+
 /// What a reset of a batch does to one acrobot. Its seed is the acrobot's own.
 fn reset_one<A: Arithmetic, T: Task, const N: usize>(
     batch: &VecBatch<A, T, N>,

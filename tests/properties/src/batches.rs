@@ -181,9 +181,19 @@ fn any_calls_in_any_order_equal_single_acrobots() {
     check::<Damped<Fast>, Swingup, 16>();
 }
 
+#[test]
+fn every_arithmetic_equals_single_acrobots() {
+    Twins::<Micro>::at_every_level();
+    Twins::<Portable, 4>::at_every_level();
+    Twins::<Reference>::at_every_level();
+    Twins::<Host>::at_every_level();
+    Twins::<Micro>::at_any_angle();
+}
+
 /// Below, at and above the width of a vector.
 #[test]
 fn any_width_equals_single_acrobots() {
+    Twins::<Fast, 3>::at_every_level();
     Twins::<Fast, 1>::at_every_level();
     Twins::<Fast, 4>::at_every_level();
     Twins::<Fast, 7>::at_every_level();
