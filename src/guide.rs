@@ -46,7 +46,6 @@ pages! {
     accuracy "accuracy.md",
     determinism "determinism.md",
     equations "equations.md",
-    ports "ports.md",
     benchmarks "benchmarks.md",
     learning "learning.md",
     swingup "swingup.md",
