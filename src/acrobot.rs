@@ -7,7 +7,7 @@ use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::{Real, SinCos};
 use crate::numpy::Pcg64;
-use crate::physics::{Params, Pendulum, State, check_params, check_torque, default_model};
+use crate::physics::{Params, Pendulum, State, check_torque, default_model};
 use crate::task::{
     Draws, Gymnasium, Observation, Of, ResetBounds, ResetOptions, Seen, Task, episode,
 };
@@ -163,8 +163,8 @@ impl<A: Arithmetic, T: Task, R: Rng> Acrobot<A, T, R> {
     ///
     /// Those of [`set_params`](Self::set_params), for what the draws can make of the parameters.
     pub fn draw_params(&mut self, draws: &Draws<A::Scalar>) -> Result<(), Error> {
-        draws.ends(self.params()).iter().try_for_each(check_params::<A>)?;
-        let params = draws.draw(&{ *self.params() }, &mut self.rng);
+        draws.check::<A>(self.params())?;
+        let params = draws.draw(self.pendulum.params(), &mut self.rng);
         self.set_params(params)
     }
 

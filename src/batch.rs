@@ -301,14 +301,13 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// Checks parameters, and what the draws can make of them.
     fn check_params(&self, params: &Params<A::Scalar>) -> Result<(), Error> {
         check_params::<A>(params)?;
-        let ends = self.draws().ends(params);
-        ends.iter().try_for_each(check_params::<A>)
+        self.draws().check::<A>(params)
     }
 
     /// What each reset draws of the parameters.
     #[must_use]
-    pub fn draws(&self) -> Draws<A::Scalar> {
-        *self.storage.slices().draws.unwrap_or(&Draws::NONE)
+    pub fn draws(&self) -> &Draws<A::Scalar> {
+        self.storage.slices().draws.unwrap_or(&Draws::NONE)
     }
 
     /// Sets what each reset, also one in a step, draws of the acrobot's parameters after its
@@ -320,7 +319,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// each acrobot, and [`Error::SharedParams`] without memory for [`LaneParams`].
     pub fn set_draws(&mut self, draws: Draws<A::Scalar>) -> Result<(), Error> {
         for params in (0..self.len()).filter_map(|index| self.params_of(index)) {
-            draws.ends(&params).iter().try_for_each(check_params::<A>)?;
+            draws.check::<A>(&params)?;
         }
         match (&self.settings.parameters, self.storage.slices_mut().draws) {
             (Parameters::Own, Some(own)) => *own = draws,

@@ -43,7 +43,7 @@ pub(crate) use arithmetic::{check_params, default_model, model};
 pub use bounds::{saturate, wrap};
 pub use friction::Viscous;
 pub(crate) use geometry::{directions, positions};
-pub(crate) use model::{Defaults, Given, Model};
+pub(crate) use model::{Defaults, Given, Model, Modeled};
 pub use params::{Dynamics, Params};
 pub use pendulum::Pendulum;
 pub(crate) use pendulum::{check_torque, sin_cos};

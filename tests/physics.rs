@@ -135,7 +135,7 @@ fn an_arithmetic_without_friction_rejects_it() {
     let mut shared = VecBatch::<Portable>::new(SeedSequence::new(0), 2).unwrap();
     let mut member = batch.member(0).unwrap();
     member.params = with;
-    let before = (pendulum.clone(), acrobot.clone(), batch.member(1), batch.draws());
+    let before = (pendulum.clone(), acrobot.clone(), batch.member(1), *batch.draws());
     for result in [
         Pendulum::<Portable>::new(with, State::HANGING).map(drop),
         with.pendulum::<Portable>(State::HANGING).map(drop),
@@ -152,7 +152,7 @@ fn an_arithmetic_without_friction_rejects_it() {
     ] {
         assert_eq!(result.unwrap_err().to_string(), rule);
     }
-    let after = (pendulum, acrobot, batch.member(1), batch.draws());
+    let after = (pendulum, acrobot, batch.member(1), *batch.draws());
     assert_eq!(after, before);
 }
 

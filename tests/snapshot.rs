@@ -100,7 +100,7 @@ fn batch() -> VecBatch<Fast> {
     for i in 0..2 {
         let mut alone = Acrobot::<Fast>::with_rng(seed.child(i as u64).into());
         alone.reset_with(bounds.into());
-        alone.draw_params(&batch.draws()).unwrap();
+        alone.draw_params(batch.draws()).unwrap();
         let params = *alone.params();
         alone.step(Action::Positive);
         let member = Member {

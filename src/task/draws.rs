@@ -2,10 +2,11 @@
 
 use rand_core::Rng;
 
+use crate::arithmetic::Arithmetic;
 use crate::error::Error;
 use crate::math::Real;
 use crate::numpy::uniform;
-use crate::physics::{Dynamics, Params, Viscous};
+use crate::physics::{Dynamics, Modeled, Params, Viscous, check_params};
 
 /// How a reset draws one parameter, in its unit. Where both bounds are equal, it draws nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -177,25 +178,28 @@ impl<S: Real> Draws<S> {
         &self.0
     }
 
-    /// These parameters with each drawn one at its lower and at its upper bound. All draws are
-    /// valid if both are: a draw is between them.
-    pub(crate) fn ends(&self, params: &Params<S>) -> [Params<S>; 2] {
-        [0, 1].map(|end: usize| {
-            let mut before = S::ZERO;
-            params.zip(&self.0, |number, draw| {
-                let [low, high] = draw.bounds(number, [before; 2]);
-                before = if end == 0 { low } else { high };
-                before
-            })
-        })
-    }
-
     /// These parameters, with each drawn one replaced.
     pub fn draw<R: Rng + ?Sized>(&self, params: &Params<S>, rng: &mut R) -> Params<S> {
         let mut before = S::ZERO;
         params.zip(&self.0, |number, draw| {
             before = draw.draw(number, before, rng);
             before
+        })
+    }
+}
+
+impl<S: Modeled> Draws<S> {
+    /// Checks these parameters with all drawn ones at their lower, and at their upper bounds. A
+    /// draw is between them.
+    pub(crate) fn check<A: Arithmetic<Scalar = S>>(&self, params: &Params<S>) -> Result<(), Error> {
+        [0, 1].into_iter().try_for_each(|end| {
+            let mut before = S::ZERO;
+            let ends = params.zip(&self.0, |number, draw| {
+                let [low, high] = draw.bounds(number, [before; 2]);
+                before = if end == 0 { low } else { high };
+                before
+            });
+            check_params::<A>(&ends)
         })
     }
 }

@@ -212,7 +212,7 @@ impl<A: Arithmetic, const N: usize> Snapshot for VecBatch<A, Gymnasium, N> {
         let (len, bytes) = (self.len(), binary(&self));
         let first = self.params_of(0);
         let same = (0..len).all(|index| self.params_of(index) == first);
-        let fits = same && self.draws() == Draws::NONE;
+        let fits = same && *self.draws() == Draws::NONE;
         let mut blocks = vec![Block::EMPTY; len];
         let mut generators = vec![Pcg64::UNSEEDED; len];
         let mut from = postcard::Deserializer::from_bytes(&bytes);

@@ -212,7 +212,7 @@ fn reset_one<A: Arithmetic, T: Task, const N: usize>(
 ) -> T::Observation {
     let bounds = Some(bounds.unwrap_or(batch.reset_bounds()));
     let seen = alone.reset_with(ResetOptions { seed, bounds });
-    alone.inner_mut().draw_params(&batch.draws()).unwrap();
+    alone.inner_mut().draw_params(batch.draws()).unwrap();
     seen
 }
 
