@@ -2,7 +2,7 @@
 `docs/determinism.md`.
 
     python3 platforms.py                  all platforms
-    python3 platforms.py Cortex s390x     those whose name contains one of these words
+    python3 platforms.py Cortex-M4F …     those with these names
     python3 platforms.py --update         writes the table
 """
 
@@ -90,13 +90,13 @@ def wrong(platform):
 
 def main():
     parser = argparse.ArgumentParser(description="Compares the bits of each platform.")
-    parser.add_argument("words", nargs="*", metavar="WORD", help="in the names of platforms")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="of a platform")
     parser.add_argument("--update", action="store_true", help="write the table into the page")
     options = parser.parse_args()
-    words = options.words or [""]
-    chosen = [each for each in PLATFORMS if any(word in each.name for word in words)]
-    if not chosen:
-        parser.error(f"no platform's name contains {' or '.join(options.words)}")
+    known = {each.name: each for each in PLATFORMS}
+    if unknown := set(options.names) - set(known):
+        parser.error(f"no platform has the name {', '.join(unknown)}")
+    chosen = [known[name] for name in options.names or known]
     failures = [f"{each.name} {reason}" for each in chosen if (reason := wrong(each))]
 
     table = "\n".join([*HEAD, *map(row, PLATFORMS)])
