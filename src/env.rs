@@ -1,98 +1,121 @@
 //! Gymnasium's interface: [`make`], environments, spaces, wrappers and render modes.
 //!
 //! ```
-//! use acrobot::env::{Env, Space, make};
+//! use acrobot::env::{Env, make};
 //! use acrobot::numpy::Pcg64;
 //!
 //! let mut env = make("Acrobot-v1")?;
 //! let mut rng = Pcg64::new(42); // env.action_space.seed(42)
-//! let (observation, _) = env.reset_with_seed(42);
-//! assert_eq!(observation.as_slice().len(), 6);
+//! let observation = env.reset_with_seed(42);
+//! assert_eq!(observation.len(), 6);
 //! for _ in 0..1000 {
-//!     let step = env.step(env.action_space().sample(&mut rng));
-//!     if step.done() {
+//!     if env.step(env.action_space().sample(&mut rng)).done() {
 //!         env.reset();
 //!     }
 //! }
 //! # Ok::<(), acrobot::env::Error>(())
 //! ```
 
-mod acrobot_env;
+mod any_acrobot;
 mod check;
 mod error;
+mod info;
 mod make;
 mod rendering;
 mod space;
 mod statistics;
 mod wrapper;
 
-use std::time::Duration;
+use core::any::Any;
+use std::boxed::Box;
+use std::vec::Vec;
 
-pub use acrobot_env::{AcrobotEnv, DynAcrobot, ObservationKind};
 pub use check::{Violation, check_env};
 pub use error::Error;
-pub use make::{
-    ArithmeticKind, DynEnv, DynObservation, Options, acrobot_v0, acrobot_v1, make, make_with,
-};
+pub use info::{EpisodeStatistics, Info};
+pub use make::{make, make_with};
 pub use rendering::{Display, RenderMode, Rendering};
-pub use space::{BoxSpace, DiscreteSpace, Space};
+pub use space::{BoxSpace, DiscreteSpace};
 pub use statistics::RecordEpisodeStatistics;
 
-use crate::acrobot::Step;
-use crate::task::ResetOptions;
+use crate::acrobot::{Acrobot, Step};
+use crate::action::Action;
+use crate::arithmetic::Arithmetic;
+use crate::error::Error as Rejected;
+use crate::physics::{Params, State};
+use crate::render::Figure;
+use crate::task::{ResetOptions, Task};
+use any_acrobot::AnyAcrobot;
 
-/// An environment: Gymnasium's `Env`, with its types known at compile time. [`check_env`] checks an
-/// implementation.
+/// Gymnasium's `Env`: an [`AcrobotEnv`], or a wrapper around another environment.
+///
+/// A wrapper has the two methods for its inner environment, and those that it changes. The others
+/// are the inner environment's. [`check_env`] checks a wrapper.
 ///
 /// ```
-/// use acrobot::env::{Env, Space};
-/// use acrobot::numpy::Pcg64;
+/// use acrobot::env::{Env, Info, check_env, make};
+/// use acrobot::{Action, Step};
 ///
-/// /// The steps of an episode with a random policy, in any environment.
-/// fn length(mut env: impl Env) -> u32 {
-///     let mut rng = Pcg64::new(42);
-///     env.reset_with_seed(42);
-///     let mut steps = 1;
-///     while !env.step(env.action_space().sample(&mut rng)).done() {
-///         steps += 1;
+/// /// Rewards whose sum is at least −1.
+/// #[derive(Clone)]
+/// struct Scaled<E>(E);
+///
+/// impl<E: Env> Env for Scaled<E> {
+///     fn inner(&self) -> &dyn Env {
+///         &self.0
 ///     }
-///     steps
+///
+///     fn inner_mut(&mut self) -> &mut dyn Env {
+///         &mut self.0
+///     }
+///
+///     fn step(&mut self, action: Action) -> Step<Vec<f32>, Info> {
+///         let step = self.0.step(action);
+///         Step { reward: step.reward / 500.0, ..step }
+///     }
 /// }
+///
+/// let env = Scaled(make("Acrobot-v1")?);
+/// assert_eq!(check_env(&env, 42), Ok(()));
+/// # Ok::<(), acrobot::env::Error>(())
 /// ```
-pub trait Env {
-    /// The type of an observation.
-    type Observation;
-    /// The type of an action.
-    type Action;
-    /// The type of the set of all observations.
-    type ObservationSpace: Space<Element = Self::Observation>;
-    /// The type of the set of all actions.
-    type ActionSpace: Space<Element = Self::Action>;
-    /// The type of the environment without its wrappers: Gymnasium's `unwrapped`.
-    type Unwrapped: ?Sized;
+pub trait Env: Send {
+    /// The environment that this one wraps; an [`AcrobotEnv`] returns itself.
+    fn inner(&self) -> &dyn Env;
+
+    /// As [`inner`](Self::inner), to change it.
+    fn inner_mut(&mut self) -> &mut dyn Env;
 
     /// Gymnasium's `reset(seed=…, options=…)`: begins an episode and returns the observation of its
     /// initial state. Without a seed the generator continues its stream, which has seed 0 at first.
-    fn reset_with(&mut self, options: ResetOptions) -> (Self::Observation, Info);
+    fn reset_with(&mut self, options: ResetOptions) -> Vec<f32> {
+        self.inner_mut().reset_with(options)
+    }
 
     /// Gymnasium's `reset()`.
-    fn reset(&mut self) -> (Self::Observation, Info) {
+    fn reset(&mut self) -> Vec<f32> {
         self.reset_with(ResetOptions::default())
     }
 
     /// Gymnasium's `reset(seed=seed)`.
-    fn reset_with_seed(&mut self, seed: u64) -> (Self::Observation, Info) {
+    fn reset_with_seed(&mut self, seed: u64) -> Vec<f32> {
         self.reset_with(seed.into())
     }
 
     /// Takes one step.
-    fn step(&mut self, action: Self::Action) -> Step<Self::Observation, Info>;
+    fn step(&mut self, action: Action) -> Step<Vec<f32>, Info> {
+        self.inner_mut().step(action)
+    }
 
     /// The set of all actions.
-    fn action_space(&self) -> Self::ActionSpace;
+    fn action_space(&self) -> DiscreteSpace {
+        self.inner().action_space()
+    }
 
     /// The set of all observations.
-    fn observation_space(&self) -> Self::ObservationSpace;
+    fn observation_space(&self) -> BoxSpace {
+        self.inner().observation_space()
+    }
 
     /// A picture of the state, in the [`RenderMode`] that the environment was made with.
     ///
@@ -101,35 +124,146 @@ pub trait Env {
     /// [`Error::NoRenderMode`] if it was made without one, and [`Error::DisplayBusy`] if a
     /// [`Display`] renders on itself.
     fn render(&mut self) -> Result<Rendering, Error> {
-        Err(Error::NoRenderMode)
+        self.inner_mut().render()
     }
 
     /// Releases resources for rendering. Afterwards nothing is rendered.
-    fn close(&mut self) {}
+    fn close(&mut self) {
+        self.inner_mut().close();
+    }
 
     /// The environment without its wrappers.
-    fn unwrapped(&self) -> &Self::Unwrapped;
+    fn unwrapped(&self) -> &AcrobotEnv {
+        self.inner().unwrapped()
+    }
 
     /// The environment without its wrappers, to change it.
-    fn unwrapped_mut(&mut self) -> &mut Self::Unwrapped;
+    fn unwrapped_mut(&mut self) -> &mut AcrobotEnv {
+        self.inner_mut().unwrapped_mut()
+    }
 }
 
-/// Further information from a reset or a step: Gymnasium's `info`. Acrobot itself adds none.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Info {
-    /// Statistics of the episode that this step ended, if [`RecordEpisodeStatistics`] records them.
-    pub episode: Option<EpisodeStatistics>,
+/// An acrobot without wrappers, in any arithmetic and with any task.
+///
+/// ```
+/// use acrobot::arithmetic::{Damped, Host};
+/// use acrobot::env::{AcrobotEnv, Env, RenderMode};
+/// use acrobot::task::{Swingup, Task};
+/// use acrobot::{Acrobot, Action, Params, TimeLimit};
+///
+/// let env = AcrobotEnv::new(Acrobot::<Damped<Host>, Swingup>::new(42), RenderMode::Ansi);
+/// let mut env = TimeLimit::new(env, Swingup::MAX_STEPS);
+/// env.step(Action::Positive);
+/// let acrobot = env.unwrapped_mut();
+/// acrobot.set_params(Params { torque_noise: 0.1, ..acrobot.params() })?;
+/// # Ok::<(), acrobot::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct AcrobotEnv {
+    acrobot: Box<dyn AnyAcrobot>,
+    render_mode: RenderMode,
 }
 
-/// Statistics of one episode.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct EpisodeStatistics {
-    /// The sum of its rewards.
-    pub episode_return: f32,
-    /// The number of its steps.
-    pub length: u32,
-    /// The time from its reset to its end.
-    pub elapsed: Duration,
+impl AcrobotEnv {
+    /// The environment of an acrobot, in its state.
+    #[must_use]
+    pub fn new<A: Arithmetic, T: Task>(acrobot: Acrobot<A, T>, render_mode: RenderMode) -> Self {
+        Self { acrobot: Box::new(acrobot), render_mode }
+    }
+
+    /// The acrobot. `None` if it has another arithmetic or task.
+    #[must_use]
+    pub fn acrobot<A: Arithmetic, T: Task>(&self) -> Option<&Acrobot<A, T>> {
+        let acrobot: &dyn Any = &*self.acrobot;
+        acrobot.downcast_ref()
+    }
+
+    /// As [`acrobot`](Self::acrobot), to change it. Its steps and resets are not shown.
+    #[must_use]
+    pub fn acrobot_mut<A: Arithmetic, T: Task>(&mut self) -> Option<&mut Acrobot<A, T>> {
+        let acrobot: &mut dyn Any = &mut *self.acrobot;
+        acrobot.downcast_mut()
+    }
+
+    /// The state, rad and rad/s, converted to `f64` exactly.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.acrobot.state()
+    }
+
+    /// Calls [`Acrobot::set_state`] with the state rounded to the scalar. Its errors are for the
+    /// state as given and as rounded.
+    pub fn set_state(&mut self, state: State) -> Result<(), Rejected> {
+        self.acrobot.set_state(state)
+    }
+
+    /// The parameters, converted to `f64` exactly.
+    #[must_use]
+    pub fn params(&self) -> Params {
+        self.acrobot.params()
+    }
+
+    /// As [`set_state`](Self::set_state), by [`Acrobot::set_params`].
+    pub fn set_params(&mut self, params: Params) -> Result<(), Rejected> {
+        self.acrobot.set_params(params)
+    }
+
+    /// The figure to draw.
+    #[must_use]
+    pub fn figure(&self) -> Figure {
+        self.acrobot.figure()
+    }
+}
+
+impl Clone for AcrobotEnv {
+    fn clone(&self) -> Self {
+        Self { acrobot: self.acrobot.boxed(), render_mode: self.render_mode.clone() }
+    }
+}
+
+impl Env for AcrobotEnv {
+    fn inner(&self) -> &dyn Env {
+        self
+    }
+
+    fn inner_mut(&mut self) -> &mut dyn Env {
+        self
+    }
+
+    fn reset_with(&mut self, options: ResetOptions) -> Vec<f32> {
+        let observation = self.acrobot.reset_with(options);
+        self.render_mode.show(&*self.acrobot);
+        observation
+    }
+
+    fn step(&mut self, action: Action) -> Step<Vec<f32>, Info> {
+        let step = self.acrobot.step(action);
+        self.render_mode.show(&*self.acrobot);
+        step
+    }
+
+    fn action_space(&self) -> DiscreteSpace {
+        DiscreteSpace::ACTIONS
+    }
+
+    /// The task's [bounds](Task::observation_high).
+    fn observation_space(&self) -> BoxSpace {
+        BoxSpace::symmetric(self.acrobot.observation_high())
+    }
+
+    fn render(&mut self) -> Result<Rendering, Error> {
+        self.render_mode.render(&*self.acrobot)
+    }
+
+    fn close(&mut self) {
+        self.render_mode = RenderMode::None;
+    }
+
+    fn unwrapped(&self) -> &AcrobotEnv {
+        self
+    }
+
+    fn unwrapped_mut(&mut self) -> &mut AcrobotEnv {
+        self
+    }
 }

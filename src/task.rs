@@ -19,7 +19,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 use rand_core::Rng;
 
 pub use draws::{Draw, Draws};
-pub use gymnasium::Gymnasium;
+pub use gymnasium::{Gymnasium, GymnasiumV0};
 pub use observation::Observation;
 pub use reset_bounds::ResetBounds;
 pub use reset_options::ResetOptions;
@@ -70,6 +70,14 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
         &self,
         seen: &Seen<V>,
     ) -> <Self::Observation as Observation>::Of<V>;
+
+    /// The largest magnitude of each number of an observation, for the space of an environment of
+    /// `env`. Any finite number, unless it is replaced.
+    fn observation_high(&self, _: &Params<f32>) -> Self::Observation {
+        let mut high = Self::Observation::ZEROS;
+        high.as_mut().fill(f32::MAX);
+        high
+    }
 
     /// Whether the new state ends the episode: never, unless it is replaced.
     #[inline(always)]

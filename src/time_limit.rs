@@ -11,9 +11,6 @@ use crate::error::Error;
 use crate::physics::{Params, State};
 use crate::task::{Gymnasium, ResetOptions, Task, episode};
 
-/// The number of steps of an episode of `Acrobot-v0`.
-pub(crate) const V0_MAX_STEPS: NonZeroU32 = NonZeroU32::new(200).unwrap();
-
 /// Gymnasium's `TimeLimit`: counts the steps since the last reset and sets `truncated` from the
 /// limit on.
 ///
@@ -94,12 +91,6 @@ impl<A: Arithmetic, R> TimeLimit<Acrobot<A, Gymnasium, R>> {
     #[must_use]
     pub const fn v1(inner: Acrobot<A, Gymnasium, R>) -> Self {
         Self::of(inner)
-    }
-
-    /// Truncates episodes after 200 steps, as `Acrobot-v0` does.
-    #[must_use]
-    pub const fn v0(inner: Acrobot<A, Gymnasium, R>) -> Self {
-        Self::new(inner, V0_MAX_STEPS)
     }
 }
 

@@ -7,24 +7,21 @@ use std::string::String;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ThreadId};
 
+use super::any_acrobot::AnyAcrobot;
 use super::error::Error;
-use crate::acrobot::Acrobot;
-use crate::arithmetic::Arithmetic;
-use crate::render::{self, Figure, Frame};
+use crate::render::{self, Frame};
 
 /// A function that shows the frames of [`RenderMode::Human`], for example in a window.
 ///
 /// ```
-/// use acrobot::Fast;
-/// use acrobot::env::{Display, Env, Options, RenderMode, acrobot_v1};
+/// use acrobot::env::{AcrobotEnv, Display, Env, RenderMode};
+/// use acrobot::{Acrobot, Fast};
 ///
 /// let (sender, frames) = std::sync::mpsc::channel();
 /// let display = Display::new(move |frame| sender.send(frame.clone()).unwrap_or(()));
-/// let options = Options { render_mode: RenderMode::Human(display), ..Options::default() };
-/// let mut env = acrobot_v1::<Fast>(options)?;
+/// let mut env = AcrobotEnv::new(Acrobot::<Fast>::new(0), RenderMode::Human(display));
 /// env.reset_with_seed(42);
 /// assert_eq!(frames.try_iter().count(), 1);
-/// # Ok::<(), acrobot::env::Error>(())
 /// ```
 #[derive(Clone)]
 pub struct Display(Arc<Shared<Show>>);
@@ -89,26 +86,27 @@ pub enum RenderMode {
 
 impl RenderMode {
     /// Shows the acrobot if the mode is `Human`.
-    pub(super) fn show<A: Arithmetic>(&self, acrobot: &Acrobot<A>) {
+    pub(super) fn show(&self, acrobot: &dyn AnyAcrobot) {
         if let Self::Human(display) = self {
             // A reset or a step by the display's own function is not shown.
-            let _ = display.show(&Frame::of(&Figure::new(acrobot)));
+            let _ = display.show(&Frame::of(&acrobot.figure()));
         }
     }
 
-    pub(super) fn render<A: Arithmetic>(&self, acrobot: &Acrobot<A>) -> Result<Rendering, Error> {
+    pub(super) fn render(&self, acrobot: &dyn AnyAcrobot) -> Result<Rendering, Error> {
+        let figure = acrobot.figure();
         match self {
             Self::None => Err(Error::NoRenderMode),
-            Self::RgbArray => Ok(Rendering::Frame(Frame::of(&Figure::new(acrobot)))),
+            Self::RgbArray => Ok(Rendering::Frame(Frame::of(&figure))),
             Self::Ansi => {
-                let [theta1, theta2, dtheta1, dtheta2] = acrobot.state().cast::<f64>().into();
-                let drawing = render::text(&Figure::new(acrobot));
+                let [theta1, theta2, dtheta1, dtheta2] = acrobot.state().into();
+                let drawing = render::text(&figure);
                 Ok(Rendering::Text(format!(
                     "{drawing}\nθ1 {theta1:+.2}  θ2 {theta2:+.2} rad  θ̇1 {dtheta1:+.2}  θ̇2 {dtheta2:+.2} rad/s\n"
                 )))
             }
             Self::Human(display) => {
-                display.show(&Frame::of(&Figure::new(acrobot)))?;
+                display.show(&Frame::of(&figure))?;
                 Ok(Rendering::Shown)
             }
         }

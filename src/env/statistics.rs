@@ -2,22 +2,22 @@
 
 use std::collections::VecDeque;
 use std::time::Instant;
+use std::vec::Vec;
 
-use super::error::Error;
-use super::rendering::Rendering;
-use super::wrapper::forward;
-use super::{Env, EpisodeStatistics, Info};
+use super::Env;
+use super::info::{EpisodeStatistics, Info};
 use crate::acrobot::Step;
+use crate::action::Action;
 use crate::task::ResetOptions;
 
 /// Gymnasium's `RecordEpisodeStatistics`: the step that ends an episode reports its statistics in
 /// [`Info`].
 ///
 /// ```
-/// use acrobot::env::{Env, EpisodeStatistics, RecordEpisodeStatistics, acrobot_v1};
-/// use acrobot::{Action, Fast};
+/// use acrobot::Action;
+/// use acrobot::env::{Env, EpisodeStatistics, RecordEpisodeStatistics, make};
 ///
-/// let mut env = RecordEpisodeStatistics::new(acrobot_v1::<Fast>(Default::default())?);
+/// let mut env = RecordEpisodeStatistics::new(make("Acrobot-v1")?);
 /// env.reset_with_seed(42);
 /// let EpisodeStatistics { length, episode_return, .. } = loop {
 ///     if let Some(episode) = env.step(Action::Zero).info.episode {
@@ -84,16 +84,22 @@ impl<E> RecordEpisodeStatistics<E> {
 }
 
 impl<E: Env> Env for RecordEpisodeStatistics<E> {
-    forward!(types E);
+    fn inner(&self) -> &dyn Env {
+        &self.inner
+    }
 
-    fn reset_with(&mut self, options: ResetOptions) -> (E::Observation, Info) {
+    fn inner_mut(&mut self) -> &mut dyn Env {
+        &mut self.inner
+    }
+
+    fn reset_with(&mut self, options: ResetOptions) -> Vec<f32> {
         self.started = Instant::now();
         self.episode_return = 0.0;
         self.length = 0;
         self.inner.reset_with(options)
     }
 
-    fn step(&mut self, action: E::Action) -> Step<E::Observation, Info> {
+    fn step(&mut self, action: Action) -> Step<Vec<f32>, Info> {
         let mut step = self.inner.step(action);
         self.episode_return += step.reward;
         self.length = self.length.saturating_add(1);
@@ -111,6 +117,4 @@ impl<E: Env> Env for RecordEpisodeStatistics<E> {
         }
         step
     }
-
-    forward!(self, self.inner);
 }

@@ -48,6 +48,11 @@ impl<const SPARSE: bool> Task for DmControl<SPARSE> {
         [-sin1, -sin_sum, -cos1, -cos_sum, seen.state.dtheta1, seen.state.dtheta2]
     }
 
+    /// 1, 1, 1, 1, and the largest velocities.
+    fn observation_high(&self, params: &Params<f32>) -> [f32; 6] {
+        [1.0, 1.0, 1.0, 1.0, params.max_velocity1, params.max_velocity2]
+    }
+
     #[inline(always)]
     fn reward<A: Arithmetic, V: Numbers<A::Scalar>>(
         &self,
