@@ -5,7 +5,7 @@ use acrobot::arithmetic::{Arithmetic, Damped, Form, Host, Micro, Real, Reference
 use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::physics::control::ControlError;
 use acrobot::physics::{Dynamics, Pendulum};
-use acrobot::task::{Gymnasium, ResetBounds};
+use acrobot::task::{Gymnasium, GymnasiumV0, ResetBounds, Task};
 use acrobot::trajectory::{Trajectory, Transition};
 use acrobot::{
     Acrobot, Action, Error, Fast, Params, Portable, REWARD_THRESHOLD, ResetOptions, State, Step,
@@ -61,10 +61,7 @@ fn a_tip_at_the_target_height_is_not_in_the_goal() {
 
 #[test]
 fn time_limits_truncate_whether_or_not_an_episode_terminates() {
-    for (mut acrobot, limit) in [
-        (TimeLimit::v1(Acrobot::<Fast>::new(1)), 500),
-        (TimeLimit::v0(Acrobot::<Fast>::new(1)), 200),
-    ] {
+    fn check<T: Task>(mut acrobot: TimeLimit<Acrobot<Fast, T>>, limit: u32) {
         assert_eq!(acrobot.max_steps().get(), limit);
         for n in 1..limit {
             assert!(!acrobot.step(Action::Zero).truncated, "step {n}");
@@ -85,6 +82,8 @@ fn time_limits_truncate_whether_or_not_an_episode_terminates() {
         assert!(!acrobot.step(Action::Zero).done());
         assert!(acrobot.step(Action::Zero).truncated, "the count goes on");
     }
+    check(TimeLimit::v1(Acrobot::new(1)), 500);
+    check(TimeLimit::of(Acrobot::<Fast, GymnasiumV0>::new(1)), 200);
 }
 
 #[test]

@@ -4,16 +4,18 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
 
-use acrobot::env::{
-    AcrobotEnv, Display, DynEnv, Env, Error, Options, RenderMode, Rendering, acrobot_v1, make_with,
-};
-use acrobot::render::{Figure, Frame};
-use acrobot::{Action, Portable, State, TimeLimit};
+use acrobot::env::{AcrobotEnv, Display, Env, Error, RenderMode, Rendering};
+use acrobot::render::Frame;
+use acrobot::{Acrobot, Action, Portable, State};
 
-fn with_mode(render_mode: RenderMode) -> TimeLimit<AcrobotEnv<Portable, [f32; 6]>> {
-    let mut env = acrobot_v1::<Portable>(Options { render_mode, ..Options::default() }).unwrap();
-    env.reset_with_seed(1);
-    env.unwrapped_mut().set_state(State::from([0.6, -1.5, 1.0, -2.0])).unwrap();
+fn new(render_mode: RenderMode) -> AcrobotEnv {
+    AcrobotEnv::new(Acrobot::<Portable>::new(1), render_mode)
+}
+
+fn with_mode(render_mode: RenderMode) -> AcrobotEnv {
+    let mut env = new(render_mode);
+    env.reset();
+    env.set_state(State::from([0.6, -1.5, 1.0, -2.0])).unwrap();
     env
 }
 
@@ -22,7 +24,7 @@ fn each_render_mode_returns_its_kind() {
     let mut rgb = with_mode(RenderMode::RgbArray);
     let Ok(Rendering::Frame(frame)) = rgb.render() else { panic!("no frame") };
     assert_eq!((frame.width(), frame.height()), (500, 500));
-    assert_eq!(frame, Frame::of(&Figure::new(rgb.unwrapped())));
+    assert_eq!(frame, Frame::of(&rgb.figure()));
 
     let Ok(Rendering::Text(text)) = with_mode(RenderMode::Ansi).render() else { panic!("no text") };
     common::assert_snapshot("ansi.txt", &text);
@@ -36,18 +38,14 @@ fn each_render_mode_returns_its_kind() {
     let shown = shown.lock().unwrap();
     assert_eq!(shown.len(), 3, "the reset, the step and the call");
     assert_eq!(shown[1], shown[2]);
-    assert_eq!(shown[2], Frame::of(&Figure::new(human.unwrapped())));
-}
-
-fn human(display: &Display) -> Options {
-    Options { render_mode: RenderMode::Human(display.clone()), ..Options::default() }
+    assert_eq!(shown[2], Frame::of(&human.figure()));
 }
 
 /// A display's function that renders on the same display gets an error and does not deadlock. The
 /// display shows the next frame, also after a panic.
 #[test]
 fn a_display_rejects_frames_from_its_own_function() {
-    let nested: Arc<Mutex<Option<[Box<DynEnv>; 2]>>> = Arc::default();
+    let nested: Arc<Mutex<Option<[AcrobotEnv; 2]>>> = Arc::default();
     let (other_sender, other_frames) = mpsc::channel();
     let other = Display::new(move |_| other_sender.send(()).unwrap());
     let (sender, results) = mpsc::channel();
@@ -61,9 +59,9 @@ fn a_display_rejects_frames_from_its_own_function() {
         sender.send(Some((same.render(), other.render()))).unwrap();
         panic!("while the display shows a frame");
     });
-    let make = |display| make_with("Acrobot-v1", human(display)).unwrap();
-    *nested.lock().unwrap() = Some([make(&display), make(&other)]);
-    let mut env = make(&display);
+    let human = |display: &Display| new(RenderMode::Human(display.clone()));
+    *nested.lock().unwrap() = Some([&display, &other].map(human));
+    let mut env = human(&display);
     drop((display, other));
     // In another thread, so that a deadlock fails the test.
     std::thread::spawn(move || {
@@ -89,7 +87,7 @@ fn threads_share_a_display() {
     });
     std::thread::scope(|scope| {
         for _ in 0..2 {
-            let mut env = make_with("Acrobot-v0", human(&display)).unwrap();
+            let mut env = new(RenderMode::Human(display.clone()));
             scope.spawn(move || (0..20).for_each(|_| assert!(env.render().is_ok())));
         }
     });

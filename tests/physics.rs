@@ -148,7 +148,7 @@ fn an_arithmetic_without_friction_rejects_it() {
         batch.set_params_of(1, with),
         batch.set_member(1, member),
         batch.set_draws(draws),
-        AcrobotEnv::<Fast, [f32; 6]>::new(with, RenderMode::None).map(drop),
+        AcrobotEnv::new(Acrobot::<Fast>::new(0), RenderMode::None).set_params(with),
     ] {
         assert_eq!(result.unwrap_err().to_string(), rule);
     }

@@ -5,7 +5,7 @@ use std::num::NonZeroU32;
 use std::str::FromStr;
 
 use acrobot::batch::{Batch, Block};
-use acrobot::env::{AcrobotEnv, Env, Space};
+use acrobot::env::{Env, make};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::task::ResetBounds;
 use acrobot::{Acrobot, Error, Fast, Portable};
@@ -59,7 +59,7 @@ fn samples_equal_gymnasiums() {
 
 #[test]
 fn box_samples_equal_gymnasiums() {
-    let space = AcrobotEnv::<Fast, [f32; 6]>::default().observation_space();
+    let space = make("Acrobot-v1").unwrap().observation_space();
     for row in rows("box") {
         let mut rng = generator(row[0]);
         let drawn: Vec<u64> =

@@ -2,10 +2,10 @@
 
 use std::num::NonZeroU32;
 
-use acrobot::Error;
-use acrobot::env::{BoxSpace, DiscreteSpace, Space};
+use acrobot::env::{BoxSpace, DiscreteSpace};
 use acrobot::numpy::{Pcg64, SeedSequence, integers, uniform};
 use acrobot::task::ResetBounds;
+use acrobot::{Action, Error};
 use common::Repeating;
 use proptest::prelude::*;
 use rand_core::SeedableRng;
@@ -99,7 +99,7 @@ fn spaces_contain_their_samples() {
             let sample = space.sample(&mut rng);
             assert!(space.contains(&sample), "{sample:?}");
         }
-        let space = DiscreteSpace::new(&[1, 2, 3, 5, 8]).unwrap();
-        assert!(space.contains(&space.sample(&mut rng)));
+        let space = DiscreteSpace::new(&[Action::Negative, Action::Positive]).unwrap();
+        assert!(space.contains(space.sample(&mut rng)));
     });
 }

@@ -1,6 +1,6 @@
 //! The contract of `Env` for any valid parameters.
 
-use acrobot::env::{Options, RecordEpisodeStatistics, acrobot_v0, acrobot_v1, check_env};
+use acrobot::env::{RecordEpisodeStatistics, RenderMode, check_env, make_with};
 use acrobot::{Fast, Params, TimeLimit};
 use common::in_every_arithmetic;
 use proptest::prelude::*;
@@ -16,12 +16,10 @@ fn fitting() -> impl Strategy<Value = Params> {
 fn environments_of_any_parameters_keep_the_contract() {
     fn check<A: Tested>() {
         holds(10, (fitting(), any::<u64>(), 1..600_u32), |(params, seed, limit)| {
-            let options = Options { params, ..Options::default() };
-            let env = acrobot_v1::<A>(options.clone()).unwrap();
-            let env = TimeLimit::new(env, limit.try_into().unwrap());
+            let make = |id| make_with::<A>(id, params, RenderMode::None).unwrap();
+            let env = TimeLimit::new(make("Acrobot-v1"), limit.try_into().unwrap());
             check_env(&env, seed).unwrap();
-            let env = RecordEpisodeStatistics::new(acrobot_v0::<A>(options).unwrap());
-            check_env(&env, seed).unwrap();
+            check_env(&RecordEpisodeStatistics::new(make("Acrobot-v0")), seed).unwrap();
         });
     }
     in_every_arithmetic!(check);
