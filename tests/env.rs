@@ -59,7 +59,7 @@ fn versions_have_gymnasiums_spaces() {
         assert!(space.low().iter().copied().eq(high.iter().map(|x| -x)));
         assert_eq!(env.action_space(), DiscreteSpace::ACTIONS);
 
-        let slower = Params { max_velocity1: 1.0, max_velocity2: 0.0, ..Params::DEFAULT };
+        let slower = Params { max_velocity1: 1.0, max_velocity2: 0.05, ..Params::DEFAULT };
         env.unwrapped_mut().set_params(slower).unwrap();
         assert!(env.observation_space().high().ends_with(&[1.0, 0.1]), "0.1 after a reset");
     }
@@ -183,13 +183,6 @@ fn rejections_name_the_rule() {
         assert_eq!(error.to_string(), expected);
         assert_eq!(error, Error::UnknownId(id.to_owned()));
     }
-    // A long id is cut after 64 characters, however many bytes each has.
-    for letter in ["x", "é", "\0"] {
-        let exact = letter.repeat(64);
-        let error = make(&letter.repeat(1_000_000)).unwrap_err();
-        assert_eq!(error, Error::UnknownId(format!("{exact}…")));
-        assert_eq!(make(&exact).unwrap_err(), Error::UnknownId(exact));
-    }
 
     let heavy = Params { mass1: -1.0, ..Params::DEFAULT };
     let error = make_with::<Host>("Acrobot-v1", heavy, RenderMode::None).unwrap_err();
@@ -240,8 +233,7 @@ fn numbers_that_only_rounding_makes_valid_or_invalid_are_rejected() {
         let text = error.to_string();
         assert!(text.starts_with(rule) && text.ends_with(&format!("got {value}")), "{text}");
         let made = make(params).unwrap_err();
-        assert_eq!(made, Error::Invalid(error));
-        assert_eq!(std::error::Error::source(&made).unwrap().to_string(), text);
+        assert_eq!((made.to_string(), made), (text, Error::Invalid(error)));
     }
     assert_eq!((acrobot.state(), acrobot.params()), before);
 }

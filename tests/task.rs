@@ -5,7 +5,8 @@ use core::num::NonZeroU32;
 
 use acrobot::arithmetic::{Arithmetic, Numbers, Real};
 use acrobot::batch::VecBatch;
-use acrobot::numpy::SeedSequence;
+use acrobot::env::{AcrobotEnv, Env, RenderMode, check_env};
+use acrobot::numpy::{Pcg64, SeedSequence};
 use acrobot::task::{Seen, Task};
 use acrobot::{Acrobot, Action, Fast, Params, State, TimeLimit};
 use bits::balance::Balance;
@@ -42,6 +43,10 @@ impl Task for Reach {
         [theta1, theta2, dtheta1, dtheta2, self.beyond::<A, V>(seen)]
     }
 
+    fn observation_high(&self, _: &Params<f32>) -> [f32; 5] {
+        [4.0, -4.0, 20.0, f32::INFINITY, f32::NAN]
+    }
+
     #[inline(always)]
     fn ended<A: Arithmetic, V: Numbers<A::Scalar>>(&self, seen: &Seen<V>) -> V::Mask {
         (-self.beyond::<A, V>(seen)).above(Real::ZERO)
@@ -65,6 +70,17 @@ impl Task for Reach {
 fn own_tasks_run_in_batches_with_equal_bits() {
     Twins::<Fast, 16, Balance>::at_every_level();
     Twins::<Fast, 16, Reach>::at_every_level();
+}
+
+#[test]
+fn own_tasks_are_environments() {
+    let env = AcrobotEnv::new(Acrobot::<Fast, Balance>::new(0), RenderMode::None);
+    assert_eq!(env.observation_space().high(), [f32::MAX; 6]);
+    let env = AcrobotEnv::new(Acrobot::<Fast, Reach>::new(0), RenderMode::None);
+    let space = env.observation_space();
+    assert_eq!(space.high(), [4.0, 4.0, 20.0, f32::MAX, f32::MAX]);
+    assert!(space.contains(&space.sample(&mut Pcg64::new(0))));
+    assert_eq!(check_env(&TimeLimit::new(env, Reach::MAX_STEPS), 0), Ok(()));
 }
 
 #[test]

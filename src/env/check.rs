@@ -34,22 +34,16 @@ fn require(
     rule: &'static str,
     found: impl FnOnce() -> String,
 ) -> Result<(), Violation> {
-    if holds {
-        return Ok(());
-    }
-    let found = found();
-    Err(Violation { rule, found })
+    holds.then_some(()).ok_or_else(|| Violation { rule, found: found() })
 }
 
-const IN_SPACE: &str = "observations are in the observation space";
-const REWARD: &str = "rewards are finite";
 const SEED: &str = "the same seed and actions give the same episode";
 const AFTER_END: &str = "a reset after the end begins a full new episode";
-const CLONE: &str = "a clone behaves like its original";
-const RENDER: &str = "rendering changes nothing";
 
 /// The largest number of steps of an episode.
 const STEPS: usize = 2000;
+
+type Steps = Vec<Step<Vec<f32>, Info>>;
 
 /// Plays random episodes and checks the contract:
 ///
@@ -83,50 +77,47 @@ pub fn check_env<E: Env + Clone>(env: &E, seed: u64) -> Result<(), Violation> {
     // Both continue the same stream.
     let next = play(&mut played, None, &actions)?;
     same(SEED, &next, &play(&mut otherwise_seeded, None, &actions)?)?;
-    let truncated = |episode: &Episode| episode.steps.last().is_some_and(|step| step.truncated);
-    let (len, next_len) = (first.steps.len(), next.steps.len());
+    let truncated = |steps: &Steps| steps.last().is_some_and(|step| step.truncated);
+    let [len, next_len] = [first.len(), next.len()].map(|len| len - 1);
     let shortened = truncated(&first) && truncated(&next) && next_len < len;
     require(!shortened, AFTER_END, || format!("truncated after {len} and then {next_len} steps"))?;
     same(AFTER_END, &first, &play(&mut played, Some(seed), &actions)?)?;
 
-    let (before, after) = actions.split_at(first.steps.len() / 2);
+    let (before, after) = actions.split_at(len / 2);
     let mut original = env.clone();
     play(&mut original, Some(seed), before)?;
     let mut copy = original.clone();
     let mut rendered = original.clone();
     let expected = follow(&mut original, after)?;
-    same_steps(CLONE, &expected, &follow(&mut copy, after)?)?;
+    same("a clone behaves like its original", &expected, &follow(&mut copy, after)?)?;
 
     // Whether rendering succeeds must not matter.
     let _ = rendered.render();
-    same_steps(RENDER, &expected, &follow(&mut rendered, after)?)
+    same("rendering changes nothing", &expected, &follow(&mut rendered, after)?)
 }
 
-/// An episode, up to its end or to the last action.
-struct Episode {
-    start: Vec<f32>,
-    steps: Vec<Step<Vec<f32>, Info>>,
-}
-
-fn play(env: &mut impl Env, seed: Option<u64>, actions: &[Action]) -> Result<Episode, Violation> {
-    let start = match seed {
+/// The reset, as a step without a reward, and the steps up to the end or to the last action.
+fn play(env: &mut impl Env, seed: Option<u64>, actions: &[Action]) -> Result<Steps, Violation> {
+    let observation = match seed {
         Some(seed) => env.reset_with_seed(seed),
         None => env.reset(),
     };
-    in_space(env, &start)?;
-    let steps = follow(env, actions)?;
-    Ok(Episode { start, steps })
+    in_space(env, &observation)?;
+    let info = Info::default();
+    let reset = Step { observation, reward: 0.0, terminated: false, truncated: false, info };
+    let mut steps = follow(env, actions)?;
+    steps.insert(0, reset);
+    Ok(steps)
 }
 
 /// Steps to the end of the episode or to the last action.
-fn follow(env: &mut impl Env, actions: &[Action]) -> Result<Vec<Step<Vec<f32>, Info>>, Violation> {
+fn follow(env: &mut impl Env, actions: &[Action]) -> Result<Steps, Violation> {
     let mut steps = Vec::new();
     for &action in actions {
         let step = env.step(action);
         in_space(env, &step.observation)?;
-        let reward = step.reward;
-        require(reward.is_finite(), REWARD, || format!("{reward}"))?;
-        let done = step.done();
+        let (reward, done) = (step.reward, step.done());
+        require(reward.is_finite(), "rewards are finite", || format!("{reward}"))?;
         steps.push(step);
         if done {
             break;
@@ -137,23 +128,14 @@ fn follow(env: &mut impl Env, actions: &[Action]) -> Result<Vec<Step<Vec<f32>, I
 
 fn in_space(env: &impl Env, observation: &[f32]) -> Result<(), Violation> {
     let contained = env.observation_space().contains(observation);
-    require(contained, IN_SPACE, || format!("{observation:?}"))
+    require(contained, "observations are in the observation space", || format!("{observation:?}"))
 }
 
-fn same(rule: &'static str, x: &Episode, y: &Episode) -> Result<(), Violation> {
-    require(x.start == y.start, rule, || format!("starts at {:?} and at {:?}", x.start, y.start))?;
-    same_steps(rule, &x.steps, &y.steps)
-}
-
-fn same_steps(
-    rule: &'static str,
-    x: &[Step<Vec<f32>, Info>],
-    y: &[Step<Vec<f32>, Info>],
-) -> Result<(), Violation> {
+fn same(rule: &'static str, x: &Steps, y: &Steps) -> Result<(), Violation> {
     for (i, (x, y)) in x.iter().zip(y).enumerate() {
         // Infos may contain times, which differ.
         let same = Step { info: y.info, ..x.clone() } == *y;
-        require(same, rule, || format!("step {} is {x:?} and {y:?}", i + 1))?;
+        require(same, rule, || format!("number {i} is {x:?} and {y:?}"))?;
     }
     Ok(())
 }

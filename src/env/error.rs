@@ -7,7 +7,7 @@ use std::string::String;
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// No environment has this id. A longer id is cut after 64 characters and ends in `…`.
+    /// No environment has this id.
     UnknownId(String),
     /// The environment was made without a render mode.
     NoRenderMode,
@@ -34,14 +34,7 @@ impl fmt::Display for Error {
     }
 }
 
-impl core::error::Error for Error {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Invalid(error) => Some(error),
-            _ => None,
-        }
-    }
-}
+impl core::error::Error for Error {}
 
 impl From<crate::error::Error> for Error {
     fn from(error: crate::error::Error) -> Self {

@@ -1,7 +1,5 @@
 //! Makes environments from their ids.
 
-use std::string::String;
-
 use super::AcrobotEnv;
 use super::error::Error;
 use super::rendering::RenderMode;
@@ -35,13 +33,7 @@ pub fn make_with<A: Arithmetic>(
     match id {
         "Acrobot-v0" => limited::<A, GymnasiumV0>(params, render_mode),
         "Acrobot-v1" => limited::<A, Gymnasium>(params, render_mode),
-        _ => {
-            let mut start: String = id.chars().take(64).collect();
-            if start.len() < id.len() {
-                start.push('…');
-            }
-            Err(Error::UnknownId(start))
-        }
+        _ => Err(Error::UnknownId(id.into())),
     }
 }
 
