@@ -71,8 +71,8 @@ pub trait Task: Copy + fmt::Debug + PartialEq + Send + Sync + 'static {
         seen: &Seen<V>,
     ) -> <Self::Observation as Observation>::Of<V>;
 
-    /// The largest magnitude of each number of an observation, for the space of an environment of
-    /// `env`. Any finite number, unless it is replaced.
+    /// The largest magnitude of each number of an observation, in its unit: the bounds of the
+    /// observation space in `env`. Any finite number, unless it is replaced.
     fn observation_high(&self, _: &Params<f32>) -> Self::Observation {
         let mut high = Self::Observation::ZEROS;
         high.as_mut().fill(f32::MAX);

@@ -1,7 +1,6 @@
 //! `check_env` finds every violation of the contract of `Env`. `cargo test -p properties` finds
 //! none in our environments.
 
-use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
@@ -13,13 +12,8 @@ struct Broken {
     env: TimeLimit<AcrobotEnv>,
     /// How it breaks the contract: a text of the test below.
     flaw: &'static str,
-    count: Cell<u32>,
+    count: u32,
     shared_count: Arc<AtomicU32>,
-}
-
-fn increase(count: &Cell<u32>) -> u32 {
-    count.set(count.get() + 1);
-    count.get()
 }
 
 impl Env for Broken {
@@ -35,7 +29,7 @@ impl Env for Broken {
         match self.flaw {
             "the seed is ignored" => options.seed = None,
             "a reset without a seed does not restart the count" if options.seed.is_some() => {
-                self.count.set(0);
+                self.count = 0;
             }
             "clones share a count that each reset restarts" => self.shared_count.store(0, Relaxed),
             _ => {}
@@ -44,7 +38,8 @@ impl Env for Broken {
         match self.flaw {
             "the first observation is outside" => observation[1] = -1.5,
             "the first observation depends on the number of resets" => {
-                observation[4] = increase(&self.count) as f32;
+                self.count += 1;
+                observation[4] = self.count as f32;
             }
             _ => {}
         }
@@ -58,7 +53,8 @@ impl Env for Broken {
             "a reward is NaN" => step.reward = f32::NAN,
             "a reset does not restart the count"
             | "a reset without a seed does not restart the count" => {
-                step.truncated = increase(&self.count) >= 500;
+                self.count += 1;
+                step.truncated = self.count >= 500;
             }
             "clones share a count" | "clones share a count that each reset restarts" => {
                 step.reward -= (self.shared_count.fetch_add(1, Relaxed) % 7) as f32;
@@ -80,7 +76,7 @@ impl Env for Broken {
 fn every_violation_is_found() {
     let check = |flaw| {
         let env = make("Acrobot-v1").unwrap();
-        check_env(&Broken { env, flaw, count: Cell::default(), shared_count: Arc::default() }, 1)
+        check_env(&Broken { env, flaw, count: 0, shared_count: Arc::default() }, 1)
     };
     assert_eq!(check("none"), Ok(()));
     let in_space = "observations are in the observation space";
