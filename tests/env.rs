@@ -1,5 +1,7 @@
 //! Environments: Gymnasium's runs through `make`, live changes, wrappers, and rejected input.
 
+use std::sync::mpsc::{TryRecvError, channel};
+
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Micro, Reference};
 use acrobot::env::{
     AcrobotEnv, BoxSpace, DiscreteSpace, Display, Env, Error, RecordEpisodeStatistics, RenderMode,
@@ -94,7 +96,7 @@ fn live_changes_reach_through_every_wrapper() {
 
 #[test]
 fn borrowed_and_boxed_environments_are_environments() {
-    let (sender, frames) = std::sync::mpsc::channel();
+    let (sender, frames) = channel();
     let display = Display::new(move |frame| sender.send(frame.width()).unwrap());
     assert_eq!(format!("{display:?}"), "Display");
     let mode = RenderMode::Human(display);
@@ -113,9 +115,9 @@ fn borrowed_and_boxed_environments_are_environments() {
     assert_eq!(env.unwrapped().state(), State::default());
     assert_eq!(env.observation_space().high().len(), 4);
     assert_eq!(env.action_space().n().get(), 3);
-    assert_eq!((env.render(), frames.recv()), (Ok(Rendering::Shown), Ok(500)));
+    assert_eq!((env.render(), frames.try_recv()), (Ok(Rendering::Shown), Ok(500)));
     env.close();
-    assert!(frames.recv().is_err(), "the display is dropped");
+    assert_eq!(frames.try_recv(), Err(TryRecvError::Disconnected), "the display is dropped");
     assert_eq!(boxed.render(), Err(Error::NoRenderMode));
 }
 
