@@ -63,7 +63,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     ///
     /// # Errors
     ///
-    /// Those of [`set_state`](Self::set_state) and [`set_params`](Self::set_params), and
+    /// Those of [`set_state`](Self::set_state_of) and [`set_params`](Self::set_params), and
     /// [`Error::SharedParams`] for parameters other than those that all acrobots of this batch
     /// share.
     pub fn set_member(&mut self, index: usize, member: Member<A>) -> Result<(), Error> {

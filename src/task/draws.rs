@@ -59,7 +59,8 @@ impl<S: Real> Draw<S> {
     fn check(self, name: &'static str, unit: &'static str) -> Result<(), Error> {
         let [low, high] = self.bounds(S::ZERO, [S::ZERO; 2]).map(S::to_f64);
         let out_of_range = |value, rule| Err(Error::OutOfRange { name, value, unit, rule });
-        if !(low <= high) {
+        let is_ordered = low <= high; // false for NaN
+        if !is_ordered {
             return out_of_range(low, "drawn from a low of at most its high, in");
         }
         if !(high - low).is_finite() {
