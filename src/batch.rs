@@ -270,6 +270,12 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
         }
     }
 
+    /// Whether each acrobot has its own parameters. Otherwise all share theirs.
+    #[must_use]
+    pub fn has_own_params(&self) -> bool {
+        matches!(self.settings.parameters, Parameters::Own)
+    }
+
     /// Sets the parameters of all acrobots for the next steps, with the errors of
     /// [`Pendulum::set_params`](crate::physics::Pendulum::set_params).
     pub fn set_params(&mut self, params: Params<A::Scalar>) -> Result<(), Error> {
@@ -318,7 +324,8 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Batch<A, S, T, N>
     /// Those of [`set_params`](Self::set_params), for what the draws can make of the parameters of
     /// each acrobot, and [`Error::SharedParams`] without memory for [`LaneParams`].
     pub fn set_draws(&mut self, draws: Draws<A::Scalar>) -> Result<(), Error> {
-        for params in (0..self.len()).filter_map(|index| self.params_of(index)) {
+        let count = if self.has_own_params() { self.len() } else { 1 };
+        for params in (0..count).filter_map(|index| self.params_of(index)) {
             draws.check::<A>(&params)?;
         }
         match (&self.settings.parameters, self.storage.slices_mut().draws) {

@@ -167,6 +167,23 @@ fn draws_of_parameters_are_within_their_range() {
     for ((_, highest), (_, draw)) in highest.into_iter().zip(draws.params().numbers()) {
         assert!(matches!(draw, Draw::Uniform { high, .. } if high == highest));
     }
+    // The distributions: the mean of 10,000 draws, and of those of the square or the logarithm.
+    let draws = Draws::new(Params {
+        mass1: Draw::Normal { mean: 1.0, std: 0.1, low: 0.5, high: 2.0 },
+        mass2: Draw::LogUniform { low: 0.1, high: 10.0 },
+        ..Draws::FIXED
+    });
+    let (draws, mut sums) = (draws.unwrap(), [0.0; 4]);
+    for _ in 0..10_000 {
+        let Params { mass1, mass2, .. } = draws.draw(&Params::<f64>::DEFAULT, &mut rng);
+        let (z, logarithm) = ((mass1 - 1.0) / 0.1, mass2.log10());
+        for (sum, x) in sums.iter_mut().zip([z, z * z, logarithm, logarithm * logarithm]) {
+            *sum += x / 10_000.0;
+        }
+    }
+    for (found, expected) in sums.into_iter().zip([0.0, 1.0, 0.0, 1.0 / 3.0]) {
+        assert!((found - expected).abs() < 0.05, "{sums:?}");
+    }
     let mass1 = Draw::Normal { mean: 1.0, std: 0.1, low: 0.5, high: 2.0 };
     let normal = Draws::<f32>::new(Params { mass1, ..Draws::FIXED }).unwrap();
     assert_eq!(normal.draw(&params, &mut Repeating::new([u64::MAX])).mass1, 1.0);

@@ -10,7 +10,7 @@ use serde::ser::{Serialize, SerializeSeq, Serializer};
 use super::Batch;
 use super::buffers::check_length;
 use super::member::Member;
-use super::settings::{Autoreset, Parameters};
+use super::settings::Autoreset;
 use super::storage::Storage;
 #[cfg(feature = "alloc")]
 use super::vec_batch::VecBatch;
@@ -44,7 +44,7 @@ impl<A: Arithmetic, S: Storage<A, N>, T: Task, const N: usize> Serialize for Bat
             high: self.settings.bounds.high(),
             max_steps: self.settings.max_steps,
             autoreset: self.settings.autoreset,
-            own_params: matches!(self.settings.parameters, Parameters::Own),
+            own_params: self.has_own_params(),
             draws: *self.draws().params(),
         })?;
         for member in (0..self.len()).filter_map(|index| self.member(index)) {
