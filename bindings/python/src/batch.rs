@@ -1,12 +1,11 @@
 //! The vector environment: steps many acrobots at once.
 
 use std::num::NonZeroU32;
-use std::ops::DerefMut;
 
 use acrobot::batch::{Autoreset, StepBuffers};
 use acrobot::numpy::SeedSequence;
 use acrobot::task::ResetBounds;
-use acrobot::{ResetOptions, State};
+use acrobot::{Error, ResetOptions, State};
 use numpy::{
     PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2,
     PyUntypedArrayMethods,
@@ -15,10 +14,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::draws::Distribution;
 use crate::engine::{Engine, Inputs, memory, with_batch};
 use crate::pool::Pool;
-use crate::{alone, fields, load, must_be, rejected, render, save};
+use crate::{alone, check_states, load, must_be, places, rejected, render, save};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -50,7 +48,7 @@ impl Batch {
         };
         let mut engine = Engine::new(engine, num_envs.get() as usize, parse(seed)?)?;
         with_batch!(&mut engine, many => {
-            many.batch.set_limit(max_episode_steps);
+            many.batch.set_max_steps(max_episode_steps);
             many.batch.set_autoreset(mode);
         });
         Ok(Self { engine, continuous, threads, pool: None })
@@ -63,23 +61,13 @@ impl Batch {
     /// Sets a parameter of all acrobots.
     fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
         let this = &mut *alone(slf)?;
-        with_batch!(&mut this.engine, many => {
-            let mut draws = many.draws.clone();
-            draws.distributions.remove(name);
-            let each = many.all_params().into_iter().map(|params| many.with(params, name, value));
-            many.change(&each.collect::<PyResult<Vec<_>>>()?, draws)
-        })
+        with_batch!(&mut this.engine, many => many.set(name, std::slice::from_ref(value)))
     }
 
     /// Sets a parameter that each reset draws.
     fn set_drawn(slf: &Bound<'_, Self>, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
         let this = &mut *alone(slf)?;
-        let distribution = Distribution::of(drawn)?;
-        let bounds = [drawn.getattr("low")?, drawn.getattr("high")?];
-        with_batch!(&mut this.engine, many => {
-            let draws = many.drawing(name, distribution, bounds)?;
-            many.change(&many.all_params(), draws)
-        })
+        with_batch!(&mut this.engine, many => many.set_drawn(name, drawn))
     }
 
     /// Sets a parameter of each acrobot.
@@ -95,17 +83,7 @@ impl Batch {
             let got = format_args!("{} values", values.len());
             return Err(PyValueError::new_err(must_be(name, rule, got)));
         }
-        with_batch!(&mut this.engine, many => {
-            let mut draws = many.draws.clone();
-            draws.distributions.remove(name);
-            let each = values.iter().enumerate().map(|(index, value)| {
-                let params = many.with(many.params(index), name, value);
-                let checked = params.and_then(|params| many.check(params, &draws).map(|()| params));
-                checked.map_err(|error| indexed(value.py(), error, index))
-            });
-            let each: Vec<_> = each.collect::<PyResult<_>>()?;
-            many.change(&each, draws)
-        })
+        with_batch!(&mut this.engine, many => many.set(name, &values))
     }
 
     /// Writes the numbers of a parameter: a row for each acrobot, of three of `AVAIL_TORQUE`.
@@ -116,33 +94,22 @@ impl Batch {
     ) -> PyResult<()> {
         let this = alone(slf)?;
         let width = rows.shape()[1].max(1);
-        let fields: Vec<_> = fields(name).collect();
         for (index, row) in rows.as_slice_mut()?.chunks_mut(width).enumerate() {
-            let mut params = with_batch!(&this.engine, many => many.params(index));
-            for (number, field) in row.iter_mut().zip(&fields) {
-                *number = *field(&mut params);
-            }
-        }
-        Ok(())
-    }
-
-    /// Gives acrobots the streams of `default_rng(seed)`, for each seed that is not `None`.
-    fn seed(slf: &Bound<'_, Self>, seeds: Vec<Option<String>>) -> PyResult<()> {
-        let this = &mut *alone(slf)?;
-        let generators = with_batch!(&mut this.engine, many => many.batch.generators_mut());
-        for (rng, seed) in generators.iter_mut().zip(seeds) {
-            if let Some(seed) = seed {
-                *rng = parse(&seed)?.into();
+            let params = with_batch!(&this.engine, many => many.params(index));
+            for (number, place) in row.iter_mut().zip(places(name)) {
+                *number = params.numbers()[place].1;
             }
         }
         Ok(())
     }
 
     /// Resets all acrobots, or those that the mask selects, to initial states within these bounds,
-    /// or to given finite states. With a seed, each first takes the stream of its child.
+    /// or to given states. With a seed, each first takes the stream of its child; with seeds, each
+    /// whose seed is not `None` that of `default_rng(seed)`.
     fn reset(
         slf: &Bound<'_, Self>,
         seed: Option<&str>,
+        seeds: Option<Vec<Option<String>>>,
         low: f64,
         high: f64,
         mask: Option<PyReadonlyArray1<'_, bool>>,
@@ -152,24 +119,32 @@ impl Batch {
             seed: seed.map(parse).transpose()?,
             bounds: Some(ResetBounds::new(low, high).map_err(rejected)?),
         };
+        let seeds = seeds.unwrap_or_default().into_iter();
+        let seeds = seeds.map(|seed| seed.as_deref().map(parse).transpose());
+        let seeds = seeds.collect::<PyResult<Vec<_>>>()?;
         let mask = mask.as_ref().map(|mask| mask.as_slice()).transpose()?;
         let states = states.as_ref().map(|rows| rows.as_slice()).transpose()?;
+        let states = states.unwrap_or_default().as_chunks::<4>().0;
+        check_states::<f32>(states)?; // observations are `f32`
         let engine = &mut alone(slf)?.engine;
-        let is_reset = |index: usize| mask.is_none_or(|mask| mask[index]);
         slf.py()
             .detach(|| {
                 with_batch!(engine, many => {
-                    match mask {
-                        Some(mask) => many.batch.deref_mut().reset_masked(mask, options)?,
-                        None => many.batch.deref_mut().reset_with(options),
-                    }
-                    let states = states.unwrap_or_default().as_chunks::<4>().0;
-                    for (index, state) in states.iter().enumerate() {
-                        if is_reset(index) {
-                            many.batch.set_state(index, State::from(*state).cast())?;
+                    for (rng, seed) in many.batch.generators_mut().iter_mut().zip(seeds) {
+                        if let Some(seed) = seed {
+                            *rng = seed.into();
                         }
                     }
-                    many.draw(|_, index| is_reset(index))
+                    match mask {
+                        Some(mask) => many.batch.reset_masked(mask, options)?,
+                        None => many.batch.reset_with(options),
+                    }
+                    for (index, state) in states.iter().enumerate() {
+                        if mask.is_none_or(|mask| mask[index]) {
+                            many.batch.set_state_of(index, State::from(*state).cast())?;
+                        }
+                    }
+                    Ok::<_, Error>(())
                 })
             })
             .map_err(rejected)
@@ -248,23 +223,26 @@ impl Batch {
         Ok(())
     }
 
-    /// Sets all states, which must be finite. Episodes continue.
+    /// Sets all states. Episodes continue.
     fn set_states(slf: &Bound<'_, Self>, states: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
         let mut this = alone(slf)?;
         let rows = states.as_slice()?.as_chunks::<4>().0;
-        for (index, row) in rows.iter().enumerate() {
-            let state = State::from(*row);
-            with_batch!(&mut this.engine, many => many.batch.set_state(index, state.cast()))
-                .map_err(rejected)?;
-        }
-        Ok(())
+        with_batch!(&mut this.engine, many => many.set_states(rows))
+    }
+
+    /// The first environment, if any, whose episode has ended and that waits for a reset.
+    fn first_ended(slf: &Bound<'_, Self>) -> PyResult<Option<usize>> {
+        let this = alone(slf)?;
+        Ok(with_batch!(&this.engine, many => {
+            (0..many.batch.len()).find(|&index| many.batch.ended(index) == Some(true))
+        }))
     }
 
     /// Writes the number of steps of each acrobot's episode.
     fn elapsed(slf: &Bound<'_, Self>, mut elapsed: PyReadwriteArray1<'_, i64>) -> PyResult<()> {
         let this = alone(slf)?;
         for (index, elapsed) in elapsed.as_slice_mut()?.iter_mut().enumerate() {
-            let steps = with_batch!(&this.engine, many => many.batch.elapsed(index));
+            let steps = with_batch!(&this.engine, many => many.batch.elapsed_steps_of(index));
             *elapsed = steps.unwrap_or_default().into();
         }
         Ok(())
@@ -293,20 +271,10 @@ impl Batch {
 
     fn __setstate__(slf: &Bound<'_, Self>, bytes: &[u8]) -> PyResult<()> {
         let mut this = alone(slf)?;
-        let (continuous, threads, mut engine) = load(bytes)?;
-        with_batch!(&mut engine, many => many.change(&many.all_params(), many.draws.clone())?);
-        (this.continuous, this.threads, this.engine) = (continuous, threads, engine);
+        (this.continuous, this.threads, this.engine) = load(bytes)?;
         this.pool = None;
         Ok(())
     }
-}
-
-/// The same error with an index after the parameter's name, with which its message begins.
-fn indexed(py: Python<'_>, error: PyErr, index: usize) -> PyErr {
-    let message = error.value(py).to_string();
-    let end = message.find([' ', '[']).unwrap_or(message.len());
-    let (name, rest) = message.split_at(end);
-    PyErr::from_type(error.get_type(py), format!("{name}[{index}]{rest}"))
 }
 
 /// Parses a seed: a decimal integer of at least 0, of any size.

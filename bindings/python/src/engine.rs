@@ -1,12 +1,12 @@
 //! A batch of one of seven pairs of arithmetic and task.
 
-use std::ops::DerefMut;
+use std::slice;
 
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
-use acrobot::task::{Gymnasium, ParamsRange, Swingup, SwingupSparse, Task};
-use acrobot::{Error, Fast, State};
+use acrobot::task::{Draw, Draws, Gymnasium, Swingup, SwingupSparse, Task};
+use acrobot::{Acrobot, Error, Fast, State};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
@@ -14,8 +14,10 @@ use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::draws::{Distribution, Draws};
-use crate::{InvalidAction, NUMBERS, Params, invalid, must_be, rejected, torque_of, unknown, with};
+use crate::{
+    InvalidAction, Name, Params, check_states, invalid, must_be, places, rejected, torque_of,
+    unknown, with,
+};
 
 /// Actions (0, 1 or 2), or torques, N m; in a swing-up from −1 to 1.
 #[derive(FromPyObject)]
@@ -85,12 +87,9 @@ pub(crate) use with_batch;
 
 /// A batch, and memory for its inputs. Numbers are `f64` outside, which `f32` becomes exactly.
 #[derive(Serialize, Deserialize)]
-#[serde(bound(serialize = "A::Scalar: Serialize", deserialize = "A::Scalar: Deserialize<'de>"))]
+#[serde(bound = "")]
 pub struct Many<A: Arithmetic, T: Task = Gymnasium> {
     pub batch: VecBatch<A, T>,
-    /// Whether each acrobot has its own parameters, which takes more memory.
-    pub own: bool,
-    pub draws: Draws,
     #[serde(skip)]
     actions: Vec<u8>,
     /// Empty if the inputs of the next step are actions.
@@ -100,13 +99,8 @@ pub struct Many<A: Arithmetic, T: Task = Gymnasium> {
 
 impl<A: Arithmetic, T: Task> Many<A, T> {
     pub fn new(len: usize, seed: SeedSequence) -> PyResult<Self> {
-        Ok(Self {
-            batch: VecBatch::new(seed, len).map_err(out_of_memory)?,
-            own: false,
-            draws: Draws::default(),
-            actions: Vec::new(),
-            torques: Vec::new(),
-        })
+        let batch = VecBatch::new(seed, len).map_err(out_of_memory)?;
+        Ok(Self { batch, actions: Vec::new(), torques: Vec::new() })
     }
 
     pub fn params(&self, index: usize) -> Params {
@@ -114,122 +108,94 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
     }
 
     pub fn state(&self, index: usize) -> State {
-        self.batch.state(index).unwrap_or_default().cast()
+        self.batch.state_of(index).unwrap_or_default().cast()
     }
 
-    /// The parameters with one of them changed.
-    pub fn with(&self, params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
-        with(T::NAME, params, name, value)
-    }
-
-    /// The parameters of all acrobots, or one for all if they share them.
-    pub fn all_params(&self) -> Vec<Params> {
-        let count = if self.own { self.batch.len() } else { 1 };
-        (0..count).map(|index| self.params(index)).collect()
-    }
-
-    /// The draws of resets with one more parameter.
-    pub fn drawing(
-        &self,
-        name: &str,
-        distribution: Distribution,
-        [low, high]: [Bound<'_, PyAny>; 2],
-    ) -> PyResult<Draws> {
-        let mut draws = self.draws.clone();
-        let [lows, highs] = draws.ends(self.params(0));
-        let bounds = [self.with(lows, name, &low)?, self.with(highs, name, &high)?];
-        Self::check_range(bounds)?;
-        draws.bounds = bounds.map(|bound| bound.cast::<A::Scalar>().cast());
-        draws.distributions.insert(name.to_owned(), distribution);
-        Ok(draws)
-    }
-
-    /// Checks the parameters of an acrobot, with all that these draws can make of them.
-    pub fn check(&self, params: Params, draws: &Draws) -> PyResult<()> {
-        Self::check_range(draws.ends(params))
-    }
-
-    fn check_range(ends: [Params; 2]) -> PyResult<()> {
-        let [low, high] = ends.map(|end| end.cast::<A::Scalar>());
-        ParamsRange::new(low, high).map(drop).map_err(|error| {
-            let mut message = error.to_string();
-            for (_, own, field) in &NUMBERS {
-                for mut end in ends {
-                    let given = *field(&mut end);
-                    let held = A::Scalar::from_f64(given).to_f64();
-                    let is_lost = held.is_infinite() || held == 0.0 && given != 0.0;
-                    // Names the number given, not the infinity or the 0 that it becomes.
-                    if is_lost && given.is_finite() && message.starts_with(own) {
-                        let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
-                        message = must_be(own, rule, format_args!("{given:?}"));
-                    }
-                }
-            }
-            invalid(T::NAME, message)
-        })
-    }
-
-    /// Sets the parameters of all acrobots, or one for all if they are the same, and the draws of
-    /// resets. Gives each acrobot its own parameters if necessary.
-    pub fn change(&mut self, params: &[Params], draws: Draws) -> PyResult<()> {
-        for each in params {
-            self.check(*each, &draws)?;
+    /// Sets all states, if all are valid.
+    pub fn set_states(&mut self, states: &[[f64; 4]]) -> PyResult<()> {
+        check_states::<A::Scalar>(states)?;
+        for (index, state) in states.iter().enumerate() {
+            let state = State::from(*state).cast();
+            self.batch.set_state_of(index, state).map_err(rejected)?;
         }
-        let bits = |params: &Params| {
-            let numbers = NUMBERS.map(|(.., field)| field(&mut { *params }).to_bits());
-            (params.dynamics, numbers)
+        Ok(())
+    }
+
+    /// Whether each acrobot has its own parameters: the batch has no memory for them otherwise.
+    fn has_own_params(&mut self) -> bool {
+        let params = self.batch.params_of(0).unwrap_or_default();
+        self.batch.set_params_of(0, params) != Err(Error::SharedParams)
+    }
+
+    /// Sets a parameter of all acrobots to a value from Python, or to a value for each.
+    pub fn set(&mut self, name: &str, values: &[Bound<'_, PyAny>]) -> PyResult<()> {
+        let mut draws = *self.batch.draws().params();
+        places(name).for_each(|place| *draws.numbers_mut()[place] = Draw::Fixed);
+        let draws = Draws::new(draws).map_err(rejected)?;
+        let is_own = values.len() > 1 || self.has_own_params();
+        let count = if is_own { self.batch.len() } else { 1 };
+        let mut each = Vec::with_capacity(count);
+        for index in 0..count {
+            let index_in_name = (values.len() > 1).then_some(index);
+            let value = &values[index_in_name.unwrap_or(0)];
+            let given = with(self.params(index), &Name(name, [index_in_name, None]), value)?;
+            // An acrobot alone tries them: a rejected value must change no acrobot of the batch.
+            let mut alone = Acrobot::<A, T>::new(0);
+            let tried = alone.set_params(given.cast()).and_then(|()| alone.draw_params(&draws));
+            tried.map_err(|error| {
+                invalid::<A::Scalar>(T::NAME, error, index_in_name, slice::from_ref(&given))
+            })?;
+            each.push(given.cast());
+        }
+        let bits = |params: &Params<A::Scalar>| {
+            (params.dynamics, params.numbers().map(|(_, number)| number.to_f64().to_bits()))
         };
-        let own = !draws.distributions.is_empty()
-            || params.iter().any(|each| bits(each) != bits(&params[0]));
-        if own && !self.own {
-            self.batch = self.owning()?;
-            self.own = true;
+        if each.iter().all(|params| bits(params) == bits(&each[0])) {
+            self.batch.set_params(each[0])
+        } else {
+            self.batch.own_params().map_err(out_of_memory)?;
+            let mut each = each.into_iter().enumerate();
+            each.try_for_each(|(index, params)| self.batch.set_params_of(index, params))
         }
-        for index in 0..if self.own { self.batch.len() } else { 1 } {
-            let params = params.get(index).unwrap_or(&params[0]).cast();
-            if self.own {
-                self.batch.set_params_of(index, params)
-            } else {
-                self.batch.set_params(params)
-            }
-            .map_err(|error| invalid(T::NAME, error))?;
-        }
-        self.draws = draws;
-        Ok(())
+        .and_then(|()| self.batch.set_draws(draws))
+        .map_err(rejected)
     }
 
-    /// Draws the parameters of acrobots that were reset. A range of the crate would have one
-    /// distribution, another LINK_MOI for each link, and no different values.
-    pub fn draw(
-        &mut self,
-        were_reset: impl Fn(&VecBatch<A, T>, usize) -> bool,
-    ) -> Result<(), Error> {
-        if self.draws.distributions.is_empty() {
-            return Ok(());
+    /// Sets a parameter that each reset draws.
+    pub fn set_drawn(&mut self, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
+        let kind: String = drawn.getattr("kind")?.extract()?;
+        let numbers: &[&str] = match kind.as_str() {
+            "Normal" => &["low", "high", "mean", "std"],
+            _ => &["low", "high"],
+        };
+        let given = numbers
+            .iter()
+            .map(|&number| with(Params::DEFAULT, &Name(name, [None; 2]), &drawn.getattr(number)?));
+        let given = given.collect::<PyResult<Vec<_>>>()?;
+        let mut draws = *self.batch.draws().params();
+        for place in places(name) {
+            let number = |i: usize| A::Scalar::from_f64(given[i].numbers()[place].1);
+            let (low, high) = (number(0), number(1));
+            *draws.numbers_mut()[place] = match kind.as_str() {
+                "Normal" => Draw::Normal { mean: number(2), std: number(3), low, high },
+                "LogUniform" => Draw::LogUniform { low, high },
+                _ => Draw::Uniform { low, high },
+            };
         }
-        for index in 0..self.batch.len() {
-            if were_reset(&self.batch, index) {
-                let params = self.params(index);
-                let rng = &mut self.batch.generators_mut()[index];
-                let drawn = self.draws.draw(params, rng);
-                self.batch.set_params_of(index, drawn.cast())?;
+        if name == "LINK_MOI" {
+            draws.inertia2 = Draw::AsBefore;
+        }
+        let set = Draws::new(draws).and_then(|draws| match self.batch.set_draws(draws) {
+            Err(Error::SharedParams) => {
+                self.batch.own_params()?;
+                self.batch.set_draws(draws)
             }
-        }
-        Ok(())
-    }
-
-    /// The same batch with memory for the parameters of each acrobot.
-    fn owning(&self) -> PyResult<VecBatch<A, T>> {
-        let seed = SeedSequence::new(0);
-        let mut batch = VecBatch::with_own_params(seed, self.batch.len()).map_err(out_of_memory)?;
-        batch.set_limit(self.batch.limit());
-        batch.set_autoreset(self.batch.autoreset());
-        for index in 0..batch.len() {
-            if let Some(member) = self.batch.member(index) {
-                batch.set_member(index, member).map_err(rejected)?;
-            }
-        }
-        Ok(batch)
+            result => result,
+        });
+        set.map_err(|error| match error {
+            Error::OutOfMemory { .. } => out_of_memory(error),
+            _ => invalid::<A::Scalar>(T::NAME, error, None, &given),
+        })
     }
 
     /// Checks the inputs of the next step and copies them.
@@ -246,6 +212,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
                 )
             }
             Inputs::Torques(from) => {
+                let is_own = from.len() > 1 && self.has_own_params();
                 let bounds = |index| {
                     let params = self.batch.params_of(index).unwrap_or_default();
                     let [a, b, c] = params.torques.map(Real::to_f64);
@@ -257,7 +224,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
                     &mut self.torques,
                     |torque| !torque.is_nan(),
                     |index, torque| {
-                        let (low, high) = if self.own { bounds(index) } else { first };
+                        let (low, high) = if is_own { bounds(index) } else { first };
                         A::Scalar::from_f64(torque_of(T::NAME, torque.into(), low, high))
                     },
                     if T::NAME == Gymnasium::NAME {
@@ -277,14 +244,12 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         parallel: bool,
     ) -> Result<(), Error> {
         let (actions, torques) = (&self.actions, &self.torques);
-        let batch = self.batch.deref_mut();
         match (torques.is_empty(), parallel) {
-            (true, false) => batch.step(actions, buffers),
-            (true, true) => batch.par_step(actions, buffers),
-            (false, false) => batch.step(torques, buffers),
-            (false, true) => batch.par_step(torques, buffers),
-        }?;
-        self.draw(|batch, index| batch.elapsed(index) == Some(0))
+            (true, false) => self.batch.step_into(actions, buffers),
+            (true, true) => self.batch.par_step_into(actions, buffers),
+            (false, false) => self.batch.step_into(torques, buffers),
+            (false, true) => self.batch.par_step_into(torques, buffers),
+        }
     }
 }
 

@@ -1,18 +1,17 @@
 //! The native part of `acrobot_rs`. Gymnasium's interface is written in Python, in `python/`.
 
 mod batch;
-mod draws;
 mod engine;
 mod pool;
 mod single;
 
-use std::fmt::Display;
+use std::fmt::{self, Display, Formatter};
 
-use acrobot::arithmetic::Host;
+use acrobot::arithmetic::{Host, Real};
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::Dynamics;
-use acrobot::task::{Gymnasium, Task};
-use acrobot::{Params, State};
+use acrobot::task::{Gymnasium, ResetBounds, Swingup, Task};
+use acrobot::{Error, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -29,9 +28,26 @@ mod _native {
     #[pymodule_export]
     const BUSY: &str = super::BUSY;
     #[pymodule_export]
+    const REWARD_THRESHOLD: f32 = acrobot::REWARD_THRESHOLD;
+    #[pymodule_export]
+    const MAX_STEPS: u32 = Gymnasium::MAX_STEPS.get();
+    #[pymodule_export]
+    const SWINGUP_MAX_STEPS: u32 = Swingup::MAX_STEPS.get();
+    #[pymodule_export]
+    const BOUND: f64 = Gymnasium::RESET_BOUNDS.high();
+    #[pymodule_export]
+    const SWINGUP_BOUND: f64 = Swingup::RESET_BOUNDS.high();
+    #[pymodule_export]
     use super::batch::Batch;
     #[pymodule_export]
     use super::single::Acrobot;
+    use super::*;
+
+    /// Checks the bounds of initial states, rad and rad/s.
+    #[pyfunction]
+    fn check_bounds(low: f64, high: f64) -> PyResult<()> {
+        ResetBounds::new(low, high).map(drop).map_err(rejected)
+    }
 }
 
 /// Says what to do when an environment is in use.
@@ -59,37 +75,44 @@ fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
     torque.max(low).min(high)
 }
 
-/// A number among the parameters: Python's name, the crate's, and its field.
-type Number = (&'static str, &'static str, fn(&mut Params) -> &mut f64);
-
-/// In the order of draws. Gymnasium has one moment of inertia for both links, a swing-up two.
-const NUMBERS: [Number; 20] = [
-    ("LINK_LENGTH_1", "length1", |p| &mut p.length1),
-    ("LINK_LENGTH_2", "length2", |p| &mut p.length2),
-    ("LINK_MASS_1", "mass1", |p| &mut p.mass1),
-    ("LINK_MASS_2", "mass2", |p| &mut p.mass2),
-    ("LINK_COM_POS_1", "center_of_mass1", |p| &mut p.center_of_mass1),
-    ("LINK_COM_POS_2", "center_of_mass2", |p| &mut p.center_of_mass2),
-    ("LINK_MOI", "inertia1", |p| &mut p.inertia1),
-    ("LINK_MOI", "inertia2", |p| &mut p.inertia2),
-    ("LINK_MOI_1", "inertia1", |p| &mut p.inertia1),
-    ("LINK_MOI_2", "inertia2", |p| &mut p.inertia2),
-    ("gravity", "gravity", |p| &mut p.gravity),
-    ("dt", "dt", |p| &mut p.dt),
-    ("MAX_VEL_1", "max_velocity1", |p| &mut p.max_velocity1),
-    ("MAX_VEL_2", "max_velocity2", |p| &mut p.max_velocity2),
-    ("AVAIL_TORQUE", "torques", |p| &mut p.torques[0]),
-    ("AVAIL_TORQUE", "torques", |p| &mut p.torques[1]),
-    ("AVAIL_TORQUE", "torques", |p| &mut p.torques[2]),
-    ("torque_noise_max", "torque_noise", |p| &mut p.torque_noise),
-    ("FRICTION_1", "friction.joint1", |p| &mut p.friction.joint1),
-    ("FRICTION_2", "friction.joint2", |p| &mut p.friction.joint2),
+/// Python's names of the parameters, in the order of the crate's numbers. Gymnasium has one moment of
+/// inertia for both links, `LINK_MOI`.
+const NAMES: [&str; 18] = [
+    "LINK_LENGTH_1",
+    "LINK_LENGTH_2",
+    "LINK_MASS_1",
+    "LINK_MASS_2",
+    "LINK_COM_POS_1",
+    "LINK_COM_POS_2",
+    "LINK_MOI_1",
+    "LINK_MOI_2",
+    "gravity",
+    "dt",
+    "MAX_VEL_1",
+    "MAX_VEL_2",
+    "AVAIL_TORQUE",
+    "AVAIL_TORQUE",
+    "AVAIL_TORQUE",
+    "torque_noise_max",
+    "FRICTION_1",
+    "FRICTION_2",
 ];
 
-/// The fields of a parameter by Python's name.
-fn fields(name: &str) -> impl Iterator<Item = fn(&mut Params) -> &mut f64> {
-    let named = NUMBERS.iter().filter(move |(known, ..)| *known == name);
-    named.map(|(.., field)| *field)
+/// The places of a parameter among the numbers.
+fn places(name: &str) -> impl Iterator<Item = usize> {
+    let both = (name == "LINK_MOI").then_some(["LINK_MOI_1", "LINK_MOI_2"]);
+    let is_place = move |known| known == name || both.is_some_and(|both| both.contains(&known));
+    (0..NAMES.len()).filter(move |&place| is_place(NAMES[place]))
+}
+
+/// Python's name of a parameter, with the indices of an environment and of a torque.
+struct Name<'a>(&'a str, [Option<usize>; 2]);
+
+impl Display for Name<'_> {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0)?;
+        self.1.iter().flatten().try_for_each(|index| write!(f, "[{index}]"))
+    }
 }
 
 /// Turns an error of the crate into a `ValueError` with its message.
@@ -97,31 +120,67 @@ fn rejected(error: impl std::error::Error) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// The same for parameters of a task: the message begins with Python's name of one.
-fn invalid(task: &str, error: impl Display) -> PyErr {
-    let message = error.to_string();
-    let renamed = NUMBERS.iter().find_map(|(pythons, name, _)| {
-        let rest = message.strip_prefix(name)?;
-        let known = *pythons != "LINK_MOI" || task == Gymnasium::NAME;
-        let whole = known && rest.starts_with([' ', '[']);
-        whole.then(|| format!("{pythons}{rest}"))
+/// The error of a rejected parameter of a task, of all environments or of one, with Python's name.
+fn invalid<S: Real>(task: &str, error: Error, index: Option<usize>, given: &[Params]) -> PyErr {
+    let names = Params::<f64>::DEFAULT.numbers();
+    let Some(place) = names.iter().position(|(name, _)| *name == error.name()) else {
+        return rejected(error);
+    };
+    let name = match NAMES[place] {
+        "LINK_MOI_1" | "LINK_MOI_2" if task == Gymnasium::NAME => "LINK_MOI",
+        name => name,
+    };
+    let torque = places(name).position(|each| each == place).filter(|_| name == "AVAIL_TORQUE");
+    let given = given.iter().map(|params| params.numbers()[place].1);
+    out_of_range::<S>(error, Name(name, [index, torque]), given)
+}
+
+/// The error of a rejected number with its name in Python. If `S` does not hold a number given, the
+/// message has this number, and not the infinity or the 0 that it becomes.
+fn out_of_range<S: Real>(
+    error: Error,
+    name: impl Display,
+    mut given: impl Iterator<Item = f64>,
+) -> PyErr {
+    let lost = given.find(|&number| {
+        let held = S::from_f64(number).to_f64();
+        number.is_finite() && held != number && (held.is_infinite() || held == 0.0)
     });
-    PyValueError::new_err(renamed.unwrap_or(message))
+    PyValueError::new_err(match lost {
+        Some(number) => {
+            let rule = "in the range of float32, from 1.2e-38 to 3.4e38";
+            must_be(name, rule, format_args!("{number:?}"))
+        }
+        None => error.named(name).to_string(),
+    })
+}
+
+/// Checks that the scalar `S` holds all states.
+fn check_states<S: Real>(states: &[[f64; 4]]) -> PyResult<()> {
+    for (index, state) in states.iter().enumerate() {
+        State::from(*state).cast::<S>().validate().map_err(|error| {
+            let names = ["theta1", "theta2", "dtheta1", "dtheta2"];
+            let column = names.iter().position(|name| *name == error.name()).unwrap_or_default();
+            let name = format_args!("state[{index}, {column}]");
+            out_of_range::<S>(error, name, [state[column]].into_iter())
+        })?;
+    }
+    Ok(())
 }
 
 /// An error message in the form of the crate's.
-fn must_be(name: &str, rule: impl Display, got: impl Display) -> String {
+fn must_be(name: impl Display, rule: impl Display, got: impl Display) -> String {
     format!("{name} must be {rule}, got {got}")
 }
 
 /// Converts a parameter from Python, or raises a `TypeError` that names it. Bools are no numbers,
 /// and bytes no sequence.
 fn convert<'a, 'py, T: FromPyObject<'a, 'py>>(
-    name: &str,
+    name: impl Display,
     rule: &str,
     value: &'a Bound<'py, PyAny>,
 ) -> PyResult<T> {
-    let wrong = || PyTypeError::new_err(must_be(name, rule, shown(value)));
+    let wrong = || PyTypeError::new_err(must_be(&name, rule, shown(value)));
     let converted = value.extract().map_err(|_| wrong())?;
     // What was converted has an end, which an iterator need not have.
     let elements = value.try_iter().into_iter().flatten().flatten();
@@ -145,13 +204,13 @@ fn shown(value: &Bound<'_, PyAny>) -> String {
 }
 
 /// The error for a text from Python that is not one of the names in `rule`.
-fn unknown(name: &str, rule: &str, got: &str) -> PyErr {
+fn unknown(name: impl Display, rule: &str, got: &str) -> PyErr {
     PyValueError::new_err(must_be(name, rule, format_args!("{got:?}")))
 }
 
-/// The parameters of a task with one of them changed.
-fn with(task: &str, mut params: Params, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Params> {
-    match name {
+/// The parameters with one of them changed.
+fn with(mut params: Params, name: &Name<'_>, value: &Bound<'_, PyAny>) -> PyResult<Params> {
+    match name.0 {
         "AVAIL_TORQUE" => {
             let count = value.len().unwrap_or(3); // without a length, it is no sequence
             if count != 3 {
@@ -170,10 +229,9 @@ fn with(task: &str, mut params: Params, name: &str, value: &Bound<'_, PyAny>) ->
         }
         _ => {
             let number = convert(name, "a number", value)?;
-            fields(name).for_each(|field| *field(&mut params) = number);
+            places(name.0).for_each(|place| *params.numbers_mut()[place] = number);
         }
     }
-    params.validate().map_err(|error| invalid(task, error))?;
     Ok(params)
 }
 
@@ -208,7 +266,7 @@ fn render<'py>(
 }
 
 /// The version of this package's snapshots. Those of the crate, inside, have their own.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// Serializes a snapshot, for pickle.
 fn save<'py>(py: Python<'py>, snapshot: &impl Serialize) -> PyResult<Bound<'py, PyBytes>> {

@@ -10,8 +10,8 @@ use pyo3::types::{PyBytes, PyDict};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    InvalidAction, Params, alone, convert, invalid, load, must_be, rejected, render, save, shown,
-    torque_of, unknown, with,
+    InvalidAction, Name, Params, alone, convert, invalid, load, must_be, out_of_range, rejected,
+    render, save, shown, torque_of, unknown, with,
 };
 
 pyo3::import_exception!(gymnasium.error, ResetNeeded);
@@ -67,7 +67,7 @@ impl One {
 
     fn set_params(&mut self, params: Params) -> PyResult<()> {
         with_one!(self, acrobot => acrobot.set_params(params))
-            .map_err(|error| invalid(self.task(), error))
+            .map_err(|error| invalid::<f64>(self.task(), error, None, &[]))
     }
 
     fn state(&self) -> State {
@@ -103,14 +103,19 @@ struct Inner {
 impl Inner {
     /// Checks the torques and the noise.
     fn validate(&self) -> PyResult<()> {
-        let torques = &self.torques;
-        if torques.is_empty() || torques.iter().any(|torque| !torque.is_finite()) {
-            let rule = "one or more finite numbers of N m";
-            let message = must_be("AVAIL_TORQUE", rule, format_args!("{torques:?}"));
+        if self.torques.is_empty() {
+            let message = must_be("AVAIL_TORQUE", "one or more numbers of N m", "none");
             return Err(PyValueError::new_err(message));
         }
         let params = Params { torque_noise: self.noise, ..self.acrobot.params() };
-        params.validate().map_err(|error| invalid(self.acrobot.task(), error))
+        let rejected = |error| invalid::<f64>(self.acrobot.task(), error, None, &[]);
+        params.validate().map_err(rejected)?;
+        for (index, &torque) in self.torques.iter().enumerate() {
+            let name = Name("AVAIL_TORQUE", [None, Some(index)]);
+            let checked = Params { torques: [torque; 3], ..params }.validate();
+            checked.map_err(|error| out_of_range::<f64>(error, name, [].into_iter()))?;
+        }
+        Ok(())
     }
 }
 
@@ -141,7 +146,7 @@ impl Acrobot {
             "AVAIL_TORQUE" => inner.torques = convert(name, "a sequence of numbers", value)?,
             "torque_noise_max" => inner.noise = convert(name, "a number", value)?,
             _ => {
-                let params = with(inner.acrobot.task(), inner.acrobot.params(), name, value)?;
+                let params = with(inner.acrobot.params(), &Name(name, [None; 2]), value)?;
                 inner.acrobot.set_params(params)?;
             }
         }

@@ -302,7 +302,6 @@ def test_a_call_during_a_step_is_rejected_and_changes_nothing():
         *((lambda pair=pair: setattr(envs, *pair)) for pair in attributes),
         *((lambda function=function: function(envs)) for function in functions),
         *(lambda: envs.state, lambda: envs.elapsed_steps, envs.render),
-        lambda: envs._native.seed(["1"]),
     ]
     for call in calls:
         envs.reset()

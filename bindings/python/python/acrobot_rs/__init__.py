@@ -17,6 +17,7 @@ from importlib.metadata import version
 from gymnasium.envs.registration import register
 
 from acrobot_rs import policy
+from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
 from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env
 from acrobot_rs.parameters import LogUniform, Normal, Uniform
 from acrobot_rs.swingup import (
@@ -50,11 +51,11 @@ def __dir__() -> list[str]:
 
 
 for _kind, _id, _steps, _threshold in (
-    ("Acrobot", "Acrobot-v1", 500, -100.0),
-    ("AcrobotContinuous", "AcrobotContinuous-v0", 500, -100.0),
-    ("AcrobotV0", "Acrobot-v0", 200, -100.0),
-    ("AcrobotSwingup", "AcrobotSwingup-v0", 1000, None),
-    ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", 1000, None),
+    ("Acrobot", "Acrobot-v1", MAX_STEPS, REWARD_THRESHOLD),
+    ("AcrobotContinuous", "AcrobotContinuous-v0", MAX_STEPS, REWARD_THRESHOLD),
+    ("AcrobotV0", "Acrobot-v0", 200, REWARD_THRESHOLD),
+    ("AcrobotSwingup", "AcrobotSwingup-v0", SWINGUP_MAX_STEPS, None),
+    ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", SWINGUP_MAX_STEPS, None),
 ):
     _vector = f"{_kind}VectorEnv"
     register(

@@ -13,9 +13,10 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
-from gymnasium.envs.classic_control.utils import maybe_parse_reset_bounds
 from gymnasium.error import Error
 from numpy.typing import NDArray
+
+from acrobot_rs._native import check_bounds
 
 Seed = int | list[int | None] | tuple[int | None, ...] | None
 
@@ -35,16 +36,14 @@ def reset_bounds(
 ) -> tuple[float, float]:
     """The bounds of initial states, rad and rad/s: the options, or ``-bound`` and ``bound``."""
     check_keys(options, known)
-    for name in ("low", "high"):
-        if options and name in options:
-            numbers(name, "a number", options[name], ())
-    low, high = maybe_parse_reset_bounds(options, -bound, bound)
-    if not (abs(low) <= LARGEST and abs(high) <= LARGEST):
-        rule = "finite numbers in the range of float32"
-        raise must_be("low and high", rule, f"{low} and {high}")
-    if options and "state" in options and ("low" in options or "high" in options):
+    bounds = {"low": -bound, "high": bound}
+    given = {name: options[name] for name in bounds if name in options} if options else {}
+    for name, value in given.items():
+        bounds[name] = float(numbers(name, "a number", value, ()))
+    check_bounds(**bounds)
+    if options and given and "state" in options:
         raise ValueError(f"options must have either state or low and high, got {list(options)}")
-    return low, high
+    return bounds["low"], bounds["high"]
 
 
 def check_keys(options: dict[str, Any] | None, known: tuple[str, ...]) -> None:
@@ -121,16 +120,12 @@ def numbers(
     raise must_be(name, rule, found, error)
 
 
-def finite_states(value: Any, num_envs: int, dtype: type[np.floating[Any]]) -> NDArray[np.float64]:
-    """States of all environments, which must be finite in the type that they are computed in."""
+def states_of(value: Any, num_envs: int) -> NDArray[np.float64]:
+    """States of all environments. The native part checks the numbers."""
     shape = (num_envs, 4)
     states = numbers("state", f"numbers of shape {shape}", value, shape)
     with np.errstate(over="ignore"):
-        finite = np.isfinite(states.astype(dtype))
-    if not finite.all():
-        row, column = np.argwhere(~finite)[0]
-        raise must_be(f"state[{row}, {column}]", "a finite number", states[row, column])
-    return np.ascontiguousarray(states, np.float64)
+        return np.ascontiguousarray(states, np.float64)
 
 
 def require(kind: Any, rule: str, **arguments: Any) -> None:

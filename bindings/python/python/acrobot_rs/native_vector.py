@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
-from gymnasium.vector import VectorEnv
+from gymnasium.vector import AutoresetMode, VectorEnv
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
@@ -80,18 +80,14 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         mask = arrays.reset_mask(options, self.num_envs)
         states = None
         if "state" in options:
-            states = arrays.finite_states(self._each(options["state"]), self.num_envs, np.float32)
+            states = arrays.states_of(self._each(options["state"]), self.num_envs)
         child_of, seeds = arrays.seeds_of(seed, self.num_envs, self._gymnasium_episodes)
         if seeds is not None and mask is not None:
             seeds = [each if some else None for each, some in zip(seeds, mask, strict=True)]
         with self._alone:
-            if seeds is not None:
-                self._native.seed(seeds)
-            self._native.reset(child_of, low, high, mask, states)
+            self._native.reset(child_of, seeds, low, high, mask, states)
             if not isinstance(seed, list | tuple):
                 super().reset(seed=arrays.plain_seed(seed))
-            if self._ended is not None:
-                self._ended[slice(None) if mask is None else mask] = False
             self._ready = True
             observations = self._empty() if self._observations is None else self._observations
             self._native.observe(observations)
@@ -123,20 +119,19 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         with self._alone:
             self._check_ready()
-            last = self._parameter_infos() if self._same_step else {}
+            same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
+            last = self._parameter_infos() if same_step else {}
             observations = self._empty() if self._observations is None else self._observations
-            finals = self._empty() if self._same_step else None
+            finals = self._empty() if same_step else None
             rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
-            if self._ended is not None:
-                np.logical_or(terminated, truncated, out=self._ended)
             infos = self._parameter_infos()
             if finals is not None:
                 infos |= arrays.final_infos(finals, terminated | truncated, last)
             if not self._gymnasium_episodes:
                 return observations, rewards, terminated, truncated, infos
-            if self._same_step:
+            if same_step:
                 self._observe_initial_states(observations, terminated | truncated)
-            elif self._ended is None:
+            elif self.autoreset_mode is AutoresetMode.NEXT_STEP:
                 self._observe_initial_states(observations, (rewards == 0) & ~terminated)
             return observations, rewards.astype(np.float64), terminated, truncated, infos
 
@@ -155,10 +150,9 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
     @state.setter
     def state(self, states: ArrayLike) -> None:
-        dtype = np.float64 if self._float64 else np.float32
-        finite = arrays.finite_states(states, self.num_envs, dtype)
+        checked = arrays.states_of(states, self.num_envs)
         with self._alone:
-            self._native.set_states(finite)
+            self._native.set_states(checked)
 
     def _each(self, states: Any) -> Any:
         """A state for each environment, if there is one for all."""
@@ -255,9 +249,10 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         if not self._ready:
             self._check_open()
             raise ResetNeeded("the environments have no states yet; call reset before step")
-        if self._ended is not None and self._ended.any():
+        is_waiting = self.autoreset_mode is AutoresetMode.DISABLED
+        if is_waiting and (index := self._native.first_ended()) is not None:
             raise ResetNeeded(
-                f"the episode of environment {np.flatnonzero(self._ended)[0]} has ended; "
+                f"the episode of environment {index} has ended; "
                 'reset it before the next step, with options={"reset_mask": terminated | truncated}'
             )
 

@@ -10,6 +10,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from numpy.typing import NDArray
 
+from acrobot_rs._native import SWINGUP_BOUND, SWINGUP_MAX_STEPS
 from acrobot_rs.env import AcrobotContinuousEnv
 from acrobot_rs.native_vector import Floats
 from acrobot_rs.parameters import Each, EachTorques, Parameters, _unknown
@@ -43,7 +44,7 @@ class Swingup(Parameters):
         *("LINK_MOI_1", "LINK_MOI_2", "FRICTION_1", "FRICTION_2"),
     )
     _TASK = "swingup"
-    _BOUND = math.pi
+    _BOUND = SWINGUP_BOUND
     _ACTION = "a number from -1 to 1"
 
     @property
@@ -131,7 +132,7 @@ class AcrobotSwingupVectorEnv(
     def __init__(
         self,
         num_envs: int = 1,
-        max_episode_steps: int | None = 1000,
+        max_episode_steps: int | None = SWINGUP_MAX_STEPS,
         render_mode: str | None = None,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         copy: bool = True,

@@ -15,7 +15,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
-from acrobot_rs._native import Batch
+from acrobot_rs._native import MAX_STEPS, Batch
 from acrobot_rs.arrays import is_one_of, must_be, numbers, read_only, require
 from acrobot_rs.native_vector import Alone, Floats, NativeVectorEnv
 from acrobot_rs.parameters import Drawn, Parameters, _fixed, _hint
@@ -58,7 +58,7 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
     def __init__(
         self,
         num_envs: int = 1,
-        max_episode_steps: int | None = 500,
+        max_episode_steps: int | None = MAX_STEPS,
         render_mode: str | None = None,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
         copy: bool = True,
@@ -132,9 +132,6 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         self.info_parameters = info_parameters
         #: The array that all calls return, or ``None`` if each returns a new one.
         self._observations = None if copy else self._empty()
-        self._same_step = mode is AutoresetMode.SAME_STEP
-        #: Without autoreset: the environments that must be reset before the next step.
-        self._ended = np.zeros(num_envs, np.bool_) if mode is AutoresetMode.DISABLED else None
         super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
         self._float64 = gymnasium_episodes or float64
