@@ -7,6 +7,7 @@ tests/test_parity.py``.
 import acrobot_rs
 import gymnasium
 import numpy as np
+from gymnasium.envs.classic_control import acrobot
 from hypothesis import settings
 
 STEPS = 500
@@ -23,7 +24,7 @@ def wrap(x, low, high):
     return gymnasiums_wrap(x, low, high)
 
 
-gymnasiums_wrap = gymnasium.envs.classic_control.acrobot.wrap
+gymnasiums_wrap = acrobot.wrap
 
 
 def change(rng, envs):
@@ -113,7 +114,7 @@ def compare(seed):
 def test_configurations(monkeypatch):
     """All parameters, changed during episodes too, resets with and without bounds, and states set
     by hand."""
-    monkeypatch.setattr(gymnasium.envs.classic_control.acrobot, "wrap", wrap)
+    monkeypatch.setattr(acrobot, "wrap", wrap)
     count = 2000 if settings.get_current_profile_name() == "long" else 300
     skipped = sum(compare(seed) for seed in range(count))
     assert skipped < 0.1 * count * STEPS

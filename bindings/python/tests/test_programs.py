@@ -166,8 +166,8 @@ def test_episodes_begin_in_given_states(name):
     envs.reset(options={"state": states[2]})
     assert (envs.state == states[2]).all() and (envs.elapsed_steps == 0).all()
     envs.step(actions)
-    for bad in ([1.0] * 3, [[1.0] * 4] * 2, None, [[0, 0, 0, np.nan]] * 3, [0, 0, 0, 1e39]):
-        message = r"state.* must be (numbers of shape \(3, 4\)|a finite number), got"
+    for bad in ([1.0] * 3, [[1.0] * 4] * 2, None, [0, 0, 0, 1e39]):
+        message = r"state.* must be (numbers of shape \(3, 4\)|in the range of float32, .*), got"
         with rejects(envs, ValueError, message):
             envs.reset(seed=2, options={"state": bad})
 

@@ -78,7 +78,7 @@ def number(value):
 
 
 NAN, MINE = number(np.nan), b"\3" + number([-1, 0, 1])
-DAMAGED, NO_TORQUE = "the snapshot is damaged", "AVAIL_TORQUE must be one or more"
+DAMAGED = "the snapshot is damaged"
 
 
 @pytest.mark.parametrize(
@@ -87,10 +87,10 @@ DAMAGED, NO_TORQUE = "the snapshot is damaged", "AVAIL_TORQUE must be one or mor
         (lambda good: b"", DAMAGED),
         (lambda good: good[:-1], DAMAGED),
         (lambda good: good + b"\0", "the snapshot must have no bytes after its end, got 1"),
-        (lambda good: b"\2" + good[1:], "the snapshot's version must be 3, got 2"),
+        (lambda good: b"\2" + good[1:], "the snapshot's version must be 4, got 2"),
         (lambda good: good.replace(number(0.25), NAN), DAMAGED),
-        (lambda good: good.replace(MINE, b"\0"), NO_TORQUE),
-        (lambda good: good.replace(MINE, MINE[:-8] + NAN), NO_TORQUE),
+        (lambda good: good.replace(MINE, b"\0"), "AVAIL_TORQUE must be one or more"),
+        (lambda good: good.replace(MINE, MINE[:-8] + NAN), r"AVAIL_TORQUE\[2\] must be a finite"),
         (lambda good: good.replace(MINE + number(0), MINE + number(-1)), "torque_noise_max must"),
     ],
 )

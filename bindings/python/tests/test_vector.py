@@ -188,14 +188,15 @@ def test_states_can_be_set(gymnasium_episodes):
     for array in (envs.state, envs.elapsed_steps):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 1
+    with rejects(envs, ValueError, "state must be num"):
+        envs.state = states[0]
     beyond = states.astype(float)
-    beyond[39, 3] = np.inf if gymnasium_episodes else 1e39
-    for bad, message in (
-        (beyond, r"state\[39, 3\] must be a fin"),
-        (states[0], "state must be num"),
-    ):
-        with rejects(envs, ValueError, message):
-            envs.state = bad
+    beyond[39, 3] = 1e39
+    if gymnasium_episodes:
+        envs.state = beyond
+    else:
+        with rejects(envs, ValueError, r"state\[39, 3\] must be in the range of .*, got 1e39"):
+            envs.state = beyond
 
 
 def test_after_close_nothing_works():
@@ -380,7 +381,7 @@ def test_a_step_or_reset_beside_a_step_changes_nothing(copies):
             assert before == (native.__getstate__(), envs.np_random_seed)
         return results
 
-    envs._native = SimpleNamespace(step=step)
+    envs._native = SimpleNamespace(step=step, first_ended=native.first_ended)
     assert_equal(envs.step(actions), twin.step(actions))
     assert native.__getstate__() == twin._native.__getstate__()
 

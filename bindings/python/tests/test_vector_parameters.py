@@ -1,10 +1,8 @@
 """Parameters of each environment: values, draws, and what reads them."""
 
-import json
 import math
 import re
 import statistics
-from pathlib import Path
 
 import acrobot_rs
 import gymnasium
@@ -18,20 +16,15 @@ from vectors import make_vec, rejects
 @pytest.mark.parametrize(
     ("error", "name", "value", "message"),
     [
-        (ValueError, "LINK_MASS_1", [1, 0, 2], r"\[1\] must be finite and above 0 kg, got 0"),
         (TypeError, "LINK_MASS_1", vars(Uniform(1, 2)), " must be a number, got {"),
         (TypeError, "LINK_MASS_1", [1, 2, None], r"\[2\] must be a number, got None"),
         (ValueError, "LINK_MASS_1", [1, 2], " must be .* each of 3 environments, or a draw "),
         (ValueError, "book_or_nips", ["book"], " must be .* each of 3 environments, got 1 values"),
-        (ValueError, "LINK_COM_POS_1", [0.1, 0, 0], r"LINK_MOI\[1\] must be above 0 kg m² if the"),
         (ValueError, "AVAIL_TORQUE", [-1, 1], r" must be 3 numbers, such as \[-2, 0, 2\], got 2"),
-        (ValueError, "AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, np.inf, 3]], r"\[2\]\[1\] must be a f"),
         (TypeError, "AVAIL_TORQUE", [[1, 2, 3]] * 2 + [[1, True, 3]], r"\[2\] must be a seq"),
         (ValueError, "AVAIL_TORQUE", [[1, 2, 3], [1, 2], [1, 2, 3]], r"\[1\] must be 3 numbers, s"),
         (ValueError, "book_or_nips", ["book", "nips", "b"], r'\[2\] must be "book" .*, got "b"'),
-        (ValueError, "dt", Uniform(0, 1), " must be finite and above 0 s, got 0"),
-        (ValueError, "MAX_VEL_2", LogUniform(1, 1e300), " must be "),
-        (ValueError, "LINK_COM_POS_2", Uniform(0, 1), "LINK_MOI must be above 0 kg m² if the"),
+        (ValueError, "LINK_COM_POS_2", Uniform(0, 1), "LINK_MOI must be above 0 if the centre"),
         (TypeError, "AVAIL_TORQUE", Uniform(0, 1), r" must be a sequence of 3 numbers, got 0\.0"),
         (TypeError, "book_or_nips", Uniform(0, 1), ' must be "book" or "nips", got 0'),
     ],
@@ -80,7 +73,7 @@ def test_zeros_of_both_signs_are_different_values():
             assert (np.signbit(native[:, 0]) == np.signbit(zeros)).all()
 
 
-#: All parameters whose bounds each have one number and no other draws, in the order of their draws.
+#: All parameters whose bounds each have one number, in the order of their draws.
 UNIFORM = (
     *(f"LINK_{name}_{link}" for name in ("LENGTH", "MASS", "COM_POS") for link in (1, 2)),
     *("gravity", "dt", "MAX_VEL_1", "MAX_VEL_2"),
@@ -88,13 +81,11 @@ UNIFORM = (
 #: What has equal bounds, here a torque, is not drawn.
 DRAWN_TORQUES = {"AVAIL_TORQUE": Uniform((-1.5, 0.0, 0.5), (-0.5, 0.0, 1.5))}
 WIDE = Uniform(0.3, 1.7)
-NORMALS = {"LINK_MASS_2": Normal(1.0, 0.125, 0.5, 2.0), "gravity": Normal(9.5, 4.0, 9.0, 12.0)}
-#: In the order of their draws, which is not that of the assignments.
+#: In the order of their draws, which is not that of the assignments. `test_recorded.py` has other
+#: distributions.
 DRAWS = (
     {name: WIDE for name in UNIFORM} | DRAWN_TORQUES | {"torque_noise_max": WIDE},
     {"dt": WIDE, **DRAWN_TORQUES},
-    {"LINK_MASS_2": LogUniform(0.5, 2.0)},
-    {**NORMALS, "dt": Uniform(0.125, 0.25)},
     {"LINK_MOI": Uniform(0.5, 2.0)},
 )
 OWN = {"LINK_MASS_1": 1.0 + np.arange(20), "book_or_nips": ["book", "nips"] * 10}
@@ -102,17 +93,9 @@ OWN = {"LINK_MASS_1": 1.0 + np.arange(20), "book_or_nips": ["book", "nips"] * 10
 
 def expected_draw(rng, draw, rounded):
     """As Rust draws: as NumPy, between the rounded bounds."""
-    if isinstance(draw, Uniform):
-        ends = [np.ravel(rounded(each)).astype(float) for each in (draw.low, draw.high)]
-        bounds = np.transpose(ends)
-        return np.squeeze([rng.uniform(low, high) if low < high else low for low, high in bounds])
-    if isinstance(draw, LogUniform):
-        return math.exp(rng.uniform(math.log(draw.low), math.log(draw.high)))
-    low, high = (draw.mean + sign * 8 * draw.std for sign in (-1, 1))
-    while True:
-        drawn = rng.uniform(max(draw.low, low), min(draw.high, high))
-        if rng.uniform() < math.exp(-0.5 * ((drawn - draw.mean) / draw.std) ** 2):
-            return drawn
+    ends = [np.ravel(rounded(each)).astype(float) for each in (draw.low, draw.high)]
+    bounds = np.transpose(ends)
+    return np.squeeze([rng.uniform(low, high) if low < high else low for low, high in bounds])
 
 
 @pytest.mark.parametrize(
@@ -132,9 +115,6 @@ def test_resets_draw_parameters(draws, own, gymnasium_episodes, mode):
     rounded = np.float64 if gymnasium_episodes else np.float32
     streams, mask = [np.random.default_rng(seed) for seed in range(50, 70)], np.arange(20) % 3 == 0
     expected = {name: envs.get_parameter(name) for name in (*draws, *own)}
-    # The platform's logarithms may round differently.
-    is_exact = all(isinstance(draw, Uniform) for draw in draws.values())
-    tolerance = 0 if is_exact else 1e-15 if gymnasium_episodes else 1e-7
 
     def check(which):
         for i in np.flatnonzero(which):
@@ -142,8 +122,7 @@ def test_resets_draw_parameters(draws, own, gymnasium_episodes, mode):
             for name, draw in draws.items():
                 expected[name][i] = rounded(expected_draw(streams[i], draw, rounded))
         for name, values in expected.items():
-            found = envs.get_parameter(name)
-            assert (found == values).all() or (np.abs(found / values - 1) < tolerance).all(), name
+            assert (envs.get_parameter(name) == values).all(), name
 
     envs.reset(seed=[*range(50, 70)])
     check(np.ones(20, bool))
@@ -183,38 +162,16 @@ def test_distributions(draw):
 
 
 @pytest.mark.parametrize(
-    "draw",
-    [
-        Normal(0.1, 1e-300, 0.1, 0.1 + 1e-12),
-        Normal(1.0, 1e300, 1e-30, 1e30),
-        LogUniform(1e-30, 1e30),
-        Uniform(2.0, 2.0),
-    ],
-)
-def test_extreme_draws_end_within_their_bounds(draw):
-    envs = make_vec(50, LINK_LENGTH_1=LogUniform(1.0, 2.0), LINK_MASS_1=draw)
-    envs.reset(seed=1)
-    drawn = envs.get_parameter("LINK_MASS_1")
-    assert (np.float32(draw.low) <= drawn).all() and (drawn <= np.float32(draw.high)).all()
-
-
-@pytest.mark.parametrize(
     ("error", "kind", "numbers", "message"),
     [
-        (ValueError, Uniform, (1.2, 0.8), r"low must be at .*, got Uniform\(low=1.2, high=0.8\)"),
-        (ValueError, Uniform, ([-1, 0, 1], [-2, 0, 2]), "low must be at most high"),
-        (ValueError, Uniform, ([-1, 0, 1], 2), "low must be at most high, and of the same length"),
+        (ValueError, Uniform, ([-1, 0, 1], 2), "low must be of the same length as high, got Unif"),
         (TypeError, Uniform, ([1, 2], [3, 4]), r"low must be three .*, got int64 of shape \(2,\)"),
         (TypeError, Uniform, ([0, 0, True], [1, 1, 1]), r"low must be .*, got \[0, 0, True\]"),
-        (TypeError, Uniform, (0.2, None), "high must be a finite number, got None"),
-        (ValueError, Uniform, (0.0, np.inf), "high must be a finite number, got inf"),
-        (ValueError, LogUniform, (0.0, 1.0), "low must be above 0, got LogUniform"),
-        (TypeError, LogUniform, ([1, 2, 3], 4.0), "low must be a finite number, got"),
-        *((ValueError, Normal, numbers, "std must be above 0, and mean from low to high, got N")
-          for numbers in [(1.0, 0.0, 0.5, 2.0), (3.0, 0.1, 0.5, 2.0)]),
+        (TypeError, Uniform, (0.2, None), "high must be a number, got None"),
+        (TypeError, LogUniform, ([1, 2, 3], 4.0), "low must be a number, got"),
     ],
-)  # fmt: skip
-def test_invalid_draws_are_rejected_when_they_are_made(error, kind, numbers, message):
+)
+def test_draws_of_other_types_are_rejected_when_they_are_made(error, kind, numbers, message):
     with pytest.raises(error, match=f"^{message}"):
         kind(*numbers)
 
@@ -267,12 +224,3 @@ def test_subclasses_can_draw_parameters_which_spaces_follow():
     message = "LINK_MASS_1 must be a number, because only gymnasium.make_vec draws .*, got Uniform"
     with pytest.raises(TypeError, match=message):
         single.LINK_MASS_1 = Uniform(1.0, 2.0)
-
-
-def test_draws_are_those_of_rust_and_javascript():
-    """By NumPy: rows of ``LINK_MASS_2``, ``gravity`` and the state."""
-    recorded = json.loads((Path(__file__).parents[3] / "tests/data/draws.json").read_text())
-    envs = make_vec(3, LINK_MASS_2=Uniform(0.8, 1.2), gravity=Uniform(9, 10))
-    envs.reset(seed=42)
-    drawn = np.column_stack([envs.get_attr("LINK_MASS_2"), envs.get_attr("gravity"), envs.state])
-    np.testing.assert_array_equal(drawn, np.float32(recorded))
