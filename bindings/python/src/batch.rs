@@ -10,13 +10,12 @@ use numpy::{
     PyArray1, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray1, PyReadwriteArray2,
     PyUntypedArrayMethods,
 };
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::engine::{Engine, Inputs, memory, with_batch};
 use crate::pool::Pool;
-use crate::{alone, check_states, load, must_be, places, rejected, render, save};
+use crate::{alone, check_states, load, places, rejected, render, save};
 
 #[pyclass(module = "acrobot_rs._native")]
 pub struct Batch {
@@ -58,32 +57,16 @@ impl Batch {
         with_batch!(&self.engine, many => many.batch.len())
     }
 
-    /// Sets a parameter of all acrobots.
-    fn set(slf: &Bound<'_, Self>, name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    /// Sets a parameter of all acrobots to one value, or to a value for each.
+    fn set(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
         let this = &mut *alone(slf)?;
-        with_batch!(&mut this.engine, many => many.set(name, std::slice::from_ref(value)))
+        with_batch!(&mut this.engine, many => many.set(name, &values))
     }
 
     /// Sets a parameter that each reset draws.
     fn set_drawn(slf: &Bound<'_, Self>, name: &str, drawn: &Bound<'_, PyAny>) -> PyResult<()> {
         let this = &mut *alone(slf)?;
         with_batch!(&mut this.engine, many => many.set_drawn(name, drawn))
-    }
-
-    /// Sets a parameter of each acrobot.
-    fn set_each(slf: &Bound<'_, Self>, name: &str, values: Vec<Bound<'_, PyAny>>) -> PyResult<()> {
-        let this = &mut *alone(slf)?;
-        let num_envs = this.__len__();
-        if values.len() != num_envs {
-            let drawn = match name {
-                "AVAIL_TORQUE" | "book_or_nips" => "",
-                _ => ", or a draw such as acrobot_rs.Uniform(low, high)",
-            };
-            let rule = format_args!("one value, or one for each of {num_envs} environments{drawn}");
-            let got = format_args!("{} values", values.len());
-            return Err(PyValueError::new_err(must_be(name, rule, got)));
-        }
-        with_batch!(&mut this.engine, many => many.set(name, &values))
     }
 
     /// Writes the numbers of a parameter: a row for each acrobot, of three of `AVAIL_TORQUE`.

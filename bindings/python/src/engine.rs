@@ -1,7 +1,5 @@
 //! A batch of one of seven pairs of arithmetic and task.
 
-use std::slice;
-
 use acrobot::arithmetic::{Arithmetic, Damped, Host, Real, Reference};
 use acrobot::batch::{StepBuffers, VecBatch};
 use acrobot::numpy::SeedSequence;
@@ -135,16 +133,13 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         let is_own = values.len() > 1 || self.has_own_params();
         let count = if is_own { self.batch.len() } else { 1 };
         let mut each = Vec::with_capacity(count);
-        for index in 0..count {
+        // An acrobot alone tries them: a rejected value must change no acrobot of the batch.
+        let mut alone = Acrobot::<A, T>::new(0);
+        for (index, value) in values.iter().cycle().take(count).enumerate() {
             let index_in_name = (values.len() > 1).then_some(index);
-            let value = &values[index_in_name.unwrap_or(0)];
             let given = with(self.params(index), &Name(name, [index_in_name, None]), value)?;
-            // An acrobot alone tries them: a rejected value must change no acrobot of the batch.
-            let mut alone = Acrobot::<A, T>::new(0);
             let tried = alone.set_params(given.cast()).and_then(|()| alone.draw_params(&draws));
-            tried.map_err(|error| {
-                invalid::<A::Scalar>(T::NAME, error, index_in_name, slice::from_ref(&given))
-            })?;
+            tried.map_err(|error| invalid::<A::Scalar>(T::NAME, error, index_in_name, &[given]))?;
             each.push(given.cast());
         }
         let bits = |params: &Params<A::Scalar>| {
@@ -157,7 +152,10 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
             let mut each = each.into_iter().enumerate();
             each.try_for_each(|(index, params)| self.batch.set_params_of(index, params))
         }
-        .and_then(|()| self.batch.set_draws(draws))
+        .and_then(|()| match draws == self.batch.draws() {
+            true => Ok(()),
+            false => self.batch.set_draws(draws), // checks all acrobots
+        })
         .map_err(rejected)
     }
 

@@ -100,9 +100,8 @@ const NAMES: [&str; 18] = [
 
 /// The places of a parameter among the numbers.
 fn places(name: &str) -> impl Iterator<Item = usize> {
-    let both = (name == "LINK_MOI").then_some(["LINK_MOI_1", "LINK_MOI_2"]);
-    let is_place = move |known| known == name || both.is_some_and(|both| both.contains(&known));
-    (0..NAMES.len()).filter(move |&place| is_place(NAMES[place]))
+    let is_of = move |known: &str| known == name || name == "LINK_MOI" && known.starts_with(name);
+    (0..NAMES.len()).filter(move |&place| is_of(NAMES[place]))
 }
 
 /// Python's name of a parameter, with the indices of an environment and of a torque.
@@ -157,7 +156,8 @@ fn out_of_range<S: Real>(
 
 /// Checks that the scalar `S` holds all states.
 fn check_states<S: Real>(states: &[[f64; 4]]) -> PyResult<()> {
-    for (index, state) in states.iter().enumerate() {
+    let is_held = |state: &[f64; 4]| state.iter().all(|x| S::from_f64(*x).to_f64().is_finite());
+    for (index, state) in states.iter().enumerate().filter(|(_, state)| !is_held(state)) {
         State::from(*state).cast::<S>().validate().map_err(|error| {
             let names = ["theta1", "theta2", "dtheta1", "dtheta2"];
             let column = names.iter().position(|name| *name == error.name()).unwrap_or_default();

@@ -1,5 +1,6 @@
 """Draws and rejected calls are those of all packages: the recordings in `tests/data`."""
 
+import functools
 import json
 import pickle
 import re
@@ -8,9 +9,9 @@ from pathlib import Path
 import acrobot_rs
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotVectorEnv, LogUniform, Normal, Uniform
+from acrobot_rs import AcrobotEnv, AcrobotSwingupEnv, AcrobotSwingupVectorEnv, AcrobotVectorEnv
 from gymnasium.error import InvalidAction
-from vectors import KINDS, SINGLE_KINDS, rejects
+from vectors import rejects
 
 DATA = Path(__file__).parents[3] / "tests/data"
 
@@ -20,17 +21,17 @@ def test_draws_are_those_of_numpy(children):
     """With a seed for each environment, and with the children of 42."""
     rows = [line.split(",") for line in (DATA / "draws.csv").read_text().splitlines()[1:]]
     rows = [row for row in rows if (row[1] != "") == children]
-    draws = {
-        "LINK_MASS_2": Uniform(0.8, 1.2),
-        "LINK_MOI": LogUniform(0.5, 2.0),
-        "gravity": Normal(9.8, 0.1, low=9.5, high=10.1),
-    }
-    envs = AcrobotVectorEnv(len(rows), 2, autoreset_mode="SameStep", **draws)
+    envs = AcrobotVectorEnv(
+        *(len(rows), 2, None, "SameStep"),
+        LINK_MASS_2=acrobot_rs.Uniform(0.8, 1.2),
+        LINK_MOI=acrobot_rs.LogUniform(0.5, 2.0),
+        gravity=acrobot_rs.Normal(9.8, 0.1, low=9.5, high=10.1),
+    )
 
     def drawn(envs):
         """LINK_MOI of both links."""
-        columns = [np.empty((len(rows), 2 if name == "LINK_MOI" else 1)) for name in draws]
-        for name, column in zip(draws, columns, strict=True):
+        columns = [np.empty((len(rows), count)) for count in (1, 2, 1)]
+        for name, column in zip(("LINK_MASS_2", "LINK_MOI", "gravity"), columns, strict=True):
             envs._native.get(name, column)
         return np.hstack([*columns, envs.state]).astype(np.float32)
 
@@ -43,90 +44,74 @@ def test_draws_are_those_of_numpy(children):
     assert (drawn(envs) == drawn(twin)).all() and (drawn(envs) != first).all()
 
 
-#: Python's names of the crate's numbers.
-NAMES = {
-    **{f"length{link}": f"LINK_LENGTH_{link}" for link in (1, 2)},
-    **{f"mass{link}": f"LINK_MASS_{link}" for link in (1, 2)},
-    **{f"center_of_mass{link}": f"LINK_COM_POS_{link}" for link in (1, 2)},
-    **{f"inertia{link}": f"LINK_MOI_{link}" for link in (1, 2)},
-    **{f"max_velocity{link}": f"MAX_VEL_{link}" for link in (1, 2)},
-    **{f"friction.joint{link}": f"FRICTION_{link}" for link in (1, 2)},
-    **{name: name for name in ("gravity", "dt")},
-    **{"torques": "AVAIL_TORQUE", "torque_noise": "torque_noise_max"},
-}
+ROWS = [json.loads(line) for line in (DATA / "rejections.jsonl").read_text().splitlines()]
+#: The crate's names of the numbers without indices, and Python's.
+CRATES = [name.split("[")[0] for row in ROWS if row["call"] == "params" for name in row["set"]]
+NAMES = dict(zip(dict.fromkeys(CRATES), (
+    *("LINK_LENGTH_1", "LINK_LENGTH_2", "LINK_MASS_1", "LINK_MASS_2", "LINK_COM_POS_1"),
+    *("LINK_COM_POS_2", "LINK_MOI_1", "LINK_MOI_2", "gravity", "dt", "MAX_VEL_1", "MAX_VEL_2"),
+    *("AVAIL_TORQUE", "torque_noise_max", "FRICTION_1", "FRICTION_2"),
+), strict=True))  # fmt: skip
 STATE = ["theta1", "theta2", "dtheta1", "dtheta2"]
-#: Also what computes in other numbers than the recording.
-MAKERS = {
-    **{kind.__name__: kind for kind in SINGLE_KINDS},
-    **{kind.__name__: lambda kind=kind: kind(3) for kind in KINDS if kind not in SINGLE_KINDS},
-    "gymnasium_episodes": lambda: AcrobotVectorEnv(3, gymnasium_episodes=True),
-    "float64": lambda: acrobot_rs.AcrobotSwingupVectorEnv(3, float64=True),
-}
+MANY = functools.partial(AcrobotVectorEnv, 3)
+MAKERS = (
+    *(AcrobotEnv, AcrobotSwingupEnv, MANY, functools.partial(AcrobotSwingupVectorEnv, 3)),
+    functools.partial(MANY, gymnasium_episodes=True),
+)
 
 
-def named(env, text):
-    """Python's name of a number with which a text begins, its index, and the rest of the text."""
-    name, index, rest = re.fullmatch(r"([\w.]+)((?:\[\d\])?)(.*)", text).groups()
-    name = NAMES[name]
-    return name if name in env._NAMES else name[:-2], index, rest  # one LINK_MOI for both links
+def named(env, name):
+    """Python's name of a number, and its index. Gymnasium's task has LINK_MOI of both links."""
+    name, *index = name.split("[")
+    name = NAMES[name] if NAMES[name] in env._NAMES else NAMES[name][:-2]
+    return name, "".join(f"[{each}" for each in index)
 
 
-def parameters(env, row, is_own):
-    """The values of a row, in all environments or in one, and its message."""
-    values = {}
-    for text, number in row["set"].items():
-        name, index, _ = named(env, text)
-        old, new = getattr(env, name), float(number)
-        if index:
-            new = [new if f"[{i}]" == index else torque for i, torque in enumerate(old)]
-        values[name] = [old, new, old] if is_own else new
-    name, index, rest = named(env, row["message"])
-    return values, name + "[1]" * is_own + index + rest
-
-
-@pytest.mark.parametrize("make", MAKERS.values(), ids=MAKERS)
+@pytest.mark.parametrize("make", MAKERS)
 def test_rejected_calls_change_nothing_and_have_the_messages_of_all_packages(make):
     """A vector environment adds the index of an environment or an action."""
-    tried = set()
+    is_many, tried = hasattr(make(), "num_envs"), set()
 
-    def check(env, attribute, value, message):
-        with rejects(env, ValueError, f"^{re.escape(message)}$"):
-            setattr(env, attribute, value)
+    def check(call, message, error=ValueError):
+        with rejects(env, error, f"^{re.escape(message)}$"):
+            call()
 
-    for row in map(json.loads, (DATA / "rejections.jsonl").read_text().splitlines()):
-        env, given, message = make(), row.get("set"), row["message"]
-        rest = message[message.index(" ") :]
-        is_many = hasattr(env, "num_envs")
+    def reset(**options):
+        env.reset(seed=[2, 2, 2] if is_many else 2, options=options)
+
+    for row, is_own in [(row, is_own) for row in ROWS for is_own in (False, True)[: 1 + is_many]]:
+        env, name, rest = make(), *row["message"].split(" ", 1)
         env.reset(seed=1)
         match row["call"]:
-            case "params" if "FRICTION_1" in env._NAMES or "friction" not in message:
-                for is_own in (False, True)[: 1 + is_many]:
-                    values, message = parameters(env, row, is_own)
-                    for names in list(values), list(values)[::-1]:
-                        env, last = make(), names.pop()
-                        for name in names:  # which is valid without the last
-                            setattr(env, name, values[name])
-                        check(env, last, values[last], message)
+            case "params" if "friction" not in name or "FRICTION_1" in env._NAMES:
+                changes = []
+                for crates, number in row["set"].items():
+                    known, index = named(env, crates)
+                    old, new = getattr(env, known), float(number)
+                    if index:
+                        new = [new if f"[{i}]" == index else old[i] for i in range(3)]
+                    changes.append((known, [old, new, old] if is_own else new))
+                for change in changes[:-1]:  # valid without the last
+                    setattr(env, *change)
+                known, index = named(env, name)
+                name = f"{known}{'[1]' * is_own}{index}"
+                check(lambda: setattr(env, *changes[-1]), f"{name} {rest}")
             case "draw" if is_many:
-                [(kind, numbers)] = given["mass2"].items()
+                [(kind, numbers)] = row["set"]["mass2"].items()
                 draw = getattr(acrobot_rs, kind)(*map(float, numbers))
-                check(env, "LINK_MASS_2", draw, f"LINK_MASS_2{rest}")
+                check(lambda: setattr(env, "LINK_MASS_2", draw), f"LINK_MASS_2 {rest}")
             case "state":
-                [(name, number)] = given.items()
-                state, index = [0.0] * 4, STATE.index(name)
-                state[index] = float(number)
+                state = [float(row["set"].get(each, 0.0)) for each in STATE]
                 if is_many:
-                    state, message = [[0.0] * 4, state, state], f"state[1, {index}]{rest}"
-                    with rejects(env, ValueError, f"^{re.escape(message)}$"):
-                        env.reset(seed=[2, 2, 2], options={"state": state})
-                check(env, "state", state, message)
+                    state, name = [[0.0] * 4, state, state], f"state[1, {STATE.index(name)}]"
+                    check(lambda: reset(state=state), f"{name} {rest}")
+                check(lambda: setattr(env, "state", state), f"{name} {rest}")
             case "bounds":
-                options = {name: float(number) for name, number in given.items()}
-                with rejects(env, ValueError, f"^{re.escape(message)}$"):
-                    env.reset(seed=[2, 2, 2] if is_many else 2, options=options)
+                bounds = {each: float(number) for each, number in row["set"].items()}
+                check(lambda: reset(**bounds), f"{name} {rest}")
             case "action" if is_many and not env._CONTINUOUS:
-                with rejects(env, InvalidAction, rf"^actions\[1\]{re.escape(rest)}$"):
-                    env.step([0, row["value"], 0])
+                actions = [0, row["value"], 0]
+                check(lambda: env.step(actions), f"actions[1] {rest}", InvalidAction)
             case _:
                 # A single environment has as many actions as torques, and no draws. An infinite
                 # torque acts as the bound.

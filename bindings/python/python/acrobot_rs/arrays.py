@@ -137,7 +137,7 @@ def require(kind: Any, rule: str, **arguments: Any) -> None:
             raise must_be(name, rule, repr(value), TypeError)
 
 
-def values_of_each(name: str, value: Any) -> list[Any] | None:
+def values_of_each(name: str, value: Any, num_envs: int) -> list[Any] | None:
     """The values of a parameter, if there is one for each environment."""
     if isinstance(value, np.ndarray):
         value = value.tolist()
@@ -147,6 +147,11 @@ def values_of_each(name: str, value: Any) -> list[Any] | None:
         isinstance(one, list | tuple | np.ndarray) for one in value
     ):
         return None
+    if len(value) != num_envs:
+        draws = name not in ("AVAIL_TORQUE", "book_or_nips")
+        draw = ", or a draw such as acrobot_rs.Uniform(low, high)" * draws
+        rule = f"one value, or one for each of {num_envs} environments{draw}"
+        raise must_be(name, rule, f"{len(value)} values")
     return list(value)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from gymnasium.error import ClosedEnvironmentError, ResetNeeded
-from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector import VectorEnv
 from numpy.typing import ArrayLike, NDArray
 
 from acrobot_rs import arrays
@@ -50,6 +50,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
 
     #: Whether it was reset and not closed.
     _ready = False
+    #: Whether an environment may wait for a reset by the user: only then steps look for it.
+    _may_wait = False
 
     def reset(
         self, *, seed: Seed = None, options: dict[str, Any] | None = None
@@ -119,19 +121,20 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         """
         with self._alone:
             self._check_ready()
-            same_step = self.autoreset_mode is AutoresetMode.SAME_STEP
-            last = self._parameter_infos() if same_step else {}
+            last = self._parameter_infos() if self._same_step else {}
             observations = self._empty() if self._observations is None else self._observations
-            finals = self._empty() if same_step else None
+            finals = self._empty() if self._same_step else None
             rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
+            if self._disabled:
+                self._may_wait = np.count_nonzero(terminated | truncated) > 0
             infos = self._parameter_infos()
             if finals is not None:
                 infos |= arrays.final_infos(finals, terminated | truncated, last)
             if not self._gymnasium_episodes:
                 return observations, rewards, terminated, truncated, infos
-            if same_step:
+            if self._same_step:
                 self._observe_initial_states(observations, terminated | truncated)
-            elif self.autoreset_mode is AutoresetMode.NEXT_STEP:
+            elif not self._disabled:
                 self._observe_initial_states(observations, (rewards == 0) & ~terminated)
             return observations, rewards.astype(np.float64), terminated, truncated, infos
 
@@ -249,8 +252,7 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         if not self._ready:
             self._check_open()
             raise ResetNeeded("the environments have no states yet; call reset before step")
-        is_waiting = self.autoreset_mode is AutoresetMode.DISABLED
-        if is_waiting and (index := self._native.first_ended()) is not None:
+        if self._may_wait and (index := self._native.first_ended()) is not None:
             raise ResetNeeded(
                 f"the episode of environment {index} has ended; "
                 'reset it before the next step, with options={"reset_mask": terminated | truncated}'

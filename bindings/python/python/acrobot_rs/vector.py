@@ -132,6 +132,8 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
         self.info_parameters = info_parameters
         #: The array that all calls return, or ``None`` if each returns a new one.
         self._observations = None if copy else self._empty()
+        self._same_step = mode is AutoresetMode.SAME_STEP
+        self._disabled = mode is AutoresetMode.DISABLED
         super().__init__(native, render_mode, parameters)
         self._gymnasium_episodes = gymnasium_episodes
         self._float64 = gymnasium_episodes or float64
@@ -147,11 +149,10 @@ class AcrobotVectorEnv(Parameters, NativeVectorEnv, VectorEnv[Floats, NDArray[An
             if isinstance(value, Drawn):
                 self._native.set_drawn(name, value)
                 return value
-            each = arrays.values_of_each(name, value)
-            if each is None:
-                self._native.set(name, value)
-                return _fixed(name, value)
-            self._native.set_each(name, each)
+            each = arrays.values_of_each(name, value, self.num_envs)
+            self._native.set(name, [value] if each is None else each)
+        if each is None:
+            return _fixed(name, value)
         values = np.array([_fixed(name, one) for one in each])
         # By their bits: -0.0 is another value than 0.0.
         if values.tobytes() != np.full_like(values, values[0]).tobytes():
