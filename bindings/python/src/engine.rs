@@ -183,17 +183,16 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         if name == "LINK_MOI" {
             draws.inertia2 = Draw::AsBefore;
         }
-        let set = Draws::new(draws).and_then(|draws| match self.batch.set_draws(draws) {
+        let rejected = |error| invalid::<A::Scalar>(T::NAME, error, None, &given);
+        let draws = Draws::new(draws).map_err(rejected)?;
+        match self.batch.set_draws(draws) {
             Err(Error::SharedParams) => {
-                self.batch.own_params()?;
+                self.batch.own_params().map_err(out_of_memory)?;
                 self.batch.set_draws(draws)
             }
             result => result,
-        });
-        set.map_err(|error| match error {
-            Error::OutOfMemory { .. } => out_of_memory(error),
-            _ => invalid::<A::Scalar>(T::NAME, error, None, &given),
-        })
+        }
+        .map_err(rejected)
     }
 
     /// Checks the inputs of the next step and copies them.

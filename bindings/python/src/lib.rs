@@ -75,8 +75,8 @@ fn torque_of(task: &str, action: f64, low: f64, high: f64) -> f64 {
     torque.max(low).min(high)
 }
 
-/// Python's names of the parameters, in the order of the crate's numbers. Gymnasium has one moment of
-/// inertia for both links, `LINK_MOI`.
+/// Python's names of the parameters, in the order of the crate's numbers. Gymnasium has one moment
+/// of inertia for both links, `LINK_MOI`.
 const NAMES: [&str; 18] = [
     "LINK_LENGTH_1",
     "LINK_LENGTH_2",
@@ -121,7 +121,7 @@ fn rejected(error: impl std::error::Error) -> PyErr {
 
 /// The error of a rejected parameter of a task, of all environments or of one, with Python's name.
 fn invalid<S: Real>(task: &str, error: Error, index: Option<usize>, given: &[Params]) -> PyErr {
-    let names = Params::<f64>::DEFAULT.numbers();
+    let names: [(_, f64); NAMES.len()] = Params::DEFAULT.numbers();
     let Some(place) = names.iter().position(|(name, _)| *name == error.name()) else {
         return rejected(error);
     };
@@ -139,11 +139,11 @@ fn invalid<S: Real>(task: &str, error: Error, index: Option<usize>, given: &[Par
 fn out_of_range<S: Real>(
     error: Error,
     name: impl Display,
-    mut given: impl Iterator<Item = f64>,
+    given: impl IntoIterator<Item = f64>,
 ) -> PyErr {
-    let lost = given.find(|&number| {
+    let lost = given.into_iter().find(|&number| {
         let held = S::from_f64(number).to_f64();
-        number.is_finite() && held != number && (held.is_infinite() || held == 0.0)
+        number.is_finite() && (held.is_infinite() || held == 0.0 && number != 0.0)
     });
     PyValueError::new_err(match lost {
         Some(number) => {
@@ -156,14 +156,13 @@ fn out_of_range<S: Real>(
 
 /// Checks that the scalar `S` holds all states.
 fn check_states<S: Real>(states: &[[f64; 4]]) -> PyResult<()> {
-    let is_held = |state: &[f64; 4]| state.iter().all(|x| S::from_f64(*x).to_f64().is_finite());
-    for (index, state) in states.iter().enumerate().filter(|(_, state)| !is_held(state)) {
-        State::from(*state).cast::<S>().validate().map_err(|error| {
-            let names = ["theta1", "theta2", "dtheta1", "dtheta2"];
-            let column = names.iter().position(|name| *name == error.name()).unwrap_or_default();
+    let is_lost = |x: &f64| !S::from_f64(*x).to_f64().is_finite();
+    for (index, state) in states.iter().enumerate() {
+        if let Some(column) = state.iter().position(is_lost) {
             let name = format_args!("state[{index}, {column}]");
-            out_of_range::<S>(error, name, [state[column]].into_iter())
-        })?;
+            let checked = State::from(*state).cast::<S>().validate();
+            checked.map_err(|error| out_of_range::<S>(error, name, [state[column]]))?;
+        }
     }
     Ok(())
 }

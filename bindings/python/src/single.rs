@@ -113,7 +113,7 @@ impl Inner {
         for (index, &torque) in self.torques.iter().enumerate() {
             let name = Name("AVAIL_TORQUE", [None, Some(index)]);
             let checked = Params { torques: [torque; 3], ..params }.validate();
-            checked.map_err(|error| out_of_range::<f64>(error, name, [].into_iter()))?;
+            checked.map_err(|error| out_of_range::<f64>(error, name, []))?;
         }
         Ok(())
     }
