@@ -6,7 +6,7 @@ import acrobot_rs
 import gymnasium
 import numpy as np
 import pytest
-from acrobot_rs import AcrobotContinuousVectorEnv, LogUniform, Uniform
+from acrobot_rs import AcrobotContinuousVectorEnv, LogUniform, Normal, Uniform
 from vectors import make_vec, rejects
 
 
@@ -47,6 +47,7 @@ TORQUES = [(-1.0, 0.0, 1.0), (-1.0, 1e300, 1.0)]
         *(("dt", 1e300, "1e300"), ("LINK_MASS_1", [1.0, 1e-300, 1.0], "1e-300")),
         *(("LINK_MASS_1", LogUniform(1e-300, 1.0), "1e-300"), ("LINK_MOI", 1e300, "1e300")),
         ("LINK_LENGTH_2", Uniform(1.0, 3.5e38), "3.5e38"),
+        ("gravity", Normal(9.0, 1e300, 8.0, 10.0), "1e300"),
         *(
             ("AVAIL_TORQUE", torques, "1e300")
             for torques in ([*TORQUES, [0] * 3], Uniform(*TORQUES))
