@@ -125,8 +125,8 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
             observations = self._empty() if self._observations is None else self._observations
             finals = self._empty() if self._same_step else None
             rewards, terminated, truncated = self._native.step(self, actions, observations, finals)
-            if self._disabled:
-                self._may_wait = np.count_nonzero(terminated | truncated) > 0
+            if self._disabled and np.count_nonzero(terminated | truncated):
+                self._may_wait = True
             infos = self._parameter_infos()
             if finals is not None:
                 infos |= arrays.final_infos(finals, terminated | truncated, last)
@@ -252,11 +252,13 @@ class NativeVectorEnv(arrays.Hints, VectorEnv[Floats, NDArray[Any], np.ndarray])
         if not self._ready:
             self._check_open()
             raise ResetNeeded("the environments have no states yet; call reset before step")
-        if self._may_wait and (index := self._native.first_ended()) is not None:
-            raise ResetNeeded(
-                f"the episode of environment {index} has ended; "
-                'reset it before the next step, with options={"reset_mask": terminated | truncated}'
-            )
+        if self._may_wait:
+            if (index := self._native.first_ended()) is not None:
+                raise ResetNeeded(
+                    f"the episode of environment {index} has ended; reset it before the next step, "
+                    'with options={"reset_mask": terminated | truncated}'
+                )
+            self._may_wait = False
 
     def _empty(self) -> Floats:
         return np.empty((self.num_envs, 6), np.float32)
