@@ -119,18 +119,12 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
         Ok(())
     }
 
-    /// Whether each acrobot has its own parameters: the batch has no memory for them otherwise.
-    fn has_own_params(&mut self) -> bool {
-        let params = self.batch.params_of(0).unwrap_or_default();
-        self.batch.set_params_of(0, params) != Err(Error::SharedParams)
-    }
-
     /// Sets a parameter of all acrobots to a value from Python, or to a value for each.
     pub fn set(&mut self, name: &str, values: &[Bound<'_, PyAny>]) -> PyResult<()> {
         let mut draws = *self.batch.draws().params();
         places(name).for_each(|place| *draws.numbers_mut()[place] = Draw::Fixed);
         let draws = Draws::new(draws).map_err(rejected)?;
-        let is_own = values.len() > 1 || self.has_own_params();
+        let is_own = values.len() > 1 || self.batch.has_own_params();
         let count = if is_own { self.batch.len() } else { 1 };
         let mut each = Vec::with_capacity(count);
         // An acrobot alone tries them: a rejected value must change no acrobot of the batch.
@@ -152,7 +146,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
             let mut each = each.into_iter().enumerate();
             each.try_for_each(|(index, params)| self.batch.set_params_of(index, params))
         }
-        .and_then(|()| match draws == self.batch.draws() {
+        .and_then(|()| match draws == *self.batch.draws() {
             true => Ok(()),
             false => self.batch.set_draws(draws), // checks all acrobots
         })
@@ -209,7 +203,7 @@ impl<A: Arithmetic, T: Task> Many<A, T> {
                 )
             }
             Inputs::Torques(from) => {
-                let is_own = from.len() > 1 && self.has_own_params();
+                let is_own = from.len() > 1 && self.batch.has_own_params();
                 let bounds = |index| {
                     let params = self.batch.params_of(index).unwrap_or_default();
                     let [a, b, c] = params.torques.map(Real::to_f64);

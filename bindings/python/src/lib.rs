@@ -7,11 +7,11 @@ mod single;
 
 use std::fmt::{self, Display, Formatter};
 
-use acrobot::arithmetic::{Host, Real};
+use acrobot::arithmetic::{Damped, Host, Real};
 use acrobot::env::{AcrobotEnv, Env, RenderMode, Rendering};
 use acrobot::physics::Dynamics;
 use acrobot::task::{Gymnasium, ResetBounds, Swingup, Task};
-use acrobot::{Error, Params, State};
+use acrobot::{Acrobot, Error, Params, State};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::PyClass;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -246,12 +246,9 @@ fn render<'py>(
         "ansi" => RenderMode::Ansi,
         other => return Err(unknown("render_mode", r#""rgb_array" or "ansi""#, other)),
     };
-    let params = Params {
-        friction: Default::default(), // which no picture shows
-        ..params
-    };
-    let mut env = AcrobotEnv::<Host, [f32; 6]>::new(params, mode).map_err(rejected)?;
-    env.unwrapped_mut().set_state(state).map_err(rejected)?;
+    let mut env = AcrobotEnv::new(Acrobot::<Damped<Host>>::new(0), mode);
+    env.set_params(params).map_err(rejected)?;
+    env.set_state(state).map_err(rejected)?;
     match env.render().map_err(rejected)? {
         Rendering::Frame(frame) => {
             let shape = [frame.height() as usize, frame.width() as usize, 3];
