@@ -17,7 +17,7 @@ from importlib.metadata import version
 from gymnasium.envs.registration import register
 
 from acrobot_rs import policy
-from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS
+from acrobot_rs._native import MAX_STEPS, REWARD_THRESHOLD, SWINGUP_MAX_STEPS, V0_MAX_STEPS
 from acrobot_rs.env import AcrobotContinuousEnv, AcrobotEnv, AcrobotV0Env
 from acrobot_rs.parameters import LogUniform, Normal, Uniform
 from acrobot_rs.swingup import (
@@ -53,7 +53,7 @@ def __dir__() -> list[str]:
 for _kind, _id, _steps, _threshold in (
     ("Acrobot", "Acrobot-v1", MAX_STEPS, REWARD_THRESHOLD),
     ("AcrobotContinuous", "AcrobotContinuous-v0", MAX_STEPS, REWARD_THRESHOLD),
-    ("AcrobotV0", "Acrobot-v0", 200, REWARD_THRESHOLD),
+    ("AcrobotV0", "Acrobot-v0", V0_MAX_STEPS, REWARD_THRESHOLD),
     ("AcrobotSwingup", "AcrobotSwingup-v0", SWINGUP_MAX_STEPS, None),
     ("AcrobotSwingupSparse", "AcrobotSwingupSparse-v0", SWINGUP_MAX_STEPS, None),
 ):
