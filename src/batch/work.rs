@@ -38,11 +38,11 @@ impl<'a, A: Arithmetic, T: Task, const N: usize> Work<'a, A, T, N> {
                 let results = block.advance(settings, shared, inputs.take(N), generators);
                 block.finish(settings, results, generators, None, &mut buffers);
             }
-        } else {
+        } else if let Some(draws) = self.draws {
             for (block, own) in blocks.iter_mut().zip(self.lane_params) {
                 let generators = take_mut(&mut generators, N);
                 let results = block.advance(settings, own, inputs.take(N), generators);
-                let own = self.draws.map(|draws| (own, draws));
+                let own = Some((own, draws));
                 block.finish(settings, results, generators, own, &mut buffers);
             }
         }

@@ -46,10 +46,10 @@ pub enum Draw<S = f64> {
 
 impl<S: Real> Draw<S> {
     /// The bounds; of one that does not draw, its number.
-    fn bounds(self, number: S, before: [S; 2]) -> [S; 2] {
+    fn bounds(self, number: S, before: S) -> [S; 2] {
         match self {
             Self::Fixed => [number; 2],
-            Self::AsBefore => before,
+            Self::AsBefore => [before; 2],
             Self::Uniform { low, high }
             | Self::LogUniform { low, high }
             | Self::Normal { low, high, .. } => [low, high],
@@ -57,7 +57,7 @@ impl<S: Real> Draw<S> {
     }
 
     fn check(self, name: &'static str, unit: &'static str) -> Result<(), Error> {
-        let [low, high] = self.bounds(S::ZERO, [S::ZERO; 2]).map(S::to_f64);
+        let [low, high] = self.bounds(S::ZERO, S::ZERO).map(S::to_f64);
         let out_of_range = |value, rule| Err(Error::OutOfRange { name, value, unit, rule });
         let is_ordered = low <= high; // false for NaN
         if !is_ordered {
@@ -80,7 +80,7 @@ impl<S: Real> Draw<S> {
 
     /// A number between the bounds, with the same bits on all machines.
     fn draw<R: Rng + ?Sized>(self, number: S, before: S, rng: &mut R) -> S {
-        let [low, high] = self.bounds(number, [before; 2]);
+        let [low, high] = self.bounds(number, before);
         if low == high {
             return low;
         }
@@ -181,11 +181,18 @@ impl<S: Real> Draws<S> {
 
     /// These parameters, with each drawn one replaced.
     pub fn draw<R: Rng + ?Sized>(&self, params: &Params<S>, rng: &mut R) -> Params<S> {
-        let mut before = S::ZERO;
-        params.zip(&self.0, |number, draw| {
-            before = draw.draw(number, before, rng);
-            before
-        })
+        self.replace(params, |draw, number, before| draw.draw(number, before, rng))
+    }
+
+    /// These parameters, each replaced by `f` of its draw, its number and that before it. A loop:
+    /// written out for each parameter, the code would be larger.
+    fn replace(&self, params: &Params<S>, mut f: impl FnMut(Draw<S>, S, S) -> S) -> Params<S> {
+        let (mut replaced, mut before) = (*params, S::ZERO);
+        for (number, (_, draw)) in replaced.numbers_mut().into_iter().zip(self.0.numbers()) {
+            *number = f(draw, *number, before);
+            before = *number;
+        }
+        replaced
     }
 }
 
@@ -193,15 +200,10 @@ impl<S: Modeled> Draws<S> {
     /// Checks these parameters with all drawn ones at their lower, and at their upper bounds. A
     /// draw is between them.
     pub(crate) fn check<A: Arithmetic<Scalar = S>>(&self, params: &Params<S>) -> Result<(), Error> {
-        [0, 1].into_iter().try_for_each(|end| {
-            let mut before = S::ZERO;
-            let ends = params.zip(&self.0, |number, draw| {
-                let [low, high] = draw.bounds(number, [before; 2]);
-                before = if end == 0 { low } else { high };
-                before
-            });
-            check_params::<A>(&ends)
-        })
+        let low = self.replace(params, |draw, number, before| draw.bounds(number, before)[0]);
+        let high = self.replace(params, |draw, number, before| draw.bounds(number, before)[1]);
+        check_params::<A>(&low)?;
+        check_params::<A>(&high)
     }
 }
 
